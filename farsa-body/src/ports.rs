@@ -1,0 +1,161 @@
+//! The capability ports: what a body may ask of a world, and the two sides that use them.
+
+use crate::pose::{Pose, Twist};
+
+macro_rules! id {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        pub struct $name(pub u16);
+
+        impl $name {
+            /// The position in the robot's list.
+            pub fn index(self) -> usize {
+                usize::from(self.0)
+            }
+        }
+    };
+}
+
+id! {
+    /// A rigid body: the index of its segment in the robot's description.
+    BodyId
+}
+id! {
+    /// A joint: the index of the segment that it carries.
+    JointId
+}
+id! {
+    /// An actuator: its index in the robot's list of actuators.
+    ActuatorId
+}
+id! {
+    /// A pair of colliders that may touch: its index in the robot's list of pairs.
+    PairId
+}
+
+/// The names by which a world knows its parts; all worlds of FARSA use [`BodyId`], [`JointId`] and [`ActuatorId`].
+#[diagnostic::on_unimplemented(message = "`{Self}` is no world of FARSA: it names no bodies, joints or actuators")]
+pub trait Handles {
+    /// A rigid body.
+    type Body: Copy;
+    /// A joint with one degree of freedom.
+    type Joint: Copy;
+    /// Something that can be commanded.
+    type Actuator: Copy;
+}
+
+/// A world that moves by itself.
+#[diagnostic::on_unimplemented(message = "`{Self}` cannot be stepped", note = "a lane of a batch and a board have ports but no step")]
+pub trait World: Handles {
+    /// Lets one control step of [`World::time_step`] pass.
+    fn step(&mut self);
+    /// The control step [s].
+    fn time_step(&self) -> f32;
+}
+
+/// Where bodies are and how they move.
+#[diagnostic::on_unimplemented(message = "`{Self}` does not tell where its bodies are (port `Kinematics`)")]
+pub trait Kinematics: Handles {
+    /// The pose of a body's frame in the world.
+    fn pose(&self, body: Self::Body) -> Pose;
+    /// The velocity of a body's origin and its angular velocity, in the world's axes.
+    fn velocity(&self, body: Self::Body) -> Twist;
+}
+
+/// Joint angles and speeds.
+#[diagnostic::on_unimplemented(message = "`{Self}` does not tell its joints' angles (port `Joints`)")]
+pub trait Joints: Handles {
+    /// The joint's angle [rad] or displacement [m].
+    fn position(&self, joint: Self::Joint) -> f32;
+    /// The joint's speed [rad/s or m/s].
+    fn speed(&self, joint: Self::Joint) -> f32;
+}
+
+/// Actuators that take commands.
+#[diagnostic::on_unimplemented(message = "`{Self}` has no actuators to command (port `Actuated`)")]
+pub trait Actuated: Handles {
+    /// Sets an actuator's command, which holds until the next one.
+    ///
+    /// A muscle pair takes [agonist, antagonist] activations [0..1]; a servo the desired position [rad or m] and a
+    /// torque motor its torque [N m or N] in the first place, and neither reads the second.
+    fn command(&mut self, actuator: Self::Actuator, value: [f32; 2]);
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit<B> {
+    /// Distance along the ray [m].
+    pub distance: f32,
+    /// Outward unit normal of the surface, in the world's axes.
+    pub normal: [f32; 3],
+    /// The body that was met; `None` for what does not move.
+    pub body: Option<B>,
+}
+
+/// Ray casts.
+#[diagnostic::on_unimplemented(message = "`{Self}` cannot cast rays (port `Rays`)")]
+pub trait Rays: Handles {
+    /// The first surface on a ray from `origin` [m] along the unit vector `direction` within `range` [m], in the world's axes.
+    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<Self::Body>>;
+}
+
+/// How a pair of colliders touched at the end of the last step.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct PairContact {
+    /// Number of points that carry a normal force > 0.
+    pub points: u32,
+    /// Force on the pair's first body, in the world's axes [N]; the second body gets the opposite.
+    pub force: [f32; 3],
+    /// Sum of the normal forces of the points [N].
+    pub normal_force: f32,
+    /// Mean of the touching points, weighted by normal force, in the world [m]; zero when none touches.
+    pub point: [f32; 3],
+    /// The largest penetration of the pair's points [m]; negative is the distance left, as far as the world knows it.
+    pub depth: f32,
+}
+
+/// Contacts between the pairs of colliders that the robot lists.
+#[diagnostic::on_unimplemented(message = "`{Self}` does not tell its contacts (port `Contacts`)")]
+pub trait Contacts: Handles {
+    /// Number of pairs; they are numbered from 0 in the order of the robot's list.
+    fn pairs(&self) -> usize;
+    /// The two bodies of a pair; `None` for what does not move.
+    fn pair_bodies(&self, pair: PairId) -> [Option<Self::Body>; 2];
+    /// How a pair touched at the end of the last step; all zero for a pair that does not exist.
+    fn pair_contact(&self, pair: PairId) -> PairContact;
+}
+
+/// Everything a world remembers, as numbers.
+#[diagnostic::on_unimplemented(message = "`{Self}` cannot be saved and restored (port `Snapshot`)")]
+pub trait Snapshot {
+    /// Length of a snapshot.
+    fn snapshot_len(&self) -> usize;
+    /// Writes every word that a step or a port reads and a step or a command wrote; `out` [snapshot_len].
+    fn save(&self, out: &mut [f32]);
+    /// Brings back what [`Snapshot::save`] wrote: what follows has the same bits; `from` [snapshot_len].
+    fn restore(&mut self, from: &[f32]);
+}
+
+/// Something with a fixed number of channels: every sensor and every motor.
+pub trait Channels {
+    /// Number of values read or driven.
+    fn channels(&self) -> usize;
+    /// Forgets what was remembered of an earlier life (noise streams, delays); called at the start of each.
+    fn reset(&mut self) {}
+}
+
+/// Something that reads a world.
+#[diagnostic::on_unimplemented(message = "`{Self}` cannot sense a world of type `{W}`", note = "the world may lack a port that the sensor needs")]
+pub trait Sensor<W: ?Sized>: Channels {
+    /// Writes one value per channel; `out` [channels]. A shorter slice gets the first channels.
+    fn read(&mut self, world: &W, out: &mut [f32]);
+}
+
+/// Something that commands a world.
+#[diagnostic::on_unimplemented(message = "`{Self}` cannot drive a world of type `{W}`", note = "the world may lack a port that the motor needs")]
+pub trait Motor<W: ?Sized>: Channels {
+    /// Turns one value per channel into commands; `y` [channels]. Of a shorter slice the first channels are driven.
+    fn drive(&mut self, y: &[f32], world: &mut W);
+}

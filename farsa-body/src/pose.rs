@@ -1,0 +1,98 @@
+//! Positions and orientations, velocities.
+
+use farsa_num::Real;
+
+/// Where a frame is: position [m] and orientation as a unit quaternion [x, y, z, w].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Pose<R = f32> {
+    /// The frame's origin in the reference frame [m].
+    pub position: [R; 3],
+    /// The rotation from the frame to the reference frame, unit quaternion [x, y, z, w].
+    pub rotation: [R; 4],
+}
+
+/// How a body moves, both parts in the world's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Twist<R = f32> {
+    /// Velocity of the body's origin [m/s].
+    pub linear: [R; 3],
+    /// Angular velocity [rad/s].
+    pub angular: [R; 3],
+}
+
+#[inline(always)]
+pub(crate) fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+impl<R: Real> Pose<R> {
+    /// The pose of the reference frame itself.
+    pub fn identity() -> Self {
+        let (o, l) = (R::of(0.0), R::of(1.0));
+        Self { position: [o, o, o], rotation: [o, o, o, l] }
+    }
+
+    /// A pose without rotation, at `position` [m].
+    pub fn at(position: [R; 3]) -> Self {
+        Self { position, ..Self::identity() }
+    }
+
+    /// A vector of this frame in the axes of the reference frame.
+    pub fn rotate(&self, v: [R; 3]) -> [R; 3] {
+        let [x, y, z, w] = self.rotation;
+        let u = [x, y, z];
+        let t = cross(u, v);
+        let t = [t[0] + t[0], t[1] + t[1], t[2] + t[2]];
+        let c = cross(u, t);
+        [v[0] + w * t[0] + c[0], v[1] + w * t[1] + c[1], v[2] + w * t[2] + c[2]]
+    }
+
+    /// A vector of the reference frame in the axes of this frame.
+    pub fn rotate_back(&self, v: [R; 3]) -> [R; 3] {
+        let [x, y, z, w] = self.rotation;
+        Self { position: self.position, rotation: [-x, -y, -z, w] }.rotate(v)
+    }
+
+    /// A point of this frame [m] in the reference frame [m].
+    pub fn transform(&self, point: [R; 3]) -> [R; 3] {
+        let p = self.rotate(point);
+        [p[0] + self.position[0], p[1] + self.position[1], p[2] + self.position[2]]
+    }
+
+    /// A point of the reference frame [m] in this frame [m].
+    pub fn transform_back(&self, point: [R; 3]) -> [R; 3] {
+        let p = self.position;
+        self.rotate_back([point[0] - p[0], point[1] - p[1], point[2] - p[2]])
+    }
+
+    /// The pose of `inner`, given in this frame, in the reference frame.
+    pub fn compose(&self, inner: &Self) -> Self {
+        let [ax, ay, az, aw] = self.rotation;
+        let [bx, by, bz, bw] = inner.rotation;
+        Self {
+            position: self.transform(inner.position),
+            rotation: [
+                aw * bx + ax * bw + ay * bz - az * by,
+                aw * by - ax * bz + ay * bw + az * bx,
+                aw * bz + ax * by - ay * bx + az * bw,
+                aw * bw - ax * bx - ay * by - az * bz,
+            ],
+        }
+    }
+
+    /// The same pose in another precision, each number rounded once.
+    pub fn cast<Q: Real>(&self) -> Pose<Q> {
+        Pose {
+            position: self.position.map(|x| Q::of(x.to_f64())),
+            rotation: self.rotation.map(|x| Q::of(x.to_f64())),
+        }
+    }
+}
+
+impl<R: Real> Default for Pose<R> {
+    fn default() -> Self {
+        Self::identity()
+    }
+}

@@ -1,0 +1,2 @@
+//! The farsa command.
+fn main() {}
