@@ -1,2 +1,32 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
+mod collision;
+#[cfg(feature = "alloc")]
+mod contact;
+#[cfg(feature = "alloc")]
+mod model;
+mod spatial;
+#[cfg(feature = "alloc")]
+mod step;
+mod tree;
+#[cfg(feature = "alloc")]
+mod world;
+
+/// Articulated rigid bodies in reduced coordinates with compliant contacts.
+pub mod articulated {
+    #[cfg(feature = "alloc")]
+    pub use crate::model::{Model, ModelError, Options};
+    pub use crate::spatial::Spatial;
+    #[cfg(feature = "alloc")]
+    pub use crate::step::{Scratch, step};
+    pub use crate::tree::{
+        Link, LinkWork, Root, accelerations, centre_of_mass, inverse_dynamics, jacobian, kinetic_energy, mass_matrix,
+        place, potential_energy,
+    };
+    #[cfg(feature = "alloc")]
+    pub use crate::world::World;
+}

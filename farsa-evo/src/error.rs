@@ -1,0 +1,152 @@
+//! What can be wrong with a configuration, a recorded history or what a strategy is told.
+
+use core::fmt;
+
+/// Why a value of this crate was refused; the variants carry the numbers that were wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum EvoError {
+    /// A genome needs at least one gene.
+    NoGenes,
+    /// A population needs at least one individual.
+    NoIndividuals,
+    /// Selection needs at least one parent.
+    NoParents,
+    /// More parents than individuals.
+    TooManyParents {
+        /// Individuals asked for.
+        population: usize,
+        /// Parents asked for.
+        parents: usize,
+    },
+    /// Every parent makes the same number of copies, so the population is a multiple of the parents.
+    UnevenCopies {
+        /// Individuals asked for.
+        population: usize,
+        /// Parents asked for.
+        parents: usize,
+    },
+    /// A probability that is NaN or outside 0 to 1.
+    Rate {
+        /// The probability asked for.
+        rate: f64,
+    },
+    /// A population of more genes than [`Population::MAX_GENES`](crate::Population::MAX_GENES).
+    TooLarge {
+        /// Individuals asked for.
+        population: usize,
+        /// Genes of each of them.
+        genes: usize,
+    },
+    /// A range of gene values that is not finite, or whose low end is above its high end.
+    Range {
+        /// Value of gene 0.
+        low: f32,
+        /// Value of gene 65535.
+        high: f32,
+    },
+    /// Genes, ranges and decoded values differ in number.
+    Lengths {
+        /// Genes to decode.
+        genes: usize,
+        /// Genes that the ranges describe.
+        ranges: usize,
+        /// Room for decoded values.
+        out: usize,
+    },
+    /// The strategy was told more or fewer fitness values than it has individuals.
+    FitnessCount {
+        /// Individuals of the generation.
+        expected: usize,
+        /// Fitness values told.
+        found: usize,
+    },
+    /// A fitness that is NaN.
+    NanFitness,
+    /// The generation counter has reached its last value, 2^32 - 1.
+    LastGeneration,
+    /// A generation that has not been reached.
+    NoSuchGeneration {
+        /// The generation asked for.
+        generation: u32,
+        /// The latest one that exists.
+        latest: u32,
+    },
+    /// An individual beyond the population.
+    NoSuchIndividual {
+        /// The individual asked for.
+        individual: usize,
+        /// Individuals of a generation.
+        population: usize,
+    },
+    /// A recorded selection of the wrong number of parents.
+    SelectedCount {
+        /// Parents of a generation.
+        expected: usize,
+        /// Parents recorded.
+        found: usize,
+    },
+    /// A recorded selection that names the same parent twice.
+    SelectedTwice {
+        /// The parent named twice.
+        individual: usize,
+    },
+    /// A saved search that has told generations but remembers no best individual.
+    NoBest {
+        /// The generation that it waits for.
+        generation: u32,
+    },
+    /// A saved state whose genomes come out differently: it was altered, or written by a version that drew otherwise.
+    Digest {
+        /// Digest in the saved state.
+        saved: u64,
+        /// Digest of the genomes rebuilt from it.
+        rebuilt: u64,
+    },
+}
+
+impl fmt::Display for EvoError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NoGenes => f.write_str("a genome of zero genes"),
+            Self::NoIndividuals => f.write_str("a population of zero individuals"),
+            Self::NoParents => f.write_str("a selection of zero parents"),
+            Self::TooManyParents { population, parents } => {
+                write!(f, "{parents} parents from a population of {population}")
+            }
+            Self::UnevenCopies { population, parents } => {
+                write!(f, "a population of {population} is not a multiple of {parents} parents")
+            }
+            Self::Rate { rate } => write!(f, "a mutation rate of {rate} is not a probability"),
+            Self::TooLarge { population, genes } => {
+                let limit = crate::Population::MAX_GENES;
+                write!(f, "{population} genomes of {genes} genes are more than {limit} genes")
+            }
+            Self::Range { low, high } => write!(f, "genes cannot range from {low} to {high}"),
+            Self::Lengths { genes, ranges, out } => {
+                write!(f, "{genes} genes, ranges for {ranges}, room for {out} values")
+            }
+            Self::FitnessCount { expected, found } => {
+                write!(f, "{found} fitness values for {expected} individuals")
+            }
+            Self::NanFitness => f.write_str("a fitness that is not a number"),
+            Self::LastGeneration => f.write_str("no generation after number 4294967295"),
+            Self::NoSuchGeneration { generation, latest } => {
+                write!(f, "generation {generation} of a history that ends with generation {latest}")
+            }
+            Self::NoSuchIndividual { individual, population } => {
+                write!(f, "individual {individual} of a population of {population}")
+            }
+            Self::SelectedCount { expected, found } => {
+                write!(f, "{found} selected parents recorded where {expected} make a generation")
+            }
+            Self::SelectedTwice { individual } => write!(f, "individual {individual} selected twice"),
+            Self::NoBest { generation } => write!(f, "no best individual in the search up to generation {generation}"),
+            Self::Digest { saved, rebuilt } => {
+                write!(f, "the saved genomes have digest {saved:016x}, the rebuilt ones {rebuilt:016x}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for EvoError {}

@@ -1,0 +1,126 @@
+//! Fitness that can always be compared.
+
+use core::cmp::Ordering;
+
+use crate::EvoError;
+
+/// How well an individual did, in the experiment's own unit; larger is better, and never NaN.
+///
+/// A total order, so that selection never meets a pair it cannot compare. Minus zero is stored as zero: equal values
+/// have equal bits. Under the feature `serde` it is an optional number, absent for a failed life, because text formats
+/// such as JSON have no infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Option<f64>", into = "Option<f64>"))]
+pub struct Fitness(f64);
+
+impl Fitness {
+    /// The fitness of a failed life, minus infinity: below every other.
+    pub const WORST: Self = Self(f64::NEG_INFINITY);
+
+    /// The fitness of this value, none for NaN.
+    pub const fn new(value: f64) -> Option<Self> {
+        // Adding zero turns minus zero into zero and changes nothing else.
+        if value.is_nan() { None } else { Some(Self(value + 0.0)) }
+    }
+
+    /// The fitness of this value, [`Fitness::WORST`] for NaN: a life whose arithmetic broke down has failed.
+    pub const fn nan_as_failed(value: f64) -> Self {
+        match Self::new(value) {
+            Some(fitness) => fitness,
+            None => Self::WORST,
+        }
+    }
+
+    /// The value, minus infinity for a failed life.
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+
+    /// Whether this is [`Fitness::WORST`].
+    pub const fn is_failed(self) -> bool {
+        self.0 == f64::NEG_INFINITY
+    }
+}
+
+// Sound because NaN is kept out: equality is reflexive, and the order below agrees with it because -0.0 is kept out.
+impl Eq for Fitness {}
+
+impl Ord for Fitness {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+impl PartialOrd for Fitness {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl TryFrom<f64> for Fitness {
+    type Error = EvoError;
+
+    /// The fitness of this value.
+    ///
+    /// # Errors
+    /// [`EvoError::NanFitness`].
+    fn try_from(value: f64) -> Result<Self, EvoError> {
+        Self::new(value).ok_or(EvoError::NanFitness)
+    }
+}
+
+impl From<Fitness> for f64 {
+    fn from(fitness: Fitness) -> Self {
+        fitness.0
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Option<f64>> for Fitness {
+    type Error = EvoError;
+
+    fn try_from(value: Option<f64>) -> Result<Self, EvoError> {
+        value.map_or(Ok(Self::WORST), Self::try_from)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Fitness> for Option<f64> {
+    fn from(fitness: Fitness) -> Self {
+        (!fitness.is_failed()).then_some(fitness.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nan_is_refused_or_failed() {
+        for nan in [f64::NAN, -f64::NAN, f64::from_bits(0x7ff0_0000_0000_0001)] {
+            assert_eq!(Fitness::new(nan), None);
+            assert_eq!(Fitness::try_from(nan), Err(EvoError::NanFitness));
+            assert_eq!(Fitness::nan_as_failed(nan), Fitness::WORST);
+        }
+        assert_eq!(Fitness::nan_as_failed(2.5).get(), 2.5);
+    }
+
+    #[test]
+    fn the_order_is_that_of_the_numbers() {
+        let rising = [f64::NEG_INFINITY, f64::MIN, -1.0, -f64::MIN_POSITIVE, 0.0, 1e-300, 1.0, f64::INFINITY];
+        for (i, &a) in rising.iter().enumerate() {
+            for (j, &b) in rising.iter().enumerate() {
+                assert_eq!(Fitness::new(a).cmp(&Fitness::new(b)), i.cmp(&j));
+            }
+        }
+        assert!(Fitness::WORST.is_failed() && !Fitness::nan_as_failed(f64::MIN).is_failed());
+    }
+
+    #[test]
+    fn minus_zero_is_zero() {
+        let (minus, plus) = (Fitness::nan_as_failed(-0.0), Fitness::nan_as_failed(0.0));
+        assert_eq!((minus, minus.cmp(&plus)), (plus, Ordering::Equal));
+        assert_eq!(minus.get().to_bits(), 0);
+    }
+}

@@ -1,0 +1,132 @@
+//! The genomes of one generation.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::slice::{ChunksExact, ChunksExactMut};
+
+use farsa_num::Digest;
+
+use crate::EvoError;
+
+/// The genomes of one generation, one after the other in one piece of memory [individuals x genes].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Population {
+    genome_len: usize,
+    genes: Vec<u16>,
+}
+
+impl Population {
+    /// The most genes a population may have together, 2^28 (512 MiB), so that a damaged configuration is refused
+    /// before it is allocated.
+    pub const MAX_GENES: usize = 1 << 28;
+
+    /// `individuals` genomes of `genome_len` genes, all zero.
+    ///
+    /// # Errors
+    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`] or [`EvoError::TooLarge`].
+    pub fn new(individuals: usize, genome_len: usize) -> Result<Self, EvoError> {
+        Self::check(individuals, genome_len)?;
+        Ok(Self { genome_len, genes: vec![0; individuals * genome_len] })
+    }
+
+    /// Whether [`Population::new`] would accept these sizes.
+    pub(crate) fn check(individuals: usize, genome_len: usize) -> Result<(), EvoError> {
+        if individuals == 0 {
+            return Err(EvoError::NoIndividuals);
+        }
+        if genome_len == 0 {
+            return Err(EvoError::NoGenes);
+        }
+        match individuals.checked_mul(genome_len) {
+            Some(total) if total <= Self::MAX_GENES => Ok(()),
+            _ => Err(EvoError::TooLarge { population: individuals, genes: genome_len }),
+        }
+    }
+
+    /// Number of individuals.
+    pub fn len(&self) -> usize {
+        self.genes.len() / self.genome_len
+    }
+
+    /// Whether there are no individuals: never.
+    pub fn is_empty(&self) -> bool {
+        self.genes.is_empty()
+    }
+
+    /// Number of genes of each individual.
+    pub fn genome_len(&self) -> usize {
+        self.genome_len
+    }
+
+    /// The genome \[genes\] of one individual, none beyond the last.
+    pub fn get(&self, individual: usize) -> Option<&[u16]> {
+        self.iter().nth(individual)
+    }
+
+    /// The genomes \[genes\], individual after individual.
+    pub fn iter(&self) -> ChunksExact<'_, u16> {
+        self.genes.chunks_exact(self.genome_len)
+    }
+
+    /// The genomes \[genes\], to be changed.
+    pub fn iter_mut(&mut self) -> ChunksExactMut<'_, u16> {
+        self.genes.chunks_exact_mut(self.genome_len)
+    }
+
+    /// All genes [individuals x genes].
+    pub fn as_slice(&self) -> &[u16] {
+        &self.genes
+    }
+
+    /// The [`Digest`] of all genes as little-endian bytes, to notice that two populations differ.
+    pub fn digest(&self) -> u64 {
+        let mut digest = Digest::new();
+        for gene in &self.genes {
+            digest.add_bytes(&gene.to_le_bytes());
+        }
+        digest.finish()
+    }
+}
+
+impl<'a> IntoIterator for &'a Population {
+    type Item = &'a [u16];
+    type IntoIter = ChunksExact<'a, u16>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl<'a> IntoIterator for &'a mut Population {
+    type Item = &'a mut [u16];
+    type IntoIter = ChunksExactMut<'a, u16>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter_mut()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn genomes_lie_one_after_the_other() {
+        let mut population = Population::new(3, 2).unwrap();
+        for (index, genome) in population.iter_mut().enumerate() {
+            genome.fill(index as u16);
+        }
+        assert_eq!(population.as_slice(), [0, 0, 1, 1, 2, 2]);
+        assert_eq!((population.len(), population.genome_len(), population.iter().len()), (3, 2, 3));
+        assert_eq!((population.get(2), population.get(3)), (Some(&[2, 2][..]), None));
+    }
+
+    #[test]
+    fn sizes_are_checked() {
+        assert_eq!(Population::new(0, 5), Err(EvoError::NoIndividuals));
+        assert_eq!(Population::new(5, 0), Err(EvoError::NoGenes));
+        for (population, genes) in [(usize::MAX, 2), (Population::MAX_GENES, 2), (1, Population::MAX_GENES + 1)] {
+            assert_eq!(Population::new(population, genes), Err(EvoError::TooLarge { population, genes }));
+        }
+    }
+}

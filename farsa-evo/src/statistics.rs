@@ -1,0 +1,73 @@
+//! What a log says about a generation.
+
+use crate::Fitness;
+
+/// The summary of one generation's fitness, in the experiment's own unit.
+///
+/// Failed lives count in [`Statistics::failed`] only; when all failed, best, mean and worst are minus infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Statistics {
+    /// Index of the best individual, the lowest among equals.
+    pub best_index: usize,
+    /// Largest fitness.
+    pub best: f64,
+    /// Mean over the lives that did not fail, summed in the order of the individuals.
+    pub mean: f64,
+    /// Smallest fitness of a life that did not fail.
+    pub worst: f64,
+    /// Number of failed lives.
+    pub failed: usize,
+}
+
+impl Statistics {
+    /// Summarises `fitness` \[individuals\]; none when it is empty.
+    pub fn of(fitness: &[Fitness]) -> Option<Self> {
+        let mut best = *fitness.first()?;
+        let mut worst = Fitness::WORST;
+        let (mut best_index, mut lived, mut sum) = (0, 0_usize, 0.0);
+        for (index, &value) in fitness.iter().enumerate() {
+            if value > best {
+                (best, best_index) = (value, index);
+            }
+            if !value.is_failed() {
+                worst = if lived == 0 { value } else { worst.min(value) };
+                lived += 1;
+                sum += value.get();
+            }
+        }
+        let mean = if lived == 0 { f64::NEG_INFINITY } else { sum / lived as f64 };
+        Some(Self { best_index, best: best.get(), mean, worst: worst.get(), failed: fitness.len() - lived })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+
+    fn summary(values: &[f64]) -> Option<Statistics> {
+        Statistics::of(&values.iter().map(|&v| Fitness::nan_as_failed(v)).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn failed_lives_are_counted_apart() {
+        let expected = Statistics { best_index: 2, best: 4.0, mean: 2.0, worst: 1.0, failed: 2 };
+        assert_eq!(summary(&[f64::NAN, 1.0, 4.0, f64::NAN, 1.0, 2.0]), Some(expected));
+    }
+
+    #[test]
+    fn the_first_of_equals_is_the_best() {
+        assert_eq!(summary(&[0.0, 7.0, 7.0]).map(|s| s.best_index), Some(1));
+        assert_eq!(summary(&[7.0, 7.0]).map(|s| s.best_index), Some(0));
+    }
+
+    #[test]
+    fn a_generation_of_failures_has_no_numbers() {
+        let none = f64::NEG_INFINITY;
+        assert_eq!(
+            summary(&[f64::NAN; 3]),
+            Some(Statistics { best_index: 0, best: none, mean: none, worst: none, failed: 3 })
+        );
+        assert_eq!(summary(&[]), None);
+    }
+}
