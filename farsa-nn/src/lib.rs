@@ -1,2 +1,17 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
+
+mod controller;
+mod error;
+mod kernel;
+mod layout;
+mod leak;
+mod network;
+mod perceptron;
+
+pub use controller::Controller;
+pub use error::Error;
+pub use layout::{Layout, ParameterKind, Parts};
+pub use leak::Leak;
+pub use network::Network;
+pub use perceptron::Perceptron;

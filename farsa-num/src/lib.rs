@@ -1,8 +1,25 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+#[cfg(test)]
+extern crate std;
+
+mod angle;
+mod arc;
+mod digest;
+mod exp;
 mod lanes;
+mod logarithm;
+mod philox;
+mod polynomial;
 mod scalar;
 
+pub use angle::sin_cos;
+pub use arc::{acos, asin, atan2};
+pub use digest::{Digest, crc32};
+pub use exp::{exp, logistic, tanh};
 pub use fearless_simd;
+pub use lanes::levels;
+pub use logarithm::ln;
+pub use philox::{Domain, Stream, philox};
 pub use scalar::{Mask, Real, Scalar};

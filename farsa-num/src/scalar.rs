@@ -15,6 +15,9 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
 
 /// What one lane of a [`Scalar`] holds: `f32` or `f64`.
 pub trait Real: Scalar<Real = Self, Mask = bool, Simd = ()> + PartialOrd + Default + Send + Sync + 'static {
+    /// Binary digits of the significand: 24 for `f32`, 53 for `f64`.
+    const DIGITS: u32;
+
     /// The nearest value of this type.
     fn of(x: f64) -> Self;
     /// The value in double precision, exact.
@@ -133,6 +136,8 @@ impl Mask for bool {
 macro_rules! real {
     ($real:ident, $bits:ident, $sqrt:path, $magic:expr, $bias:expr, $mantissa:expr) => {
         impl Real for $real {
+            const DIGITS: u32 = <$real>::MANTISSA_DIGITS;
+
             #[inline(always)]
             fn of(x: f64) -> Self {
                 x as $real

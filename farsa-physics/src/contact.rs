@@ -14,7 +14,7 @@ use crate::collision::{
     segment_box,
 };
 use crate::model::{Form, Model, POINT_WORDS, Pair};
-use crate::spatial::{Spatial, Vector, add, dot, product, rotate, scale, splat, sub};
+use crate::spatial::{Spatial, Vector, add, dot, product, rotate, scale, select, splat, sub};
 use crate::tree::{LinkWork, Motion, Root, WORLD};
 
 /// One contact point's block of three rows: normal, two tangents (or spin and two rolling axes).
@@ -27,7 +27,11 @@ pub(crate) struct Block<S: Scalar> {
     pub(crate) impulse: [S; 3],
     /// `J M^-1 J^T` of the block: nn, 11, 22, n1, n2, 12.
     pub(crate) response: [S; 6],
+    /// Reciprocals of the diagonal response: of the normal row, or of all three rolling rows.
     pub(crate) inverse: [S; 3],
+    /// The tangents' diagonal and the reciprocal of their determinant.
+    pub(crate) stick: [S; 3],
+    pub(crate) slide: S,
     /// Compliance and offset of the normal law.
     pub(crate) compliance: S,
     pub(crate) offset: S,
@@ -45,6 +49,8 @@ impl<S: Scalar> Block<S> {
             impulse: [o; 3],
             response: [o; 6],
             inverse: [o; 3],
+            stick: [o; 3],
+            slide: o,
             compliance: o,
             offset: o,
             gap: o,
@@ -321,17 +327,16 @@ impl<S: Scalar> Solver<'_, S> {
                 let normal = dot(old, axes[0]).max(zero);
                 let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
                 let impulse = [normal, across[0], across[1]].map(|x| S::select(mask, x, zero));
+                let (a1, a2) = (response[1] + slip, response[2] + slip);
                 self.blocks[i] = Block {
                     mask,
                     axes,
                     velocity: [dot(v, axes[0]), dot(v, axes[1]), dot(v, axes[2])],
                     impulse,
                     response,
-                    inverse: [
-                        one / (response[0] + compliance),
-                        one / (response[1] + slip),
-                        one / (response[2] + slip),
-                    ],
+                    inverse: [one / (response[0] + compliance); 3],
+                    stick: [a1, a2, one / (a1 * a2 - response[5] * response[5])],
+                    slide: one / (a1.max(a2) + response[5].abs()),
                     compliance,
                     offset,
                     gap: point.gap,
@@ -404,11 +409,17 @@ impl<S: Scalar> Solver<'_, S> {
         let d0 = normal - old[0];
         v[1] += a01 * d0;
         v[2] += a02 * d0;
-        let first = old[1] - (v[1] + slip * old[1]) * block.inverse[1];
-        v[2] += a12 * (first - old[1]);
-        let second = old[2] - (v[2] + slip * old[2]) * block.inverse[2];
+        // Sticking solves both tangents at once; sliding steps against the velocity, alike in all directions.
         let limit = S::splat(simd, pair.friction) * normal;
-        let across = cap([first, second, zero], limit);
+        let (w1, w2) = (v[1] + slip * old[1], v[2] + slip * old[2]);
+        let stick = [
+            old[1] - (block.stick[1] * w1 - a12 * w2) * block.stick[2],
+            old[2] - (block.stick[0] * w2 - a12 * w1) * block.stick[2],
+            zero,
+        ];
+        let slide = [old[1] - w1 * block.slide, old[2] - w2 * block.slide, zero];
+        let holds = dot(stick, stick).le(limit * limit);
+        let across = select(holds, stick, cap(slide, limit));
         let new = [normal, across[0], across[1]].map(|x| S::select(block.mask, x, zero));
         block.impulse = new;
         apply(dofs, rows, sub(new, old), block.mask, self.response);

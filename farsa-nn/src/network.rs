@@ -1,0 +1,189 @@
+//! The leaky recurrent network of the manipulation experiment.
+
+use crate::kernel::{accumulate, head, logistic};
+use crate::{Controller, Error, Layout, Leak, ParameterKind};
+
+/// A network of one recurrent hidden layer with leaks, over parameters and state that are the caller's.
+///
+/// With sensors `I`, `sigma(x) = 1/(1 + exp(-slope*x))` and the reading of the leak that [`Leak`] names:
+///
+/// ```text
+/// y_i(t) = sigma( beta_i + sum_j w_ji I_j(t) + sum_k r_ki H_k(t-1) )
+/// H_i(t) = d_i*y_i(t) + (1-d_i)*(H_i(t-1) or y_i(t-1)), or as Evonet
+/// O_i(t) = sigma( sum_j w_ji H_j(t) )
+/// ```
+///
+/// The parameters `P` may be a `static` array, a borrowed slice or a `Vec`; the state `S` an array, a mutable slice or a
+/// `Vec`. `H(0)` and `y(0)` are zero, in every reading.
+///
+/// A NaN or infinite input is the caller's mistake; what it leaves in the state stays there until
+/// [`reset`](Controller::reset).
+///
+/// Source: `[Thesis]` chapter 2. Deviations: the bias is the first summand, not the last (the order of rounding
+/// only); the recurrent sum, which the source states in words and proves by its parameter counts, is written out and
+/// reads `H(t-1)`; the initial state, which the source does not give, is zero.
+///
+/// ```
+/// use farsa_nn::{Controller, Layout, Leak, Network};
+///
+/// const LAYOUT: Layout = Layout::new(1, 1, 1);
+/// static PARAMETERS: [f32; LAYOUT.parameter_count()] = [6.0, 0.0, -6.0, 0.0, 0.5];
+/// # fn main() -> Result<(), farsa_nn::Error> {
+/// let mut network = Network::new(LAYOUT, Leak::Filter, &PARAMETERS, [0.0; LAYOUT.state_len()])?;
+/// let mut y = [0.0];
+/// network.step(&[0.0], &mut y);
+/// assert_eq!(network.hidden(), [0.25]);
+/// network.step(&[0.0], &mut y);
+/// assert_eq!(network.hidden(), [0.375]);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Network<P, S> {
+    layout: Layout,
+    leak: Leak,
+    parameters: P,
+    state: S,
+}
+
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
+    /// A network at rest: checks the parameters [[`parameter_count`](Layout::parameter_count)] and zeroes the state
+    /// [[`state_len`](Layout::state_len)].
+    ///
+    /// # Errors
+    /// [`Error::Slope`], [`Error::ParameterCount`], [`Error::NotFinite`], [`Error::LeakRange`] or [`Error::StateLen`]:
+    /// the first that applies, and of the parameters the first that is wrong.
+    pub fn new(layout: Layout, leak: Leak, parameters: P, mut state: S) -> Result<Self, Error> {
+        if !layout.slope().is_finite() {
+            return Err(Error::Slope { value: layout.slope() });
+        }
+        check(&layout, parameters.as_ref())?;
+        let (expected, found) = (layout.state_len(), state.as_mut().len());
+        if expected != found {
+            return Err(Error::StateLen { expected, found });
+        }
+        state.as_mut().fill(0.0);
+        Ok(Self { layout, leak, parameters, state })
+    }
+
+    /// Points the network at other parameters [[`parameter_count`](Layout::parameter_count)] and returns the old ones;
+    /// the state stays as it is.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]; then the network is unchanged.
+    pub fn set_parameters(&mut self, parameters: P) -> Result<P, Error> {
+        check(&self.layout, parameters.as_ref())?;
+        Ok(core::mem::replace(&mut self.parameters, parameters))
+    }
+
+    /// Copies other parameters [[`parameter_count`](Layout::parameter_count)] over the network's own; the state stays
+    /// as it is.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]; then the network is unchanged.
+    pub fn copy_parameters(&mut self, parameters: &[f32]) -> Result<(), Error>
+    where
+        P: AsMut<[f32]>,
+    {
+        check(&self.layout, parameters)?;
+        for (own, new) in self.parameters.as_mut().iter_mut().zip(parameters) {
+            *own = *new;
+        }
+        Ok(())
+    }
+
+    /// The parameters [[`parameter_count`](Layout::parameter_count)].
+    pub fn parameters(&self) -> &[f32] {
+        self.parameters.as_ref()
+    }
+}
+
+impl<P, S> Network<P, S> {
+    /// The layout.
+    pub const fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// The reading of the leak.
+    pub const fn leak(&self) -> Leak {
+        self.leak
+    }
+
+    /// Gives parameters and state back.
+    pub fn into_parts(self) -> (P, S) {
+        (self.parameters, self.state)
+    }
+
+    /// The activations `H(t)` `[hidden]` in [0, 1].
+    pub fn hidden(&self) -> &[f32]
+    where
+        S: AsRef<[f32]>,
+    {
+        let state = self.state.as_ref();
+        state.get(..self.layout.hidden()).unwrap_or(state)
+    }
+}
+
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
+    fn inputs(&self) -> usize {
+        self.layout.sensors()
+    }
+
+    fn outputs(&self) -> usize {
+        self.layout.outputs()
+    }
+
+    fn reset(&mut self) {
+        self.state.as_mut().fill(0.0);
+    }
+
+    fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        let Self { layout, leak, parameters, state } = self;
+        debug_assert_eq!(x.len(), layout.sensors(), "sensor values and the layout's sensors");
+        debug_assert_eq!(y.len(), layout.outputs(), "motor values and the layout's outputs");
+        let parts = layout.split(parameters.as_ref());
+        let (count, slope) = (layout.hidden(), layout.slope());
+
+        let state = state.as_mut();
+        let (hidden, state) = state.split_at_mut(count.min(state.len()));
+        let (previous, state) = state.split_at_mut(count.min(state.len()));
+        let response = head(state, count);
+
+        for (sum, bias) in response.iter_mut().zip(parts.biases) {
+            *sum = *bias;
+        }
+        accumulate(parts.sensor_weights, count, x, response);
+        accumulate(parts.recurrent_weights, count, hidden, response);
+        logistic(slope, response);
+
+        let neurons = hidden.iter_mut().zip(response.iter()).zip(parts.leaks);
+        match leak {
+            Leak::Filter => neurons.for_each(|((h, y), d)| *h = d * y + (1.0 - d) * *h),
+            Leak::TwoTap => neurons.zip(previous).for_each(|(((h, y), d), previous)| {
+                *h = d * y + (1.0 - d) * *previous;
+                *previous = *y;
+            }),
+            Leak::Evonet => neurons.for_each(|((h, y), d)| *h = d * *h + (1.0 - d) * y),
+        }
+
+        let y = head(y, layout.outputs());
+        y.fill(0.0);
+        accumulate(parts.output_weights, layout.outputs(), hidden, y);
+        logistic(slope, y);
+    }
+}
+
+fn check(layout: &Layout, parameters: &[f32]) -> Result<(), Error> {
+    let (expected, found) = (layout.parameter_count(), parameters.len());
+    if expected != found {
+        return Err(Error::ParameterCount { expected, found });
+    }
+    if let Some(index) = parameters.iter().position(|p| !p.is_finite()) {
+        return Err(Error::NotFinite { index });
+    }
+    let leaks = layout.range(ParameterKind::Leak).zip(layout.split(parameters).leaks);
+    match leaks.into_iter().find(|(_, leak)| !(0.0..=1.0).contains(*leak)) {
+        Some((index, &value)) => Err(Error::LeakRange { index, value }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,93 @@
+//! A single layer of logistic units, for reflexes.
+
+use crate::kernel::{accumulate, head, logistic};
+use crate::{Controller, Error};
+
+/// One layer of logistic units without memory: `O_i = sigma( beta_i + sum_j w_ji I_j )`,
+/// `sigma(x) = 1/(1 + exp(-slope*x))`.
+///
+/// The parameters, source-major like those of a [`Layout`](crate::Layout): `w_ji` at `j*outputs + i`
+/// `[inputs x outputs]`, then `beta_i` `[outputs]`. Sums start at the bias and add the inputs in their order.
+///
+/// Enough for wall following, phototaxis and the discrimination of cylinders by a wheeled robot.
+///
+/// ```
+/// use farsa_nn::{Controller, Perceptron};
+///
+/// // Light on the left drives the right wheel, and the reverse: aggression.
+/// let mut vehicle = Perceptron::new(2, 2, 1.0, [0.0, 4.0, 4.0, 0.0, -2.0, -2.0])?;
+/// let mut wheels = [0.0; 2];
+/// vehicle.step(&[1.0, 0.5], &mut wheels);
+/// assert_eq!(wheels[0], 0.5);
+/// assert!(wheels[1] > 0.8);
+/// # Ok::<(), farsa_nn::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Perceptron<P> {
+    inputs: usize,
+    outputs: usize,
+    slope: f32,
+    parameters: P,
+}
+
+impl Perceptron<()> {
+    /// Number of parameters of so many inputs and outputs, `inputs*outputs + outputs`; saturates.
+    ///
+    /// ```
+    /// assert_eq!(farsa_nn::Perceptron::parameter_count(6, 2), 14);
+    /// ```
+    pub const fn parameter_count(inputs: usize, outputs: usize) -> usize {
+        inputs.saturating_mul(outputs).saturating_add(outputs)
+    }
+}
+
+impl<P: AsRef<[f32]>> Perceptron<P> {
+    /// A layer over these parameters [[`parameter_count`](Perceptron::parameter_count)].
+    ///
+    /// # Errors
+    /// [`Error::Slope`], [`Error::ParameterCount`] or [`Error::NotFinite`]: the first that applies.
+    pub fn new(inputs: usize, outputs: usize, slope: f32, parameters: P) -> Result<Self, Error> {
+        if !slope.is_finite() {
+            return Err(Error::Slope { value: slope });
+        }
+        let (expected, found) = (Perceptron::parameter_count(inputs, outputs), parameters.as_ref().len());
+        if expected != found {
+            return Err(Error::ParameterCount { expected, found });
+        }
+        match parameters.as_ref().iter().position(|p| !p.is_finite()) {
+            Some(index) => Err(Error::NotFinite { index }),
+            None => Ok(Self { inputs, outputs, slope, parameters }),
+        }
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &[f32] {
+        self.parameters.as_ref()
+    }
+}
+
+impl<P: AsRef<[f32]>> Controller for Perceptron<P> {
+    fn inputs(&self) -> usize {
+        self.inputs
+    }
+
+    fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// Does nothing: there is no memory.
+    fn reset(&mut self) {}
+
+    fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        debug_assert_eq!(x.len(), self.inputs, "sensor values and the layer's inputs");
+        debug_assert_eq!(y.len(), self.outputs, "motor values and the layer's outputs");
+        let parameters = self.parameters.as_ref();
+        let (weights, biases) = parameters.split_at((self.inputs * self.outputs).min(parameters.len()));
+        let y = head(y, self.outputs);
+        for (sum, bias) in y.iter_mut().zip(biases) {
+            *sum = *bias;
+        }
+        accumulate(weights, self.outputs, x, y);
+        logistic(self.slope, y);
+    }
+}

@@ -1,0 +1,30 @@
+//! The bits of a long run: a change here is value-breaking and has its heading in the changelog.
+
+use farsa_nn::{Controller, Layout, Leak, Network, ParameterKind};
+use farsa_num::{Digest, Domain, Stream};
+
+#[test]
+fn a_hundred_thousand_steps() {
+    const LAYOUT: Layout = Layout::new(29, 12, 23);
+    let run = |leak| {
+        let mut genes = Stream::new(2010, Domain::InitialGenome, 0, 0, 0);
+        let mut parameters = [0.0; LAYOUT.parameter_count()];
+        for (p, kind) in parameters.iter_mut().zip(LAYOUT.kinds()) {
+            *p = if kind == ParameterKind::Leak { genes.uniform() } else { genes.range(-6.0, 6.0) };
+        }
+        let mut network = Network::new(LAYOUT, leak, parameters, [0.0; LAYOUT.state_len()]).expect("valid");
+        let mut inputs = Stream::new(2010, Domain::Network, 0, 0, 0);
+        let (mut x, mut y, mut digest) = ([0.0; 29], [0.0; 23], Digest::new());
+        for _ in 0..100_000 {
+            // The range of the experiment's position sensors: units left unsaturated and saturated alike.
+            x.fill_with(|| inputs.range(-10.0, 10.0));
+            network.step(&x, &mut y);
+            digest.add_f32s(network.hidden());
+            digest.add_f32s(&y);
+        }
+        digest.finish()
+    };
+    let digests = Leak::ALL.map(run);
+    let expected = [0x4AFA_1190_ABF9_D6F8, 0x87DD_6814_4B4A_8D42, 0x07E3_9116_3CBC_C750];
+    assert_eq!(digests, expected, "{digests:#018x?}");
+}

@@ -1,0 +1,66 @@
+//! The single layer against its equation, and through the trait.
+
+use farsa_nn::{Controller, Error, Perceptron};
+use proptest::prelude::*;
+
+proptest! {
+    #[test]
+    fn equals_its_equation_bit_for_bit(
+        (inputs, outputs, parameters, x) in (0..12_usize, 0..40_usize).prop_flat_map(|(n, o)| (
+            Just(n),
+            Just(o),
+            prop::collection::vec(-6.0_f32..6.0, Perceptron::parameter_count(n, o)),
+            prop::collection::vec(-50.0_f32..50.0, n),
+        )),
+        slope in 0.1_f32..2.0,
+    ) {
+        let mut layer = Perceptron::new(inputs, outputs, slope, &parameters[..])?;
+        let mut y = vec![f32::NAN; outputs];
+        layer.step(&x, &mut y);
+        for i in 0..outputs {
+            let mut net = parameters[inputs * outputs + i];
+            for j in 0..inputs {
+                net += parameters[j * outputs + i] * x[j];
+            }
+            prop_assert_eq!(y[i].to_bits(), farsa_num::logistic(slope * net).to_bits());
+        }
+    }
+}
+
+#[test]
+fn construction_names_the_mistake() {
+    let build = |slope, parameters: &[f32]| Perceptron::new(6, 2, slope, parameters).err();
+    assert_eq!(build(1.0, &[0.0; 14]), None);
+    assert_eq!(build(1.0, &[0.0; 12]), Some(Error::ParameterCount { expected: 14, found: 12 }));
+    assert_eq!(build(f32::NEG_INFINITY, &[0.0; 14]), Some(Error::Slope { value: f32::NEG_INFINITY }));
+    let mut parameters = [0.0; 14];
+    parameters[13] = f32::NAN;
+    assert_eq!(build(1.0, &parameters), Some(Error::NotFinite { index: 13 }));
+}
+
+#[test]
+fn is_a_controller_behind_a_reference_and_an_object() -> Result<(), Error> {
+    fn at_rest(mut controller: impl Controller) -> (usize, usize, f32) {
+        let mut y = [f32::NAN];
+        controller.reset();
+        controller.step(&[0.0, 0.0], &mut y);
+        (controller.inputs(), controller.outputs(), y[0])
+    }
+    let mut layer = Perceptron::new(2, 1, 1.0, [1.0, 1.0, 0.0])?;
+    assert_eq!(at_rest(&mut layer), (2, 1, 0.5));
+    let object: &mut dyn Controller = &mut layer;
+    assert_eq!(at_rest(object), (2, 1, 0.5));
+    Ok(())
+}
+
+#[test]
+#[cfg_attr(debug_assertions, should_panic = "motor values")]
+fn wrong_lengths_use_the_shorter() {
+    let mut layer = Perceptron::new(2, 2, 1.0, [1.0, 2.0, 3.0, 4.0, 0.0, 0.0]).expect("valid");
+    let (mut whole, mut long, mut short) = ([0.0; 2], [-1.0; 3], [0.0; 1]);
+    layer.step(&[1.0, 0.0], &mut whole);
+    layer.step(&[1.0, 0.0], &mut long);
+    assert_eq!(long, [whole[0], whole[1], -1.0]);
+    layer.step(&[1.0], &mut short);
+    assert_eq!(short[0], whole[0]);
+}

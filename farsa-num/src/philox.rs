@@ -1,0 +1,198 @@
+//! The one random generator: streams addressed by what they are for, not by who draws first.
+
+use crate::angle::sin_cos;
+use crate::logarithm::ln;
+
+/// What a stream's numbers are for; the number of each is part of every recorded run and never changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Domain {
+    /// Starting positions and other conditions of a trial.
+    Start = 0,
+    /// Noise of sensors.
+    Sensor = 1,
+    /// Noise of motors.
+    Motor = 2,
+    /// Genomes of the first generation.
+    InitialGenome = 3,
+    /// Choice of parents, mutation and crossover.
+    Mutation = 4,
+    /// Initial states and noise of networks.
+    Network = 5,
+}
+
+/// Four 32-bit random words from a counter and a key: Philox4x32-10.
+///
+/// Source: [Salmon2011] section 3.3 with the constants of its `Random123` code; no deviation (known answers in the tests).
+#[inline]
+pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
+    let [mut a, mut b, mut c, mut d] = counter;
+    let [mut k0, mut k1] = key;
+    for _ in 0..10 {
+        let p = u64::from(a) * 0xD251_1F53;
+        let q = u64::from(c) * 0xCD9E_8D57;
+        (a, b, c, d) = ((q >> 32) as u32 ^ b ^ k0, q as u32, (p >> 32) as u32 ^ d ^ k1, p as u32);
+        k0 = k0.wrapping_add(0x9E37_79B9);
+        k1 = k1.wrapping_add(0xBB67_AE85);
+    }
+    [a, b, c, d]
+}
+
+/// A stream of random numbers, fixed by the run's seed and by what it is for.
+///
+/// Plain data of 44 bytes: copying it copies its place. Two streams that differ in any argument of [`Stream::new`] share
+/// no block. It repeats after 2^34 words.
+///
+/// The key is the seed's two halves (low first); the counter is (block, domain << 24 | trial, individual, generation).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stream {
+    key: [u32; 2],
+    /// The counter of the block to draw next.
+    counter: [u32; 4],
+    words: [u32; 4],
+    /// How many of `words` are drawn already.
+    drawn: u8,
+}
+
+impl Stream {
+    /// The stream of a seed for one purpose, at its first word.
+    ///
+    /// `trial` counts to 2^24 - 1; its higher bits are dropped (a debug build panics).
+    #[inline]
+    pub const fn new(seed: u64, domain: Domain, trial: u32, individual: u32, generation: u32) -> Self {
+        debug_assert!(trial < 1 << 24, "a trial's number has 24 bits");
+        let purpose = (domain as u32) << 24 | (trial & 0x00FF_FFFF);
+        Self {
+            key: [seed as u32, (seed >> 32) as u32],
+            counter: [0, purpose, individual, generation],
+            words: [0; 4],
+            drawn: 4,
+        }
+    }
+
+    /// Number of 32-bit words drawn so far, modulo 2^34.
+    #[inline]
+    pub fn position(&self) -> u64 {
+        let words = 4 * u64::from(self.counter[0]) + u64::from(self.drawn);
+        words.wrapping_sub(4) & 0x3_FFFF_FFFF
+    }
+
+    /// Goes to where `position` words are drawn, modulo 2^34.
+    #[inline]
+    pub fn seek(&mut self, position: u64) {
+        self.counter[0] = (position >> 2) as u32;
+        self.drawn = 4;
+        let within = (position & 3) as u8;
+        if within > 0 {
+            self.refill();
+            self.drawn = within;
+        }
+    }
+
+    #[inline]
+    fn refill(&mut self) {
+        self.words = philox(self.counter, self.key);
+        self.counter[0] = self.counter[0].wrapping_add(1);
+        self.drawn = 0;
+    }
+
+    /// The next word.
+    #[inline]
+    pub fn next_u32(&mut self) -> u32 {
+        if self.drawn > 3 {
+            self.refill();
+        }
+        let [a, b, c, d] = self.words;
+        let word = match self.drawn {
+            0 => a,
+            1 => b,
+            2 => c,
+            _ => d,
+        };
+        self.drawn += 1;
+        word
+    }
+
+    /// The next two words, the first in the lower half.
+    #[inline]
+    pub fn next_u64(&mut self) -> u64 {
+        let low = u64::from(self.next_u32());
+        u64::from(self.next_u32()) << 32 | low
+    }
+
+    /// Uniform in [0, 1), a multiple of 2^-24. Draws one word.
+    #[inline]
+    pub fn uniform(&mut self) -> f32 {
+        (self.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
+    }
+
+    /// Uniform in [0, 1), a multiple of 2^-53. Draws two words.
+    #[inline]
+    pub fn uniform_f64(&mut self) -> f64 {
+        (self.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+    }
+
+    /// Uniform in [low, high), never `high` itself; `low` where the interval is empty or a bound is NaN. Draws one word.
+    ///
+    /// `high - low` must not overflow, or the result is always the largest number below `high`.
+    #[inline]
+    pub fn range(&mut self, low: f32, high: f32) -> f32 {
+        let x = low + (high - low) * self.uniform();
+        // The sum rounds up to `high` now and then.
+        if low < high { if x < high { x } else { high.next_down() } } else { low }
+    }
+
+    /// Uniform in [low, high), like [`Stream::range`]. Draws two words.
+    #[inline]
+    pub fn range_f64(&mut self, low: f64, high: f64) -> f64 {
+        let x = low + (high - low) * self.uniform_f64();
+        if low < high { if x < high { x } else { high.next_down() } } else { low }
+    }
+
+    /// Uniform in 0..n without bias; 0 for n = 0. Draws one word, seldom more.
+    ///
+    /// Source: [Lemire2019] algorithm 5; no deviation.
+    #[inline]
+    pub fn below(&mut self, n: u32) -> u32 {
+        let mut product = u64::from(self.next_u32()) * u64::from(n);
+        if (product as u32) < n {
+            // 2^32 mod n: so many of the lowest fractions would be drawn once too often.
+            let excess = n.wrapping_neg() % n;
+            while (product as u32) < excess {
+                product = u64::from(self.next_u32()) * u64::from(n);
+            }
+        }
+        (product >> 32) as u32
+    }
+
+    /// A standard normal number: the first of [`Stream::normal_pair`]. Draws two words.
+    #[inline]
+    pub fn normal(&mut self) -> f32 {
+        self.normal_pair()[0]
+    }
+
+    /// Two independent standard normal numbers, of magnitude below 6.67. Draws two words.
+    ///
+    /// Source: [Box1958], computed in `f64` and rounded. Deviation: the radius takes its uniform in (0, 1].
+    #[inline]
+    pub fn normal_pair(&mut self) -> [f32; 2] {
+        const UNIT: f64 = 1.0 / 4_294_967_296.0;
+        let u = (f64::from(self.next_u32()) + 1.0) * UNIT;
+        let angle = f64::from(self.next_u32()) * (UNIT * core::f64::consts::TAU);
+        let radius = libm::sqrt(-2.0 * ln(u));
+        let (s, c) = sin_cos(angle);
+        [(radius * c) as f32, (radius * s) as f32]
+    }
+
+    /// How many failures come before the next success, given ln(1 - p) of the probability p of a success. Draws two words.
+    ///
+    /// For skip sampling: visiting only the genes that mutate. `u64::MAX` where ln(1 - p) is not below 0 (p = 0, or NaN);
+    /// 0 for negative infinity (p = 1).
+    ///
+    /// Source: inversion, [Devroye1986] chapter X.2; the uniform is in (0, 1], a multiple of 2^-53.
+    #[inline]
+    pub fn geometric(&mut self, log_one_minus_p: f64) -> u64 {
+        let u = ((self.next_u64() >> 11) + 1) as f64 * (1.0 / 9_007_199_254_740_992.0);
+        if log_one_minus_p < 0.0 { (ln(u) / log_one_minus_p) as u64 } else { u64::MAX }
+    }
+}

@@ -1,0 +1,10 @@
+//! Horner's rule, unrolled by the compiler's macro expander so that its order of operations is in the source.
+
+/// `c0 + x * (c1 + x * (c2 + ...))`, each constant rounded once to the lane's type.
+macro_rules! polynomial {
+    ($x:expr; $last:expr $(,)?) => { $x.constant($last) };
+    ($x:expr; $first:expr, $($rest:expr),+ $(,)?) => {
+        $x.constant($first) + $x * $crate::polynomial::polynomial!($x; $($rest),+)
+    };
+}
+pub(crate) use polynomial;
