@@ -1,6 +1,8 @@
 //! Actuator laws: from a joint's position, speed and a command to an effort and its derivatives.
 
-use farsa_num::{Real, Scalar, exp};
+use farsa_num::{Real, Scalar};
+
+use crate::muscle::MusclePair;
 
 /// What an actuator does to its joint at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,43 +13,6 @@ pub struct Effort<S> {
     pub stiffness: S,
     /// -dtorque/dspeed, never negative [N m s/rad or N s/m].
     pub damping: S,
-}
-
-/// Which reading of the muscle model: the printed one or that of the original program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum MuscleVariant {
-    /// As printed in the thesis: passive force in full, b = 0.9.
-    #[default]
-    Thesis,
-    /// As in the original program: passive force times 0.5 and a reduction factor, b = 1.0.
-    Original,
-}
-
-/// An antagonist pair of Hill-type muscles on one joint [Ferrauto2010].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct MusclePair<R> {
-    /// Largest active force of each muscle [N].
-    pub tension: R,
-    /// Moment arm [m].
-    pub moment_arm: R,
-    /// Joint position at which the agonist is shortest [rad].
-    pub lower: R,
-    /// Joint position at which the agonist is longest [rad].
-    pub upper: R,
-    /// Length at which active force is largest and passive force begins.
-    pub rest_length: R,
-    /// Longest length.
-    pub longest: R,
-    /// Shortest length.
-    pub shortest: R,
-    /// Shape of the passive force.
-    pub shape: R,
-    /// Viscosity [N per unit of length per second].
-    pub viscosity: R,
-    /// Factor on the passive force.
-    pub passive: R,
 }
 
 /// A position servo: a spring and damper to the commanded position, with a capped effort.
@@ -92,41 +57,6 @@ pub enum Law<R> {
     Torque(Torque<R>),
     /// A law of the user's, held over the control step.
     Held(Held<R>),
-}
-
-impl<R: Real> MusclePair<R> {
-    /// The pair's effort at joint position `q` [rad], speed `qdot` [rad/s] and activations [agonist, antagonist] in [0, 1].
-    #[inline(always)]
-    pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
-        let zero = q.constant(0.0);
-        let one = q.constant(1.0);
-        let [shortest, longest, rest] = [self.shortest, self.longest, self.rest_length].map(|x| q.like(x));
-        let slope = (longest - shortest) / (q.like(self.upper) - q.like(self.lower));
-        let x1 = shortest + slope * (q - q.like(self.lower));
-        let x2 = shortest + longest - x1;
-        let tension = q.like(self.tension);
-        let width = longest - rest;
-        let shape = q.like(self.shape);
-        let scale = q.like(self.passive) * tension / (exp(shape) - one);
-        let active = |x: S, a: S| {
-            let e = (x - rest) / width;
-            (a * tension * (one - e * e)).max(zero)
-        };
-        let passive = |x: S| {
-            let e = exp(shape * ((x - rest) / width));
-            (scale * (e - one), scale * e * shape / width)
-        };
-        let (p1, s1) = passive(x1);
-        let (p2, s2) = passive(x2);
-        let b = q.like(self.viscosity);
-        let arm = q.like(self.moment_arm);
-        let viscous = (b + b) * slope * arm;
-        Effort {
-            torque: arm * ((active(x2, command[1]) + p2) - (active(x1, command[0]) + p1)) - viscous * qdot,
-            stiffness: arm * slope * (s1 + s2),
-            damping: viscous,
-        }
-    }
 }
 
 impl<R: Real> Servo<R> {
@@ -181,14 +111,77 @@ impl<R: Real> Law<R> {
                 longest: c(m.longest),
                 shortest: c(m.shortest),
                 shape: c(m.shape),
+                passive_scale: c(m.passive_scale),
                 viscosity: c(m.viscosity),
-                passive: c(m.passive),
             }),
-            Self::Servo(s) => {
-                Law::Servo(Servo { stiffness: c(s.stiffness), damping: c(s.damping), limit: c(s.limit) })
-            }
+            Self::Servo(s) => Law::Servo(Servo { stiffness: c(s.stiffness), damping: c(s.damping), limit: c(s.limit) }),
             Self::Torque(t) => Law::Torque(Torque { limit: c(t.limit) }),
             Self::Held(h) => Law::Held(Held { stiffness: c(h.stiffness), damping: c(h.damping) }),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn servo<R: Real>() -> Servo<R> {
+        Servo { stiffness: R::of(2.0), damping: R::of(0.5), limit: R::of(0.75) }
+    }
+
+    fn servo_is_a_capped_spring<R: Real>() {
+        let effort = |q: f64, w: f64, wanted: f64| {
+            let e = servo::<R>().effort(R::of(q), R::of(w), [R::of(wanted), R::of(9.0)]);
+            [e.torque, e.stiffness, e.damping].map(Real::to_f64)
+        };
+        // Numbers that both precisions hold exactly.
+        assert_eq!(effort(0.25, 0.5, 0.5), [0.25, 2.0, 0.5], "within the cap");
+        assert_eq!(effort(0.0, 0.0, 1.0), [0.75, 0.0, 0.0], "stalled: no spring left");
+        assert_eq!(effort(0.0, 0.0, -1.0), [-0.75, 0.0, 0.0]);
+        assert_eq!(effort(0.0, 0.0, 0.375), [0.75, 0.0, 0.0], "at the cap it counts as saturated");
+        assert_eq!(effort(0.0, 2.0, 0.5), [0.0, 2.0, 0.5], "damped to a standstill");
+        assert_eq!(effort(0.5, -3.0, 0.5), [0.75, 0.0, 0.0], "damping is under the cap too");
+    }
+
+    #[test]
+    fn servo_pulls_until_it_stalls() {
+        servo_is_a_capped_spring::<f32>();
+        servo_is_a_capped_spring::<f64>();
+    }
+
+    #[test]
+    fn torque_is_capped_and_held_is_a_spring() {
+        let motor = Law::Torque(Torque { limit: 1.5 });
+        for (command, torque) in [(0.5, 0.5), (2.0, 1.5), (-9.0, -1.5)] {
+            assert_eq!(motor.effort(0.3, -0.2, [command, 7.0]), Effort { torque, stiffness: 0.0, damping: 0.0 });
+        }
+        let held = Law::Held(Held { stiffness: 4.0, damping: 0.5 });
+        // The second command is the position at which the first was meant.
+        assert_eq!(held.effort(0.75, 2.0, [3.0, 0.5]), Effort { torque: 1.0, stiffness: 4.0, damping: 0.5 });
+        assert_eq!(held.effort(0.5, 0.0, [3.0, 0.5]).torque, 3.0);
+    }
+
+    #[test]
+    fn casting_rounds_each_number_once() {
+        let laws: [Law<f64>; 4] = [
+            Law::MusclePair(MusclePair::thesis(300.1, 0.0103, [-2.1, 0.7])),
+            Law::Servo(Servo { stiffness: 0.1, damping: 0.2, limit: 0.3 }),
+            Law::Torque(Torque { limit: 0.7 }),
+            Law::Held(Held { stiffness: 0.9, damping: 1.1 }),
+        ];
+        for law in laws {
+            let narrow = law.cast::<f32>();
+            assert_eq!(law.cast::<f64>(), law);
+            assert_eq!(narrow.cast::<f64>().cast::<f32>(), narrow);
+            let (wide, narrow) = (law.effort(0.2, 0.1, [0.3, 0.4]), narrow.effort(0.2f32, 0.1, [0.3, 0.4]));
+            assert!((wide.torque - f64::from(narrow.torque)).abs() < 1e-5);
+            assert!((wide.stiffness - f64::from(narrow.stiffness)).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_lost_joint_stays_lost() {
+        let pair = Law::MusclePair(MusclePair::thesis(300.0f32, 0.01, [-1.0, 1.0]));
+        assert!(pair.effort(f32::NAN, 0.0, [0.0; 2]).torque.is_nan());
     }
 }

@@ -1,20 +1,74 @@
-#![doc = include_str!("../README.md")]
+// The examples of the README build descriptions, which need `alloc`.
+#![cfg_attr(feature = "alloc", doc = include_str!("../README.md"))]
+#![cfg_attr(not(feature = "alloc"), doc = "Actuators, ports, sensors and motors of robots; the feature `alloc` adds descriptions.")]
 #![no_std]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
 mod actuator;
+#[cfg(feature = "alloc")]
+mod arm_and_hand;
+mod channel;
+mod compose;
+mod delayed;
+mod faulty;
+#[cfg(feature = "alloc")]
+mod goal;
+#[cfg(feature = "alloc")]
+mod inverse_kinematics;
+#[cfg(feature = "alloc")]
+mod kinematics;
+#[cfg(feature = "alloc")]
+mod mass_properties;
+mod motor;
+mod noisy;
+mod muscle;
+mod place;
 mod pose;
 mod ports;
+mod proprioception;
 #[cfg(feature = "alloc")]
 mod robot;
+mod scaled;
+mod signal;
+#[cfg(feature = "alloc")]
+mod tabletop;
+mod touch;
+#[cfg(feature = "alloc")]
+mod validation;
+mod wrap;
 
-pub use actuator::{Effort, Held, Law, MusclePair, MuscleVariant, Servo, Torque};
+pub use actuator::{Effort, Held, Law, Servo, Torque};
+#[cfg(feature = "alloc")]
+pub use arm_and_hand::{ArmAndHand, Finger};
+pub use channel::ChannelError;
+pub use delayed::Delayed;
+pub use faulty::{Lesioned, Stuck, StuckAt};
+#[cfg(feature = "alloc")]
+pub use goal::{Goal, Orientation};
+#[cfg(feature = "alloc")]
+pub use inverse_kinematics::{InverseKinematics, InverseKinematicsError, Solution};
+#[cfg(feature = "alloc")]
+pub use kinematics::KinematicTree;
+#[cfg(feature = "alloc")]
+pub use mass_properties::MassProperties;
+pub use motor::{Muscles, ServoGroup, ServoRange, TorqueMotor};
+pub use muscle::{MusclePair, MuscleVariant, Tension};
+pub use noisy::{Noise, Noisy};
+pub use place::{Axes, BodyPose, BodyVelocity, Height, Point, TargetPosition};
 pub use pose::{Pose, Twist};
 pub use ports::{
-    ActuatorId, Actuated, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Motor, PairContact,
+    ActuatorId, Actuated, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Motor, PairContact,
     PairId, Rays, Sensor, Snapshot, World,
 };
+pub use proprioception::{JointPosition, JointSpeed};
 #[cfg(feature = "alloc")]
-pub use robot::{Actuator, Collider, Joint, JointKind, Pair, Robot, RobotError, Segment, Shape, Surface};
+pub use robot::{Actuator, Collider, Joint, JointKind, Offsets, Pair, Robot, Segment, Shape, Surface};
+pub use scaled::{Recorded, Saturated, Scaled};
+pub use signal::Signal;
+#[cfg(feature = "alloc")]
+pub use tabletop::Tabletop;
+pub use touch::{ContactForce, Touch};
+#[cfg(feature = "alloc")]
+pub use validation::RobotError;

@@ -132,10 +132,24 @@ pub trait Contacts: Handles {
 pub trait Snapshot {
     /// Length of a snapshot.
     fn snapshot_len(&self) -> usize;
-    /// Writes every word that a step or a port reads and a step or a command wrote; `out` [snapshot_len].
+    /// Writes every word that a step or a port reads and a step or a command wrote; `out` [`snapshot_len`].
     fn save(&self, out: &mut [f32]);
-    /// Brings back what [`Snapshot::save`] wrote: what follows has the same bits; `from` [snapshot_len].
+    /// Brings back what [`Snapshot::save`] wrote: what follows has the same bits; `from` [`snapshot_len`].
     fn restore(&mut self, from: &[f32]);
+}
+
+/// Setting a world up for a new life.
+#[diagnostic::on_unimplemented(message = "the bodies of `{Self}` cannot be put somewhere (port `Arrange`)", note = "a board has ports but nobody can move its robot at will")]
+pub trait Arrange: Handles {
+    /// Back to the description's own start: every joint at 0 or the nearest limit, everything at rest, commands and
+    /// contacts forgotten.
+    fn clear(&mut self);
+    /// Puts a joint at a position [rad or m] with a speed [rad/s or m/s].
+    fn place_joint(&mut self, joint: Self::Joint, position: f32, speed: f32);
+    /// Puts a floating body somewhere with a velocity; ignored for a body that hangs on a joint.
+    fn place_body(&mut self, body: Self::Body, pose: Pose, twist: Twist);
+    /// Ends the setting up: what the other ports tell is true again.
+    fn arranged(&mut self);
 }
 
 /// Something with a fixed number of channels: every sensor and every motor.
@@ -147,6 +161,26 @@ pub trait Channels {
 }
 
 /// Something that reads a world.
+///
+/// A sensor of one's own names the ports it needs and works in every world that has them:
+///
+/// ```
+/// use farsa_body::{Channels, Kinematics, Sensor};
+///
+/// /// How upright a body is: 1 upright, -1 upside down.
+/// struct Upright<B>(B);
+///
+/// impl<B> Channels for Upright<B> {
+///     fn channels(&self) -> usize {
+///         1
+///     }
+/// }
+/// impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for Upright<B> {
+///     fn read(&mut self, world: &W, out: &mut [f32]) {
+///         out.iter_mut().zip([world.pose(self.0).rotate([0.0, 0.0, 1.0])[2]]).for_each(|(o, x)| *o = x);
+///     }
+/// }
+/// ```
 #[diagnostic::on_unimplemented(message = "`{Self}` cannot sense a world of type `{W}`", note = "the world may lack a port that the sensor needs")]
 pub trait Sensor<W: ?Sized>: Channels {
     /// Writes one value per channel; `out` [channels]. A shorter slice gets the first channels.

@@ -27,6 +27,13 @@ pub(crate) fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// The Euclidean length.
+#[cfg(any(feature = "alloc", test))]
+#[inline(always)]
+pub(crate) fn norm<R: Real>(v: &[R]) -> R {
+    v.iter().fold(R::of(0.0), |sum, x| sum + *x * *x).sqrt()
+}
+
 impl<R: Real> Pose<R> {
     /// The pose of the reference frame itself.
     pub fn identity() -> Self {
@@ -84,15 +91,63 @@ impl<R: Real> Pose<R> {
 
     /// The same pose in another precision, each number rounded once.
     pub fn cast<Q: Real>(&self) -> Pose<Q> {
-        Pose {
-            position: self.position.map(|x| Q::of(x.to_f64())),
-            rotation: self.rotation.map(|x| Q::of(x.to_f64())),
-        }
+        Pose { position: self.position.map(|x| Q::of(x.to_f64())), rotation: self.rotation.map(|x| Q::of(x.to_f64())) }
     }
 }
 
 impl<R: Real> Default for Pose<R> {
     fn default() -> Self {
         Self::identity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
+    use proptest::prelude::*;
+
+    fn pose() -> impl Strategy<Value = Pose<f64>> {
+        let turn = prop::array::uniform4(-1.0..1.0).prop_filter("a direction", |q: &[f64; 4]| norm(q) > 0.1);
+        (prop::array::uniform3(-2.0..2.0), turn)
+            .prop_map(|(position, q)| Pose { position, rotation: q.map(|x| x / norm(&q)) })
+    }
+
+    fn isometry(p: &Pose<f64>) -> Isometry3<f64> {
+        let ([x, y, z], [a, b, c, w]) = (p.position, p.rotation);
+        let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, a, b, c));
+        Isometry3::from_parts(Translation3::new(x, y, z), turn)
+    }
+
+    fn same(a: [f64; 3], b: [f64; 3]) -> bool {
+        a.iter().zip(b).all(|(x, y)| (x - y).abs() < 1e-13)
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_nalgebra(a in pose(), b in pose(), v in prop::array::uniform3(-2.0..2.0)) {
+            let (ia, ib) = (isometry(&a), isometry(&b));
+            prop_assert!(same(a.transform(v), (ia * Point3::from(v)).coords.into()));
+            prop_assert!(same(a.rotate(v), (ia * Vector3::from(v)).into()));
+            prop_assert!(same(a.compose(&b).transform(v), (ia * ib * Point3::from(v)).coords.into()));
+            prop_assert!(same(a.transform_back(a.transform(v)), v));
+            prop_assert!(same(a.rotate_back(a.rotate(v)), v));
+            prop_assert!((norm(&a.compose(&b).rotation) - 1.0).abs() < 1e-14);
+        }
+
+        #[test]
+        fn cast_rounds_once(a in pose()) {
+            let narrow: Pose = a.cast();
+            prop_assert_eq!(narrow.position, a.position.map(|x| x as f32));
+            prop_assert_eq!(narrow.cast::<f64>().rotation, a.rotation.map(|x| f64::from(x as f32)));
+        }
+    }
+
+    #[test]
+    fn identity_changes_nothing() {
+        let v = [0.1f32, -7.0, 3.3];
+        assert_eq!(Pose::default().transform(v), v);
+        assert_eq!(Pose::at([1.0f32, 2.0, 3.0]).transform_back([1.0, 2.0, 3.0]), [0.0; 3]);
+        assert_eq!(Pose::at(v).compose(&Pose::identity()), Pose::at(v));
     }
 }

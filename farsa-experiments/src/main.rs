@@ -1,2 +1,9 @@
-//! The farsa command.
-fn main() {}
+//! The `farsa` command over the reference experiments.
+
+use std::process::ExitCode;
+
+use farsa_experiments::{ReachGraspLift, cli};
+
+fn main() -> ExitCode {
+    cli::main(&[&ReachGraspLift])
+}

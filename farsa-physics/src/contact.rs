@@ -284,6 +284,11 @@ impl<S: Scalar> Solver<'_, S> {
                 for w in own.chunks_exact_mut(POINT_WORDS) {
                     forget(w, zero, far);
                 }
+                if let Some(first) = pair.rolling {
+                    for w in &mut turns[3 * first..3 * (first + pair.points)] {
+                        *w = zero;
+                    }
+                }
                 continue;
             }
             let links = pair.colliders.map(|c| model.colliders[c].mount.link);
@@ -295,8 +300,15 @@ impl<S: Scalar> Solver<'_, S> {
                 );
                 let closing = dot(v, point.normal).min(zero);
                 let mask = near & point.valid & (point.gap + h * closing).lt(margin);
+                // What a lane remembers must not depend on its neighbours.
+                let gap = S::select(near, point.gap, far);
                 if !mask.any() {
-                    forget(words, zero, point.gap);
+                    forget(words, zero, gap);
+                    if let Some(first) = pair.rolling {
+                        for w in &mut turns[3 * (first + index)..3 * (first + index + 1)] {
+                            *w = zero;
+                        }
+                    }
                     continue;
                 }
                 let [t1, t2] = tangents(point.normal);
@@ -339,7 +351,7 @@ impl<S: Scalar> Solver<'_, S> {
                     slide: one / (a1.max(a2) + response[5].abs()),
                     compliance,
                     offset,
-                    gap: point.gap,
+                    gap,
                     point: point.point,
                 };
                 apply(&pair.reach.dofs, rows, impulse, mask, self.response);

@@ -1,0 +1,85 @@
+//! What sensors and motors share: the error of their constructors, and writing to slices that may be short.
+
+use core::fmt;
+
+/// A number by which a sensor, a motor or a wrapper cannot be built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ChannelError {
+    /// A number is NaN, infinite or out of its range.
+    Value {
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        value: f32,
+    },
+    /// The two ends of a range are equal, in the wrong order or not finite.
+    Range {
+        /// Where the range begins.
+        from: f32,
+        /// Where it ends.
+        to: f32,
+    },
+    /// A selection of channels reaches beyond the last, or runs backwards.
+    Selection {
+        /// First selected channel.
+        start: usize,
+        /// One past the last selected channel.
+        end: usize,
+        /// How many channels there are.
+        channels: usize,
+    },
+    /// The memory given to a wrapper is too short.
+    Memory {
+        /// Its length.
+        given: usize,
+        /// The length that is needed.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for ChannelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Value { field, value } => write!(f, "{field} is {value}"),
+            Self::Range { from, to } => write!(f, "no range from {from} to {to}"),
+            Self::Selection { start, end, channels } => write!(f, "channels {start}..{end} of {channels}"),
+            Self::Memory { given, needed } => write!(f, "memory of {given} values, {needed} are needed"),
+        }
+    }
+}
+
+impl core::error::Error for ChannelError {}
+
+/// Passes a finite number on.
+pub(crate) fn finite(field: &'static str, value: f32) -> Result<f32, ChannelError> {
+    if value.is_finite() { Ok(value) } else { Err(ChannelError::Value { field, value }) }
+}
+
+/// Passes a finite number > 0 on.
+pub(crate) fn positive(field: &'static str, value: f32) -> Result<f32, ChannelError> {
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err(ChannelError::Value { field, value }) }
+}
+
+/// Checks that a range has two finite ends with a finite distance.
+pub(crate) fn finite_range(from: f32, to: f32) -> Result<(), ChannelError> {
+    if from.is_finite() && to.is_finite() && (to - from).is_finite() {
+        Ok(())
+    } else {
+        Err(ChannelError::Range { from, to })
+    }
+}
+
+/// Writes as many values as there is room for.
+#[inline]
+pub(crate) fn write<const N: usize>(out: &mut [f32], values: [f32; N]) {
+    for (o, value) in out.iter_mut().zip(values) {
+        *o = value;
+    }
+}
+
+/// The value in [0, 1] nearest to `y`; 0 for NaN.
+#[inline]
+pub(crate) fn unit(y: f32) -> f32 {
+    farsa_num::Scalar::clamp(y, 0.0, 1.0)
+}

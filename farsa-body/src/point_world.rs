@@ -1,0 +1,202 @@
+//! A small world with every port, for tests of sensors, motors and of whatever uses them.
+
+use alloc::{vec, vec::Vec};
+
+use farsa_num::{Scalar, sin_cos};
+
+use crate::ports::{
+    ActuatorId, Actuated, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId, Rays,
+    Snapshot, World,
+};
+use crate::pose::{Pose, Twist};
+
+/// Points of 1 kg on vertical screws above a floor, with an explicit dynamics of a few lines.
+///
+/// Point i hangs on joint i, whose position is its height q [m]; it is body i, at (0.1 i, 0, q), and turns about the
+/// vertical by 10 rad for every metre it rises. Actuator i pushes it up with `command[0] - command[1]` [N]. Below height 0
+/// the floor, pair i with the point as its first body, pushes back. Rays meet the floor and balls of 2 cm about the
+/// points. The time step is 10 ms. There are no floating bodies. A handle that does not exist reads as 0 and takes
+/// commands without effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointWorld {
+    points: Vec<Point>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+struct Point {
+    height: f32,
+    speed: f32,
+    command: [f32; 2],
+}
+
+/// Words of a snapshot for each point.
+const WORDS: usize = 4;
+
+impl PointWorld {
+    /// The control step [s].
+    pub const TIME_STEP: f32 = 0.01;
+    /// How far a point turns for every metre that it rises [rad/m].
+    pub const TURN: f32 = 10.0;
+    /// The distance between two screws [m].
+    pub const SPACING: f32 = 0.1;
+    /// Radius of the balls that rays meet [m].
+    pub const RADIUS: f32 = 0.02;
+    /// Acceleration downwards [m/s2].
+    const GRAVITY: f32 = 9.81;
+    /// Friction of the screws [N s/m].
+    const FRICTION: f32 = 0.5;
+    /// Stiffness [N/m] and damping [N s/m] of the floor.
+    const FLOOR: [f32; 2] = [2000.0, 20.0];
+
+    /// A world of this many points, all on the floor and at rest.
+    pub fn new(points: usize) -> Self {
+        Self { points: vec![Point::default(); points] }
+    }
+
+    /// The command that an actuator has; 0 for one that does not exist.
+    pub fn commanded(&self, actuator: ActuatorId) -> [f32; 2] {
+        self.point(actuator.index()).command
+    }
+
+    fn point(&self, index: usize) -> Point {
+        self.points.get(index).copied().unwrap_or_default()
+    }
+}
+
+impl Point {
+    /// The floor's push upwards [N].
+    fn push(&self) -> f32 {
+        let [stiffness, damping] = PointWorld::FLOOR;
+        let push = -stiffness * self.height - damping * self.speed;
+        if self.height < 0.0 { Scalar::max(push, 0.0) } else { 0.0 }
+    }
+}
+
+impl Handles for PointWorld {
+    type Body = BodyId;
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+
+impl World for PointWorld {
+    fn step(&mut self) {
+        for point in &mut self.points {
+            let drive = point.command[0] - point.command[1] - Self::FRICTION * point.speed;
+            point.speed += Self::TIME_STEP * (drive + point.push() - Self::GRAVITY);
+            point.height += Self::TIME_STEP * point.speed;
+        }
+    }
+    fn time_step(&self) -> f32 {
+        Self::TIME_STEP
+    }
+}
+
+impl Joints for PointWorld {
+    fn position(&self, joint: JointId) -> f32 {
+        self.point(joint.index()).height
+    }
+    fn speed(&self, joint: JointId) -> f32 {
+        self.point(joint.index()).speed
+    }
+}
+
+impl Kinematics for PointWorld {
+    fn pose(&self, body: BodyId) -> Pose {
+        let height = self.point(body.index()).height;
+        let (s, c) = sin_cos(0.5 * Self::TURN * height);
+        Pose { position: [Self::SPACING * f32::from(body.0), 0.0, height], rotation: [0.0, 0.0, s, c] }
+    }
+    fn velocity(&self, body: BodyId) -> Twist {
+        let speed = self.point(body.index()).speed;
+        Twist { linear: [0.0, 0.0, speed], angular: [0.0, 0.0, Self::TURN * speed] }
+    }
+}
+
+impl Actuated for PointWorld {
+    fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
+        if let Some(point) = self.points.get_mut(actuator.index()) {
+            point.command = value;
+        }
+    }
+}
+
+impl Contacts for PointWorld {
+    fn pairs(&self) -> usize {
+        self.points.len()
+    }
+    fn pair_bodies(&self, pair: PairId) -> [Option<BodyId>; 2] {
+        [(pair.index() < self.points.len()).then_some(BodyId(pair.0)), None]
+    }
+    fn pair_contact(&self, pair: PairId) -> PairContact {
+        let Some(point) = self.points.get(pair.index()) else { return PairContact::default() };
+        let push = point.push();
+        if push > 0.0 {
+            let position = self.pose(BodyId(pair.0)).position;
+            PairContact { points: 1, force: [0.0, 0.0, push], normal_force: push, point: position, depth: -point.height }
+        } else {
+            PairContact { depth: -point.height, ..PairContact::default() }
+        }
+    }
+}
+
+impl Rays for PointWorld {
+    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+        let mut nearest: Option<Hit<BodyId>> = None;
+        let mut meet = |hit: Hit<BodyId>| {
+            if hit.distance <= nearest.map_or(range, |n| n.distance) {
+                nearest = Some(hit);
+            }
+        };
+        if origin[2] >= 0.0 && direction[2] < 0.0 {
+            meet(Hit { distance: -origin[2] / direction[2], normal: [0.0, 0.0, 1.0], body: None });
+        }
+        for body in (0..self.points.len()).map(|i| BodyId(i as u16)) {
+            let centre = self.pose(body).position;
+            let way = [origin[0] - centre[0], origin[1] - centre[1], origin[2] - centre[2]];
+            let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            let along = -dot(way, direction);
+            let beside = [0, 1, 2].map(|i| way[i] + along * direction[i]);
+            let depth = Self::RADIUS * Self::RADIUS - dot(beside, beside);
+            if depth >= 0.0 {
+                let distance = along - depth.sqrt();
+                if distance >= 0.0 {
+                    let normal = [0, 1, 2].map(|i| (way[i] + distance * direction[i]) / Self::RADIUS);
+                    meet(Hit { distance, normal, body: Some(body) });
+                }
+            }
+        }
+        nearest
+    }
+}
+
+impl Arrange for PointWorld {
+    fn clear(&mut self) {
+        self.points.fill(Point::default());
+    }
+    fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
+        if let Some(point) = self.points.get_mut(joint.index()) {
+            point.height = position;
+            point.speed = speed;
+        }
+    }
+    fn place_body(&mut self, _: BodyId, _: Pose, _: Twist) {}
+    fn arranged(&mut self) {}
+}
+
+impl Snapshot for PointWorld {
+    fn snapshot_len(&self) -> usize {
+        WORDS * self.points.len()
+    }
+    fn save(&self, out: &mut [f32]) {
+        for (words, point) in out.chunks_exact_mut(WORDS).zip(&self.points) {
+            words.copy_from_slice(&[point.height, point.speed, point.command[0], point.command[1]]);
+        }
+    }
+    fn restore(&mut self, from: &[f32]) {
+        for (words, point) in from.chunks_exact(WORDS).zip(&mut self.points) {
+            if let &[height, speed, agonist, antagonist] = words {
+                *point = Point { height, speed, command: [agonist, antagonist] };
+            }
+        }
+    }
+}

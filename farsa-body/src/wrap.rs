@@ -1,0 +1,140 @@
+//! What the wrappers share: an inner sensor's or motor's values on their way through a filter.
+
+use core::ops::{Bound, Range, RangeBounds};
+
+use crate::channel::ChannelError;
+use crate::ports::{Channels, Motor, Sensor};
+
+/// What a wrapper does to the values on their way.
+pub(crate) trait Filter {
+    /// Computes one tick's `passed` from its `values`, both of the same length; `passed` still holds the last tick's.
+    fn pass(&mut self, values: &[f32], passed: &mut [f32]);
+    /// Back to the beginning of a life.
+    fn rewind(&mut self) {}
+}
+
+/// A sensor or motor behind a filter, with memory for the values passed on.
+///
+/// A motor needs the memory because the values it is given are only borrowed; a sensor has it too, so that one
+/// constructor serves both and the last values stay readable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Wrapped<T, F, M> {
+    pub(crate) inner: T,
+    pub(crate) filter: F,
+    pub(crate) memory: M,
+}
+
+impl<T: Channels, F, M: AsMut<[f32]>> Wrapped<T, F, M> {
+    /// Checks the memory, which begins at 0.
+    pub(crate) fn new(inner: T, filter: F, mut memory: M) -> Result<Self, ChannelError> {
+        room(&mut memory, inner.channels())?;
+        memory.as_mut().fill(0.0);
+        Ok(Self { inner, filter, memory })
+    }
+}
+
+impl<T: Channels, F, M: AsRef<[f32]>> Wrapped<T, F, M> {
+    pub(crate) fn values(&self) -> &[f32] {
+        let memory = self.memory.as_ref();
+        memory.get(..self.inner.channels()).unwrap_or(memory)
+    }
+}
+
+impl<T: Channels, F: Filter, M: AsMut<[f32]>> Channels for Wrapped<T, F, M> {
+    fn channels(&self) -> usize {
+        self.inner.channels()
+    }
+    fn reset(&mut self) {
+        self.inner.reset();
+        self.filter.rewind();
+        self.memory.as_mut().fill(0.0);
+    }
+}
+
+impl<W: ?Sized, T: Sensor<W>, F: Filter, M: AsMut<[f32]>> Sensor<W> for Wrapped<T, F, M> {
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        self.inner.read(world, out);
+        let memory = self.memory.as_mut();
+        let n = self.inner.channels().min(out.len()).min(memory.len());
+        let (values, passed) = (&mut out[..n], &mut memory[..n]);
+        self.filter.pass(values, passed);
+        values.copy_from_slice(passed);
+    }
+}
+
+impl<W: ?Sized, T: Motor<W>, F: Filter, M: AsMut<[f32]>> Motor<W> for Wrapped<T, F, M> {
+    fn drive(&mut self, y: &[f32], world: &mut W) {
+        let memory = self.memory.as_mut();
+        let n = self.inner.channels().min(y.len()).min(memory.len());
+        let passed = &mut memory[..n];
+        self.filter.pass(&y[..n], passed);
+        self.inner.drive(passed, world);
+    }
+}
+
+/// Checks that the memory holds as many values as are needed.
+pub(crate) fn room<M: AsMut<[f32]>>(memory: &mut M, needed: usize) -> Result<(), ChannelError> {
+    let given = memory.as_mut().len();
+    if given < needed { Err(ChannelError::Memory { given, needed }) } else { Ok(()) }
+}
+
+/// The selected ones of a number of channels.
+pub(crate) fn select(which: &impl RangeBounds<usize>, channels: usize) -> Result<Range<usize>, ChannelError> {
+    let start = match which.start_bound() {
+        Bound::Included(&first) => first,
+        Bound::Excluded(&before) => before.saturating_add(1),
+        Bound::Unbounded => 0,
+    };
+    let end = match which.end_bound() {
+        Bound::Included(&last) => last.saturating_add(1),
+        Bound::Excluded(&end) => end,
+        Bound::Unbounded => channels,
+    };
+    if start <= end && end <= channels { Ok(start..end) } else { Err(ChannelError::Selection { start, end, channels }) }
+}
+
+/// Makes a public newtype of [`Wrapped`] a sensor around sensors and a motor around motors.
+macro_rules! wrapper {
+    ($wrapper:ident) => {
+        impl<T, M> $wrapper<T, M> {
+            /// The wrapped sensor or motor.
+            pub fn inner(&self) -> &T {
+                &self.0.inner
+            }
+
+            /// The wrapped sensor or motor, to be changed.
+            pub fn inner_mut(&mut self) -> &mut T {
+                &mut self.0.inner
+            }
+        }
+
+        impl<T: $crate::ports::Channels, M: AsRef<[f32]>> $wrapper<T, M> {
+            /// The values passed on in the last tick, one per channel; 0 before the first.
+            pub fn values(&self) -> &[f32] {
+                self.0.values()
+            }
+        }
+
+        impl<T: $crate::ports::Channels, M: AsMut<[f32]>> $crate::ports::Channels for $wrapper<T, M> {
+            fn channels(&self) -> usize {
+                self.0.channels()
+            }
+            fn reset(&mut self) {
+                self.0.reset();
+            }
+        }
+
+        impl<W: ?Sized, T: $crate::ports::Sensor<W>, M: AsMut<[f32]>> $crate::ports::Sensor<W> for $wrapper<T, M> {
+            fn read(&mut self, world: &W, out: &mut [f32]) {
+                self.0.read(world, out);
+            }
+        }
+
+        impl<W: ?Sized, T: $crate::ports::Motor<W>, M: AsMut<[f32]>> $crate::ports::Motor<W> for $wrapper<T, M> {
+            fn drive(&mut self, y: &[f32], world: &mut W) {
+                self.0.drive(y, world);
+            }
+        }
+    };
+}
+pub(crate) use wrapper;

@@ -1,0 +1,98 @@
+//! The settings of evolution that all experiments share.
+
+use farsa_evo::{EvoError, GaConfig, Mutation};
+
+use crate::error::Error;
+use crate::settings::{Setting, Settings};
+
+/// Evaluated generations.
+pub(crate) const GENERATIONS: &str = "evolution.generations";
+/// Individuals of a generation.
+pub(crate) const POPULATION: &str = "evolution.population";
+const PARENTS: &str = "evolution.parents";
+const MUTATION: &str = "evolution.mutation";
+const RATE: &str = "evolution.mutation_rate";
+
+/// The settings of the truncation algorithm, with the defaults of \[Ferrauto2010\].
+pub fn settings() -> Vec<Setting> {
+    vec![
+        Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1)
+            .given()
+            .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+        Setting::whole(POPULATION, 100, 1..=1_000_000)
+            .given()
+            .doc("Individuals of a generation, a multiple of the parents."),
+        Setting::whole(PARENTS, 20, 1..=1_000_000)
+            .given()
+            .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+        Setting::word(MUTATION, "resample", &["resample", "flip"])
+            .given()
+            .doc("What happens to a bit that mutation hits: it is drawn anew, or it flips."),
+        Setting::number(RATE, 0.015, 0.0..=1.0).given().doc("Probability that mutation hits a bit."),
+    ]
+}
+
+/// The experiment's table with the settings of evolution that it does not define itself in front.
+pub(crate) fn complete(mut own: Vec<Setting>) -> Vec<Setting> {
+    let mut table = settings();
+    for setting in &mut table {
+        if let Some(index) = own.iter().position(|other| other.key() == setting.key()) {
+            *setting = own.remove(index);
+        }
+    }
+    table.append(&mut own);
+    table
+}
+
+/// The algorithm's configuration for genomes of some genes.
+///
+/// # Errors
+/// [`Error::Setting`] when the values do not go together.
+pub(crate) fn config(settings: &Settings, genes: usize) -> Result<GaConfig, Error> {
+    let mutation = if settings.word(MUTATION)? == "flip" { Mutation::Flip } else { Mutation::Resample };
+    let config = GaConfig {
+        genes,
+        population: settings.count(POPULATION)?,
+        parents: settings.count(PARENTS)?,
+        mutation_rate: settings.number(RATE)?,
+        mutation,
+    };
+    config.validate().map_err(|error| {
+        let key = match error {
+            EvoError::NoParents => PARENTS,
+            EvoError::Rate { .. } => RATE,
+            _ => POPULATION,
+        };
+        Error::setting(key, error)
+    })?;
+    Ok(config)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Value;
+
+    #[test]
+    fn the_defaults_are_those_of_the_library() {
+        let settings = Settings::new(settings()).unwrap();
+        assert_eq!(config(&settings, 792).unwrap(), GaConfig::new(792));
+    }
+
+    #[test]
+    fn an_experiment_replaces_a_default_in_its_place() {
+        let own = vec![Setting::flag("world.flat", true), Setting::whole(POPULATION, 30, 1..=100)];
+        let table = complete(own);
+        let keys: Vec<&str> = table.iter().map(Setting::key).collect();
+        assert_eq!(keys, [GENERATIONS, POPULATION, PARENTS, MUTATION, RATE, "world.flat"]);
+        assert_eq!(table[1].default_value(), &Value::Whole(30));
+    }
+
+    #[test]
+    fn fewer_individuals_than_parents_are_refused_by_name() {
+        let mut settings = Settings::new(settings()).unwrap();
+        settings.set("", POPULATION, Value::Whole(10)).unwrap();
+        let error = config(&settings, 3).unwrap_err().to_string();
+        assert_eq!(error, "`evolution.population`: 20 parents from a population of 10");
+    }
+}

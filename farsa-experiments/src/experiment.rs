@@ -1,0 +1,196 @@
+//! What an experiment is to the command: a name, a table of settings, and lives of genomes.
+
+use crate::error::Error;
+use crate::life::Job;
+use crate::settings::{Setting, Settings};
+
+/// An experiment that the `farsa` command lists, explains, runs, tests and replays.
+///
+/// The experiment says what there is to set and how a genome lives; the command brings evolution, threads, files,
+/// checkpoints and replay. See the crate's documentation for a whole one.
+pub trait Experiment: Sync {
+    /// The name on the command line and in the run directory: lower-case letters, digits and hyphens.
+    fn name(&self) -> &'static str;
+
+    /// What is asked, in one line.
+    fn summary(&self) -> &'static str;
+
+    /// The conditions that are compared, the default one first; empty if there is only one.
+    fn conditions(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Grows by one whenever the same configuration, seed and genes earn another fitness.
+    ///
+    /// A run of another version is neither resumed nor replayed: its lives would be others.
+    fn values_version(&self) -> u32 {
+        1
+    }
+
+    /// Every setting of the experiment under a condition (`""` if there are none), with its default.
+    ///
+    /// The settings of evolution (`evolution.*`, [`evolution::settings`](crate::evolution::settings)) are added by the
+    /// command; a setting here with the same key replaces the one there, which is how an experiment has its own
+    /// defaults.
+    fn settings(&self, condition: &str) -> Vec<Setting>;
+
+    /// Builds what one thread needs to live lives under a condition and checked settings.
+    ///
+    /// Called once for every thread; all of them must live the same lives.
+    ///
+    /// # Errors
+    /// [`Error::setting`] for values that are each allowed but do not go together.
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error>;
+}
+
+/// An experiment ready to live lives in one thread: its robot, world and scratch memory.
+///
+/// A life must depend on the genes and the [`Job`] alone, never on the lives this value lived before: that is what
+/// makes runs repeatable, resumable and the same on any number of threads.
+pub trait Setup: Send {
+    /// Number of genes, 16 bits each.
+    fn genes(&self) -> usize;
+
+    /// Trials of an evaluation.
+    fn trials(&self) -> usize {
+        1
+    }
+
+    /// Names of the terms of the fitness that [`Outcome::terms`] holds, in its order.
+    fn terms(&self) -> Vec<String> {
+        vec!["fitness".into()]
+    }
+
+    /// Names of the values that a life writes on its [`Tape`] at every step, in their order, with units where it helps
+    /// (`"hand.x [m]"`).
+    fn columns(&self) -> Vec<String>;
+
+    /// What the robot senses, does and computes with, for `farsa info`.
+    fn description(&self) -> Description;
+
+    /// Lives one trial, `job.trial`, from its start to its end.
+    ///
+    /// A run's seeds are below 2^63. In `farsa test` the seed has bit 63 set, so that no number is shared with any run;
+    /// the individual is then 0 and the generation counts the earlier lives of the same trial.
+    ///
+    /// One row of [`columns`](Self::columns) per step goes to the tape when it is on; whether it is must not change
+    /// the life. `genes` has [`genes`](Self::genes) entries. A life that broke down is [`Outcome::failed`].
+    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome;
+
+    /// The fitness of an individual from its trials, in the order of trials; `farsa test` asks for single ones too.
+    ///
+    /// By default the sum of all terms.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        trials.iter().flat_map(|outcome| &outcome.terms).sum()
+    }
+}
+
+/// What came of one trial.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Outcome {
+    /// The terms of the fitness, named by [`Setup::terms`]; a term that is not finite makes the individual a failed one.
+    pub terms: Vec<f64>,
+    /// Steps lived.
+    pub steps: u32,
+    /// Whether the trial succeeded, by a definition that may be stricter than the fitness.
+    pub success: bool,
+    /// What else `farsa test` tells about the trial, by name: `("phase", "lift".into())`; the same names in every trial.
+    pub notes: Vec<(&'static str, Note)>,
+}
+
+impl Outcome {
+    /// A life that broke down: its individual is counted as failed and ranks last.
+    pub fn failed() -> Self {
+        Self { terms: vec![f64::NAN], ..Self::default() }
+    }
+
+    /// Whether all terms are finite.
+    pub fn is_finite(&self) -> bool {
+        self.terms.iter().all(|term| term.is_finite())
+    }
+}
+
+/// A value of [`Outcome::notes`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum Note {
+    /// A quantity; `farsa test` gives its mean.
+    Number(f64),
+    /// One of a few words; `farsa test` counts them.
+    Text(String),
+}
+
+impl From<f64> for Note {
+    fn from(x: f64) -> Self {
+        Self::Number(x)
+    }
+}
+
+impl From<&str> for Note {
+    fn from(text: &str) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+/// Where a life writes what happens in each step, when somebody wants to know.
+pub struct Tape<'a> {
+    row: Option<&'a mut dyn FnMut(&[f64])>,
+}
+
+impl<'a> Tape<'a> {
+    /// A tape that keeps nothing.
+    pub fn off() -> Self {
+        Self { row: None }
+    }
+
+    /// A tape that hands every row to a function.
+    pub fn to(row: &'a mut dyn FnMut(&[f64])) -> Self {
+        Self { row: Some(row) }
+    }
+
+    /// Whether rows are kept: a life need not gather them otherwise.
+    pub fn is_on(&self) -> bool {
+        self.row.is_some()
+    }
+
+    /// Keeps one step's values, in the order of [`Setup::columns`].
+    pub fn row(&mut self, values: &[f64]) {
+        if let Some(row) = &mut self.row {
+            row(values);
+        }
+    }
+}
+
+/// What `farsa info` tells about a robot and its controller.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+pub struct Description {
+    /// The sensors in the order of the network's inputs.
+    pub sensors: Vec<ChannelGroup>,
+    /// The motors in the order of the network's outputs.
+    pub motors: Vec<ChannelGroup>,
+    /// The controller in one line.
+    pub network: String,
+    /// Number of parameters that the genes become.
+    pub parameters: usize,
+    /// Most steps of a trial.
+    pub steps: usize,
+    /// Time between two steps \[s\]; 0 if the experiment has no clock.
+    pub step_seconds: f64,
+}
+
+/// A group of sensor or motor channels.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct ChannelGroup {
+    /// What they are called.
+    pub name: String,
+    /// How many there are.
+    pub count: usize,
+    /// What they hold, with unit and range.
+    pub meaning: String,
+}
+
+impl ChannelGroup {
+    /// A group of channels.
+    pub fn new(name: &str, count: usize, meaning: &str) -> Self {
+        Self { name: name.into(), count, meaning: meaning.into() }
+    }
+}
