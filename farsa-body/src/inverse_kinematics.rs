@@ -62,7 +62,7 @@ impl fmt::Display for InverseKinematicsError {
 
 impl core::error::Error for InverseKinematicsError {}
 
-/// Inverse kinematics by damped least squares within joint limits [Buss2005], from one start and then from others
+/// Inverse kinematics by damped least squares within joint limits [Wampler1986], from one start and then from others
 /// spread evenly over the joints' ranges.
 ///
 /// Deviations: the damping adapts as in Levenberg-Marquardt; joints that would leave their range are held at its end

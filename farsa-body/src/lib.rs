@@ -10,6 +10,14 @@ mod actuator;
 #[cfg(feature = "alloc")]
 mod arm_and_hand;
 mod channel;
+#[cfg(feature = "alloc")]
+mod check_arrange;
+#[cfg(feature = "alloc")]
+mod check_channels;
+#[cfg(feature = "alloc")]
+mod check_rays;
+#[cfg(feature = "alloc")]
+mod check_world;
 mod compose;
 mod delayed;
 mod faulty;
@@ -25,6 +33,8 @@ mod motor;
 mod noisy;
 mod muscle;
 mod place;
+#[cfg(feature = "alloc")]
+mod point_world;
 mod pose;
 mod ports;
 mod proprioception;
@@ -34,7 +44,11 @@ mod scaled;
 mod signal;
 #[cfg(feature = "alloc")]
 mod tabletop;
+#[cfg(feature = "alloc")]
+pub mod testing;
 mod touch;
+#[cfg(feature = "alloc")]
+mod trace;
 #[cfg(feature = "alloc")]
 mod validation;
 mod wrap;

@@ -158,7 +158,7 @@ impl Rays for PointWorld {
             let beside = [0, 1, 2].map(|i| way[i] + along * direction[i]);
             let depth = Self::RADIUS * Self::RADIUS - dot(beside, beside);
             if depth >= 0.0 {
-                let distance = along - depth.sqrt();
+                let distance = along - Scalar::sqrt(depth);
                 if distance >= 0.0 {
                     let normal = [0, 1, 2].map(|i| (way[i] + distance * direction[i]) / Self::RADIUS);
                     meet(Hit { distance, normal, body: Some(body) });

@@ -17,18 +17,24 @@ pub fn sin_cos<S: Scalar>(x: S) -> (S, S) {
     let x = S::select(x.abs().le(limit), x, x.constant(f64::NAN));
 
     let k = (x * x.constant(core::f64::consts::FRAC_2_PI)).round_small();
-    let part = |p: f64| k * x.constant(p);
     // All but the last part are short enough for their products with k to be exact up to |x| = 10000, and more of pi/2
     // follows than the closest that such an x comes to a multiple of it.
     // The first differences are exact; `rest` is what rounding the last one to `high` loses, and the parts to come.
     let (high, rest) = if double {
-        let (h, t) = (x - part(1.570_796_326_734_125_6), part(6.077_100_506_303_966e-11));
+        let (h, t) = (x - k * x.constant(1.570_796_326_734_125_6), k * x.constant(6.077_100_506_303_966e-11));
         let high = h - t;
-        (high, ((h - high) - t) - part(2.022_266_248_795_950_6e-21))
+        (high, ((h - high) - t) - k * x.constant(2.022_266_248_795_950_6e-21))
     } else {
-        let (h, t) = ((x - part(1.570_312_5)) - part(0.000_483_751_296_997_070_3), part(7.549_533_620_476_723e-8));
+        let (h, t) = (
+            (x - k * x.constant(1.570_312_5)) - k * x.constant(0.000_483_751_296_997_070_3),
+            k * x.constant(7.549_533_620_476_723e-8),
+        );
         let high = h - t;
-        (high, (((h - high) - t) - part(2.563_282_919_254_561_4e-12)) - part(6.123_234_262_925_839e-17))
+        (
+            high,
+            (((h - high) - t) - k * x.constant(2.563_282_919_254_561_4e-12))
+                - k * x.constant(6.123_234_262_925_839e-17),
+        )
     };
     let r = high + rest;
     let z = r * r;

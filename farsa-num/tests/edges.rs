@@ -108,7 +108,7 @@ proptest! {
     }
 
     #[test]
-    fn inverses_invert(x in -1.0_f64..1.0, y in -700.0_f64..700.0, angle in -3.14_f64..3.14) {
+    fn inverses_invert(x in -1.0_f64..1.0, y in -700.0_f64..700.0, angle in -3.1_f64..3.1) {
         prop_assert!((sin_cos(asin(x)).0 - x).abs() < 1e-15);
         prop_assert!((sin_cos(acos(x)).1 - x).abs() < 1e-15);
         prop_assert!((ln(exp(y)) - y).abs() < 2e-13);

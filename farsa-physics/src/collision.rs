@@ -1,6 +1,6 @@
 //! Where two convex shapes touch: gap, normal and point, for one world or one per lane.
 
-use farsa_num::{Real, Scalar};
+use farsa_num::{Mask, Real, Scalar};
 
 use crate::spatial::{Matrix, Vector, add, dot, rotate, rotate_back, scale, select, sub};
 
@@ -22,12 +22,14 @@ pub(crate) struct Point<S: Scalar> {
 pub(crate) struct Placed<S> {
     pub(crate) rotation: Matrix<S>,
     pub(crate) position: Vector<S>,
+    /// Predicted velocity of the position.
+    pub(crate) velocity: Vector<S>,
 }
 
 impl<S: Scalar> Placed<S> {
     pub(crate) fn new(simd: S::Simd) -> Self {
         let o = S::splat(simd, S::Real::of(0.0));
-        Self { rotation: [[o; 3]; 3], position: [o; 3] }
+        Self { rotation: [[o; 3]; 3], position: [o; 3], velocity: [o; 3] }
     }
     #[inline(always)]
     pub(crate) fn axis(&self) -> Vector<S> {
@@ -135,9 +137,16 @@ pub(crate) fn segment_box<S: Scalar>(
 ) -> Point<S> {
     let c = rotate_back(&place.rotation, sub(centre, place.position));
     let d = rotate_back(&place.rotation, axis);
-    let (mut low, mut high) = (-half_length, half_length);
+    let (first, at_first) = box_distance(sub(c, scale(d, half_length)), half);
+    let (last, at_last) = box_distance(add(c, scale(d, half_length)), half);
     let zero = radius.constant(0.0);
     let one_half = radius.constant(0.5);
+    // Deepest between the ends only where the distance falls at the first and rises at the last.
+    let between = dot(at_first, d).lt(zero) & dot(at_last, d).gt(zero);
+    if !between.any() {
+        return Point { gap: first.min(last) - radius, normal: at_first, point: centre, valid: between };
+    }
+    let (mut low, mut high) = (-half_length, half_length);
     // The distance to a convex body is convex along a line: its slope changes sign once.
     for _ in 0..HALVINGS {
         let t = (low + high) * one_half;
@@ -148,11 +157,10 @@ pub(crate) fn segment_box<S: Scalar>(
     }
     let t = (low + high) * one_half;
     let mut found = ball_box(add(centre, scale(axis, t)), radius, place, half);
-    let (first, _) = box_distance(sub(c, scale(d, half_length)), half);
-    let (last, _) = box_distance(add(c, scale(d, half_length)), half);
+    found.gap = S::select(between, found.gap, first.min(last) - radius);
     // Deeper than the ends by more than the search's own error, or it is one of them.
     let error = half_length * half_length.constant(1e-3);
-    found.valid = (found.gap + radius + error).lt(first.min(last));
+    found.valid = between & (found.gap + radius + error).lt(first.min(last));
     found
 }
 

@@ -71,13 +71,18 @@ pub(crate) fn place_colliders<S: Scalar>(
         let own = c.mount.rotation.map(|row| splat::<S>(simd, row));
         let offset = splat::<S>(simd, c.mount.position);
         *o = if c.mount.link == WORLD {
-            Placed { rotation: own, position: offset }
+            Placed { rotation: own, position: offset, velocity: [S::splat(simd, S::Real::of(0.0)); 3] }
         } else {
             let w = &work[usize::from(c.mount.link)];
-            Placed { rotation: product(&w.rotation, &own), position: add(w.position, rotate(&w.rotation, offset)) }
+            let position = add(w.position, rotate(&w.rotation, offset));
+            let velocity = w.acceleration.at(sub(position, w.reference));
+            Placed { rotation: product(&w.rotation, &own), position, velocity }
         };
     }
 }
+
+/// How much faster than their centres the surfaces of two shapes may approach [m/s]: a shape of 3 cm at 50 rad/s.
+const TURNING: f64 = 1.5;
 
 /// Distance between a pair's bounds [m]; nothing can touch while it is positive.
 #[inline(always)]
@@ -92,6 +97,27 @@ fn clearance<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Re
             let d = sub(pa.position, pb.position);
             dot(d, d).sqrt() - bound - S::splat(simd, model.colliders[b].bound)
         }
+    }
+}
+
+/// For an edge of a box against a box: the distance left between the edge and the other's bound [m].
+#[inline(always)]
+fn edge_distance<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    pair: &Pair<S::Real>,
+    placed: &[Placed<S>],
+    index: usize,
+) -> Option<S> {
+    let [a, b] = pair.colliders;
+    match (model.colliders[a].form, model.colliders[b].form) {
+        (Form::Block { .. }, Form::Block { half }) if index >= 8 => {
+            let (middle, direction, length) = edge(&placed[b], splat::<S>(simd, half), index - 8);
+            let near = nearest_on_segment(middle, direction, length, placed[a].position);
+            let d = sub(near, placed[a].position);
+            Some(dot(d, d).sqrt() - S::splat(simd, model.colliders[a].bound))
+        }
+        _ => None,
     }
 }
 
@@ -278,8 +304,13 @@ impl<S: Scalar> Solver<'_, S> {
         for (p, pair) in model.pairs.iter().enumerate() {
             let own = &mut points[POINT_WORDS * pair.point..POINT_WORDS * (pair.point + pair.points)];
             let far = clearance(simd, model, pair, self.placed);
-            // The bounds may close by the joints' speed limit of sane worlds, 5 m/s, within a step.
-            let near = far.le(margin + h * h.constant(5.0));
+            // The bounds close by the centres' relative velocity, and a little more for turning.
+            let [a, b] = pair.colliders;
+            let approach = sub(self.placed[a].velocity, self.placed[b].velocity);
+            let reach = margin + h * (dot(approach, approach).sqrt() + h.constant(TURNING));
+            let near = far.le(reach);
+            // Overlapping bounds say nothing of the surfaces.
+            let far = far.max(zero);
             if !near.any() {
                 for w in own.chunks_exact_mut(POINT_WORDS) {
                     forget(w, zero, far);
@@ -293,6 +324,14 @@ impl<S: Scalar> Solver<'_, S> {
             }
             let links = pair.colliders.map(|c| model.colliders[c].mount.link);
             for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
+                let near = match edge_distance(simd, model, pair, self.placed, index) {
+                    Some(distance) => near & distance.le(reach),
+                    None => near,
+                };
+                if !near.any() {
+                    forget(words, zero, far);
+                    continue;
+                }
                 let point = find(simd, model, pair, self.placed, index);
                 let v = sub(
                     velocity_at(simd, links[0], self.work, point.point),
