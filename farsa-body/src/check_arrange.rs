@@ -2,8 +2,8 @@
 
 use alloc::format;
 
-use crate::pose::{Pose, Twist};
 use crate::ports::{Actuated, Arrange, Contacts, Joints, Kinematics, Snapshot, World};
+use crate::pose::{Pose, Twist};
 use crate::testing::{ConformanceError, Probe, Promise, ensure};
 use crate::trace::{HOLD, Instant, parting, saved, trace};
 
@@ -85,14 +85,13 @@ fn place<W: Arrange>(world: &mut W, probe: &Probe<W::Body, W::Joint, W::Actuator
     }
 }
 
-fn check_joints<W: Joints>(
-    world: &W,
-    probe: &Probe<W::Body, W::Joint, W::Actuator>,
-) -> Result<(), ConformanceError> {
+fn check_joints<W: Joints>(world: &W, probe: &Probe<W::Body, W::Joint, W::Actuator>) -> Result<(), ConformanceError> {
     for (index, &(joint, range)) in probe.joints.iter().enumerate() {
         let placed = joint_place(index, range);
         let told = [world.position(joint), world.speed(joint)];
-        ensure(near(&placed, &told), Promise::JointPlaced, || format!("joint {index}: {told:?} instead of {placed:?}"))?;
+        ensure(near(&placed, &told), Promise::JointPlaced, || {
+            format!("joint {index}: {told:?} instead of {placed:?}")
+        })?;
     }
     Ok(())
 }

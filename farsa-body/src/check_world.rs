@@ -2,8 +2,8 @@
 
 use alloc::{format, string::String, vec, vec::Vec};
 
-use crate::pose::Pose;
 use crate::ports::{Actuated, Contacts, Joints, Kinematics, PairContact, PairId, Snapshot, World};
+use crate::pose::Pose;
 use crate::testing::{ConformanceError, Probe, Promise, ensure};
 use crate::trace::{HOLD, Instant, command, pairs, parting, saved, trace};
 
@@ -95,12 +95,13 @@ where
     let dt = world.time_step();
     ensure(dt.is_finite() && dt > 0.0, Promise::TimeStep, || format!("a time step of {dt} s"))?;
     check_pairs(world, probe)?;
+    check_instant(world, probe, 0)?;
     for step in 0..steps {
-        check_instant(world, probe, step)?;
         let joints: Vec<_> = probe.joints.iter().map(|&(j, _)| (world.position(j), world.speed(j))).collect();
         let bodies: Vec<_> = probe.bodies.iter().map(|&b| (world.pose(b), world.velocity(b))).collect();
         command(world, probe, step);
         world.step();
+        check_instant(world, probe, step + 1)?;
         for (index, (&(joint, _), &(position, speed))) in probe.joints.iter().zip(&joints).enumerate() {
             let mean = (world.position(joint) - position) / dt;
             let excess = excess([mean], [speed], [world.speed(joint)]);
@@ -118,11 +119,14 @@ where
                 format!("step {step}, body {index}: moves {mean:?} m/s, told {:?} -> {:?}", twist.linear, end.linear)
             })?;
             ensure(angular <= probe.slack, Promise::Velocity, || {
-                format!("step {step}, body {index}: turns {turn:?} rad/s, told {:?} -> {:?}", twist.angular, end.angular)
+                format!(
+                    "step {step}, body {index}: turns {turn:?} rad/s, told {:?} -> {:?}",
+                    twist.angular, end.angular
+                )
             })?;
         }
     }
-    check_instant(world, probe, steps)
+    Ok(())
 }
 
 /// How much farther the mean velocity over a step is from that of its ends than these from each other.

@@ -3,7 +3,7 @@
 //! A value outside [0, 1] drives like the nearer end, NaN like 0.
 
 use crate::channel::{ChannelError, finite, finite_range, unit};
-use crate::ports::{ActuatorId, Actuated, Channels, Motor};
+use crate::ports::{Actuated, ActuatorId, Channels, Motor};
 
 /// Drives one muscle pair, two channels: the activations of agonist and antagonist.
 ///

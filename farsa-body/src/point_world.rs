@@ -5,8 +5,8 @@ use alloc::{vec, vec::Vec};
 use farsa_num::{Scalar, sin_cos};
 
 use crate::ports::{
-    ActuatorId, Actuated, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId, Rays,
-    Snapshot, World,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
+    Rays, Snapshot, World,
 };
 use crate::pose::{Pose, Twist};
 
@@ -132,7 +132,13 @@ impl Contacts for PointWorld {
         let push = point.push();
         if push > 0.0 {
             let position = self.pose(BodyId(pair.0)).position;
-            PairContact { points: 1, force: [0.0, 0.0, push], normal_force: push, point: position, depth: -point.height }
+            PairContact {
+                points: 1,
+                force: [0.0, 0.0, push],
+                normal_force: push,
+                point: position,
+                depth: -point.height,
+            }
         } else {
             PairContact { depth: -point.height, ..PairContact::default() }
         }

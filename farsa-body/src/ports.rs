@@ -47,7 +47,10 @@ pub trait Handles {
 }
 
 /// A world that moves by itself.
-#[diagnostic::on_unimplemented(message = "`{Self}` cannot be stepped", note = "a lane of a batch and a board have ports but no step")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be stepped",
+    note = "a lane of a batch and a board have ports but no step"
+)]
 pub trait World: Handles {
     /// Lets one control step of [`World::time_step`] pass.
     fn step(&mut self);
@@ -139,7 +142,10 @@ pub trait Snapshot {
 }
 
 /// Setting a world up for a new life.
-#[diagnostic::on_unimplemented(message = "the bodies of `{Self}` cannot be put somewhere (port `Arrange`)", note = "a board has ports but nobody can move its robot at will")]
+#[diagnostic::on_unimplemented(
+    message = "the bodies of `{Self}` cannot be put somewhere (port `Arrange`)",
+    note = "a board has ports but nobody can move its robot at will"
+)]
 pub trait Arrange: Handles {
     /// Back to the description's own start: every joint at 0 or the nearest limit, everything at rest, commands and
     /// contacts forgotten.
@@ -181,14 +187,20 @@ pub trait Channels {
 ///     }
 /// }
 /// ```
-#[diagnostic::on_unimplemented(message = "`{Self}` cannot sense a world of type `{W}`", note = "the world may lack a port that the sensor needs")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot sense a world of type `{W}`",
+    note = "the world may lack a port that the sensor needs"
+)]
 pub trait Sensor<W: ?Sized>: Channels {
     /// Writes one value per channel; `out` [channels]. A shorter slice gets the first channels.
     fn read(&mut self, world: &W, out: &mut [f32]);
 }
 
 /// Something that commands a world.
-#[diagnostic::on_unimplemented(message = "`{Self}` cannot drive a world of type `{W}`", note = "the world may lack a port that the motor needs")]
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot drive a world of type `{W}`",
+    note = "the world may lack a port that the motor needs"
+)]
 pub trait Motor<W: ?Sized>: Channels {
     /// Turns one value per channel into commands; `y` [channels]. Of a shorter slice the first channels are driven.
     fn drive(&mut self, y: &[f32], world: &mut W);

@@ -178,12 +178,28 @@ mod tests {
     }
 
     fn far_away() -> Observation {
-        Observation { reach_distance: 36.0, grasp_distance: 40.0, openness: 1.0, palm_down: 1.0, on_table: true, height: 2.5, ..Observation::default() }
+        Observation {
+            reach_distance: 36.0,
+            grasp_distance: 40.0,
+            openness: 1.0,
+            palm_down: 1.0,
+            on_table: true,
+            height: 2.5,
+            ..Observation::default()
+        }
     }
 
     /// Perfect in every respect but that of grasping: pays 1 in reach and stays there.
     fn best_reach() -> Observation {
-        Observation { reach_distance: 0.0, grasp_distance: 5.0, openness: 1.0, palm_down: 1.0, on_table: true, height: 2.5, ..Observation::default() }
+        Observation {
+            reach_distance: 0.0,
+            grasp_distance: 5.0,
+            openness: 1.0,
+            palm_down: 1.0,
+            on_table: true,
+            height: 2.5,
+            ..Observation::default()
+        }
     }
 
     fn best_grasp() -> Observation {
@@ -300,7 +316,8 @@ mod tests {
     #[test]
     fn the_best_sequence() {
         // 500 reach + 1600 lift steps fill their caps, 300 steps are left for the grasp.
-        let trial = |entry: Observation| sequence(&[(best_reach(), 125), (entry, 1), (best_grasp(), 74), (best_lift(), 400)]);
+        let trial =
+            |entry: Observation| sequence(&[(best_reach(), 125), (entry, 1), (best_grasp(), 74), (best_lift(), 400)]);
         let trials = |entry| vec![trial(entry); 4];
         assert_eq!(trial(best_grasp()).len(), 600);
         // With at most three contacts in every grasp step: the 4665 of the specification.

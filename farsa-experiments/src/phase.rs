@@ -63,7 +63,9 @@ impl Observation {
 
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        [self.reach_distance, self.grasp_distance, self.openness, self.palm_down, self.height].iter().all(|x| x.is_finite())
+        [self.reach_distance, self.grasp_distance, self.openness, self.palm_down, self.height]
+            .iter()
+            .all(|x| x.is_finite())
     }
 }
 

@@ -207,7 +207,12 @@ impl Setup for Lives {
         Description {
             sensors,
             motors,
-            network: format!("{}-{}-{}, recurrent hidden layer, leak {leak}", layout.sensors(), layout.hidden(), layout.outputs()),
+            network: format!(
+                "{}-{}-{}, recurrent hidden layer, leak {leak}",
+                layout.sensors(),
+                layout.hidden(),
+                layout.outputs()
+            ),
             parameters: layout.parameter_count(),
             steps: config.steps as usize,
             step_seconds: config.time_step,
@@ -273,7 +278,13 @@ impl Decoder {
             for leak in &mut self.parameters[self.layout.range(ParameterKind::Leak)] {
                 let share = leak.abs() / range;
                 // A range of 0 gives NaN: no memory, as for p = 0.
-                *leak = if share < 1.0 { share } else if share >= 1.0 { 1.0 } else { 0.0 };
+                *leak = if share < 1.0 {
+                    share
+                } else if share >= 1.0 {
+                    1.0
+                } else {
+                    0.0
+                };
             }
         }
         decoded

@@ -436,11 +436,7 @@ fn entries() -> Vec<Entry> {
         entry("network.slope", Number(|c| &mut c.slope, 0.0..=100.0), "", Given, "Slope of the logistic function."),
         entry(
             "network.leak",
-            Word(
-                &["filter", "two-tap", "evonet"],
-                |c| c.leak.name(),
-                |c, w| c.leak = w.parse().unwrap_or_default(),
-            ),
+            Word(&["filter", "two-tap", "evonet"], |c| c.leak.name(), |c, w| c.leak = w.parse().unwrap_or_default()),
             "",
             Chosen,
             "Reading of the leak: a filter, as the source's words say; two-tap as its equation is printed; evonet as the \
@@ -458,7 +454,9 @@ fn entries() -> Vec<Entry> {
             Word(
                 &["capped", "literal", "saturating"],
                 |c| c.judgement.contact_term.name(),
-                |c, w| c.judgement.contact_term = ContactTerm::ALL.into_iter().find(|t| t.name() == w).unwrap_or_default(),
+                |c, w| {
+                    c.judgement.contact_term = ContactTerm::ALL.into_iter().find(|t| t.name() == w).unwrap_or_default()
+                },
             ),
             "",
             Chosen,
@@ -675,7 +673,8 @@ mod tests {
     #[test]
     fn the_spheres_places_in_both_frames() {
         let mut config = Config::default();
-        let places = |config: &Config| [0, 1, 2, 3].map(|trial| config.sphere_start(trial).map(|x| (x * 100.0).round()));
+        let places =
+            |config: &Config| [0, 1, 2, 3].map(|trial| config.sphere_start(trial).map(|x| (x * 100.0).round()));
         let forward = places(&config);
         assert_eq!(forward, [[10.0, -18.0], [18.0, -26.0], [26.0, -18.0], [18.0, -10.0]]);
         config.sphere_frame = SphereFrame::Icub;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use farsa_body::{
-    ActuatorId, Actuated, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Sensor,
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Sensor,
 };
 use farsa_nn::Controller;
 

@@ -1,7 +1,7 @@
 //! The scene of `reach-grasp-lift`: how a trial starts in it, what the robot senses and does, and what the judge sees.
 
 use farsa_body::{
-    ActuatorId, Actuated, ArmAndHand, Arrange, BodyId, ChannelError, Channels, Contacts, Finger, Handles, JointId,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, ChannelError, Channels, Contacts, Finger, Handles, JointId,
     JointPosition, Joints, Kinematics, Motor, Muscles, PairId, Point, Pose, Robot, RobotError, Sensor, ServoGroup,
     ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
 };
@@ -87,7 +87,7 @@ impl Scene {
             }
         }
         let (sphere_on_palm, sphere_on_table) = (pair("sphere", "palm")?, pair("sphere", "table")?);
-        Ok(Self { arm, config, sphere_on_phalanges, sphere_on_palm, sphere_on_table, robot })
+        Ok(Self { robot, arm, config, sphere_on_phalanges, sphere_on_palm, sphere_on_table })
     }
 
     /// The sensors.
@@ -112,7 +112,9 @@ impl Scene {
         let mut patches: TouchPatches = Vec::new();
         let colliders = Finger::ALL.map(|finger| ArmAndHand::phalange_colliders(finger).to_vec());
         for own in colliders.into_iter().chain([vec![ArmAndHand::ARM_COLLIDERS[2]]]) {
-            patches.push(Touch::new(self.foreign_pairs(&own), self.config.touch_saturation as f32).map_err(wrong_channel)?);
+            patches.push(
+                Touch::new(self.foreign_pairs(&own), self.config.touch_saturation as f32).map_err(wrong_channel)?,
+            );
         }
         let palm = Point { body: ArmAndHand::PALM, at: self.arm.palm_centre.map(|x| x as f32) };
         let target = TargetPosition::new(Point::origin(Tabletop::SPHERE), palm, self.config.target_axes, 100.0);
@@ -133,7 +135,8 @@ impl Scene {
 
     /// The pairs of these colliders with anything that is not of the arm and hand.
     fn foreign_pairs(&self, own: &[usize]) -> Vec<PairId> {
-        let of_arm = |collider: &usize| self.robot.colliders[*collider].body.is_some_and(|body| body != Tabletop::SPHERE);
+        let of_arm =
+            |collider: &usize| self.robot.colliders[*collider].body.is_some_and(|body| body != Tabletop::SPHERE);
         let pairs = self.robot.pairs.iter().enumerate();
         pairs
             .filter(|(_, pair)| pair.colliders.iter().any(|c| own.contains(c)) && !pair.colliders.iter().all(of_arm))

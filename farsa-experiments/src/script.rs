@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use farsa_body::{
-    ActuatorId, Actuated, ArmAndHand, Arrange, BodyId, Contacts, Goal, Handles, InverseKinematics, InverseKinematicsError,
-    JointId, Joints, KinematicTree, Kinematics, Law, Motor, MusclePair, Orientation, Tabletop,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Goal, Handles, InverseKinematics,
+    InverseKinematicsError, JointId, Joints, KinematicTree, Kinematics, Law, Motor, MusclePair, Orientation, Tabletop,
 };
 
 use crate::error::Error;

@@ -1,11 +1,11 @@
 //! What the robot senses and does, how trials start and end.
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::unwrap_used)]
 
 use std::sync::Arc;
 
 use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Channels, Contacts, Finger, Handles, JointId, Joints, Kinematics,
-    Motor, Pose, Sensor, Tabletop, Twist, World as _,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Channels, Contacts, Finger, Handles, JointId, Joints,
+    Kinematics, Motor, Pose, Sensor, Shape, Tabletop, Twist, World as _,
 };
 use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, OUTPUTS, Phase, ReachLife, Scene};
 use farsa_experiments::{Job, Life, live};
@@ -110,9 +110,13 @@ fn each_patch_of_skin_feels_its_own_contacts() {
         for body in bodies {
             world.clear();
             world.arranged();
-            // The sphere against one part from below, a little into it.
+            // The sphere against the far end of one part from below, a little into it.
             let collider = scene.robot.colliders.iter().find(|c| c.body == Some(body)).expect("a collider");
-            let at = world.pose(body).compose(&collider.placement.cast::<f32>()).position;
+            let end = match collider.shape {
+                Shape::Capsule { half_length, .. } => half_length as f32,
+                _ => 0.0,
+            };
+            let at = world.pose(body).compose(&collider.placement.cast::<f32>()).transform([0.0, 0.0, end]);
             let palm = body == ArmAndHand::PALM;
             let thickness = if palm { 0.010 } else { [0.0065, 0.0060, 0.0055][(body.index() - 8) % 4] };
             let below = [at[0], at[1], at[2] - thickness - 0.0249];
@@ -121,11 +125,8 @@ fn each_patch_of_skin_feels_its_own_contacts() {
             world.step();
             let x = read(&scene, &world);
             assert!(x[17 + patch] > 0.0, "patch {patch} does not feel {body:?}: {:?}", &x[17..23]);
-            let pair = if palm {
-                scene.sphere_on_palm
-            } else {
-                scene.sphere_on_phalanges[patch * 3 + (body.index() - 8) % 4]
-            };
+            let pair =
+                if palm { scene.sphere_on_palm } else { scene.sphere_on_phalanges[patch * 3 + (body.index() - 8) % 4] };
             assert!(world.pair_contact(pair).points > 0);
             let seen = scene.observe(&world);
             assert_eq!(seen.contacts > 0, seen.on_fingers());

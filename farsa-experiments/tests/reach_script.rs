@@ -1,5 +1,5 @@
 //! The task can be done: a script that uses only the experiment's 23 outputs grasps and lifts from each of the four starts.
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::unwrap_used)]
 
 use std::sync::Arc;
 
@@ -53,7 +53,10 @@ fn holds<R: Real>() {
         let grasp = grasp::<R>(config, Timetable::default(), job(trial, 0));
         let [mean, rms] = slip(&grasp.relative, 300);
         let Trial { phase, held, highest, .. } = grasp.trial;
-        println!("start {}: {phase:?}, held {held} steps, {highest:.2} cm, slip {mean:.3} rms {rms:.3} mm/s", trial + 1);
+        println!(
+            "start {}: {phase:?}, held {held} steps, {highest:.2} cm, slip {mean:.3} rms {rms:.3} mm/s",
+            trial + 1
+        );
         assert!(grasp.success && phase == Phase::Lift, "{:?}", grasp.trial);
         assert!(mean < 1.0 && rms < 1.0, "slips {mean} mm/s, rms {rms} mm/s");
     }

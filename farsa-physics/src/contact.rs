@@ -200,6 +200,79 @@ fn velocity_at<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkWork<S>], point:
     w.acceleration.at(sub(point, w.reference))
 }
 
+/// Predicted angular velocity of a link.
+#[inline(always)]
+fn spin<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkWork<S>]) -> Vector<S> {
+    if link == WORLD { [S::splat(simd, S::Real::of(0.0)); 3] } else { work[usize::from(link)].acceleration.angular }
+}
+
+/// Three unit forces on the links of a path.
+type Pull<S> = [Spatial<S>; 3];
+
+/// Carries three forces over one link towards its root: writes the row entries and returns how many.
+#[inline(always)]
+fn climb<S: Scalar>(
+    model: &Model<S::Real>,
+    link: u16,
+    work: &[LinkWork<S>],
+    roots: &[Root<S>],
+    root_of: &[S],
+    p: &mut Pull<S>,
+    out: &mut [[S; 3]],
+) -> usize {
+    let l = &model.links[usize::from(link)];
+    if l.motion == Motion::Floating {
+        for k in 0..3 {
+            let y = roots[usize::from(l.root)].factor.half(p[k]);
+            for (o, y) in out.iter_mut().zip(y) {
+                o[k] = y;
+            }
+        }
+        return 6;
+    }
+    let w = &work[usize::from(link)];
+    let root = root_of[usize::from(l.dof)];
+    for k in 0..3 {
+        let y = w.subspace.dot(p[k]);
+        out[0][k] = y * root;
+        p[k] = p[k] - w.column.scale(y * w.reciprocal);
+    }
+    1
+}
+
+/// Which unit loads the rows of a block are.
+#[derive(Clone, Copy)]
+enum Load<S> {
+    /// Forces along the axes at a point.
+    Forces(Vector<S>),
+    /// Moments about the axes.
+    Moments,
+}
+
+/// The block's unit loads on the link of one of the pair's colliders.
+#[inline(always)]
+fn pull<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    collider: usize,
+    work: &[LinkWork<S>],
+    load: Load<S>,
+    axes: &[Vector<S>; 3],
+) -> Pull<S> {
+    let zero = Spatial::zero(simd);
+    let link = model.colliders[collider].mount.link;
+    if link == WORLD {
+        return [zero; 3];
+    }
+    match load {
+        Load::Moments => axes.map(|axis| Spatial { angular: axis, linear: zero.linear }),
+        Load::Forces(point) => {
+            let arm = sub(point, work[usize::from(link)].reference);
+            [Spatial::force_at(arm, axes[0]), Spatial::force_at(arm, axes[1]), Spatial::force_at(arm, axes[2])]
+        }
+    }
+}
+
 /// Writes the rows of three unit forces (or moments) on both sides of a pair, and their response.
 #[inline(always)]
 fn write_rows<S: Scalar>(
@@ -208,48 +281,21 @@ fn write_rows<S: Scalar>(
     pair: &Pair<S::Real>,
     work: &[LinkWork<S>],
     roots: &[Root<S>],
-    roots_of: &[S],
-    unit: impl Fn(usize, Vector<S>) -> Spatial<S>,
+    root_of: &[S],
+    load: Load<S>,
+    axes: &[Vector<S>; 3],
     rows: &mut [[S; 3]],
 ) -> [S; 6] {
-    let zero = Spatial::zero(simd);
     let reach = &pair.reach;
-    let side = |collider: usize| {
-        let link = model.colliders[pair.colliders[collider]].mount.link;
-        if link == WORLD {
-            return [zero; 3];
-        }
-        let reference = work[usize::from(link)].reference;
-        [unit(0, reference), unit(1, reference), unit(2, reference)]
-    };
-    let step = |link: u16, p: &mut [Spatial<S>; 3], out: &mut [[S; 3]]| -> usize {
-        let l = &model.links[usize::from(link)];
-        if l.motion == Motion::Floating {
-            for k in 0..3 {
-                let y = roots[usize::from(l.root)].factor.half(p[k]);
-                for (o, y) in out.iter_mut().zip(y) {
-                    o[k] = y;
-                }
-            }
-            return 6;
-        }
-        let w = &work[usize::from(link)];
-        let root = roots_of[usize::from(l.dof)];
-        for k in 0..3 {
-            let y = w.subspace.dot(p[k]);
-            out[0][k] = y * root;
-            p[k] = p[k] - w.column.scale(y * w.reciprocal);
-        }
-        1
-    };
     let minus = S::splat(simd, S::Real::of(-1.0));
     let first_entries = reach.dofs.len() - reach.second.iter().map(|l| entries(model, *l)).sum::<usize>();
-    let mut other = side(1).map(|p| p.scale(minus));
+    let other = pull(simd, model, pair.colliders[1], work, load, axes);
+    let mut other = [other[0].scale(minus), other[1].scale(minus), other[2].scale(minus)];
     let mut at = first_entries;
     for &link in &reach.second {
-        at += step(link, &mut other, &mut rows[at..]);
+        at += climb(model, link, work, roots, root_of, &mut other, &mut rows[at..]);
     }
-    let mut p = side(0);
+    let mut p = pull(simd, model, pair.colliders[0], work, load, axes);
     let mut at = 0;
     for (i, &link) in reach.first.iter().enumerate() {
         if i == reach.meet {
@@ -257,7 +303,7 @@ fn write_rows<S: Scalar>(
                 p[k] += other[k];
             }
         }
-        at += step(link, &mut p, &mut rows[at..]);
+        at += climb(model, link, work, roots, root_of, &mut p, &mut rows[at..]);
     }
     let mut a = [S::splat(simd, S::Real::of(0.0)); 6];
     for y in rows.iter() {
@@ -355,7 +401,6 @@ impl<S: Scalar> Solver<'_, S> {
                 let i = pair.point + index;
                 let n = pair.reach.dofs.len();
                 let rows = &mut self.rows[pair.row + index * n..pair.row + (index + 1) * n];
-                let arm = point.point;
                 let response = write_rows(
                     simd,
                     model,
@@ -363,7 +408,8 @@ impl<S: Scalar> Solver<'_, S> {
                     self.work,
                     self.roots,
                     self.root_of,
-                    |k, reference| Spatial::force_at(sub(arm, reference), axes[k]),
+                    Load::Forces(point.point),
+                    &axes,
                     rows,
                 );
                 // Above the surface only the spring at the end of the step counts, below it also the damper.
@@ -395,12 +441,8 @@ impl<S: Scalar> Solver<'_, S> {
                 };
                 apply(&pair.reach.dofs, rows, impulse, mask, self.response);
                 if let Some(first) = pair.rolling {
-                    let spin = |link: u16| {
-                        if link == WORLD { [zero; 3] } else { self.work[usize::from(link)].acceleration.angular }
-                    };
-                    let turning = sub(spin(links[0]), spin(links[1]));
+                    let turning = sub(spin(simd, links[0], self.work), spin(simd, links[1], self.work));
                     let rows = &mut self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
-                    let none = Spatial::<S>::zero(simd).linear;
                     let response = write_rows(
                         simd,
                         model,
@@ -408,7 +450,8 @@ impl<S: Scalar> Solver<'_, S> {
                         self.work,
                         self.roots,
                         self.root_of,
-                        |k, _| Spatial { angular: axes[k], linear: none },
+                        Load::Moments,
+                        &axes,
                         rows,
                     );
                     let words = &turns[3 * (first + index)..3 * (first + index) + 3];

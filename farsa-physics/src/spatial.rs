@@ -64,14 +64,7 @@ pub(crate) fn rotate_back<S: Scalar>(m: &Matrix<S>, a: Vector<S>) -> Vector<S> {
 /// The product of two rotations.
 #[inline(always)]
 pub(crate) fn product<S: Scalar>(m: &Matrix<S>, n: &Matrix<S>) -> Matrix<S> {
-    let row = |r: Vector<S>| {
-        [
-            r[0] * n[0][0] + r[1] * n[1][0] + r[2] * n[2][0],
-            r[0] * n[0][1] + r[1] * n[1][1] + r[2] * n[2][1],
-            r[0] * n[0][2] + r[1] * n[1][2] + r[2] * n[2][2],
-        ]
-    };
-    [row(m[0]), row(m[1]), row(m[2])]
+    [rotate_back(n, m[0]), rotate_back(n, m[1]), rotate_back(n, m[2])]
 }
 
 /// The rotation matrix of a unit quaternion [x, y, z, w].

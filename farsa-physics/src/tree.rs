@@ -92,6 +92,12 @@ impl<S: Scalar> LinkWork<S> {
     }
 }
 
+/// A row of a rotation, turned about its third axis.
+#[inline(always)]
+fn turn<S: Scalar>(r: Vector<S>, s: S, c: S) -> Vector<S> {
+    [r[0] * c + r[1] * s, r[1] * c - r[0] * s, r[2]]
+}
+
 /// Places all links: forward kinematics and velocities from positions `q` [positions] and velocities `v` [dofs] into `work` [links].
 #[inline(always)]
 pub fn place<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], q: &[S], v: &[S], work: &mut [LinkWork<S>]) {
@@ -115,8 +121,7 @@ pub fn place<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], q: &[S], v: &[S]
             };
             if link.motion == Motion::Revolute {
                 let (s, c) = sin_cos(q[at]);
-                let turn = |r: Vector<S>| [r[0] * c + r[1] * s, r[1] * c - r[0] * s, r[2]];
-                ([turn(frame[0]), turn(frame[1]), turn(frame[2])], origin)
+                ([turn(frame[0], s, c), turn(frame[1], s, c), turn(frame[2], s, c)], origin)
             } else {
                 let axis = [frame[0][2], frame[1][2], frame[2][2]];
                 (frame, add(origin, scale(axis, q[at])))

@@ -1,8 +1,6 @@
 //! An experiment of one's own: a cart learns to stop at the middle of its track.
 
-use farsa_experiments::{
-    ChannelGroup, Description, Error, Experiment, Job, Outcome, Setting, Settings, Setup, Tape, cli,
-};
+use farsa_experiments::{ChannelGroup, Description, Experiment, Job, Outcome, Setting, Settings, Setup, Tape, cli};
 use farsa_num::{Domain, Stream};
 
 struct Cart;
@@ -27,7 +25,7 @@ impl Experiment for Cart {
             Setting::whole("trial.steps", 500, 1..=1_000_000).doc("Steps of 10 ms."),
         ]
     }
-    fn prepare(&self, _condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, farsa_experiments::Error> {
         let (friction, steps) = (settings.number("cart.friction")?, settings.count("trial.steps")?);
         Ok(Box::new(Track { friction, steps: steps as u32, switched: settings.word("cart.motor")? == "switched" }))
     }
@@ -67,8 +65,8 @@ impl Setup for Track {
             x += 0.01 * v;
             fitness += 1.0 / (1.0 + x * x + v * v) / f64::from(self.steps);
             tape.row(&[x, v, force]);
-            if x.abs() > 1e3 {
-                return Outcome::failed(); // Lost from sight.
+            if x.abs() > 5.0 {
+                return Outcome::failed(); // Off the track.
             }
         }
         let success = x.abs() < 0.1 && v.abs() < 0.1;

@@ -1,0 +1,7 @@
+//! The `farsa` command, end to end: over the reference experiments and over those of a crate outside the workspace.
+
+mod bad_input;
+mod files;
+mod own;
+mod same_bytes;
+mod tool;

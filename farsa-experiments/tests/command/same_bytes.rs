@@ -1,0 +1,121 @@
+//! The same bytes whatever the number of threads and however often a run is killed.
+
+use std::fs;
+use std::path::Path;
+use std::process::Child;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::tool::{Said, command, content, ok, own, results, say, scratch};
+
+#[test]
+fn one_and_two_threads() {
+    let here = scratch("threads");
+    for threads in ["1", "2", "7"] {
+        ok(own(), &here, &format!("run cart --generations 15 --threads {threads} --out t{threads}"));
+    }
+    let one = results(&here.join("t1"));
+    assert_eq!(one, results(&here.join("t2")));
+    assert_eq!(one, results(&here.join("t7")));
+}
+
+#[test]
+fn more_generations_later_or_at_once() {
+    let here = scratch("more");
+    ok(own(), &here, "run cart --generations 9 --out once");
+    ok(own(), &here, "run cart --generations 4 --out twice --threads 1");
+    let said = say(own(), &here, "run --resume twice --generations 9 --threads 2");
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert!(!said.err.contains("generation 3:") && said.err.contains("generation 4:"), "{said:?}");
+    assert_eq!(results(&here.join("once")), results(&here.join("twice")));
+    // There is nothing left to do, and that is no mistake.
+    assert!(ok(own(), &here, "run --resume twice").contains("all 9 generations are finished already"));
+    assert_eq!(results(&here.join("once")), results(&here.join("twice")));
+}
+
+/// Lives long enough that a generation takes a few milliseconds.
+const SLOW: &str = "run cart --set trial.steps=5000 --set cart.friction=5 --seed 2";
+
+fn generations(run: &Path) -> usize {
+    fs::read_to_string(run.join("fitness.csv")).map_or(0, |log| log.lines().count().saturating_sub(1))
+}
+
+/// Waits until a run has written some generations, and checks that it is still at it.
+fn wait_for(child: &mut Child, run: &Path, wanted: usize) {
+    let patience = Instant::now() + Duration::from_secs(120);
+    while generations(run) < wanted {
+        assert!(Instant::now() < patience, "no generation {wanted} in {}", run.display());
+        assert_eq!(child.try_wait().expect("the child"), None, "it ended by itself");
+        sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn killed_and_resumed() {
+    let here = scratch("killed");
+    const LENGTH: usize = 1200;
+    ok(own(), &here, &format!("{SLOW} --generations {LENGTH} --out whole"));
+    let mut arguments: Vec<String> = format!("{SLOW} --generations {LENGTH} --out killed").split(' ').map(Into::into).collect();
+    let run = here.join("killed");
+    let mut gone_on_from = Vec::new();
+    // Far enough apart that a checkpoint lies between two kills on any machine that takes a second for the whole.
+    for wanted in [1, LENGTH / 2] {
+        let mut child = command(own(), &here, &arguments).spawn().expect("the program");
+        wait_for(&mut child, &run, wanted);
+        child.kill().expect("SIGKILL");
+        child.wait().expect("its end");
+        gone_on_from.push(generations(&run));
+        // What a killed process leaves can be looked at.
+        assert_eq!(say(own(), &here, "replay killed --generation 0").code.is_some(), true);
+        arguments = ["run", "--resume", "killed"].map(Into::into).into();
+    }
+    assert!(gone_on_from[1] < LENGTH, "killed too late to show anything");
+    // A kill in the middle of a line.
+    let mut log = fs::read(run.join("fitness.csv")).expect("the log");
+    log.extend(b"777,0.1");
+    fs::write(run.join("fitness.csv"), log).expect("the log");
+    ok(own(), &here, "run --resume killed --threads 2");
+    assert_eq!(results(&here.join("whole")), results(&run));
+    assert!(content(&run).iter().all(|(path, _)| !path.to_string_lossy().contains(".new")));
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_and_resumed() {
+    let here = scratch("interrupted");
+    ok(own(), &here, &format!("{SLOW} --generations 300 --out whole"));
+    let arguments: Vec<&str> = SLOW.split(' ').chain(["--generations", "300", "--out", "stopped"]).collect();
+    let run = here.join("stopped");
+    let mut child = command(own(), &here, &arguments).spawn().expect("the program");
+    wait_for(&mut child, &run, 20);
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(kill.success());
+    let said = Said::from(child.wait_with_output().expect("its end"));
+    assert_eq!(said.code, Some(130), "{said:?}");
+    assert!(said.err.contains("go on with `own-experiment run --resume stopped`"), "{said:?}");
+    let kept = generations(&run);
+    assert!((20..300).contains(&kept), "{kept}");
+    // Nothing that was finished is lived again.
+    let again = say(own(), &here, "run --resume stopped");
+    assert_eq!(again.code, Some(0), "{again:?}");
+    let first = again.err.lines().next().expect("a line");
+    assert!(first.starts_with(&format!("generation {kept}: ")), "{first}");
+    assert_eq!(results(&here.join("whole")), results(&run));
+}
+
+#[test]
+fn the_main_experiment() {
+    let here = scratch("main-experiment");
+    let run = "run reach-grasp-lift --population 4 --set evolution.parents=2 --set trial.steps=30 --seed 9";
+    let farsa = crate::tool::farsa();
+    ok(farsa, &here, &format!("{run} --generations 3 --threads 1 --out one"));
+    ok(farsa, &here, &format!("{run} --generations 1 --threads 2 --out two"));
+    ok(farsa, &here, "run --resume two --generations 3 --threads 2");
+    assert_eq!(results(&here.join("one")), results(&here.join("two")));
+    let log = fs::read_to_string(here.join("one/fitness.csv")).expect("the log");
+    let best = log.lines().last().and_then(|line| line.split(',').nth(1)).expect("the best");
+    let said = say(farsa, &here, "replay one");
+    assert!(said.err.ends_with(&format!("fitness {best}\n")), "{best}: {}", said.err);
+    assert_eq!(said.out.lines().count(), 1 + 4 * 30);
+    ok(farsa, &here, "test one --trials 4");
+}

@@ -1,0 +1,229 @@
+//! Random commands from random starts: nothing explodes, nothing sinks in.
+
+mod common;
+
+use common::{Babble, commands, first_point, half_thickness, model, points_of, start};
+use farsa_body::{ArmAndHand, Robot, ServoRange, Tabletop};
+use farsa_num::fearless_simd::{Level, dispatch, f32x8};
+use farsa_num::{Domain, Scalar, Stream};
+use farsa_physics::articulated::{Model, Options, Scratch, World, step};
+
+const LIFE: usize = 600;
+
+/// A largest value and where it was seen.
+#[derive(Clone, Debug, Default)]
+struct Worst {
+    value: f64,
+    at: String,
+}
+
+impl Worst {
+    fn see(&mut self, value: f64, at: impl FnOnce() -> String) {
+        // A NaN is the worst of all.
+        if !(value <= self.value) {
+            self.value = value;
+            self.at = at();
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default)]
+struct Figures {
+    steps: usize,
+    falls: usize,
+    touching: usize,
+    joint_speed: Worst,
+    sphere_speed: Worst,
+    over_limit: Worst,
+    /// Depth of a pair's contact whose force is below 20 N [m].
+    gentle_depth: Worst,
+    /// Depth beyond half the thinner body [m].
+    share_of_body: Worst,
+    depth: Worst,
+    /// How far the sphere's centre is below the table's top inside its outline [m].
+    sunk: Worst,
+    over_2mm: usize,
+    over_half: usize,
+}
+
+struct Checked<'a> {
+    robot: &'a Robot,
+    model: &'a Model<f32>,
+    table: Tabletop,
+    point: usize,
+    /// Name, first point, points, half thickness of the thinner body.
+    pairs: Vec<(String, usize, usize, f64)>,
+}
+
+impl<'a> Checked<'a> {
+    fn new(robot: &'a Robot, model: &'a Model<f32>, table: Tabletop) -> Self {
+        let mut first = 0;
+        let pairs = (0..robot.pairs.len())
+            .map(|p| {
+                let colliders = robot.pairs[p].colliders.map(|c| &robot.colliders[c]);
+                let thin = half_thickness(colliders[0].shape).min(half_thickness(colliders[1].shape));
+                let n = points_of(robot, p);
+                first += n;
+                (format!("{} - {}", colliders[0].name, colliders[1].name), first - n, n, thin)
+            })
+            .collect();
+        Self { robot, model, table, point: first_point(robot, model), pairs }
+    }
+
+    fn check(&self, state: &[f32], f: &mut Figures, at: &str) {
+        let positions = self.model.positions();
+        let (q, v) = (&state[..positions], &state[positions..positions + self.model.dofs()]);
+        f.steps += 1;
+        for j in 0..27 {
+            f.joint_speed.see(f64::from(v[j].abs()), || format!("J{} {at}", j + 1));
+            let [low, high] = self.robot.segments[j].joint.range;
+            let x = f64::from(q[j]);
+            f.over_limit.see((low - x).max(x - high), || format!("J{} {at}", j + 1));
+        }
+        let speed = (f64::from(v[30]).powi(2) + f64::from(v[31]).powi(2) + f64::from(v[32]).powi(2)).sqrt();
+        f.sphere_speed.see(speed, || at.to_string());
+        let [x, y, z] = [27, 28, 29].map(|k: usize| f64::from(q[k]));
+        let inside = |x: f64, [low, high]: [f64; 2]| x > low && x < high;
+        if inside(x, self.table.table_x) && inside(y, self.table.table_y) {
+            f.sunk.see(-z, || format!("({x:.3} {y:.3} {z:.3}) {at}"));
+        }
+        let h = f64::from(self.model_h());
+        let mut touching = false;
+        for (name, first, n, thin) in &self.pairs {
+            let words = &state[self.point + 8 * first..self.point + 8 * (first + n)];
+            let (mut force, mut depth) = (0.0, f64::NEG_INFINITY);
+            for w in words.chunks_exact(8) {
+                force += f64::from(w[3]) / h;
+                // A point that does not count carries nothing.
+                depth = f64::max(depth, -f64::from(w[7]));
+            }
+            touching |= force > 0.0;
+            if force > 0.0 && depth > 0.0 {
+                let here = || format!("{name} {force:.1} N {at}");
+                f.depth.see(depth, here);
+                f.share_of_body.see(depth / thin, here);
+                f.over_half += usize::from(depth > *thin);
+                if force < 20.0 {
+                    f.gentle_depth.see(depth, here);
+                    f.over_2mm += usize::from(depth > 2e-3);
+                }
+            }
+        }
+        f.touching += usize::from(touching);
+    }
+
+    fn model_h(&self) -> f32 {
+        0.01 / std::env::var("FARSA_SUBSTEPS").map_or(5.0, |x| x.parse::<f32>().unwrap())
+    }
+}
+
+/// Lives of random commands in the lanes of one state.
+#[inline(always)]
+fn babble<S: Scalar<Real = f32>>(
+    simd: S::Simd,
+    checked: &Checked,
+    groups: &[Vec<ServoRange>; 9],
+    seed: u64,
+    steps: usize,
+    f: &mut Figures,
+) {
+    let model = checked.model;
+    let mut state = vec![S::splat(simd, 0.0); model.state_len()];
+    let mut scratch = Scratch::new(simd, model);
+    let mut world = World::new(model.clone());
+    let command = model.positions() + model.dofs();
+    let mut lives: Vec<(u32, usize, Babble)> = Vec::new();
+    let mut next = 0;
+    let mut own = vec![0.0; model.state_len()];
+    let mut done = 0;
+    while done < steps {
+        let mut placed = false;
+        for l in 0..S::LANES {
+            let over = lives.get(l).is_none_or(|(life, t, _)| {
+                let fell = state[29].lane(l) < 0.0;
+                f.falls += usize::from(fell && *t > 0);
+                let _ = life;
+                *t >= LIFE || fell
+            });
+            if over {
+                let mut stream = Stream::new(seed, Domain::Start, next, 0, 0);
+                start(checked.robot, &mut world, &mut stream, next as usize);
+                for (x, w) in state.iter_mut().zip(world.state()) {
+                    x.set_lane(l, *w);
+                }
+                let new = (next, 0, Babble::new(seed, next));
+                if l < lives.len() { lives[l] = new } else { lives.push(new) }
+                next += 1;
+                placed = true;
+            }
+            for (i, c) in commands(groups, lives[l].2.next()).into_iter().enumerate() {
+                state[command + 2 * i].set_lane(l, c[0]);
+                state[command + 2 * i + 1].set_lane(l, c[1]);
+            }
+        }
+        if placed {
+            scratch.place(simd, model, &state);
+        }
+        step(simd, model, &mut state, &mut scratch);
+        for l in 0..S::LANES {
+            lives[l].1 += 1;
+            for (o, x) in own.iter_mut().zip(&state) {
+                *o = x.lane(l);
+            }
+            checked.check(&own, f, &format!("life {} step {}", lives[l].0, lives[l].1));
+        }
+        done += S::LANES;
+    }
+}
+
+fn run(robot: &Robot, model: &Model<f32>, table: Tabletop, seed: u64, steps: usize) -> Figures {
+    let checked = Checked::new(robot, model, table);
+    let groups = ArmAndHand::default().servo_groups();
+    let mut f = Figures::default();
+    dispatch!(Level::new(), simd => babble::<f32x8<_>>(simd, &checked, &groups, seed, steps, &mut f));
+    f
+}
+
+fn print(f: &Figures) {
+    println!("{} control steps, {} with contact, {} falls", f.steps, f.touching, f.falls);
+    for (name, w, unit, scale) in [
+        ("joint speed", &f.joint_speed, "rad/s", 1.0),
+        ("sphere speed", &f.sphere_speed, "m/s", 1.0),
+        ("over a limit", &f.over_limit, "rad", 1.0),
+        ("depth below 20 N", &f.gentle_depth, "mm", 1e3),
+        ("depth", &f.depth, "mm", 1e3),
+        ("share of half the thinner body", &f.share_of_body, "", 1.0),
+        ("sphere's centre below the table", &f.sunk, "mm", 1e3),
+    ] {
+        println!("  {name}: {:.4} {unit} ({})", scale * w.value, w.at);
+    }
+    println!("  steps deeper than 2 mm below 20 N: {}, deeper than half: {}", f.over_2mm, f.over_half);
+}
+
+#[test]
+fn random_commands_break_nothing() {
+    let var = |name: &str, d: f64| std::env::var(name).map_or(d, |x| x.parse().unwrap());
+    let mut table = Tabletop::default();
+    let mut arm = ArmAndHand::default();
+    arm.surface.stiffness = var("FF_K", arm.surface.stiffness);
+    arm.surface.damping = var("FF_B", arm.surface.damping);
+    table.hand_on_sphere.stiffness = var("HS_K", table.hand_on_sphere.stiffness);
+    table.hand_on_sphere.damping = var("HS_B", table.hand_on_sphere.damping);
+    table.sphere_on_table.stiffness = var("ST_K", table.sphere_on_table.stiffness);
+    table.sphere_on_table.damping = var("ST_B", table.sphere_on_table.damping);
+    table.arm_on_table.stiffness = var("AT_K", table.arm_on_table.stiffness);
+    table.arm_on_table.damping = var("AT_B", table.arm_on_table.damping);
+    let d = Options::default();
+    let o = Options {
+        substeps: var("FARSA_SUBSTEPS", 5.0) as u32,
+        sweeps: var("SWEEPS", f64::from(d.sweeps)) as u32,
+        limit_frequency: var("LF", d.limit_frequency),
+        limit_damping: var("LD", d.limit_damping),
+        margin: var("MARGIN", d.margin),
+        ..d
+    };
+    let robot = table.scene(&arm).unwrap();
+    let model = model(&robot, o);
+    let f = run(&robot, &model, table, 1, var("STEPS", 1e5) as usize);
+    print(&f);
+}
