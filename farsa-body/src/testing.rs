@@ -40,7 +40,7 @@ pub struct Probe<B = BodyId, J = JointId, A = ActuatorId> {
 impl Probe {
     /// The steps of a run where none are asked for.
     const STEPS: usize = 200;
-    /// The slack where none is asked for; sub-steps and impacts move a mean speed by a few hundredths.
+    /// The slack where none is asked for.
     const SLACK: f32 = 0.1;
 
     /// A probe of a world built from this robot.

@@ -1,5 +1,6 @@
 //! The conformance kit passes what is right and names what is wrong.
 #![cfg(feature = "alloc")]
+#![allow(clippy::unwrap_used)]
 
 use std::cell::Cell;
 
@@ -8,7 +9,7 @@ use farsa_body::testing::{
 };
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Motor,
-    Muscles, PairContact, PairId, Pose, Rays, Sensor, Snapshot, TorqueMotor, Twist, World,
+    Muscles, PairContact, PairId, Pose, Rays, Sensor, Snapshot, Tabletop, TorqueMotor, Twist, World,
 };
 
 const POINTS: usize = 3;
@@ -225,6 +226,21 @@ fn the_point_world_keeps_every_promise() {
     assert_eq!(check_rays(&world, &probe().bodies, &[[0.05, 0.0, 0.1], [0.1, 0.0, 0.1]], 1.0), Ok(()));
     assert_eq!(check_world(|| Broken::new(None), &probe()), Ok(()));
     assert_eq!(check_arrange(|| Broken::new(None), &probe()), Ok(()));
+}
+
+#[test]
+fn a_probe_of_a_robot_finds_its_parts() {
+    let arm = ArmAndHand::default();
+    let probe = Probe::of(&Tabletop::default().scene(&arm).unwrap());
+    assert_eq!((probe.bodies.len(), probe.joints.len(), probe.actuators.len()), (28, 27, 27));
+    assert_eq!(probe.floating, [Tabletop::SPHERE]);
+    let (elbow, [low, high]) = probe.joints[3];
+    assert_eq!((elbow, high), (JointId(3), 0.0));
+    assert!((low + 170.0f32.to_radians()).abs() < 1e-6);
+    assert_eq!(probe.actuators[3], (ActuatorId(3), [[0.0; 2], [1.0; 2]]));
+    let (servo, [[from, a], [to, b]]) = probe.actuators[8];
+    assert_eq!((servo, a, b, to), (ActuatorId(8), 0.0, 0.0, 0.0));
+    assert!((from + 90.0f32.to_radians()).abs() < 1e-6);
 }
 
 #[test]

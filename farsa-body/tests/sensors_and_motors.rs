@@ -1,7 +1,8 @@
 //! Sensors, motors and their compositions, in the point world and in a lane of it.
 #![cfg(feature = "alloc")]
+#![allow(clippy::unwrap_used)]
 
-use core::f32::consts::{FRAC_PI_2, PI};
+use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
 use farsa_body::testing::{PointWorld, check_motor, check_sensor};
 use farsa_body::{
@@ -174,7 +175,7 @@ fn places_are_read_in_either_axes() {
     let way = read(&mut TargetPosition::new(target, own, Axes::Body, 1.0).unwrap(), &world);
     assert!(near(&way, &[0.0, 0.0, rise - 0.2]), "{way:?}");
     assert!(near(&read(&mut Height::new(own), &world), &[0.5 - rise + 0.2]));
-    let h = FRAC_PI_2.sqrt() * 0.0 + core::f32::consts::FRAC_1_SQRT_2;
+    let h = FRAC_1_SQRT_2;
     assert!(near(&read(&mut BodyPose::new(BodyId(0)), &world), &[0.0, 0.0, 0.5 - rise, 0.0, 0.0, h, h]));
     let turn = 0.3 * PointWorld::TURN;
     assert!(near(&read(&mut BodyVelocity::new(BodyId(0), Axes::Body), &world), &[0.0, 0.0, 0.3, 0.0, 0.0, turn]));

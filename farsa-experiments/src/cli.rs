@@ -54,6 +54,7 @@ struct InfoArgs {
 }
 
 #[derive(Args)]
+#[command(allow_negative_numbers = true)]
 struct RunArgs {
     /// The experiment
     #[arg(required_unless_present_any = ["resume", "config"])]
@@ -232,11 +233,7 @@ fn start_or_resume(args: &RunArgs, experiments: &[&dyn Experiment]) -> Result<St
 }
 
 /// The defaults of the experiment and condition that are named on the command line or else in the file.
-fn fresh<'e>(
-    args: &RunArgs,
-    file: Option<&ConfigFile>,
-    experiments: &[&'e dyn Experiment],
-) -> Result<Plan<'e>, Error> {
+fn fresh<'e>(args: &RunArgs, file: Option<&ConfigFile>, experiments: &[&'e dyn Experiment]) -> Result<Plan<'e>, Error> {
     let named = file.and_then(|file| file.experiment.as_ref());
     let experiment = match (&args.experiment, named) {
         (Some(name), named) => {
@@ -258,12 +255,7 @@ fn fresh<'e>(
 }
 
 /// Refuses a resumed run under another name; its settings and seed are compared with the checkpoint later.
-fn same_names(
-    args: &RunArgs,
-    file: Option<&ConfigFile>,
-    plan: &Plan<'_>,
-    directory: &Directory,
-) -> Result<(), Error> {
+fn same_names(args: &RunArgs, file: Option<&ConfigFile>, plan: &Plan<'_>, directory: &Directory) -> Result<(), Error> {
     let in_file = |entry: Option<&plan::Entry<String>>| entry.map(|entry| entry.value.clone());
     let experiment = args.experiment.clone().or_else(|| in_file(file?.experiment.as_ref()));
     let condition = args.condition.clone().or_else(|| in_file(file?.condition.as_ref()));

@@ -69,14 +69,20 @@ fn table(terms: &[String], results: &[Result1]) -> Vec<Vec<String>> {
     let terms = if terms.len() > 1 { terms } else { &[] };
     head.extend(terms.iter().cloned());
     // A life that broke down has no notes: the names are those of the first that has.
-    let names: Vec<&str> = results.iter().map(|(_, outcome, _)| &outcome.notes).find(|notes| !notes.is_empty()).map_or_else(
-        Vec::new,
-        |notes| notes.iter().map(|(name, _)| *name).collect(),
-    );
+    let names: Vec<&str> = results
+        .iter()
+        .map(|(_, outcome, _)| &outcome.notes)
+        .find(|notes| !notes.is_empty())
+        .map_or_else(Vec::new, |notes| notes.iter().map(|(name, _)| *name).collect());
     head.extend(names.iter().map(|&name| name.to_owned()));
     let lines = results.iter().enumerate().map(|(index, (trial, outcome, fitness))| {
-        let mut line =
-            vec![index.to_string(), trial.to_string(), outcome.steps.to_string(), outcome.success.to_string(), number(*fitness)];
+        let mut line = vec![
+            index.to_string(),
+            trial.to_string(),
+            outcome.steps.to_string(),
+            outcome.success.to_string(),
+            number(*fitness),
+        ];
         line.extend((0..terms.len()).map(|term| number(outcome.terms.get(term).copied().unwrap_or(f64::NAN))));
         line.extend(names.iter().map(|&name| match outcome.notes.iter().find(|note| note.0 == name) {
             Some((_, Note::Number(x))) => number(*x),
@@ -120,7 +126,8 @@ fn aligned(table: &[Vec<String>]) -> String {
 /// The share of successes, the mean fitness, and the notes' counts and means.
 fn summary(results: &[Result1]) -> String {
     let mut text = String::new();
-    let share = |n: usize| format!("{n} of {} ({:.1} %)", results.len(), 100.0 * n as f64 / results.len().max(1) as f64);
+    let share =
+        |n: usize| format!("{n} of {} ({:.1} %)", results.len(), 100.0 * n as f64 / results.len().max(1) as f64);
     let successes = results.iter().filter(|(_, outcome, _)| outcome.success).count();
     // Writing into a string cannot fail.
     let _ = writeln!(text, "success: {}", share(successes));

@@ -133,8 +133,11 @@ impl From<&str> for Note {
 
 /// Where a life writes what happens in each step, when somebody wants to know.
 pub struct Tape<'a> {
-    row: Option<&'a mut dyn FnMut(&[f64])>,
+    row: Option<RowSink<'a>>,
 }
+
+/// What takes a row.
+type RowSink<'a> = &'a mut dyn FnMut(&[f64]);
 
 impl<'a> Tape<'a> {
     /// A tape that keeps nothing.

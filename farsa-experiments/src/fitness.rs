@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::phase::{Observation, Phase};
 
-/// Largest sum of the reach terms over an individual's trials [Ferrauto2010, 2.3.4].
+/// Largest sum of the reach terms over an individual's trials \[Ferrauto2010, 2.3.4\].
 pub const REACH_CAP: f64 = 500.0;
-/// Largest sum of the grasp terms over an individual's trials [Ferrauto2010, 2.3.4].
+/// Largest sum of the grasp terms over an individual's trials \[Ferrauto2010, 2.3.4\].
 pub const GRASP_CAP: f64 = 720.0;
-/// Largest sum of the lift terms over an individual's trials [Ferrauto2010, 2.3.4].
+/// Largest sum of the lift terms over an individual's trials \[Ferrauto2010, 2.3.4\].
 pub const LIFT_CAP: f64 = 1600.0;
 
 /// The reading of the contact part of the grasp term, whose fraction the print flattens to "0.2 1+contacts(t)4".
@@ -56,7 +56,7 @@ impl ContactTerm {
 pub struct Judgement {
     /// The reading of the contact term.
     pub contact_term: ContactTerm,
-    /// Height of the sphere's centre above the table from which a lift may be a success [cm], 5 by default: the printed
+    /// Height of the sphere's centre above the table from which a lift may be a success \[cm\], 5 by default: the printed
     /// reward alone is satisfied by a sphere that lies on a hand that lies on the table.
     pub success_height: f64,
 }
@@ -81,7 +81,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// What one step in `phase` earns [Ferrauto2010, 2.3.4].
+    /// What one step in `phase` earns \[Ferrauto2010, 2.3.4\].
     pub fn of_step(phase: Phase, seen: &Observation, term: ContactTerm) -> Self {
         let mut earned = Self::default();
         match phase {
@@ -127,7 +127,7 @@ pub struct Trial {
     pub lifted: u32,
     /// The same, counting only steps with the sphere's centre at least [`Judgement::success_height`] above the table.
     pub held: u32,
-    /// The largest height of the sphere's centre above the table so far [cm].
+    /// The largest height of the sphere's centre above the table so far \[cm\].
     pub highest: f64,
     /// Whether the sphere fell off the table and ended the trial.
     pub fallen: bool,

@@ -21,6 +21,7 @@ pub mod reach_grasp_lift;
 mod reach_grasp_lift_config;
 mod reach_grasp_lift_life;
 mod reach_grasp_lift_scene;
+mod reach_grasp_lift_settings;
 mod records;
 mod replay;
 mod run;

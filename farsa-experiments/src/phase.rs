@@ -19,9 +19,9 @@ pub enum Phase {
 /// What the reward sees of the world after one step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Observation {
-    /// ds: distance from the palm's centre to the point 5 cm above the sphere's centre [cm].
+    /// ds: distance from the palm's centre to the point 5 cm above the sphere's centre \[cm\].
     pub reach_distance: f64,
-    /// graspQ: distance from the centroid of fingertips and palm centre to the sphere's centre [cm].
+    /// graspQ: distance from the centroid of fingertips and palm centre to the sphere's centre \[cm\].
     pub grasp_distance: f64,
     /// Number of phalanges that touch the sphere; the palm does not count.
     pub contacts: u32,
@@ -31,7 +31,7 @@ pub struct Observation {
     pub palm_down: f64,
     /// Whether the sphere touches the table.
     pub on_table: bool,
-    /// Height of the sphere's centre above the table's top [cm].
+    /// Height of the sphere's centre above the table's top \[cm\].
     pub height: f64,
 }
 
@@ -73,7 +73,7 @@ impl Phase {
     /// All phases in their order.
     pub const ALL: [Self; 3] = [Self::Reach, Self::Grasp, Self::Lift];
 
-    /// The phase after a step that ended as `seen` [Ferrauto2010, 2.3.4].
+    /// The phase after a step that ended as `seen` \[Ferrauto2010, 2.3.4\].
     ///
     /// Reach is left for grasp when not (r > g or g < 0.5), grasp for lift when g > 0.7 and l > 0.6; never back.
     /// Deviations: the source gives the three conditions as a classification; at most one transition a step is ours.
@@ -101,7 +101,7 @@ impl Phase {
         }
     }
 
-    /// What a trial that ends in this phase earns on top of its steps [Ferrauto2010, 2.3.4].
+    /// What a trial that ends in this phase earns on top of its steps \[Ferrauto2010, 2.3.4\].
     pub fn bonus(self) -> f64 {
         match self {
             Self::Reach => 0.0,

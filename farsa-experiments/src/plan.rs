@@ -98,7 +98,8 @@ impl<'e> Plan<'e> {
 
     /// The complete configuration as TOML, with the documentation, unit and source of every value.
     pub(crate) fn to_toml(&self) -> Result<String, Error> {
-        let mut text = String::from("# The complete configuration of a run; `run --config` with this file repeats it.\n");
+        let mut text =
+            String::from("# The complete configuration of a run; `run --config` with this file repeats it.\n");
         // Writing into a string cannot fail.
         let _ = writeln!(text, "experiment = {:?}", self.experiment.name());
         if !self.condition.is_empty() {
@@ -163,8 +164,10 @@ impl Identity {
             ("condition", &self.condition, &asked.condition),
             ("seed", &self.seed.to_string(), &asked.seed.to_string()),
         ];
-        let mut differing =
-            pairs.into_iter().filter(|(_, run, asked)| run != asked).map(|(k, r, a)| (k.to_owned(), r.clone(), a.clone()));
+        let mut differing = pairs
+            .into_iter()
+            .filter(|(_, run, asked)| run != asked)
+            .map(|(k, r, a)| (k.to_owned(), r.clone(), a.clone()));
         let mut settings = self.settings.iter().filter_map(|(key, run)| {
             let (_, asked) = asked.settings.iter().find(|(other, _)| other == key)?;
             (run != asked).then(|| (key.clone(), run.to_string(), asked.to_string()))
@@ -262,8 +265,11 @@ fn flatten(
         if let DeValue::Table(inner) = value.get_ref() {
             flatten(&format!("{key}."), inner, place, flat)?;
         } else {
-            let value = plain(value)
-                .map_err(|why| Error::Setting { place: place_of.clone(), key: key.clone(), why: why.into() })?;
+            let value = plain(value).map_err(|why| Error::Setting {
+                place: place_of.clone(),
+                key: key.clone(),
+                why: why.into(),
+            })?;
             flat.push((key, Entry { value, place: place_of }));
         }
     }

@@ -19,7 +19,7 @@ use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Se
 use crate::life::{Job, Life};
 use crate::settings::{Setting, Settings};
 
-/// Does a caretaker's label help a robot learn to manipulate? [Ferrauto2010, chapter 2; Massera2010]
+/// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
 /// A simulated iCub-like arm and hand evolves to reach, grasp and lift a sphere, either told the phase of the task by three
 /// more inputs (condition `labels`, A) or not (`no-labels`, B). Every value that the source does not give is a setting

@@ -165,12 +165,12 @@ impl<C: Controller> ReachLife<C> {
         &mut self.controller
     }
 
-    /// What was sensed last [29 or 26].
+    /// What was sensed last \[29 or 26\].
     pub fn sensed(&self) -> &[f32] {
         &self.x
     }
 
-    /// What was done last [23].
+    /// What was done last \[23\].
     pub fn done(&self) -> &[f32] {
         &self.y
     }

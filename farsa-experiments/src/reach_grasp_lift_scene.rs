@@ -40,7 +40,7 @@ pub struct Scene {
     pub sphere_on_table: PairId,
 }
 
-/// The robot's sensors in the order of the network's inputs, 29 or (without labels) 26 channels [Ferrauto2010, 2.3.3]:
+/// The robot's sensors in the order of the network's inputs, 29 or (without labels) 26 channels \[Ferrauto2010, 2.3.3\]:
 ///
 /// 17 proprioceptors (J1..J7; J8, J9, J10, J13, J14, J17, J18, J21, J22, J16), 6 tactile (thumb, index, middle, ring,
 /// little finger, palm), 3 for the sphere's centre relative to the palm's \[cm\], 3 labels.
@@ -53,7 +53,7 @@ pub struct Senses {
     label_amplitude: f32,
 }
 
-/// The robot's motors in the order of the network's outputs, 23 channels [Ferrauto2010, 2.3.2]: agonist and antagonist
+/// The robot's motors in the order of the network's outputs, 23 channels \[Ferrauto2010, 2.3.2\]: agonist and antagonist
 /// of J1..J7, then the nine servo groups of [`ArmAndHand::servo_groups`].
 #[derive(Clone, Debug)]
 pub struct Motors {
@@ -144,7 +144,7 @@ impl Scene {
             .collect()
     }
 
-    /// J1..J27 at the start of a trial [rad] and the sphere's place on the table [m], displacements included.
+    /// J1..J27 at the start of a trial \[rad\] and the sphere's place on the table \[m\], displacements included.
     ///
     /// Every displacement is drawn from the stream of [`Domain::Start`], joints first, then the sphere's x and y; joints
     /// are clamped into their ranges. Deviations: the source displaces "each joint" by up to 1 degree and the sphere by
@@ -182,12 +182,12 @@ impl Scene {
         world.arranged();
     }
 
-    /// The palm's centre in the world [m].
+    /// The palm's centre in the world \[m\].
     pub fn palm_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
         world.pose(ArmAndHand::PALM).cast::<f64>().transform(self.arm.palm_centre)
     }
 
-    /// The sphere's centre in the world [m].
+    /// The sphere's centre in the world \[m\].
     pub fn sphere_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
         world.pose(Tabletop::SPHERE).position.map(f64::from)
     }

@@ -25,7 +25,12 @@ pub(crate) struct Which {
 /// Writes the lives as CSV: `trial,step` and the experiment's columns, a line per step. Returns a line about them.
 ///
 /// A value that single precision can hold is written with the digits that single precision needs.
-pub(crate) fn replay(plan: &Plan<'_>, directory: &Directory, which: Which, out: &mut dyn Write) -> Result<String, Error> {
+pub(crate) fn replay(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    which: Which,
+    out: &mut dyn Write,
+) -> Result<String, Error> {
     let path = directory.lineage();
     let Ancestry { identity, lineage } = records::read(&path, plan, directory.path())?;
     identity.same_values(&plan.identity(), &path)?;
@@ -87,7 +92,10 @@ pub(crate) fn replay(plan: &Plan<'_>, directory: &Directory, which: Which, out: 
     let fitness = if finite { Fitness::nan_as_failed(setup.fitness(&outcomes)) } else { Fitness::WORST };
     let what = which.trial.map_or_else(|| format!("{} trials", trials.len()), |trial| format!("trial {trial}"));
     let steps: u32 = outcomes.iter().map(|outcome| outcome.steps).sum();
-    Ok(format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {:?}", fitness.get()))
+    Ok(format!(
+        "individual {individual} of generation {generation}, {what}: {steps} steps, fitness {:?}",
+        fitness.get()
+    ))
 }
 
 /// The shortest digits that read back as the same number in the precision that holds it.

@@ -1,5 +1,6 @@
 //! Evolution from the first or any later generation on, with everything kept that is needed to go on.
 
+use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -65,13 +66,24 @@ pub(crate) fn go_on(
     }
     let mut manifest = Manifest::read(&directory.manifest())?;
     log.rewind(mark)?;
-    replace(&directory.config(), plan.to_toml()?.as_bytes())?;
+    let text = plan.to_toml()?;
+    if fs::read_to_string(directory.config()).ok().as_ref() != Some(&text) {
+        replace(&directory.config(), text.as_bytes())?;
+    }
     manifest.sessions.push(Session::new(threads, done));
 
     let individuals = |generations: u32| u64::from(generations).saturating_mul(evolution.config().population as u64);
     let progress = Progress::new("individuals", individuals(done), individuals(last));
-    let mut run =
-        Run { directory, title: plan.name(), identity, evolution, log, manifest, champion: None, started: Instant::now() };
+    let mut run = Run {
+        directory,
+        title: plan.name(),
+        identity,
+        evolution,
+        log,
+        manifest,
+        champion: None,
+        started: Instant::now(),
+    };
     let mut saved = Instant::now();
     let mut ended = Ok(());
     while run.evolution.generation() < last {

@@ -21,28 +21,28 @@ const PALM_DOWN: [[f64; 7]; 4] = [
     [-61.0, -28.0, 26.0, -90.0, -31.0, -23.0, 0.0],
 ];
 
-/// The places that they belong to, X and Y in the world [m].
+/// The places that they belong to, X and Y in the world \[m\].
 const PLACES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
 
 /// What the script does when; chosen by trial in another simulator and in ours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timetable {
-    /// Duration of reaching the way-point, descending, closing and lifting, one after the other [s]; the rest is holding.
+    /// Duration of reaching the way-point, descending, closing and lifting, one after the other \[s\]; the rest is holding.
     pub durations: [f64; 4],
-    /// Height of the palm's centre above the table at the way-point [m].
+    /// Height of the palm's centre above the table at the way-point \[m\].
     pub way_point: f64,
-    /// Height of the palm's centre above the table that is aimed at for grasping [m]: below the sphere's top, so that the
+    /// Height of the palm's centre above the table that is aimed at for grasping \[m\]: below the sphere's top, so that the
     /// palm presses gently.
     pub palm: f64,
-    /// How far the sphere is ahead of the palm's centre, towards the fingertips [m].
+    /// How far the sphere is ahead of the palm's centre, towards the fingertips \[m\].
     pub ahead: f64,
-    /// How far the palm is lifted [m].
+    /// How far the palm is lifted \[m\].
     pub lift: f64,
     /// The nine servo groups closed around the sphere.
     pub closed: [f64; 9],
-    /// Feedback on the position of J1..J7 [N m/rad].
+    /// Feedback on the position of J1..J7 \[N m/rad\].
     pub stiffness: [f64; 7],
-    /// Feedback on their speed [N m s/rad].
+    /// Feedback on their speed \[N m s/rad\].
     pub damping: [f64; 7],
 }
 
@@ -92,7 +92,7 @@ impl Statics {
         &self.tree
     }
 
-    /// The posture with the palm down and its centre at a place in the world [m], searched from another posture, J1..J27 [rad].
+    /// The posture with the palm down and its centre at a place in the world \[m\], searched from another posture, J1..J27 \[rad\].
     ///
     /// # Errors
     /// [`InverseKinematicsError`] when there is none within the joints' ranges.
@@ -106,7 +106,7 @@ impl Statics {
         InverseKinematics::default().solve(&self.tree, &goal, from).map(|solution| solution.joints)
     }
 
-    /// A posture with the palm down and its centre at a height [m] above a point of the table, J1..J27 [rad].
+    /// A posture with the palm down and its centre at a height \[m\] above a point of the table, J1..J27 \[rad\].
     ///
     /// # Errors
     /// [`InverseKinematicsError`] when there is none within the joints' ranges.
@@ -125,7 +125,7 @@ impl Statics {
         self.palm_down([x, y, height], &from)
     }
 
-    /// Activations of agonist and antagonist of J1..J7 for torques [N m] at a posture [rad], and whether they reach them.
+    /// Activations of agonist and antagonist of J1..J7 for torques \[N m\] at a posture \[rad\], and whether they reach them.
     pub fn activations(&self, joints: &[f64], torques: &[f64]) -> ([[f64; 2]; 7], bool) {
         let mut all = true;
         let activations = core::array::from_fn(|i| {
@@ -136,7 +136,7 @@ impl Statics {
         (activations, all)
     }
 
-    /// The torques that hold a posture [rad] against gravity, J1..J27 [N m].
+    /// The torques that hold a posture \[rad\] against gravity, J1..J27 \[N m\].
     pub fn gravity_torques(&self, joints: &[f64]) -> Vec<f64> {
         self.tree.gravity_torques(&self.tree.poses(joints), self.gravity)
     }
@@ -162,7 +162,7 @@ fn seven(joints: &[f64]) -> [f64; 7] {
 }
 
 impl Plan {
-    /// A plan from the start posture [J1..J27, rad] for a sphere that lies at a place of the table [m].
+    /// A plan from the start posture \[J1..J27, rad\] for a sphere that lies at a place of the table \[m\].
     ///
     /// # Errors
     /// [`InverseKinematicsError`] when the sphere is out of reach.
@@ -185,7 +185,7 @@ impl Plan {
         Ok(Self { timetable, statics, postures })
     }
 
-    /// The posture wanted at a time [s] and how far the hand shall have closed.
+    /// The posture wanted at a time \[s\] and how far the hand shall have closed.
     pub fn wanted(&self, time: f64) -> ([f64; 7], f64) {
         let [reach, descend, close, lift] = self.timetable.durations;
         let ends = [reach, reach + descend, reach + descend + close];
@@ -203,7 +203,7 @@ impl Plan {
         (posture, smooth((time - ends[1]) / (0.8 * close)))
     }
 
-    /// The 23 outputs at a time [s]: inverse statics of the muscles with feedback on J1..J7, positions of the hand.
+    /// The 23 outputs at a time \[s\]: inverse statics of the muscles with feedback on J1..J7, positions of the hand.
     pub fn outputs<W>(&self, world: &W, time: f64) -> [f32; OUTPUTS]
     where
         W: Joints<Joint = JointId> + ?Sized,

@@ -114,7 +114,8 @@ mod tests {
     }
 
     fn tempfile() -> std::path::PathBuf {
-        let directory = std::env::temp_dir().join(format!("farsa-sealed-{}-{:?}", std::process::id(), std::thread::current().id()));
+        let directory =
+            std::env::temp_dir().join(format!("farsa-sealed-{}-{:?}", std::process::id(), std::thread::current().id()));
         fs::create_dir_all(&directory).unwrap();
         directory
     }

@@ -85,14 +85,7 @@ pub struct Setting {
 
 impl Setting {
     fn new(key: &str, default: Value, allowed: Allowed) -> Self {
-        Self {
-            key: key.into(),
-            default,
-            allowed,
-            unit: String::new(),
-            source: Source::default(),
-            doc: String::new(),
-        }
+        Self { key: key.into(), default, allowed, unit: String::new(), source: Source::default(), doc: String::new() }
     }
 
     /// A number within limits, both included. Keys are `section.name`, lower-case with underscores or hyphens.

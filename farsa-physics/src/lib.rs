@@ -10,6 +10,8 @@ mod collision;
 mod contact;
 #[cfg(feature = "alloc")]
 mod model;
+#[cfg(feature = "alloc")]
+mod ray;
 mod spatial;
 #[cfg(feature = "alloc")]
 mod step;

@@ -167,6 +167,7 @@ pub struct Model<R> {
     /// The description's body pairs, for the ports.
     pub(crate) pair_bodies: Vec<[Option<BodyId>; 2]>,
     pub(crate) joints: Vec<JointKind>,
+    pub(crate) collider_bodies: Vec<Option<BodyId>>,
     pub(crate) colliders: Vec<Collider<R>>,
     pub(crate) pairs: Vec<Pair<R>>,
     pub(crate) actuators: Vec<Actuator<R>>,
@@ -232,13 +233,13 @@ impl<R: Real> Model<R> {
 
 /// A rotation whose third column is the axis.
 fn axis_frame(axis: Vector<f64>) -> Matrix<f64> {
-    let length = (axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]).sqrt();
+    let length = Scalar::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
     let [x, y, z] = axis.map(|a| a / length);
     // For the coordinate axes a permutation, so that nothing is rounded.
     let u = if x.abs() > 0.9 { [0.0, 1.0, 0.0] } else if y.abs() > 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
     let along = u[0] * x + u[1] * y + u[2] * z;
     let u = [u[0] - along * x, u[1] - along * y, u[2] - along * z];
-    let n = (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt();
+    let n = Scalar::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
     let u = u.map(|a| a / n);
     let v = crate::spatial::cross([x, y, z], u);
     [[u[0], v[0], x], [u[1], v[1], y], [u[2], v[2], z]]
@@ -249,7 +250,7 @@ fn transpose(m: &Matrix<f64>) -> Matrix<f64> {
 }
 
 fn unit(q: [f64; 4]) -> [f64; 4] {
-    let n = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
+    let n = Scalar::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     q.map(|x| x / n)
 }
 
@@ -435,7 +436,7 @@ fn form_of(shape: Shape) -> (Form<f64>, f64, u8) {
         Shape::Sphere { radius } => (Form::Ball { radius }, radius, 0),
         Shape::Capsule { radius, half_length } => (Form::Capsule { radius, half_length }, radius + half_length, 1),
         Shape::Box { half } => {
-            (Form::Block { half }, (half[0] * half[0] + half[1] * half[1] + half[2] * half[2]).sqrt(), 2)
+            (Form::Block { half }, Scalar::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 2)
         }
         Shape::Plane => (Form::Plane, 0.0, 3),
     }
@@ -566,6 +567,7 @@ impl<R: Real> Model<R> {
             mounts: mounts.iter().map(cast_mount).collect(),
             pair_bodies,
             joints: robot.segments.iter().map(|s| s.joint.kind).collect(),
+            collider_bodies: robot.colliders.iter().map(|c| c.body).collect(),
             colliders: colliders
                 .iter()
                 .map(|(mount, form, bound)| Collider {

@@ -12,7 +12,7 @@ use farsa_num::Real;
 use crate::model::{Model, POINT_WORDS};
 use crate::spatial::{Matrix, add, cross, product, rotate, sub};
 use crate::step::{Scratch, parts, step};
-use crate::tree::{Motion, WORLD};
+use crate::tree::{LinkWork, Motion, WORLD};
 
 /// One articulated world: a model and its state.
 #[derive(Clone, Debug)]
@@ -67,6 +67,10 @@ impl<R: Real> World<R> {
     /// The constant part.
     pub fn model(&self) -> &Model<R> {
         &self.model
+    }
+
+    pub(crate) fn links(&self) -> &[LinkWork<R>] {
+        &self.scratch.links
     }
 
     /// Positions, velocities, commands and contacts [state_len].

@@ -11,10 +11,16 @@ use farsa_physics::articulated::{Model, Options, Scratch, World, step};
 const LIFE: usize = 600;
 
 /// A largest value and where it was seen.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Worst {
     value: f64,
     at: String,
+}
+
+impl Default for Worst {
+    fn default() -> Self {
+        Self { value: f64::NEG_INFINITY, at: String::new() }
+    }
 }
 
 impl Worst {

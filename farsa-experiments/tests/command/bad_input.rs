@@ -72,7 +72,7 @@ fn a_configuration_file() {
         ("# mine\n[cart]\nfrction = 1", ["my.toml line 3: unknown key `cart.frction`", "`cart.friction`"].as_slice()),
         ("[crat]\nfriction = 1", &["my.toml line 2: unknown key `crat.friction`", "`cart.friction`"]),
         ("[cart]\nfriction = nan", &["my.toml line 2: `cart.friction`: NaN"]),
-        ("[cart]\nfriction = 11", &["my.toml line 2: `cart.friction`: 11.0 is outside 0.0 to 10.0"]),
+        ("[cart]\nfriction = 11", &["my.toml line 2: `cart.friction`: 11 is outside 0.0 to 10.0"]),
         ("[evolution]\npopulation = 0", &["my.toml line 2: `evolution.population`: 0 is outside"]),
         ("[evolution]\npopulation = 4", &["`evolution.population`: 5 parents from a population of 4"]),
         ("[cart]\nfriction = ", &["my.toml line 2"]),
@@ -94,7 +94,9 @@ fn a_configuration_file() {
 fn a_directory_that_is_taken() {
     let here = scratch("taken");
     ok(own(), &here, "run cart --generations 2 --out r");
-    for arguments in ["run cart --generations 2 --out r", "run cart --seed 2 --out r", "run --config r/config.toml --out r"] {
+    for arguments in
+        ["run cart --generations 2 --out r", "run cart --seed 2 --out r", "run --config r/config.toml --out r"]
+    {
         refused(own(), &here, arguments, 2, &["r: already holds a run", "--resume"]);
     }
     fs::create_dir(here.join("letters")).expect("a directory");

@@ -97,7 +97,8 @@ fn a_full_disk_loses_nothing() {
     // A new run finds no room and leaves no rest.
     let said = on_a_full_disk(&here, 0, "run cart --out new");
     assert_eq!(said.code, Some(1), "{said:?}");
-    let mut left: Vec<_> = fs::read_dir(&here).expect("here").map(|entry| entry.expect("an entry").file_name()).collect();
+    let mut left: Vec<_> =
+        fs::read_dir(&here).expect("here").map(|entry| entry.expect("an entry").file_name()).collect();
     left.sort();
     assert_eq!(left, ["r", "whole"]);
     // With room again the run goes on as if nothing had been.

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Child;
+use std::process::{Child, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -52,21 +52,21 @@ fn wait_for(child: &mut Child, run: &Path, wanted: usize) {
 
 #[test]
 fn killed_and_resumed() {
-    let here = scratch("killed");
     const LENGTH: usize = 1200;
+    let here = scratch("killed");
     ok(own(), &here, &format!("{SLOW} --generations {LENGTH} --out whole"));
-    let mut arguments: Vec<String> = format!("{SLOW} --generations {LENGTH} --out killed").split(' ').map(Into::into).collect();
+    let mut arguments: Vec<String> =
+        format!("{SLOW} --generations {LENGTH} --out killed").split(' ').map(Into::into).collect();
     let run = here.join("killed");
     let mut gone_on_from = Vec::new();
     // Far enough apart that a checkpoint lies between two kills on any machine that takes a second for the whole.
     for wanted in [1, LENGTH / 2] {
-        let mut child = command(own(), &here, &arguments).spawn().expect("the program");
+        // Nobody reads what it says: a full pipe would hold it up.
+        let mut child = command(own(), &here, &arguments).stderr(Stdio::null()).spawn().expect("the program");
         wait_for(&mut child, &run, wanted);
         child.kill().expect("SIGKILL");
         child.wait().expect("its end");
         gone_on_from.push(generations(&run));
-        // What a killed process leaves can be looked at.
-        assert_eq!(say(own(), &here, "replay killed --generation 0").code.is_some(), true);
         arguments = ["run", "--resume", "killed"].map(Into::into).into();
     }
     assert!(gone_on_from[1] < LENGTH, "killed too late to show anything");

@@ -24,9 +24,9 @@ pub(crate) fn own() -> &'static Path {
         let crates = here.parent().expect("the workspace").display().to_string();
         let manifest = manifest.replace("../../..", &crates).replace("\"../..\"", &format!("\"{}\"", here.display()));
         write_if_changed(&root.join("Cargo.toml"), manifest.as_bytes());
-        let main = fs::read(source.join("src/main.rs")).expect("its main");
-        assert!(main.iter().filter(|&&byte| byte == b'\n').count() <= 80, "a whole experiment is to fit in 80 lines");
-        write_if_changed(&root.join("src/main.rs"), &main);
+        let main = fs::read_to_string(source.join("src/main.rs")).expect("its main");
+        assert!(main.lines().count() <= 80, "a whole experiment is to fit in 80 lines");
+        write_if_changed(&root.join("src/main.rs"), main.as_bytes());
         if let Ok(lock) = fs::read(here.join("../Cargo.lock")) {
             write_if_changed(&root.join("Cargo.lock"), &lock);
         }

@@ -8,24 +8,24 @@ use farsa_num::{Domain, Real, Stream};
 use farsa_physics::articulated::{Model, Options, World};
 
 /// J1 to J4 at the four starts [deg].
-pub const POSES: [[f64; 4]; 4] =
+pub(crate) const POSES: [[f64; 4]; 4] =
     [[-73.0, -30.0, -40.0, -56.0], [-73.0, -30.0, -40.0, -113.0], [-6.0, 30.0, -10.0, -56.0], [-73.0, -30.0, 45.0, -113.0]];
 /// The sphere at the four starts [m].
-pub const SPHERES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
+pub(crate) const SPHERES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
 
 /// Number of outputs of the experiment: 14 muscles, 9 groups of servos.
-pub const OUTPUTS: usize = 23;
+pub(crate) const OUTPUTS: usize = 23;
 
-pub fn scene() -> Robot {
+pub(crate) fn scene() -> Robot {
     Tabletop::default().scene(&ArmAndHand::default()).unwrap()
 }
 
-pub fn model<R: Real>(robot: &Robot, options: Options) -> Model<R> {
+pub(crate) fn model<R: Real>(robot: &Robot, options: Options) -> Model<R> {
     Model::new(robot, &options).unwrap()
 }
 
 /// A random start of trial `k`, as the experiment draws it.
-pub fn start<R: Real>(robot: &Robot, world: &mut World<R>, stream: &mut Stream, k: usize) {
+pub(crate) fn start<R: Real>(robot: &Robot, world: &mut World<R>, stream: &mut Stream, k: usize) {
     world.clear();
     for j in 0..27 {
         let [low, high] = robot.segments[j].joint.range;
@@ -38,12 +38,12 @@ pub fn start<R: Real>(robot: &Robot, world: &mut World<R>, stream: &mut Stream, 
     world.arranged();
 }
 
-pub fn stream(seed: u64, trial: u32) -> Stream {
+pub(crate) fn stream(seed: u64, trial: u32) -> Stream {
     Stream::new(seed, Domain::Motor, trial, 0, 0)
 }
 
 /// The commands of the 27 actuators for outputs in [0, 1].
-pub fn commands(groups: &[Vec<ServoRange>; 9], y: &[f32; OUTPUTS]) -> [[f32; 2]; 27] {
+pub(crate) fn commands(groups: &[Vec<ServoRange>; 9], y: &[f32; OUTPUTS]) -> [[f32; 2]; 27] {
     let mut c = [[0.0; 2]; 27];
     for i in 0..7 {
         c[i] = [y[2 * i], y[2 * i + 1]];
@@ -56,7 +56,7 @@ pub fn commands(groups: &[Vec<ServoRange>; 9], y: &[f32; OUTPUTS]) -> [[f32; 2];
     c
 }
 
-pub fn drive<R: Real>(world: &mut World<R>, commands: &[[f32; 2]; 27]) {
+pub(crate) fn drive<R: Real>(world: &mut World<R>, commands: &[[f32; 2]; 27]) {
     for (i, c) in commands.iter().enumerate() {
         world.command(ActuatorId(i as u16), *c);
     }
@@ -64,24 +64,24 @@ pub fn drive<R: Real>(world: &mut World<R>, commands: &[[f32; 2]; 27]) {
 
 /// Random outputs in one of several manners: uniform every step, uniform held, extreme every step, extreme held.
 #[derive(Clone)]
-pub struct Babble {
+pub(crate) struct Babble {
     stream: Stream,
     hold: usize,
     extreme: bool,
     left: usize,
-    pub y: [f32; OUTPUTS],
+    pub(crate) y: [f32; OUTPUTS],
 }
 
 impl Babble {
     /// Number of manners.
-    pub const MANNERS: u32 = 6;
+    pub(crate) const MANNERS: u32 = 6;
 
-    pub fn new(seed: u64, life: u32) -> Self {
+    pub(crate) fn new(seed: u64, life: u32) -> Self {
         let hold = [1, 1, 20, 20, 60, 200][(life % Self::MANNERS) as usize];
         Self { stream: stream(seed, life), hold, extreme: life % 2 == 1, left: 0, y: [0.0; OUTPUTS] }
     }
 
-    pub fn next(&mut self) -> &[f32; OUTPUTS] {
+    pub(crate) fn next(&mut self) -> &[f32; OUTPUTS] {
         if self.left == 0 {
             self.left = self.hold;
             for y in &mut self.y {
@@ -95,7 +95,7 @@ impl Babble {
 }
 
 /// Contact points of a pair, as the model numbers them.
-pub fn points_of(robot: &Robot, pair: usize) -> usize {
+pub(crate) fn points_of(robot: &Robot, pair: usize) -> usize {
     use Shape::{Box, Capsule, Plane, Sphere};
     let [a, b] = robot.pairs[pair].colliders.map(|c| robot.colliders[c].shape);
     match (a, b) {
@@ -109,7 +109,7 @@ pub fn points_of(robot: &Robot, pair: usize) -> usize {
 }
 
 /// Half the thickness of a collider's body [m].
-pub fn half_thickness(shape: Shape) -> f64 {
+pub(crate) fn half_thickness(shape: Shape) -> f64 {
     match shape {
         Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
         Shape::Box { half } => half[0].min(half[1]).min(half[2]),
@@ -118,6 +118,6 @@ pub fn half_thickness(shape: Shape) -> f64 {
 }
 
 /// Where the contact points' words begin in a state.
-pub fn first_point<R: Real>(robot: &Robot, model: &Model<R>) -> usize {
+pub(crate) fn first_point<R: Real>(robot: &Robot, model: &Model<R>) -> usize {
     model.positions() + model.dofs() + 2 * robot.actuators.len()
 }
