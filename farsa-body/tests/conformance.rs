@@ -8,8 +8,8 @@ use farsa_body::testing::{
     ConformanceError, PointWorld, Probe, Promise, check_arrange, check_motor, check_rays, check_sensor, check_world,
 };
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Motor,
-    Muscles, PairContact, PairId, Pose, Rays, Sensor, Snapshot, Tabletop, TorqueMotor, Twist, World,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics,
+    Motor, Muscles, PairContact, PairId, Pose, Rays, Sensor, Snapshot, Tabletop, TorqueMotor, Twist, World,
 };
 
 const POINTS: usize = 3;

@@ -19,9 +19,9 @@ pub fn settings() -> Vec<Setting> {
         Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1)
             .given()
             .doc("Generations that are evaluated; the one thing that a resumed run may change."),
-        Setting::whole(POPULATION, 100, 1..=1_000_000)
-            .given()
-            .doc("Individuals of a generation, a multiple of the parents."),
+        Setting::whole(POPULATION, 100, 1..=1_000_000).given().doc(
+            "Individuals of a generation, a multiple of the parents; with no more than them nothing is ever mutated.",
+        ),
         Setting::whole(PARENTS, 20, 1..=1_000_000)
             .given()
             .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),

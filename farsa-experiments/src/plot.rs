@@ -33,9 +33,16 @@ fn picture(svg: &mut String, title: &str, rows: &[Row]) -> Result<(), Box<dyn st
         .x_label_area_size(45)
         .y_label_area_size(75)
         .build_cartesian_2d(0..last, low - margin..high + margin)?;
-    chart.configure_mesh().x_desc("generation").y_desc("fitness").label_style(("sans-serif", 14)).draw()?;
+    chart
+        .configure_mesh()
+        .x_desc("generation")
+        .y_desc("fitness")
+        .light_line_style(TRANSPARENT)
+        .label_style(("sans-serif", 14))
+        .draw()?;
     let colors = [RGBColor(27, 94, 32), RGBColor(21, 101, 192), RGBColor(158, 158, 158)];
-    for (curve, (name, color)) in ["best", "mean", "worst"].into_iter().zip(colors).enumerate() {
+    // The best comes last, on top of the others.
+    for (curve, (name, color)) in ["best", "mean", "worst"].into_iter().zip(colors).enumerate().rev() {
         let points = rows.iter().enumerate().map(|(generation, row)| (generation, row[curve]));
         // A generation in which all failed leaves a gap in what would be a line to minus infinity.
         let points = points.filter(|(_, fitness)| fitness.is_finite());
@@ -46,7 +53,7 @@ fn picture(svg: &mut String, title: &str, rows: &[Row]) -> Result<(), Box<dyn st
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerRight)
+        .position(SeriesLabelPosition::UpperLeft)
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK.mix(0.3))
         .label_font(("sans-serif", 14))

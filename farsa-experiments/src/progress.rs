@@ -17,7 +17,7 @@ impl Progress {
         let bar = io::stderr().is_terminal().then(|| {
             let bar = ProgressBar::new(all).with_position(done);
             bar.reset_eta();
-            let template = format!("{{bar:25}} {{pos}}/{{len}} {unit} [{{elapsed}}, {{eta}} left] {{msg}}");
+            let template = format!("{{bar:25}} {{pos}}/{{len}} {unit} [{{elapsed}}, {{eta}} left] {{wide_msg}}");
             // The template is a constant but for the unit; the default style would do as well.
             if let Ok(style) = ProgressStyle::with_template(&template) {
                 bar.set_style(style);

@@ -216,3 +216,125 @@ pub(crate) fn evaluate(setup: &mut dyn Setup, genes: &[u16], job: Job) -> Fitnes
     let fitness = setup.fitness(&outcomes);
     if fitness.is_finite() { Fitness::nan_as_failed(fitness) } else { Fitness::WORST }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::directory::Directory;
+    use crate::exam;
+    use crate::experiment::{Description, Experiment};
+    use crate::replay::{Which, replay};
+    use crate::settings::{Setting, Settings, Value};
+    use std::path::PathBuf;
+
+    /// Earns its first gene; panics in one life, if asked to, and fails where the gene is odd.
+    #[derive(Clone, Copy)]
+    struct Toy {
+        version: u32,
+        panics: bool,
+    }
+
+    impl Experiment for Toy {
+        fn name(&self) -> &'static str {
+            "toy"
+        }
+        fn summary(&self) -> &'static str {
+            "earns its first gene"
+        }
+        fn values_version(&self) -> u32 {
+            self.version
+        }
+        fn settings(&self, _: &str) -> Vec<Setting> {
+            vec![Setting::whole(evolution::GENERATIONS, 4, 1..=100), Setting::whole(evolution::POPULATION, 20, 1..=100)]
+        }
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Setup>, Error> {
+            Ok(Box::new(*self))
+        }
+    }
+
+    impl Setup for Toy {
+        fn genes(&self) -> usize {
+            1
+        }
+        fn columns(&self) -> Vec<String> {
+            vec!["gene".into()]
+        }
+        fn description(&self) -> Description {
+            Description::default()
+        }
+        fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+            assert!(!self.panics || (job.generation, job.individual) != (2, 3), "as planned");
+            let gene = f64::from(genes[0]);
+            tape.row(&[gene]);
+            let fitness = if genes[0] % 2 == 1 { f64::INFINITY } else { gene };
+            Outcome { terms: vec![fitness], steps: 1, ..Outcome::default() }
+        }
+    }
+
+    fn scratch(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("farsa-run-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        path
+    }
+
+    fn finish(toy: &Toy, directory: &Directory) -> Result<String, Error> {
+        go_on(&Plan::new(toy, None, "")?, directory, 2, &AtomicBool::new(false), "farsa")
+    }
+
+    #[test]
+    fn a_panic_keeps_the_finished_generations() {
+        let root = scratch("panic");
+        let (careless, careful) = (Toy { version: 1, panics: true }, Toy { version: 1, panics: false });
+        let directory = create(&Plan::new(&careless, None, "").unwrap(), &root.join("run")).unwrap();
+        let error = finish(&careless, &directory).unwrap_err();
+        assert!(matches!(error, Error::Panicked { generation: 2 }) && error.exit_code() == 1, "{error}");
+        finish(&careful, &directory).unwrap();
+        let whole = create(&Plan::new(&careful, None, "").unwrap(), &root.join("whole")).unwrap();
+        finish(&careful, &whole).unwrap();
+        let log = fs::read_to_string(whole.log()).unwrap();
+        assert_eq!(fs::read_to_string(directory.log()).unwrap(), log);
+        assert!(!log.contains(",0\n"), "in every generation some fail: {log}");
+        assert!(!log.contains("inf"), "{log}");
+        fs::remove_dir_all(root).unwrap();
+    }
+
+    #[test]
+    fn another_version_neither_resumes_nor_replays() {
+        let root = scratch("version");
+        let (old, new) = (Toy { version: 1, panics: false }, Toy { version: 2, panics: false });
+        let directory = create(&Plan::new(&old, None, "").unwrap(), &root).unwrap();
+        finish(&old, &directory).unwrap();
+        let said = |error: Error| {
+            assert_eq!(error.exit_code(), 1);
+            error.to_string()
+        };
+        let words = "made with version 1 of the values of toy, this program has version 2";
+        let resumed = said(finish(&new, &directory).unwrap_err());
+        assert!(resumed.contains("checkpoint.bin: ") && resumed.contains(words), "{resumed}");
+        let plan = Plan::new(&new, None, "").unwrap();
+        let replayed = said(replay(&plan, &directory, Which::default(), &mut Vec::new()).unwrap_err());
+        assert!(replayed.contains("lineage.bin: ") && replayed.contains(words), "{replayed}");
+        // The champion's genes are what they are; that it may behave otherwise is worth a warning.
+        let tested = exam::test(&plan, &directory, 3, 1, 1).unwrap();
+        assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
+        fs::remove_dir_all(root).unwrap();
+    }
+
+    #[test]
+    fn a_stop_between_generations_keeps_all() {
+        let root = scratch("stop");
+        let toy = Toy { version: 1, panics: false };
+        let mut plan = Plan::new(&toy, None, "").unwrap();
+        let directory = create(&plan, &root).unwrap();
+        let stopped = go_on(&plan, &directory, 1, &AtomicBool::new(true), "farsa").unwrap_err();
+        assert_eq!(stopped.exit_code(), 130);
+        assert!(stopped.to_string().contains("`farsa run --resume "), "{stopped}");
+        // Nobody is best yet.
+        assert!(exam::test(&plan, &directory, 1, 1, 1).unwrap_err().to_string().contains("no generation is finished"));
+        assert!(replay(&plan, &directory, Which::default(), &mut Vec::new()).is_err());
+        plan.settings.set("", evolution::GENERATIONS, Value::Whole(2)).unwrap();
+        go_on(&plan, &directory, 1, &AtomicBool::new(false), "farsa").unwrap();
+        assert_eq!(fs::read_to_string(directory.log()).unwrap().lines().count(), 3);
+        fs::remove_dir_all(root).unwrap();
+    }
+}

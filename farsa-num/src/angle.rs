@@ -8,7 +8,7 @@ use crate::scalar::{Real, Scalar};
 /// Beyond, the error grows to about the distance between neighbouring arguments; NaN above 2^22 (`f32`) or 2^45 (`f64`),
 /// for infinities and for NaN. sin(-0.0) is 0.0.
 ///
-/// Source: [Cody1980] (x = k pi/2 + r with pi/2 in several short parts), own minimax polynomials on |r| <= pi/4.
+/// Source: \[Cody1980\] (x = k pi/2 + r with pi/2 in several short parts), own minimax polynomials on |r| <= pi/4.
 #[inline(always)]
 pub fn sin_cos<S: Scalar>(x: S) -> (S, S) {
     let double = S::Real::DIGITS > 24;

@@ -20,7 +20,7 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
 
 /// The angle in [-pi/2, pi/2] \[rad\] with this sine, to within 1 unit in the last place; NaN outside [-1, 1].
 ///
-/// `f32` is computed in `f64` and rounded. Source: [Fdlibm] `e_asin.c` in outline. Deviation: own minimax polynomial.
+/// `f32` is computed in `f64` and rounded. Source: \[Fdlibm\] `e_asin.c` in outline. Deviation: own minimax polynomial.
 #[inline(always)]
 pub fn asin<R: Real>(x: R) -> R {
     R::of(asin_f64(x.to_f64()))
@@ -28,7 +28,7 @@ pub fn asin<R: Real>(x: R) -> R {
 
 /// The angle in [0, pi] \[rad\] with this cosine, to within 1 unit in the last place; NaN outside [-1, 1].
 ///
-/// `f32` is computed in `f64` and rounded. Source: [Fdlibm] `e_acos.c` in outline. Deviation: own minimax polynomial.
+/// `f32` is computed in `f64` and rounded. Source: \[Fdlibm\] `e_acos.c` in outline. Deviation: own minimax polynomial.
 #[inline(always)]
 pub fn acos<R: Real>(x: R) -> R {
     R::of(acos_f64(x.to_f64()))

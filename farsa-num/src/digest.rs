@@ -2,7 +2,7 @@
 
 /// A 64-bit fingerprint of a sequence of values, for comparing runs bit for bit.
 ///
-/// Source: FNV-1a, [Fowler2019] section 4, 64 bits. Deviation: numbers enter as their little-endian bytes, and every NaN
+/// Source: FNV-1a, \[Fowler2019\] section 4, 64 bits. Deviation: numbers enter as their little-endian bytes, and every NaN
 /// as the same one, because processors differ in the bits they give it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(u64);
@@ -73,7 +73,7 @@ impl Default for Digest {
 
 /// The checksum of files and flash images: CRC-32 of IEEE 802.3.
 ///
-/// Source: [Koopman2002] table 1, polynomial 0x04C11DB7 reflected, initial value and final inversion all ones; no deviation.
+/// Source: \[Koopman2002\] table 1, polynomial 0x04C11DB7 reflected, initial value and final inversion all ones; no deviation.
 #[inline]
 pub const fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = u32::MAX;

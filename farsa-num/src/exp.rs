@@ -7,7 +7,7 @@ use crate::scalar::{Real, Scalar};
 ///
 /// Infinity above ln of the largest number, 0 below ln of the smallest, NaN for NaN.
 ///
-/// Source: [Tang1989] in outline (x = k ln 2 + r by [Cody1980], a polynomial, 2^k). Deviations: no table; the polynomial
+/// Source: \[Tang1989\] in outline (x = k ln 2 + r by \[Cody1980\], a polynomial, 2^k). Deviations: no table; the polynomial
 /// is our own minimax fit on |r| <= 0.347; 2^k is applied as two factors, so that neither leaves the normal exponents.
 #[inline(always)]
 pub fn exp<S: Scalar>(x: S) -> S {

@@ -7,7 +7,7 @@ use crate::scalar::{Real, Scalar};
 ///
 /// Negative infinity at zero, NaN below, infinity at infinity. `f32` is computed in `f64` and rounded.
 ///
-/// Source: [Tang1990] in outline (x = 2^k m with m around 1, a series in (m - 1) / (m + 1)). Deviations: no table; own minimax
+/// Source: \[Tang1990\] in outline (x = 2^k m with m around 1, a series in (m - 1) / (m + 1)). Deviations: no table; own minimax
 /// polynomial.
 #[inline(always)]
 pub fn ln<R: Real>(x: R) -> R {

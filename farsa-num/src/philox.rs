@@ -23,7 +23,7 @@ pub enum Domain {
 
 /// Four 32-bit random words from a counter and a key: Philox4x32-10.
 ///
-/// Source: [Salmon2011] section 3.3 with the constants of its `Random123` code; no deviation (known answers in the tests).
+/// Source: \[Salmon2011\] section 3.3 with the constants of its `Random123` code; no deviation (known answers in the tests).
 #[inline]
 pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     let [mut a, mut b, mut c, mut d] = counter;
@@ -151,7 +151,7 @@ impl Stream {
 
     /// Uniform in 0..n without bias; 0 for n = 0. Draws one word, seldom more.
     ///
-    /// Source: [Lemire2019] algorithm 5; no deviation.
+    /// Source: \[Lemire2019\] algorithm 5; no deviation.
     #[inline]
     pub fn below(&mut self, n: u32) -> u32 {
         let mut product = u64::from(self.next_u32()) * u64::from(n);
@@ -173,7 +173,7 @@ impl Stream {
 
     /// Two independent standard normal numbers, of magnitude below 6.67. Draws two words.
     ///
-    /// Source: [Box1958], computed in `f64` and rounded. Deviation: the radius takes its uniform in (0, 1].
+    /// Source: \[Box1958\], computed in `f64` and rounded. Deviation: the radius takes its uniform in (0, 1].
     #[inline]
     pub fn normal_pair(&mut self) -> [f32; 2] {
         const UNIT: f64 = 1.0 / 4_294_967_296.0;
@@ -189,7 +189,7 @@ impl Stream {
     /// For skip sampling: visiting only the genes that mutate. `u64::MAX` where ln(1 - p) is not below 0 (p = 0, or NaN);
     /// 0 for negative infinity (p = 1).
     ///
-    /// Source: inversion, [Devroye1986] chapter X.2; the uniform is in (0, 1], a multiple of 2^-53.
+    /// Source: inversion, \[Devroye1986\] chapter X.2; the uniform is in (0, 1], a multiple of 2^-53.
     #[inline]
     pub fn geometric(&mut self, log_one_minus_p: f64) -> u64 {
         let u = ((self.next_u64() >> 11) + 1) as f64 * (1.0 / 9_007_199_254_740_992.0);
