@@ -18,7 +18,7 @@ type Failure = Box<dyn Error>;
 const WINDOW: usize = 50;
 
 /// A network of this layout with weights in [-6, 6] and leaks in [0, 1].
-pub fn network(layout: Layout) -> Result<Network<Vec<f32>, Vec<f32>>, Failure> {
+pub(crate) fn network(layout: Layout) -> Result<Network<Vec<f32>, Vec<f32>>, Failure> {
     let mut stream = Stream::new(1, Domain::InitialGenome, 0, 0, 0);
     let leaks = |kind| kind == ParameterKind::Leak;
     let draw = |kind| if leaks(kind) { stream.uniform() } else { stream.range(-6.0, 6.0) };
@@ -27,7 +27,7 @@ pub fn network(layout: Layout) -> Result<Network<Vec<f32>, Vec<f32>>, Failure> {
 }
 
 /// The whole loop of `reach-grasp-lift` with the network in it; held commands keep the state what it is.
-pub struct Loop {
+pub(crate) struct Loop {
     world: World<f32>,
     senses: Senses,
     network: Network<Vec<f32>, Vec<f32>>,
@@ -56,7 +56,7 @@ impl Loop {
     }
 
     /// The arm held at its first start posture: nothing touches but the sphere the table.
-    pub fn free() -> Result<Self, Failure> {
+    pub(crate) fn free() -> Result<Self, Failure> {
         let (scene, mut world) = Self::scene()?;
         scene.arrange(&mut world, Job::default());
         let joints = scene.start(Job::default()).0;
@@ -67,7 +67,7 @@ impl Loop {
     }
 
     /// The sphere held in the lifted hand, as the script grasps it from the first start.
-    pub fn grasp() -> Result<Self, Failure> {
+    pub(crate) fn grasp() -> Result<Self, Failure> {
         let (scene, mut world) = Self::scene()?;
         let mut script = ScriptLife::new(Arc::clone(&scene), Timetable::default())?;
         script.start(&mut world, Job::default());
@@ -83,7 +83,7 @@ impl Loop {
     }
 
     /// One control step of 10 ms: sensors, network, motors, world. What the network says is computed and not done.
-    pub fn control_step(&mut self) {
+    pub(crate) fn control_step(&mut self) {
         if self.tick == WINDOW {
             self.tick = 0;
             self.world.restore(&self.start);
@@ -97,7 +97,7 @@ impl Loop {
     }
 
     /// How many pairs and how many points touch, least and most over the steps between two restorations.
-    pub fn contacts(&mut self) -> [[u32; 2]; 2] {
+    pub(crate) fn contacts(&mut self) -> [[u32; 2]; 2] {
         let mut range = [[u32::MAX, 0]; 2];
         for _ in 0..WINDOW {
             self.control_step();
@@ -112,7 +112,7 @@ impl Loop {
 }
 
 /// The articulated-body algorithm on arm or arm and hand, in the start posture, at some speed.
-pub struct Aba {
+pub(crate) struct Aba {
     model: Model<f32>,
     scratch: Scratch<f32>,
     state: Vec<f32>,
@@ -123,7 +123,7 @@ pub struct Aba {
 
 impl Aba {
     /// For the first so many joints of the arm and hand.
-    pub fn new(joints: usize) -> Result<Self, Failure> {
+    pub(crate) fn new(joints: usize) -> Result<Self, Failure> {
         let whole = ArmAndHand::default().robot()?;
         let robot = Robot {
             name: "tree".into(),
@@ -141,7 +141,7 @@ impl Aba {
     }
 
     /// Places the links and computes their accelerations.
-    pub fn accelerations(&mut self) -> f32 {
+    pub(crate) fn accelerations(&mut self) -> f32 {
         self.scratch.place((), &self.model, &self.state);
         let (work, roots) = self.scratch.parts();
         let (links, gravity) = (self.model.links(), self.model.gravity());
@@ -151,7 +151,7 @@ impl Aba {
 }
 
 /// The muscle pair of J1 in single precision.
-pub fn muscles() -> Result<MusclePair<f32>, Failure> {
+pub(crate) fn muscles() -> Result<MusclePair<f32>, Failure> {
     let scene = Tabletop::default().scene(&ArmAndHand::default())?;
     match scene.actuators[0].law.cast() {
         Law::MusclePair(pair) => Ok(pair),

@@ -277,8 +277,8 @@ mod tests {
         path
     }
 
-    fn finish(toy: &Toy, directory: &Directory) -> Result<String, Error> {
-        go_on(&Plan::new(toy, None, "")?, directory, 2, &AtomicBool::new(false), "farsa")
+    fn finish(toy: Toy, directory: &Directory) -> Result<String, Error> {
+        go_on(&Plan::new(&toy, None, "")?, directory, 2, &AtomicBool::new(false), "farsa")
     }
 
     #[test]
@@ -286,11 +286,11 @@ mod tests {
         let root = scratch("panic");
         let (careless, careful) = (Toy { version: 1, panics: true }, Toy { version: 1, panics: false });
         let directory = create(&Plan::new(&careless, None, "").unwrap(), &root.join("run")).unwrap();
-        let error = finish(&careless, &directory).unwrap_err();
+        let error = finish(careless, &directory).unwrap_err();
         assert!(matches!(error, Error::Panicked { generation: 2 }) && error.exit_code() == 1, "{error}");
-        finish(&careful, &directory).unwrap();
+        finish(careful, &directory).unwrap();
         let whole = create(&Plan::new(&careful, None, "").unwrap(), &root.join("whole")).unwrap();
-        finish(&careful, &whole).unwrap();
+        finish(careful, &whole).unwrap();
         let log = fs::read_to_string(whole.log()).unwrap();
         assert_eq!(fs::read_to_string(directory.log()).unwrap(), log);
         assert!(!log.contains(",0\n"), "in every generation some fail: {log}");
@@ -303,13 +303,13 @@ mod tests {
         let root = scratch("version");
         let (old, new) = (Toy { version: 1, panics: false }, Toy { version: 2, panics: false });
         let directory = create(&Plan::new(&old, None, "").unwrap(), &root).unwrap();
-        finish(&old, &directory).unwrap();
+        finish(old, &directory).unwrap();
         let said = |error: Error| {
             assert_eq!(error.exit_code(), 1);
             error.to_string()
         };
         let words = "made with version 1 of the values of toy, this program has version 2";
-        let resumed = said(finish(&new, &directory).unwrap_err());
+        let resumed = said(finish(new, &directory).unwrap_err());
         assert!(resumed.contains("checkpoint.bin: ") && resumed.contains(words), "{resumed}");
         let plan = Plan::new(&new, None, "").unwrap();
         let replayed = said(replay(&plan, &directory, Which::default(), &mut Vec::new()).unwrap_err());

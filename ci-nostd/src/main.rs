@@ -1,0 +1,112 @@
+//! Links FARSA's libraries into a program without std, calls into each of them, and tells by its exit code what failed.
+//!
+//! If any crate of the graph linked std, its panic handler would clash with ours; if any needed a heap without the
+//! feature `alloc`, the allocator would be missing. Either way this does not build.
+//!
+//! `unsafe` is confined to this program: it has no std to start it, so it exports the C library's entry point, and with
+//! `alloc` it brings an allocator.
+#![no_std]
+#![no_main]
+
+#[cfg(feature = "alloc")]
+mod heap;
+#[cfg(feature = "alloc")]
+mod whole;
+
+use core::hint::black_box;
+
+use farsa::body::{ActuatorId, Actuated, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor};
+use farsa::nn::{Controller, Layout, Leak, Network};
+use farsa::num::{Digest, Domain, Stream};
+use farsa::physics::articulated::Spatial;
+
+// The C library's start-up code calls `main`; the linker gets the library from here.
+// SAFETY: the block declares nothing.
+#[link(name = "c")]
+unsafe extern "C" {}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {}
+}
+
+// The toolchain's `core` and `alloc` for this host are compiled to unwind and name these two; a program that aborts never
+// calls them. std would bring its own, a second clash.
+// SAFETY: the names belong to std, which is not here.
+#[unsafe(no_mangle)]
+extern "C" fn rust_eh_personality() {}
+// SAFETY: the same.
+#[unsafe(no_mangle)]
+extern "C" fn _Unwind_Resume() -> ! {
+    loop {}
+}
+
+/// A board with one joint and one motor on it.
+struct Board {
+    angle: f32,
+    torque: f32,
+}
+
+impl Handles for Board {
+    type Body = ();
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+
+impl Joints for Board {
+    fn position(&self, _: JointId) -> f32 {
+        self.angle
+    }
+    fn speed(&self, _: JointId) -> f32 {
+        0.0
+    }
+}
+
+impl Actuated for Board {
+    fn command(&mut self, _: ActuatorId, value: [f32; 2]) {
+        let motor = Law::Torque(Torque { limit: 1.0 });
+        self.torque = motor.effort(self.angle, 0.0, value).torque;
+    }
+}
+
+const LAYOUT: Layout = Layout::new(1, 2, 1);
+static PARAMETERS: [f32; LAYOUT.parameter_count()] = [1.0, -1.0, 0.5, 0.0, 0.0, 0.5, 2.0, -2.0, 0.1, 0.1, 0.5, 0.5];
+
+/// The four-line loop on a board: 0 if it ran, else the number of what failed.
+fn on_a_board() -> Result<(), i32> {
+    let mut sensor = JointPosition::new(JointId(0), -1.0, 1.0).map_err(|_| 1)?;
+    let mut motor = TorqueMotor::new(ActuatorId(0), 1.0).map_err(|_| 2)?;
+    let mut net = Network::new(LAYOUT, Leak::Filter, &PARAMETERS, [0.0; LAYOUT.state_len()]).map_err(|_| 3)?;
+    let mut board = Board { angle: 0.0, torque: 0.0 };
+    let mut noise = Stream::new(1, Domain::Sensor, 0, 0, 0);
+    let mut digest = Digest::new();
+    let (mut x, mut y) = ([0.0], [0.0]);
+    if sensor.channels() != 1 {
+        return Err(4);
+    }
+    for _ in 0..1000 {
+        sensor.read(&board, &mut x);
+        net.step(&x, &mut y);
+        motor.drive(&y, &mut board);
+        board.angle = (board.angle + 0.01 * board.torque + 0.01 * noise.normal()).clamp(-1.0, 1.0);
+        digest.add_f32(board.angle);
+    }
+    let twist = Spatial::<f32> { angular: [0.0, 0.0, 1.0], linear: [0.0; 3] };
+    if !(0.0..=1.0).contains(&y[0]) || black_box(digest.finish()) == 0 || (twist + twist).angular[2] != 2.0 {
+        return Err(5);
+    }
+    Ok(())
+}
+
+// SAFETY: the one `main` of the program, with the C library's signature less the arguments, which C allows.
+#[unsafe(no_mangle)]
+extern "C" fn main() -> i32 {
+    if let Err(what) = on_a_board() {
+        return what;
+    }
+    #[cfg(feature = "alloc")]
+    if whole::lives().is_err() {
+        return 10;
+    }
+    0
+}

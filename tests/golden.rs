@@ -1,0 +1,12 @@
+//! The bits of all crates together. A change here is a change of every recorded run: it stands in CHANGELOG.md as
+//! value-breaking.
+
+#[allow(dead_code)]
+#[path = "../examples/06_the_loop.rs"]
+mod the_loop;
+
+#[test]
+fn the_whole_loop_keeps_its_bits() {
+    let digest = the_loop::live(300).expect("the example runs");
+    assert_eq!(digest, 0, "{digest:#018x}");
+}

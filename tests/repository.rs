@@ -1,0 +1,136 @@
+//! What holds for the repository as a whole: sources are named, machines are not, and CI does what the README says.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(name: &str) -> String {
+    fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// Every text file of the repository with its path from the root, without what git does not keep.
+fn files() -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    let mut folders = vec![root().to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            if path.is_dir() {
+                if ![".git", "target", "runs"].contains(&name.as_str()) {
+                    folders.push(path);
+                }
+            } else if let Ok(text) = fs::read_to_string(&path) {
+                found.push((path.strip_prefix(root()).expect("within").to_path_buf(), text));
+            }
+        }
+    }
+    found.sort();
+    assert!(found.len() > 100, "only {} files", found.len());
+    found
+}
+
+/// A source's key: a name with a capital letter and a year, as in the entries of REFERENCES.md.
+fn is_key(word: &str) -> bool {
+    let Some((name, year)) = word.len().checked_sub(4).and_then(|at| word.split_at_checked(at)) else { return false };
+    let letters = name.strip_suffix(|c: char| c.is_ascii_digit()).is_none() && name.len() > 1;
+    letters
+        && name.starts_with(|c: char| c.is_ascii_uppercase())
+        && name.chars().skip(1).all(|c| c.is_ascii_alphabetic())
+        && ["18", "19", "20"].iter().any(|century| year.starts_with(century))
+        && year.chars().all(|c| c.is_ascii_digit())
+}
+
+fn keys(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| is_key(word))
+}
+
+#[test]
+fn every_source_is_listed_and_every_listed_source_is_used() {
+    assert!(is_key("Featherstone2008") && !is_key("J2008") && !is_key("Random1234") && !is_key("u2008"));
+    let mut used: BTreeMap<String, PathBuf> = BTreeMap::new();
+    for (path, text) in files() {
+        let extension = path.extension().unwrap_or_default();
+        if (extension == "rs" || extension == "md") && path != Path::new("REFERENCES.md") && !path.starts_with("tests") {
+            for key in keys(&text) {
+                used.entry(key.into()).or_insert_with(|| path.clone());
+            }
+        }
+    }
+    let references = read("REFERENCES.md");
+    let entries = references.lines().filter_map(|line| line.strip_prefix("- **")?.split_once("**"));
+    let listed: Vec<&str> = entries.map(|(key, _)| key).collect();
+    let mut sorted = listed.clone();
+    sorted.sort_unstable();
+    sorted.dedup();
+    assert_eq!(listed, sorted, "REFERENCES.md is in alphabetical order, each key once");
+    let listed: BTreeSet<&str> = listed.into_iter().collect();
+    for (key, path) in &used {
+        assert!(listed.contains(key.as_str()), "{}: [{key}] is not in REFERENCES.md", path.display());
+    }
+    for key in listed {
+        assert!(used.contains_key(key), "REFERENCES.md: nothing uses {key}");
+    }
+}
+
+#[test]
+fn no_file_names_a_machine_or_a_registry() {
+    // Put together here, so that this file does not hold them.
+    let folders = ["work", "tmp", "root", "home"].map(|name| format!("/{name}/"));
+    let hosts = [["crates", "io"], ["pypi", "org"], ["npmjs", "org"], ["debian", "org"]].map(|parts| parts.join("."));
+    for (path, text) in files() {
+        // Cargo itself writes the registry's name there.
+        if path.file_name().is_some_and(|name| name == "Cargo.lock") {
+            continue;
+        }
+        for (number, line) in text.lines().enumerate() {
+            let absolute = folders.iter().find(|folder| {
+                line.match_indices(folder.as_str()).any(|(at, _)| {
+                    let before = line[..at].chars().next_back();
+                    !before.is_some_and(|c| c.is_alphanumeric() || "_.-".contains(c))
+                })
+            });
+            let host = hosts.iter().find(|host| line.contains(host.as_str()));
+            if let Some(name) = absolute.or(host) {
+                panic!("{}:{}: names {name}", path.display(), number + 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn ci_runs_the_commands_of_the_readme() {
+    let (readme, ci) = (read("README.md"), read("ci"));
+    let mut commands = Vec::new();
+    let mut within = false;
+    for line in readme.lines() {
+        if let Some(language) = line.strip_prefix("```") {
+            within = language == "sh";
+        } else if within && line.starts_with("cargo ") {
+            commands.push(line.split('#').next().unwrap_or(line).trim());
+        }
+    }
+    assert!(commands.len() >= 2, "{commands:?}");
+    for command in commands {
+        assert!(ci.contains(command), "README.md says `{command}`, ci does not");
+    }
+}
+
+#[test]
+fn every_crate_has_what_a_reader_expects() {
+    let manifest = read("Cargo.toml");
+    for (path, _) in files() {
+        let Some(name) = path.parent().filter(|_| path.ends_with("Cargo.toml")).and_then(|folder| folder.to_str()) else {
+            continue;
+        };
+        if !manifest.contains(&format!("\"{name}\",")) && !manifest.contains(&format!("\"{name}\"]")) {
+            continue;
+        }
+        assert!(read(&format!("{name}/README.md")).lines().count() > 20, "{name}/README.md says too little");
+        assert!(read("README.md").contains(&format!("`{name}`")), "README.md does not name {name}");
+    }
+}
