@@ -5,7 +5,7 @@
 use std::error::Error;
 
 use farsa::body::{
-    Actuated, Collider, Joint, JointId, Joints, KinematicTree, Law, Motor, Muscles, MusclePair, Pose, Robot, Segment,
+    Actuated, Collider, Joint, JointId, Joints, KinematicTree, Law, Motor, MusclePair, Muscles, Pose, Robot, Segment,
     World as _,
 };
 use farsa::physics::articulated::{Model, Options, World};

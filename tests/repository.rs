@@ -37,10 +37,9 @@ fn files() -> Vec<(PathBuf, String)> {
 /// A source's key: a name with a capital letter and a year, as in the entries of REFERENCES.md.
 fn is_key(word: &str) -> bool {
     let Some((name, year)) = word.len().checked_sub(4).and_then(|at| word.split_at_checked(at)) else { return false };
-    let letters = name.strip_suffix(|c: char| c.is_ascii_digit()).is_none() && name.len() > 1;
-    letters
+    name.len() > 1
         && name.starts_with(|c: char| c.is_ascii_uppercase())
-        && name.chars().skip(1).all(|c| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphabetic())
         && ["18", "19", "20"].iter().any(|century| year.starts_with(century))
         && year.chars().all(|c| c.is_ascii_digit())
 }
@@ -55,7 +54,8 @@ fn every_source_is_listed_and_every_listed_source_is_used() {
     let mut used: BTreeMap<String, PathBuf> = BTreeMap::new();
     for (path, text) in files() {
         let extension = path.extension().unwrap_or_default();
-        if (extension == "rs" || extension == "md") && path != Path::new("REFERENCES.md") && !path.starts_with("tests") {
+        if (extension == "rs" || extension == "md") && path != Path::new("REFERENCES.md") && !path.starts_with("tests")
+        {
             for key in keys(&text) {
                 used.entry(key.into()).or_insert_with(|| path.clone());
             }
@@ -116,6 +116,8 @@ fn ci_runs_the_commands_of_the_readme() {
     }
     assert!(commands.len() >= 2, "{commands:?}");
     for command in commands {
+        // CI keeps its runs elsewhere.
+        let command = command.split(" runs/").next().unwrap_or(command);
         assert!(ci.contains(command), "README.md says `{command}`, ci does not");
     }
 }
@@ -123,13 +125,8 @@ fn ci_runs_the_commands_of_the_readme() {
 #[test]
 fn every_crate_has_what_a_reader_expects() {
     let manifest = read("Cargo.toml");
-    for (path, _) in files() {
-        let Some(name) = path.parent().filter(|_| path.ends_with("Cargo.toml")).and_then(|folder| folder.to_str()) else {
-            continue;
-        };
-        if !manifest.contains(&format!("\"{name}\",")) && !manifest.contains(&format!("\"{name}\"]")) {
-            continue;
-        }
+    let members = manifest.lines().find_map(|line| line.strip_prefix("members = [")).expect("the members in one line");
+    for name in members.split('"').filter(|name| name.starts_with("farsa-")) {
         assert!(read(&format!("{name}/README.md")).lines().count() > 20, "{name}/README.md says too little");
         assert!(read("README.md").contains(&format!("`{name}`")), "README.md does not name {name}");
     }

@@ -15,7 +15,9 @@ mod whole;
 
 use core::hint::black_box;
 
-use farsa::body::{ActuatorId, Actuated, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor};
+use farsa::body::{
+    Actuated, ActuatorId, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor,
+};
 use farsa::nn::{Controller, Layout, Leak, Network};
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::Spatial;

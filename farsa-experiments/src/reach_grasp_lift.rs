@@ -84,7 +84,8 @@ impl Lives {
         let Self { world, life, row, .. } = self;
         let (judge, scene) = (life.judge(), life.judge().scene());
         row.clear();
-        row.push(f64::from(judge.trial().steps) * scene.config.time_step);
+        // Rounded to the nanosecond: 201 steps of 0.01 s print as 2.01.
+        row.push((f64::from(judge.trial().steps) * scene.config.time_step * 1e9).round() / 1e9);
         row.extend(ArmAndHand::joints().map(|joint| f64::from(world.position(joint))));
         let sphere = world.pose(Tabletop::SPHERE);
         row.extend(sphere.position.iter().chain(&sphere.rotation).copied().map(f64::from));

@@ -15,6 +15,7 @@ use crate::collision::{
 };
 use crate::model::{Form, Model, POINT_WORDS, Pair};
 use crate::spatial::{Spatial, Vector, add, dot, product, rotate, scale, select, splat, sub};
+use crate::stop::{Stop, relax_stop};
 use crate::tree::{LinkWork, Motion, Root, WORLD};
 
 /// One contact point's block of three rows: normal, two tangents (or spin and two rolling axes).
@@ -336,17 +337,21 @@ pub(crate) struct Solver<'a, S: Scalar> {
     pub(crate) response: &'a mut [S],
     /// Pair and point of the active points.
     pub(crate) active: &'a mut [(u16, u16)],
+    pub(crate) stops: &'a mut [Stop<S>],
+    pub(crate) stop_rows: &'a [S],
 }
 
 impl<S: Scalar> Solver<'_, S> {
-    /// Finds the points that may carry an impulse and sets their rows up; returns how many there are.
+    /// Finds the points that may carry an impulse and sets their rows up; returns how many there are and
+    /// which lanes have any.
     #[inline(always)]
-    pub(crate) fn set_up(&mut self, simd: S::Simd, model: &Model<S::Real>, points: &mut [S], turns: &mut [S]) -> usize {
+    pub(crate) fn set_up(&mut self, simd: S::Simd, model: &Model<S::Real>, points: &mut [S], turns: &mut [S]) -> (usize, S::Mask) {
         let zero = S::splat(simd, S::Real::of(0.0));
         let one = S::splat(simd, S::Real::of(1.0));
         let h = S::splat(simd, model.h);
         let margin = S::splat(simd, model.margin);
         let mut count = 0;
+        let mut touched = zero.lt(zero);
         for (p, pair) in model.pairs.iter().enumerate() {
             let own = &mut points[POINT_WORDS * pair.point..POINT_WORDS * (pair.point + pair.points)];
             let far = clearance(simd, model, pair, self.placed);
@@ -386,7 +391,7 @@ impl<S: Scalar> Solver<'_, S> {
                 let closing = dot(v, point.normal).min(zero);
                 let mask = near & point.valid & (point.gap + h * closing).lt(margin);
                 // What a lane remembers must not depend on its neighbours.
-                let gap = S::select(near, point.gap, far);
+                let gap = S::select(near & point.valid, point.gap, far);
                 if !mask.any() {
                     forget(words, zero, gap);
                     if let Some(first) = pair.rolling {
@@ -468,20 +473,24 @@ impl<S: Scalar> Solver<'_, S> {
                     };
                     apply(&pair.reach.dofs, rows, impulse, mask, self.response);
                 }
+                touched = touched | mask;
                 self.active[count] = (p as u16, index as u16);
                 count += 1;
             }
         }
-        count
+        (count, touched)
     }
 
-    /// Sweeps over the active points, forwards and backwards in turn.
+    /// Sweeps over the active points, forwards and backwards in turn, and over the stops.
     #[inline(always)]
-    pub(crate) fn sweep(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize) {
+    pub(crate) fn sweep(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
         for round in 0..model.sweeps {
             for k in 0..count {
                 let (p, index) = self.active[if round % 2 == 0 { k } else { count - 1 - k }];
                 self.relax(simd, model, usize::from(p), usize::from(index));
+            }
+            for stop in &mut self.stops[..stops] {
+                relax_stop(simd, model, stop, self.stop_rows, self.response);
             }
         }
     }
@@ -544,7 +553,11 @@ impl<S: Scalar> Solver<'_, S> {
                 words[4 + k] = S::select(block.mask, block.point[k], zero);
             }
             words[3] = block.impulse[0];
-            words[7] = block.gap;
+            // The gap at the end of the step: that is where the poses are, and what the force belongs to.
+            let n = pair.reach.dofs.len();
+            let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
+            let v = velocity(&pair.reach.dofs, rows, block.velocity, self.response);
+            words[7] = S::select(block.mask, block.gap + S::splat(simd, model.h) * v[0], block.gap);
             if let Some(first) = pair.rolling {
                 let roll = &self.rolling[first + index];
                 let total = combine(&roll.axes, roll.impulse);

@@ -15,6 +15,8 @@ mod ray;
 mod spatial;
 #[cfg(feature = "alloc")]
 mod step;
+#[cfg(feature = "alloc")]
+mod stop;
 mod tree;
 #[cfg(feature = "alloc")]
 mod world;

@@ -40,7 +40,7 @@ impl Default for Options {
             gravity: [0.0, 0.0, -9.81],
             sweeps: 10,
             slip: 1e-3,
-            limit_frequency: 300.0,
+            limit_frequency: 1000.0,
             limit_damping: 1.0,
             margin: 5e-4,
         }
@@ -131,6 +131,13 @@ pub(crate) struct Reach {
     pub(crate) dofs: Vec<u16>,
 }
 
+/// The velocities that a joint's own effort reaches, from the joint to the root, and where its row begins.
+#[derive(Clone, Debug)]
+pub(crate) struct StopPath {
+    pub(crate) dofs: Vec<u16>,
+    pub(crate) row: usize,
+}
+
 #[derive(Clone, Debug)]
 pub(crate) struct Pair<R> {
     /// Colliders in the order ball, capsule, block, plane.
@@ -179,6 +186,10 @@ pub struct Model<R> {
     pub(crate) rolling: usize,
     pub(crate) row_entries: usize,
     pub(crate) rolling_entries: usize,
+    /// Which links' joints have a stop, and the rows of them.
+    pub(crate) stops: Vec<bool>,
+    pub(crate) stop_paths: Vec<StopPath>,
+    pub(crate) stop_entries: usize,
     pub(crate) roots: usize,
     pub(crate) gravity: [R; 3],
     /// Control step and dynamics step [s].
@@ -562,6 +573,14 @@ impl<R: Real> Model<R> {
             }
         }
         set_limits(robot, &mounts, &mut links, &initial, dofs, options)?;
+        let mut stop_row = 0;
+        let stop_paths = (0..links.len())
+            .map(|i| {
+                let dofs = reach_of(&links, i as u16, WORLD).dofs;
+                stop_row += dofs.len();
+                StopPath { row: stop_row - dofs.len(), dofs }
+            })
+            .collect::<Vec<_>>();
         let mut model = Self {
             links: links.iter().map(Link::cast).collect(),
             mounts: mounts.iter().map(cast_mount).collect(),
@@ -596,6 +615,9 @@ impl<R: Real> Model<R> {
             rolling,
             row_entries: row,
             rolling_entries: rolling_row,
+            stops: links.iter().map(|l| l.lower.is_finite() || l.upper.is_finite()).collect(),
+            stop_entries: stop_paths.iter().map(|p| p.dofs.len()).sum(),
+            stop_paths,
             roots: links.iter().filter(|l| l.motion == Motion::Floating).count(),
             gravity: options.gravity.map(R::of),
             time_step: R::of(options.time_step),

@@ -9,6 +9,7 @@ use crate::collision::Placed;
 use crate::contact::{Block, Solver, place_colliders};
 use crate::model::{Model, POINT_WORDS};
 use crate::spatial::{Spatial, Vector, add, matrix_of, rotate, scale, splat, sub};
+use crate::stop::{Stop, set_up_stops};
 use crate::tree::{LinkWork, Motion, Root, WORLD, accelerations, place};
 
 /// Everything that a step computes and forgets, for one model; made once, reused for every step.
@@ -27,6 +28,8 @@ pub struct Scratch<S: Scalar> {
     rows: Vec<[S; 3]>,
     rolling_rows: Vec<[S; 3]>,
     active: Vec<(u16, u16)>,
+    stops: Vec<Stop<S>>,
+    stop_rows: Vec<S>,
 }
 
 impl<S: Scalar> Scratch<S> {
@@ -47,6 +50,8 @@ impl<S: Scalar> Scratch<S> {
             rows: vec![[zero; 3]; model.row_entries],
             rolling_rows: vec![[zero; 3]; model.rolling_entries],
             active: vec![(0, 0); model.points],
+            stops: vec![Stop::new(simd); model.links.len()],
+            stop_rows: vec![zero; model.stop_entries],
         }
     }
 
@@ -139,12 +144,27 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             rolling_rows: &mut s.rolling_rows,
             response: &mut s.response,
             active: &mut s.active,
+            stops: &mut s.stops,
+            stop_rows: &[],
         };
-        let count = solver.set_up(simd, model, state.points, state.turns);
+        let (count, touched) = solver.set_up(simd, model, state.points, state.turns);
         if count > 0 {
-            solver.sweep(simd, model, count);
+            let stops = set_up_stops(
+                simd,
+                model,
+                state.q,
+                state.v,
+                solver.work,
+                solver.roots,
+                solver.root_of,
+                touched,
+                &mut s.stop_rows,
+                solver.stops,
+            );
+            solver.stop_rows = &s.stop_rows;
+            solver.sweep(simd, model, count, stops);
             solver.store(simd, model, count, state.points, state.turns);
-            respond(simd, model, &s.response, &s.root_of, &mut s.links, &s.roots, state.v);
+            respond(simd, model, &s.response, &s.root_of, touched, &mut s.links, &s.roots, state.v);
         }
     }
     integrate(simd, model, state.q, state.v, &s.links);
@@ -213,13 +233,14 @@ fn predict<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, v: &[S], work: &mut
     }
 }
 
-/// Adds the velocities that the impulses give.
+/// Adds the velocities that the impulses give, in the lanes that have any.
 #[inline(always)]
 fn respond<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     response: &[S],
     root_of: &[S],
+    touched: S::Mask,
     work: &mut [LinkWork<S>],
     roots: &[Root<S>],
     v: &mut [S],
@@ -231,8 +252,8 @@ fn respond<S: Scalar>(
             y.copy_from_slice(&response[at..at + 6]);
             let change = roots[usize::from(link.root)].factor.other_half(y);
             for k in 0..3 {
-                v[at + k] += change.angular[k];
-                v[at + 3 + k] += change.linear[k];
+                v[at + k] = S::select(touched, v[at + k] + change.angular[k], v[at + k]);
+                v[at + 3 + k] = S::select(touched, v[at + 3 + k] + change.linear[k], v[at + 3 + k]);
             }
             work[i].acceleration = change;
             continue;
@@ -241,7 +262,7 @@ fn respond<S: Scalar>(
             if link.parent == WORLD { Spatial::zero(simd) } else { work[usize::from(link.parent)].acceleration };
         let w = &mut work[i];
         let x = root_of[at] * response[at] - w.reciprocal * w.column.dot(parent);
-        v[at] += x;
+        v[at] = S::select(touched, v[at] + x, v[at]);
         w.acceleration = parent + w.subspace.scale(x);
     }
 }

@@ -56,13 +56,15 @@ struct Checked<'a> {
     robot: &'a Robot,
     model: &'a Model<f32>,
     table: Tabletop,
+    /// Dynamics step [s].
+    h: f64,
     point: usize,
     /// Name, first point, points, half thickness of the thinner body.
     pairs: Vec<(String, usize, usize, f64)>,
 }
 
 impl<'a> Checked<'a> {
-    fn new(robot: &'a Robot, model: &'a Model<f32>, table: Tabletop) -> Self {
+    fn new(robot: &'a Robot, model: &'a Model<f32>, table: Tabletop, h: f64) -> Self {
         let mut first = 0;
         let pairs = (0..robot.pairs.len())
             .map(|p| {
@@ -73,7 +75,7 @@ impl<'a> Checked<'a> {
                 (format!("{} - {}", colliders[0].name, colliders[1].name), first - n, n, thin)
             })
             .collect();
-        Self { robot, model, table, point: first_point(robot, model), pairs }
+        Self { robot, model, table, h, point: first_point(robot, model), pairs }
     }
 
     fn check(&self, state: &[f32], f: &mut Figures, at: &str) {
@@ -93,7 +95,7 @@ impl<'a> Checked<'a> {
         if inside(x, self.table.table_x) && inside(y, self.table.table_y) {
             f.sunk.see(-z, || format!("({x:.3} {y:.3} {z:.3}) {at}"));
         }
-        let h = f64::from(self.model_h());
+        let h = self.h;
         let mut touching = false;
         for (name, first, n, thin) in &self.pairs {
             let words = &state[self.point + 8 * first..self.point + 8 * (first + n)];
@@ -116,10 +118,6 @@ impl<'a> Checked<'a> {
             }
         }
         f.touching += usize::from(touching);
-    }
-
-    fn model_h(&self) -> f32 {
-        0.01 / std::env::var("FARSA_SUBSTEPS").map_or(5.0, |x| x.parse::<f32>().unwrap())
     }
 }
 
@@ -182,8 +180,9 @@ fn babble<S: Scalar<Real = f32>>(
     }
 }
 
-fn run(robot: &Robot, model: &Model<f32>, table: Tabletop, seed: u64, steps: usize) -> Figures {
-    let checked = Checked::new(robot, model, table);
+fn run(robot: &Robot, options: Options, table: Tabletop, seed: u64, steps: usize) -> Figures {
+    let model = model(robot, options);
+    let checked = Checked::new(robot, &model, table, options.time_step / f64::from(options.substeps));
     let groups = ArmAndHand::default().servo_groups();
     let mut f = Figures::default();
     dispatch!(Level::new(), simd => babble::<f32x8<_>>(simd, &checked, &groups, seed, steps, &mut f));
@@ -229,7 +228,6 @@ fn random_commands_break_nothing() {
         ..d
     };
     let robot = table.scene(&arm).unwrap();
-    let model = model(&robot, o);
-    let f = run(&robot, &model, table, 1, var("STEPS", 1e5) as usize);
+    let f = run(&robot, o, table, var("SEED", 1.0) as u64, var("STEPS", 1e5) as usize);
     print(&f);
 }

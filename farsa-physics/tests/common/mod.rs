@@ -2,7 +2,8 @@
 #![allow(dead_code, reason = "every test uses a part of it")]
 
 use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, JointId, Pose, Robot, ServoRange, Shape, Tabletop, Twist,
+    Actuated, ActuatorId, ArmAndHand, Arrange, Joint, JointId, Law, Pose, Robot, ServoRange, Shape, Surface, Tabletop,
+    Twist,
 };
 use farsa_num::{Domain, Real, Stream};
 use farsa_physics::articulated::{Model, Options, World};
@@ -120,4 +121,78 @@ pub(crate) fn half_thickness(shape: Shape) -> f64 {
 /// Where the contact points' words begin in a state.
 pub(crate) fn first_point<R: Real>(robot: &Robot, model: &Model<R>) -> usize {
     model.positions() + model.dofs() + 2 * robot.actuators.len()
+}
+
+/// What carries the palm of [`hand_and_sphere`].
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Wrist {
+    /// Nothing moves it.
+    Fixed,
+    /// Three prismatic joints, along X, Y and Z; their slides weigh next to nothing.
+    Sliding,
+    /// The arm, without muscles.
+    Limp,
+}
+
+/// The hand of the experiment at posture 0 (palm down, 0.2 m above the ground) and the sphere, no table; every joint of
+/// the hand has an actuator of this law.
+pub(crate) fn hand_and_sphere(wrist: Wrist, surface: Surface, law: Option<Law<f64>>) -> Robot {
+    let arm = ArmAndHand { surface, ..ArmAndHand::default() };
+    let table = Tabletop { hand_on_sphere: surface, ..Tabletop::default() };
+    let mut robot = table.scene(&arm).unwrap();
+    let still = robot.collider("table").unwrap();
+    robot.pairs.retain(|p| !p.colliders.contains(&still));
+    robot.actuators.drain(..7);
+    if let Some(law) = law {
+        robot.actuators.iter_mut().for_each(|a| a.law = law);
+    } else {
+        robot.actuators.clear();
+    }
+    let endless = [f64::NEG_INFINITY, f64::INFINITY];
+    for (i, segment) in robot.segments[..7].iter_mut().enumerate() {
+        match wrist {
+            Wrist::Limp => continue,
+            Wrist::Sliding if i < 3 => {
+                let mut axis = [0.0; 3];
+                axis[i] = 1.0;
+                let at = segment.joint.placement;
+                segment.joint = Joint::prismatic(&format!("slide{i}"), axis, at, endless);
+            }
+            _ => segment.joint = Joint::fixed(segment.joint.placement),
+        }
+        if wrist == Wrist::Sliding && i < 6 {
+            segment.mass = 1e-6;
+            segment.inertia = [1e-12, 1e-12, 1e-12, 0.0, 0.0, 0.0];
+        }
+    }
+    robot
+}
+
+/// Where the palm's frame is at posture 0 [m].
+pub(crate) const WRIST: [f64; 3] = [-0.025 + 0.152 + 0.137, -0.108, 0.21];
+
+/// The sphere a little below the palm, where the fingers close around it [m].
+pub(crate) fn in_the_palm(gap: f64) -> [f64; 3] {
+    [WRIST[0] + 0.0625 + 0.015, WRIST[1], WRIST[2] - 0.010 - 0.025 - gap]
+}
+
+/// The groups of servos closed around the sphere, as in the scripted grasp.
+pub(crate) const CLOSED: [f32; 9] = [0.85, 0.35, 0.35, 0.65, 0.70, 0.65, 0.70, 0.0, 0.675];
+
+/// Commands of the hand's twenty servos for the nine groups' outputs.
+pub(crate) fn close<R: Real>(world: &mut World<R>, y: &[f32; 9]) {
+    for (group, y) in ArmAndHand::default().servo_groups().iter().zip(y) {
+        for s in group {
+            world.command(ActuatorId(s.servo.0 - 7), [s.from + (s.to - s.from) * y, 0.0]);
+        }
+    }
+}
+
+/// Places the hand's joints where its servos would bring them for the nine groups' outputs.
+pub(crate) fn pose_hand<R: Real>(world: &mut World<R>, y: &[f32; 9]) {
+    for (group, y) in ArmAndHand::default().servo_groups().iter().zip(y) {
+        for s in group {
+            world.place_joint(JointId(s.servo.0), s.from + (s.to - s.from) * y, 0.0);
+        }
+    }
 }
