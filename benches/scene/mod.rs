@@ -71,7 +71,7 @@ impl Loop {
         let (scene, mut world) = Self::scene()?;
         let mut script = ScriptLife::new(Arc::clone(&scene), Timetable::default())?;
         script.start(&mut world, Job::default());
-        for _ in 0..500 {
+        for _ in 0..560 {
             script.tick(&mut world);
             world.step();
         }

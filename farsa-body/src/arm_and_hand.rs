@@ -174,7 +174,7 @@ impl Default for ArmAndHand {
             thumb_link: 0.010,
             opposition_range: range(-120.0, 0.0),
             flexion_range: range(-90.0, 0.0),
-            surface: Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 1e5, damping: 300.0 },
+            surface: Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 2e5, damping: 100.0 },
         }
     }
 }

@@ -42,6 +42,12 @@ pub struct Config {
     pub substeps: u32,
     /// Gravity, downwards \[m/s2\].
     pub gravity: f64,
+    /// Sweeps of the contact solver per dynamics step.
+    pub sweeps: u32,
+    /// Creep of a sticking contact: tangential speed per impulse of a dynamics step \[m/s per N s\].
+    pub slip: f64,
+    /// Natural frequency of a joint's stop \[rad/s\].
+    pub limit_frequency: f64,
     /// Steps of a trial.
     pub steps: u32,
     /// J1..J4 at the start of each trial \[deg\].
@@ -124,6 +130,9 @@ impl Default for Config {
             time_step: options.time_step,
             substeps: options.substeps,
             gravity: -options.gravity[2],
+            sweeps: options.sweeps,
+            slip: options.slip,
+            limit_frequency: options.limit_frequency,
             steps: 600,
             arm_poses: [
                 -73.0, -30.0, -40.0, -56.0, //
@@ -233,6 +242,9 @@ impl Config {
             time_step: self.time_step,
             substeps: self.substeps,
             gravity: [0.0, 0.0, -self.gravity],
+            sweeps: self.sweeps,
+            slip: self.slip,
+            limit_frequency: self.limit_frequency,
             ..Options::default()
         }
     }

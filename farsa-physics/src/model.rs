@@ -36,7 +36,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             time_step: 0.01,
-            substeps: 5,
+            substeps: 4,
             gravity: [0.0, 0.0, -9.81],
             sweeps: 10,
             slip: 1e-3,
