@@ -343,15 +343,16 @@ pub(crate) struct Solver<'a, S: Scalar> {
 
 impl<S: Scalar> Solver<'_, S> {
     /// Finds the points that may carry an impulse and sets their rows up; returns how many there are and
-    /// which lanes have any.
+    /// in which lanes there are any,
+    /// and any that push a joint with a stop.
     #[inline(always)]
-    pub(crate) fn set_up(&mut self, simd: S::Simd, model: &Model<S::Real>, points: &mut [S], turns: &mut [S]) -> (usize, S::Mask) {
+    pub(crate) fn set_up(&mut self, simd: S::Simd, model: &Model<S::Real>, points: &mut [S], turns: &mut [S]) -> (usize, [S::Mask; 2]) {
         let zero = S::splat(simd, S::Real::of(0.0));
         let one = S::splat(simd, S::Real::of(1.0));
         let h = S::splat(simd, model.h);
         let margin = S::splat(simd, model.margin);
         let mut count = 0;
-        let mut touched = zero.lt(zero);
+        let mut touched = [zero.lt(zero); 2];
         for (p, pair) in model.pairs.iter().enumerate() {
             let own = &mut points[POINT_WORDS * pair.point..POINT_WORDS * (pair.point + pair.points)];
             let far = clearance(simd, model, pair, self.placed);
@@ -473,7 +474,10 @@ impl<S: Scalar> Solver<'_, S> {
                     };
                     apply(&pair.reach.dofs, rows, impulse, mask, self.response);
                 }
-                touched = touched | mask;
+                touched[0] = touched[0] | mask;
+                if pair.at_stops {
+                    touched[1] = touched[1] | mask;
+                }
                 self.active[count] = (p as u16, index as u16);
                 count += 1;
             }

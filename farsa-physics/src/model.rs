@@ -157,6 +157,8 @@ pub(crate) struct Pair<R> {
     pub(crate) rolling_friction: R,
     pub(crate) stiffness: R,
     pub(crate) damping: R,
+    /// Whether the pair can push a joint that has a stop.
+    pub(crate) at_stops: bool,
     pub(crate) reach: Reach,
 }
 
@@ -466,6 +468,10 @@ fn points_of(a: &Form<f64>, b: &Form<f64>) -> Option<usize> {
     }
 }
 
+fn has_stop(link: &Link<f64>) -> bool {
+    link.motion != Motion::Floating && (link.lower.is_finite() || link.upper.is_finite())
+}
+
 fn reach_of(links: &[Link<f64>], a: u16, b: u16) -> Reach {
     let path = |mut link: u16| {
         let mut p = Vec::new();
@@ -547,6 +553,7 @@ impl<R: Real> Model<R> {
                 rolling_friction: R::of(p.surface.rolling_friction),
                 stiffness: R::of(p.surface.stiffness),
                 damping: R::of(p.surface.damping),
+                at_stops: reach.first.iter().chain(&reach.second).any(|l| has_stop(&links[usize::from(*l)])),
                 reach,
             });
             points += count;
@@ -615,7 +622,7 @@ impl<R: Real> Model<R> {
             rolling,
             row_entries: row,
             rolling_entries: rolling_row,
-            stops: links.iter().map(|l| l.lower.is_finite() || l.upper.is_finite()).collect(),
+            stops: links.iter().map(has_stop).collect(),
             stop_entries: stop_paths.iter().map(|p| p.dofs.len()).sum(),
             stop_paths,
             roots: links.iter().filter(|l| l.motion == Motion::Floating).count(),

@@ -147,7 +147,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             stops: &mut s.stops,
             stop_rows: &[],
         };
-        let (count, touched) = solver.set_up(simd, model, state.points, state.turns);
+        let (count, [touched, pushed]) = solver.set_up(simd, model, state.points, state.turns);
         if count > 0 {
             let stops = set_up_stops(
                 simd,
@@ -157,7 +157,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
                 solver.work,
                 solver.roots,
                 solver.root_of,
-                touched,
+                pushed,
                 &mut s.stop_rows,
                 solver.stops,
             );

@@ -35,8 +35,8 @@ impl<S: Scalar> Stop<S> {
 
 /// Sets up the rows of the joints near a stop; returns how many there are.
 ///
-/// `rows` [model.stop_entries] and `stops` [links] receive them; `v` are predicted velocities, `touched` the
-/// lanes that have contacts.
+/// `rows` [model.stop_entries] and `stops` [links] receive them; `v` are predicted velocities, `pushed` the
+/// lanes with contacts on them.
 #[inline(always)]
 pub(crate) fn set_up_stops<S: Scalar>(
     simd: S::Simd,
@@ -46,7 +46,7 @@ pub(crate) fn set_up_stops<S: Scalar>(
     work: &[LinkWork<S>],
     roots: &[crate::tree::Root<S>],
     root_of: &[S],
-    touched: S::Mask,
+    pushed: S::Mask,
     rows: &mut [S],
     stops: &mut [Stop<S>],
 ) -> usize {
@@ -55,6 +55,9 @@ pub(crate) fn set_up_stops<S: Scalar>(
     let h = S::splat(simd, model.h);
     let minus = -one;
     let mut count = 0;
+    if !pushed.any() {
+        return count;
+    }
     for (i, link) in model.links.iter().enumerate() {
         if link.motion == Motion::Floating || !model.stops[i] {
             continue;
@@ -63,7 +66,7 @@ pub(crate) fn set_up_stops<S: Scalar>(
         let ahead = x + h * speed;
         let reach = h * h.constant(CHANGE);
         let near = (ahead + reach).gt(S::splat(simd, link.upper)) | (ahead - reach).lt(S::splat(simd, link.lower));
-        let mask = touched & near;
+        let mask = pushed & near;
         if !mask.any() {
             continue;
         }

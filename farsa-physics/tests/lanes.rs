@@ -1,4 +1,5 @@
 //! A lane of a batch is the world alone, bit for bit: the whole scene at every instruction set of this machine.
+#![allow(missing_docs, clippy::unwrap_used)]
 
 mod common;
 
@@ -18,7 +19,7 @@ const LOST: (usize, usize) = (3, 700);
 /// What a lane does before step `t`: the number of the life that begins there, if one does.
 fn begins(lane: usize, t: usize) -> Option<u32> {
     let shifted = t + 37 * lane;
-    (t == 0 || shifted % LIFE == 0).then_some((lane + WORLDS * (shifted / LIFE)) as u32)
+    (t == 0 || shifted.is_multiple_of(LIFE)).then_some((lane + WORLDS * (shifted / LIFE)) as u32)
 }
 
 /// The state in which a life begins: the first lives of the lanes some way on, so that phases differ from the first step.

@@ -1,0 +1,52 @@
+//! The articulated world keeps what `farsa_body::testing` says that every world promises.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+mod common;
+
+use common::{CLOSED, POSES, Wrist, hand_and_sphere, in_the_palm, model, pose_hand, scene};
+use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
+use farsa_body::{ArmAndHand, Arrange, JointId, Law, Pose, Tabletop, Twist};
+use farsa_physics::articulated::{Options, World};
+
+#[test]
+fn the_whole_scene_conforms() {
+    let robot = scene();
+    let model = model::<f32>(&robot, Options::default());
+    let probe = Probe::of(&robot);
+    for pose in POSES {
+        let make = || {
+            let mut world = World::new(model.clone());
+            for (j, degrees) in pose.into_iter().enumerate() {
+                world.place_joint(JointId(j as u16), degrees.to_radians() as f32, 0.0);
+            }
+            world.arranged();
+            world
+        };
+        assert_eq!(check_world(make, &probe), Ok(()));
+        assert_eq!(check_rays(&make(), &probe.bodies, &[[0.1, -0.3, 0.3], [0.3, 0.0, 0.1]], 1.0), Ok(()));
+    }
+    assert_eq!(check_arrange(|| World::new(model.clone()), &probe), Ok(()));
+}
+
+#[test]
+fn a_hand_around_a_sphere_conforms() {
+    let arm = ArmAndHand::default();
+    let robot = hand_and_sphere(Wrist::Fixed, arm.surface, Some(Law::Servo(arm.servo)));
+    let model = model::<f32>(&robot, Options::default());
+    let make = || {
+        let mut world = World::new(model.clone());
+        world.place_body(Tabletop::SPHERE, Pose::at(in_the_palm(0.001).map(|x| x as f32)), Twist::default());
+        pose_hand(&mut world, &CLOSED.map(|x| 0.5 * x));
+        world.arranged();
+        world
+    };
+    assert_eq!(check_world(make, &Probe::of(&robot)), Ok(()));
+}
+
+#[test]
+fn it_conforms_in_double_precision_but_for_its_snapshot() {
+    // A snapshot is in single precision: a world in f64 goes on from the rounded state. The other promises stand.
+    let robot = scene();
+    let model = model::<f64>(&robot, Options::default());
+    assert_eq!(check_arrange(|| World::new(model.clone()), &Probe::of(&robot)), Ok(()));
+}

@@ -1,0 +1,107 @@
+//! A world is its state: what is saved in the middle of a grasp goes on with the same bits, and nothing else is remembered.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+mod common;
+
+use common::{Babble, CLOSED, Wrist, close, commands, drive, hand_and_sphere, in_the_palm, model, scene, start, stream};
+use farsa_body::{ArmAndHand, Arrange, Contacts, Law, PairId, Pose, Snapshot, Tabletop, Twist, World as _};
+use farsa_physics::articulated::{Model, Options, World};
+
+fn bits(world: &World<f32>) -> Vec<u32> {
+    world.state().iter().map(|x| x.to_bits()).collect()
+}
+
+fn touching(world: &World<f32>) -> usize {
+    (0..world.pairs()).filter(|p| world.pair_contact(PairId(*p as u16)).points > 0).count()
+}
+
+/// A hand that has closed on the sphere, from a model with gravity.
+fn grasp() -> World<f32> {
+    let arm = ArmAndHand::default();
+    let robot = hand_and_sphere(Wrist::Fixed, arm.surface, Some(Law::Servo(arm.servo)));
+    let options = Options { gravity: [0.0, 0.0, 2.0], ..Options::default() };
+    let mut world = World::new(Model::new(&robot, &options).unwrap());
+    world.place_body(Tabletop::SPHERE, Pose::at(in_the_palm(0.0005).map(|x| x as f32)), Twist::default());
+    world.arranged();
+    close(&mut world, &CLOSED);
+    for _ in 0..60 {
+        world.step();
+    }
+    assert!(touching(&world) >= 4);
+    world
+}
+
+#[test]
+fn a_grasp_restored_goes_on_with_the_same_bits() {
+    let mut world = grasp();
+    let mut saved = vec![f32::NAN; world.snapshot_len()];
+    world.save(&mut saved);
+    // Saved in the middle of a squeeze, not at rest.
+    let squeeze = CLOSED.map(|x| (x + 0.1).min(1.0));
+    let go_on = |world: &mut World<f32>| {
+        close(world, &squeeze);
+        (0..200)
+            .map(|t| {
+                if t == 100 {
+                    close(world, &[0.3; 9]);
+                }
+                world.step();
+                bits(world)
+            })
+            .collect::<Vec<_>>()
+    };
+    let truth = go_on(&mut world);
+    world.restore(&saved);
+    assert!(go_on(&mut world) == truth, "the same world");
+    // Another world of the same model with another past.
+    let mut other = World::new(world.model().clone());
+    close(&mut other, &[0.9; 9]);
+    for _ in 0..37 {
+        other.step();
+    }
+    other.restore(&saved);
+    assert!(go_on(&mut other) == truth, "another world");
+}
+
+#[test]
+fn clear_forgets_everything() {
+    let robot = scene();
+    let groups = ArmAndHand::default().servo_groups();
+    let model = model::<f32>(&robot, Options::default());
+    let mut fresh = World::new(model.clone());
+    let mut used = World::new(model);
+    let mut touched = 0;
+    for life in 0..6 {
+        start(&robot, &mut used, &mut stream(9, life), life as usize);
+        let mut babble = Babble::new(9, life);
+        for _ in 0..200 {
+            drive(&mut used, &commands(&groups, babble.next()));
+            used.step();
+            touched = touched.max(touching(&used));
+        }
+        used.clear();
+        assert_eq!(bits(&used), bits(&fresh), "the state of a new world");
+        // And it lives the life of a new world.
+        for world in [&mut used, &mut fresh] {
+            start(&robot, world, &mut stream(8, life), life as usize);
+            let mut babble = Babble::new(8, life);
+            for _ in 0..100 {
+                drive(world, &commands(&groups, babble.next()));
+                world.step();
+            }
+        }
+        assert_eq!(bits(&used), bits(&fresh));
+        // A world in NaN is cured, too.
+        used.state_mut().fill(f32::NAN);
+        used.arranged();
+        used.step();
+        used.clear();
+        fresh.clear();
+        assert_eq!(bits(&used), bits(&fresh));
+        used.step();
+        fresh.step();
+        assert_eq!(bits(&used), bits(&fresh));
+        fresh.clear();
+    }
+    assert!(touched >= 3, "there was something to forget");
+}
