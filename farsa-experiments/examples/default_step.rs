@@ -10,8 +10,8 @@ use std::sync::Arc;
 use farsa_body::{Actuated, ActuatorId, Arrange, Pose, Robot, Tabletop, Twist, World as _};
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptLife, TRIALS, Timetable};
 use farsa_experiments::{Job, Life};
-use farsa_num::{Domain, Real, Stream, sin_cos};
-use farsa_physics::articulated::{Model, Options, World};
+use farsa_num::{Domain, Real as _, Stream, sin_cos};
+use farsa_physics::articulated::{Model, Options, Precision, World};
 
 /// Different smooth commands that are tried.
 const MOTIONS: u32 = 12;
@@ -21,7 +21,7 @@ fn options(config: &Config, substeps: u32) -> Options {
 }
 
 /// J1..J7 [deg] after each control step of 1 s of sinusoidal activations between 0.5 and 2 Hz, without contacts.
-fn motion<R: Real>(robot: &Robot, config: &Config, substeps: u32, seed: u32) -> Vec<[f64; 7]> {
+fn motion<R: Precision>(robot: &Robot, config: &Config, substeps: u32, seed: u32) -> Vec<[f64; 7]> {
     let mut world = World::new(Model::<R>::new(robot, &options(config, substeps)).expect("a model"));
     let mut stream = Stream::new(1, Domain::Motor, 0, 0, seed);
     let waves: Vec<[f64; 2]> = (0..14).map(|_| [0.5 + 1.5 * stream.uniform_f64(), stream.uniform_f64()]).collect();
@@ -51,7 +51,7 @@ fn rms(a: &[[f64; 7]], b: &[[f64; 7]]) -> f64 {
 }
 
 /// Where the sphere's centre is after 5 s at rest [m].
-fn rest<R: Real>(scene: &Scene, substeps: u32) -> [f64; 3] {
+fn rest<R: Precision>(scene: &Scene, substeps: u32) -> [f64; 3] {
     let model = Model::<R>::new(&scene.robot, &options(&scene.config, substeps)).expect("a model");
     let mut world = World::new(model);
     let at = [0.25, 0.1, scene.config.sphere_radius as f32];
@@ -64,7 +64,7 @@ fn rest<R: Real>(scene: &Scene, substeps: u32) -> [f64; 3] {
     for _ in 0..500 {
         world.step();
     }
-    world.pose_of(Tabletop::SPHERE).position.map(Real::to_f64)
+    world.pose_of(Tabletop::SPHERE).position.map(farsa_num::Real::to_f64)
 }
 
 fn grasps(config: &Config, substeps: u32) -> usize {

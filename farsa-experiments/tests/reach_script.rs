@@ -6,8 +6,7 @@ use std::sync::Arc;
 use farsa_body::{ArmAndHand, Kinematics, World as _};
 use farsa_experiments::reach_grasp_lift::{Config, Ledger, Phase, Scene, ScriptLife, TRIALS, Timetable, Trial};
 use farsa_experiments::{Job, Life};
-use farsa_num::Real;
-use farsa_physics::articulated::{Model, World};
+use farsa_physics::articulated::{Model, Precision, World};
 
 struct Grasp {
     trial: Trial,
@@ -18,7 +17,7 @@ struct Grasp {
     activation: f32,
 }
 
-fn grasp<R: Real>(config: Config, timetable: Timetable, job: Job) -> Grasp {
+fn grasp<R: Precision>(config: Config, timetable: Timetable, job: Job) -> Grasp {
     let scene = Arc::new(Scene::new(config).expect("a scene"));
     let mut world = World::new(Model::<R>::new(&scene.robot, &scene.config.options()).expect("a model"));
     let mut life = ScriptLife::new(Arc::clone(&scene), timetable).expect("a script");
@@ -47,7 +46,7 @@ fn job(trial: usize, generation: u32) -> Job {
 }
 
 /// Six seconds of the script, then more to hold: slips less than 1 mm/s over the last 3 s, in both precisions.
-fn holds<R: Real>() {
+fn holds<R: Precision>() {
     for trial in 0..TRIALS {
         let config = Config { steps: 800, ..Config::default() };
         let grasp = grasp::<R>(config, Timetable::default(), job(trial, 0));

@@ -12,7 +12,7 @@ pub(crate) struct Point<S: Scalar> {
     /// Unit normal that pushes the first shape away from the second.
     pub(crate) normal: Vector<S>,
     /// Midway between the surfaces [m].
-    pub(crate) point: Vector<S>,
+    pub(crate) position: Vector<S>,
     /// Whether the point counts at all.
     pub(crate) valid: S::Mask,
 }
@@ -51,7 +51,7 @@ pub(crate) fn balls<S: Scalar>(a: Vector<S>, ra: S, b: Vector<S>, rb: S) -> Poin
     let normal = select(apart, scale(d, one / S::select(apart, length, one)), [zero, zero, one]);
     let gap = length - ra - rb;
     let point = add(b, scale(normal, rb + gap * gap.constant(0.5)));
-    Point { gap, normal, point, valid: zero.le(zero) }
+    Point { gap, normal, position: point, valid: zero.le(zero) }
 }
 
 /// The point of the segment `centre` +- `half` * `axis` nearest to `p`.
@@ -99,11 +99,7 @@ fn box_distance<S: Scalar>(p: Vector<S>, half: Vector<S>) -> (S, Vector<S>) {
     let x_face = q[0].ge(q[1]) & q[0].ge(q[2]);
     let y_face = !x_face & q[1].ge(q[2]);
     let z_face = !x_face & !y_face;
-    let inner = [
-        S::select(x_face, sign[0], zero),
-        S::select(y_face, sign[1], zero),
-        S::select(z_face, sign[2], zero),
-    ];
+    let inner = [S::select(x_face, sign[0], zero), S::select(y_face, sign[1], zero), S::select(z_face, sign[2], zero)];
     let outer = [0, 1, 2].map(|k: usize| sign[k] * (out[k] / length));
     let depth = q[0].max(q[1]).max(q[2]);
     (S::select(outside, length, depth), select(outside, outer, inner))
@@ -118,7 +114,7 @@ pub(crate) fn ball_box<S: Scalar>(p: Vector<S>, radius: S, place: &Placed<S>, ha
     let gap = distance - radius;
     let zero = gap.constant(0.0);
     let point = sub(p, scale(normal, radius + gap * gap.constant(0.5)));
-    Point { gap, normal, point, valid: zero.le(zero) }
+    Point { gap, normal, position: point, valid: zero.le(zero) }
 }
 
 /// Halvings in the search along a segment: the place is found to a four-thousandth of its length.
@@ -144,7 +140,7 @@ pub(crate) fn segment_box<S: Scalar>(
     // Deepest between the ends only where the distance falls at the first and rises at the last.
     let between = dot(at_first, d).lt(zero) & dot(at_last, d).gt(zero);
     if !between.any() {
-        return Point { gap: first.min(last) - radius, normal: at_first, point: centre, valid: between };
+        return Point { gap: first.min(last) - radius, normal: at_first, position: centre, valid: between };
     }
     let (mut low, mut high) = (-half_length, half_length);
     // The distance to a convex body is convex along a line: its slope changes sign once.
@@ -171,7 +167,7 @@ pub(crate) fn ball_plane<S: Scalar>(p: Vector<S>, radius: S, plane: &Placed<S>) 
     let gap = dot(sub(p, plane.position), normal) - radius;
     let zero = gap.constant(0.0);
     let point = sub(p, scale(normal, radius + gap * gap.constant(0.5)));
-    Point { gap, normal, point, valid: zero.le(zero) }
+    Point { gap, normal, position: point, valid: zero.le(zero) }
 }
 
 /// Corner `index` (0..8) of a box in the world.

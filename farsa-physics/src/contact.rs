@@ -146,10 +146,7 @@ fn find<S: Scalar>(
         }
         (Form::Ball { radius }, Form::Block { half }) => ball_box(pa.position, k(radius), pb, splat::<S>(simd, half)),
         (Form::Ball { radius }, Form::Plane) => ball_plane(pa.position, k(radius), pb),
-        (
-            Form::Capsule { radius: ra, half_length: la },
-            Form::Capsule { radius: rb, half_length: lb },
-        ) => {
+        (Form::Capsule { radius: ra, half_length: la }, Form::Capsule { radius: rb, half_length: lb }) => {
             let (na, nb) = nearest_of_segments(pa.position, pa.axis(), k(la), pb.position, pb.axis(), k(lb));
             balls(na, k(ra), nb, k(rb))
         }
@@ -174,9 +171,7 @@ fn find<S: Scalar>(
                 found
             }
         }
-        (Form::Block { half }, _) => {
-            ball_plane(corner(pa, splat::<S>(simd, half), index), k(S::Real::of(0.0)), pb)
-        }
+        (Form::Block { half }, _) => ball_plane(corner(pa, splat::<S>(simd, half), index), k(S::Real::of(0.0)), pb),
         (Form::Plane, _) => ball_plane(pa.position, k(S::Real::of(0.0)), pb),
     }
 }
@@ -346,7 +341,13 @@ impl<S: Scalar> Solver<'_, S> {
     /// in which lanes there are any,
     /// and any that push a joint with a stop.
     #[inline(always)]
-    pub(crate) fn set_up(&mut self, simd: S::Simd, model: &Model<S::Real>, points: &mut [S], turns: &mut [S]) -> (usize, [S::Mask; 2]) {
+    pub(crate) fn set_up(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        points: &mut [S],
+        turns: &mut [S],
+    ) -> (usize, [S::Mask; 2]) {
         let zero = S::splat(simd, S::Real::of(0.0));
         let one = S::splat(simd, S::Real::of(1.0));
         let h = S::splat(simd, model.h);
@@ -386,8 +387,8 @@ impl<S: Scalar> Solver<'_, S> {
                 }
                 let point = find(simd, model, pair, self.placed, index);
                 let v = sub(
-                    velocity_at(simd, links[0], self.work, point.point),
-                    velocity_at(simd, links[1], self.work, point.point),
+                    velocity_at(simd, links[0], self.work, point.position),
+                    velocity_at(simd, links[1], self.work, point.position),
                 );
                 let closing = dot(v, point.normal).min(zero);
                 let mask = near & point.valid & (point.gap + h * closing).lt(margin);
@@ -414,7 +415,7 @@ impl<S: Scalar> Solver<'_, S> {
                     self.work,
                     self.roots,
                     self.root_of,
-                    Load::Forces(point.point),
+                    Load::Forces(point.position),
                     &axes,
                     rows,
                 );
@@ -443,23 +444,14 @@ impl<S: Scalar> Solver<'_, S> {
                     compliance,
                     offset,
                     gap,
-                    point: point.point,
+                    point: point.position,
                 };
                 apply(&pair.reach.dofs, rows, impulse, mask, self.response);
                 if let Some(first) = pair.rolling {
                     let turning = sub(spin(simd, links[0], self.work), spin(simd, links[1], self.work));
                     let rows = &mut self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
-                    let response = write_rows(
-                        simd,
-                        model,
-                        pair,
-                        self.work,
-                        self.roots,
-                        self.root_of,
-                        Load::Moments,
-                        &axes,
-                        rows,
-                    );
+                    let response =
+                        write_rows(simd, model, pair, self.work, self.roots, self.root_of, Load::Moments, &axes, rows);
                     let words = &turns[3 * (first + index)..3 * (first + index) + 3];
                     let old = [words[0], words[1], words[2]];
                     let limit = S::splat(simd, pair.rolling_friction) * impulse[0];
@@ -617,3 +609,6 @@ fn apply<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], change: [S; 3], mask: S::Mask
     }
 }
 
+#[cfg(test)]
+#[path = "contact_oracles.rs"]
+mod oracles;

@@ -1,7 +1,6 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
-
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
@@ -27,7 +26,7 @@ pub mod articulated {
     pub use crate::model::{Model, ModelError, Options};
     pub use crate::spatial::Spatial;
     #[cfg(feature = "alloc")]
-    pub use crate::step::{Scratch, step};
+    pub use crate::step::{Precision, Scratch, step};
     pub use crate::tree::{
         Link, LinkWork, Root, accelerations, centre_of_mass, inverse_dynamics, jacobian, kinetic_energy, mass_matrix,
         place, potential_energy,

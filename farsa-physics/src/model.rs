@@ -249,7 +249,13 @@ fn axis_frame(axis: Vector<f64>) -> Matrix<f64> {
     let length = Scalar::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
     let [x, y, z] = axis.map(|a| a / length);
     // For the coordinate axes a permutation, so that nothing is rounded.
-    let u = if x.abs() > 0.9 { [0.0, 1.0, 0.0] } else if y.abs() > 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+    let u = if x.abs() > 0.9 {
+        [0.0, 1.0, 0.0]
+    } else if y.abs() > 0.9 {
+        [0.0, 0.0, 1.0]
+    } else {
+        [1.0, 0.0, 0.0]
+    };
     let along = u[0] * x + u[1] * y + u[2] * z;
     let u = [u[0] - along * x, u[1] - along * y, u[2] - along * z];
     let n = Scalar::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
@@ -297,7 +303,8 @@ impl Link<f64> {
         }
         for (m, c) in [(self.mass, sub(old, joint)), (mass, sub(centre, joint))] {
             let [x, y, z] = c;
-            for (k, e) in [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z].into_iter().enumerate() {
+            for (k, e) in [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z].into_iter().enumerate()
+            {
                 self.inertia[k] += m * e;
             }
         }
@@ -433,7 +440,7 @@ fn choose_references(links: &mut [Link<f64>]) {
             if most > 1 {
                 members().find(|&i| children[i] == most).unwrap_or(root)
             } else {
-                members().last().unwrap_or(root)
+                members().next_back().unwrap_or(root)
             }
         };
         for i in 0..n {
@@ -519,7 +526,8 @@ impl<R: Real> Model<R> {
         let mut colliders = Vec::new();
         let mut kinds = Vec::new();
         for c in &robot.colliders {
-            let base = c.body.map_or(Mount { link: WORLD, rotation: IDENTITY, position: [0.0; 3] }, |b| mounts[b.index()]);
+            let base =
+                c.body.map_or(Mount { link: WORLD, rotation: IDENTITY, position: [0.0; 3] }, |b| mounts[b.index()]);
             let (form, bound, kind) = form_of(c.shape);
             colliders.push((compose(&base, &frame(&c.placement)), form, bound));
             kinds.push(kind);
@@ -661,7 +669,7 @@ fn set_limits(
         }
         let at = usize::from(link.dof);
         let inertia = matrix[at * dofs + at];
-        if !(inertia > 0.0) {
+        if inertia.is_nan() || inertia <= 0.0 {
             return Err(ModelError::Weightless { segment: segment.name.clone() });
         }
         link.limit_stiffness = inertia * options.limit_frequency * options.limit_frequency;

@@ -5,6 +5,7 @@ use farsa_num::Real;
 
 use crate::model::Form;
 use crate::spatial::{Matrix, Vector, add, dot, product, rotate, rotate_back, scale, sub};
+use crate::step::Precision;
 use crate::tree::WORLD;
 use crate::world::World;
 
@@ -48,10 +49,10 @@ fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R)
         return None;
     }
     for end in [-half, half] {
-        if let Some((t, n)) = ball(origin, direction, [zero, zero, end], radius) {
-            if best.is_none_or(|(s, _)| t < s) {
-                best = Some((t, n));
-            }
+        if let Some((t, n)) = ball(origin, direction, [zero, zero, end], radius)
+            && best.is_none_or(|(s, _)| t < s)
+        {
+            best = Some((t, n));
         }
     }
     best
@@ -93,7 +94,7 @@ fn plane<R: Real>(origin: Vector<R>, direction: Vector<R>) -> Entry<R> {
     Some((-origin[2] / direction[2], [zero, zero, R::of(1.0)]))
 }
 
-impl<R: Real> World<R> {
+impl<R: Precision> World<R> {
     /// The frame of a collider in the world.
     fn collider_frame(&self, index: usize) -> (Matrix<R>, Vector<R>) {
         let mount = &self.model().colliders[index].mount;
@@ -105,7 +106,7 @@ impl<R: Real> World<R> {
     }
 }
 
-impl<R: Real> Rays for World<R> {
+impl<R: Precision> Rays for World<R> {
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
         let origin = origin.map(|x| R::of(f64::from(x)));
         let direction = direction.map(|x| R::of(f64::from(x)));

@@ -76,11 +76,7 @@ pub(crate) fn matrix_of<S: Scalar>(q: [S; 4]) -> Matrix<S> {
     let (xx, yy, zz) = (x * x2, y * y2, z * z2);
     let (xy, xz, yz) = (x * y2, x * z2, y * z2);
     let (wx, wy, wz) = (w * x2, w * y2, w * z2);
-    [
-        [one - (yy + zz), xy - wz, xz + wy],
-        [xy + wz, one - (xx + zz), yz - wx],
-        [xz - wy, yz + wx, one - (xx + yy)],
-    ]
+    [[one - (yy + zz), xy - wz, xz + wy], [xy + wz, one - (xx + zz), yz - wx], [xz - wy, yz + wx, one - (xx + yy)]]
 }
 
 /// A motion (angular velocity, velocity of the reference point) or a force (moment about it, force).

@@ -65,11 +65,39 @@ impl<S: Scalar> Scratch<S> {
         (&mut self.links, &mut self.roots)
     }
 
-    /// Places the links of `state` [state_len]; needed once before the first step and after any change from outside.
+    /// Places the links of `state` [`Model::state_len`]; needed once before the first step and after any change from outside.
     #[inline(always)]
     pub fn place(&mut self, simd: S::Simd, model: &Model<S::Real>, state: &[S]) {
         let (q, rest) = state.split_at(model.positions);
         place(simd, &model.links, q, rest, &mut self.links);
+    }
+}
+
+/// What a [`crate::articulated::World`] computes in: `f32` for speed, `f64` for reference.
+///
+/// The step is compiled here, once for each, and not again in every crate that steps a world.
+pub trait Precision: Real {
+    /// [`step`] for one world.
+    fn step(model: &Model<Self>, state: &mut [Self], scratch: &mut Scratch<Self>);
+    /// [`Scratch::place`] for one world.
+    fn place(model: &Model<Self>, state: &[Self], scratch: &mut Scratch<Self>);
+}
+
+impl Precision for f32 {
+    fn step(model: &Model<f32>, state: &mut [f32], scratch: &mut Scratch<f32>) {
+        step((), model, state, scratch);
+    }
+    fn place(model: &Model<f32>, state: &[f32], scratch: &mut Scratch<f32>) {
+        scratch.place((), model, state);
+    }
+}
+
+impl Precision for f64 {
+    fn step(model: &Model<f64>, state: &mut [f64], scratch: &mut Scratch<f64>) {
+        step((), model, state, scratch);
+    }
+    fn place(model: &Model<f64>, state: &[f64], scratch: &mut Scratch<f64>) {
+        scratch.place((), model, state);
     }
 }
 
@@ -90,7 +118,7 @@ pub(crate) fn parts<'a, R: Real, S>(model: &Model<R>, state: &'a mut [S]) -> Par
     Parts { q, v, commands, points, turns }
 }
 
-/// Lets one control step pass for every lane of `state` [state_len].
+/// Lets one control step pass for every lane of `state` [`Model::state_len`].
 ///
 /// `scratch` must have been made for the model, and [`Scratch::place`]d once since `state` was changed from outside.
 ///
@@ -109,16 +137,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
     let h = S::splat(simd, model.h);
     let state = parts(model, state);
     efforts(simd, model, state.q, state.v, state.commands, &mut s.tau, &mut s.diagonal);
-    accelerations(
-        simd,
-        &model.links,
-        model.gravity,
-        &s.tau,
-        &s.diagonal,
-        &mut s.links,
-        &mut s.roots,
-        &mut s.qdd,
-    );
+    accelerations(simd, &model.links, model.gravity, &s.tau, &s.diagonal, &mut s.links, &mut s.roots, &mut s.qdd);
     for (v, a) in state.v.iter_mut().zip(&s.qdd) {
         *v += h * *a;
     }

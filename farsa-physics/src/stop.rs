@@ -35,7 +35,7 @@ impl<S: Scalar> Stop<S> {
 
 /// Sets up the rows of the joints near a stop; returns how many there are.
 ///
-/// `rows` [model.stop_entries] and `stops` [links] receive them; `v` are predicted velocities, `pushed` the
+/// `rows` (one word per entry) and `stops` [links] receive them; `v` are predicted velocities, `pushed` the
 /// lanes with contacts on them.
 #[inline(always)]
 pub(crate) fn set_up_stops<S: Scalar>(

@@ -11,12 +11,12 @@ use farsa_num::Real;
 
 use crate::model::{Model, POINT_WORDS};
 use crate::spatial::{Matrix, add, cross, product, rotate, sub};
-use crate::step::{Scratch, parts, step};
+use crate::step::{Precision, Scratch, parts};
 use crate::tree::{LinkWork, Motion, WORLD};
 
 /// One articulated world: a model and its state.
 #[derive(Clone, Debug)]
-pub struct World<R: Real> {
+pub struct World<R: Precision> {
     model: Model<R>,
     state: Vec<R>,
     scratch: Scratch<R>,
@@ -54,7 +54,7 @@ fn f32_of<R: Real>(x: [R; 3]) -> [f32; 3] {
     x.map(|x| x.to_f64() as f32)
 }
 
-impl<R: Real> World<R> {
+impl<R: Precision> World<R> {
     /// A world at its description's start.
     pub fn new(model: Model<R>) -> Self {
         let state = model.initial.clone();
@@ -73,7 +73,7 @@ impl<R: Real> World<R> {
         &self.scratch.links
     }
 
-    /// Positions, velocities, commands and contacts [state_len].
+    /// Positions, velocities, commands and contacts [`Model::state_len`].
     pub fn state(&self) -> &[R] {
         &self.state
     }
@@ -154,22 +154,22 @@ impl<R: Real> World<R> {
     }
 }
 
-impl<R: Real> Handles for World<R> {
+impl<R: Precision> Handles for World<R> {
     type Body = BodyId;
     type Joint = JointId;
     type Actuator = ActuatorId;
 }
 
-impl<R: Real> farsa_body::World for World<R> {
+impl<R: Precision> farsa_body::World for World<R> {
     fn step(&mut self) {
-        step((), &self.model, &mut self.state, &mut self.scratch);
+        R::step(&self.model, &mut self.state, &mut self.scratch);
     }
     fn time_step(&self) -> f32 {
         self.model.time_step.to_f64() as f32
     }
 }
 
-impl<R: Real> Kinematics for World<R> {
+impl<R: Precision> Kinematics for World<R> {
     fn pose(&self, body: BodyId) -> Pose {
         self.pose_of(body).cast()
     }
@@ -179,7 +179,7 @@ impl<R: Real> Kinematics for World<R> {
     }
 }
 
-impl<R: Real> Joints for World<R> {
+impl<R: Precision> Joints for World<R> {
     fn position(&self, joint: JointId) -> f32 {
         self.model.joint_index(joint).map_or(0.0, |(q, _)| self.state[q].to_f64() as f32)
     }
@@ -188,7 +188,7 @@ impl<R: Real> Joints for World<R> {
     }
 }
 
-impl<R: Real> Actuated for World<R> {
+impl<R: Precision> Actuated for World<R> {
     fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
         let parts = parts(&self.model, &mut self.state);
         let at = 2 * actuator.index();
@@ -199,7 +199,7 @@ impl<R: Real> Actuated for World<R> {
     }
 }
 
-impl<R: Real> Contacts for World<R> {
+impl<R: Precision> Contacts for World<R> {
     fn pairs(&self) -> usize {
         self.model.pairs.len()
     }
@@ -238,7 +238,7 @@ impl<R: Real> Contacts for World<R> {
     }
 }
 
-impl<R: Real> Snapshot for World<R> {
+impl<R: Precision> Snapshot for World<R> {
     fn snapshot_len(&self) -> usize {
         self.state.len()
     }
@@ -255,7 +255,7 @@ impl<R: Real> Snapshot for World<R> {
     }
 }
 
-impl<R: Real> Arrange for World<R> {
+impl<R: Precision> Arrange for World<R> {
     fn clear(&mut self) {
         self.state.copy_from_slice(&self.model.initial);
         self.arranged();
@@ -295,6 +295,6 @@ impl<R: Real> Arrange for World<R> {
     }
 
     fn arranged(&mut self) {
-        self.scratch.place((), &self.model, &self.state);
+        R::place(&self.model, &self.state, &mut self.scratch);
     }
 }

@@ -117,7 +117,9 @@ fn agrees(name: &str) {
         inverse_dynamics((), model.links(), model.gravity(), &vec![0.0; n], work, &mut tau);
         bias = bias.max(difference(&tau, &state.bias));
     }
-    println!("{name}: accelerations to Pinocchio {pinocchio:.1e}, to MuJoCo {mujoco:.1e}; bias {bias:.1e}; RNEA(ABA) {round:.1e}");
+    println!(
+        "{name}: accelerations to Pinocchio {pinocchio:.1e}, to MuJoCo {mujoco:.1e}; bias {bias:.1e}; RNEA(ABA) {round:.1e}"
+    );
     assert!(pinocchio <= 1e-10 && mujoco <= 1e-10 && bias <= 1e-10 && round <= 1e-9);
     for m in &fixture.matrices {
         let state = &fixture.states[m.state];

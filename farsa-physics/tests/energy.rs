@@ -71,7 +71,11 @@ fn a_free_body_keeps_its_momentum() {
         let v = w.velocities();
         let l = pose.rotate_back([v[0], v[1], v[2]]);
         let [xx, yy, zz, xy, xz, yz] = inertia;
-        pose.rotate([xx * l[0] + xy * l[1] + xz * l[2], xy * l[0] + yy * l[1] + yz * l[2], xz * l[0] + yz * l[1] + zz * l[2]])
+        pose.rotate([
+            xx * l[0] + xy * l[1] + xz * l[2],
+            xy * l[0] + yy * l[1] + yz * l[2],
+            xz * l[0] + yz * l[1] + zz * l[2],
+        ])
     };
     let distance = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt();
     let run = |h: f64| {
@@ -103,11 +107,21 @@ fn a_free_body_keeps_its_momentum() {
 fn a_free_chain_keeps_its_momentum_to_first_order() {
     // A floating body with two arms that swing: the momentum of the whole.
     let mut robot = Robot::new("floating chain");
-    let body = robot.add_segment(Segment::new("body", None, Joint::floating(Pose::identity()), MassProperties::sphere(0.3, 0.05)));
+    let body = robot.add_segment(Segment::new(
+        "body",
+        None,
+        Joint::floating(Pose::identity()),
+        MassProperties::sphere(0.3, 0.05),
+    ));
     for (i, axis) in [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]].into_iter().enumerate() {
         let at = Pose::at([0.05, 0.03 * i as f64, 0.0]);
         let arm = MassProperties::sphere(0.1, 0.02).placed(&Pose::at([0.1, 0.0, 0.05]));
-        robot.add_segment(Segment::new(&format!("arm{i}"), Some(body), Joint::revolute(&format!("J{i}"), axis, at, ENDLESS), arm));
+        robot.add_segment(Segment::new(
+            &format!("arm{i}"),
+            Some(body),
+            Joint::revolute(&format!("J{i}"), axis, at, ENDLESS),
+            arm,
+        ));
     }
     let run = |h: f64| {
         let mut w = world(&robot, h, 0.0);

@@ -20,7 +20,6 @@ fn steps(time: f64, h: f64) -> usize {
     (time / h).round() as usize
 }
 
-
 /// The dynamics steps that a control step of 10 ms may be divided into [s].
 const STEPS: [f64; 4] = [5e-3, 2.5e-3, 2e-3, 1e-3];
 
@@ -287,7 +286,11 @@ fn pinch(mu: f64, torque: f64, h: f64) -> (f64, f64) {
     w.command(ActuatorId(thumb_base as u16), [0.0, right]);
     // Beside the thumb, which points straight down 28 mm from the wrist.
     let [x, y, z] = common::WRIST;
-    w.place_body(Tabletop::SPHERE, Pose::at([x + 0.028 + 0.006 + 0.025, y + 0.0225, z - 0.045].map(|x| x as f32)), Twist::default());
+    w.place_body(
+        Tabletop::SPHERE,
+        Pose::at([x + 0.028 + 0.006 + 0.025, y + 0.0225, z - 0.045].map(|x| x as f32)),
+        Twist::default(),
+    );
     w.arranged();
     w.command(ActuatorId(1), [-torque as f32, 0.0]);
     w.command(ActuatorId(5), [-torque as f32, 0.0]);

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Babble, commands, first_point, model, points_of, scene, start};
-use farsa_body::{Arrange, ArmAndHand, Robot, ServoRange, World as _};
+use farsa_body::{ArmAndHand, Arrange, Robot, ServoRange, World as _};
 use farsa_num::fearless_simd::{Level, dispatch, f32x8, f32x16};
 use farsa_num::{Digest, Domain, Scalar, Stream, levels};
 use farsa_physics::articulated::{Model, Options, Scratch, World, step};

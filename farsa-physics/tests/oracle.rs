@@ -4,8 +4,8 @@
 mod common;
 
 use common::{
-    Babble, CLOSED, Wrist, close, commands, drive, first_point, hand_and_sphere, in_the_palm, model, points_of, pose_hand,
-    scene, start, stream,
+    Babble, CLOSED, Wrist, close, commands, drive, first_point, hand_and_sphere, in_the_palm, model, points_of,
+    pose_hand, scene, start, stream,
 };
 use farsa_body::{ArmAndHand, Arrange, BodyId, JointId, Law, Pose, Robot, Shape, Tabletop, Twist, World as _};
 use farsa_physics::articulated::{Model, Options, Scratch, World, inverse_dynamics, jacobian, mass_matrix};
@@ -94,7 +94,11 @@ fn without_contacts_the_step_is_the_dense_implicit_step() {
             for j in 0..27 {
                 let [low, high] = robot.segments[j].joint.range;
                 let beyond = 0.05 * (high - low);
-                world.place_joint(JointId(j as u16), s.range_f64(low - beyond, high + beyond) as f32, s.range(-10.0, 10.0));
+                world.place_joint(
+                    JointId(j as u16),
+                    s.range_f64(low - beyond, high + beyond) as f32,
+                    s.range(-10.0, 10.0),
+                );
             }
             let turn: [f32; 4] = core::array::from_fn(|_| s.range(-1.0, 1.0));
             let length = turn.iter().map(|x| x * x).sum::<f32>().sqrt();
@@ -122,7 +126,9 @@ fn without_contacts_the_step_is_the_dense_implicit_step() {
                 .count();
         }
     }
-    println!("800 states: {worst:.1e} of the change of velocity; {stops} stops, {saturated} saturated servos among them");
+    println!(
+        "800 states: {worst:.1e} of the change of velocity; {stops} stops, {saturated} saturated servos among them"
+    );
     assert!(worst < 1e-9 && stops > 1000 && saturated > 1000);
 }
 
@@ -156,16 +162,16 @@ fn order(shape: Shape) -> u8 {
 struct Misfit {
     /// Generalised impulse that no stored impulse explains, relative.
     response: f64,
-    /// Normal velocity that differs from what spring and damper ask for [m/s].
-    normal: f64,
+    /// Normal velocity that differs from what spring and damper ask for [m/s], largest of every step.
+    normal: Vec<f64>,
     /// Depth or approach at points that carry nothing [m].
     apart: f64,
     /// Tangential over largest friction, minus 1.
     cone: f64,
-    /// Tangential velocity of a sticking point beyond the residual slip [m/s].
-    stick: f64,
-    /// Sine of the angle between sliding velocity and friction.
-    slide: f64,
+    /// Tangential velocity of a sticking point beyond the residual slip [m/s], largest of every step.
+    stick: Vec<f64>,
+    /// Sine of the angle between sliding velocity and friction, largest of every step.
+    slide: Vec<f64>,
     /// Impulse of a stop that differs from its law, relative to the largest impulse.
     stop: f64,
     points: usize,
@@ -213,6 +219,7 @@ impl Checker<'_> {
             DMatrix::from_row_slice(6, n, &row)
         };
         let state = world.state();
+        let (mut off_normal, mut off_stick, mut off_slide) = (0.0_f64, 0.0_f64, 0.0_f64);
         let (mut at, mut turn) = (first_point(robot, model), first_point(robot, model));
         turn += 8 * (0..robot.pairs.len()).map(|p| points_of(robot, p)).sum::<usize>();
         for (p, pair) in robot.pairs.iter().enumerate() {
@@ -250,7 +257,9 @@ impl Checker<'_> {
                 if index == 2 {
                     continue;
                 }
-                let Some(normal) = normal([a, b].map(|c| robot.colliders[c].shape), index, &places[a], point) else { continue };
+                let Some(normal) = normal([a, b].map(|c| robot.colliders[c].shape), index, &places[a], point) else {
+                    continue;
+                };
                 let u = j.rows(3, 3) * &after;
                 let u = Vector3::new(u[0], u[1], u[2]);
                 let (un, ut) = (u.dot(&normal), u - normal * u.dot(&normal));
@@ -266,23 +275,29 @@ impl Checker<'_> {
                 let gap = w[7] - h * un;
                 let rate = if gap <= 0.0 { damping } else { 0.0 };
                 let asked = -h * (k * w[7] + rate * un);
-                out.normal = out.normal.max((w[3] - asked).abs() / (h * (h * k + rate)));
+                off_normal = off_normal.max((w[3] - asked).abs() / (h * (h * k + rate)));
                 let across = impulse - normal * impulse.dot(&normal);
-                assert!((impulse.dot(&normal) - w[3]).abs() <= 1e-9 * w[3].max(1e-6), "the normal impulse is along the normal");
+                assert!(
+                    (impulse.dot(&normal) - w[3]).abs() <= 1e-9 * w[3].max(1e-6),
+                    "the normal impulse is along the normal"
+                );
                 let limit = surface.friction * w[3];
                 out.cone = out.cone.max((across.norm() - limit) / limit);
                 if across.norm() < limit * (1.0 - 1e-9) {
                     out.sticking += 1;
-                    out.stick = out.stick.max((ut + across * options.slip).norm());
+                    off_stick = off_stick.max((ut + across * options.slip).norm());
                 } else {
                     out.sliding += 1;
                     let w = ut + across * options.slip;
                     if w.norm() > 1e-3 {
-                        out.slide = out.slide.max((w.normalize() + across.normalize()).norm());
+                        off_slide = off_slide.max((w.normalize() + across.normalize()).norm());
                     }
                 }
             }
         }
+        out.normal.push(off_normal);
+        out.stick.push(off_stick);
+        out.slide.push(off_slide);
         let scale = top(&total).max(1e-9);
         for i in 0..27 {
             let Some((iq, iv)) = model.joint_index(JointId(i as u16)) else { continue };
@@ -346,22 +361,55 @@ fn grasp(sweeps: u32) -> Misfit {
             if t % 50 == 0 {
                 close(world, &CLOSED.map(|x| (x + 0.2 * (stream.uniform() - 0.3)).clamp(0.0, 1.0)));
             }
-            if t % 4 == 0 { let mut m = Misfit::default(); checker.step(world, &mut m); if m.stick > 1e-5 || m.normal > 1e-5 { println!("{t}: normal {:.1e} stick {:.1e} slide {:.1e} points {} sliding {}", m.normal, m.stick, m.slide, m.points, m.sliding); } misfit.normal = misfit.normal.max(m.normal); misfit.stick=misfit.stick.max(m.stick); } else { world.step() }
+            if t % 4 == 0 { checker.step(world, misfit) } else { world.step() }
         }
     })
 }
 
+/// The middle one, the 95th of a hundred and the largest.
+fn spread(x: &[f64]) -> [f64; 3] {
+    let mut x = x.to_vec();
+    x.sort_by(f64::total_cmp);
+    [x[x.len() / 2], x[x.len() * 95 / 100], x[x.len() - 1]]
+}
+
 #[test]
 fn impulses_explain_the_change_of_velocity_and_keep_their_laws() {
-    for (name, run) in [("a squeeze", grasp as fn(u32)->Misfit)] {
-        for sweeps in [10000, 50000] {
+    for (name, run) in [("random lives", babble as fn(u32) -> Misfit), ("a squeeze", grasp)] {
+        for sweeps in [10, 200, 2000] {
             let m = run(sweeps);
-            println!("{name}, {sweeps} sweeps: {m:?}"); continue;
+            let text = |x: [f64; 3]| format!("{:.1e} {:.1e} {:.1e}", x[0], x[1], x[2]);
+            let [normal, stick, slide] = [&m.normal, &m.stick, &m.slide].map(|x| spread(x));
+            println!(
+                "{name}, {sweeps} sweeps, {} points, {} sticking, {} sliding, {} stops: response {:.1e}, cone {:.1e}, stops {:.1e}; \
+                 median, 95 % and worst: normal {} m/s, sticking {} m/s, sliding {} rad",
+                m.points,
+                m.sticking,
+                m.sliding,
+                m.stops,
+                m.response,
+                m.cone,
+                m.stop,
+                text(normal),
+                text(stick),
+                text(slide)
+            );
             assert!(m.points > 500 && m.sticking > 300 && m.sliding > 20 && m.stops > 0, "too little happened");
             // These hold whether the sweeps have converged or not.
-            assert!(m.response < 1e-9 && m.cone < 1e-9);
-            if sweeps == 200 {
-                assert!(m.normal < 1e-6 && m.apart < 1e-9 && m.stick < 1e-5 && m.slide < 1e-6 && m.stop < 1e-9);
+            assert!(m.response < 1e-9 && m.cone < 1e-9 && m.stop < 1e-9);
+            match (name, sweeps) {
+                ("random lives", 200..) => {
+                    assert!(m.apart < 1e-9 && normal[2] < 1e-6 && stick[2] < 1e-5 && slide[2] < 1e-6);
+                }
+                // Fingers that work against each other through the sphere: slow, and once in hundreds of steps the sweeps go
+                // in circles between sliding and sticking.
+                ("a squeeze", 200) => {
+                    assert!(normal[0] < 1e-3 && stick[0] < 2e-3 && normal[2] < 0.05 && stick[2] < 0.1)
+                }
+                ("a squeeze", 2000) => {
+                    assert!(normal[0] < 1e-5 && stick[0] < 5e-5 && normal[1] < 5e-4 && stick[1] < 2e-3)
+                }
+                _ => {}
             }
         }
     }

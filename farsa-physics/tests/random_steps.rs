@@ -154,7 +154,11 @@ fn babble<S: Scalar<Real = f32>>(
                     x.set_lane(l, *w);
                 }
                 let new = (next, 0, Babble::new(seed, next));
-                if l < lives.len() { lives[l] = new } else { lives.push(new) }
+                if l < lives.len() {
+                    lives[l] = new
+                } else {
+                    lives.push(new)
+                }
                 next += 1;
                 placed = true;
             }

@@ -3,7 +3,9 @@
 
 mod common;
 
-use common::{Babble, CLOSED, Wrist, close, commands, drive, hand_and_sphere, in_the_palm, model, scene, start, stream};
+use common::{
+    Babble, CLOSED, Wrist, close, commands, drive, hand_and_sphere, in_the_palm, model, scene, start, stream,
+};
 use farsa_body::{ArmAndHand, Arrange, Contacts, Law, PairId, Pose, Snapshot, Tabletop, Twist, World as _};
 use farsa_physics::articulated::{Model, Options, World};
 

@@ -34,7 +34,12 @@ fn ball_on(shape: Shape, placement: Pose<f64>, surface: Surface) -> Robot {
             inertia: [i, i, i, 0.0, 0.0, 0.0],
         }],
         colliders: vec![
-            Collider { name: "ball".into(), body: Some(BodyId(0)), shape: Shape::Sphere { radius: RADIUS }, placement: Pose::identity() },
+            Collider {
+                name: "ball".into(),
+                body: Some(BodyId(0)),
+                shape: Shape::Sphere { radius: RADIUS },
+                placement: Pose::identity(),
+            },
             Collider { name: "ground".into(), body: None, shape, placement },
         ],
         pairs: vec![Pair { colliders: [0, 1], surface }],
@@ -95,7 +100,14 @@ fn a_sliding_ball_begins_to_roll_at_five_sevenths_of_its_speed() {
 fn on_a_slope_the_contact_slips_if_and_only_if_the_slope_is_steeper_than_friction() {
     // A ball rolls down any slope; it slips where tan(angle) > 7/2 mu. A block of a prismatic-free body needs none of
     // this: a box on four corners slips where tan(angle) > mu.
-    for (mu, angle, slips) in [(0.5_f64, 24.0_f64, false), (0.5, 29.0, true), (1.0, 43.0, false), (1.0, 47.0, true), (0.2, 10.0, false), (0.2, 13.0, true)] {
+    for (mu, angle, slips) in [
+        (0.5_f64, 24.0_f64, false),
+        (0.5, 29.0, true),
+        (1.0, 43.0, false),
+        (1.0, 47.0, true),
+        (0.2, 10.0, false),
+        (0.2, 13.0, true),
+    ] {
         let half_angle = angle.to_radians() / 2.0;
         let tilt = [0.0, half_angle.sin(), 0.0, half_angle.cos()];
         let mut robot = ball_on(Shape::Plane, Pose { position: [0.0; 3], rotation: tilt }, surface(mu, 0.0));
@@ -147,7 +159,11 @@ fn a_ball_pushed_over_the_edge_falls() {
     let table = Shape::Box { half: [0.235, 0.4, 0.15] };
     let robot = ball_on(table, Pose::at([0.265, -0.15, -0.15]), surface(1.0, 5e-4));
     let mut w = world(&robot, 5);
-    w.place_body(BodyId(0), Pose::at([0.45, -0.18, RADIUS as f32]), Twist { linear: [0.5, 0.0, 0.0], angular: [0.0; 3] });
+    w.place_body(
+        BodyId(0),
+        Pose::at([0.45, -0.18, RADIUS as f32]),
+        Twist { linear: [0.5, 0.0, 0.0], angular: [0.0; 3] },
+    );
     w.arranged();
     let mut lowest: f64 = 1.0;
     for _ in 0..100 {

@@ -5,12 +5,16 @@ use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, Joint, JointId, Law, Pose, Robot, ServoRange, Shape, Surface, Tabletop,
     Twist,
 };
-use farsa_num::{Domain, Real, Stream};
-use farsa_physics::articulated::{Model, Options, World};
+use farsa_num::{Domain, Stream};
+use farsa_physics::articulated::{Model, Options, Precision, World};
 
 /// J1 to J4 at the four starts [deg].
-pub(crate) const POSES: [[f64; 4]; 4] =
-    [[-73.0, -30.0, -40.0, -56.0], [-73.0, -30.0, -40.0, -113.0], [-6.0, 30.0, -10.0, -56.0], [-73.0, -30.0, 45.0, -113.0]];
+pub(crate) const POSES: [[f64; 4]; 4] = [
+    [-73.0, -30.0, -40.0, -56.0],
+    [-73.0, -30.0, -40.0, -113.0],
+    [-6.0, 30.0, -10.0, -56.0],
+    [-73.0, -30.0, 45.0, -113.0],
+];
 /// The sphere at the four starts [m].
 pub(crate) const SPHERES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
 
@@ -21,12 +25,12 @@ pub(crate) fn scene() -> Robot {
     Tabletop::default().scene(&ArmAndHand::default()).unwrap()
 }
 
-pub(crate) fn model<R: Real>(robot: &Robot, options: Options) -> Model<R> {
+pub(crate) fn model<R: Precision>(robot: &Robot, options: Options) -> Model<R> {
     Model::new(robot, &options).unwrap()
 }
 
 /// A random start of trial `k`, as the experiment draws it.
-pub(crate) fn start<R: Real>(robot: &Robot, world: &mut World<R>, stream: &mut Stream, k: usize) {
+pub(crate) fn start<R: Precision>(robot: &Robot, world: &mut World<R>, stream: &mut Stream, k: usize) {
     world.clear();
     for j in 0..27 {
         let [low, high] = robot.segments[j].joint.range;
@@ -57,7 +61,7 @@ pub(crate) fn commands(groups: &[Vec<ServoRange>; 9], y: &[f32; OUTPUTS]) -> [[f
     c
 }
 
-pub(crate) fn drive<R: Real>(world: &mut World<R>, commands: &[[f32; 2]; 27]) {
+pub(crate) fn drive<R: Precision>(world: &mut World<R>, commands: &[[f32; 2]; 27]) {
     for (i, c) in commands.iter().enumerate() {
         world.command(ActuatorId(i as u16), *c);
     }
@@ -119,7 +123,7 @@ pub(crate) fn half_thickness(shape: Shape) -> f64 {
 }
 
 /// Where the contact points' words begin in a state.
-pub(crate) fn first_point<R: Real>(robot: &Robot, model: &Model<R>) -> usize {
+pub(crate) fn first_point<R: Precision>(robot: &Robot, model: &Model<R>) -> usize {
     model.positions() + model.dofs() + 2 * robot.actuators.len()
 }
 
@@ -180,7 +184,7 @@ pub(crate) fn in_the_palm(gap: f64) -> [f64; 3] {
 pub(crate) const CLOSED: [f32; 9] = [0.85, 0.35, 0.35, 0.65, 0.70, 0.65, 0.70, 0.0, 0.675];
 
 /// Commands of the hand's twenty servos for the nine groups' outputs.
-pub(crate) fn close<R: Real>(world: &mut World<R>, y: &[f32; 9]) {
+pub(crate) fn close<R: Precision>(world: &mut World<R>, y: &[f32; 9]) {
     for (group, y) in ArmAndHand::default().servo_groups().iter().zip(y) {
         for s in group {
             world.command(ActuatorId(s.servo.0 - 7), [s.from + (s.to - s.from) * y, 0.0]);
@@ -189,7 +193,7 @@ pub(crate) fn close<R: Real>(world: &mut World<R>, y: &[f32; 9]) {
 }
 
 /// Places the hand's joints where its servos would bring them for the nine groups' outputs.
-pub(crate) fn pose_hand<R: Real>(world: &mut World<R>, y: &[f32; 9]) {
+pub(crate) fn pose_hand<R: Precision>(world: &mut World<R>, y: &[f32; 9]) {
     for (group, y) in ArmAndHand::default().servo_groups().iter().zip(y) {
         for s in group {
             world.place_joint(JointId(s.servo.0), s.from + (s.to - s.from) * y, 0.0);
