@@ -131,3 +131,11 @@ fn every_crate_has_what_a_reader_expects() {
         assert!(read("README.md").contains(&format!("`{name}`")), "README.md does not name {name}");
     }
 }
+
+#[test]
+fn no_dependency_compiles_c_or_looks_for_a_system_library() {
+    let lock = read("Cargo.lock");
+    for name in ["cc", "cmake", "bindgen", "pkg-config", "vcpkg"] {
+        assert!(!lock.contains(&format!("name = \"{name}\"\n")), "Cargo.lock: {name}");
+    }
+}

@@ -322,9 +322,9 @@ pub fn mass_matrix<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut
             for k in 0..6 {
                 let mut unit = Spatial::zero(simd);
                 if k < 3 {
-                    unit.angular[k] = one
+                    unit.angular[k] = one;
                 } else {
-                    unit.linear[k - 3] = one
+                    unit.linear[k - 3] = one;
                 }
                 let f = inertia.times(unit);
                 for r in 0..3 {
