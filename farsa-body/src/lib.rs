@@ -1,6 +1,9 @@
 // The examples of the README build descriptions, which need `alloc`.
 #![cfg_attr(feature = "alloc", doc = include_str!("../README.md"))]
-#![cfg_attr(not(feature = "alloc"), doc = "Actuators, ports, sensors and motors of robots; the feature `alloc` adds descriptions.")]
+#![cfg_attr(
+    not(feature = "alloc"),
+    doc = "Actuators, ports, sensors and motors of robots; the feature `alloc` adds descriptions."
+)]
 #![no_std]
 
 #[cfg(feature = "alloc")]
@@ -30,13 +33,13 @@ mod kinematics;
 #[cfg(feature = "alloc")]
 mod mass_properties;
 mod motor;
-mod noisy;
 mod muscle;
+mod noisy;
 mod place;
 #[cfg(feature = "alloc")]
 mod point_world;
-mod pose;
 mod ports;
+mod pose;
 mod proprioception;
 #[cfg(feature = "alloc")]
 mod robot;
@@ -71,11 +74,11 @@ pub use motor::{Muscles, ServoGroup, ServoRange, TorqueMotor};
 pub use muscle::{MusclePair, MuscleVariant, Tension};
 pub use noisy::{Noise, Noisy};
 pub use place::{Axes, BodyPose, BodyVelocity, Height, Point, TargetPosition};
-pub use pose::{Pose, Twist};
 pub use ports::{
-    ActuatorId, Actuated, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Motor, PairContact,
-    PairId, Rays, Sensor, Snapshot, World,
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Motor,
+    PairContact, PairId, Rays, Sensor, Snapshot, World,
 };
+pub use pose::{Pose, Twist};
 pub use proprioception::{JointPosition, JointSpeed};
 #[cfg(feature = "alloc")]
 pub use robot::{Actuator, Collider, Joint, JointKind, Offsets, Pair, Robot, Segment, Shape, Surface};

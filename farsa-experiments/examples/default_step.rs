@@ -91,7 +91,9 @@ fn main() -> ExitCode {
     free.pairs.clear();
     let truth: Vec<_> = (0..MOTIONS).map(|seed| motion::<f64>(&free, &config, 100, seed)).collect();
     let still = rest::<f64>(&scene, 100);
-    println!("| step [ms] | largest RMS error of an arm joint [deg] | order | resting sphere off by [mm] | scripted grasps |");
+    println!(
+        "| step [ms] | largest RMS error of an arm joint [deg] | order | resting sphere off by [mm] | scripted grasps |"
+    );
     println!("|---|---|---|---|---|");
     let mut fails = false;
     for substeps in [2_u32, 4, 5, 10] {

@@ -93,7 +93,7 @@ fn least(h: f64, f: &mut dyn FnMut(f64) -> f64) -> f64 {
         let (x, y) = ((2.0 * a + b) / 3.0, (a + 2.0 * b) / 3.0);
         if f(x) < f(y) { b = y } else { a = x }
     }
-    f((a + b) / 2.0)
+    f(f64::midpoint(a, b))
 }
 
 fn along(place: &Pose<f64>, t: f64) -> V {
@@ -116,7 +116,7 @@ fn edges(half: V, place: &Pose<f64>) -> Vec<(V, V)> {
 
 /// Distance of two segments.
 fn between(a: (V, V), b: (V, V)) -> f64 {
-    let at = |s: (V, V), t: f64| add(s.0, sub(s.1, s.0), (t + 1.0) / 2.0);
+    let at = |s: (V, V), t: f64| add(s.0, sub(s.1, s.0), f64::midpoint(t, 1.0));
     let point_to = |p: V| {
         let d = sub(b.1, b.0);
         let t = (dot(sub(p, b.0), d) / dot(d, d)).clamp(0.0, 1.0);

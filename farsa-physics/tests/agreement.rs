@@ -1,4 +1,5 @@
 //! Our recursive dynamics against Pinocchio's and MuJoCo's (fixtures/make.py), and against each other.
+#![allow(missing_docs, clippy::unwrap_used)]
 
 use farsa_body::{BodyId, Joint, JointKind, Pose, Robot, Segment};
 use farsa_physics::articulated::{

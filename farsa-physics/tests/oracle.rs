@@ -404,10 +404,10 @@ fn impulses_explain_the_change_of_velocity_and_keep_their_laws() {
                 // Fingers that work against each other through the sphere: slow, and once in hundreds of steps the sweeps go
                 // in circles between sliding and sticking.
                 ("a squeeze", 200) => {
-                    assert!(normal[0] < 1e-3 && stick[0] < 2e-3 && normal[2] < 0.05 && stick[2] < 0.1)
+                    assert!(normal[0] < 1e-3 && stick[0] < 2e-3 && normal[2] < 0.05 && stick[2] < 0.1);
                 }
                 ("a squeeze", 2000) => {
-                    assert!(normal[0] < 1e-5 && stick[0] < 5e-5 && normal[1] < 5e-4 && stick[1] < 2e-3)
+                    assert!(normal[0] < 1e-5 && stick[0] < 5e-5 && normal[1] < 5e-4 && stick[1] < 2e-3);
                 }
                 _ => {}
             }

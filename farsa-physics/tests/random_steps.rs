@@ -155,9 +155,9 @@ fn babble<S: Scalar<Real = f32>>(
                 }
                 let new = (next, 0, Babble::new(seed, next));
                 if l < lives.len() {
-                    lives[l] = new
+                    lives[l] = new;
                 } else {
-                    lives.push(new)
+                    lives.push(new);
                 }
                 next += 1;
                 placed = true;

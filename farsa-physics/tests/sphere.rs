@@ -1,13 +1,19 @@
 //! A ball on a plane and on a table against closed forms.
+#![allow(missing_docs, clippy::unwrap_used)]
 
 use farsa_body::{
     Arrange, BodyId, Collider, Contacts, Joint, JointKind, Kinematics, Pair, PairId, Pose, Robot, Segment, Shape,
     Surface, Twist, World as _,
 };
+use farsa_num::sin_cos;
 use farsa_physics::articulated::{Model, Options, World};
 
 const RADIUS: f64 = 0.025;
 const MASS: f64 = 0.05;
+
+fn length(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
+}
 
 fn surface(friction: f64, rolling_friction: f64) -> Surface {
     Surface { friction, rolling_friction, stiffness: 1e5, damping: 300.0 }
@@ -109,10 +115,12 @@ fn on_a_slope_the_contact_slips_if_and_only_if_the_slope_is_steeper_than_frictio
         (0.2, 13.0, true),
     ] {
         let half_angle = angle.to_radians() / 2.0;
-        let tilt = [0.0, half_angle.sin(), 0.0, half_angle.cos()];
+        let (half_sin, half_cos) = sin_cos(half_angle);
+        let (sin, cos) = sin_cos(angle.to_radians());
+        let tilt = [0.0, half_sin, 0.0, half_cos];
         let mut robot = ball_on(Shape::Plane, Pose { position: [0.0; 3], rotation: tilt }, surface(mu, 0.0));
         robot.colliders[0].shape = Shape::Box { half: [RADIUS, RADIUS, RADIUS / 2.0] };
-        let up = [angle.to_radians().sin() * RADIUS / 2.0, 0.0, angle.to_radians().cos() * RADIUS / 2.0];
+        let up = [sin * RADIUS / 2.0, 0.0, cos * RADIUS / 2.0];
         let mut w = world(&robot, 5);
         let pose = Pose { position: up, rotation: tilt };
         w.place_body(BodyId(0), pose.cast(), Twist::default());
@@ -121,8 +129,8 @@ fn on_a_slope_the_contact_slips_if_and_only_if_the_slope_is_steeper_than_frictio
             w.step();
         }
         let p = w.pose_of(BodyId(0)).position;
-        let moved = ((p[0] - up[0]).powi(2) + (p[2] - up[2]).powi(2)).sqrt();
-        let slides = 0.5 * 9.81 * (angle.to_radians().sin() - mu * angle.to_radians().cos());
+        let moved = length(p[0] - up[0], p[2] - up[2]);
+        let slides = 0.5 * 9.81 * (sin - mu * cos);
         println!("mu {mu}, {angle} deg: moved {:.4} mm, sliding predicts {:.4} mm", moved * 1e3, slides * 1e3);
         if slips {
             assert!((moved - slides).abs() < 0.05 * slides + 1e-3, "mu {mu} angle {angle}: {moved} {slides}");
@@ -144,7 +152,7 @@ fn a_ball_at_rest_stays_where_it_is() {
             w.step();
         }
         let p = w.pose_of(BodyId(0)).position;
-        let drift = ((p[0] - 0.26_f32 as f64).powi(2) + (p[1] + 0.18_f32 as f64).powi(2)).sqrt();
+        let drift = length(p[0] - f64::from(0.26_f32), p[1] + f64::from(0.18_f32));
         println!("{substeps}: sinks {:.2e} m, drifts {drift:.2e} m", RADIUS - p[2]);
         assert!(RADIUS - p[2] < 5e-4 && RADIUS - p[2] > 0.0);
         assert!(drift < 1e-4);
