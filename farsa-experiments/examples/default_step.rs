@@ -10,7 +10,7 @@ use std::sync::Arc;
 use farsa_body::{Actuated, ActuatorId, Arrange, Pose, Robot, Tabletop, Twist, World as _};
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptLife, TRIALS, Timetable};
 use farsa_experiments::{Job, Life};
-use farsa_num::{Domain, Real as _, Stream, sin_cos};
+use farsa_num::{Domain, Stream, sin_cos};
 use farsa_physics::articulated::{Model, Options, Precision, World};
 
 /// Different smooth commands that are tried.
@@ -68,7 +68,7 @@ fn rest<R: Precision>(scene: &Scene, substeps: u32) -> [f64; 3] {
 }
 
 fn grasps(config: &Config, substeps: u32) -> usize {
-    let config = Config { substeps: substeps.into(), ..config.clone() };
+    let config = Config { substeps, ..config.clone() };
     let scene = Arc::new(Scene::new(config).expect("a scene"));
     let model = Model::<f32>::new(&scene.robot, &scene.config.options()).expect("a model");
     let mut world = World::new(model);
@@ -109,7 +109,7 @@ fn main() -> ExitCode {
         let off = (0..3).map(|k| (at[k] - still[k]).abs()).fold(0.0, f64::max) * 1e3;
         let held = grasps(&config, substeps);
         println!("| {} | {here:.3} | {order:.2} | {off:.5} | {held} of {TRIALS} |", 10.0 / f64::from(substeps));
-        if u64::from(substeps) == u64::from(config.options().substeps) {
+        if substeps == config.options().substeps {
             fails = here > 1.0 || off > 0.1 || held < TRIALS || order < 0.9;
         }
     }
