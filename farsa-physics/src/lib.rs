@@ -4,6 +4,7 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "alloc")]
 mod collision;
 #[cfg(feature = "alloc")]
 mod contact;
@@ -11,11 +12,13 @@ mod contact;
 mod model;
 #[cfg(feature = "alloc")]
 mod ray;
+#[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "contacts need models, which own vectors"))]
 mod spatial;
 #[cfg(feature = "alloc")]
 mod step;
 #[cfg(feature = "alloc")]
 mod stop;
+#[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
 mod tree;
 #[cfg(feature = "alloc")]
 mod world;
