@@ -56,6 +56,7 @@ fn every_source_is_listed_and_every_listed_source_is_used() {
         let extension = path.extension().unwrap_or_default();
         if (extension == "rs" || extension == "md") && path != Path::new("REFERENCES.md") && !path.starts_with("tests")
         {
+            assert!(!text.contains("[Thesis]"), "{}: [Thesis] is [Ferrauto2010]", path.display());
             for key in keys(&text) {
                 used.entry(key.into()).or_insert_with(|| path.clone());
             }

@@ -3,11 +3,10 @@
 
 mod common;
 
-use common::{Babble, commands, first_point, half_thickness, model, points_of, start};
-use farsa_body::{ArmAndHand, Robot, ServoRange, Tabletop};
-use farsa_num::fearless_simd::{Level, dispatch, f32x8};
-use farsa_num::{Domain, Scalar, Stream};
-use farsa_physics::articulated::{Model, Options, Scratch, World, step};
+use common::{Babble, commands, drive, first_point, half_thickness, model, points_of, start};
+use farsa_body::{ArmAndHand, Robot, ServoRange, Tabletop, World as _};
+use farsa_num::{Domain, Stream};
+use farsa_physics::articulated::{Model, Options, World};
 
 const LIFE: usize = 600;
 
@@ -120,65 +119,28 @@ impl<'a> Checked<'a> {
     }
 }
 
-/// Lives of random commands in the lanes of one state.
-#[inline(always)]
-fn babble<S: Scalar<Real = f32>>(
-    simd: S::Simd,
-    checked: &Checked,
-    groups: &[Vec<ServoRange>; 9],
-    seed: u64,
-    steps: usize,
-    f: &mut Figures,
-) {
+/// Lives of random commands, one after the other.
+fn babble(checked: &Checked, groups: &[Vec<ServoRange>; 9], seed: u64, steps: usize, f: &mut Figures) {
     let model = checked.model;
-    let mut state = vec![S::splat(simd, 0.0); model.state_len()];
-    let mut scratch = Scratch::new(simd, model);
     let mut world = World::new(model.clone());
-    let command = model.positions() + model.dofs();
-    let mut lives: Vec<(u32, usize, Babble)> = Vec::new();
-    let mut next = 0;
-    let mut own = vec![0.0; model.state_len()];
+    let mut life = 0;
     let mut done = 0;
     while done < steps {
-        let mut placed = false;
-        for l in 0..S::LANES {
-            let over = lives.get(l).is_none_or(|(_, t, _)| {
-                let fell = state[29].lane(l) < 0.0;
-                f.falls += usize::from(fell && *t > 0);
-                *t >= LIFE || fell
-            });
-            if over {
-                let mut stream = Stream::new(seed, Domain::Start, next, 0, 0);
-                start(checked.robot, &mut world, &mut stream, next as usize);
-                for (x, w) in state.iter_mut().zip(world.state()) {
-                    x.set_lane(l, *w);
-                }
-                let new = (next, 0, Babble::new(seed, next));
-                if l < lives.len() {
-                    lives[l] = new;
-                } else {
-                    lives.push(new);
-                }
-                next += 1;
-                placed = true;
-            }
-            for (i, c) in commands(groups, lives[l].2.next()).into_iter().enumerate() {
-                state[command + 2 * i].set_lane(l, c[0]);
-                state[command + 2 * i + 1].set_lane(l, c[1]);
+        let mut stream = Stream::new(seed, Domain::Start, life, 0, 0);
+        start(checked.robot, &mut world, &mut stream, life as usize);
+        let mut babble = Babble::new(seed, life);
+        for t in 1..=LIFE {
+            drive(&mut world, &commands(groups, babble.next()));
+            world.step();
+            done += 1;
+            checked.check(world.state(), f, &format!("life {life} step {t}"));
+            // The sphere's height: it has fallen off the table.
+            if world.state()[29] < 0.0 {
+                f.falls += 1;
+                break;
             }
         }
-        if placed {
-            scratch.place(simd, model, &state);
-        }
-        step(simd, model, &mut state, &mut scratch);
-        for l in 0..S::LANES {
-            lives[l].1 += 1;
-            for (o, x) in own.iter_mut().zip(&state) {
-                *o = x.lane(l);
-            }
-            checked.check(&own, f, &format!("life {} step {}", lives[l].0, lives[l].1));
-        }
-        done += S::LANES;
+        life += 1;
     }
 }
 
@@ -187,7 +149,7 @@ fn run(robot: &Robot, options: Options, table: Tabletop, seed: u64, steps: usize
     let checked = Checked::new(robot, &model, table, options.time_step / f64::from(options.substeps));
     let groups = ArmAndHand::default().servo_groups();
     let mut f = Figures { finite: true, ..Figures::default() };
-    dispatch!(Level::new(), simd => babble::<f32x8<_>>(simd, &checked, &groups, seed, steps, &mut f));
+    babble(&checked, &groups, seed, steps, &mut f);
     f
 }
 
