@@ -38,7 +38,7 @@ impl ParameterKind {
 ///
 /// Counts saturate: a layout too large for the machine asks for `usize::MAX` parameters, which no slice has.
 ///
-/// Source: `[Thesis]` chapter 2, which gives the totals 792 and 756 and not the order.
+/// Source: `[Ferrauto2010]` chapter 2, which gives the totals 792 and 756 and not the order.
 ///
 /// ```
 /// use farsa_nn::Layout;
@@ -76,7 +76,7 @@ pub struct Parts<'a> {
 }
 
 impl Layout {
-    /// Slope of the logistic function where none is asked for, 0.2 (`[Thesis]` chapter 2).
+    /// Slope of the logistic function where none is asked for, 0.2 (`[Ferrauto2010]` chapter 2).
     pub const SLOPE: f32 = 0.2;
 
     /// A layout of so many sensors, hidden neurons and outputs, with slope [`Layout::SLOPE`].

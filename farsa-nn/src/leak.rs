@@ -10,7 +10,7 @@ use crate::Error;
 /// The source prints one equation and describes another, and its program ran a third; so each reading has a name and a
 /// run records which it used.
 ///
-/// Source: `[Thesis]` chapter 2. Deviation: the default is [`Leak::Filter`], not the printed equation.
+/// Source: `[Ferrauto2010]` chapter 2. Deviation: the default is [`Leak::Filter`], not the printed equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Leak {
     /// `H(t) = d*y(t) + (1-d)*H(t-1)`: the low-pass filter that the source's words describe.

@@ -19,7 +19,7 @@ use crate::{Controller, Error, Layout, Leak, ParameterKind};
 /// A NaN or infinite input is the caller's mistake; what it leaves in the state stays there until
 /// [`reset`](Controller::reset).
 ///
-/// Source: `[Thesis]` chapter 2. Deviations: the bias is the first summand, not the last (the order of rounding
+/// Source: `[Ferrauto2010]` chapter 2. Deviations: the bias is the first summand, not the last (the order of rounding
 /// only); the recurrent sum, which the source states in words and proves by its parameter counts, is written out and
 /// reads `H(t-1)`; the initial state, which the source does not give, is zero.
 ///
