@@ -3,10 +3,15 @@
 
 #[path = "../farsa-body/tests/golden.rs"]
 mod body;
+#[cfg(feature = "alloc")]
+#[path = "../farsa-evo/tests/golden.rs"]
+mod evo;
 #[path = "../farsa-nn/tests/golden.rs"]
 mod nn;
 #[path = "../farsa-num/tests/golden.rs"]
 mod num;
+#[path = "../farsa-physics/tests/golden.rs"]
+mod physics;
 
 /// A crate whose golden is not named above would be left out in silence.
 #[test]

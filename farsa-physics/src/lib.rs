@@ -9,9 +9,17 @@ mod collision;
 #[cfg(feature = "alloc")]
 mod contact;
 #[cfg(feature = "alloc")]
+mod links;
+#[cfg(feature = "alloc")]
 mod model;
 #[cfg(feature = "alloc")]
+mod model_builder;
+#[cfg(feature = "alloc")]
 mod ray;
+#[cfg(feature = "alloc")]
+mod rows;
+#[cfg(feature = "alloc")]
+mod solver;
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "contacts need models, which own vectors"))]
 mod spatial;
 #[cfg(feature = "alloc")]

@@ -6,8 +6,9 @@ use alloc::vec::Vec;
 use farsa_num::{Real, Scalar};
 
 use crate::collision::Placed;
-use crate::contact::{Block, Solver, place_colliders};
+use crate::contact::place_colliders;
 use crate::model::{Model, POINT_WORDS};
+use crate::solver::{Block, Solver};
 use crate::spatial::{Spatial, Vector, add, matrix_of, rotate, scale, splat, sub};
 use crate::stop::{Stop, set_up_stops};
 use crate::tree::{LinkWork, Motion, Root, WORLD, accelerations, place};

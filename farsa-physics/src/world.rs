@@ -142,6 +142,13 @@ impl<R: Precision> World<R> {
         }
     }
 
+    /// Whether a pair's points tell of the second collider instead of the first, and the points' words.
+    fn points(&self, pair: PairId) -> Option<(bool, &[R])> {
+        let pair = self.model.pairs.get(pair.index())?;
+        let first = self.model.first_point() + POINT_WORDS * pair.point;
+        Some((pair.flipped, self.state.get(first..first + POINT_WORDS * pair.points)?))
+    }
+
     /// Velocity of a body's origin and its angular velocity in full precision.
     pub fn velocity_of(&self, body: BodyId) -> Twist<R> {
         let Some(mount) = self.model.mounts.get(body.index()) else { return Twist::default() };
@@ -208,14 +215,19 @@ impl<R: Precision> Contacts for World<R> {
         self.model.pair_bodies.get(pair.index()).copied().unwrap_or([None; 2])
     }
 
+    fn touches(&self, pair: PairId) -> bool {
+        let Some(pair) = self.model.pairs.get(pair.index()) else { return false };
+        let first = self.model.first_point() + POINT_WORDS * pair.point;
+        let impulse = |point: usize| self.state.get(first + 3 + POINT_WORDS * point);
+        (0..pair.points).any(|point| impulse(point).is_some_and(|impulse| *impulse > R::of(0.0)))
+    }
+
     fn pair_contact(&self, pair: PairId) -> PairContact {
-        let Some(pair) = self.model.pairs.get(pair.index()) else { return PairContact::default() };
-        let first = self.model.positions + self.model.dofs + 2 * self.model.actuators.len();
-        let first = first + POINT_WORDS * pair.point;
+        let Some((flipped, points)) = self.points(pair) else { return PairContact::default() };
         let mut contact = PairContact { depth: f32::NEG_INFINITY, ..PairContact::default() };
         let (mut force, mut normal, mut moment) = ([0.0; 3], 0.0, [0.0; 3]);
         let per_second = 1.0 / self.model.h.to_f64();
-        for words in self.state[first..first + POINT_WORDS * pair.points].chunks_exact(POINT_WORDS) {
+        for words in points.chunks_exact(POINT_WORDS) {
             let w = |k: usize| words[k].to_f64();
             contact.depth = contact.depth.max(-w(7) as f32);
             if w(3) > 0.0 {
@@ -229,7 +241,7 @@ impl<R: Precision> Contacts for World<R> {
             }
         }
         if contact.points > 0 {
-            let sign = if pair.flipped { -1.0 } else { 1.0 };
+            let sign = if flipped { -1.0 } else { 1.0 };
             contact.force = force.map(|x| (sign * x) as f32);
             contact.normal_force = normal as f32;
             contact.point = moment.map(|x| (x / normal) as f32);

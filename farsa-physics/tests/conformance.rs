@@ -3,9 +3,9 @@
 
 mod common;
 
-use common::{CLOSED, POSES, Wrist, hand_and_sphere, in_the_palm, model, pose_hand, scene};
+use common::{CLOSED, POSES, Wrist, hand_and_sphere, model, pose_hand, put_in_the_palm, scene};
 use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
-use farsa_body::{ArmAndHand, Arrange, JointId, Law, Pose, Tabletop, Twist};
+use farsa_body::{ArmAndHand, Arrange, JointId, Law};
 use farsa_physics::articulated::{Options, World};
 
 #[test]
@@ -35,7 +35,7 @@ fn a_hand_around_a_sphere_conforms() {
     let model = model::<f32>(&robot, Options::default());
     let make = || {
         let mut world = World::new(model.clone());
-        world.place_body(Tabletop::SPHERE, Pose::at(in_the_palm(0.001).map(|x| x as f32)), Twist::default());
+        put_in_the_palm(&mut world, 0.001);
         pose_hand(&mut world, &CLOSED.map(|x| 0.5 * x));
         world.arranged();
         world

@@ -1,8 +1,11 @@
 //! Energy and momentum of free motion: the errors of an integrator of first order, and no others.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod common;
+
+use common::world;
 use farsa_body::{Arrange, BodyId, Joint, JointId, MassProperties, Pose, Robot, Segment, Twist, World as _};
-use farsa_physics::articulated::{Model, Options, World};
+use farsa_physics::articulated::World;
 
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
@@ -18,11 +21,6 @@ fn pendulum(rods: usize) -> Robot {
         parent = Some(robot.add_segment(Segment::new(&format!("rod{i}"), parent, joint, rod)));
     }
     robot
-}
-
-fn world(robot: &Robot, h: f64, gravity: f64) -> World<f64> {
-    let options = Options { time_step: h, substeps: 1, gravity: [0.0, 0.0, -gravity], ..Options::default() };
-    World::new(Model::new(robot, &options).unwrap())
 }
 
 /// The largest |E(t) - E(0)| over 10 s [J].

@@ -4,8 +4,8 @@
 mod common;
 
 use common::{
-    Babble, CLOSED, Wrist, close, commands, drive, first_point, hand_and_sphere, in_the_palm, model, points_of,
-    pose_hand, scene, start, stream,
+    Babble, CLOSED, Wrist, close, commands, drive, first_point, ghost, hand_and_sphere, model, points_of, pose_hand,
+    put_in_the_palm, scene, start, stream,
 };
 use farsa_body::{ArmAndHand, Arrange, BodyId, JointId, Law, Pose, Robot, Shape, Tabletop, Twist, World as _};
 use farsa_physics::articulated::{Model, Options, Scratch, World, inverse_dynamics, jacobian, mass_matrix};
@@ -79,8 +79,7 @@ fn top(x: &DVector<f64>) -> f64 {
 
 #[test]
 fn without_contacts_the_step_is_the_dense_implicit_step() {
-    let mut robot = scene();
-    robot.pairs.clear();
+    let robot = ghost(&scene());
     let groups = ArmAndHand::default().servo_groups();
     let (mut worst, mut stops, mut saturated) = (0.0_f64, 0, 0);
     for h in [5e-3, 2.5e-3, 1e-3, 1e-4] {
@@ -318,9 +317,7 @@ impl Checker<'_> {
 /// A checker and the world it steps, with contacts solved in this many sweeps.
 fn check(robot: &Robot, options: Options, run: impl FnOnce(&mut Checker, &mut World<f64>, &mut Misfit)) -> Misfit {
     let model = model::<f64>(robot, options);
-    let mut ghost = robot.clone();
-    ghost.pairs.clear();
-    let free = World::new(Model::new(&ghost, &options).unwrap());
+    let free = World::new(common::model(&ghost(robot), options));
     let stop = stop_stiffness(&model, &options);
     let mut world = World::new(model.clone());
     let mut misfit = Misfit::default();
@@ -353,7 +350,7 @@ fn grasp(sweeps: u32) -> Misfit {
     let arm = ArmAndHand::default();
     let robot = hand_and_sphere(Wrist::Fixed, arm.surface, Some(Law::Servo(arm.servo)));
     check(&robot, Options { sweeps, gravity: [0.0; 3], ..one_step(2.5e-3) }, |checker, world, misfit| {
-        world.place_body(Tabletop::SPHERE, Pose::at(in_the_palm(0.0).map(|x| x as f32)), Twist::default());
+        put_in_the_palm(world, 0.0);
         pose_hand(world, &CLOSED.map(|x| 0.5 * x));
         world.arranged();
         let mut stream = stream(33, 0);

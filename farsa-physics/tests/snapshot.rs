@@ -4,17 +4,14 @@
 mod common;
 
 use common::{
-    Babble, CLOSED, Wrist, close, commands, drive, hand_and_sphere, in_the_palm, model, scene, start, stream,
+    Babble, CLOSED, Wrist, close, commands, drive, hand_and_sphere, model, put_in_the_palm, scene, start, stream,
+    touching,
 };
-use farsa_body::{ArmAndHand, Arrange, Contacts, Law, PairId, Pose, Snapshot, Tabletop, Twist, World as _};
+use farsa_body::{ArmAndHand, Arrange, Law, Snapshot, World as _};
 use farsa_physics::articulated::{Model, Options, World};
 
 fn bits(world: &World<f32>) -> Vec<u32> {
     world.state().iter().map(|x| x.to_bits()).collect()
-}
-
-fn touching(world: &World<f32>) -> usize {
-    (0..world.pairs()).filter(|p| world.pair_contact(PairId(*p as u16)).points > 0).count()
 }
 
 /// A hand that has closed on the sphere, from a model with gravity.
@@ -23,7 +20,7 @@ fn grasp() -> World<f32> {
     let robot = hand_and_sphere(Wrist::Fixed, arm.surface, Some(Law::Servo(arm.servo)));
     let options = Options { gravity: [0.0, 0.0, 2.0], ..Options::default() };
     let mut world = World::new(Model::new(&robot, &options).unwrap());
-    world.place_body(Tabletop::SPHERE, Pose::at(in_the_palm(0.0005).map(|x| x as f32)), Twist::default());
+    put_in_the_palm(&mut world, 0.0005);
     world.arranged();
     close(&mut world, &CLOSED);
     for _ in 0..60 {

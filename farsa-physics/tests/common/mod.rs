@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "every test uses a part of it")]
 
 use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, Joint, JointId, Law, Pose, Robot, ServoRange, Shape, Surface, Tabletop,
-    Twist,
+    Actuated, ActuatorId, ArmAndHand, Arrange, Contacts, Joint, JointId, Law, PairId, Pose, Robot, ServoRange, Shape,
+    Surface, Tabletop, Twist,
 };
 use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{Model, Options, Precision, World};
@@ -27,6 +27,21 @@ pub(crate) fn scene() -> Robot {
 
 pub(crate) fn model<R: Precision>(robot: &Robot, options: Options) -> Model<R> {
     Model::new(robot, &options).unwrap()
+}
+
+/// A world of this dynamics step [s] under this gravity, downwards [m/s2].
+pub(crate) fn world(robot: &Robot, h: f64, gravity: f64) -> World<f64> {
+    World::new(model(robot, Options { time_step: h, substeps: 1, gravity: [0.0, 0.0, -gravity], ..Options::default() }))
+}
+
+/// A copy of the robot in which nothing touches.
+pub(crate) fn ghost(robot: &Robot) -> Robot {
+    Robot { pairs: Vec::new(), ..robot.clone() }
+}
+
+/// Number of pairs that touch.
+pub(crate) fn touching<R: Precision>(world: &World<R>) -> usize {
+    (0..world.pairs()).filter(|p| world.pair_contact(PairId(*p as u16)).points > 0).count()
 }
 
 /// A random start of trial `k`, as the experiment draws it.
@@ -175,9 +190,10 @@ pub(crate) fn hand_and_sphere(wrist: Wrist, surface: Surface, law: Option<Law<f6
 /// Where the palm's frame is at posture 0 [m].
 pub(crate) const WRIST: [f64; 3] = [-0.025 + 0.152 + 0.137, -0.108, 0.21];
 
-/// The sphere a little below the palm, where the fingers close around it [m].
-pub(crate) fn in_the_palm(gap: f64) -> [f64; 3] {
-    [WRIST[0] + 0.0625 + 0.015, WRIST[1], WRIST[2] - 0.010 - 0.025 - gap]
+/// Places the sphere this far below the palm, where the fingers close around it [m].
+pub(crate) fn put_in_the_palm<R: Precision>(world: &mut World<R>, gap: f64) {
+    let at = [WRIST[0] + 0.0625 + 0.015, WRIST[1], WRIST[2] - 0.010 - 0.025 - gap];
+    world.place_body(Tabletop::SPHERE, Pose::at(at.map(|x| x as f32)), Twist::default());
 }
 
 /// The groups of servos closed around the sphere, as in the scripted grasp.

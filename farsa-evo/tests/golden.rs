@@ -1,0 +1,73 @@
+//! The bits themselves. A change here is a change of every recorded run: it stands in CHANGELOG.md as value-breaking.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use farsa_evo::{Fitness, GaConfig, GeneRange, Mutation, RandomSearch, Strategy, TruncationGa, decode};
+use farsa_num::Digest;
+
+/// A rugged toy: it rewards a pattern within genes and its repetition between them.
+fn rugged(genes: &[u16]) -> Fitness {
+    let within: u32 = genes.iter().map(|gene| (gene ^ gene >> 3).count_ones()).sum();
+    let between: u32 = genes.windows(2).map(|pair| (pair[0] ^ pair[1]).leading_zeros()).sum();
+    Fitness::nan_as_failed(f64::from(within) + 0.25 * f64::from(between))
+}
+
+fn evolve(strategy: &mut impl Strategy, generations: u32) {
+    for _ in 0..generations {
+        let told: Vec<_> = strategy.ask().iter().map(rugged).collect();
+        strategy.tell(&told).unwrap();
+    }
+}
+
+/// The genomes at first, after fifty generations, and of three generations between as they are rebuilt.
+fn digests(strategy: &mut impl Strategy) -> [u64; 3] {
+    let initial = strategy.ask().digest();
+    evolve(strategy, 50);
+    let mut rebuilt = Digest::new();
+    for generation in [1, 17, 49] {
+        rebuilt.add_u64(strategy.genomes_at(generation).unwrap().digest());
+        for gene in strategy.genome_of(generation, 13).unwrap() {
+            rebuilt.add_u64(gene.into());
+        }
+    }
+    [initial, strategy.ask().digest(), rebuilt.finish()]
+}
+
+#[test]
+fn evolution_keeps_its_bits() {
+    let got = [Mutation::Resample, Mutation::Flip].map(|mutation| {
+        let mut ga = TruncationGa::new(GaConfig { mutation, ..GaConfig::new(33) }, 2010).unwrap();
+        let digests = digests(&mut ga);
+        let mut selected = Digest::new();
+        for parent in (0..50).flat_map(|generation| ga.lineage().selected(generation).unwrap()) {
+            selected.add_u64((*parent).into());
+        }
+        let resumed = TruncationGa::resume(ga.lineage().clone()).unwrap();
+        assert_eq!(resumed.ask().digest(), digests[1]);
+        (digests, selected.finish())
+    });
+    let want = [
+        ([0xbbb0_2d05_cf69_826c, 0xe52b_20a0_2886_1b12, 0x8bfa_a6d1_4128_1149], 0x4a8c_b775_f6a2_0feb),
+        ([0xbbb0_2d05_cf69_826c, 0x180a_9454_cc35_1fc1, 0xd096_885a_c7bc_b587], 0x8355_a462_922a_9395),
+    ];
+    assert_eq!(got, want, "{got:#018x?}");
+}
+
+#[test]
+fn random_search_keeps_its_bits() {
+    let mut search = RandomSearch::new(33, 100, 2010).unwrap();
+    let got = digests(&mut search);
+    assert_eq!(got, [0xbbb0_2d05_cf69_826c, 0x12e2_c2b5_c82c_44ea, 0x6222_12a1_7067_076b], "{got:#018x?}");
+    let best = search.best().unwrap();
+    assert_eq!((best.generation, best.individual, best.fitness.get()), (1, 31, 313.0));
+}
+
+#[test]
+fn decoding_keeps_its_bits() {
+    let ranges = [(-6.0, 6.0), (0.0, 1.0), (-0.1, 1e-3)].map(|(low, high)| GeneRange::new(1 << 16, low, high).unwrap());
+    let genes: Vec<u16> = (0..3).flat_map(|_| 0..=u16::MAX).collect();
+    let mut values = vec![0.0; genes.len()];
+    decode(&genes, &ranges, &mut values).unwrap();
+    let mut digest = Digest::new();
+    digest.add_f32s(&values);
+    assert_eq!(digest.finish(), 0xa447_0827_53bb_a676, "{:#018x}", digest.finish());
+}
