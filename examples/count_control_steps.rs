@@ -1,6 +1,6 @@
 //! A fixed amount of work for counting instructions: `./ci callgrind` runs each case and counts within `measured`.
 //!
-//! `cargo run --release --example count_control_steps free|grasp|aba7|aba27|network|muscles`
+//! `cargo run --release --example count_control_steps free|grasp|aba7|aba27|network|muscles|life|recorded`
 
 #[path = "../benches/scene/mod.rs"]
 mod scene;
@@ -9,6 +9,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use farsa::nn::{Controller, Layout};
+use farsa_experiments::{Job, Recording, Setup as _, Tape};
 use scene::{Aba, Loop};
 
 /// Repetitions of every case; counts are divided by it.
@@ -20,6 +21,12 @@ fn measured(mut once: impl FnMut()) {
     for _ in 0..TIMES {
         once();
     }
+}
+
+/// The same for what repeats itself.
+#[inline(never)]
+fn measured_once(once: impl FnOnce()) {
+    once();
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -36,6 +43,16 @@ fn main() -> Result<(), Box<dyn Error>> {
             measured(|| {
                 black_box(aba.accelerations());
             });
+        }
+        "life" | "recorded" => {
+            let mut setup = scene::lives(6 * TIMES)?;
+            let genes: Vec<u16> = (0..setup.genes() as u32).map(|i| (i * 40503) as u16).collect();
+            let mut recording = Recording::new(setup.stage());
+            let recorded = case == "recorded";
+            let mut tape = if recorded { Tape::to(&mut recording) } else { Tape::off() };
+            // One life of as many steps as the other cases have repetitions.
+            measured_once(|| drop(setup.live(&genes, Job::default(), &mut tape)));
+            assert_eq!(recording.times().len(), if recorded { 6 * TIMES } else { 0 });
         }
         "network" => {
             let mut network = scene::network(Layout::new(29, 12, 23))?;

@@ -232,6 +232,7 @@ where
         } else {
             contact.normal_force > 0.0
         };
+        let kept = kept && world.touches(pair) == (contact.points > 0);
         ensure(kept, Promise::Contact, || format!("step {step}, pair {}: {contact:?}", pair.0))?;
     }
     Ok(())

@@ -41,6 +41,7 @@ mod point_world;
 mod ports;
 mod pose;
 mod proprioception;
+mod recorder;
 #[cfg(feature = "alloc")]
 mod robot;
 mod scaled;
@@ -80,6 +81,7 @@ pub use ports::{
 };
 pub use pose::{Pose, Twist};
 pub use proprioception::{JointPosition, JointSpeed};
+pub use recorder::{Recorder, record_world};
 #[cfg(feature = "alloc")]
 pub use robot::{Actuator, Collider, Joint, JointKind, Offsets, Pair, Robot, Segment, Shape, Surface};
 pub use scaled::{Recorded, Saturated, Scaled};

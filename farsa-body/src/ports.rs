@@ -128,6 +128,11 @@ pub trait Contacts: Handles {
     fn pair_bodies(&self, pair: PairId) -> [Option<Self::Body>; 2];
     /// How a pair touched at the end of the last step; all zero for a pair that does not exist.
     fn pair_contact(&self, pair: PairId) -> PairContact;
+    /// Whether a point of the pair carries a normal force > 0; a world may know this faster than all of
+    /// [`pair_contact`](Self::pair_contact).
+    fn touches(&self, pair: PairId) -> bool {
+        self.pair_contact(pair).points > 0
+    }
 }
 
 /// Everything a world remembers, as numbers.

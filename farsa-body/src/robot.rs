@@ -358,6 +358,12 @@ impl Robot {
         self.segments.iter().enumerate().filter_map(single)
     }
 
+    /// The bodies that have a collider, in the order of their segments.
+    pub fn shaped_bodies(&self) -> impl Iterator<Item = BodyId> + '_ {
+        let bodies = (0..self.segments.len()).map(|i| BodyId(i as u16));
+        bodies.filter(|body| self.colliders.iter().any(|collider| collider.body == Some(*body)))
+    }
+
     /// The body with this name.
     pub fn body(&self, name: &str) -> Option<BodyId> {
         self.segments.iter().position(|s| s.name == name).map(|i| BodyId(i as u16))

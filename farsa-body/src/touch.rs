@@ -36,7 +36,7 @@ impl<L> Channels for Touch<L> {
 
 impl<L: AsRef<[PairId]>, W: Contacts + ?Sized> Sensor<W> for Touch<L> {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let touching = self.pairs.as_ref().iter().filter(|&&pair| world.pair_contact(pair).points > 0).count();
+        let touching = self.pairs.as_ref().iter().filter(|&&pair| world.touches(pair)).count();
         let fraction = touching as f32 / self.saturation;
         write(out, [if fraction < 1.0 { fraction } else { 1.0 }]);
     }

@@ -1,0 +1,225 @@
+//! What takes a life down: a file, a page, a viewer.
+
+use crate::ports::{BodyId, Contacts, Kinematics, PairContact, PairId};
+use crate::pose::Pose;
+
+/// Takes down a life, tick by tick: a table, a page to look at, a viewer of one's own.
+///
+/// Whoever runs the loop tells what it has, in any order, and ends the tick with [`tick`](Self::tick). Every other method
+/// does nothing unless a recorder wants it, so a loop may tell all and a recorder may keep a part. `()` keeps nothing
+/// and costs nothing; a pair of recorders keeps both.
+///
+/// # For implementors
+/// A life must not depend on whether it is recorded: keep, do not answer, and do not fail. What is told twice in a tick
+/// replaces or adds as the method says; what is not told is missing (NaN in a table).
+///
+/// ```
+/// use farsa_body::{BodyId, Pose, Recorder};
+///
+/// /// The greatest height that a body reached [m].
+/// struct Highest(BodyId, f32);
+///
+/// impl Recorder for Highest {
+///     fn pose(&mut self, body: BodyId, pose: Pose) {
+///         if body == self.0 && pose.position[2] > self.1 {
+///             self.1 = pose.position[2];
+///         }
+///     }
+///     fn tick(&mut self, _time: f64) {}
+/// }
+/// ```
+pub trait Recorder {
+    /// The parameters of the controller that will act, once before the first tick [parameters].
+    fn parameters(&mut self, parameters: &[f32]) {
+        let _ = parameters;
+    }
+    /// Where a body is.
+    fn pose(&mut self, body: BodyId, pose: Pose) {
+        let _ = (body, pose);
+    }
+    /// A pair that touches; one call for each.
+    fn contact(&mut self, pair: PairId, contact: &PairContact) {
+        let _ = (pair, contact);
+    }
+    /// A ray that a sensor cast, from its origin to where it ended [m], and whether it met something; one call for each.
+    fn ray(&mut self, from: [f32; 3], to: [f32; 3], met: bool) {
+        let _ = (from, to, met);
+    }
+    /// A point that is not a body but worth seeing, such as one that the fitness measures from [m]; numbered from 0.
+    fn point(&mut self, point: usize, position: [f32; 3]) {
+        let _ = (point, position);
+    }
+    /// What was sensed [sensors].
+    fn sensors(&mut self, x: &[f32]) {
+        let _ = x;
+    }
+    /// The states of the neurons between sensors and motors [neurons].
+    fn neurons(&mut self, states: &[f32]) {
+        let _ = states;
+    }
+    /// What the controller answered [outputs].
+    fn outputs(&mut self, y: &[f32]) {
+        let _ = y;
+    }
+    /// Whatever else has a name [scalars].
+    fn scalars(&mut self, values: &[f64]) {
+        let _ = values;
+    }
+    /// Ends the tick: what was told since the last is how things were at `time` [s].
+    fn tick(&mut self, time: f64);
+}
+
+/// Tells a recorder where these bodies of a world are and which pairs touch.
+pub fn record_world<W, R>(world: &W, bodies: impl IntoIterator<Item = BodyId>, recorder: &mut R)
+where
+    W: Kinematics<Body = BodyId> + Contacts + ?Sized,
+    R: Recorder + ?Sized,
+{
+    for body in bodies {
+        recorder.pose(body, world.pose(body));
+    }
+    for pair in (0..world.pairs()).map(|pair| PairId(pair as u16)) {
+        if world.touches(pair) {
+            recorder.contact(pair, &world.pair_contact(pair));
+        }
+    }
+}
+
+/// Keeps nothing.
+impl Recorder for () {
+    fn tick(&mut self, _: f64) {}
+}
+
+macro_rules! forward {
+    ($self:ident, $($to:expr),+) => {
+        fn parameters(&mut $self, parameters: &[f32]) {
+            $($to.parameters(parameters);)+
+        }
+        fn pose(&mut $self, body: BodyId, pose: Pose) {
+            $($to.pose(body, pose);)+
+        }
+        fn contact(&mut $self, pair: PairId, contact: &PairContact) {
+            $($to.contact(pair, contact);)+
+        }
+        fn ray(&mut $self, from: [f32; 3], to: [f32; 3], met: bool) {
+            $($to.ray(from, to, met);)+
+        }
+        fn point(&mut $self, point: usize, position: [f32; 3]) {
+            $($to.point(point, position);)+
+        }
+        fn sensors(&mut $self, x: &[f32]) {
+            $($to.sensors(x);)+
+        }
+        fn neurons(&mut $self, states: &[f32]) {
+            $($to.neurons(states);)+
+        }
+        fn outputs(&mut $self, y: &[f32]) {
+            $($to.outputs(y);)+
+        }
+        fn scalars(&mut $self, values: &[f64]) {
+            $($to.scalars(values);)+
+        }
+        fn tick(&mut $self, time: f64) {
+            $($to.tick(time);)+
+        }
+    };
+}
+
+impl<R: Recorder + ?Sized> Recorder for &mut R {
+    forward!(self, (**self));
+}
+
+/// Both keep all.
+impl<A: Recorder, B: Recorder> Recorder for (A, B) {
+    forward!(self, self.0, self.1);
+}
+
+#[cfg(all(test, feature = "alloc"))]
+mod tests {
+    use super::*;
+    use alloc::{string::String, vec, vec::Vec};
+    use core::fmt::Write as _;
+
+    #[derive(Default)]
+    struct Told(String);
+
+    impl Recorder for Told {
+        fn pose(&mut self, body: BodyId, pose: Pose) {
+            let _ = write!(self.0, "p{}:{} ", body.0, pose.position[0]);
+        }
+        fn sensors(&mut self, x: &[f32]) {
+            let _ = write!(self.0, "s{x:?} ");
+        }
+        fn tick(&mut self, time: f64) {
+            let _ = write!(self.0, "t{time};");
+        }
+    }
+
+    fn tell(recorder: &mut dyn Recorder) {
+        recorder.parameters(&[1.0]);
+        recorder.pose(BodyId(2), Pose::at([3.0, 0.0, 0.0]));
+        recorder.contact(PairId(1), &PairContact::default());
+        recorder.ray([0.0; 3], [1.0; 3], true);
+        recorder.point(0, [0.0; 3]);
+        recorder.sensors(&[0.5]);
+        recorder.neurons(&[0.5]);
+        recorder.outputs(&[0.5]);
+        recorder.scalars(&[0.5]);
+        recorder.tick(0.25);
+    }
+
+    #[test]
+    fn both_of_a_pair_are_told_and_nobody_must_listen() {
+        let (mut one, mut other) = (Told::default(), Told::default());
+        tell(&mut (&mut one, (&mut other, ())));
+        assert_eq!(one.0, "p2:3 s[0.5] t0.25;");
+        assert_eq!(one.0, other.0);
+    }
+
+    #[test]
+    fn a_world_tells_its_bodies_and_what_touches() {
+        use crate::ports::{Contacts, Handles};
+        use crate::{ActuatorId, JointId, Twist};
+
+        struct Still;
+        impl Handles for Still {
+            type Body = BodyId;
+            type Joint = JointId;
+            type Actuator = ActuatorId;
+        }
+        impl Kinematics for Still {
+            fn pose(&self, body: BodyId) -> Pose {
+                Pose::at([f32::from(body.0), 0.0, 0.0])
+            }
+            fn velocity(&self, _: BodyId) -> Twist {
+                Twist::default()
+            }
+        }
+        impl Contacts for Still {
+            fn pairs(&self) -> usize {
+                3
+            }
+            fn pair_bodies(&self, _: PairId) -> [Option<BodyId>; 2] {
+                [None; 2]
+            }
+            fn pair_contact(&self, pair: PairId) -> PairContact {
+                PairContact { points: u32::from(pair.0 == 1), normal_force: 2.0, ..PairContact::default() }
+            }
+        }
+        struct Seen(Vec<u16>, Vec<u16>);
+        impl Recorder for Seen {
+            fn pose(&mut self, body: BodyId, pose: Pose) {
+                assert_eq!(pose.position[0], f32::from(body.0));
+                self.0.push(body.0);
+            }
+            fn contact(&mut self, pair: PairId, contact: &PairContact) {
+                assert_eq!(contact.normal_force, 2.0);
+                self.1.push(pair.0);
+            }
+            fn tick(&mut self, _: f64) {}
+        }
+        let mut seen = Seen(vec![], vec![]);
+        record_world(&Still, [4, 7].map(BodyId), &mut seen);
+        assert_eq!((seen.0, seen.1), (vec![4, 7], vec![1]));
+    }
+}
