@@ -4,139 +4,33 @@ use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
 
-use clap::{Args, Parser, Subcommand, value_parser};
+use clap::FromArgMatches as _;
 
+use crate::arguments::{
+    Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
+};
 use crate::directory::{Directory, create_result};
+use crate::draw;
 use crate::error::Error;
 use crate::evolution::{GENERATIONS, POPULATION};
 use crate::exam;
 use crate::experiment::Experiment;
-use crate::info;
-use crate::plan::{self, ConfigFile, LARGEST_SEED, Plan};
-use crate::replay::{self, Which};
-use crate::run;
+use crate::info::{self, pretty};
+use crate::manual;
+use crate::plan::{self, ConfigFile, Plan};
+use crate::replay;
+use crate::report;
+use crate::run::{self, Summary};
 use crate::settings::Value;
-
-/// Evolve robots, test the champions, and see any life of a run again.
-#[derive(Parser)]
-#[command(name = "farsa", version)]
-struct Cli {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    /// List the experiments
-    List,
-    /// Tell all about an experiment: sensors, network, genome, trials, and every setting with its source
-    Info(InfoArgs),
-    /// Evolve, or go on with a run
-    Run(RunArgs),
-    /// Put the champion of a run to the test on fresh starts
-    Test(TestArgs),
-    /// Live a life of a run again, exactly, and write every step as CSV
-    Replay(ReplayArgs),
-}
-
-#[derive(Args)]
-struct InfoArgs {
-    /// The experiment
-    experiment: String,
-    /// One of its conditions
-    #[arg(long, value_name = "NAME")]
-    condition: Option<String>,
-    /// Write JSON
-    #[arg(long)]
-    json: bool,
-}
-
-#[derive(Args)]
-#[command(allow_negative_numbers = true)]
-struct RunArgs {
-    /// The experiment
-    #[arg(required_unless_present_any = ["resume", "config"])]
-    experiment: Option<String>,
-    /// One of its conditions [default: its first]
-    #[arg(long, value_name = "NAME")]
-    condition: Option<String>,
-    /// Where all random numbers come from [default: 1]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
-    seed: Option<u64>,
-    /// Generations to evaluate (evolution.generations)
-    #[arg(long, value_name = "G")]
-    generations: Option<i64>,
-    /// Individuals of a generation (evolution.population)
-    #[arg(long, value_name = "P")]
-    population: Option<i64>,
-    #[command(flatten)]
-    threads: Threads,
-    /// The run's directory [default: runs/EXPERIMENT-CONDITION-SEED]
-    #[arg(long, value_name = "DIR", conflicts_with = "resume")]
-    out: Option<PathBuf>,
-    /// Take settings from a TOML file
-    #[arg(long, value_name = "FILE")]
-    config: Option<PathBuf>,
-    /// Change a setting; may be repeated, goes before the file
-    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
-    set: Vec<(String, Value)>,
-    /// Go on with the run in a directory; generations may be added
-    #[arg(long, value_name = "DIR")]
-    resume: Option<PathBuf>,
-}
-
-#[derive(Args)]
-struct Threads {
-    /// Threads to use [default: all processors]; the results are the same with any number
-    #[arg(long, value_name = "T", value_parser = value_parser!(u16).range(1..=4096))]
-    threads: Option<u16>,
-}
-
-impl Threads {
-    fn count(&self) -> usize {
-        self.threads.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), usize::from)
-    }
-}
-
-#[derive(Args)]
-struct TestArgs {
-    /// The run's directory
-    directory: PathBuf,
-    /// Fresh trials
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=100_000_000))]
-    trials: u32,
-    /// Where the test's random numbers come from; never those of a run
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
-    seed: u64,
-    #[command(flatten)]
-    threads: Threads,
-}
-
-#[derive(Args)]
-struct ReplayArgs {
-    /// The run's directory
-    directory: PathBuf,
-    /// The generation, from 0 [default: the last]
-    #[arg(long, value_name = "N")]
-    generation: Option<u32>,
-    /// The individual, from 0 [default: the best of the generation]
-    #[arg(long, value_name = "N")]
-    individual: Option<u32>,
-    /// The trial, from 0 [default: all]
-    #[arg(long, value_name = "N")]
-    trial: Option<u32>,
-    /// A new file to write to [default: the standard output]
-    #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
-}
 
 /// Runs the command over these experiments with the process's arguments: the whole of a `main`.
 ///
 /// The exit code is 0; 2 for a wrong command line or configuration; 130 after Ctrl-C; 1 otherwise.
 pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let program = program();
+    let parsed = manual::command(&program, experiments).try_get_matches();
+    let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are printed this way too, with exit code 0. There is nowhere to complain about a failure.
@@ -144,7 +38,7 @@ pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    match execute(cli.command, experiments) {
+    match execute(cli.command, cli.quiet, &program, experiments) {
         Ok(()) => ExitCode::SUCCESS,
         // The reader has seen enough: `farsa replay ... | head`.
         Err(error) if replay::reader_left(&error) => ExitCode::SUCCESS,
@@ -155,32 +49,92 @@ pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
     }
 }
 
-fn execute(command: Command, experiments: &[&dyn Experiment]) -> Result<(), Error> {
+/// What the user calls this program.
+fn program() -> String {
+    let path = std::env::args_os().next().map(PathBuf::from);
+    let name = path.and_then(|path| path.file_name()?.to_str().map(str::to_owned));
+    // The suffix of Windows is no part of what is typed.
+    name.map_or_else(|| "farsa".into(), |name| name.trim_end_matches(std::env::consts::EXE_SUFFIX).into())
+}
+
+fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Experiment]) -> Result<(), Error> {
+    // JSON that was asked for is no summary that quiet leaves out.
+    let summary = |json: bool, text: String, all: &dyn Fn() -> Result<String, Error>| match (json, quiet) {
+        (true, _) => say(&all()?),
+        (false, true) => Ok(()),
+        (false, false) => say(&text),
+    };
     match command {
-        Command::List => say(&info::list(experiments)),
+        Command::List(ListArgs { json: false }) => say(&info::list(experiments)),
+        Command::List(ListArgs { json: true }) => say(&info::list_as_json(experiments)?),
         Command::Info(InfoArgs { experiment, condition, json }) => {
             let plan = Plan::new(plan::find(experiments, &experiment, "")?, condition.as_deref(), "")?;
             say(&if json { info::as_json(&plan)? } else { info::as_text(&plan)? })
         }
         Command::Run(args) => {
-            let summary = start_or_resume(&args, experiments)?;
-            say(&format!("{summary}\n"))
+            let found = start_or_resume(&args, quiet, program, experiments)?;
+            summary(args.json, format!("{}\n", found.text()), &|| pretty(&found))
         }
-        Command::Test(TestArgs { directory, trials, seed, threads }) => {
+        Command::Test(TestArgs { directory, trials, seed, threads, json }) => {
             let (directory, plan) = existing(&directory, experiments)?;
-            say(&exam::test(&plan, &directory, trials as usize, seed, threads.count())?)
+            let found = exam::test(&plan, &directory, trials as usize, seed, threads.count(), quiet)?;
+            summary(json, found.text(), &|| pretty(&found))
         }
-        Command::Replay(ReplayArgs { directory, generation, individual, trial, out }) => {
-            let (directory, plan) = existing(&directory, experiments)?;
-            let which = Which { generation, individual, trial };
-            let summary = match out {
-                None => replay::replay(&plan, &directory, which, &mut io::stdout().lock())?,
-                Some(path) => replay::replay(&plan, &directory, which, &mut create_result(&path)?)?,
-            };
-            let _ = writeln!(io::stderr(), "{summary}");
-            Ok(())
+        Command::Replay(args) => replay(&args, quiet, experiments),
+        Command::Draw(args) => {
+            let (directory, plan) = existing(&args.directory, experiments)?;
+            let camera = args.camera.as_deref();
+            let text = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
+            let all = serde_json::json!({
+                "directory": directory.path().display().to_string(),
+                "file": args.out.display().to_string(),
+                "summary": text,
+            });
+            summary(args.json, format!("{text}\n"), &|| pretty(&all))
+        }
+        Command::Report(ReportArgs { directories, html, md, json }) => {
+            let runs = directories.iter().map(|path| existing(path, experiments)).collect::<Result<Vec<_>, _>>()?;
+            let found = report::report(runs, html.as_deref(), md.as_deref(), program)?;
+            summary(json, found.text(), &|| pretty(&found))
+        }
+        Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, experiments)),
+        Command::Man(ManArgs { out: None }) => say(&manual::page(program, experiments)?),
+        Command::Man(ManArgs { out: Some(path) }) => {
+            let pages = manual::pages(&path, program, experiments)?;
+            summary(false, format!("{}: {pages} pages\n", path.display()), &|| Ok(String::new()))
         }
     }
+}
+
+fn replay(args: &ReplayArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<(), Error> {
+    let (directory, plan) = existing(&args.directory, experiments)?;
+    let which = args.life.which();
+    let text = match (&args.html, &args.out) {
+        (Some(path), _) => {
+            let other = args.compare.as_deref().map(|path| existing(path, experiments)).transpose()?;
+            let other = other.as_ref().map(|(directory, plan)| (plan, directory));
+            replay::page(&plan, &directory, which, other, path)?
+        }
+        (None, Some(path)) => replay::replay(&plan, &directory, which, &mut create_result(path)?)?,
+        (None, None) => replay::replay(&plan, &directory, which, &mut io::stdout().lock())?,
+    };
+    let file = args.html.as_ref().or(args.out.as_ref()).map(|path| path.display().to_string());
+    if args.json {
+        let summary = serde_json::json!({
+            "directory": directory.path().display().to_string(),
+            "file": file,
+            "summary": text,
+        });
+        let summary = pretty(&summary)?;
+        // The standard output is free only when the steps went elsewhere.
+        if file.is_some() {
+            return say(&summary);
+        }
+        let _ = write!(io::stderr(), "{summary}");
+    } else if !quiet {
+        let _ = writeln!(io::stderr(), "{text}");
+    }
+    Ok(())
 }
 
 fn say(text: &str) -> Result<(), Error> {
@@ -195,7 +149,12 @@ fn existing<'e>(path: &std::path::Path, experiments: &[&'e dyn Experiment]) -> R
     Ok((directory, plan))
 }
 
-fn start_or_resume(args: &RunArgs, experiments: &[&dyn Experiment]) -> Result<String, Error> {
+fn start_or_resume(
+    args: &RunArgs,
+    quiet: bool,
+    program: &str,
+    experiments: &[&dyn Experiment],
+) -> Result<Summary, Error> {
     let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
     let (directory, mut plan) = match &args.resume {
         Some(path) => {
@@ -227,9 +186,7 @@ fn start_or_resume(args: &RunArgs, experiments: &[&dyn Experiment]) -> Result<St
         }
         None => run::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
     };
-    let program = std::env::args_os().next().map(PathBuf::from);
-    let program = program.as_deref().and_then(|path| path.file_name()?.to_str()).unwrap_or("farsa");
-    run::go_on(&plan, &directory, args.threads.count(), stop_on_interrupt(), program)
+    run::go_on(&plan, &directory, args.threads.count(), stop_on_interrupt(), program, quiet)
 }
 
 /// The defaults of the experiment and condition that are named on the command line or else in the file.

@@ -93,6 +93,10 @@ impl Directory {
     pub(crate) fn test(&self) -> PathBuf {
         self.path.join("test.csv")
     }
+    /// Which test that was.
+    pub(crate) fn test_record(&self) -> PathBuf {
+        self.path.join("test.json")
+    }
 }
 
 fn occupied(path: &Path, why: &str) -> Error {
@@ -165,6 +169,29 @@ pub(crate) fn create_result(path: &Path) -> Result<File, Error> {
     }
 }
 
+/// Writes results to new files, all of them or none.
+///
+/// # Errors
+/// As [`create_result`]; no file is then left behind.
+pub(crate) fn create_results(results: &[(PathBuf, String)]) -> Result<(), Error> {
+    let mut made: Vec<&Path> = Vec::new();
+    let written = results.iter().try_for_each(|(path, text)| {
+        let there = path.exists();
+        let mut file = create_result(path)?;
+        if !there {
+            made.push(path);
+        }
+        file.write_all(text.as_bytes()).map_err(Error::io("write", path))
+    });
+    if written.is_err() {
+        for path in made {
+            // Our own file; that it may stay is no reason to hide the first error.
+            let _ = fs::remove_file(path);
+        }
+    }
+    written
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -215,6 +242,12 @@ mod tests {
         assert!(error.to_string().starts_with("cannot write "), "{error}");
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert!(create_result(&path).is_err() && create_result(&root).is_err());
+        let results = ["first", "file", "last"].map(|name| (root.join(name), name.to_owned()));
+        assert!(create_results(&results).is_err());
+        assert!(!root.join("first").exists() && !root.join("last").exists());
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        create_results(&[results[0].clone(), results[2].clone()]).unwrap();
+        assert_eq!(fs::read(root.join("last")).unwrap(), b"last");
         fs::remove_dir_all(root).unwrap();
     }
 }

@@ -1,8 +1,11 @@
 //! What an experiment is to the command: a name, a table of settings, and lives of genomes.
 
+use farsa_body::Recorder;
+
 use crate::error::Error;
 use crate::life::Job;
 use crate::settings::{Setting, Settings};
+use crate::stage::Stage;
 
 /// An experiment that the `farsa` command lists, explains, runs, tests and replays.
 ///
@@ -61,9 +64,8 @@ pub trait Setup: Send {
         vec!["fitness".into()]
     }
 
-    /// Names of the values that a life writes on its [`Tape`] at every step, in their order, with units where it helps
-    /// (`"hand.x [m]"`).
-    fn columns(&self) -> Vec<String>;
+    /// What a life tells its [`Tape`] at every step, by name: [`Stage::of_scalars`] if it is a row of numbers.
+    fn stage(&self) -> Stage;
 
     /// What the robot senses, does and computes with, for `farsa info`.
     fn description(&self) -> Description;
@@ -73,8 +75,8 @@ pub trait Setup: Send {
     /// A run's seeds are below 2^63. In `farsa test` the seed has bit 63 set, so that no number is shared with any run;
     /// the individual is then 0 and the generation counts the earlier lives of the same trial.
     ///
-    /// One row of [`columns`](Self::columns) per step goes to the tape when it is on; whether it is must not change
-    /// the life. `genes` has [`genes`](Self::genes) entries. A life that broke down is [`Outcome::failed`].
+    /// What [`stage`](Self::stage) names goes to the tape at every step when it is on; whether it is must not change the
+    /// life. `genes` has [`genes`](Self::genes) entries. A life that broke down is [`Outcome::failed`].
     fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome;
 
     /// The fitness of an individual from its trials, in the order of trials; `farsa test` asks for single ones too.
@@ -131,34 +133,32 @@ impl From<&str> for Note {
     }
 }
 
-/// Where a life writes what happens in each step, when somebody wants to know.
+/// Where a life tells what happens in each step, when somebody wants to know.
 pub struct Tape<'a> {
-    row: Option<RowSink<'a>>,
+    recorder: Option<&'a mut dyn Recorder>,
 }
-
-/// What takes a row.
-type RowSink<'a> = &'a mut dyn FnMut(&[f64]);
 
 impl<'a> Tape<'a> {
     /// A tape that keeps nothing.
     pub fn off() -> Self {
-        Self { row: None }
+        Self { recorder: None }
     }
 
-    /// A tape that hands every row to a function.
-    pub fn to(row: &'a mut dyn FnMut(&[f64])) -> Self {
-        Self { row: Some(row) }
+    /// A tape that tells a recorder.
+    pub fn to(recorder: &'a mut dyn Recorder) -> Self {
+        Self { recorder: Some(recorder) }
     }
 
-    /// Whether rows are kept: a life need not gather them otherwise.
-    pub fn is_on(&self) -> bool {
-        self.row.is_some()
+    /// Who listens, if anybody does: a life need not gather anything otherwise.
+    pub fn recorder(&mut self) -> Option<&mut (dyn Recorder + 'a)> {
+        self.recorder.as_deref_mut()
     }
 
-    /// Keeps one step's values, in the order of [`Setup::columns`].
-    pub fn row(&mut self, values: &[f64]) {
-        if let Some(row) = &mut self.row {
-            row(values);
+    /// Tells one step's scalars, in the order of the stage, and ends the tick at `time` \[s\].
+    pub fn row(&mut self, time: f64, values: &[f64]) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.scalars(values);
+            recorder.tick(time);
         }
     }
 }

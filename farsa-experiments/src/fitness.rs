@@ -375,6 +375,7 @@ mod tests {
                 palm_down,
                 on_table,
                 height,
+                ..Observation::default()
             },
         )
     }

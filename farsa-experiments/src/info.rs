@@ -22,6 +22,31 @@ pub(crate) fn list(experiments: &[&dyn Experiment]) -> String {
     text
 }
 
+/// The same as JSON.
+pub(crate) fn list_as_json(experiments: &[&dyn Experiment]) -> Result<String, Error> {
+    let list: Vec<Entry> = experiments
+        .iter()
+        .map(|experiment| Entry {
+            name: experiment.name(),
+            summary: experiment.summary(),
+            conditions: experiment.conditions(),
+        })
+        .collect();
+    pretty(&list)
+}
+
+#[derive(Serialize)]
+struct Entry {
+    name: &'static str,
+    summary: &'static str,
+    conditions: &'static [&'static str],
+}
+
+/// Anything as JSON for reading, with the end of the last line.
+pub(crate) fn pretty(what: &impl Serialize) -> Result<String, Error> {
+    serde_json::to_string_pretty(what).map(|text| text + "\n").map_err(|error| Error::Other(error.to_string()))
+}
+
 /// Everything about an experiment under a condition; the JSON form has these names.
 #[derive(Serialize)]
 struct Info {
@@ -103,8 +128,7 @@ fn json(value: &Value) -> serde_json::Value {
 
 /// All about an experiment as JSON.
 pub(crate) fn as_json(plan: &Plan<'_>) -> Result<String, Error> {
-    let info = Info::of(plan)?;
-    serde_json::to_string_pretty(&info).map(|text| text + "\n").map_err(|error| Error::Other(error.to_string()))
+    pretty(&Info::of(plan)?)
 }
 
 /// All about an experiment in words.

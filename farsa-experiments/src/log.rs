@@ -1,7 +1,7 @@
 //! `fitness.csv`: one line per finished generation, appended and never rewritten.
 
 use std::fmt::Write as _;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -16,6 +16,14 @@ pub(crate) const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n
 
 /// One generation's best, mean and worst fitness.
 pub(crate) type Row = [f64; 3];
+
+/// What a line says about a generation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Line {
+    pub(crate) row: Row,
+    pub(crate) evaluations: u64,
+    pub(crate) failed: u64,
+}
 
 /// How far the log had come when a checkpoint was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -59,15 +67,10 @@ impl Log {
     /// # Errors
     /// [`Error::Damaged`] when the lines up to the mark are not the ones that were written.
     pub(crate) fn rewind(&mut self, to: Mark) -> Result<(), Error> {
-        let Some(kept) = usize::try_from(to.bytes).ok().and_then(|bytes| self.text.get(..bytes)) else {
-            let why = format!("truncated: {} bytes of {}", self.text.len(), to.bytes);
-            return Err(Error::damaged(&self.path, why));
-        };
-        if mark(kept) != to {
-            return Err(Error::damaged(&self.path, "altered: its checksum is not the one in the checkpoint"));
-        }
-        self.rows = rows(kept).ok_or_else(|| Error::damaged(&self.path, "is not a log of fitness"))?;
-        self.text.truncate(kept.len());
+        let (kept, lines) = up_to(&self.text, to, &self.path)?;
+        self.rows = lines.into_iter().map(|line| line.row).collect();
+        let kept = kept.len();
+        self.text.truncate(kept);
         self.file.set_len(to.bytes).map_err(Error::io("truncate", &self.path))?;
         self.file.seek(SeekFrom::End(0)).map_err(Error::io("write", &self.path))?;
         Ok(())
@@ -96,12 +99,33 @@ impl Log {
     }
 }
 
+/// Reads the lines up to a mark, whether or not a process is writing more of them.
+///
+/// # Errors
+/// [`Error::Io`], [`Error::Damaged`] when they are not the ones that were written.
+pub(crate) fn read(path: &Path, to: Mark) -> Result<Vec<Line>, Error> {
+    let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+    up_to(&text, to, path).map(|(_, lines)| lines)
+}
+
+/// The part of a log up to a mark, and what it says.
+fn up_to<'t>(text: &'t str, to: Mark, path: &Path) -> Result<(&'t str, Vec<Line>), Error> {
+    let Some(kept) = usize::try_from(to.bytes).ok().and_then(|bytes| text.get(..bytes)) else {
+        return Err(Error::damaged(path, format!("truncated: {} bytes of {}", text.len(), to.bytes)));
+    };
+    if mark(kept) != to {
+        return Err(Error::damaged(path, "altered: its checksum is not the one in the checkpoint"));
+    }
+    let lines = lines(kept).ok_or_else(|| Error::damaged(path, "is not a log of fitness"))?;
+    Ok((kept, lines))
+}
+
 fn mark(text: &str) -> Mark {
     Mark { bytes: text.len() as u64, crc: crc32(text.as_bytes()) }
 }
 
 /// The lines' numbers, if it is a log.
-fn rows(text: &str) -> Option<Vec<Row>> {
+fn lines(text: &str) -> Option<Vec<Line>> {
     let lines = text.strip_prefix(HEADER)?.lines();
     lines
         .enumerate()
@@ -109,7 +133,9 @@ fn rows(text: &str) -> Option<Vec<Row>> {
             let mut fields = line.split(',');
             (fields.next()?.parse() == Ok(index)).then_some(())?;
             let mut number = || fields.next()?.parse().ok();
-            Some([number()?, number()?, number()?])
+            let row = [number()?, number()?, number()?];
+            let mut count = || fields.next()?.parse().ok();
+            Some(Line { row, evaluations: count()?, failed: count()? })
         })
         .collect()
 }
@@ -121,9 +147,14 @@ mod tests {
     #[test]
     fn lines_read_back() {
         let text = format!("{HEADER}0,1.5,-0.25,-inf,20,3\n1,1e-300,0.0,-1.0,20,0\n");
-        assert_eq!(rows(&text), Some(vec![[1.5, -0.25, f64::NEG_INFINITY], [1e-300, 0.0, -1.0]]));
-        assert_eq!(rows("generation\n"), None);
-        assert_eq!(rows(&format!("{HEADER}1,1,1,1,1,1\n")), None);
-        assert_eq!(rows(&format!("{HEADER}0,1,x,1,1,1\n")), None);
+        let expected = [
+            Line { row: [1.5, -0.25, f64::NEG_INFINITY], evaluations: 20, failed: 3 },
+            Line { row: [1e-300, 0.0, -1.0], evaluations: 20, failed: 0 },
+        ];
+        assert_eq!(lines(&text), Some(expected.into()));
+        assert_eq!(lines("generation\n"), None);
+        for line in ["1,1,1,1,1,1", "0,1,x,1,1,1", "0,1,1,1,1", "0,1,1,1,1,-1"] {
+            assert_eq!(lines(&format!("{HEADER}{line}\n")), None, "{line}");
+        }
     }
 }

@@ -101,6 +101,13 @@ impl Session {
 }
 
 impl Machine {
+    /// The machine in a few words.
+    pub(crate) fn describe(&self) -> String {
+        let Self { os, architecture, processor, logical_processors } = self;
+        let processor = if processor.is_empty() { "unknown processor" } else { processor };
+        format!("{processor}, {logical_processors} logical processors, {os} {architecture}")
+    }
+
     fn here() -> Self {
         // Linux alone tells the processor's name in a file; elsewhere it is left out.
         let processor = fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {

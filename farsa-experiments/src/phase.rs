@@ -33,6 +33,10 @@ pub struct Observation {
     pub on_table: bool,
     /// Height of the sphere's centre above the table's top \[cm\].
     pub height: f64,
+    /// Where the palm's centre is in the world \[m\]; the distances say all that the reward needs of it.
+    pub palm: [f64; 3],
+    /// Where the centroid of fingertips and palm centre is in the world \[m\].
+    pub grasp_centre: [f64; 3],
 }
 
 impl Observation {

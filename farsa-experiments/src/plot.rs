@@ -1,65 +1,188 @@
-//! `fitness.svg`: best, mean and worst fitness over the generations.
+//! Curves over generations as SVG: `fitness.svg` of a run and the figures of a report.
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use crate::log::Row;
 
-const SIZE: (u32, u32) = (900, 540);
+/// Small, so that its letters can be read on a telephone too.
+const WIDTH: i32 = 640;
+const SIZE: (u32, u32) = (WIDTH as u32, 350);
+/// Heights of the title and of a line of names below it.
+const TITLE: i32 = 36;
+const NAMES: i32 = 26;
+const MARGIN: i32 = 18;
+const FONT: (&str, u32) = ("sans-serif", 18);
 
-/// Draws the log; text in it is text, so that no font is needed.
+/// Three colours that a page may exchange for its own: background, letters with axes, and grid.
+pub(crate) const PAPER: &str = "#FFFFFF";
+pub(crate) const INK: &str = "#222222";
+pub(crate) const GRID: &str = "#E4E4E4";
+const INK_COLOR: RGBColor = RGBColor(0x22, 0x22, 0x22);
+const GRID_COLOR: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
+
+/// Colours that the colour-blind tell apart, by Okabe and Ito, the most different first; the yellow is too pale.
+const COLORS: [RGBColor; 6] = [
+    RGBColor(0x00, 0x72, 0xB2),
+    RGBColor(0xD5, 0x5E, 0x00),
+    RGBColor(0x00, 0x9E, 0x73),
+    RGBColor(0xCC, 0x79, 0xA7),
+    RGBColor(0xE6, 0x9F, 0x00),
+    RGBColor(0x56, 0xB4, 0xE9),
+];
+
+/// More points than these are not seen; every k-th is drawn then.
+const MOST_POINTS: usize = 1500;
+
+/// Curves that share a pair of axes.
+#[derive(Debug, Default)]
+pub(crate) struct Chart {
+    pub(crate) title: String,
+    pub(crate) curves: Vec<Curve>,
+}
+
+/// A value per generation, from generation 0; one that is not finite leaves a gap.
+#[derive(Debug, Default)]
+pub(crate) struct Curve {
+    /// What the legend says; curves without a name are drawn thin and pale, below the others.
+    pub(crate) name: Option<String>,
+    pub(crate) color: usize,
+    pub(crate) values: Vec<f64>,
+    /// Lower and upper end of a band around it, a pair per generation; may be empty.
+    pub(crate) band: Vec<[f64; 2]>,
+}
+
+/// Draws the log of a run.
 ///
 /// # Errors
 /// The backend's words, should it refuse.
 pub(crate) fn draw(title: &str, rows: &[Row]) -> Result<String, String> {
-    let mut svg = String::new();
-    picture(&mut svg, title, rows).map_err(|error| error.to_string())?;
-    Ok(svg)
+    let curve = |(color, name): (usize, &str)| Curve {
+        name: Some(name.into()),
+        color,
+        values: rows.iter().map(|row| row[color]).collect(),
+        band: Vec::new(),
+    };
+    Chart { title: title.into(), curves: ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect() }.draw()
 }
 
-fn picture(svg: &mut String, title: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
-    let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
-    area.fill(&WHITE)?;
-    let finite = || rows.iter().flatten().copied().filter(|x| x.is_finite());
-    let (mut low, mut high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-    if low > high {
-        (low, high) = (0.0, 1.0);
+impl Chart {
+    /// The picture; text in it is text, so that no font is needed.
+    ///
+    /// # Errors
+    /// The backend's words, should it refuse.
+    pub(crate) fn draw(&self) -> Result<String, String> {
+        let mut svg = String::new();
+        self.picture(&mut svg).map_err(|error| error.to_string())?;
+        Ok(svg)
     }
-    // A flat curve needs an axis too.
-    let margin = (0.05 * (high - low)).max(1e-9 * high.abs()).max(f64::MIN_POSITIVE.sqrt());
-    let last = rows.len().saturating_sub(1).max(1);
-    let mut chart = ChartBuilder::on(&area)
-        .caption(title, ("sans-serif", 20))
-        .margin(15)
-        .x_label_area_size(45)
-        .y_label_area_size(75)
-        .build_cartesian_2d(0..last, low - margin..high + margin)?;
-    chart
-        .configure_mesh()
-        .x_desc("generation")
-        .y_desc("fitness")
-        .light_line_style(TRANSPARENT)
-        .label_style(("sans-serif", 14))
-        .draw()?;
-    let colors = [RGBColor(27, 94, 32), RGBColor(21, 101, 192), RGBColor(158, 158, 158)];
-    // The best comes last, on top of the others.
-    for (curve, (name, color)) in ["best", "mean", "worst"].into_iter().zip(colors).enumerate().rev() {
-        let points = rows.iter().enumerate().map(|(generation, row)| (generation, row[curve]));
-        // A generation in which all failed leaves a gap in what would be a line to minus infinity.
-        let points = points.filter(|(_, fitness)| fitness.is_finite());
+
+    fn picture(&self, svg: &mut String) -> Result<(), Box<dyn std::error::Error + '_>> {
+        let lines = self.places().last().map_or(0, |place| place.1 + 1);
+        let head = (TITLE + NAMES * lines + 8) as u32;
+        let area = SVGBackend::with_string(svg, (SIZE.0, SIZE.1 + head)).into_drawing_area();
+        area.fill(&WHITE)?;
+        let (head, body) = area.split_vertically(head);
+        self.legend(&head)?;
+        let (low, high) = self.limits();
+        let generations = self.curves.iter().map(|curve| curve.values.len()).max().unwrap_or(0);
+        let mut chart = ChartBuilder::on(&body)
+            .margin_left(8)
+            .margin_right(18)
+            .margin_bottom(8)
+            .x_label_area_size(48)
+            .y_label_area_size(74)
+            .build_cartesian_2d(0..generations.saturating_sub(1).max(1), low..high)?;
         chart
-            .draw_series(LineSeries::new(points, color.stroke_width(2)))?
-            .label(name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], color.stroke_width(2)));
+            .configure_mesh()
+            .x_desc("generation")
+            .y_desc("fitness")
+            .x_labels(8)
+            .y_labels(7)
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID_COLOR)
+            .axis_style(INK_COLOR)
+            .y_label_formatter(&|y| ((y * 1e6).round() / 1e6 + 0.0).to_string())
+            .label_style(FONT.into_font().color(&INK_COLOR))
+            .draw()?;
+        let (named, nameless): (Vec<_>, Vec<_>) = self.curves.iter().partition(|curve| curve.name.is_some());
+        // The first curve comes last, on top of the others.
+        for curve in named.iter().rev() {
+            let color = COLORS[curve.color % COLORS.len()];
+            for part in parts(&curve.band, |pair| pair.iter().all(|x| x.is_finite())) {
+                let there = part.iter().map(|&(x, [low, _])| (x, low));
+                let back = part.iter().rev().map(|&(x, [_, high])| (x, high));
+                chart.draw_series([Polygon::new(there.chain(back).collect::<Vec<_>>(), color.mix(0.22))])?;
+            }
+        }
+        let thin = nameless.iter().map(|curve| (curve, COLORS[curve.color % COLORS.len()].mix(0.45).stroke_width(1)));
+        let thick = named.iter().rev().map(|curve| (curve, COLORS[curve.color % COLORS.len()].stroke_width(2)));
+        for (curve, style) in thin.chain(thick) {
+            for part in parts(&curve.values, f64::is_finite) {
+                // A line of one point is not seen.
+                let dot =
+                    if part.len() == 1 { part.first().map(|&at| Circle::new(at, 3, style.filled())) } else { None };
+                chart.draw_series(dot)?;
+                chart.draw_series(LineSeries::new(part, style))?;
+            }
+        }
+        area.present()?;
+        Ok(())
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .background_style(WHITE.mix(0.8))
-        .border_style(BLACK.mix(0.3))
-        .label_font(("sans-serif", 14))
-        .draw()?;
-    area.present()?;
-    Ok(())
+
+    /// Title and names in lines of their own, so that they never lie on a curve.
+    fn legend(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), Box<dyn std::error::Error + '_>> {
+        area.draw(&Text::new(self.title.clone(), (MARGIN, 12), ("sans-serif", 20).into_font().color(&INK_COLOR)))?;
+        let named = self.curves.iter().filter_map(|curve| Some((curve.name.as_ref()?, curve.color)));
+        for ((name, color), (x, line)) in named.zip(self.places()) {
+            let y = TITLE + NAMES * line + 14;
+            let stroke = COLORS[color % COLORS.len()].stroke_width(3);
+            area.draw(&PathElement::new([(x, y), (x + 22, y)], stroke))?;
+            area.draw(&Text::new(name.clone(), (x + 28, y - 9), FONT.into_font().color(&INK_COLOR)))?;
+        }
+        Ok(())
+    }
+
+    /// Where the names stand: from the left [pixels], and in which line.
+    fn places(&self) -> Vec<(i32, i32)> {
+        let (mut x, mut line) = (MARGIN, 0);
+        let mut places = Vec::new();
+        for name in self.curves.iter().filter_map(|curve| curve.name.as_ref()) {
+            // Without a font the width of a text is a guess: a little more than half its height a letter.
+            let width = name.chars().fold(28 + 20, |width: i32, _| width.saturating_add(9));
+            if x > MARGIN && x.saturating_add(width) > WIDTH {
+                (x, line) = (MARGIN, line + 1);
+            }
+            places.push((x, line));
+            x = x.saturating_add(width);
+        }
+        places
+    }
+
+    fn limits(&self) -> (f64, f64) {
+        let values = self.curves.iter().flat_map(|curve| curve.values.iter().chain(curve.band.iter().flatten()));
+        let finite = || values.clone().copied().filter(|x| x.is_finite());
+        let (mut low, mut high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        if low > high {
+            (low, high) = (0.0, 1.0);
+        }
+        // A flat curve needs an axis too.
+        let margin = (0.05 * (high - low)).max(1e-9 * high.abs()).max(f64::MIN_POSITIVE.sqrt());
+        (low - margin, high + margin)
+    }
+}
+
+/// Every how many generations a point is drawn.
+fn stride(points: usize) -> usize {
+    points.div_ceil(MOST_POINTS).max(1)
+}
+
+/// The points with their places, thinned out, divided where one cannot be drawn.
+fn parts<T: Copy>(values: &[T], drawable: impl Fn(T) -> bool) -> Vec<Vec<(usize, T)>> {
+    let (stride, last) = (stride(values.len()), values.len().saturating_sub(1));
+    let points: Vec<(usize, T)> =
+        values.iter().copied().enumerate().filter(|(index, _)| index % stride == 0 || *index == last).collect();
+    points.split(|(_, value)| !drawable(*value)).filter(|part| !part.is_empty()).map(<[_]>::to_vec).collect()
 }
 
 #[cfg(test)]
@@ -78,10 +201,30 @@ mod tests {
             vec![[3.0, 2.0, 1.0], failed, [4.0, 3.0, 2.0]],
         ] {
             let svg = draw("a title", &rows).unwrap();
-            for label in ["a title", "generation", "fitness", "best", "mean", "worst", "</svg>"] {
+            for label in ["a title", "generation", "fitness", "best", "mean", "worst", "</svg>", PAPER, INK, GRID] {
                 assert!(svg.contains(label), "{rows:?}: no {label}");
             }
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{rows:?}");
         }
+    }
+
+    #[test]
+    fn gaps_divide_and_many_points_are_thinned_out() {
+        let found = parts(&[1.0, f64::NAN, 3.0, 4.0], f64::is_finite);
+        assert_eq!(found, vec![vec![(0, 1.0)], vec![(2, 3.0), (3, 4.0)]]);
+        let found = parts(&vec![0.0; 10 * MOST_POINTS + 3], f64::is_finite).concat();
+        assert!(found.len() <= MOST_POINTS + 1 && found.last().is_some_and(|point| point.0 == 10 * MOST_POINTS + 2));
+    }
+
+    #[test]
+    fn a_band_lies_around_its_curve() {
+        let curve = Curve {
+            name: Some("<labels> & co".into()),
+            values: vec![1.0, 2.0, f64::NEG_INFINITY],
+            band: vec![[0.5, 1.5], [1.0, 3.0], [f64::NEG_INFINITY; 2]],
+            ..Curve::default()
+        };
+        let svg = Chart { title: "t".into(), curves: vec![curve] }.draw().unwrap();
+        assert!(svg.contains("<polygon") && svg.contains("&lt;labels&gt; &amp; co"), "{svg}");
     }
 }

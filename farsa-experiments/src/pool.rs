@@ -76,6 +76,7 @@ mod tests {
     use super::*;
     use crate::experiment::{Description, Outcome, Tape};
     use crate::life::Job;
+    use crate::stage::Stage;
 
     struct Nothing;
 
@@ -83,8 +84,8 @@ mod tests {
         fn genes(&self) -> usize {
             1
         }
-        fn columns(&self) -> Vec<String> {
-            Vec::new()
+        fn stage(&self) -> Stage {
+            Stage::default()
         }
         fn description(&self) -> Description {
             Description::default()

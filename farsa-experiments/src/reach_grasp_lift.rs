@@ -9,7 +9,9 @@ pub use crate::script::{Plan, ScriptLife, Statics, Timetable};
 
 use std::sync::Arc;
 
-use farsa_body::{ArmAndHand, Contacts, Joints, Kinematics, Tabletop, World as _};
+use farsa_body::{
+    ArmAndHand, BodyId, Contacts, Joints, Kinematics, Law, MusclePair, PairId, Recorder, Tabletop, World as _,
+};
 use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, Leak, Network, ParameterKind};
 use farsa_physics::articulated::{Model, World};
@@ -18,6 +20,7 @@ use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::life::{Job, Life};
 use crate::settings::{Setting, Settings};
+use crate::stage::{Channel, Stage};
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
@@ -59,7 +62,29 @@ pub struct Lives {
     world: World<f32>,
     life: ReachLife<Network<Vec<f32>, Vec<f32>>>,
     decoder: Decoder,
-    row: Vec<f64>,
+    /// The arm's muscles, to tell their lengths and torques.
+    muscles: Vec<MusclePair<f32>>,
+    /// The bodies that have a shape, but for the palm and the sphere.
+    other_bodies: Vec<BodyId>,
+}
+
+/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces.
+const SCALARS: usize = 1 + 4 + 6 + 3 + 7 + 27 + 21 + 17;
+
+/// Fills the first places of a slice and returns the others.
+fn put<const N: usize>(places: &mut [f64], values: [f64; N]) -> &mut [f64] {
+    match places.split_first_chunk_mut::<N>() {
+        Some((to, rest)) => {
+            *to = values;
+            rest
+        }
+        None => &mut [],
+    }
+}
+
+/// The pairs of the sphere with the phalanges, the palm and the table.
+fn on_sphere(scene: &Scene) -> impl Iterator<Item = PairId> {
+    scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table])
 }
 
 impl Lives {
@@ -75,30 +100,62 @@ impl Lives {
         let network = Network::new(layout, config.leak, zeros, state).map_err(|error| wrong(&error))?;
         let scene = Scene::new(config)?;
         let model = Model::new(&scene.robot, &scene.config.options()).map_err(|error| wrong(&error))?;
+        let laws = scene.robot.actuators.iter().map(|actuator| actuator.law.cast::<f32>());
+        let muscles = laws.map_while(|law| if let Law::MusclePair(pair) = law { Some(pair) } else { None }).collect();
+        let told = [Tabletop::SPHERE, ArmAndHand::PALM];
+        let other_bodies = scene.robot.shaped_bodies().filter(|body| !told.contains(body)).collect();
         let life = ReachLife::new(Arc::new(scene), network)?;
-        Ok(Self { world: World::new(model), life, decoder, row: Vec::new() })
+        Ok(Self { world: World::new(model), life, decoder, muscles, other_bodies })
     }
 
-    /// One row of the tape: what was sensed, computed and done before the step that has just been judged, and what it led to.
-    fn write_row(&mut self, tape: &mut Tape<'_>) {
-        let Self { world, life, row, .. } = self;
+    /// Tells what was sensed, computed and done before the step that has just been judged, and what it led to.
+    fn tell(&self, recorder: &mut dyn Recorder) {
+        let Self { world, life, muscles, .. } = self;
         let (judge, scene) = (life.judge(), life.judge().scene());
-        row.clear();
-        // Rounded to the nanosecond: 201 steps of 0.01 s print as 2.01.
-        row.push((f64::from(judge.trial().steps) * scene.config.time_step * 1e9).round() / 1e9);
-        row.extend(ArmAndHand::joints().map(|joint| f64::from(world.position(joint))));
-        let sphere = world.pose(Tabletop::SPHERE);
-        row.extend(sphere.position.iter().chain(&sphere.rotation).copied().map(f64::from));
-        let (sensed, hidden, done) = (life.sensed(), life.controller().hidden(), life.done());
-        row.extend(sensed.iter().chain(hidden).chain(done).copied().map(f64::from));
         let (trial, seen, earned) = (judge.trial(), judge.seen(), judge.earned());
-        row.push(trial.phase.index() as f64);
-        row.extend([earned.reach, earned.grasp, earned.lift]);
-        row.extend([seen.reach_distance, seen.grasp_distance, seen.openness, seen.palm_down, seen.height]);
-        row.push(f64::from(seen.contacts));
-        let pairs = scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table]);
-        row.extend(pairs.map(|pair| f64::from(world.pair_contact(pair).normal_force)));
-        tape.row(row);
+        recorder.sensors(life.sensed());
+        recorder.neurons(life.controller().hidden());
+        recorder.outputs(life.done());
+        let (sphere, palm) = (world.pose(Tabletop::SPHERE), world.pose(ArmAndHand::PALM));
+        recorder.pose(Tabletop::SPHERE, sphere);
+        recorder.pose(ArmAndHand::PALM, palm);
+        self.other_bodies.iter().for_each(|body| recorder.pose(*body, world.pose(*body)));
+        recorder.point(0, [sphere.position[0], sphere.position[1], sphere.position[2] + 0.05]);
+        recorder.point(1, seen.palm.map(|x| x as f32));
+        recorder.point(2, seen.grasp_centre.map(|x| x as f32));
+        let mut forces = [0.0; 17];
+        for pair in (0..world.pairs()).map(|pair| PairId(pair as u16)).filter(|pair| world.touches(*pair)) {
+            let contact = world.pair_contact(pair);
+            recorder.contact(pair, &contact);
+            if let Some(at) = on_sphere(scene).position(|other| other == pair) {
+                forces[at] = f64::from(contact.normal_force);
+            }
+        }
+
+        let Ledger { reach, grasp, lift, .. } = trial.ledger;
+        let mut scalars = [0.0; SCALARS];
+        let rest = scalars.as_mut_slice();
+        let rest = put(rest, [trial.phase.index() as f64]);
+        let rest = put(rest, [earned.reach, earned.grasp, earned.lift, reach + grasp + lift]);
+        let rest = put(rest, [seen.reach_distance, seen.grasp_distance, seen.openness, seen.palm_down, seen.height]);
+        let rest = put(rest, [f64::from(seen.contacts)]);
+        let rest = put(rest, palm.position.map(f64::from));
+        let rest = put(rest, sphere.position.map(f64::from));
+        let rest = put(rest, sphere.rotation.map(f64::from));
+        let positions = ArmAndHand::joints().map(|joint| world.position(joint));
+        let mut rest = put(rest, positions.map(f64::from));
+        let driven = ArmAndHand::joints().into_iter().zip(positions).zip(life.done().chunks_exact(2));
+        for (muscle, ((joint, q), done)) in muscles.iter().zip(driven) {
+            let qdot = world.speed(joint);
+            let torque = muscle.effort(q, qdot, [done[0], done[1]]).torque;
+            let [agonist, antagonist] = muscle.lengths(q);
+            rest = put(rest, [agonist, antagonist, torque].map(f64::from));
+        }
+        let rest = put(rest, forces);
+        debug_assert!(rest.is_empty(), "{} scalars are missing", rest.len());
+        recorder.scalars(&scalars);
+        // Rounded to the nanosecond: 201 steps of 0.01 s print as 2.01.
+        recorder.tick((f64::from(trial.steps) * scene.config.time_step * 1e9).round() / 1e9);
     }
 
     fn outcome(&self) -> Outcome {
@@ -137,40 +194,43 @@ impl Setup for Lives {
         ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec()
     }
 
-    fn columns(&self) -> Vec<String> {
+    fn stage(&self) -> Stage {
         let scene = self.life.judge().scene();
-        let joints = (1..=27).map(|n| format!("J{n} [rad]"));
-        let sphere = ["x [m]", "y [m]", "z [m]", "qx", "qy", "qz", "qw"].map(|part| format!("sphere.{part}"));
-        let sensors = self.life.senses().names().into_iter().map(|name| format!("sensor.{name}"));
-        let hidden = (1..=scene.config.hidden).map(|n| format!("hidden.{n}"));
-        let outputs = self.life.motors().names().into_iter().map(|name| format!("output.{name}"));
-        let judged = [
-            "phase",
-            "reward.reach",
-            "reward.grasp",
-            "reward.lift",
-            "ds [cm]",
-            "graspQ [cm]",
-            "fOpen",
-            "pRot",
-            "height [cm]",
-            "contacts",
-        ];
-        let touched = scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table]);
-        let forces = touched.map(|pair| {
+        let forces = on_sphere(scene).map(|pair| {
             let colliders = scene.robot.pairs[pair.index()].colliders.map(|c| scene.robot.colliders[c].name.as_str());
             let other = if colliders[0] == "sphere" { colliders[1] } else { colliders[0] };
-            format!("force on sphere.{other} [N]")
+            Channel::new(&format!("force on sphere.{other} [N]")).group("force")
         });
-        core::iter::once("time [s]".to_owned())
+        let phases = Phase::ALL.map(Phase::name);
+        let fitness = ["reward.reach", "reward.grasp", "reward.lift", "reward so far"];
+        let judged = ["ds [cm]", "graspQ [cm]", "fOpen", "pRot", "height [cm]", "contacts"];
+        let placed = ["palm.x [m]", "palm.y [m]", "palm.z [m]", "sphere.x [m]", "sphere.y [m]", "sphere.z [m]"];
+        let turned = ["sphere.qx", "sphere.qy", "sphere.qz", "sphere.qw"];
+        let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
+        let joints = scene.robot.segments.iter().take(27).enumerate().map(|(i, segment)| {
+            let [low, high] = segment.joint.range;
+            Channel::new(&format!("J{} [rad]", i + 1)).group("joint").range(low, high)
+        });
+        let muscles = (1..=7).flat_map(|n| {
+            [format!("J{n} agonist length"), format!("J{n} antagonist length"), format!("J{n} torque [N m]")]
+        });
+        let scalars = core::iter::once(Channel::new("phase").group("phase").words(&phases))
+            .chain(fitness.into_iter().chain(judged).map(in_group("fitness")))
+            .chain(placed.into_iter().chain(turned).map(in_group("place")))
             .chain(joints)
-            .chain(sphere)
-            .chain(sensors)
-            .chain(hidden)
-            .chain(outputs)
-            .chain(judged.map(String::from))
+            .chain(muscles.map(|name| in_group("actuator")(&name)))
             .chain(forces)
-            .collect()
+            .collect();
+        let mut stage = Stage::of_robot(&scene.robot)
+            .with_sensors(self.life.senses().names())
+            .with_outputs(self.life.motors().names())
+            .with_network(&scene.config.layout());
+        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        Stage {
+            scalars,
+            points: ["palm's target", "palm's centre", "centre of the grasp"].map(String::from).into(),
+            ..stage
+        }
     }
 
     fn description(&self) -> Description {
@@ -227,13 +287,16 @@ impl Setup for Lives {
             debug_assert!(false, "{} genes for {} parameters", genes.len(), self.decoder.parameters.len());
             return Outcome::failed();
         }
+        if let Some(recorder) = tape.recorder() {
+            recorder.parameters(&self.decoder.parameters);
+        }
         self.life.start(&mut self.world, job);
         loop {
             self.life.act(&mut self.world);
             self.world.step();
             let end = self.life.judge_mut().judge(&self.world);
-            if tape.is_on() {
-                self.write_row(tape);
+            if let Some(recorder) = tape.recorder() {
+                self.tell(recorder);
             }
             if end.is_some() {
                 return self.outcome();
@@ -295,6 +358,7 @@ impl Decoder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::Recording;
 
     #[test]
     fn genes_become_parameters_of_their_kinds() {
@@ -328,7 +392,7 @@ mod tests {
             assert_eq!(description.sensors.iter().map(|group| group.count).sum::<usize>(), sensors);
             assert_eq!(description.motors.iter().map(|group| group.count).sum::<usize>(), 23);
             assert_eq!((description.steps, description.step_seconds), (600, 0.01));
-            assert_eq!(setup.columns().len(), 1 + 27 + 7 + sensors + 12 + 23 + 10 + 17);
+            assert_eq!(setup.stage().columns().len(), SCALARS + sensors + 12 + 23);
         }
     }
 
@@ -339,23 +403,30 @@ mod tests {
         let genes: Vec<u16> = (0..792u32).map(|i| (i * 40503) as u16).collect();
         let job = Job { seed: 3, generation: 2, individual: 7, trial: 1 };
         let plain = setup.live(&genes, job, &mut Tape::off());
-        let mut rows = Vec::new();
-        let width = setup.columns().len();
-        let mut keep = |row: &[f64]| {
-            assert_eq!(row.len(), width);
-            rows.push(row.to_vec());
-        };
         setup.live(&genes, Job { trial: 3, ..job }, &mut Tape::off());
-        let taped = setup.live(&genes, job, &mut Tape::to(&mut keep));
+        let mut recording = Recording::new(setup.stage());
+        let taped = setup.live(&genes, job, &mut Tape::to(&mut recording));
         assert_eq!(plain, taped);
         assert!(plain.is_finite(), "{plain:?}");
-        assert_eq!(rows.len(), plain.steps as usize);
+        let ticks = plain.steps as usize;
+        assert_eq!(recording.times().len(), ticks);
+        assert!((0..ticks).all(|tick| recording.row(tick).all(f64::is_finite)));
         // The rewards of the steps add up to the terms.
-        let columns = setup.columns();
-        for (term, name) in ["reward.reach", "reward.grasp", "reward.lift"].into_iter().enumerate() {
+        let columns = setup.stage().columns();
+        let value = |tick: usize, name: &str| {
             let column = columns.iter().position(|c| c == name).unwrap();
-            let sum = rows.iter().fold(0.0, |sum, row| sum + row[column]);
+            recording.row(tick).nth(column).unwrap()
+        };
+        for (term, name) in ["reward.reach", "reward.grasp", "reward.lift"].into_iter().enumerate() {
+            let sum = (0..ticks).fold(0.0, |sum, tick| sum + value(tick, name));
             assert_eq!(sum, plain.terms[term]);
+        }
+        assert_eq!(value(ticks - 1, "reward so far"), plain.terms[..3].iter().sum::<f64>());
+        // Bodies and scalars tell the same.
+        for tick in [0, ticks / 2, ticks - 1] {
+            for (body, name) in [(ArmAndHand::PALM, "palm.x [m]"), (Tabletop::SPHERE, "sphere.x [m]")] {
+                assert_eq!(f64::from(recording.pose_at(tick, body).unwrap().position[0]), value(tick, name));
+            }
         }
         // The whole life as `Life` lives it: the same fitness.
         let mut lives = Lives::new(Config::default()).unwrap();

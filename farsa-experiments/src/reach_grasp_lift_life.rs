@@ -20,12 +20,14 @@ pub struct Judge {
     trial: Trial,
     seen: Observation,
     earned: Ledger,
+    begun: bool,
 }
 
 impl Judge {
     /// A judge of trials in this scene.
     pub fn new(scene: Arc<Scene>) -> Self {
-        Self { scene, trial: Trial::default(), seen: Observation::default(), earned: Ledger::default() }
+        let (trial, seen, earned) = (Trial::default(), Observation::default(), Ledger::default());
+        Self { scene, trial, seen, earned, begun: false }
     }
 
     /// Sets the world up for a trial and opens a new account.
@@ -35,6 +37,19 @@ impl Judge {
     {
         self.scene.arrange(world, job);
         self.trial = Trial::default();
+        self.begun = false;
+    }
+
+    /// [`Judge::judge`] for [`Life::tick`]: at the first tick of a trial no step has passed that could be judged.
+    pub fn tick<W>(&mut self, world: &W) -> Option<f64>
+    where
+        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        if self.begun {
+            return self.judge(world);
+        }
+        self.begun = true;
+        None
     }
 
     /// Judges the step that has passed; `Some` ends the trial with what it would earn alone, NaN if the world broke down.
@@ -97,7 +112,6 @@ pub struct ReachLife<C> {
     controller: C,
     x: Vec<f32>,
     y: [f32; OUTPUTS],
-    begun: bool,
 }
 
 impl<C: Controller> ReachLife<C> {
@@ -116,7 +130,7 @@ impl<C: Controller> ReachLife<C> {
             )));
         }
         let x = vec![0.0; senses.channels()];
-        Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS], begun: false })
+        Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS] })
     }
 
     /// Senses, thinks and acts; the label is the phase after the step before.
@@ -192,17 +206,13 @@ where
         self.controller.reset();
         self.senses.reset();
         self.motors.reset();
-        self.begun = false;
     }
 
     fn tick(&mut self, world: &mut W) -> Option<f64> {
-        if self.begun
-            && let Some(fitness) = self.judge.judge(world)
-        {
-            return Some(fitness);
+        let end = self.judge.tick(world);
+        if end.is_none() {
+            self.act(world);
         }
-        self.begun = true;
-        self.act(world);
-        None
+        end
     }
 }

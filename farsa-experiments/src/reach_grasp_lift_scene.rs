@@ -200,25 +200,28 @@ impl Scene {
         let palm_pose = world.pose(ArmAndHand::PALM).cast::<f64>();
         let palm = palm_pose.transform(self.arm.palm_centre);
         let sphere = self.sphere_centre(world);
-        let mut centroid = palm;
+        let mut grasp_centre = palm;
         for finger in Finger::ALL {
             let (body, tip) = self.arm.fingertip(finger);
             let at = world.pose(body).cast::<f64>().transform(tip);
             for k in 0..3 {
-                centroid[k] += at[k];
+                grasp_centre[k] += at[k];
             }
         }
+        let grasp_centre = grasp_centre.map(|x| x / 6.0);
         let [low, high] = self.arm.flexion_range;
         let openness = |joint: &JointId| ((f64::from(world.position(*joint)) - low) / (high - low)).clamp(0.0, 1.0);
-        let touches = |pair: PairId| world.pair_contact(pair).points > 0;
+        let touches = |pair: PairId| world.touches(pair);
         Observation {
             reach_distance: 100.0 * distance(palm, [sphere[0], sphere[1], sphere[2] + 0.05]),
-            grasp_distance: 100.0 * distance(centroid.map(|x| x / 6.0), sphere),
+            grasp_distance: 100.0 * distance(grasp_centre, sphere),
             contacts: self.sphere_on_phalanges.iter().filter(|pair| touches(**pair)).count() as u32,
             openness: ArmAndHand::flexion_joints().iter().map(openness).sum::<f64>() / 15.0,
             palm_down: -palm_pose.rotate(ArmAndHand::PALM_NORMAL)[2],
             on_table: touches(self.sphere_on_table),
             height: 100.0 * sphere[2],
+            palm,
+            grasp_centre,
         }
     }
 }

@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use farsa_evo::{Fitness, Statistics, Strategy as _, TruncationGa};
+use serde::Serialize;
 
 use crate::directory::{Directory, replace};
 use crate::error::Error;
@@ -40,6 +41,42 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     })
 }
 
+/// What came of a run; the champion is that of the last generation.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    directory: String,
+    experiment: String,
+    condition: String,
+    seed: u64,
+    generations: u32,
+    /// Lives lived by this process, not those of earlier sessions.
+    evaluations: u64,
+    seconds: f64,
+    /// None if there was nothing left to do.
+    champion: Option<Winner>,
+}
+
+#[derive(Debug, Serialize)]
+struct Winner {
+    generation: u32,
+    individual: u32,
+    fitness: f64,
+}
+
+impl Summary {
+    /// The same in a line of words.
+    pub(crate) fn text(&self) -> String {
+        let Self { directory, generations, .. } = self;
+        match &self.champion {
+            None => format!("{directory}: all {generations} generations are finished already"),
+            Some(Winner { generation, individual, fitness }) => format!(
+                "{directory}: {generations} generations; champion: individual {individual} of generation {generation}, \
+                 fitness {fitness:?}"
+            ),
+        }
+    }
+}
+
 /// Evolves the run in a directory up to its last generation and says what came of it.
 ///
 /// # Errors
@@ -50,7 +87,8 @@ pub(crate) fn go_on(
     threads: usize,
     stop: &AtomicBool,
     program: &str,
-) -> Result<String, Error> {
+    quiet: bool,
+) -> Result<Summary, Error> {
     // The lock comes before anything is read that another process might be writing.
     let mut log = Log::open(&directory.log())?;
     let path = directory.checkpoint();
@@ -73,7 +111,7 @@ pub(crate) fn go_on(
     manifest.sessions.push(Session::new(threads, done));
 
     let individuals = |generations: u32| u64::from(generations).saturating_mul(evolution.config().population as u64);
-    let progress = Progress::new("individuals", individuals(done), individuals(last));
+    let progress = Progress::new(individuals(done), individuals(last), quiet);
     let mut run = Run {
         directory,
         title: plan.name(),
@@ -191,14 +229,22 @@ impl Run<'_> {
         replace(&directory.plot(), plot.as_bytes())
     }
 
-    fn summary(&self) -> String {
-        let (path, done) = (self.directory.path().display(), self.evolution.generation());
-        match &self.champion {
-            None => format!("{path}: all {done} generations are finished already"),
-            Some(Champion { generation, individual, fitness, .. }) => format!(
-                "{path}: {done} generations; champion: individual {individual} of generation {generation}, fitness {:?}",
-                fitness.get()
-            ),
+    fn summary(&self) -> Summary {
+        let Identity { experiment, condition, seed, .. } = self.identity.clone();
+        let session = self.manifest.sessions.last();
+        Summary {
+            directory: self.directory.path().display().to_string(),
+            experiment,
+            condition,
+            seed,
+            generations: self.evolution.generation(),
+            evaluations: session.map_or(0, |session| session.evaluations),
+            seconds: session.map_or(0.0, |session| session.seconds),
+            champion: self.champion.as_ref().map(|&Champion { generation, individual, fitness, .. }| Winner {
+                generation,
+                individual,
+                fitness: fitness.get(),
+            }),
         }
     }
 }
@@ -225,6 +271,7 @@ mod tests {
     use crate::experiment::{Description, Experiment};
     use crate::replay::{Which, replay};
     use crate::settings::{Setting, Settings, Value};
+    use crate::stage::Stage;
     use std::path::PathBuf;
 
     /// Earns its first gene; panics in one life, if asked to, and fails where the gene is odd.
@@ -256,8 +303,8 @@ mod tests {
         fn genes(&self) -> usize {
             1
         }
-        fn columns(&self) -> Vec<String> {
-            vec!["gene".into()]
+        fn stage(&self) -> Stage {
+            Stage::of_scalars(["gene"])
         }
         fn description(&self) -> Description {
             Description::default()
@@ -265,7 +312,7 @@ mod tests {
         fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
             assert!(!self.panics || (job.generation, job.individual) != (2, 3), "as planned");
             let gene = f64::from(genes[0]);
-            tape.row(&[gene]);
+            tape.row(0.0, &[gene]);
             let fitness = if genes[0] % 2 == 1 { f64::INFINITY } else { gene };
             Outcome { terms: vec![fitness], steps: 1, ..Outcome::default() }
         }
@@ -277,8 +324,8 @@ mod tests {
         path
     }
 
-    fn finish(toy: Toy, directory: &Directory) -> Result<String, Error> {
-        go_on(&Plan::new(&toy, None, "")?, directory, 2, &AtomicBool::new(false), "farsa")
+    fn finish(toy: Toy, directory: &Directory) -> Result<Summary, Error> {
+        go_on(&Plan::new(&toy, None, "")?, directory, 2, &AtomicBool::new(false), "farsa", true)
     }
 
     #[test]
@@ -315,7 +362,7 @@ mod tests {
         let replayed = said(replay(&plan, &directory, Which::default(), &mut Vec::new()).unwrap_err());
         assert!(replayed.contains("lineage.bin: ") && replayed.contains(words), "{replayed}");
         // The champion's genes are what they are; that it may behave otherwise is worth a warning.
-        let tested = exam::test(&plan, &directory, 3, 1, 1).unwrap();
+        let tested = exam::test(&plan, &directory, 3, 1, 1, true).unwrap().text();
         assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
         fs::remove_dir_all(root).unwrap();
     }
@@ -326,14 +373,16 @@ mod tests {
         let toy = Toy { version: 1, panics: false };
         let mut plan = Plan::new(&toy, None, "").unwrap();
         let directory = create(&plan, &root).unwrap();
-        let stopped = go_on(&plan, &directory, 1, &AtomicBool::new(true), "farsa").unwrap_err();
+        let stopped = go_on(&plan, &directory, 1, &AtomicBool::new(true), "farsa", true).unwrap_err();
         assert_eq!(stopped.exit_code(), 130);
         assert!(stopped.to_string().contains("`farsa run --resume "), "{stopped}");
         // Nobody is best yet.
-        assert!(exam::test(&plan, &directory, 1, 1, 1).unwrap_err().to_string().contains("no generation is finished"));
+        assert!(
+            exam::test(&plan, &directory, 1, 1, 1, true).unwrap_err().to_string().contains("no generation is finished")
+        );
         assert!(replay(&plan, &directory, Which::default(), &mut Vec::new()).is_err());
         plan.settings.set("", evolution::GENERATIONS, Value::Whole(2)).unwrap();
-        go_on(&plan, &directory, 1, &AtomicBool::new(false), "farsa").unwrap();
+        go_on(&plan, &directory, 1, &AtomicBool::new(false), "farsa", true).unwrap();
         assert_eq!(fs::read_to_string(directory.log()).unwrap().lines().count(), 3);
         fs::remove_dir_all(root).unwrap();
     }

@@ -235,7 +235,6 @@ pub struct ScriptLife {
     statics: Arc<Statics>,
     plan: Option<Plan>,
     done: [f32; OUTPUTS],
-    begun: bool,
 }
 
 impl ScriptLife {
@@ -246,7 +245,7 @@ impl ScriptLife {
     pub fn new(scene: Arc<Scene>, timetable: Timetable) -> Result<Self, Error> {
         let (motors, statics) = (scene.motors()?, Arc::new(Statics::new(&scene)?));
         let judge = Judge::new(scene);
-        Ok(Self { judge, motors, timetable, statics, plan: None, done: [0.0; OUTPUTS], begun: false })
+        Ok(Self { judge, motors, timetable, statics, plan: None, done: [0.0; OUTPUTS] })
     }
 
     /// The judge of the trial.
@@ -286,22 +285,18 @@ where
         let start: Vec<f64> = joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
         let [x, y, _] = world.pose(Tabletop::SPHERE).position.map(f64::from);
         self.plan = Plan::new(self.timetable, Arc::clone(&self.statics), &start, [x, y]).ok();
-        self.begun = false;
     }
 
     fn tick(&mut self, world: &mut W) -> Option<f64> {
-        if self.begun
-            && let Some(fitness) = self.judge.judge(world)
-        {
-            return Some(fitness);
+        let end = self.judge.tick(world);
+        if end.is_none() {
+            if let Some(plan) = &self.plan {
+                let time = f64::from(self.judge.trial().steps) * self.judge.scene().config.time_step;
+                self.done = plan.outputs(world, time);
+            }
+            self.motors.drive(&self.done, world);
         }
-        self.begun = true;
-        let time = f64::from(self.judge.trial().steps) * self.judge.scene().config.time_step;
-        if let Some(plan) = &self.plan {
-            self.done = plan.outputs(world, time);
-        }
-        self.motors.drive(&self.done, world);
-        None
+        end
     }
 }
 

@@ -2,6 +2,8 @@
 
 mod bad_input;
 mod files;
+mod manners;
 mod own;
+mod report;
 mod same_bytes;
 mod tool;

@@ -52,7 +52,7 @@ fn it_learns_and_its_best_life_is_seen_again() {
     }
     let all = ok(own(), &here, "replay runs/cart-rough-3 --generation 4 --individual 7");
     let one = ok(own(), &here, "replay runs/cart-rough-3 --generation 4 --individual 7 --trial 1");
-    let head = "trial,step,position [m],speed [m/s],force [N]\n";
+    let head = "trial,step,time [s],position [m],speed [m/s],force [N]\n";
     let lines =
         |text: &str| text.strip_prefix(head).expect("the columns").lines().map(str::to_owned).collect::<Vec<_>>();
     let of_trial: Vec<String> = lines(&all).into_iter().filter(|line| line.starts_with("1,")).collect();

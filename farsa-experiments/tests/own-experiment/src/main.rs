@@ -1,6 +1,6 @@
 //! An experiment of one's own: a cart learns to stop at the middle of its track.
 
-use farsa_experiments::{ChannelGroup, Description, Experiment, Job, Outcome, Setting, Settings, Setup, Tape, cli};
+use farsa_experiments::{ChannelGroup, Description, Experiment, Job, Outcome, Setting, Settings, Setup, Stage, Tape, cli};
 use farsa_num::{Domain, Stream};
 
 struct Cart;
@@ -44,8 +44,8 @@ impl Setup for Track {
     fn trials(&self) -> usize {
         3
     }
-    fn columns(&self) -> Vec<String> {
-        ["position [m]", "speed [m/s]", "force [N]"].map(String::from).into()
+    fn stage(&self) -> Stage {
+        Stage::of_scalars(["position [m]", "speed [m/s]", "force [N]"])
     }
     fn description(&self) -> Description {
         let sensors = vec![ChannelGroup::new("state", 2, "position [m] and speed [m/s]")];
@@ -58,13 +58,13 @@ impl Setup for Track {
         let (mut x, mut v) = (start.range_f64(-1.0, 1.0), start.range_f64(-1.0, 1.0));
         let [kx, kv] = [0, 1].map(|gene| f64::from(genes[gene]) / 4096.0 - 8.0);
         let mut fitness = 0.0;
-        for _ in 0..self.steps {
+        for step in 1..=self.steps {
             let force = (kx * x + kv * v).clamp(-1.0, 1.0);
             let force = if self.switched { force.signum() } else { force };
             v += 0.01 * (force - self.friction * v);
             x += 0.01 * v;
             fitness += 1.0 / (1.0 + x * x + v * v) / f64::from(self.steps);
-            tape.row(&[x, v, force]);
+            tape.row(0.01 * f64::from(step), &[x, v, force]);
             if x.abs() > 5.0 {
                 return Outcome::failed(); // Off the track.
             }

@@ -1,0 +1,466 @@
+//! A page that shows recorded lives in a browser: one file, no network.
+
+use std::fmt::Write as _;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use farsa_body::{BodyId, Shape};
+use farsa_num::crc32;
+use serde_json::{Value, json};
+
+use crate::recording::Recording;
+use crate::stage::{Channel, View};
+
+const TEMPLATE: &str = include_str!("viewer/page.html");
+const STYLE: &str = include_str!("viewer/viewer.css");
+const SCRIPTS: &[&str] = &[
+    include_str!("viewer/data.js"),
+    include_str!("viewer/scene.js"),
+    include_str!("viewer/strips.js"),
+    include_str!("viewer/network.js"),
+    include_str!("viewer/main.js"),
+];
+
+/// Counts of a 16-bit quantity; one more says NaN in channels.
+const COUNTS: f64 = 65534.0;
+
+/// A page of recorded lives, to be looked at in a browser: bodies in space, strips of everything that has a value, and the
+/// network, all on one clock.
+///
+/// It needs nothing but itself. The format of its data is described in `docs/replay-format.md` of the project.
+#[derive(Clone, Debug, Default)]
+pub struct Page {
+    title: String,
+    lives: Vec<Film>,
+}
+
+#[derive(Clone, Debug)]
+struct Film {
+    name: String,
+    facts: Vec<(String, String)>,
+    recording: Recording,
+}
+
+impl Page {
+    /// A page without lives.
+    pub fn new(title: &str) -> Self {
+        Self { title: title.into(), lives: Vec::new() }
+    }
+
+    /// The same page with another life.
+    pub fn with(mut self, name: &str, recording: Recording) -> Self {
+        self.add(name, Vec::new(), recording);
+        self
+    }
+
+    /// Adds a life with facts about it, by name, such as its fitness.
+    pub fn add(&mut self, name: &str, facts: Vec<(String, String)>, recording: Recording) {
+        self.lives.push(Film { name: name.into(), facts, recording });
+    }
+
+    /// The whole file.
+    pub fn html(&self) -> String {
+        let top = self.lives.first().is_some_and(|film| film.recording.stage().view == View::Top);
+        let lives: Vec<Value> = self.lives.iter().map(Film::data).collect();
+        let data = json!({
+            "format": "farsa-replay",
+            "version": 1,
+            "made_by": concat!("farsa ", env!("CARGO_PKG_VERSION")),
+            "title": self.title,
+            "view": if top { "top" } else { "free" },
+            "lives": lives,
+        });
+        // No text of a recording can end the element that holds it.
+        let data = data.to_string().replace('<', "\\u003c");
+        let parts = [
+            ("{{title}}", escaped(&self.title)),
+            ("{{style}}", STYLE.to_owned()),
+            ("{{script}}", SCRIPTS.concat()),
+            ("{{data}}", data),
+        ];
+        let mut html = String::new();
+        let mut rest = TEMPLATE;
+        for (mark, part) in parts {
+            let Some((before, after)) = rest.split_once(mark) else { continue };
+            html.push_str(before);
+            html.push_str(&part);
+            rest = after;
+        }
+        html.push_str(rest);
+        html
+    }
+}
+
+/// Text as it stands in HTML.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut html = String::new();
+    for letter in text.chars() {
+        match letter {
+            '&' => html.push_str("&amp;"),
+            '<' => html.push_str("&lt;"),
+            '>' => html.push_str("&gt;"),
+            '"' => html.push_str("&quot;"),
+            other => html.push(other),
+        }
+    }
+    html
+}
+
+/// The bytes of a life, block by block.
+#[derive(Default)]
+struct Blocks {
+    bytes: Vec<u8>,
+    starts: serde_json::Map<String, Value>,
+}
+
+impl Blocks {
+    fn begin(&mut self, name: &str) {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.starts.insert(name.into(), self.bytes.len().into());
+    }
+    fn float(&mut self, x: f32) {
+        self.bytes.extend(x.to_le_bytes());
+    }
+    fn word(&mut self, x: u16) {
+        self.bytes.extend(x.to_le_bytes());
+    }
+}
+
+/// Positions in a box, as counts.
+struct Space {
+    origin: [f64; 3],
+    unit: f64,
+}
+
+impl Space {
+    fn of(positions: impl Iterator<Item = [f32; 3]>) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for position in positions {
+            for k in 0..3 {
+                let x = f64::from(position[k]);
+                // A body that flies off to infinity must not take the others' precision with it.
+                if x.abs() < 1e6 {
+                    (low[k], high[k]) = (low[k].min(x), high[k].max(x));
+                }
+            }
+        }
+        let largest = (0..3).map(|k| high[k] - low[k]).fold(1e-3, f64::max);
+        let origin = low.map(|x| if x.is_finite() { x } else { 0.0 });
+        Self { origin, unit: largest / COUNTS }
+    }
+
+    fn write(&self, position: [f32; 3], blocks: &mut Blocks) {
+        for k in 0..3 {
+            // NaN becomes 0, what is too far goes to the border.
+            blocks.word(((f64::from(position[k]) - self.origin[k]) / self.unit).round() as u16);
+        }
+    }
+}
+
+impl Film {
+    fn data(&self) -> Value {
+        let Self { name, facts, recording } = self;
+        let stage = recording.stage();
+        let ticks = recording.times().len();
+        let bodies: Vec<BodyId> = stage.shown().collect();
+        let position = |tick: usize, body: BodyId| recording.pose_at(tick, body).map(|pose| pose.position);
+        let of_bodies = (0..ticks).flat_map(|tick| bodies.iter().filter_map(move |body| position(tick, *body)));
+        let of_points = (0..ticks)
+            .flat_map(|tick| (0..stage.points.len()).filter_map(move |point| recording.point_at(tick, point)));
+        let touching = || (0..ticks).flat_map(|tick| recording.contacts_at(tick));
+        let rays = (0..ticks).flat_map(|tick| recording.rays_at(tick)).flat_map(|ray| [ray.from, ray.to]);
+        let space = Space::of(of_bodies.chain(of_points).chain(touching().map(|contact| contact.point)).chain(rays));
+        let largest = touching().flat_map(|contact| contact.force).map(f32::abs).fold(1e-3, f32::max);
+        let force_unit = f64::from(largest) / 32767.0;
+
+        let mut blocks = Blocks::default();
+        blocks.begin("times");
+        recording.times().iter().for_each(|time| blocks.float(*time as f32));
+        blocks.begin("poses");
+        let mut last = vec![farsa_body::Pose::identity(); bodies.len()];
+        for tick in 0..ticks {
+            for (body, last) in bodies.iter().zip(&mut last) {
+                // A body that was not told stays where it was.
+                if let Some(pose) = recording.pose_at(tick, *body)
+                    && pose.position.iter().chain(&pose.rotation).all(|x| x.is_finite())
+                {
+                    *last = pose;
+                }
+                space.write(last.position, &mut blocks);
+                last.rotation.iter().for_each(|x| blocks.word(((x * 32767.0).round() as i16).cast_unsigned()));
+            }
+        }
+        let channels = self.channels(&mut blocks);
+        blocks.begin("points");
+        for tick in 0..ticks {
+            (0..stage.points.len())
+                .filter_map(|point| recording.point_at(tick, point))
+                .for_each(|position| space.write(position, &mut blocks));
+        }
+        blocks.begin("contacts");
+        for contacts in (0..ticks).map(|tick| recording.contacts_at(tick)) {
+            blocks.word(contacts.len() as u16);
+            for contact in contacts {
+                blocks.word(contact.pair.0);
+                space.write(contact.point, &mut blocks);
+                contact
+                    .force
+                    .iter()
+                    .for_each(|f| blocks.word(((f64::from(*f) / force_unit).round() as i16).cast_unsigned()));
+            }
+        }
+        blocks.begin("rays");
+        for rays in (0..ticks).map(|tick| recording.rays_at(tick)) {
+            blocks.word(rays.len() as u16);
+            for ray in rays {
+                space.write(ray.from, &mut blocks);
+                space.write(ray.to, &mut blocks);
+                blocks.word(u16::from(ray.met));
+            }
+        }
+        blocks.begin("weights");
+        recording.controller_parameters().iter().for_each(|weight| blocks.float(*weight));
+
+        let Blocks { bytes, starts } = blocks;
+        let mut data = json!({
+            "name": name,
+            "facts": facts,
+            "ticks": ticks,
+            "bodies": self.names(&bodies),
+            "shapes": self.shapes(&bodies),
+            "channels": channels,
+            "pairs": self.pairs(),
+            "points": stage.points,
+            "position_origin": space.origin,
+            "position_unit": space.unit,
+            "force_unit": force_unit,
+            "blocks": starts,
+            "bytes": bytes.len(),
+            "crc32": crc32(&bytes),
+        });
+        if let Some(network) = self.network() {
+            data["network"] = network;
+        }
+        // Last, so that a reader sees all names before the long line of numbers.
+        data["data"] = STANDARD.encode(&bytes).into();
+        data
+    }
+
+    fn names(&self, bodies: &[BodyId]) -> Vec<&str> {
+        let robot = self.recording.stage().robot.as_ref();
+        bodies.iter().filter_map(|body| Some(robot?.segments.get(body.index())?.name.as_str())).collect()
+    }
+
+    fn shapes(&self, bodies: &[BodyId]) -> Vec<Value> {
+        let stage = self.recording.stage();
+        let colliders = stage.robot.iter().flat_map(|robot| &robot.colliders);
+        colliders
+            .map(|collider| {
+                let body = collider.body.and_then(|body| bodies.iter().position(|other| *other == body));
+                let role = match collider.body {
+                    None => "ground",
+                    Some(body) if stage.is_thing(body) => "thing",
+                    Some(_) => "robot",
+                };
+                let mut shape = match collider.shape {
+                    Shape::Sphere { radius } => json!({"kind": "sphere", "radius": radius}),
+                    Shape::Capsule { radius, half_length } => {
+                        json!({"kind": "capsule", "radius": radius, "half_length": half_length})
+                    }
+                    Shape::Box { half } => json!({"kind": "box", "half": half}),
+                    Shape::Plane => json!({"kind": "plane"}),
+                };
+                shape["name"] = collider.name.as_str().into();
+                shape["body"] = body.map_or_else(|| (-1).into(), Value::from);
+                shape["role"] = role.into();
+                shape["position"] = json!(collider.placement.position);
+                shape["rotation"] = json!(collider.placement.rotation);
+                shape
+            })
+            .collect()
+    }
+
+    fn pairs(&self) -> Vec<[&str; 2]> {
+        let Some(robot) = &self.recording.stage().robot else { return Vec::new() };
+        let name = |collider: usize| robot.colliders.get(collider).map_or("", |collider| collider.name.as_str());
+        robot.pairs.iter().map(|pair| pair.colliders.map(name)).collect()
+    }
+
+    /// Writes the values of all channels and tells how to read them.
+    fn channels(&self, blocks: &mut Blocks) -> Vec<Value> {
+        let recording = &self.recording;
+        let ticks = recording.times().len();
+        let rows: Vec<Vec<f64>> = (0..ticks).map(|tick| recording.row(tick).collect()).collect();
+        blocks.begin("channels");
+        let mut told = Vec::new();
+        for (index, (_, channel)) in recording.stage().channels().enumerate() {
+            let values = || rows.iter().map(|row| row[index]);
+            let finite = || values().filter(|x| x.is_finite());
+            let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+            let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
+            // Whole numbers stay exact: phases, counts of contacts.
+            let whole = finite().all(|x| x.fract() == 0.0) && high - low <= COUNTS;
+            let scale = if whole { 1.0 } else { (high - low) / COUNTS };
+            for x in values() {
+                blocks.word(if x.is_nan() { u16::MAX } else { ((x - low) / scale).round().min(COUNTS) as u16 });
+            }
+            told.push(described(channel, low, scale));
+        }
+        told
+    }
+
+    fn network(&self) -> Option<Value> {
+        let stage = self.recording.stage();
+        if stage.links.is_empty() || self.recording.controller_parameters().is_empty() {
+            return None;
+        }
+        let layers = [&stage.sensors, &stage.neurons, &stage.outputs];
+        let channels = layers.into_iter().enumerate().flat_map(|(layer, of)| of.iter().map(move |x| (layer, x)));
+        let first = stage.scalars.len();
+        let nodes: Vec<Value> = channels
+            .enumerate()
+            .map(|(index, (layer, node))| json!({"name": node.title(), "layer": layer, "channel": first + index}))
+            .collect();
+        let links: Vec<Value> = (stage.links.iter())
+            .map(|links| json!({"from": links.from, "to": links.to, "first": links.first}))
+            .collect();
+        let values: Vec<Value> = (stage.node_parameters.iter())
+            .map(|of| json!({"name": of.name, "nodes": of.nodes, "first": of.first}))
+            .collect();
+        Some(json!({"nodes": nodes, "links": links, "values": values}))
+    }
+}
+
+fn described(channel: &Channel, minimum: f64, scale: f64) -> Value {
+    let mut told = json!({
+        "group": channel.group,
+        "name": channel.name,
+        "unit": channel.unit,
+        "minimum": minimum,
+        "scale": scale,
+    });
+    if let Some(range) = channel.range {
+        told["range"] = json!(range);
+    }
+    if !channel.words.is_empty() {
+        told["words"] = json!(channel.words);
+    }
+    told
+}
+
+/// A number with as many digits as a reader wants.
+pub(crate) fn readable(x: f64) -> String {
+    let mut text = String::new();
+    let decimals = if x.abs() >= 1000.0 {
+        0
+    } else if x.abs() >= 10.0 {
+        1
+    } else {
+        3
+    };
+    // Writing to a string does not fail.
+    let _ = write!(text, "{x:.decimals$}");
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage::Stage;
+    use farsa_body::{PairContact, PairId, Pose, Recorder, Tabletop};
+
+    /// The data of a page, as a browser reads it.
+    fn data(html: &str) -> Value {
+        let (_, rest) = html.split_once("id=\"data\">").unwrap();
+        let (text, _) = rest.split_once("</script>").unwrap();
+        serde_json::from_str(text).unwrap()
+    }
+
+    fn word(bytes: &[u8], at: u64) -> u16 {
+        u16::from_le_bytes([bytes[at as usize], bytes[at as usize + 1]])
+    }
+
+    #[test]
+    fn what_is_read_back_is_what_was_told_within_the_stated_error() {
+        let robot = Tabletop::default().scene(&farsa_body::ArmAndHand::default()).unwrap();
+        let mut stage = Stage::of_robot(&robot).with_sensors(["a </script> <b>"]).with_scalars(["x [m]", "n"]);
+        stage.points = vec!["p".into()];
+        let mut recording = Recording::new(stage);
+        let sphere = Tabletop::SPHERE;
+        let place = |tick: u16| [0.01 * f32::from(tick), -0.3, 0.5];
+        for tick in 0..100_u16 {
+            recording.pose(sphere, Pose { position: place(tick), rotation: [0.0, 0.6, 0.0, -0.8] });
+            recording.sensors(&[f32::from(tick).sqrt()]);
+            recording.scalars(&[if tick == 7 { f64::NAN } else { 1.0 / f64::from(tick + 1) }, f64::from(tick % 3)]);
+            recording.point(0, [1.0, 0.0, 0.0]);
+            if tick == 50 {
+                let contact =
+                    PairContact { force: [0.0, -4.0, 2.0], point: [0.1; 3], points: 1, ..PairContact::default() };
+                recording.contact(PairId(3), &contact);
+            }
+            recording.tick(0.01 * f64::from(tick + 1));
+        }
+        let html = Page::new("T & <T>").with("one", recording).html();
+        assert!(html.contains("<title>T &amp; &lt;T&gt;"));
+        assert_eq!(html.matches("</script>").count(), 2);
+        let page = data(&html);
+        let life = &page["lives"][0];
+        let bytes = STANDARD.decode(life["data"].as_str().unwrap()).unwrap();
+        assert_eq!(life["crc32"], crc32(&bytes));
+        assert_eq!(life["bytes"], bytes.len());
+        let start = |block: &str| life["blocks"][block].as_u64().unwrap();
+        assert!(life["blocks"].as_object().unwrap().values().all(|at| at.as_u64().unwrap() % 4 == 0));
+
+        let bodies = life["bodies"].as_array().unwrap();
+        let index = bodies.iter().position(|name| name == "sphere").unwrap() as u64;
+        let unit = life["position_unit"].as_f64().unwrap();
+        for tick in [0, 50, 99_u16] {
+            let at = start("poses") + 14 * (u64::from(tick) * bodies.len() as u64 + index);
+            for k in 0..3 {
+                let origin = life["position_origin"][k].as_f64().unwrap();
+                let x = origin + unit * f64::from(word(&bytes, at + 2 * k as u64));
+                assert!((x - f64::from(place(tick)[k])).abs() <= 0.51 * unit);
+            }
+            let w = f64::from(word(&bytes, at + 12).cast_signed()) / 32767.0;
+            assert!((w + 0.8).abs() < 2e-5);
+        }
+        // Scalars come first.
+        let channels = life["channels"].as_array().unwrap();
+        assert_eq!(
+            channels.iter().map(|c| c["name"].as_str().unwrap()).collect::<Vec<_>>(),
+            ["x", "n", "a </script> <b>"]
+        );
+        let value = |channel: u64, tick: u64| {
+            let count = word(&bytes, start("channels") + 2 * (100 * channel + tick));
+            let of = |key: &str| channels[channel as usize][key].as_f64().unwrap();
+            (count != u16::MAX).then(|| (of("minimum") + of("scale") * f64::from(count), of("scale")))
+        };
+        assert_eq!(value(0, 7), None);
+        assert_eq!((value(1, 4), value(1, 5)), (Some((1.0, 1.0)), Some((2.0, 1.0))));
+        for tick in [0, 3, 99] {
+            let (x, scale) = value(2, tick).unwrap();
+            assert!((x - (tick as f64).sqrt()).abs() <= 0.51 * scale);
+        }
+        let at = start("contacts") + 2 * 50;
+        assert_eq!((word(&bytes, at - 2), word(&bytes, at), word(&bytes, at + 2)), (0, 1, 3));
+        let force = f64::from(word(&bytes, at + 12).cast_signed()) * life["force_unit"].as_f64().unwrap();
+        assert!((force - 2.0).abs() < 1e-3 || (force + 4.0).abs() < 1e-3);
+        assert_eq!(life["pairs"].as_array().unwrap().len(), robot.pairs.len());
+        assert_eq!(life["shapes"].as_array().unwrap().len(), robot.colliders.len());
+        assert!(life.get("network").is_none());
+    }
+
+    #[test]
+    fn a_page_of_nothing_is_a_page() {
+        let page = data(&Page::new("none").html());
+        assert_eq!(page["lives"], json!([]));
+        let page = data(&Page::new("empty").with("nothing", Recording::default()).html());
+        assert_eq!(page["lives"][0]["ticks"], 0);
+    }
+
+    #[test]
+    fn the_viewer_is_small() {
+        let size = TEMPLATE.len() + STYLE.len() + SCRIPTS.iter().map(|script| script.len()).sum::<usize>();
+        assert!(size <= 60 * 1024, "{size} bytes");
+    }
+}

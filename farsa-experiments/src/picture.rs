@@ -1,0 +1,246 @@
+//! What a picture shows of a moment of a simulation.
+
+use farsa_body::{BodyId, JointKind, Pose, Robot};
+
+use crate::camera::Camera;
+use crate::error::Error;
+use crate::form::Form;
+use crate::picture_png::png;
+use crate::picture_svg::svg;
+use crate::vector::{Vector, length};
+
+/// Red, green and blue as screens take them.
+pub type Color = [u8; 3];
+
+/// What a shape is to the one who looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A part of a robot.
+    Robot,
+    /// A thing that moves or that the robot deals with.
+    Thing,
+    /// What everything stands on, and walls: never what a camera looks for.
+    Ground,
+    /// A mark on the ground, such as a target area; shows what it lies on through it.
+    Area,
+}
+
+/// A shape in its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Its form.
+    pub form: Form,
+    /// Its frame in the world.
+    pub pose: Pose<f64>,
+    /// What it is.
+    pub role: Role,
+    /// Its colour; `None` for that of its role.
+    pub color: Option<Color>,
+    /// Whether the camera `close` looks for it; things are always looked for.
+    pub focus: bool,
+}
+
+/// A force on a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// Where it acts, in the world [m].
+    pub point: Vector,
+    /// The force, in the world's axes [N].
+    pub force: Vector,
+}
+
+/// A ray of a sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beam {
+    /// Where it begins, in the world [m].
+    pub from: Vector,
+    /// Where it ends, in the world [m].
+    pub to: Vector,
+    /// Whether it met something there.
+    pub hit: bool,
+}
+
+/// A moment of a simulation, ready to be drawn without a browser.
+///
+/// ```
+/// use farsa_body::{ArmAndHand, KinematicTree};
+/// use farsa_experiments::{Camera, Picture};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let robot = ArmAndHand::default().robot()?;
+/// let tree = KinematicTree::new(&robot)?;
+/// let poses = tree.poses(&tree.zero());
+/// let mut picture = Picture { caption: Some("at rest".into()), ..Picture::default() };
+/// picture.add_robot(&robot, |body| poses[body.index()]);
+/// let svg = picture.svg(Camera::named("front")?, [600, 400], "rest-");
+/// assert!(svg.contains("at rest"));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Picture {
+    /// The shapes.
+    pub shapes: Vec<Placed>,
+    /// Contact forces, drawn as arrows in proportion to the largest.
+    pub contacts: Vec<Push>,
+    /// Rays of sensors.
+    pub rays: Vec<Beam>,
+    /// Points with their names, which may be empty; SVG shows the names.
+    pub points: Vec<(String, Vector)>,
+    /// Ways through the world [m] with their colours.
+    pub trails: Vec<(Vec<Vector>, Color)>,
+    /// Further points that shall be in the frame, such as the corners of an arena [m]; not for the camera `close`.
+    pub frame: Vec<Vector>,
+    /// What the picture shows, in a line; SVG shows it.
+    pub caption: Option<String>,
+}
+
+/// The colours of Okabe and Ito, which people with any colour vision tell apart: orange, sky blue, bluish green, yellow,
+/// blue, vermilion, reddish purple.
+pub const OKABE_ITO: [Color; 7] =
+    [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [0, 114, 178], [213, 94, 0], [204, 121, 167]];
+
+const ARM: Color = [146, 161, 178];
+const PALM: Color = [122, 143, 166];
+/// Of one branch of a robot after the other: neighbours differ in lightness.
+const BRANCHES: [Color; 5] = [[132, 184, 182], [104, 150, 190], [160, 190, 214], [104, 150, 190], [160, 190, 214]];
+const GROUND: Color = [219, 222, 226];
+
+impl Placed {
+    /// A shape in its role's colour.
+    pub fn new(form: impl Into<Form>, pose: Pose<f64>, role: Role) -> Self {
+        Self { form: form.into(), pose, role, color: None, focus: role == Role::Thing }
+    }
+
+    /// The same shape in this colour.
+    pub fn with_color(mut self, color: Color) -> Self {
+        self.color = Some(color);
+        self
+    }
+
+    /// The same shape, looked for by the camera `close`.
+    pub fn with_focus(mut self) -> Self {
+        self.focus = true;
+        self
+    }
+
+    /// Its colour.
+    pub fn color(&self) -> Color {
+        self.color.unwrap_or(match self.role {
+            Role::Robot => ARM,
+            Role::Thing => OKABE_ITO[0],
+            Role::Ground => GROUND,
+            Role::Area => OKABE_ITO[2],
+        })
+    }
+}
+
+/// The body that most others hang on directly, two at least, such as a palm.
+fn junction(robot: &Robot) -> Option<usize> {
+    let children = |body: usize| robot.segments.iter().filter(|s| s.parent.is_some_and(|p| p.index() == body)).count();
+    // Of equals the last, which is nearest to the fingers.
+    (0..robot.segments.len()).max_by_key(|body| children(*body)).filter(|body| children(*body) > 1)
+}
+
+impl Picture {
+    /// Adds all colliders of a robot or scene whose bodies are at these places: what stands fast in the world is
+    /// ground, what floats by itself a thing, all else robot.
+    ///
+    /// Things get one colour after the other; where a robot branches, its branches differ and are what the camera
+    /// `close` looks for.
+    pub fn add_robot(&mut self, robot: &Robot, pose: impl Fn(BodyId) -> Pose<f64>) {
+        let junction = junction(robot);
+        let branches: Vec<usize> = (0..robot.segments.len())
+            .filter(|i| junction.is_some() && robot.segments[*i].parent.map(BodyId::index) == junction)
+            .collect();
+        let ancestors =
+            |body: usize| std::iter::successors(Some(body), |body| robot.segments[*body].parent.map(BodyId::index));
+        let mut things = Vec::new();
+        for collider in &robot.colliders {
+            let Some(body) = collider.body else {
+                self.shapes.push(Placed::new(collider.shape, collider.placement, Role::Ground));
+                continue;
+            };
+            let (i, at) = (body.index(), pose(body).compose(&collider.placement));
+            let leaf = robot.segments.iter().all(|s| s.parent != Some(body));
+            if robot.segments[i].joint.kind == JointKind::Floating && leaf {
+                let known = things.iter().position(|thing| *thing == i).unwrap_or_else(|| {
+                    things.push(i);
+                    things.len() - 1
+                });
+                // Blues are the robot's.
+                let color = [0, 2, 6, 3][known % 4];
+                self.shapes.push(Placed::new(collider.shape, at, Role::Thing).with_color(OKABE_ITO[color]));
+                continue;
+            }
+            let placed = Placed::new(collider.shape, at, Role::Robot);
+            let branch = ancestors(i).find_map(|body| branches.iter().position(|branch| *branch == body));
+            self.shapes.push(match branch {
+                Some(branch) => placed.with_color(BRANCHES[branch % BRANCHES.len()]).with_focus(),
+                None if junction == Some(i) => placed.with_color(PALM).with_focus(),
+                None => placed,
+            });
+        }
+    }
+
+    /// The picture as the bytes of a PNG file of `size` [pixels], traced ray by ray with light and shadow.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a size that no PNG has.
+    pub fn png(&self, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
+        png(self, camera, size)
+    }
+
+    /// The picture as an SVG document of `size` [pixels].
+    ///
+    /// Every id in it begins with `prefix`, so that several can stand in one page.
+    pub fn svg(&self, camera: Camera, size: [u32; 2], prefix: &str) -> String {
+        svg(self, camera, size, prefix)
+    }
+
+    /// Balls that hold what a camera has to show: everything but the ground, or with `close` what that looks for.
+    pub(crate) fn interest(&self, close: bool) -> Vec<(Vector, f64)> {
+        let wanted = |placed: &&Placed| if close { placed.focus } else { placed.role != Role::Ground };
+        let hull = |placed: &Placed| {
+            let pose = placed.pose;
+            placed.form.hull().into_iter().map(move |(centre, radius)| (pose.transform(centre), radius))
+        };
+        let mut balls: Vec<_> = self.shapes.iter().filter(wanted).flat_map(hull).collect();
+        if close && !balls.is_empty() {
+            return balls;
+        }
+        let marks = self.points.iter().map(|(_, point)| *point);
+        let marks = marks.chain(self.trails.iter().flat_map(|(trail, _)| trail.iter().copied()));
+        let marks = marks.chain(self.frame.iter().copied()).chain(self.contacts.iter().map(|push| push.point));
+        balls.extend(marks.chain(self.rays.iter().flat_map(|ray| [ray.from, ray.to])).map(|point| (point, 0.0)));
+        if balls.is_empty() {
+            // Nothing moves: whatever there is.
+            balls.extend(self.shapes.iter().flat_map(hull));
+        }
+        balls.retain(|(centre, radius)| (length(*centre) + radius).is_finite());
+        balls
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_body::{ArmAndHand, KinematicTree, Tabletop};
+
+    #[test]
+    fn a_scene_is_told_apart() {
+        let robot = Tabletop::default().scene(&ArmAndHand::default()).unwrap();
+        let tree = KinematicTree::new(&robot).unwrap();
+        let poses = tree.poses(&tree.zero());
+        let mut picture = Picture::default();
+        picture.add_robot(&robot, |body| poses[body.index()]);
+        let count = |role| picture.shapes.iter().filter(|placed| placed.role == role).count();
+        assert_eq!([Role::Robot, Role::Thing, Role::Ground, Role::Area].map(count), [18, 1, 1, 0]);
+        // The palm, fifteen phalanges and the sphere.
+        assert_eq!(picture.shapes.iter().filter(|placed| placed.focus).count(), 17);
+        assert_eq!(picture.shapes[18].color(), OKABE_ITO[0]);
+        let index = ArmAndHand::phalange_colliders(farsa_body::Finger::Index)[0];
+        assert_ne!(picture.shapes[index].color(), picture.shapes[index + 3].color());
+        assert!(picture.interest(true).len() < picture.interest(false).len());
+    }
+}

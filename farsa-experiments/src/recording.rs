@@ -1,0 +1,296 @@
+//! A life as it was told, kept in memory.
+
+use std::ops::Range;
+
+use farsa_body::{BodyId, Contacts, Kinematics, PairContact, PairId, Pose, Recorder, record_world};
+
+use crate::stage::Stage;
+
+/// Numbers of a pose: position and rotation.
+const POSE: usize = 7;
+/// Ticks that there is room for from the beginning.
+const TICKS: usize = 1024;
+
+/// A pair that touched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touching {
+    /// Which pair.
+    pub pair: PairId,
+    /// Where, in the world \[m\].
+    pub point: [f32; 3],
+    /// Force on the pair's first body \[N\].
+    pub force: [f32; 3],
+}
+
+/// A ray that was cast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CastRay {
+    /// Where it began \[m\].
+    pub from: [f32; 3],
+    /// Where it ended \[m\].
+    pub to: [f32; 3],
+    /// Whether it met something there.
+    pub met: bool,
+}
+
+/// A life as it was told to this recorder, tick by tick: for a [`Page`](crate::Page), or to look things up.
+///
+/// What belongs to no name of the stage is not kept, what was not told is NaN.
+///
+/// ```
+/// use farsa_body::{ArmAndHand, JointPosition, JointId, Recorder, Sensor, Tabletop, World as _};
+/// use farsa_experiments::{Page, Recording, Stage};
+/// use farsa_physics::articulated::{Model, Options, World};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let robot = Tabletop::default().scene(&ArmAndHand::default())?;
+/// let mut world = World::new(Model::<f32>::new(&robot, &Options::default())?);
+/// let mut elbow = JointPosition::new(JointId(3), -2.0, 0.0)?;
+/// let mut x = [0.0];
+///
+/// let mut recording = Recording::new(Stage::of_robot(&robot).with_sensors(["elbow"]));
+/// for tick in 0..50 {
+///     elbow.read(&world, &mut x);
+///     world.step();
+///     recording.world(&world).sensors(&x);
+///     recording.tick(0.01 * f64::from(tick + 1));
+/// }
+/// let html = Page::new("A fall").with("free", recording).html();
+/// # assert!(html.len() > 10_000);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    stage: Stage,
+    parameters: Vec<f32>,
+    times: Vec<f64>,
+    /// Ticks x bodies x 7, the tick under way included; so with the next three.
+    poses: Vec<f32>,
+    points: Vec<f32>,
+    /// Sensors, neurons, outputs.
+    values: Vec<f32>,
+    scalars: Vec<f64>,
+    /// Unknown numbers, as many as the widest of these has in a tick.
+    blank: Vec<f32>,
+    contacts: Vec<Touching>,
+    /// Number of contacts up to the end of each tick.
+    contact_ends: Vec<usize>,
+    rays: Vec<CastRay>,
+    ray_ends: Vec<usize>,
+}
+
+impl Recording {
+    /// A recording of nothing yet.
+    pub fn new(stage: Stage) -> Self {
+        let mut recording = Self { stage, ..Self::default() };
+        let widest = [POSE * recording.bodies(), 3 * recording.stage.points.len(), recording.width()];
+        recording.blank = vec![f32::NAN; widest.into_iter().max().unwrap_or(0)];
+        // Most lives are shorter; a longer one makes room by itself.
+        recording.poses.reserve(TICKS * POSE * recording.bodies());
+        recording.points.reserve(TICKS * 3 * recording.stage.points.len());
+        recording.values.reserve(TICKS * recording.width());
+        recording.scalars.reserve(TICKS * recording.stage.scalars.len());
+        recording.open();
+        recording
+    }
+
+    /// Room for the tick to come, all of it unknown.
+    fn open(&mut self) {
+        // One copy of a line of unknowns is cheaper than filling each.
+        let Self { blank, poses, points, values, scalars, stage, .. } = self;
+        let count = |per_tick: usize| blank.get(..per_tick).unwrap_or(&[]);
+        poses.extend_from_slice(count(POSE * stage.robot.as_ref().map_or(0, |robot| robot.segments.len())));
+        points.extend_from_slice(count(3 * stage.points.len()));
+        values.extend_from_slice(count(stage.sensors.len() + stage.neurons.len() + stage.outputs.len()));
+        scalars.resize(scalars.len() + stage.scalars.len(), f64::NAN);
+    }
+
+    fn bodies(&self) -> usize {
+        self.stage.robot.as_ref().map_or(0, |robot| robot.segments.len())
+    }
+
+    fn width(&self) -> usize {
+        self.stage.sensors.len() + self.stage.neurons.len() + self.stage.outputs.len()
+    }
+
+    /// Takes down where all bodies with a shape are and what touches.
+    pub fn world<W>(&mut self, world: &W) -> &mut Self
+    where
+        W: Kinematics<Body = BodyId> + Contacts + ?Sized,
+    {
+        let shown: Vec<BodyId> = self.stage.shown().collect();
+        record_world(world, shown, self);
+        self
+    }
+
+    /// What it is a recording of.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// The parameters of the controller; empty if none were told.
+    pub fn controller_parameters(&self) -> &[f32] {
+        &self.parameters
+    }
+
+    /// The time of every tick \[s\].
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Where a body was at a tick; NaN if it was not told, `None` if there is no such body or tick.
+    pub fn pose_at(&self, tick: usize, body: BodyId) -> Option<Pose> {
+        let at = POSE * (tick * self.bodies() + body.index());
+        if tick >= self.times.len() || body.index() >= self.bodies() {
+            return None;
+        }
+        let words = self.poses.get(at..at + POSE)?;
+        Some(Pose { position: [words[0], words[1], words[2]], rotation: [words[3], words[4], words[5], words[6]] })
+    }
+
+    /// Where a point was at a tick.
+    pub fn point_at(&self, tick: usize, point: usize) -> Option<[f32; 3]> {
+        let at = 3 * (tick * self.stage.points.len() + point);
+        if tick >= self.times.len() || point >= self.stage.points.len() {
+            return None;
+        }
+        self.points.get(at..at + 3).map(|words| [words[0], words[1], words[2]])
+    }
+
+    /// What touched at a tick.
+    pub fn contacts_at(&self, tick: usize) -> &[Touching] {
+        self.contacts.get(ended(&self.contact_ends, tick)).unwrap_or(&[])
+    }
+
+    /// The rays of a tick.
+    pub fn rays_at(&self, tick: usize) -> &[CastRay] {
+        self.rays.get(ended(&self.ray_ends, tick)).unwrap_or(&[])
+    }
+
+    /// All values of a tick in the order of [`Stage::columns`].
+    pub fn row(&self, tick: usize) -> impl Iterator<Item = f64> + '_ {
+        fn of_tick<T>(values: &[T], tick: usize, width: usize) -> &[T] {
+            values.get(tick * width..(tick + 1) * width).unwrap_or(&[])
+        }
+        let scalars = of_tick(&self.scalars, tick, self.stage.scalars.len());
+        let values = of_tick(&self.values, tick, self.width());
+        scalars.iter().copied().chain(values.iter().copied().map(f64::from))
+    }
+
+    fn keep(&mut self, first: usize, count: usize, values: &[f32]) {
+        let at = self.times.len() * self.width() + first;
+        if let Some(to) = self.values.get_mut(at..at + count) {
+            to.iter_mut().zip(values).for_each(|(to, value)| *to = *value);
+        }
+    }
+}
+
+/// What lies between the ends of the tick before and of this one.
+fn ended(ends: &[usize], tick: usize) -> Range<usize> {
+    let begin = tick.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0);
+    begin..ends.get(tick).copied().unwrap_or(begin)
+}
+
+impl Recorder for Recording {
+    fn parameters(&mut self, parameters: &[f32]) {
+        self.parameters = parameters.to_vec();
+    }
+
+    fn pose(&mut self, body: BodyId, pose: Pose) {
+        let at = POSE * (self.times.len() * self.bodies() + body.index());
+        if let Some(words) = self.poses.get_mut(at..at + POSE) {
+            words[..3].copy_from_slice(&pose.position);
+            words[3..].copy_from_slice(&pose.rotation);
+        }
+    }
+
+    fn contact(&mut self, pair: PairId, contact: &PairContact) {
+        self.contacts.push(Touching { pair, point: contact.point, force: contact.force });
+    }
+
+    fn ray(&mut self, from: [f32; 3], to: [f32; 3], met: bool) {
+        self.rays.push(CastRay { from, to, met });
+    }
+
+    fn point(&mut self, point: usize, position: [f32; 3]) {
+        let at = 3 * (self.times.len() * self.stage.points.len() + point);
+        if point < self.stage.points.len()
+            && let Some(words) = self.points.get_mut(at..at + 3)
+        {
+            words.copy_from_slice(&position);
+        }
+    }
+
+    fn sensors(&mut self, x: &[f32]) {
+        self.keep(0, self.stage.sensors.len(), x);
+    }
+
+    fn neurons(&mut self, states: &[f32]) {
+        self.keep(self.stage.sensors.len(), self.stage.neurons.len(), states);
+    }
+
+    fn outputs(&mut self, y: &[f32]) {
+        self.keep(self.stage.sensors.len() + self.stage.neurons.len(), self.stage.outputs.len(), y);
+    }
+
+    fn scalars(&mut self, values: &[f64]) {
+        let count = self.stage.scalars.len();
+        let at = self.times.len() * count;
+        if let Some(to) = self.scalars.get_mut(at..at + count) {
+            to.iter_mut().zip(values).for_each(|(to, value)| *to = *value);
+        }
+    }
+
+    fn tick(&mut self, time: f64) {
+        self.times.push(time);
+        self.contact_ends.push(self.contacts.len());
+        self.ray_ends.push(self.rays.len());
+        self.open();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage::Channel;
+    use farsa_body::ArmAndHand;
+
+    #[test]
+    fn what_was_told_is_there_and_the_rest_is_unknown() {
+        let robot = ArmAndHand::default().robot().unwrap();
+        let mut stage = Stage::of_robot(&robot).with_sensors(["a", "b"]).with_outputs(["c"]).with_scalars(["d"]);
+        stage.neurons = vec![Channel::new("n")];
+        stage.points = vec!["p".into(), "q".into()];
+        let mut recording = Recording::new(stage);
+        let contact = PairContact { points: 1, force: [1.0, 2.0, 3.0], ..PairContact::default() };
+        recording.sensors(&[1.0, 2.0, 9.0]);
+        recording.outputs(&[3.0]);
+        recording.pose(BodyId(26), Pose::at([1.0, 0.0, 0.0]));
+        recording.pose(BodyId(27), Pose::at([1.0, 0.0, 0.0]));
+        recording.point(1, [4.0; 3]);
+        recording.point(2, [5.0; 3]);
+        recording.tick(0.5);
+        recording.contact(PairId(7), &contact);
+        recording.contact(PairId(8), &contact);
+        recording.scalars(&[0.1]);
+        recording.neurons(&[]);
+        recording.tick(1.0);
+        recording.ray([0.0; 3], [1.0; 3], false);
+        recording.sensors(&[7.0, 7.0]);
+
+        assert_eq!(recording.times(), [0.5, 1.0]);
+        let rows: Vec<Vec<f64>> = (0..3).map(|tick| recording.row(tick).collect()).collect();
+        assert_eq!(format!("{:?}", rows[0]), "[NaN, 1.0, 2.0, NaN, 3.0]");
+        assert_eq!(format!("{:?}", rows[1]), "[0.1, NaN, NaN, NaN, NaN]");
+        assert_eq!(recording.pose_at(0, BodyId(26)).unwrap(), Pose::at([1.0, 0.0, 0.0]));
+        assert!(recording.pose_at(1, BodyId(26)).unwrap().position[0].is_nan());
+        assert!(recording.pose_at(2, BodyId(26)).is_none() && recording.pose_at(0, BodyId(27)).is_none());
+        assert_eq!(recording.point_at(0, 1), Some([4.0; 3]));
+        assert_eq!(recording.point_at(0, 2), None);
+        assert_eq!((recording.contacts_at(0).len(), recording.contacts_at(1).len()), (0, 2));
+        assert_eq!(recording.contacts_at(1)[1].pair, PairId(8));
+        // Of a tick that has not ended.
+        assert!(recording.rays_at(1).is_empty() && recording.rays_at(2).is_empty());
+    }
+}

@@ -1,0 +1,225 @@
+//! What a recording shows: the bodies, and the names of everything that has a value.
+
+use farsa_body::{BodyId, JointKind, Robot};
+use farsa_nn::{Layout, ParameterKind};
+
+/// Something that has one value per tick, as tables and pages name it.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Channel {
+    /// What it is called.
+    pub name: String,
+    /// Its unit; empty if it has none.
+    pub unit: String,
+    /// What stands together: `phase`, `fitness`, `sensor`, `neuron`, `output`, `joint`, `actuator`, `force` or a word of
+    /// one's own.
+    pub group: String,
+    /// Where its values lie by definition, if that is known.
+    pub range: Option<[f64; 2]>,
+    /// What the values 0, 1, 2 ... mean, if they are words.
+    pub words: Vec<String>,
+}
+
+impl Channel {
+    /// A channel by its name, the unit in brackets behind: `"x [m]"`.
+    pub fn new(name: &str) -> Self {
+        let (name, unit) = match name.strip_suffix(']').and_then(|name| name.rsplit_once(" [")) {
+            Some((name, unit)) => (name, unit),
+            None => (name, ""),
+        };
+        Self { name: name.into(), unit: unit.into(), ..Self::default() }
+    }
+
+    /// The same channel in a group.
+    pub fn group(self, group: &str) -> Self {
+        Self { group: group.into(), ..self }
+    }
+
+    /// The same channel with the range of its values.
+    pub fn range(self, low: f64, high: f64) -> Self {
+        Self { range: Some([low, high]), ..self }
+    }
+
+    /// The same channel with words for the values 0, 1, 2 ...
+    pub fn words(self, words: &[&str]) -> Self {
+        Self { words: words.iter().map(|&word| word.into()).collect(), ..self }
+    }
+
+    /// Name and unit as they were given to [`Channel::new`].
+    pub fn title(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+    }
+}
+
+/// How a page looks at the bodies at first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum View {
+    /// From a side, to be turned.
+    #[default]
+    Free,
+    /// From above: planar arenas.
+    Top,
+}
+
+/// Weights from every node of one range to every node of another, source-major.
+///
+/// Nodes are numbered through: sensors, then neurons, then outputs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Links {
+    /// First source and the one after the last.
+    pub from: [usize; 2],
+    /// First target and the one after the last.
+    pub to: [usize; 2],
+    /// Index of the first weight in the parameters.
+    pub first: usize,
+}
+
+/// One parameter for each node of a range, such as the biases.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NodeParameters {
+    /// What they are called.
+    pub name: String,
+    /// First node and the one after the last.
+    pub nodes: [usize; 2],
+    /// Index of the first in the parameters.
+    pub first: usize,
+}
+
+/// Everything that a recorder is told about in a life, by name and in order.
+///
+/// ```
+/// use farsa_body::ArmAndHand;
+/// use farsa_experiments::Stage;
+///
+/// let robot = ArmAndHand::default().robot()?;
+/// let stage = Stage::of_robot(&robot).with_sensors(["J1", "J2"]).with_scalars(["time to go [s]"]);
+/// assert_eq!(stage.columns(), ["time to go [s]", "sensor.J1", "sensor.J2"]);
+/// # Ok::<(), farsa_body::RobotError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Stage {
+    /// The bodies with their shapes; `None` if there is nothing to see.
+    pub robot: Option<Robot>,
+    /// What is sensed.
+    pub sensors: Vec<Channel>,
+    /// The neurons between sensors and motors.
+    pub neurons: Vec<Channel>,
+    /// What the controller answers.
+    pub outputs: Vec<Channel>,
+    /// Whatever else has a name.
+    pub scalars: Vec<Channel>,
+    /// The points worth seeing, by number.
+    pub points: Vec<String>,
+    /// How the nodes are linked, for a picture of the network.
+    pub links: Vec<Links>,
+    /// What other parameters nodes have.
+    pub node_parameters: Vec<NodeParameters>,
+    /// How a page looks at it.
+    pub view: View,
+}
+
+fn channels<N: AsRef<str>>(names: impl IntoIterator<Item = N>, group: &str) -> Vec<Channel> {
+    names.into_iter().map(|name| Channel::new(name.as_ref()).group(group)).collect()
+}
+
+impl Stage {
+    /// Only the bodies of a robot or scene.
+    pub fn of_robot(robot: &Robot) -> Self {
+        Self { robot: Some(robot.clone()), ..Self::default() }
+    }
+
+    /// Only named values, units in brackets: `["x [m]"]`.
+    pub fn of_scalars<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> Self {
+        Self::default().with_scalars(names)
+    }
+
+    /// With these sensors.
+    pub fn with_sensors<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
+        Self { sensors: channels(names, "sensor"), ..self }
+    }
+
+    /// With these outputs.
+    pub fn with_outputs<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
+        Self { outputs: channels(names, "output"), ..self }
+    }
+
+    /// With these values of one's own.
+    pub fn with_scalars<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
+        Self { scalars: channels(names, "value"), ..self }
+    }
+
+    /// With the neurons and links of a network whose sensors and outputs those of the stage are.
+    ///
+    /// The recorder must be told the network's parameters, [`Recorder::parameters`](farsa_body::Recorder::parameters).
+    pub fn with_network(self, layout: &Layout) -> Self {
+        let (n, h) = (layout.sensors(), layout.hidden());
+        let (neurons, outputs) = ([n, n + h], [n + h, n + h + layout.outputs()]);
+        let first = |kind| layout.range(kind).start;
+        let links = vec![
+            Links { from: [0, n], to: neurons, first: first(ParameterKind::SensorWeight) },
+            Links { from: neurons, to: neurons, first: first(ParameterKind::RecurrentWeight) },
+            Links { from: neurons, to: outputs, first: first(ParameterKind::OutputWeight) },
+        ];
+        let of_neurons = |name: &str, kind| NodeParameters { name: name.into(), nodes: neurons, first: first(kind) };
+        let node_parameters = vec![of_neurons("bias", ParameterKind::Bias), of_neurons("leak", ParameterKind::Leak)];
+        let names: Vec<String> = (1..=h).map(|number| number.to_string()).collect();
+        let neurons = channels(names, "neuron").into_iter().map(|channel| channel.range(0.0, 1.0)).collect();
+        Self { neurons, links, node_parameters, ..self }
+    }
+
+    /// The bodies that can be seen.
+    pub fn shown(&self) -> impl Iterator<Item = BodyId> + '_ {
+        self.robot.iter().flat_map(Robot::shaped_bodies)
+    }
+
+    /// All channels with the prefix that tells sensors, neurons and outputs from other values, in the order of tables.
+    pub(crate) fn channels(&self) -> impl Iterator<Item = (&'static str, &Channel)> {
+        let scalars = self.scalars.iter().map(|channel| ("", channel));
+        let sensors = self.sensors.iter().map(|channel| ("sensor.", channel));
+        let neurons = self.neurons.iter().map(|channel| ("neuron.", channel));
+        let outputs = self.outputs.iter().map(|channel| ("output.", channel));
+        scalars.chain(sensors).chain(neurons).chain(outputs)
+    }
+
+    /// The columns of a table of everything but bodies, contacts, rays and points.
+    pub fn columns(&self) -> Vec<String> {
+        self.channels().map(|(prefix, channel)| format!("{prefix}{}", channel.title())).collect()
+    }
+
+    /// Whether a body moves by itself: it hangs on nothing and nothing with a joint hangs on it.
+    pub(crate) fn is_thing(&self, body: BodyId) -> bool {
+        let Some(robot) = &self.robot else { return false };
+        let floats = |segment: &farsa_body::Segment| segment.joint.kind == JointKind::Floating;
+        robot.segments.get(body.index()).is_some_and(floats)
+            && robot.segments.iter().all(|segment| segment.parent != Some(body))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn titles_are_names_with_units() {
+        for (title, name, unit) in [("x [m]", "x", "m"), ("x", "x", ""), ("a [b] c", "a [b] c", ""), ("q []", "q", "")]
+        {
+            let channel = Channel::new(title);
+            assert_eq!((channel.name.as_str(), channel.unit.as_str()), (name, unit));
+        }
+        assert_eq!(Channel::new("force on sphere.palm [N]").title(), "force on sphere.palm [N]");
+    }
+
+    #[test]
+    fn links_of_a_network_meet_every_parameter_once() {
+        let layout = Layout::new(5, 3, 2);
+        let stage = Stage::default().with_network(&layout);
+        let mut seen = vec![0; layout.parameter_count()];
+        for Links { from, to, first } in &stage.links {
+            (0..(from[1] - from[0]) * (to[1] - to[0])).for_each(|weight| seen[first + weight] += 1);
+        }
+        for NodeParameters { nodes, first, .. } in &stage.node_parameters {
+            (0..nodes[1] - nodes[0]).for_each(|node| seen[first + node] += 1);
+        }
+        assert_eq!(seen, vec![1; layout.parameter_count()]);
+        assert_eq!(stage.columns(), ["neuron.1", "neuron.2", "neuron.3"]);
+    }
+}

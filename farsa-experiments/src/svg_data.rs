@@ -1,0 +1,97 @@
+//! Numbers, colours, paths and text as SVG writes them.
+
+use std::fmt::Write as _;
+
+use crate::outline::Place;
+use crate::picture::Color;
+
+/// The data of a path through these places, in steps of a tenth of a pixel.
+pub(crate) fn path(places: &[Place], closed: bool) -> String {
+    let mut data = String::new();
+    if places.len() < 2 || (closed && places.len() < 3) {
+        return data;
+    }
+    let tenths = |place: &Place| place.map(|x| (10.0 * x).round().clamp(-1e7, 1e7) as i64);
+    let number = |tenths: i64| digits(tenths as f64 / 10.0, 10.0);
+    let mut last = [0; 2];
+    for (i, place) in places.iter().enumerate() {
+        let [x, y] = tenths(place);
+        if i == 0 {
+            let _ = write!(data, "M{},{}l", number(x), number(y));
+        } else {
+            // Differences of what is written, not of what is meant: errors do not add up.
+            let [dx, dy] = [number(x - last[0]), number(y - last[1])];
+            let gap = if i == 1 || dx.starts_with('-') { "" } else { " " };
+            let comma = if dy.starts_with('-') { "" } else { "," };
+            let _ = write!(data, "{gap}{dx}{comma}{dy}");
+        }
+        last = [x, y];
+    }
+    if closed {
+        data.push('z');
+    }
+    data
+}
+
+/// A number in the fewest digits, rounded to a part of `parts`.
+pub(crate) fn digits(x: f64, parts: f64) -> String {
+    let rounded = (x * parts).round() / parts;
+    // No minus before zero.
+    let text = format!("{}", rounded + 0.0);
+    match text.strip_prefix("0.") {
+        Some(rest) => format!(".{rest}"),
+        None => text.strip_prefix("-0.").map_or(text.clone(), |rest| format!("-.{rest}")),
+    }
+}
+
+/// A colour as SVG writes it.
+pub(crate) fn hex([r, g, b]: Color) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Text that XML takes: its own signs are named, what it may not hold is left out.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\n' | '\t' => out.push(' '),
+            letter if letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}') => {}
+            letter => out.push(letter),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (x, text) in [(0.0, "0"), (-0.04, "0"), (0.25, ".3"), (-0.5, "-.5"), (12.0, "12"), (-3.26, "-3.3")] {
+            assert_eq!(digits(x, 10.0), text);
+        }
+        assert_eq!(hex([0, 158, 255]), "#009eff");
+    }
+
+    #[test]
+    fn paths_end_where_they_should() {
+        assert_eq!(path(&[[1.0, 2.0], [3.04, 1.0], [3.06, 5.0]], true), "M1,2l2-1 .1,4z");
+        assert_eq!(path(&[[1.0, 2.0]], false), "");
+        // A thousand steps of a third of a tenth are a hundred thirds, whatever each was rounded to.
+        let steps: Vec<Place> = (0..=1000).map(|i| [f64::from(i) / 30.0, 0.0]).collect();
+        let written = path(&steps, false);
+        let steps = written.trim_start_matches("M0,0l").split(' ').map(|step| step.trim_end_matches(",0"));
+        let sum: f64 = steps.map(|step| step.parse::<f64>().unwrap()).sum();
+        assert!((sum - 33.3).abs() < 1e-9, "{sum}");
+    }
+
+    #[test]
+    fn text_is_escaped() {
+        assert_eq!(escaped("a<b> & \"c\"\u{7}\n\u{ffff}d"), "a&lt;b&gt; &amp; &quot;c&quot; d");
+    }
+}

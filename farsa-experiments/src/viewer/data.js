@@ -1,0 +1,179 @@
+"use strict";
+// The data of the page, docs/replay-format.md. All is checked before anything is drawn: a page that was cut or changed
+// says so and shows no number that was not recorded.
+
+const {abs, cos, floor, hypot, max, min, round, sin} = Math;
+
+class Damage extends Error {}
+
+function need(ok, text) {
+	if (!ok) throw new Damage(text);
+}
+
+const list = (n, make) => Array.from({length: n}, (_, i) => make(i));
+
+function crc32(bytes) {
+	const table = list(256, (c) => {
+		for (let k = 0; k < 8; k++) c = c & 1 ? (c >>> 1) ^ 0xedb88320 : c >>> 1;
+		return c;
+	});
+	return ~bytes.reduce((crc, byte) => (crc >>> 8) ^ table[(crc ^ byte) & 255], ~0) >>> 0;
+}
+
+const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+const mul = (a, s) => [a[0]*s, a[1]*s, a[2]*s];
+const sub = (a, b) => add(a, mul(b, -1));
+const dot = (a, b) => a[0]*b[0] + a[1]*b[1] + a[2]*b[2];
+const cross = (a, b) => [a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]];
+const unit = (a) => a.map((x) => x/(hypot(...a) || 1));
+// Rotations: x, y, z, w.
+const join = (a, b) => [...add(cross(a, b), add(mul(b, a[3]), mul(a, b[3]))), a[3]*b[3] - dot(a, b)];
+const turn = (q, v) => add(v, mul(cross(q, add(cross(q, v), mul(v, q[3]))), 2));
+const HOME = {position: [0, 0, 0], rotation: [0, 0, 0, 1]};
+
+class Life {
+	constructor(json, index) {
+		Object.assign(this, json, {index, json, name: String(json.name)});
+		const {ticks, bodies, points, blocks} = json;
+		const of = `of life ${index}`;
+		const whole = (x) => Number.isInteger(x) && x >= 0;
+		need(whole(ticks) && ticks, `there are no ticks ${of}`);
+		let bytes;
+		try {
+			bytes = Uint8Array.from(atob(json.data), (c) => c.charCodeAt(0));
+		} catch {
+			need(false, `the data ${of} is not base64`);
+		}
+		need(bytes.length === json.bytes, `the data ${of} has ${bytes.length} bytes where ${json.bytes} were written`);
+		const crc = crc32(bytes);
+		need(crc === json.crc32, `the data ${of} was changed: its crc32 is ${crc}, ${json.crc32} was written`);
+		// Every machine with a browser is little-endian, so blocks are read where they lie.
+		const block = (name, size, each) => {
+			const from = blocks[name];
+			need(whole(from) && from%4 === 0 && from + size*each <= bytes.length, `block ${name} ${of} is out of range`);
+			return each === 4 ? new Float32Array(bytes.buffer, from, size) : from/2;
+		};
+		const words = this.words = new Uint16Array(bytes.buffer, 0, bytes.length >> 1);
+		this.signed = new Int16Array(words.buffer, 0, words.length);
+		this.times = block("times", ticks, 4);
+		this.end = this.times[ticks - 1];
+		this.poses = block("poses", 7*ticks*bodies.length, 2);
+		this.marks = block("points", 3*ticks*points.length, 2);
+		// Where each tick begins: they differ in length.
+		[this.contactStarts, this.rayStarts] = ["contacts", "rays"].map((name) => {
+			let word = block(name, 0, 2);
+			return list(ticks, () => {
+				const here = word;
+				word += 1 + 7*words[here];
+				need(word <= words.length, `block ${name} ${of} is out of range`);
+				return here;
+			});
+		});
+		const first = block("channels", ticks*json.channels.length, 2);
+		this.channels = json.channels.map((channel, c) => {
+			const values = Float64Array.from(words.subarray(first + c*ticks, first + (c + 1)*ticks), (count) =>
+				count === 65535 ? NaN : channel.minimum + channel.scale*count);
+			let [low, high] = channel.words ? [0, channel.words.length - 1] : channel.range || [Infinity, -Infinity];
+			if (low > high) for (const value of values) if (value === value) [low, high] = [min(low, value), max(high, value)];
+			if (low > high) [low, high] = [0, 1];
+			return {...channel, values, low, high};
+		});
+		if (json.network) this.network = this.readNetwork(json.network, block);
+	}
+
+	readNetwork({nodes, links, values}, block) {
+		nodes = nodes.map((node) => ({...node, values: [], links: []}));
+		const size = ([a, b]) => b - a;
+		const ends = [...links.map((l) => l.first + size(l.from)*size(l.to)), ...values.map((v) => v.first + size(v.nodes))];
+		const weights = block("weights", max(0, ...ends), 4);
+		const made = [];
+		for (const {from, to, first} of links) {
+			for (let a = from[0], i = first; a < from[1]; a++) {
+				for (let b = to[0]; b < to[1]; b++) {
+					const link = {from: nodes[a], to: nodes[b], weight: weights[i++]};
+					made.push(link);
+					for (const node of new Set([link.from, link.to])) node.links.push(link);
+				}
+			}
+		}
+		for (const {name, nodes: [a, b], first} of values) {
+			for (let n = a; n < b; n++) nodes[n].values.push([name, weights[first + n - a]]);
+		}
+		return {nodes, links: made.sort((a, b) => abs(a.weight) - abs(b.weight))};
+	}
+
+	place(word) {
+		return add(this.position_origin, mul(this.words.subarray(word), this.position_unit));
+	}
+
+	pose(tick, body) {
+		const word = this.poses + 7*(tick*this.bodies.length + body);
+		return {position: this.place(word), rotation: unit([...this.signed.subarray(word + 3, word + 7)])};
+	}
+
+	// Between two ticks: bodies move there, values do not.
+	between(tick, body) {
+		const f = tick%1;
+		const a = this.pose(floor(tick), body);
+		if (!f) return a;
+		const b = this.pose(floor(tick) + 1, body);
+		const s = dot(a.rotation, b.rotation) + a.rotation[3]*b.rotation[3] < 0 ? -f : f;
+		return {
+			position: add(mul(a.position, 1 - f), mul(b.position, f)),
+			rotation: unit(a.rotation.map((x, i) => x*(1 - f) + b.rotation[i]*s)),
+		};
+	}
+
+	point(tick, p) {
+		return this.place(this.marks + 3*(floor(tick)*this.points.length + p));
+	}
+
+	each(start, read) {
+		return list(this.words[start], (i) => read(start + 1 + 7*i));
+	}
+
+	contacts(tick) {
+		return this.each(this.contactStarts[floor(tick)], (word) =>
+			({pair: this.pairs[this.words[word]], point: this.place(word + 1), force: mul(this.signed.subarray(word + 4), this.force_unit)}));
+	}
+
+	rays(tick) {
+		return this.each(this.rayStarts[floor(tick)], (word) => ({from: this.place(word), to: this.place(word + 3), met: this.words[word + 6]}));
+	}
+
+	tickAt(time) {
+		const {times} = this;
+		let [a, b] = [0, this.ticks - 1];
+		if (time >= this.end) return b;
+		while (b - a > 1) {
+			const middle = (a + b) >> 1;
+			if (times[middle] <= time) a = middle;
+			else b = middle;
+		}
+		return a + max(0, time - times[a])/(times[b] - times[a]);
+	}
+
+	timeAt(tick) {
+		const time = this.times[floor(tick)];
+		return time + tick%1*((this.times[floor(tick) + 1] ?? time) - time);
+	}
+}
+
+function readPage(element) {
+	const text = element?.textContent.trim();
+	need(text, "its data is missing");
+	let page;
+	try {
+		page = JSON.parse(text);
+	} catch {
+		need(false, "its data is cut or changed (not valid JSON)");
+	}
+	need(page?.format === "farsa-replay", "its data is not of the format farsa-replay");
+	need(page.version === 1, `its data is of version ${page.version}, this viewer reads version 1`);
+	need(page.lives?.length, "it holds no life");
+	try {
+		return {...page, lives: page.lives.map((life, i) => new Life(life, i))};
+	} catch (error) {
+		throw error instanceof Damage ? error : new Damage(`its data lacks something (${error.message})`);
+	}
+}

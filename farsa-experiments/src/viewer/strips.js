@@ -1,0 +1,183 @@
+// The channels over time: bands for words, lines for small groups, heat for large ones.
+
+const CIVIDIS = ["#00224e", "#35456c", "#666970", "#948e77", "#c8b866", "#fee838"];
+const DIVERGING = ["#6db5f2", "#2e5f8d", "#20262e", "#94591f", "#f5a04c"];
+const WORDS = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2", "#d55e00", "#999999"];
+
+// Values on both sides of zero are told by colour, others by brightness. Gives 0..255.
+function heatOf({low, high}, value) {
+	const both = low < 0 && high > 0;
+	const stops = both ? DIVERGING : CIVIDIS;
+	const u = both ? 0.5 + value/2/max(-low, high) : (value - low)/(high - low || 1);
+	const x = min(1, max(0, u))*(stops.length - 1);
+	const i = min(floor(x), stops.length - 2);
+	const [a, b] = [rgb(stops[i]), rgb(stops[i + 1])];
+	return a.map((c, k) => round(255*(c + (b[k] - c)*(x - i))));
+}
+
+function show({words, low, high}, value) {
+	if (words || Number.isNaN(value)) return words?.[value] ?? "–";
+	const text = value.toFixed(min(6, max(0, Math.ceil(2.5 - Math.log10(high - low || 1)))));
+	return +text ? text : text.replace("-", "");
+}
+
+const bound = (x) => +x.toPrecision(3);
+
+// Equal values in a row: [first tick, tick after, colour, value].
+function runs(values) {
+	const found = [];
+	values.forEach((value, t) => {
+		if (t && value === values[t - 1]) found.at(-1)[1] = t + 1;
+		else found.push([t, t + 1, WORDS[value%WORDS.length] || "#999999", value]);
+	});
+	return found;
+}
+
+function make(tag, className = "", ...children) {
+	const made = Object.assign(document.createElement(tag), {className});
+	made.append(...children);
+	return made;
+}
+
+function stripsOf(seek) {
+	const [groups, closed] = [$("groups"), new Set()];
+	let [rows, lives, from, to, ticks, part] = [[], [], 0, 1];
+	const watch = new IntersectionObserver((entries) => {
+		for (const {target, isIntersecting} of entries) {
+			target.row.near = isIntersecting;
+			if (isIntersecting) paint(target.row);
+		}
+	}, {rootMargin: "300px"});
+	const box = () => rows.find(({canvas}) => canvas.offsetWidth)?.canvas.getBoundingClientRect();
+	let dragged = false;
+	const move = ({clientX}) => {
+		const {left, width} = box() || {};
+		if (dragged && width) seek((clientX - left)/width);
+	};
+	groups.onpointerdown = (event) => {
+		dragged = !event.button && event.target.matches(".plot");
+		if (dragged) groups.setPointerCapture(event.pointerId);
+		move(event);
+	};
+	groups.onpointermove = move;
+	groups.onpointerup = groups.onpointercancel = () => (dragged = false);
+	new ResizeObserver(() => resize()).observe(groups);
+
+	function set(some, first, last) {
+		[lives, from, to, rows] = [some, first, last, []];
+		watch.disconnect();
+		const names = new Map();
+		for (const {group, name} of lives.flatMap((life) => life.channels)) names.set(group, (names.get(group) || new Set()).add(name));
+		groups.replaceChildren(...[...names].map(([group, set]) => section(group, [...set])));
+		update();
+	}
+
+	function section(group, names) {
+		// What all names begin with, as "force on sphere.", takes the room of what tells them apart.
+		let cut = 0;
+		while (names[1] && names.every((name) => name[cut] && name[cut] === names[0][cut])) cut++;
+		const body = make("div", "rows", ...names.map((name) => row(group, name, cut > 7 ? cut : 0, names.length > 10 ? "heat" : "lines")));
+		const fold = make("button", "fold", make("b", "", group), make("span", "soft", names.length));
+		const made = make("section", "", fold, body);
+		made.dataset.group = group;
+		const folded = () => {
+			body.hidden = closed.has(group);
+			fold.setAttribute("aria-expanded", !body.hidden);
+		};
+		fold.onclick = () => {
+			if (!closed.delete(group)) closed.add(group);
+			folded();
+			update();
+		};
+		folded();
+		return made;
+	}
+
+	function row(group, name, cut, mode) {
+		const channels = lives.map((life) => life.channels.find((c) => c.name === name && c.group === group));
+		const some = channels.filter(Boolean);
+		const {words, unit = "", scale} = some[0];
+		// One scale for both lives.
+		const [low, high] = [min(...some.map((c) => c.low)), max(...some.map((c) => c.high))];
+		const kind = words ? "bands" : mode;
+		const values = channels.map((_, i) => make("span", `value life-${i}`));
+		const canvas = make("canvas", "plot");
+		const element = make("div", `row ${kind}`, make("span", "name", name.slice(cut)), make("span", "values", ...values), make("span", "unit", unit), canvas,
+			make("span", "unit", words ? "" : `${bound(low)} … ${bound(high)}`));
+		element.dataset.name = name;
+		element.title = `${group} ${name}${words ? "" : ` within ${(scale/2).toPrecision(2)} ${unit}`}`;
+		const row = element.row = {canvas, channels, kind, values, scale: {words, low, high}};
+		rows.push(row);
+		watch.observe(element);
+		return element;
+	}
+
+	function resize() {
+		for (const row of rows) if (row.near) paint(row);
+		update();
+	}
+
+	function update(now = ticks, share = part, playing = false) {
+		[ticks, part] = [now, share];
+		if (ticks?.length !== lives.length) return;
+		for (const {near, channels, values, scale} of rows) {
+			if (near || !playing) channels.forEach((channel, i) => channel && (values[i].textContent = show(scale, channel.values[floor(ticks[i])])));
+		}
+		const {left, width} = box() || {};
+		$("cursor").hidden = !width;
+		$("cursor").style.transform = `translateX(${left - $("list").getBoundingClientRect().left + part*width}px)`;
+	}
+
+	function paint(row) {
+		const {canvas, channels, kind, scale: {words, low, high}} = row;
+		const ratio = min(2, devicePixelRatio);
+		const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((x) => round(x*ratio));
+		const painted = `${width} ${height} ${theme()}`;
+		if (row.painted === painted || !width) return;
+		row.painted = painted;
+		Object.assign(canvas, {width, height});
+		const c = canvas.getContext("2d");
+		const span = high - low || 1;
+		const shown = channels.filter(Boolean);
+		channels.forEach((channel, i) => {
+			if (!channel) return;
+			const {values} = channel;
+			const {times, end} = lives[i];
+			const at = (time) => (time - from)/(to - from || 1)*width;
+			const x = (t) => at(times[0]) + (at(end) - at(times[0]))*t/max(1, values.length - 1);
+			// Bands and heat of two lives stand one over the other, lines share the field.
+			const tall = height/shown.length;
+			const top = shown.indexOf(channel)*tall;
+			if (kind === "bands") {
+				Object.assign(c, {font: `600 ${12*ratio}px system-ui, sans-serif`, textBaseline: "middle"});
+				for (const [t, after, color, value] of runs(values)) {
+					const wide = x(min(after, values.length - 1)) - x(t);
+					c.fillStyle = color;
+					c.fillRect(x(t), top, max(wide, 1), tall - ratio/2);
+					c.fillStyle = "#10161c";
+					const word = words[value] ?? "";
+					if (c.measureText(word).width + 12*ratio < wide) c.fillText(word, x(t) + 6*ratio, top + tall/2);
+				}
+			} else if (kind === "heat") {
+				const image = new ImageData(values.length, 1);
+				const table = list(256, (k) => [...heatOf({low, high}, low + span*k/255), 255]);
+				values.forEach((value, t) => image.data.set(table[min(255, max(0, round((value - low)/span*255)))] || [], 4*t));
+				const line = Object.assign(make("canvas"), {width: values.length, height: 1});
+				line.getContext("2d").putImageData(image, 0, 0);
+				c.imageSmoothingEnabled = values.length > width;
+				c.drawImage(line, x(0), top, x(values.length - 1) - x(0) + 1, tall - ratio/2);
+			} else {
+				const y = (value) => 3*ratio + (high - value)/span*(height - 6*ratio);
+				c.fillStyle = colorOf("--line");
+				if (low < 0 && high > 0) c.fillRect(0, round(y(0)), width, ratio);
+				Object.assign(c, {strokeStyle: colorOf(i ? "--b" : "--a"), lineWidth: 1.5*ratio, lineJoin: "round"});
+				c.beginPath();
+				// No line leads to or from a value that is not there.
+				values.forEach((value, t) => c[Number.isNaN(values[t - 1] ?? NaN) ? "moveTo" : "lineTo"](x(t), y(value)));
+				c.stroke();
+			}
+		});
+	}
+
+	return {set, resize, update};
+}

@@ -1,0 +1,230 @@
+//! A report is about the runs that it names: the right numbers, the right commands, nothing overwritten.
+
+use std::fs;
+use std::path::Path;
+
+use crate::tool::{command, content, farsa, ok, own, say, scratch};
+
+/// Two conditions with two seeds each, of different lengths; one run has no test.
+fn four_runs(here: &Path) {
+    for (condition, seed, generations) in [("rough", 1, 4), ("rough", 2, 5), ("smooth", 1, 6), ("smooth", 2, 4)] {
+        let run = format!("run cart --condition {condition} --seed {seed} --generations {generations}");
+        ok(own(), here, &format!("{run} --quiet"));
+    }
+    for run in ["rough-1", "rough-2", "smooth-1"] {
+        ok(own(), here, &format!("test runs/cart-{run} --trials 6 --seed 3 --quiet"));
+    }
+}
+
+const FOUR: &str = "runs/cart-rough-1 runs/cart-rough-2 runs/cart-smooth-1 runs/cart-smooth-2";
+
+/// A column of a run's log.
+fn log(here: &Path, run: &str, column: usize) -> Vec<f64> {
+    let text = fs::read_to_string(here.join("runs").join(run).join("fitness.csv")).expect("the log");
+    text.lines().skip(1).map(|line| line.split(',').nth(column).expect("a field").parse().expect("a number")).collect()
+}
+
+/// A number as the report has it: those of the cart are between 1 and 10.
+fn short(x: f64) -> String {
+    format!("{x:.4}")
+}
+
+#[test]
+fn four_runs_on_a_page() {
+    let here = scratch("report-four");
+    four_runs(&here);
+    let said = ok(own(), &here, &format!("report {FOUR} --html page.html --md page.md"));
+    assert_eq!(said, "4 runs: page.html, page.md, page-fitness-1.svg, page-fitness-2.svg\n");
+    let html = fs::read_to_string(here.join("page.html")).expect("the page");
+    let md = fs::read_to_string(here.join("page.md")).expect("the page");
+    assert_eq!(html.matches("<svg").count(), 2);
+    for tag in ["<script", "<link", "src=", "@import", "url("] {
+        assert!(!html.contains(tag), "the page wants something else: {tag}");
+    }
+    assert!(html.contains("name=\"viewport\"") && html.contains("prefers-color-scheme: dark"));
+
+    // The medians of two runs at the last common generation, 3, with the quartiles between them.
+    for (condition, column, cell) in [("rough", 1, 2), ("rough", 2, 3), ("smooth", 1, 2), ("smooth", 2, 3)] {
+        let mut two = [1, 2].map(|seed| log(&here, &format!("cart-{condition}-{seed}"), column)[3]);
+        two.sort_by(f64::total_cmp);
+        let [low, high] = two;
+        let quartiles = [0.75 * low + 0.25 * high, 0.25 * low + 0.75 * high].map(short);
+        let expected = format!("{} ({} to {})", short(0.5 * low + 0.5 * high), quartiles[0], quartiles[1]);
+        let row = md.lines().find(|line| line.starts_with(&format!("| {condition} | 2 | "))).expect("a row");
+        let found = row.split(" | ").nth(cell).expect("a cell");
+        assert_eq!(found, expected, "{row}");
+        assert!(html.contains(&format!(">{expected}<")), "{expected}");
+    }
+    assert!(md.contains("at generation 3, the last that all of them have"));
+    // No comparison of tests, since one run has none; the other two are there.
+    assert_eq!(md.lines().filter(|line| line.starts_with("| rough | smooth | ")).count(), 2);
+    // What differs comes before what is the same.
+    assert!(md.contains("| cart.friction | 0.5 | 0.0 | 1/s |"), "{md}");
+    assert!(md.find("### What differs") < md.find("### Fitness"));
+    for line in [
+        "| seeds | 1, 2 | 1, 2 |",
+        "| generations | 4, 5 | 6, 4 |",
+        "| evolution.mutation_rate | 0.015 |",
+        "| cart.motor | \"linear\" |  | chosen | Continuous or full force. |",
+        "| evolution.generations | 4 / 5 / 6 |  | set; the default ",
+        "own-experiment test runs/cart-smooth-2\n",
+        "own-experiment test runs/cart-rough-2 --trials 6 --seed 3\n",
+        "own-experiment run cart --condition smooth --seed 1 --generations 6 --out runs/cart-smooth-1-again\n",
+        "own-experiment replay runs/cart-rough-1\n",
+    ] {
+        assert!(md.contains(line), "no {line:?} in {md}");
+    }
+    assert!(md.contains(&format!("own-experiment report {FOUR} --html page.html --md page.md\n")), "{md}");
+    for n in [1, 2] {
+        let svg = fs::read_to_string(here.join(format!("page-fitness-{n}.svg"))).expect("a picture");
+        assert!(svg.starts_with("<svg") && svg.contains("rough, 2 runs") && svg.contains("smooth, 2 runs"));
+        assert!(md.contains(&format!("(<page-fitness-{n}.svg>)")));
+        assert_eq!(svg.matches("<polygon").count(), 2, "a band for each condition");
+    }
+
+    // The same again makes the same bytes, and a command of the page makes the same run.
+    for file in ["page.html", "page.md", "page-fitness-1.svg", "page-fitness-2.svg"] {
+        fs::rename(here.join(file), here.join(format!("first-{file}"))).expect("the file");
+    }
+    ok(own(), &here, &format!("report {FOUR} --html page.html --md page.md --quiet"));
+    for file in ["page.html", "page.md", "page-fitness-1.svg", "page-fitness-2.svg"] {
+        let first = fs::read(here.join(format!("first-{file}"))).expect("the first");
+        assert!(fs::read(here.join(file)).expect("the second") == first, "{file}");
+    }
+    let command = md.lines().find(|line| line.contains("--out runs/cart-smooth-1-again")).expect("the command");
+    ok(own(), &here, command.trim_start_matches("own-experiment "));
+    let bytes = |run: &str| fs::read(here.join("runs").join(run).join("fitness.csv")).expect("the log");
+    assert_eq!(bytes("cart-smooth-1"), bytes("cart-smooth-1-again"));
+}
+
+#[test]
+fn one_run_on_a_page() {
+    let here = scratch("report-one");
+    ok(own(), &here, "run cart --generations 3 --set cart.motor=switched --quiet");
+    let json = ok(own(), &here, "report runs/cart-rough-1 --html one.html --json");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let (best, mean) = (log(&here, "cart-rough-1", 1)[2], log(&here, "cart-rough-1", 2)[2]);
+    assert_eq!((&json["runs"][0]["best"], &json["runs"][0]["mean"]), (&best.into(), &mean.into()));
+    assert_eq!((&json["files"][0], &json["runs"][0]["success"]), (&"one.html".into(), &serde_json::Value::Null));
+    let html = fs::read_to_string(here.join("one.html")).expect("the page");
+    for piece in [
+        "<title>cart-rough-1</title>",
+        ">\nbest\n</text>",
+        ">\nworst\n</text>",
+        "own-experiment test runs/cart-rough-1",
+        "--generations 3 --set 'cart.motor=&quot;switched&quot;' --out runs/cart-rough-1-again",
+        "set; the default &quot;linear&quot; is chosen",
+    ] {
+        assert!(html.contains(piece), "no {piece} in {html}");
+    }
+    assert!(!html.contains("Do they differ?") && !html.contains("What differs"));
+
+    // The test of a champion that is no longer the last is called that.
+    ok(own(), &here, "test runs/cart-rough-1 --trials 3 --quiet");
+    ok(own(), &here, "run --resume runs/cart-rough-1 --generations 5 --quiet");
+    ok(own(), &here, "report runs/cart-rough-1 --md later.md");
+    let md = fs::read_to_string(here.join("later.md")).expect("the page");
+    assert!(md.contains("| generation 2: an earlier one | 3 | "), "{md}");
+}
+
+#[test]
+fn other_settings_are_another_group_and_twins_are_told() {
+    let here = scratch("report-groups");
+    for (name, arguments) in
+        [("a", "--seed 1"), ("b", "--seed 2"), ("c", "--seed 1 --set cart.friction=0.75"), ("twin of a", "--seed 1")]
+    {
+        let arguments: Vec<&str> =
+            "run cart --quiet --generations 3".split(' ').chain(arguments.split(' ')).chain(["--out", name]).collect();
+        assert!(command(own(), &here, &arguments).status().expect("the program").success());
+    }
+    let arguments = ["report", "a", "b", "c", "twin of a", "--md", "groups.md"];
+    assert!(command(own(), &here, &arguments).status().expect("the program").success());
+    let md = fs::read_to_string(here.join("groups.md")).expect("the page");
+    assert!(md.contains("| condition | rough, friction=0.5 | rough, friction=0.75 |\n"), "{md}");
+    assert!(md.contains("| cart.friction | 0.5 | 0.75 | 1/s |\n"), "{md}");
+    assert!(md.contains("Warning: a and twin of a have the same configuration and seed"), "{md}");
+    assert!(md.contains("--set 'cart.friction=0.75' --out c-again\n"), "{md}");
+    assert!(md.contains("own-experiment replay 'twin of a'\n"), "{md}");
+}
+
+#[test]
+fn a_robot_is_drawn_and_a_cart_is_not() {
+    let here = scratch("report-draw");
+    let short = "run reach-grasp-lift --population 4 --set evolution.parents=2 --set trial.steps=10 --generations 1";
+    ok(farsa(), &here, &format!("{short} --out arm --quiet"));
+    let said = ok(farsa(), &here, "draw arm --trial 1 --time 0.05 --camera top --size 320x200 --out moment.svg");
+    assert!(said.contains("trial 1, 0.05 s, camera top: 320x200"), "{said}");
+    assert!(fs::read_to_string(here.join("moment.svg")).expect("the picture").starts_with("<svg"));
+    assert!(ok(farsa(), &here, "draw arm --size 64x48 --out end.png --quiet").is_empty());
+    assert!(fs::read(here.join("end.png")).expect("the picture").starts_with(b"\x89PNG"));
+    ok(farsa(), &here, "report arm --html arm.html --md arm.md");
+    assert_eq!(fs::read_to_string(here.join("arm.html")).expect("the page").matches("<figure><svg").count(), 2);
+    assert!(fs::read_to_string(here.join("arm.md")).expect("the page").contains("![champion](<arm-champion-1.svg>)"));
+    ok(farsa(), &here, "replay arm --html life.html --compare arm --quiet");
+    ok(own(), &here, "run cart --generations 1 --out cart --quiet");
+    for (program, arguments, words) in [
+        (farsa(), "draw arm --out end.png", "end.png: there is one already"),
+        (farsa(), "draw arm --out end.gif", "ends in .svg or .png"),
+        (farsa(), "draw arm --camera tpo --out new.svg", "nearest is `top`"),
+        (farsa(), "draw arm --size 20 --out new.svg", "not of the form 1200x800"),
+        (farsa(), "draw arm --time 7 --out new.svg", "from 0.01 to 0.1 s"),
+        (farsa(), "replay arm --html life.html", "life.html: there is one already"),
+        (farsa(), "replay arm --html new.html --out new.csv", "cannot be used with"),
+        (farsa(), "replay arm --compare arm", "--html"),
+        (own(), "draw cart --out new.svg", "have no bodies to draw"),
+    ] {
+        let said = say(program, &here, arguments);
+        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{arguments}: {said:?}");
+        assert!(said.err.contains(words), "{arguments}: {said:?}");
+    }
+    assert!(!here.join("new.svg").exists() && !here.join("new.html").exists());
+}
+
+#[test]
+fn what_cannot_be_reported_writes_nothing() {
+    let here = scratch("report-bad");
+    ok(own(), &here, "run cart --generations 3 --out a --quiet");
+    ok(own(), &here, "test a --trials 3 --quiet");
+    fs::create_dir(here.join("letters")).expect("a directory");
+    fs::write(here.join("there.html"), "mine").expect("a file");
+    fs::write(here.join("there.md"), "mine").expect("a file");
+    fs::write(here.join("x-fitness-1.svg"), "mine").expect("a file");
+    let refused = |arguments: &str, code: i32, words: &[&str]| {
+        let before = content(&here);
+        let said = say(own(), &here, arguments);
+        assert_eq!((said.code, said.out.as_str()), (Some(code), ""), "{arguments}: {said:?}");
+        for word in words {
+            assert!(said.err.contains(word), "{arguments}: no {word:?} in {said:?}");
+        }
+        assert!(content(&here) == before, "{arguments} changed a file");
+    };
+    refused("report a", 2, &["--html"]);
+    refused("report --html new.html", 2, &["DIR"]);
+    refused("report a nowhere --html new.html", 2, &["nowhere: there is no such directory"]);
+    refused("report letters a --html new.html", 2, &["letters: holds no run"]);
+    refused("report a ./a --html new.html", 2, &["./a: is named twice"]);
+    refused("report a --html there.html", 2, &["there.html: there is one already"]);
+    refused("report a --html new.html --md there.md", 2, &["there.md: there is one already"]);
+    refused("report a --html new.html --md x.md", 2, &["x-fitness-1.svg: there is one already"]);
+    refused("report a --html none/new.html", 1, &["cannot write none/new.html"]);
+    for (file, damaged, words) in [
+        ("test.csv", "index,trial\n0,0\n", "test.csv: is not the table of a test"),
+        ("test.csv", "index,trial,steps,success,fitness,at [m]\n0,0,5,true,x,1\n", "test.csv: line 2 "),
+        ("test.json", "{}", "test.json: "),
+        ("fitness.csv", "generation,best\n", "fitness.csv: truncated"),
+        ("manifest.json", "{", "manifest.json: "),
+    ] {
+        let path = here.join("a").join(file);
+        let whole = fs::read(&path).expect("the file");
+        fs::write(&path, damaged).expect("the file");
+        refused("report a --html new.html", 1, &[words]);
+        fs::write(&path, whole).expect("the file");
+    }
+    // A number that was changed is found by the checkpoint's checksum.
+    let path = here.join("a/fitness.csv");
+    let whole = fs::read_to_string(&path).expect("the log");
+    fs::write(&path, whole.replacen("0,2.", "0,3.", 1).replacen("0,1.", "0,9.", 1)).expect("the log");
+    refused("report a --html new.html", 1, &["fitness.csv: altered"]);
+    fs::write(&path, whole).expect("the log");
+    ok(own(), &here, "report a --html new.html");
+}

@@ -1,0 +1,519 @@
+// Tests the page of `farsa replay --html` in a real browser.
+//
+//   node tests/browser/run.mjs [PAGE.html LIFE.csv [SCREENSHOTS]]
+//
+// PAGE.html is a page of a life, LIFE.csv what `farsa replay` says of the same life; without them an invented life takes
+// their place. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package.
+
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { setTimeout as sleep } from "node:timers/promises";
+import { pathToFileURL } from "node:url";
+import { armLife, arenaLife, compose, csvOf, encode, pageOf, SCRIPTS, viewer } from "./mock.mjs";
+import { coloursIn, decode } from "./png.mjs";
+import { KEY, startDriver } from "./webdriver.mjs";
+
+// Whatever hangs, the whole does not.
+setTimeout(() => {
+  console.log("FAILED the tests took longer than ten minutes");
+  process.exit(1);
+}, 600_000).unref();
+
+const [page, csv, shots] = process.argv.slice(2);
+const folder = mkdtempSync(join(tmpdir(), "farsa-pages-"));
+let failed = 0;
+if (shots) mkdirSync(shots, { recursive: true });
+
+function check(name, ok, detail = "") {
+  console.log(`${ok ? "ok    " : "FAILED"} ${name}${ok || detail === "" ? "" : `: ${detail}`}`);
+  if (!ok) failed++;
+}
+
+// Runs some checks; an exception is a failure and not the end.
+async function part(name, run) {
+  try {
+    await run();
+  } catch (error) {
+    check(name, false, error.message);
+  }
+}
+
+const close = (a, b, within) => Math.abs(a - b) <= within * (1 + 1e-9) + 1e-12;
+
+function write(name, text) {
+  const path = join(folder, name);
+  writeFileSync(path, text);
+  return pathToFileURL(path);
+}
+
+// What a page holds, and the page with other data.
+const mark = '<script type="application/json" id="data">';
+const dataOf = (html) => JSON.parse(html.slice(html.lastIndexOf(mark) + mark.length, html.lastIndexOf("</script>")));
+const withData = (html, data) => html.slice(0, html.lastIndexOf(mark) + mark.length) + JSON.stringify(data).replaceAll("<", "\\u003c") + "</script>\n</body>\n</html>\n";
+
+// The rows of the trial that the page's first life shows, by column.
+function readCsv(text, life) {
+  const [head, ...rows] = text.trim().split(/\r?\n/).map((line) => line.split(","));
+  const wanted = /trial (\d+)/.exec(life.name)?.[1];
+  const trials = [...new Set(rows.map((row) => row[0]))];
+  const trial = trials.includes(wanted) ? wanted : trials[0];
+  return rows.filter((row) => row[0] === trial).map((row) => Object.fromEntries(head.map((name, i) => [name, row[i]])));
+}
+
+async function opened(browser, url, { motion = "reduce", scheme = "light" } = {}) {
+  await browser.media({ "prefers-color-scheme": scheme, "prefers-reduced-motion": motion });
+  await browser.go(url);
+  await browser.until(() => window.farsa && (farsa.ready || farsa.error));
+  // Two pictures later all is drawn.
+  await settled(browser);
+}
+
+const settled = (browser) => browser.run(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50)))));
+const rectOf = (browser, selector) => browser.run((s) => {
+  const { left, top, right, bottom, width, height } = document.querySelector(s).getBoundingClientRect();
+  return { left, top, right, bottom, width, height };
+}, selector);
+const shownValues = (browser) => browser.run(() => [...document.querySelectorAll("#groups section")].flatMap((section) =>
+  [...section.querySelectorAll(".row")].map((row) => ({
+    group: section.dataset.group, name: row.dataset.name, text: row.querySelector(".value").textContent, unit: row.querySelector(".unit").textContent,
+  }))));
+
+async function silent(browser, name) {
+  const log = await browser.log();
+  check(`${name}: the console is silent`, log.length === 0, log.join(" | "));
+}
+
+// ---- The viewer's files.
+
+function files() {
+  const template = viewer("page.html");
+  const size = [template, viewer("viewer.css"), ...SCRIPTS.map(viewer)].reduce((sum, text) => sum + Buffer.byteLength(text), 0);
+  check(`the viewer has ${size} bytes, at most 61440`, size <= 61440);
+  for (const name of ["title", "style", "script", "data"]) {
+    check(`page.html has one {{${name}}}`, template.split(`{{${name}}}`).length === 2);
+  }
+  const rest = [viewer("viewer.css"), ...SCRIPTS.map(viewer)].join("");
+  check("style and scripts can stand in a page", !/<\/(script|style)|<!--|\{\{/.test(rest));
+  check("nothing is asked of a network", !/https?:|\bfetch\(|XMLHttpRequest|import\(|@import|url\(/.test(template + rest));
+}
+
+// ---- An invented life, of which every number is known.
+
+async function arithmetic(browser) {
+  const lives = [armLife(0), armLife(1)];
+  lives[1].times = lives[1].times.slice(0, 400);
+  for (const key of ["poses", "marks", "contacts", "rays"]) lives[1][key] = lives[1][key].slice(0, 400);
+  lives[1].channels = lives[1].channels.map((c) => ({ ...c, values: c.values.slice(0, 400) }));
+  await opened(browser, write("invented.html", compose(pageOf(lives))));
+  const encoded = lives.map(encode);
+  let worst = { position: 0, rotation: 0, force: 0, value: 0 };
+  let same = true;
+  for (const tick of [0, 1, 150, 361, 399, 599]) {
+    const found = await browser.run((tick) => {
+      farsa.seek(tick);
+      return farsa.lives.map((life) => ({
+        poses: life.bodies.map((body) => farsa.pose(life, body)), contacts: farsa.contacts(life),
+        values: life.channels.map((c) => [farsa.value(life, c.name, c.group)].map((x) => (Number.isNaN(x) ? "NaN" : x))[0]),
+      }));
+    }, tick);
+    lives.forEach((life, n) => {
+      const t = Math.min(tick, life.times.length - 1);
+      life.poses[t].forEach((pose, b) => {
+        const { position, rotation } = found[n].poses[b];
+        position.forEach((x, i) => (worst.position = Math.max(worst.position, Math.abs(x - pose.position[i]) / (encoded[n].position_unit / 2))));
+        const dot = Math.abs(rotation.reduce((sum, x, i) => sum + x * pose.rotation[i], 0));
+        worst.rotation = Math.max(worst.rotation, 2 * Math.acos(Math.min(1, dot)));
+      });
+      same &&= found[n].contacts.length === life.contacts[t].length;
+      life.contacts[t].forEach(([pair, point, force], i) => {
+        const contact = found[n].contacts[i];
+        same &&= contact.pair.join() === life.pairs[pair].join() && contact.point.every((x, k) => close(x, point[k], encoded[n].position_unit / 2));
+        contact.force.forEach((f, k) => (worst.force = Math.max(worst.force, Math.abs(f - force[k]) / (encoded[n].force_unit / 2))));
+      });
+      life.channels.forEach((channel, c) => {
+        const value = found[n].values[c];
+        if (Number.isNaN(channel.values[t])) same &&= value === "NaN";
+        else if (encoded[n].channels[c].scale > 0) worst.value = Math.max(worst.value, Math.abs(value - channel.values[t]) / (encoded[n].channels[c].scale / 2));
+      });
+    });
+  }
+  check("invented lives: positions within the stated precision", worst.position <= 1.0001, `${worst.position} times it`);
+  check("invented lives: rotations within 0.1 mrad", worst.rotation < 1e-4, worst.rotation);
+  check("invented lives: forces within the stated precision", worst.force <= 1.0001, `${worst.force} times it`);
+  check("invented lives: values within the stated precision", worst.value <= 1.0001, `${worst.value} times it`);
+  check("invented lives: contacts and missing values are those written", same);
+
+  // A shorter life stands still at its end; both keep in step by time.
+  const step = await browser.run(() => (farsa.show(0, 1), farsa.seek(599), [farsa.ticks, farsa.value(1, "reward.lift"), farsa.lives[1].channels.find((c) => c.name === "reward.lift").values[399]]));
+  check("the clock is that of the longer life", step[0] === 600 && step[1] === step[2], step.join());
+
+  const node = await browser.run(() => {
+    const { nodes, links } = farsa.lives[0].network;
+    const from = nodes[3];
+    const to = nodes[31];
+    return { weight: links.find((l) => l.from === from && l.to === to).weight, recurrent: links.find((l) => l.from === nodes[30] && l.to === nodes[29]).weight, bias: to.values };
+  });
+  const { weights } = lives[0];
+  check("weights are those of their links", close(node.weight, weights[3 * 12 + 2], 1e-6) && close(node.recurrent, weights[348 + 12], 1e-6));
+  check("biases and leaks are those of their neurons", node.bias.length === 2 && close(node.bias[0][1], weights[768 + 2], 1e-6) && close(node.bias[1][1], weights[803 + 2], 1e-6));
+  const half = await browser.run(() => farsa.lives[0].between(400.5, 27).position);
+  const middle = [0, 1, 2].map((i) => (lives[0].poses[400][27].position[i] + lives[0].poses[401][27].position[i]) / 2);
+  check("between two ticks bodies are between two poses", half.every((x, i) => close(x, middle[i], encoded[0].position_unit)));
+  await silent(browser, "invented lives");
+
+  await opened(browser, write("arena.html", compose(pageOf([arenaLife(0)], "top"))));
+  const arena = await browser.run(() => [farsa.view, document.querySelector("#top").ariaPressed, document.querySelector("#trails").ariaPressed, document.querySelector("#forces").hidden, document.querySelector("#network").hidden]);
+  check("an arena is seen from above with trails, without what it has not", arena.join() === "top,true,true,true,true", arena.join());
+  await silent(browser, "arena");
+}
+
+// ---- The page itself.
+
+async function against(browser, url, table, life) {
+  await opened(browser, url);
+  check("the page is up and says nothing is wrong", await browser.run(() => farsa.ready && farsa.error === null && document.querySelector("#message").hidden));
+  check("reduced motion: it does not play by itself", !(await browser.run(() => farsa.playing)));
+  check("the page has as many ticks as the table has rows", (await browser.run(() => farsa.ticks)) === table.length, table.length);
+  const unit = life.position_unit / 2;
+  const said = await browser.run(() => document.querySelector("#facts").textContent);
+  check("facts and precision are shown", life.facts.every(([name, text]) => said.includes(name) && said.includes(text)) && /Positions within [\d.]+ (mm|cm|m)/.test(said), said);
+
+  const bodies = ["sphere", "palm"].filter((name) => life.bodies.includes(name) && `${name}.x [m]` in table[0]);
+  check("sphere and palm are in page and table", bodies.length === 2, bodies.join());
+  const slider = await rectOf(browser, "#slider");
+  const ticks = new Set();
+  let compared = 0;
+  const wrong = [];
+  for (const share of [0.08, 0.3, 0.52, 0.7, 0.94]) {
+    await browser.drag([[slider.left + share * slider.width, slider.top + slider.height / 2]]);
+    await settled(browser);
+    const found = await browser.run((bodies) => ({ tick: farsa.tick, time: farsa.time, clock: document.querySelector("#clock").textContent, poses: bodies.map((b) => farsa.pose(0, b)) }), bodies);
+    ticks.add(found.tick);
+    const row = table[found.tick];
+    check(`the slider at ${share}: tick ${found.tick}`, Math.abs(found.tick - share * (table.length - 1)) < 0.03 * table.length && found.clock.includes(`tick ${found.tick} of`), found.clock);
+    check(`tick ${found.tick}: the time is the table's`, close(found.time, Number(row["time [s]"]), 1e-6 * (1 + found.time)), found.time);
+    bodies.forEach((body, i) => {
+      const way = ["x", "y", "z"].map((axis, k) => Math.abs(found.poses[i].position[k] - Number(row[`${body}.${axis} [m]`])));
+      check(`tick ${found.tick}: ${body} within ${(unit * 1e3).toFixed(4)} mm of the table's place`, Math.max(...way) <= unit * 1.01 + 1e-7, way.join());
+    });
+    const channels = await shownValues(browser);
+    for (const { group, name, text, unit } of channels) {
+      const titles = [name, `${name} [${unit}]`, `${group}.${name}`, `${group}.${name} [${unit}]`];
+      const title = titles.find((title) => title in row);
+      if (!title) continue;
+      compared++;
+      const channel = life.channels.find((c) => c.group === group && c.name === name);
+      const value = Number(row[title]);
+      if (channel.words) {
+        if (text !== channel.words[value] && text !== row[title]) wrong.push(`${title} ${text} for ${row[title]}`);
+      } else if (Number.isNaN(value)) {
+        if (text !== "–") wrong.push(`${title} ${text} for NaN`);
+      } else {
+        const digits = text.split(".")[1]?.length ?? 0;
+        if (!close(Number(text), value, channel.scale / 2 + 0.5 * 10 ** -digits + 1e-6 * Math.abs(value))) wrong.push(`${title} ${text} for ${row[title]}`);
+      }
+    }
+  }
+  check("five places of the slider are five ticks", ticks.size === 5);
+  check(`${compared} values in the strips are the table's, at least ten at each tick`, compared >= 50 && wrong.length === 0, wrong.slice(0, 5).join(", "));
+  await silent(browser, "scrubbing");
+}
+
+async function handled(browser, url, life) {
+  await opened(browser, url, { motion: "no-preference" });
+  check("it plays by itself", await browser.run(() => farsa.playing));
+  const before = await browser.run(() => farsa.tick);
+  await browser.until((before) => farsa.tick > before + 5, before);
+  const click = async (selector) => {
+    const { left, top, width, height } = await rectOf(browser, selector);
+    await browser.drag([[left + width / 2, top + height / 2]]);
+    await settled(browser);
+  };
+  await click("#play");
+  const stopped = await browser.run(() => [farsa.playing, farsa.tick]);
+  await sleep(300);
+  check("pause stops", !stopped[0] && (await browser.run(() => farsa.tick)) === stopped[1]);
+  await browser.run(() => farsa.seek(10));
+  await click("#forward");
+  await click("#forward");
+  await click("#back");
+  check("steps go forward and back", (await browser.run(() => farsa.tick)) === 11);
+  await browser.run(() => (farsa.speed = 4));
+  await browser.run(() => (farsa.seek(farsa.ticks - 20), farsa.play()));
+  await browser.until(() => !farsa.playing);
+  check("it stops at the end", await browser.run(() => farsa.tick === farsa.ticks - 1));
+  await browser.run(() => (farsa.speed = 1));
+
+  const state = () => browser.run(() => [farsa.tick, farsa.playing, farsa.speed, farsa.view, ...["forces", "trails"].map((id) => document.querySelector(`#${id}`).ariaPressed)].join());
+  await browser.keys(KEY.home);
+  await browser.keys(KEY.right + KEY.right + KEY.right + KEY.left);
+  const start = await state();
+  check("keys: home and arrows", start.startsWith("2,false,1,"), start);
+  await browser.keys("+trf");
+  const keyed = (await state()).split(",");
+  const earlier = start.split(",");
+  check("keys: + t r f", keyed[2] === "2" && keyed.slice(3).every((x, i) => x !== earlier[3 + i]), keyed.join());
+  await browser.keys("-trf");
+  check("keys: - and back again", (await state()) === start, await state());
+  await browser.keys(" ");
+  check("keys: space plays", await browser.run(() => farsa.playing));
+  await browser.keys(" ");
+  check("keys: space pauses", !(await browser.run(() => farsa.playing)));
+  await browser.keys(KEY.end);
+  check("keys: end", await browser.run(() => farsa.tick === farsa.ticks - 1));
+  await browser.keys("?");
+  check("keys: ? shows the keys", await browser.run(() => document.querySelector("#keys").open));
+  await browser.keys(KEY.escape);
+  const dark = await browser.run(() => document.documentElement.dataset.theme);
+  await click("#theme");
+  check("the button changes dark and light", (await browser.run(() => document.documentElement.dataset.theme)) !== dark);
+
+  const plot = await rectOf(browser, ".plot");
+  await browser.drag([[plot.left + plot.width / 4, plot.top + plot.height / 2]]);
+  await settled(browser);
+  const quarter = await browser.run(() => farsa.tick / (farsa.ticks - 1));
+  check("a click on a strip seeks", Math.abs(quarter - 0.25) < 0.02, quarter);
+  await browser.drag([[plot.left + plot.width / 4, plot.top + plot.height / 2], [plot.left + plot.width / 2, plot.top + plot.height / 2], [plot.left + plot.width * 0.75, plot.top + plot.height / 2]]);
+  await settled(browser);
+  const [at, cursor] = await browser.run(() => [farsa.tick / (farsa.ticks - 1), document.querySelector("#cursor").getBoundingClientRect().left]);
+  check("dragging along a strip seeks", Math.abs(at - 0.75) < 0.02, at);
+  check("the cursor stands there", Math.abs(cursor + 1 - (plot.left + at * plot.width)) < 2, cursor);
+
+  const scene = await rectOf(browser, ".scene");
+  const [x, y] = [(scene.left + scene.right) / 2, (scene.top + scene.bottom) / 2];
+  const seen = () => browser.run((p) => farsa.project(p), life.position_origin);
+  const views = [await seen()];
+  for (const act of [() => browser.drag([[x, y], [x + 60, y + 20]]), () => browser.drag([[x, y], [x + 60, y]], { button: 2 }), () => browser.wheel(x, y, 300)]) {
+    await act();
+    await settled(browser);
+    views.push(await seen());
+  }
+  const moved = views.slice(1).map((v, i) => Math.hypot(v.x - views[i].x, v.y - views[i].y) > 3);
+  check("drag turns, right drag moves, the wheel zooms", moved.every(Boolean), moved.join());
+  await browser.keys("c");
+  await settled(browser);
+  const back = await seen();
+  check("c brings the camera back", Math.hypot(back.x - views[0].x, back.y - views[0].y) < 1);
+
+  if (life.network) {
+    const graph = await rectOf(browser, "#graph");
+    const node = await browser.run(() => farsa.lives[0].network.nodes.map(({ x, y, name }) => ({ x, y, name })).at(-1));
+    await browser.drag([[graph.left + node.x, graph.top + node.y]]);
+    await settled(browser);
+    const about = await browser.run(() => document.querySelector("#about").textContent);
+    const numbers = await browser.run(() => [...document.querySelectorAll("#about td + td")].map((cell) => Math.abs(Number(cell.textContent))));
+    check("the strongest link comes first", numbers.length > 2 && numbers.slice(1, 6).every((x, i) => x <= numbers[i]), numbers.join());
+    check("a click on a node tells its name and its links", about.includes(node.name) && /strongest in \(\d+\)/.test(about), about);
+  }
+  await browser.run(() => document.querySelector(".fold").click());
+  check("a group folds", await browser.run(() => document.querySelector(".rows").hidden && document.querySelector(".fold").ariaExpanded === "false"));
+  await silent(browser, "mouse and keys");
+}
+
+async function looks(driver, url, name, size, phone) {
+  const browser = await driver.open({ size, phone });
+  try {
+    for (const scheme of ["dark", "light"]) {
+      const title = `${name} at ${size.join("x")}, ${scheme}`;
+      await opened(browser, url, { scheme });
+      await browser.run(() => farsa.seek(Math.round(farsa.ticks * 0.7)));
+      await settled(browser);
+      const png = await browser.screenshot();
+      if (shots) writeFileSync(join(shots, `${name}-${size.join("x")}-${scheme}.png`), png);
+      const picture = decode(png);
+      const ratio = picture.width / size[0];
+      const scene = await rectOf(browser, ".scene");
+      const colours = coloursIn(picture, Object.fromEntries(Object.entries(scene).map(([k, v]) => [k, v * ratio])));
+      check(`${title}: the scene has ${colours} colours`, colours > 300);
+      const strips = await rectOf(browser, "#strips");
+      const drawn = coloursIn(picture, { left: 0, right: picture.width, top: strips.top * ratio, bottom: Math.min(strips.bottom, size[1]) * ratio });
+      check(`${title}: the strips are drawn, ${drawn} colours`, drawn > 30);
+      const [wide, parts, low] = await browser.run(() => [
+        document.documentElement.scrollWidth,
+        ["header", "#stage", ".scene", "#tools", "#transport", "#slider", "#clock", "#strips", ".plot", "aside", "#graph"].flatMap((s) => [...document.querySelectorAll(s)].map((e) => [s, e.getBoundingClientRect()]))
+          .filter(([, r]) => r.width && (r.left < -0.5 || r.right > innerWidth + 0.5)).map(([s]) => s),
+        [...document.querySelectorAll("button, select, input")].filter((e) => e.offsetHeight && e.offsetHeight < 32).map((e) => e.id || e.textContent),
+      ]);
+      check(`${title}: nothing is wider than the screen`, wide <= size[0] && parts.length === 0, `${wide} ${parts}`);
+      check(`${title}: the controls are at least 32 pixels high`, low.length === 0, low.join());
+      const small = await browser.run(() => [...document.querySelectorAll("#app *")].filter((e) => e.offsetHeight && [...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim()) && (parseFloat(getComputedStyle(e).fontSize) || 12) < 12).map((e) => e.tagName + e.className));
+      check(`${title}: no text is smaller than 12 pixels`, small.length === 0, small.slice(0, 3).join());
+
+      // The sphere is drawn where it is: orange at its place, at the first tick, when nothing holds it.
+      if (scheme === "light" && (await browser.run(() => farsa.lives[0].bodies.includes("sphere")))) {
+        await browser.run(() => farsa.seek(0));
+        await settled(browser);
+        const first = decode(await browser.screenshot());
+        const at = await browser.run(() => farsa.project(farsa.pose(0, "sphere").position));
+        let orange = 0;
+        for (let dy = -4; dy <= 4; dy++) {
+          for (let dx = -4; dx <= 4; dx++) {
+            const [r, g, b] = first.pixel(Math.round(at.x * ratio) + dx, Math.round(at.y * ratio) + dy);
+            if (r > g + 20 && g > b + 20) orange++;
+          }
+        }
+        check(`${title}: the sphere is seen at its place`, orange > 40, `${orange} of 81 pixels at ${JSON.stringify(at)}`);
+      }
+    }
+    if (phone) {
+      const plot = await rectOf(browser, ".plot");
+      await browser.drag([[plot.left + plot.width / 2, plot.top + plot.height / 2]], { touch: true });
+      await settled(browser);
+      const at = await browser.run(() => farsa.tick / (farsa.ticks - 1));
+      check(`${name}: a finger on a strip seeks`, Math.abs(at - 0.5) < 0.03, at);
+      const button = await rectOf(browser, "#play");
+      await browser.drag([[button.left + 10, button.top + 10]], { touch: true });
+      check(`${name}: a finger plays`, await browser.until(() => farsa.playing));
+      await browser.run(() => farsa.pause());
+      const scene = await rectOf(browser, ".scene");
+      const seen = () => browser.run(() => farsa.project(farsa.lives[0].json.position_origin));
+      const before = await seen();
+      await browser.drag([[200, scene.top + 150], [120, scene.top + 170], [80, scene.top + 170]], { touch: true });
+      await settled(browser);
+      const after = await seen();
+      check(`${name}: a finger turns the scene`, Math.hypot(after.x - before.x, after.y - before.y) > 3);
+      await browser.run(() => window.scrollTo(0, 600));
+      await settled(browser);
+      const stage = await rectOf(browser, "#stage");
+      check(`${name}: the scene stays in sight`, Math.abs(stage.top) < 1, stage.top);
+      if (shots) writeFileSync(join(shots, `${name}-${size.join("x")}-scrolled.png`), await browser.screenshot());
+    }
+    await silent(browser, `${name} at ${size.join("x")}`);
+  } finally {
+    await browser.close();
+  }
+}
+
+// ---- Pages that were cut or changed.
+
+async function damaged(browser, html, name) {
+  const start = html.lastIndexOf(mark) + mark.length;
+  const inside = (share) => html.slice(0, Math.round(start + share * (html.length - start)));
+  const script = html.indexOf("<script>");
+  const base = html.indexOf('"data":"', start) + 8;
+  const other = (at) => html.slice(0, at) + (html[at] === "A" ? "B" : "A") + html.slice(at + 1);
+  const changed = (change) => {
+    const data = dataOf(html);
+    change(data);
+    return withData(html, data);
+  };
+  const cases = [
+    ["cut in the style", html.slice(0, html.indexOf("<style>") + 900), /did not load whole/],
+    ["cut in the body", html.slice(0, script - 400), /did not load whole/],
+    ["cut in the script", html.slice(0, Math.round((script + start) / 2)), /did not load whole/],
+    ["cut before the data", html.slice(0, start - mark.length), /data is missing/],
+    ["cut where the data begins", html.slice(0, start), /data is missing/],
+    ["cut early in the data", inside(0.05), /not valid JSON/],
+    ["cut in the middle of the data", inside(0.5), /not valid JSON/],
+    ["cut just before the end of the data", html.slice(0, html.lastIndexOf("</script>") - 1), /not valid JSON/],
+    ["a character of the base64 changed", other(base + 20_001), /crc32/],
+    ["a character that is no base64", `${html.slice(0, base + 100)}!${html.slice(base + 101)}`, /not base64/],
+    ["another version", changed((d) => (d.version = 2)), /version 2/],
+    ["another format", changed((d) => (d.format = "film")), /farsa-replay/],
+    ["another length", changed((d) => (d.lives[0].bytes += 4)), /bytes where/],
+    ["a block out of range", changed((d) => (d.lives[0].blocks.channels = 4 * (d.lives[0].bytes >> 2))), /block channels .* out of range/],
+    ["a block that is not there", changed((d) => delete d.lives[0].blocks.poses), /block poses .* out of range/],
+    ["contacts that are none", changed((d) => (d.lives[0].blocks.contacts = d.lives[0].blocks.times)), /block contacts .* out of range|cannot be shown/],
+    ["no life", changed((d) => (d.lives = [])), /no life/],
+    ["no shapes", changed((d) => delete d.lives[0].shapes), /lacks something|cannot be shown/],
+    ["data that is no page", withData(html, 7), /farsa-replay/],
+  ];
+  for (const [what, text, message] of cases) {
+    await browser.go(write("damaged.html", text));
+    await sleep(700);
+    const said = await browser.run(() => {
+      const element = document.querySelector("#message");
+      const { width, height } = element?.getBoundingClientRect() ?? {};
+      return { text: element?.textContent ?? "", seen: width > 50 && height > 10 && getComputedStyle(element).opacity === "1", app: document.querySelector("#app:not([hidden])") !== null };
+    });
+    const colours = coloursIn(decode(await browser.screenshot()), { left: 0, top: 0, right: 800, bottom: 200 });
+    check(`${name}, ${what}: it says so`, said.seen && message.test(said.text) && colours > 5, `${JSON.stringify(said)} ${colours} colours`);
+    const errors = (await browser.log()).filter((line) => /SEVERE/.test(line));
+    check(`${name}, ${what}: no uncaught exception`, errors.length === 0, errors.join(" | "));
+  }
+}
+
+async function compared(browser, html) {
+  const data = dataOf(html);
+  const [life] = data.lives;
+  const url = write("two.html", withData(html, { ...data, lives: [life, data.lives[1] ?? { ...life, name: "the same again" }] }));
+  await opened(browser, url);
+  const options = await browser.run(() => [...document.querySelectorAll("#life option")].length);
+  check("a page of two lives offers both", options === 2, options);
+  const beside = async (value) => {
+    await browser.run((value) => {
+      const list = document.querySelector("#beside");
+      list.value = value;
+      list.dispatchEvent(new Event("change"));
+      farsa.seek(40);
+    }, value);
+    await settled(browser);
+  };
+  await beside("1");
+  const [views, values] = await browser.run(() => [[...document.querySelectorAll("figure")].filter((f) => f.offsetWidth).length, [...document.querySelectorAll(".row")].map((r) => r.querySelectorAll(".value").length)]);
+  check("beside: two views, and two values in every strip", views === 2 && values.every((n) => n === 2), views);
+  const picture = decode(await browser.screenshot());
+  for (const i of [0, 1]) {
+    const rect = await browser.run((i) => {
+      const { left, top, right, bottom } = document.querySelectorAll(".scene")[i].getBoundingClientRect();
+      return { left, top, right, bottom };
+    }, i);
+    const colours = coloursIn(picture, rect);
+    check(`beside: view ${i} has ${colours} colours`, colours > 300);
+  }
+  if (shots) writeFileSync(join(shots, "two.png"), await browser.screenshot());
+  await beside("");
+  check("beside nothing: one view again", (await browser.run(() => [...document.querySelectorAll("figure")].filter((f) => f.offsetWidth).length)) === 1);
+  await silent(browser, "two lives");
+}
+
+async function withoutWebGL(driver, url) {
+  const browser = await driver.open({ flags: ["--disable-3d-apis"] });
+  try {
+    await opened(browser, url);
+    const [ready, text] = await browser.run(() => [farsa.ready, document.querySelector(".none")?.textContent ?? ""]);
+    check("without WebGL the page says so", ready && /WebGL/.test(text), text);
+    await browser.run(() => farsa.seek(20));
+    await settled(browser);
+    check("without WebGL the strips show their values", (await shownValues(browser)).filter((v) => v.text).length > 10);
+    const severe = (await browser.log()).filter((line) => /SEVERE/.test(line));
+    check("without WebGL there is no uncaught exception", severe.length === 0, severe.join(" | "));
+  } finally {
+    await browser.close();
+  }
+}
+
+const invented = compose(pageOf([armLife(0)]));
+const html = page ? readFileSync(page, "utf8") : invented;
+const url = page ? pathToFileURL(resolve(page)) : write("page.html", html);
+const [life] = dataOf(html).lives;
+const table = readCsv(csv ? readFileSync(csv, "utf8") : csvOf(armLife(0)), life);
+
+files();
+let driver;
+try {
+  driver = await startDriver();
+  const browser = await driver.open();
+  try {
+    await part("arithmetic", () => arithmetic(browser));
+    await part("against the table", () => against(browser, url, table, life));
+    await part("mouse and keys", () => handled(browser, url, life));
+    await part("two lives", () => compared(browser, html));
+    await part("damage", () => damaged(browser, html, "page"));
+  } finally {
+    await browser.close();
+  }
+  for (const [size, phone] of [[[1280, 800], false], [[390, 844], true]]) {
+    await part("looks", () => looks(driver, url, "page", size, phone));
+    await part("looks of an arena", () => looks(driver, write("arena.html", compose(pageOf([arenaLife(0)], "top"))), "arena", size, phone));
+  }
+  await part("without WebGL", () => withoutWebGL(driver, url));
+} catch (error) {
+  check("the browser runs", false, error.message);
+} finally {
+  driver?.stop();
+  rmSync(folder, { recursive: true, force: true });
+}
+console.log(failed ? `${failed} checks failed` : "all checks passed");
+process.exit(failed ? 1 : 0);
