@@ -137,7 +137,9 @@ pub(crate) fn page(
             let mut recording = Recording::new(relived.setup.stage());
             let outcome = relived.live(trial, &mut recording);
             let Relived { generation, individual, .. } = relived;
-            let name = format!("{}, generation {generation}, individual {individual}, trial {trial}", plan.name());
+            // What tells lives apart comes first: a narrow screen cuts the rest.
+            let run = [plan.condition.as_str(), "seed"].into_iter().find(|word| !word.is_empty()).unwrap_or_default();
+            let name = format!("trial {trial}: {run} {}, generation {generation}, individual {individual}", plan.seed);
             page.add(&name, facts(&relived, &outcome), recording);
             outcomes.push(outcome);
         }

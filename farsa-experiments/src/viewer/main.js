@@ -236,7 +236,7 @@ function viewOf(camera, ask) {
 
 	function set(life, mark) {
 		canvas.setAttribute("aria-label", `Scene of ${life.name}`);
-		caption.replaceChildren(make("b", mark, life.name), make("div", "", `${life.facts.slice(0, 2).map((fact) => fact.join(" ")).join(" · ")} `, note));
+		caption.replaceChildren(make("b", mark, life.name), make("div", "", note, ` ${life.facts.slice(0, 2).map((fact) => fact.join(" ")).join(" · ")}`));
 		labels.replaceChildren(...life.points.map((name) => make("span", "", name)));
 		size();
 	}

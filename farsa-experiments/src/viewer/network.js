@@ -23,7 +23,6 @@ function graphOf() {
 		layout();
 	}
 
-	// What the mouse is over and what was clicked: nodes, links or nothing.
 	function choose(a, b) {
 		if (a === over && b === pinned) return;
 		[over, pinned] = [a, b];
@@ -65,7 +64,7 @@ function graphOf() {
 				: [a.x, a.y, a.x + dx/3 + bend, a.y + dy/3, b.x - dx/3 + bend, b.y - dy/3, b.x, b.y];
 		}
 		back = Object.assign(make("canvas"), {width: canvas.width, height: canvas.height});
-		paint(back.getContext("2d"), links, (part) => 0.03 + 0.72*part**1.6);
+		paint(back.getContext("2d"), links, (part) => 0.03 + 0.72*part**2.5);
 		draw();
 		tell();
 	}

@@ -45,7 +45,7 @@ function survey(life) {
 		}
 	}
 	if (!balls.length) balls.push({at: [0, 0, 0], radius: 1});
-	// Trails of all that moves; of a robot of many bodies, of the one that goes farthest.
+	// Of a robot of many bodies only the one that goes farthest leaves a trail.
 	const moving = bodies.flatMap((name, body) => {
 		const role = shapes.find((s) => s.body === body)?.role;
 		const path = [];
@@ -67,7 +67,7 @@ class Camera {
 		return top ? [[1, 0, 0], [0, 1, 0], [0, 0, 1]] : axesOf([cos(yaw)*level, sin(yaw)*level, sin(pitch)]);
 	}
 
-	// Frames what moves over the lives, with the things in front.
+	// Frames what moves, with the things in front.
 	frame(lives, aspect) {
 		const all = lives.flatMap((life) => life.balls);
 		const bounds = boundsOf(all);

@@ -145,7 +145,7 @@ function stripsOf(seek) {
 			const {times, end} = lives[i];
 			const at = (time) => (time - from)/(to - from || 1)*width;
 			const x = (t) => at(times[0]) + (at(end) - at(times[0]))*t/max(1, values.length - 1);
-			// Bands and heat of two lives stand one over the other, lines share the field.
+			// Lines of two lives share the field, bands and heat stand apart.
 			const tall = height/shown.length;
 			const top = shown.indexOf(channel)*tall;
 			if (kind === "bands") {
@@ -172,7 +172,7 @@ function stripsOf(seek) {
 				if (low < 0 && high > 0) c.fillRect(0, round(y(0)), width, ratio);
 				Object.assign(c, {strokeStyle: colorOf(i ? "--b" : "--a"), lineWidth: 1.5*ratio, lineJoin: "round"});
 				c.beginPath();
-				// No line leads to or from a value that is not there.
+				// No line leads to a value that is not there.
 				values.forEach((value, t) => c[Number.isNaN(values[t - 1] ?? NaN) ? "moveTo" : "lineTo"](x(t), y(value)));
 				c.stroke();
 			}
