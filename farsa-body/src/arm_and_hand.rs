@@ -245,7 +245,8 @@ impl ArmAndHand {
     ///
     /// Upper arm, forearm, palm and phalanges have their collider's inertia as solids; the other segments that of balls
     /// as thick as their neighbours. The pairs are the thumb's two outer phalanges with the other fingers' two outer
-    /// ones, and neighbouring fingers' distal ones; use [`crate::Tabletop`] or [`Robot::add_pair`] for others.
+    /// ones, neighbouring fingers' distal ones, and the palm with the thumb's two outer phalanges and the others'
+    /// distal ones; use [`crate::Tabletop`] or [`Robot::add_pair`] for others.
     ///
     /// # Errors
     /// What [`Robot::validate`] finds with the numbers given.
@@ -267,6 +268,12 @@ impl ArmAndHand {
         for fingers in Finger::ALL[1..].windows(2) {
             let distal = [fingers[0], fingers[1]].map(|finger| Self::phalange_colliders(finger)[2]);
             robot.add_pair(distal, self.surface);
+        }
+        // A closed hand without something in it would reach through its own palm.
+        let palm = Self::ARM_COLLIDERS[2];
+        let others = Finger::ALL[1..].iter().map(|finger| Self::phalange_colliders(*finger)[2]);
+        for phalanx in [thumb_middle, thumb_distal].into_iter().chain(others) {
+            robot.add_pair([phalanx, palm], self.surface);
         }
         robot.validate()?;
         Ok(robot)

@@ -99,8 +99,8 @@ mod tests {
         assert_eq!(robot.segments.len(), 28);
         assert_eq!(robot.body("sphere"), Some(Tabletop::SPHERE));
         assert_eq!(robot.colliders.len(), 20);
-        // Thumb with the others' outer phalanges and neighbours; sphere with palm and phalanges; table.
-        assert_eq!(robot.pairs.len(), (2 * 8 + 3) + 16 + 18);
+        // Thumb with the others' outer phalanges, neighbours, palm with the outer ones; sphere with palm and phalanges; table.
+        assert_eq!(robot.pairs.len(), (2 * 8 + 3 + 6) + 16 + 18);
         assert!(robot.pair("sphere", "little_distal").is_some());
         assert!(robot.pair("table", "sphere").is_some());
         assert!(robot.pair("table", "upper_arm").is_none());

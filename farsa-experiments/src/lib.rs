@@ -69,4 +69,4 @@ pub use stage::{Channel, Links, NodeParameters, Stage, View};
 
 /// Grows by one whenever the same configuration, seed and genes come to other lives through a change in the crates that
 /// experiments are built of; see [`Experiment::values_version`] for changes in an experiment itself.
-pub const VALUES_VERSION: u32 = 1;
+pub const VALUES_VERSION: u32 = 2;

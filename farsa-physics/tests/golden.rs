@@ -111,11 +111,11 @@ fn squeezing<R: Precision>() -> u64 {
 #[test]
 fn random_commands_keep_their_bits() {
     let digests = [babbling::<f32>(), babbling::<f64>()];
-    assert_eq!(digests, [0x839e_4b01_bb96_5185, 0xb8ef_18f9_3bd5_5049], "{digests:#018x?}");
+    assert_eq!(digests, [0x6f4f_1729_95a2_2784, 0x0ed8_c524_e8f9_3748], "{digests:#018x?}");
 }
 
 #[test]
 fn contacts_under_load_keep_their_bits() {
     let digests = [squeezing::<f32>(), squeezing::<f64>()];
-    assert_eq!(digests, [0x73e7_e469_0e5c_5395, 0xb050_7ccc_323d_b4bd], "{digests:#018x?}");
+    assert_eq!(digests, [0x614d_e033_5d59_bc97, 0x9ac7_ee31_ad8c_65c7], "{digests:#018x?}");
 }

@@ -395,7 +395,12 @@ fn impulses_explain_the_change_of_velocity_and_keep_their_laws() {
             // These hold whether the sweeps have converged or not.
             assert!(m.response < 1e-9 && m.cone < 1e-9 && m.stop < 1e-9);
             match (name, sweeps) {
-                ("random lives", 200..) => {
+                // A finger that is closed onto the palm is a loop of its own, which takes more sweeps than 200 to the last digit.
+                ("random lives", 200) => {
+                    assert!(m.apart < 1e-9 && normal[1] < 1e-9 && stick[1] < 1e-9 && slide[1] < 1e-9);
+                    assert!(normal[2] < 1e-5 && stick[2] < 1e-5 && slide[2] < 1e-4);
+                }
+                ("random lives", 2000) => {
                     assert!(m.apart < 1e-9 && normal[2] < 1e-6 && stick[2] < 1e-5 && slide[2] < 1e-6);
                 }
                 // Fingers that work against each other through the sphere: slow, and once in hundreds of steps the sweeps go
