@@ -9,6 +9,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use farsa::nn::{Controller, Layout};
+use farsa_experiments::reach_grasp_lift::{Config, Lives};
 use farsa_experiments::{Job, Recording, Setup as _, Tape};
 use scene::{Aba, Loop};
 
@@ -45,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             });
         }
         "life" | "recorded" => {
-            let mut setup = scene::lives(6 * TIMES)?;
+            let mut setup = Lives::new(Config { steps: 6 * TIMES as u32, ..Config::default() })?;
             let genes: Vec<u16> = (0..setup.genes() as u32).map(|i| (i * 40503) as u16).collect();
             let mut recording = Recording::new(setup.stage());
             let recorded = case == "recorded";

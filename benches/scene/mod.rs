@@ -9,7 +9,7 @@ use farsa::body::{
 use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
 use farsa::num::{Domain, Stream};
 use farsa::physics::articulated::{Model, Options, Scratch, World, accelerations};
-use farsa_experiments::reach_grasp_lift::{Config, Lives, Motors, Scene, ScriptLife, Senses, Statics, Timetable};
+use farsa_experiments::reach_grasp_lift::{Config, Motors, Scene, ScriptLife, Senses, Statics, Timetable};
 use farsa_experiments::{Job, Life};
 
 type Failure = Box<dyn Error>;
@@ -24,11 +24,6 @@ pub(crate) fn network(layout: Layout) -> Result<Network<Vec<f32>, Vec<f32>>, Fai
     let draw = |kind| if leaks(kind) { stream.uniform() } else { stream.range(-6.0, 6.0) };
     let parameters = layout.kinds().map(draw).collect();
     Ok(Network::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?)
-}
-
-/// Lives of the experiment of so many steps.
-pub(crate) fn lives(steps: usize) -> Result<Lives, Failure> {
-    Ok(Lives::new(Config { steps: steps as u32, ..Config::default() })?)
 }
 
 /// The whole loop of `reach-grasp-lift` with the network in it; held commands keep the state what it is.

@@ -36,11 +36,19 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, program: &str) -> Result<V
     }
     blocks.push(Block::Subheading("Champions on fresh starts".into()));
     blocks.extend(tests(&groups, program)?);
-    let pictures = runs.iter().enumerate().filter_map(|(place, run)| champion(run, place).transpose());
-    let pictures = pictures.collect::<Result<Vec<_>, _>>()?;
-    if !pictures.is_empty() {
+    let (mut pictures, mut others) = (Vec::new(), Vec::new());
+    for (place, run) in runs.iter().enumerate() {
+        match champion(run, place) {
+            Ok(picture) => pictures.extend(picture),
+            // This program cannot live that champion's lives; all else in its run can be told.
+            Err(error @ Error::OtherVersion { .. }) => others.push(Block::Text(format!("Not drawn: {error}"))),
+            Err(error) => return Err(error),
+        }
+    }
+    if !pictures.is_empty() || !others.is_empty() {
         blocks.push(Block::Subheading("What the champions do".into()));
         blocks.push(Block::Figures(pictures));
+        blocks.extend(others);
     }
     blocks.push(Block::Subheading("Runs".into()));
     blocks.push(Block::Table(table_of_runs(&groups)));
@@ -355,11 +363,7 @@ fn sessions(runs: &[&Run<'_>]) -> Table {
 /// A champion's picture with its caption; `place` tells it from the others on the page.
 fn champion(run: &Run<'_>, place: usize) -> Result<Option<Figure>, Error> {
     let prefix = format!("{}-{place}", run.plan.experiment.name());
-    let picture = match draw::champion(&run.plan, &run.directory, &prefix) {
-        // This program cannot live that champion's lives; all else in its run can be told.
-        Err(Error::OtherVersion { .. }) => None,
-        drawn => drawn?,
-    };
+    let picture = draw::champion(&run.plan, &run.directory, &prefix)?;
     let caption = format!("{}: how its champion's best trial ends.", run.name());
     Ok(picture.map(|picture| Figure { kind: "champion", picture, caption }))
 }

@@ -2,7 +2,7 @@
 
 /// A 64-bit fingerprint of a sequence of values, for comparing runs bit for bit.
 ///
-/// Source: FNV-1a, \[Fowler2019\] section 4, 64 bits. Deviation: numbers enter as their little-endian bytes, and every NaN
+/// Source: FNV-1a, \[Fowler2019\], 64 bits. Deviation: numbers enter as their little-endian bytes, and every NaN
 /// as the same one, because processors differ in the bits they give it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(u64);
