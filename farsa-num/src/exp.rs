@@ -12,10 +12,18 @@ use crate::scalar::{Real, Scalar};
 #[inline(always)]
 pub fn exp<S: Scalar>(x: S) -> S {
     let double = S::Real::DIGITS > 24;
-    // Beyond these the last product below overflows or underflows by itself. A NaN passes: each comparison is false.
-    let (low, high) = if double { (-746.0, 710.0) } else { (-105.0, 89.0) };
-    let x = S::select(x.lt(x.constant(low)), x.constant(low), x);
-    let x = S::select(x.gt(x.constant(high)), x.constant(high), x);
+    // Above this the last product overflows by itself. A NaN passes: the comparison is false.
+    let high = x.constant(if double { 710.0 } else { 89.0 });
+    exp_below(S::select(x.gt(high), high, x))
+}
+
+/// The same for what is not beyond the largest number's logarithm.
+#[inline(always)]
+fn exp_below<S: Scalar>(x: S) -> S {
+    let double = S::Real::DIGITS > 24;
+    // Below this the last product underflows by itself. A NaN passes.
+    let low = x.constant(if double { -746.0 } else { -105.0 });
+    let x = S::select(x.lt(low), low, x);
 
     let k = (x * x.constant(core::f64::consts::LOG2_E)).round_small();
     // The high part of ln 2 is short enough for its product with k to be exact.
@@ -48,7 +56,7 @@ pub fn exp<S: Scalar>(x: S) -> S {
 #[inline(always)]
 pub fn logistic<S: Scalar>(x: S) -> S {
     let one = x.constant(1.0);
-    let e = exp(-x.abs());
+    let e = exp_below(-x.abs());
     S::select(x.lt(x.constant(0.0)), e, one) / (one + e)
 }
 

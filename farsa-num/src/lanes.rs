@@ -34,6 +34,14 @@ macro_rules! lanes {
                 <Self as SimdBase<S>>::splat(simd, x)
             }
             #[inline(always)]
+            fn load(simd: S, from: &[f32]) -> Self {
+                SimdBase::from_slice(simd, &from[..$count])
+            }
+            #[inline(always)]
+            fn store(self, to: &mut [f32]) {
+                SimdBase::store_slice(&self, &mut to[..$count]);
+            }
+            #[inline(always)]
             fn simd(self) -> S {
                 self.simd
             }

@@ -53,6 +53,16 @@ pub trait Scalar:
 
     /// The same value in every lane.
     fn splat(simd: Self::Simd, x: Self::Real) -> Self;
+    /// The first [`LANES`](Self::LANES) values of a slice, one per lane.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    fn load(simd: Self::Simd, from: &[Self::Real]) -> Self;
+    /// Writes the lanes over the first [`LANES`](Self::LANES) values of a slice.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    fn store(self, to: &mut [Self::Real]);
     /// The token this value was made with.
     fn simd(self) -> Self::Simd;
     /// One lane's value.
@@ -157,6 +167,14 @@ macro_rules! real {
             #[inline(always)]
             fn splat((): (), x: $real) -> Self {
                 x
+            }
+            #[inline(always)]
+            fn load((): (), from: &[$real]) -> Self {
+                from[0]
+            }
+            #[inline(always)]
+            fn store(self, to: &mut [$real]) {
+                to[0] = self;
             }
             #[inline(always)]
             fn simd(self) {}

@@ -152,6 +152,27 @@ proptest! {
 }
 
 #[test]
+fn lanes_come_from_a_slice_and_go_back() {
+    #[inline(always)]
+    fn round<S: Scalar<Real = f32>>(simd: S::Simd, from: &[f32], to: &mut [f32]) -> [f32; 2] {
+        let x = S::load(simd, from);
+        (x + x).store(to);
+        [x.lane(0), x.lane(S::LANES - 1)]
+    }
+    let from: [f32; 20] = core::array::from_fn(|i| i as f32);
+    let check = |lanes: usize, run: &dyn Fn(&mut [f32]) -> [f32; 2]| {
+        let mut to = [-1.0; 20];
+        assert_eq!(run(&mut to), [0.0, (lanes - 1) as f32]);
+        assert!((0..20).all(|i| to[i] == if i < lanes { 2.0 * from[i] } else { -1.0 }));
+    };
+    check(1, &|to| round::<f32>((), &from, to));
+    for level in all_levels() {
+        check(8, &|to| dispatch!(level, simd => round::<f32x8<_>>(simd, &from, to)));
+        check(16, &|to| dispatch!(level, simd => round::<f32x16<_>>(simd, &from, to)));
+    }
+}
+
+#[test]
 fn masks_tell_any_all_and_which() {
     for level in all_levels() {
         dispatch!(level, simd => {
