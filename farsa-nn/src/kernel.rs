@@ -1,54 +1,134 @@
-//! The two loops that take the time: a dense product and the logistic function over a slice.
+//! The loops that take the time: a dense layer and its logistic function, over the lanes of a [`Scalar`].
 //!
-//! Both treat targets independently, so neither the tiling below nor the vectors the compiler makes of it can change a
-//! bit: what is fixed is the order in which one target adds its sources.
+//! Lanes are targets, which do not depend on each other. So neither the width of the vectors, nor how many of them are
+//! summed side by side, nor a target that is computed twice can change a bit: what is fixed is the order in which one
+//! target adds its sources.
 
-/// Adds `weights * x` to `y`: `y[i] += weights[j*stride + i] * x[j]`, for every target in the order of the sources `j`.
-///
-/// Uses the shorter of what `x` and `weights` have, and of `y` and `stride`.
-#[inline]
-pub(crate) fn accumulate(weights: &[f32], stride: usize, x: &[f32], y: &mut [f32]) {
-    if stride == 0 {
-        return;
-    }
-    let y = head(y, stride);
-    // Sixteen, then eight, then four: the sums of a tile stay in registers over all sources.
-    let (weights, y) = tiles::<16>(weights, stride, x, y);
-    let (weights, y) = tiles::<8>(weights, stride, x, y);
-    let (weights, y) = tiles::<4>(weights, stride, x, y);
-    tiles::<1>(weights, stride, x, y);
+use farsa_num::fearless_simd::{Level, Simd, f32x8};
+use farsa_num::{Scalar, logistic};
+
+/// The instructions of this processor where `fearless_simd` was built with `std` and can ask, else those that the
+/// program is compiled for.
+pub(crate) fn level() -> Level {
+    Level::try_detect().unwrap_or(Level::baseline())
 }
 
-/// Accumulates as many whole tiles of `T` targets as `y` holds; returns the weights and targets that remain.
-#[inline]
-fn tiles<'w, 'y, const T: usize>(
-    mut weights: &'w [f32],
-    stride: usize,
-    x: &[f32],
-    y: &'y mut [f32],
-) -> (&'w [f32], &'y mut [f32]) {
-    let (tiles, rest) = y.as_chunks_mut::<T>();
-    for tile in tiles {
-        let mut sums = *tile;
-        // A tile's weights are the first T of every row: the rows start where the tile does.
-        for (x, row) in x.iter().zip(weights.chunks(stride)) {
-            if let Some(row) = row.first_chunk::<T>() {
-                for (sum, w) in sums.iter_mut().zip(row) {
-                    *sum += w * x;
-                }
+/// A layer of logistic units, `y_i = sigma( beta_i + sum_j w_ji x_j )` with `sigma(x) = 1/(1 + exp(-slope*x))`.
+pub(crate) struct Layer<'a> {
+    /// Number of targets `i`.
+    pub(crate) targets: usize,
+    pub(crate) slope: f32,
+    /// Where the sums start `[targets]`; at zero if this is empty.
+    pub(crate) biases: &'a [f32],
+    /// Sources and their weights, source-major `[sources x targets]`, the shorter of both; the second pair is added
+    /// after the first.
+    pub(crate) sources: [(&'a [f32], &'a [f32]); 2],
+}
+
+impl Layer<'_> {
+    /// Overwrites the first [`targets`](Self::targets) values of `y`, or as many as there are.
+    // Not inlined and not generic, so that a program has the loops once for each instruction set and not for each kind
+    // of network. AVX-512 would be a third copy for the same time; SSE4.2 has nothing that these loops use.
+    #[inline(never)]
+    pub(crate) fn respond(&self, level: Level, y: &mut [f32]) {
+        let y = head(y, self.targets);
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        match (level.as_avx2(), level.as_sse2()) {
+            (Some(simd), _) => self.in_vectors(simd, y),
+            (_, Some(simd)) => self.in_vectors(simd, y),
+            _ => self.one_by_one(y),
+        }
+        #[cfg(target_arch = "aarch64")]
+        match level.as_neon() {
+            Some(simd) => self.in_vectors(simd, y),
+            None => self.one_by_one(y),
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+        {
+            let _ = level;
+            self.one_by_one(y);
+        }
+    }
+
+    /// Eight targets in a vector, with the instructions of the token; fewer one by one.
+    #[cfg_attr(
+        not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
+        expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
+    )]
+    #[inline(always)]
+    fn in_vectors<V: Simd>(&self, simd: V, y: &mut [f32]) {
+        if y.len() < f32x8::<V>::LANES {
+            return self.one_by_one(y);
+        }
+        simd.vectorize(
+            #[inline(always)]
+            || self.over::<f32x8<V>>(simd, y),
+        );
+    }
+
+    #[inline(never)]
+    fn one_by_one(&self, y: &mut [f32]) {
+        self.over::<f32>((), y);
+    }
+
+    #[inline(always)]
+    fn over<S: Scalar<Real = f32>>(&self, simd: S::Simd, y: &mut [f32]) {
+        let Some(last) = y.len().checked_sub(S::LANES) else { return };
+        // Side by side, because a sum waits longer for its own last addition than for the next weight.
+        let (mut first, mut end) = (0, S::splat(simd, 0.0));
+        while first < y.len() {
+            let vectors = (y.len() - first).div_ceil(S::LANES);
+            (end, first) = match vectors {
+                1 => (self.sum::<S, 1>(simd, first, last, y), first + S::LANES),
+                2 | 3 => (self.sum::<S, 2>(simd, first, last, y), first + 2 * S::LANES),
+                _ => (self.sum::<S, 4>(simd, first, last, y), first + 4 * S::LANES),
+            };
+        }
+        // In a loop of its own, so that this long function is not in each of the three above.
+        let slope = S::splat(simd, self.slope);
+        let mut whole = y.chunks_exact_mut(S::LANES);
+        for values in &mut whole {
+            logistic(slope * S::load(simd, values)).store(values);
+        }
+        if !whole.into_remainder().is_empty() {
+            logistic(slope * end).store(&mut y[last..]);
+        }
+    }
+
+    /// Sums `G` vectors of targets from `first` on and writes them to `y`; returns the last of them.
+    ///
+    /// A vector that would go beyond the targets ends with them instead, at `last`, and is not written: it overlaps the
+    /// one before it.
+    #[inline(always)]
+    fn sum<S: Scalar<Real = f32>, const G: usize>(&self, simd: S::Simd, first: usize, last: usize, y: &mut [f32]) -> S {
+        let mut at = [last; G];
+        let mut sums = [S::splat(simd, 0.0); G];
+        for k in 0..G {
+            at[k] = last.min(first + k * S::LANES);
+            // Never so; but said here, the compiler need not ask in every row below.
+            if at[k] + S::LANES > self.targets {
+                return sums[k];
+            }
+            if let Some(biases) = self.biases.get(at[k]..at[k] + S::LANES) {
+                sums[k] = S::load(simd, biases);
             }
         }
-        *tile = sums;
-        weights = weights.get(T..).unwrap_or(&[]);
-    }
-    (weights, rest)
-}
-
-/// Replaces every value by `1/(1 + exp(-slope*value))`.
-#[inline]
-pub(crate) fn logistic(slope: f32, values: &mut [f32]) {
-    for value in values {
-        *value = farsa_num::logistic(slope * *value);
+        for (x, mut weights) in self.sources {
+            for x in x {
+                let Some((row, rest)) = weights.split_at_checked(self.targets) else { break };
+                let x = S::splat(simd, *x);
+                for k in 0..G {
+                    sums[k] += S::load(simd, &row[at[k]..at[k] + S::LANES]) * x;
+                }
+                weights = rest;
+            }
+        }
+        for k in 0..G {
+            if first + k * S::LANES <= last {
+                sums[k].store(&mut y[at[k]..at[k] + S::LANES]);
+            }
+        }
+        sums[G - 1]
     }
 }
 
@@ -57,4 +137,34 @@ pub(crate) fn logistic(slope: f32, values: &mut [f32]) {
 pub(crate) fn head(values: &mut [f32], len: usize) -> &mut [f32] {
     let len = len.min(values.len());
     values.split_at_mut(len).0
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::vec::Vec;
+
+    use farsa_num::{Domain, Stream, levels};
+
+    use super::*;
+
+    // On this machine only remainders go one by one; on others everything does.
+    #[test]
+    fn one_by_one_equals_vectors() {
+        let mut stream = Stream::new(1, Domain::Network, 0, 0, 0);
+        for targets in 0..80 {
+            let mut draw = |count| (0..count).map(|_| stream.range(-6.0, 6.0)).collect::<Vec<f32>>();
+            let (x, weights, biases) = (draw(11), draw(11 * targets), draw(targets));
+            let sources = [(&x[..4], &weights[..4 * targets]), (&x[4..], &weights[4 * targets..])];
+            let layer = Layer { targets, slope: 0.2, biases: &biases, sources };
+            let mut alone = std::vec![f32::NAN; targets];
+            layer.one_by_one(&mut alone);
+            for level in levels(Level::new()) {
+                let mut together = std::vec![f32::NAN; targets];
+                layer.respond(level, &mut together);
+                assert!(alone.iter().zip(&together).all(|(a, b)| a.to_bits() == b.to_bits()), "{targets} at {level:?}");
+            }
+        }
+    }
 }

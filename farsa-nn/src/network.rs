@@ -1,6 +1,8 @@
 //! The leaky recurrent network of the manipulation experiment.
 
-use crate::kernel::{accumulate, head, logistic};
+use farsa_num::fearless_simd::Level;
+
+use crate::kernel::{Layer, head, level};
 use crate::{Controller, Error, Layout, Leak, ParameterKind};
 
 /// A network of one recurrent hidden layer with leaks, over parameters and state that are the caller's.
@@ -44,6 +46,7 @@ pub struct Network<P, S> {
     leak: Leak,
     parameters: P,
     state: S,
+    level: Level,
 }
 
 impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
@@ -63,7 +66,7 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
             return Err(Error::StateLen { expected, found });
         }
         state.as_mut().fill(0.0);
-        Ok(Self { layout, leak, parameters, state })
+        Ok(Self { layout, leak, parameters, state, level: level() })
     }
 
     /// Points the network at other parameters [[`parameter_count`](Layout::parameter_count)] and returns the old ones;
@@ -99,6 +102,14 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
 }
 
 impl<P, S> Network<P, S> {
+    /// The same network over the instructions of this level, with the same bits.
+    ///
+    /// By default those of the processor if the program has `fearless_simd` with its feature `std`, else those that the
+    /// program is compiled for.
+    pub fn with_level(self, level: Level) -> Self {
+        Self { level, ..self }
+    }
+
     /// The layout.
     pub const fn layout(&self) -> Layout {
         self.layout
@@ -138,7 +149,7 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
     }
 
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        let Self { layout, leak, parameters, state } = self;
+        let Self { layout, leak, parameters, state, level } = self;
         debug_assert_eq!(x.len(), layout.sensors(), "sensor values and the layout's sensors");
         debug_assert_eq!(y.len(), layout.outputs(), "motor values and the layout's outputs");
         let parts = layout.split(parameters.as_ref());
@@ -149,12 +160,8 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
         let (previous, state) = state.split_at_mut(count.min(state.len()));
         let response = head(state, count);
 
-        for (sum, bias) in response.iter_mut().zip(parts.biases) {
-            *sum = *bias;
-        }
-        accumulate(parts.sensor_weights, count, x, response);
-        accumulate(parts.recurrent_weights, count, hidden, response);
-        logistic(slope, response);
+        let sources = [(x, parts.sensor_weights), (&*hidden, parts.recurrent_weights)];
+        Layer { targets: count, slope, biases: parts.biases, sources }.respond(*level, response);
 
         let neurons = hidden.iter_mut().zip(response.iter()).zip(parts.leaks);
         match leak {
@@ -166,10 +173,8 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
             Leak::Evonet => neurons.for_each(|((h, y), d)| *h = d * *h + (1.0 - d) * y),
         }
 
-        let y = head(y, layout.outputs());
-        y.fill(0.0);
-        accumulate(parts.output_weights, layout.outputs(), hidden, y);
-        logistic(slope, y);
+        let sources = [(&*hidden, parts.output_weights), (&[], &[])];
+        Layer { targets: layout.outputs(), slope, biases: &[], sources }.respond(*level, y);
     }
 }
 

@@ -1,6 +1,8 @@
 //! A single layer of logistic units, for reflexes.
 
-use crate::kernel::{accumulate, head, logistic};
+use farsa_num::fearless_simd::Level;
+
+use crate::kernel::{Layer, level};
 use crate::{Controller, Error};
 
 /// One layer of logistic units without memory: `O_i = sigma( beta_i + sum_j w_ji I_j )`,
@@ -28,6 +30,7 @@ pub struct Perceptron<P> {
     outputs: usize,
     slope: f32,
     parameters: P,
+    level: Level,
 }
 
 impl Perceptron<()> {
@@ -56,13 +59,20 @@ impl<P: AsRef<[f32]>> Perceptron<P> {
         }
         match parameters.as_ref().iter().position(|p| !p.is_finite()) {
             Some(index) => Err(Error::NotFinite { index }),
-            None => Ok(Self { inputs, outputs, slope, parameters }),
+            None => Ok(Self { inputs, outputs, slope, parameters, level: level() }),
         }
     }
 
     /// The parameters.
     pub fn parameters(&self) -> &[f32] {
         self.parameters.as_ref()
+    }
+}
+
+impl<P> Perceptron<P> {
+    /// The same layer over the instructions of this level, as [`Network::with_level`](crate::Network::with_level).
+    pub fn with_level(self, level: Level) -> Self {
+        Self { level, ..self }
     }
 }
 
@@ -83,11 +93,7 @@ impl<P: AsRef<[f32]>> Controller for Perceptron<P> {
         debug_assert_eq!(y.len(), self.outputs, "motor values and the layer's outputs");
         let parameters = self.parameters.as_ref();
         let (weights, biases) = parameters.split_at((self.inputs * self.outputs).min(parameters.len()));
-        let y = head(y, self.outputs);
-        for (sum, bias) in y.iter_mut().zip(biases) {
-            *sum = *bias;
-        }
-        accumulate(weights, self.outputs, x, y);
-        logistic(self.slope, y);
+        let sources = [(x, weights), (&[][..], &[][..])];
+        Layer { targets: self.outputs, slope: self.slope, biases, sources }.respond(self.level, y);
     }
 }

@@ -1,6 +1,8 @@
 //! The network against loops written from its equations, hand-computed cases and properties.
 
 use farsa_nn::{Controller, Error, Layout, Leak, Network, ParameterKind};
+use farsa_num::fearless_simd::Level;
+use farsa_num::levels;
 use proptest::prelude::*;
 
 const LABELS: Layout = Layout::new(29, 12, 23);
@@ -71,8 +73,8 @@ fn state(layout: Layout) -> Vec<f32> {
 }
 
 fn any_layout() -> impl Strategy<Value = Layout> {
-    // Up to 40 targets: every width of tile and every remainder.
-    (0..12_usize, 0..40_usize, 0..40_usize).prop_map(|(n, h, o)| Layout::new(n, h, o))
+    // Up to 72 targets: every number of vectors side by side, twice, and every remainder.
+    (0..12_usize, 0..72_usize, 0..72_usize).prop_map(|(n, h, o)| Layout::new(n, h, o))
 }
 
 prop_compose! {
@@ -89,14 +91,14 @@ prop_compose! {
 proptest! {
     #[test]
     fn equals_the_oracle_bit_for_bit((layout, parameters, inputs) in any_case()) {
-        for leak in Leak::ALL {
-            let mut network = Network::new(layout, leak, &parameters, state(layout))?;
+        for (leak, level) in Leak::ALL.into_iter().flat_map(|leak| levels(Level::new()).map(move |level| (leak, level))) {
+            let mut network = Network::new(layout, leak, &parameters, state(layout))?.with_level(level);
             let mut oracle = Oracle::new(layout, leak, &parameters);
             let mut y = vec![f32::NAN; layout.outputs()];
             for x in &inputs {
                 network.step(x, &mut y);
-                prop_assert_eq!(bits(&y), bits(&oracle.step(x)));
-                prop_assert_eq!(bits(network.hidden()), bits(&oracle.hidden));
+                prop_assert_eq!(bits(&y), bits(&oracle.step(x)), "{:?}", level);
+                prop_assert_eq!(bits(network.hidden()), bits(&oracle.hidden), "{:?}", level);
                 prop_assert!(y.iter().chain(network.hidden()).all(|v| (0.0..=1.0).contains(v)));
             }
         }
@@ -175,6 +177,28 @@ proptest! {
             prop_assert_eq!(&run(&mut owner), &first);
         }
     }
+}
+
+#[test]
+fn every_remainder_equals_the_oracle() -> Result<(), Error> {
+    const SIZES: [usize; 14] = [0, 1, 2, 7, 8, 9, 15, 16, 17, 24, 31, 33, 47, 1000];
+    println!("levels that ran: {:?}", levels(Level::new()).collect::<Vec<_>>());
+    for (hidden, outputs) in SIZES.into_iter().flat_map(|h| SIZES.map(|o| (h, o))) {
+        let layout = Layout::new(3, hidden, outputs);
+        let genes: Vec<f32> = (0..layout.parameter_count()).map(|i| (i * 7919 % 1009) as f32 / 1008.0).collect();
+        let parameters = decode(layout, &genes);
+        for level in levels(Level::new()) {
+            let mut network = Network::new(layout, Leak::Filter, &parameters, state(layout))?.with_level(level);
+            let mut oracle = Oracle::new(layout, Leak::Filter, &parameters);
+            let mut y = vec![f32::NAN; outputs];
+            for x in [[1.0, -40.0, 0.3], [0.0, 9.0, -2.0]] {
+                network.step(&x, &mut y);
+                assert_eq!(bits(&y), bits(&oracle.step(&x)), "3-{hidden}-{outputs} at {level:?}");
+                assert_eq!(bits(network.hidden()), bits(&oracle.hidden), "3-{hidden}-{outputs} at {level:?}");
+            }
+        }
+    }
+    Ok(())
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! The single layer against its equation, and through the trait.
 
 use farsa_nn::{Controller, Error, Perceptron};
+use farsa_num::fearless_simd::Level;
+use farsa_num::levels;
 use proptest::prelude::*;
 
 proptest! {
@@ -14,15 +16,17 @@ proptest! {
         )),
         slope in 0.1_f32..2.0,
     ) {
-        let mut layer = Perceptron::new(inputs, outputs, slope, &parameters[..])?;
-        let mut y = vec![f32::NAN; outputs];
-        layer.step(&x, &mut y);
-        for i in 0..outputs {
-            let mut net = parameters[inputs * outputs + i];
-            for j in 0..inputs {
-                net += parameters[j * outputs + i] * x[j];
+        for level in levels(Level::new()) {
+            let mut layer = Perceptron::new(inputs, outputs, slope, &parameters[..])?.with_level(level);
+            let mut y = vec![f32::NAN; outputs];
+            layer.step(&x, &mut y);
+            for i in 0..outputs {
+                let mut net = parameters[inputs * outputs + i];
+                for j in 0..inputs {
+                    net += parameters[j * outputs + i] * x[j];
+                }
+                prop_assert_eq!(y[i].to_bits(), farsa_num::logistic(slope * net).to_bits(), "{:?}", level);
             }
-            prop_assert_eq!(y[i].to_bits(), farsa_num::logistic(slope * net).to_bits());
         }
     }
 }
