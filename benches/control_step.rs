@@ -8,7 +8,6 @@ mod scene;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use farsa::nn::{Controller, Layout};
 use scene::{Aba, Loop};
 
 fn whole_loop(c: &mut Criterion) {
@@ -27,9 +26,6 @@ fn kernels(c: &mut Criterion) {
         let mut aba = Aba::new(joints).expect("the default arm");
         c.bench_function(&format!("aba/{joints}"), |b| b.iter(|| black_box(aba.accelerations())));
     }
-    let mut network = scene::network(Layout::new(29, 12, 23)).expect("finite parameters");
-    let (x, mut y) = ([0.5; 29], [0.0; 23]);
-    c.bench_function("network/29-12-23", |b| b.iter(|| network.step(black_box(&x), &mut y)));
     let pair = scene::muscles().expect("the default arm");
     let at = || (black_box(0.3_f32), black_box(-0.2_f32), black_box([0.4, 0.1]));
     c.bench_function("muscle_pair", |b| {

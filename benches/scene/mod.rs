@@ -7,6 +7,7 @@ use farsa::body::{
     ArmAndHand, Channels, Contacts, Law, Motor, MusclePair, PairId, Robot, Sensor, Snapshot, Tabletop, World as _,
 };
 use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
+use farsa::num::fearless_simd::Level;
 use farsa::num::{Domain, Stream};
 use farsa::physics::articulated::{Model, Options, Scratch, World, accelerations};
 use farsa_experiments::reach_grasp_lift::{Config, Motors, Scene, ScriptLife, Senses, Statics, Timetable};
@@ -17,13 +18,15 @@ type Failure = Box<dyn Error>;
 /// Control steps after which the state is restored, so that it stays what it is called.
 const WINDOW: usize = 50;
 
-/// A network of this layout with weights in [-6, 6] and leaks in [0, 1].
+/// A network of this layout with weights in [-6, 6] and leaks in [0, 1], over the instructions that the program is compiled
+/// for: they count the same on every machine.
 pub(crate) fn network(layout: Layout) -> Result<Network<Vec<f32>, Vec<f32>>, Failure> {
     let mut stream = Stream::new(1, Domain::InitialGenome, 0, 0, 0);
     let leaks = |kind| kind == ParameterKind::Leak;
     let draw = |kind| if leaks(kind) { stream.uniform() } else { stream.range(-6.0, 6.0) };
     let parameters = layout.kinds().map(draw).collect();
-    Ok(Network::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?)
+    let network = Network::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?;
+    Ok(network.with_level(Level::baseline()))
 }
 
 /// The whole loop of `reach-grasp-lift` with the network in it; held commands keep the state what it is.
