@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod files;
+mod look;
 mod manners;
 mod own;
 mod report;

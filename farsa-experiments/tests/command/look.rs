@@ -1,0 +1,72 @@
+//! Lives are looked at: pages and pictures of a run.
+
+use std::fs;
+
+use crate::tool::{farsa, ok, own, say, scratch};
+
+/// The data of a page.
+fn data(html: &str) -> serde_json::Value {
+    let (_, rest) = html.rsplit_once("id=\"data\">").expect("the data");
+    let (text, _) = rest.split_once("</script>").expect("their end");
+    serde_json::from_str(text).expect("JSON")
+}
+
+#[test]
+fn a_page_holds_the_lives_that_were_asked_for() {
+    let here = scratch("look-page");
+    for seed in [1, 2] {
+        ok(own(), &here, &format!("run cart --generations 2 --seed {seed} --out r{seed} --quiet"));
+    }
+    let said = say(own(), &here, "replay r1 --html all.html --compare r2");
+    assert_eq!((said.code, said.out.as_str()), (Some(0), ""), "{said:?}");
+    let page = data(&fs::read_to_string(here.join("all.html")).expect("the page"));
+    let names: Vec<&str> = page["lives"].as_array().expect("lives").iter().filter_map(|l| l["name"].as_str()).collect();
+    assert_eq!(names.len(), 6);
+    assert!(names[2].starts_with("trial 2: rough 1, generation 1") && names[3].starts_with("trial 0: rough 2"));
+    let life = &page["lives"][0];
+    assert_eq!((&life["ticks"], &life["bodies"]), (&500.into(), &serde_json::json!([])));
+    assert_eq!(life["channels"][2]["unit"], "N");
+
+    ok(own(), &here, "replay r1 --generation 0 --individual 3 --trial 1 --html one.html");
+    let page = data(&fs::read_to_string(here.join("one.html")).expect("the page"));
+    assert_eq!(page["lives"].as_array().map(Vec::len), Some(1));
+
+    let before = fs::read(here.join("one.html")).expect("the page");
+    for (arguments, complaint) in [
+        ("replay r1 --html one.html", "there is one already"),
+        ("replay r1 --html new.html --compare r3", "there is no such directory"),
+        ("replay r1 --trial 3 --html new.html", "trial 3 of 3"),
+        ("draw r1 --out new.svg", "have no bodies to draw"),
+    ] {
+        let said = say(own(), &here, arguments);
+        assert!(said.code != Some(0) && said.err.contains(complaint), "{arguments}: {said:?}");
+    }
+    assert_eq!(before, fs::read(here.join("one.html")).expect("the page"));
+    assert!(!here.join("new.html").exists() && !here.join("new.svg").exists());
+}
+
+#[test]
+fn a_moment_is_drawn_from_a_named_camera() {
+    let here = scratch("look-draw");
+    let small = "--set evolution.population=6 --set evolution.parents=2 --set trial.steps=40";
+    ok(farsa(), &here, &format!("run reach-grasp-lift --generations 1 {small} --out r --quiet"));
+    ok(farsa(), &here, "draw r --trial 2 --time 0.2 --camera front --size 120x80 --out a.png");
+    let bytes = fs::read(here.join("a.png")).expect("the picture");
+    assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
+    assert_eq!((&bytes[16..20], &bytes[20..24]), (&[0, 0, 0, 120][..], &[0, 0, 0, 80][..]));
+    ok(farsa(), &here, "draw r --out a.svg");
+    let svg = fs::read_to_string(here.join("a.svg")).expect("the picture");
+    assert!(svg.starts_with("<svg") || svg.starts_with("<?xml"), "{}", &svg[..80]);
+    assert!(svg.contains("trial 0, 0.40 s"), "no caption");
+    for (arguments, complaint) in [
+        ("draw r --camera frnt --out b.png", "the nearest is `front`"),
+        ("draw r --time 0.5 --out b.png", "from 0.01 to 0.4 s"),
+        ("draw r --out b.gif", "ends in .svg or .png"),
+        ("draw r --size 8x8 --out b.png", "16 to 8192"),
+        ("draw r --out a.png", "there is one already"),
+    ] {
+        let said = say(farsa(), &here, arguments);
+        assert!(said.code != Some(0) && said.err.contains(complaint), "{arguments}: {said:?}");
+    }
+    assert_eq!(bytes, fs::read(here.join("a.png")).expect("the picture"));
+}
