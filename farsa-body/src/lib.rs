@@ -29,9 +29,15 @@ mod goal;
 #[cfg(feature = "alloc")]
 mod inverse_kinematics;
 #[cfg(feature = "alloc")]
+mod inverse_weight;
+#[cfg(feature = "alloc")]
 mod kinematics;
 #[cfg(feature = "alloc")]
+mod markup;
+#[cfg(feature = "alloc")]
 mod mass_properties;
+#[cfg(feature = "alloc")]
+mod mjcf;
 mod motor;
 mod muscle;
 mod noisy;
@@ -54,6 +60,8 @@ mod touch;
 #[cfg(feature = "alloc")]
 mod trace;
 #[cfg(feature = "alloc")]
+mod urdf;
+#[cfg(feature = "alloc")]
 mod validation;
 mod wrap;
 
@@ -71,6 +79,8 @@ pub use inverse_kinematics::{InverseKinematics, InverseKinematicsError, Solution
 pub use kinematics::KinematicTree;
 #[cfg(feature = "alloc")]
 pub use mass_properties::MassProperties;
+#[cfg(feature = "alloc")]
+pub use mjcf::{Keyframe, MjcfOptions};
 pub use motor::{Muscles, ServoGroup, ServoRange, TorqueMotor};
 pub use muscle::{MusclePair, MuscleVariant, Tension};
 pub use noisy::{Noise, Noisy};
