@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
 use clap_complete::Shell;
 
 use crate::camera::Camera;
+use crate::export::ModelFormat;
 use crate::plan::{self, LARGEST_SEED};
 use crate::replay::Which;
 use crate::settings::Value;
@@ -38,6 +39,8 @@ pub(crate) enum Command {
     Draw(DrawArgs),
     /// Write a page about one or many runs
     Report(ReportArgs),
+    /// Write an experiment's robot for other simulators
+    Export(ExportArgs),
     /// Write a shell's completions to the standard output
     Completions(CompletionsArgs),
     /// Write the manual's pages
@@ -235,6 +238,37 @@ pub(crate) struct ReportArgs {
     /// Write the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportArgs {
+    #[command(subcommand)]
+    pub(crate) what: ExportWhat,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum ExportWhat {
+    /// Write the robot with everything around it as a model file
+    Robot(ExportRobotArgs),
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct ExportRobotArgs {
+    /// The experiment
+    pub(crate) experiment: String,
+    /// One of its conditions [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) condition: Option<String>,
+    /// Change a setting; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
+    pub(crate) set: Vec<(String, Value)>,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: ModelFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Args)]

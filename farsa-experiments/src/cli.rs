@@ -8,13 +8,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::FromArgMatches as _;
 
 use crate::arguments::{
-    Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
+    Cli, Command, CompletionsArgs, ExportArgs, ExportRobotArgs, ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
-use crate::directory::{Directory, create_result};
+use crate::directory::{Directory, create_result, create_results};
 use crate::draw;
 use crate::error::Error;
 use crate::evolution::{GENERATIONS, POPULATION};
 use crate::exam;
+use crate::export;
 use crate::experiment::Experiment;
 use crate::info::{self, pretty};
 use crate::manual;
@@ -96,6 +97,16 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             let runs = directories.iter().map(|path| existing(path, experiments)).collect::<Result<Vec<_>, _>>()?;
             let found = report::report(runs, html.as_deref(), md.as_deref(), program)?;
             summary(json, found.text(), &|| pretty(&found))
+        }
+        Command::Export(ExportArgs { what: ExportWhat::Robot(args) }) => {
+            let ExportRobotArgs { experiment, condition, set, format, out } = args;
+            let mut plan = Plan::new(plan::find(experiments, &experiment, "")?, condition.as_deref(), "")?;
+            set.into_iter().try_for_each(|(key, value)| plan.settings.set("--set", &key, value))?;
+            let text = export::robot(&plan, format)?;
+            match out {
+                None => say(&text),
+                Some(path) => create_results(&[(path, text)]),
+            }
         }
         Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, experiments)),
         Command::Man(ManArgs { out: None }) => say(&manual::page(program, experiments)?),

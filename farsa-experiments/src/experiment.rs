@@ -1,6 +1,6 @@
 //! What an experiment is to the command: a name, a table of settings, and lives of genomes.
 
-use farsa_body::Recorder;
+use farsa_body::{MjcfOptions, Recorder};
 
 use crate::error::Error;
 use crate::life::Job;
@@ -66,6 +66,14 @@ pub trait Setup: Send {
 
     /// What a life tells its [`Tape`] at every step, by name: [`Stage::of_scalars`] if it is a row of numbers.
     fn stage(&self) -> Stage;
+
+    /// What a MuJoCo model of the robot on the [`stage`](Self::stage) says beside the robot, for `farsa export`.
+    ///
+    /// By default the time between two steps, if the experiment has a clock, and gravity 9.81 m/s2 downwards.
+    fn mjcf_options(&self) -> MjcfOptions {
+        let (plain, step) = (MjcfOptions::default(), self.description().step_seconds);
+        MjcfOptions { time_step: if step > 0.0 { step } else { plain.time_step }, ..plain }
+    }
 
     /// What the robot senses, does and computes with, for `farsa info`.
     fn description(&self) -> Description;

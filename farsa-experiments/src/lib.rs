@@ -12,6 +12,7 @@ pub mod evolution;
 mod exam;
 mod exam_table;
 mod experiment;
+mod export;
 mod fitness;
 mod form;
 mod info;

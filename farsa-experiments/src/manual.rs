@@ -77,6 +77,13 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
                 "report runs/* --html report.html --md report.md".to_owned(),
             ],
         ),
+        (
+            "export",
+            vec![
+                format!("export robot {experiment} --format mjcf --out {experiment}.xml"),
+                format!("export robot {experiment} --format urdf"),
+            ],
+        ),
         ("completions", vec![format!("completions bash > ~/.local/share/bash-completion/completions/{program}")]),
         ("man", vec!["man | man -l -".into(), "man --out ~/.local/share/man/man1".into()]),
     ] {
@@ -102,14 +109,16 @@ pub(crate) fn completions(shell: Shell, program: &str, experiments: &[&dyn Exper
     }
     let mut command = command(program, experiments);
     // The command itself takes any word, and says which name is the nearest.
+    let known = |words: &[&'static str]| PossibleValuesParser::new(words.to_vec());
+    let taught = |subcommand: Command| {
+        subcommand
+            .mut_arg("experiment", |arg| arg.value_parser(known(&names)))
+            .mut_arg("condition", |arg| arg.value_parser(known(&conditions)))
+    };
     for subcommand in ["info", "run"] {
-        command = command.mut_subcommand(subcommand, |subcommand| {
-            let known = |words: &[&'static str]| PossibleValuesParser::new(words.to_vec());
-            subcommand
-                .mut_arg("experiment", |arg| arg.value_parser(known(&names)))
-                .mut_arg("condition", |arg| arg.value_parser(known(&conditions)))
-        });
+        command = command.mut_subcommand(subcommand, taught);
     }
+    command = command.mut_subcommand("export", |export| export.mut_subcommand("robot", taught));
     command = command.mut_subcommand("draw", |subcommand| {
         subcommand.mut_arg("camera", |arg| arg.value_parser(PossibleValuesParser::new(Camera::NAMES)))
     });

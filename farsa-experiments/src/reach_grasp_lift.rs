@@ -10,7 +10,8 @@ pub use crate::script::{Plan, ScriptLife, Statics, Timetable};
 use std::sync::Arc;
 
 use farsa_body::{
-    ArmAndHand, BodyId, Contacts, Joints, Kinematics, Law, MusclePair, PairId, Recorder, Tabletop, World as _,
+    ArmAndHand, BodyId, Contacts, Joints, Kinematics, Law, MjcfOptions, MusclePair, PairId, Recorder, Tabletop,
+    World as _,
 };
 use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, Leak, Network, ParameterKind};
@@ -231,6 +232,11 @@ impl Setup for Lives {
             points: ["palm's target", "palm's centre", "centre of the grasp"].map(String::from).into(),
             ..stage
         }
+    }
+
+    fn mjcf_options(&self) -> MjcfOptions {
+        let scene = self.life.judge().scene();
+        scene.mjcf_options()
     }
 
     fn description(&self) -> Description {

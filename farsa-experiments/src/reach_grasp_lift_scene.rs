@@ -2,7 +2,7 @@
 
 use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, ChannelError, Channels, Contacts, Finger, Handles, JointId,
-    JointPosition, Joints, Kinematics, Motor, Muscles, PairId, Point, Pose, Robot, RobotError, Sensor, ServoGroup,
+    JointPosition, Joints, Keyframe, Kinematics, MjcfOptions, Motor, Muscles, PairId, Point, Pose, Robot, RobotError, Sensor, ServoGroup,
     ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
 };
 use farsa_num::{Domain, Scalar, Stream};
@@ -165,6 +165,25 @@ impl Scene {
         });
         let sphere = config.sphere_start(trial).map(|x| displaced(x, config.sphere_displacement / 100.0));
         (joints, sphere)
+    }
+
+    /// What a MuJoCo model of the scene says beside the robot: the dynamics step, and the starts without displacements.
+    pub fn mjcf_options(&self) -> MjcfOptions {
+        let config = &self.config;
+        let start = |trial: usize| {
+            let [x, y] = config.sphere_start(trial);
+            Keyframe {
+                name: format!("start{}", trial + 1),
+                joints: config.arm_poses[4 * trial..4 * trial + 4].iter().map(|degrees| degrees.to_radians()).collect(),
+                bodies: vec![(Tabletop::SPHERE, Pose::at([x, y, config.sphere_radius]))],
+            }
+        };
+        MjcfOptions {
+            time_step: config.time_step / f64::from(config.substeps),
+            gravity: [0.0, 0.0, -config.gravity],
+            keyframes: (0..TRIALS).map(start).collect(),
+            ..MjcfOptions::default()
+        }
     }
 
     /// Sets a world up for the start of a trial.

@@ -1,6 +1,7 @@
 //! The `farsa` command, end to end: over the reference experiments and over those of a crate outside the workspace.
 
 mod bad_input;
+mod export;
 mod files;
 mod look;
 mod manners;

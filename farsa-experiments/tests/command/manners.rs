@@ -5,7 +5,8 @@ use std::path::Path;
 
 use crate::tool::{command, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 9] = ["list", "info", "run", "test", "replay", "draw", "report", "completions", "man"];
+const SUBCOMMANDS: [&str; 10] =
+    ["list", "info", "run", "test", "replay", "draw", "report", "export", "completions", "man"];
 
 #[test]
 fn the_help_is_a_tour_on_one_screen() {

@@ -1,0 +1,109 @@
+//! Our side of the comparison with MuJoCo: records four phases, steps them, prints times or joint angles.
+//!
+//! `record FOLDER`, `time|trace PHASE.txt STEPS_PER_10_MS SECONDS`, `lanes PHASE.txt STEPS_PER_10_MS SECONDS 8|16`; the
+//! script `run` beside it calls it.
+#![allow(missing_docs)]
+
+mod in_lanes;
+mod phase;
+mod record;
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use farsa::body::{ArmAndHand, Contacts, PairId, Snapshot, Tabletop, World as _};
+use farsa::num::Scalar;
+use farsa::physics::articulated::{Precision, World};
+use farsa_experiments::reach_grasp_lift::{Config, Scene};
+use phase::{Failure, MUSCLES, Phase, command, world};
+
+/// After so many what the sphere slips in the hand is measured: the phase begins without the contacts' impulses.
+const SETTLED: usize = 20;
+
+/// The sphere's centre in the palm's frame [m].
+fn held<R: Precision>(world: &World<R>) -> [f64; 3] {
+    let place = world.pose_of(ArmAndHand::PALM).cast::<f64>();
+    place.transform_back(world.pose_of(Tabletop::SPHERE).cast::<f64>().position)
+}
+
+/// Microseconds per control step; touching pairs and points; what the sphere slipped in the hand [mm], its height [mm].
+fn time<R: Precision>(scene: &Scene, phase: &Phase, substeps: u32, seconds: f64) -> Result<(), Failure> {
+    let mut world = world::<R>(scene, substeps, phase.contacts)?;
+    phase.place(&mut world);
+    let mut start = vec![0.0; world.snapshot_len()];
+    world.save(&mut start);
+    let mut first = held(&world);
+    let (mut points, mut pairs) = (0, 0);
+    for (tick, words) in phase.commands.iter().enumerate() {
+        command(&mut world, words);
+        world.step();
+        if tick + 1 == SETTLED {
+            first = held(&world);
+        }
+        for pair in (0..world.pairs()).map(|pair| PairId(pair as u16)).filter(|pair| world.touches(*pair)) {
+            pairs += 1;
+            points += world.pair_contact(pair).points;
+        }
+    }
+    let (last, height) = (held(&world), world.pose_of(Tabletop::SPHERE).position[2].to_f64());
+    let slip: f64 = (0..3).map(|k| (last[k] - first[k]) * (last[k] - first[k])).sum();
+    // Other programs interrupt: the least of a control step's repetitions is its own time.
+    let mut least = vec![f64::INFINITY; phase.commands.len()];
+    let begin = Instant::now();
+    while begin.elapsed().as_secs_f64() < seconds {
+        world.restore(&start);
+        for (words, least) in phase.commands.iter().zip(&mut least) {
+            let begin = Instant::now();
+            command(&mut world, words);
+            world.step();
+            *least = least.min(begin.elapsed().as_secs_f64());
+        }
+    }
+    let n = phase.commands.len() as f64;
+    let (points, pairs) = (f64::from(points) / n, f64::from(pairs) / n);
+    println!("{:.4} {points:.2} {pairs:.1} {:.4} {:.3}", least.iter().sum::<f64>() / n * 1e6, Scalar::sqrt(slip) * 1e3, height * 1e3);
+    Ok(())
+}
+
+fn trace<R: Precision>(scene: &Scene, phase: &Phase, substeps: u32) -> Result<(), Failure> {
+    let mut world = world::<R>(scene, substeps, phase.contacts)?;
+    phase.place(&mut world);
+    let mut text = String::new();
+    for words in &phase.commands {
+        command(&mut world, words);
+        world.step();
+        for q in &world.positions()[..MUSCLES] {
+            let _ = write!(text, "{:?} ", q.to_f64().to_degrees());
+        }
+        text.push('\n');
+    }
+    print!("{text}");
+    Ok(())
+}
+
+fn main() -> Result<(), Failure> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let scene = Arc::new(Scene::new(Config::default())?);
+    match arguments[..] {
+        // Of `cargo bench`, which measures nothing here.
+        [.., "--bench"] => {
+            println!("benches/mujoco/run measures");
+            Ok(())
+        }
+        ["record", folder] => record::record(&scene, Path::new(folder)),
+        ["time", phase, substeps, seconds] => {
+            time::<f32>(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?, seconds.parse()?)
+        }
+        ["trace", phase, substeps] => trace::<f32>(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?),
+        ["lanes", phase, substeps, seconds, lanes] => {
+            in_lanes::time(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?, seconds.parse()?, lanes)
+        }
+        ["trace", phase, substeps, "f64"] => {
+            trace::<f64>(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?)
+        }
+        _ => Err("record FOLDER | time PHASE STEPS SECONDS | lanes PHASE STEPS SECONDS 8|16 | trace PHASE STEPS [f64]".into()),
+    }
+}

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""Runs both programs pinned to one processor and in turns, and prints the tables; called by run.
+
+    compare.py TARGET PROGRAM [ROUNDS [SECONDS]]"""
+
+import math
+import os
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+OUT = Path(sys.argv[1]) / "mujoco"
+OURS = sys.argv[2]
+ROUNDS = int(sys.argv[3]) if len(sys.argv) > 3 else 5
+SECONDS = sys.argv[4] if len(sys.argv) > 4 else "0.3"
+PHASES = ["free", "waves", "table", "grasp"]
+COMPARED = ["free", "waves", "table"]  # whose errors are compared: in the grasp outcomes differ, not angles
+# What is measured, and with how many steps per control step of 10 ms.
+FARSA, LANES8, LANES16, MUJOCO = "FARSA, one world", "FARSA, 8 lanes AVX2", "FARSA, 16 lanes AVX-512", "MuJoCo"
+STEPS = {FARSA: [1, 2, 4, 5, 10], LANES8: [1, 2, 4, 5, 10], LANES16: [1, 2, 4, 5, 10], MUJOCO: [1, 2, 4, 5, 10, 20]}
+DEFAULT, FAST = 4, 2
+REFERENCE = 100  # 0.1 ms
+EQUAL = 0.5  # RMS over the arm's joints and the phase [deg]
+
+processor = str(max(os.sched_getaffinity(0)))
+
+
+def run(engine, verb, phase, steps, *more):
+    file = str(OUT / f"{phase}.txt")
+    if engine == MUJOCO:
+        words = [str(OUT / "step_mujoco"), str(OUT / "robot.xml"), file, verb, str(steps), *(more or ["0"])]
+    elif engine == FARSA or verb == "trace":
+        words = [OURS, verb, file, str(steps), *more]
+    else:
+        words = [OURS, "lanes", file, str(steps), *more, "8" if engine == LANES8 else "16"]
+    done = subprocess.run(["taskset", "-c", processor, *words], capture_output=True, text=True, check=True)
+    return [[float(x) for x in line.split()] for line in done.stdout.splitlines()]
+
+
+def milliseconds(steps):
+    return f"{10 / steps:g} ms"
+
+
+def times():
+    """For each phase, engine and number of steps what each round printed; nothing for lanes that do not run here."""
+    found = {}
+    for number in range(ROUNDS):
+        for phase in PHASES:
+            for engine, kinds in STEPS.items():
+                for steps in kinds:
+                    for row in run(engine, "time", phase, steps, SECONDS):
+                        found.setdefault((phase, engine, steps), []).append(row)
+        print(f"round {number + 1} of {ROUNDS}", file=sys.stderr)
+    return found
+
+
+def median(rows, column=0):
+    return statistics.median(row[column] for row in rows)
+
+
+def error(path, truth):
+    square = [(a - b) ** 2 for p, t in zip(path, truth) for a, b in zip(p, t)]
+    return math.sqrt(sum(square) / len(square))
+
+
+def errors():
+    found = {}
+    for phase in COMPARED:
+        for engine in [FARSA, MUJOCO]:
+            truth = run(engine, "trace", phase, REFERENCE, *(["f64"] if engine == FARSA else []))
+            for steps in STEPS[engine]:
+                found[phase, engine, steps] = error(run(engine, "trace", phase, steps), truth)
+        for lanes in [LANES8, LANES16]:  # the same bits
+            for steps in STEPS[lanes]:
+                found[phase, lanes, steps] = found[phase, FARSA, steps]
+    return found
+
+
+def cost_at(points):
+    """Time at the error EQUAL, between its neighbours in logarithms; of the coarsest step if that is good enough."""
+    points = sorted(points, reverse=True)
+    if points[0][0] <= EQUAL:
+        return points[0][1]
+    for (e1, t1), (e2, t2) in zip(points, points[1:]):
+        if e2 <= EQUAL:
+            return t1 * math.exp(math.log(EQUAL / e1) / math.log(e2 / e1) * math.log(t2 / t1))
+    return math.nan
+
+
+def row(*cells):
+    print("| " + " | ".join(cells) + " |")
+
+
+def head(*cells):
+    row(*cells)
+    print("|" + "---|" * len(cells))
+
+
+def main():
+    measured, off = times(), errors()
+    engines = [engine for engine in STEPS if ("grasp", engine, DEFAULT) in measured]
+    ours = [engine for engine in engines if engine != MUJOCO]
+    print(f"{ROUNDS} rounds of {SECONDS} s, interleaved: median (least to most), microseconds per world and 10 ms.\n")
+    head("engine, step", *PHASES)
+    for engine, steps in [*((e, s) for e in ours for s in (DEFAULT, FAST)), (MUJOCO, 1), (MUJOCO, 5)]:
+        cells = []
+        for phase in PHASES:
+            rows = measured[phase, engine, steps]
+            least, most = min(r[0] for r in rows), max(r[0] for r in rows)
+            cells.append(f"{median(rows):.1f} ({least:.1f} to {most:.1f})")
+        row(f"{engine}, {milliseconds(steps)}", *cells)
+    print("\nMuJoCo's time divided by ours:\n")
+    head("MuJoCo : ours", *PHASES)
+    for engine in ours:
+        for steps in (DEFAULT, FAST):
+            for theirs in (1, 5):
+                cells = [f"{median(measured[p, MUJOCO, theirs]) / median(measured[p, engine, steps]):.2f}" for p in PHASES]
+                row(f"{milliseconds(theirs)} : {engine}, {milliseconds(steps)}", *cells)
+    print("\nMeans over the phase; of 53 pairs all are tested by their bounds in every step of ours:\n")
+    head("phase", "engine, step", "pairs that touch", "contact points", "rows", "solver iterations", "sphere slipped [mm]")
+    for phase in PHASES:
+        for engine, steps in [(FARSA, DEFAULT), (FARSA, FAST), (MUJOCO, 1), (MUJOCO, 5)]:
+            rows = measured[phase, engine, steps]
+            slip = f"{median(rows, 3 if engine == FARSA else 4):.3f}" if phase == "grasp" else ""
+            points = f"{median(rows, 1):.1f}"
+            if engine == FARSA:
+                cells = [f"{median(rows, 2):.1f}", points, "", "10 sweeps"]
+            else:
+                cells = ["", points, f"{median(rows, 2):.0f}", f"{median(rows, 3):.1f}"]
+            row(phase, f"{engine}, {milliseconds(steps)}", *cells, slip)
+    print("\nRMS error of J1 to J7 [deg] against the engine's own 0.1 ms, and microseconds per 10 ms:\n")
+    every = STEPS[MUJOCO]
+    head("phase", "engine", *map(milliseconds, every), f"us at {EQUAL} deg", "MuJoCo : ours")
+    for phase in COMPARED:
+        costs = {}
+        for engine in engines:
+            costs[engine] = cost_at([(off[phase, engine, s], median(measured[phase, engine, s])) for s in STEPS[engine]])
+        for engine in engines:
+            cells = []
+            for s in every:
+                known = s in STEPS[engine]
+                cells.append(f"{off[phase, engine, s]:.4f}, {median(measured[phase, engine, s]):.1f}" if known else "")
+            ratio = "" if engine == MUJOCO else f"{costs[MUJOCO] / costs[engine]:.1f}"
+            row(phase, engine, *cells, f"{costs[engine]:.1f}", ratio)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,140 @@
+//! How the phases come about: our own world, told what to do by scripts, while somebody writes the commands down.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use farsa::body::{
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Handles, JointId, Joints, Motor as _, Pose, Tabletop, Twist,
+    World as _,
+};
+use farsa::num::{Domain, Stream, sin_cos};
+use farsa_experiments::reach_grasp_lift::{Scene, ScriptLife, Statics, Timetable};
+use farsa_experiments::{Job, Life};
+
+use crate::phase::{Failure, JOINTS, MUSCLES, Phase, STEPS, WORDS, command, world};
+
+/// Takes commands instead of a world.
+struct Sink([[f32; 2]; JOINTS]);
+
+impl Handles for Sink {
+    type Body = BodyId;
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+
+impl Actuated for Sink {
+    fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
+        self.0[actuator.index()] = value;
+    }
+}
+
+impl Sink {
+    fn words(&self) -> [f32; WORDS] {
+        let mut words = [0.0; WORDS];
+        for (i, command) in self.0.iter().enumerate() {
+            if i < MUSCLES {
+                words[2 * i..2 * i + 2].copy_from_slice(command);
+            } else {
+                words[MUSCLES + i] = command[0];
+            }
+        }
+        words
+    }
+}
+
+/// The script of the experiment from its first start: reaching, and later holding.
+fn scripted(scene: &Arc<Scene>) -> Result<[Phase; 2], Failure> {
+    let mut world = world::<f32>(scene, scene.config.substeps, true)?;
+    let mut script = ScriptLife::new(Arc::clone(scene), Timetable::default())?;
+    let motors = scene.motors()?;
+    script.start(&mut world, Job::default());
+    let mut phases = [Phase::at(&world), Phase::at(&world)];
+    // Lifted since 4.4 s.
+    let hold = 600 - 150;
+    for tick in 0..600 {
+        if tick == hold {
+            phases[1] = Phase::at(&world);
+        }
+        script.tick(&mut world);
+        let mut sink = Sink([[0.0; 2]; JOINTS]);
+        motors.clone().drive(script.done(), &mut sink);
+        if tick < STEPS {
+            phases[0].commands.push(sink.words());
+        } else if tick >= hold {
+            phases[1].commands.push(sink.words());
+        }
+        world.step();
+    }
+    if script.judge().succeeds() { Ok(phases) } else { Err("the script does not hold the sphere".into()) }
+}
+
+/// The open hand on the table, pressed down with 4 to 16 N once a second, the sphere far away.
+fn on_table(scene: &Scene) -> Result<Phase, Failure> {
+    let (statics, time) = (Statics::new(scene)?, Timetable::default());
+    let wanted = statics.above([0.24, -0.18], 0.02)?;
+    let mut world = world::<f32>(scene, scene.config.substeps, true)?;
+    for (joint, q) in ArmAndHand::joints().into_iter().zip(&wanted) {
+        world.place_joint(joint, *q as f32, 0.0);
+    }
+    let at = [0.35, 0.15, scene.config.sphere_radius as f32];
+    world.place_body(Tabletop::SPHERE, Pose::at(at), Twist::default());
+    world.arranged();
+    let mut phase = Phase::at(&world);
+    let settle = 200;
+    for tick in 0..settle + STEPS {
+        if tick == settle {
+            phase = Phase::at(&world);
+        }
+        let force = 10.0 + 6.0 * sin_cos(core::f64::consts::TAU * 0.01 * tick as f64).0;
+        let joints = ArmAndHand::joints();
+        let q: Vec<f64> = joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
+        let poses = statics.tree().poses(&q);
+        let pressing = statics.tree().jacobian(&poses, ArmAndHand::PALM, scene.arm.palm_centre);
+        let mut torques = statics.gravity_torques(&q);
+        for i in 0..MUSCLES {
+            torques[i] += time.stiffness[i] * (wanted[i] - q[i]) - time.damping[i] * f64::from(world.speed(joints[i]));
+            torques[i] -= pressing[i][5] * force;
+        }
+        let (activations, _) = statics.activations(&q, &torques);
+        let mut words = [0.0; WORDS];
+        for (word, activation) in words.iter_mut().zip(activations.into_iter().flatten()) {
+            *word = activation as f32;
+        }
+        if tick >= settle {
+            phase.commands.push(words);
+        }
+        command(&mut world, &words);
+        world.step();
+    }
+    Ok(phase)
+}
+
+/// Quick motion: every muscle follows a sine of its own between 0.5 and 2 Hz; nothing touches.
+fn waves(scene: &Scene) -> Result<Phase, Failure> {
+    let mut world = world::<f32>(scene, scene.config.substeps, false)?;
+    scene.arrange(&mut world, Job::default());
+    let mut phase = Phase { contacts: false, ..Phase::at(&world) };
+    let mut stream = Stream::new(1, Domain::Motor, 0, 0, 0);
+    let waves: [[f64; 2]; 2 * MUSCLES] =
+        core::array::from_fn(|_| [0.5 + 1.5 * stream.uniform_f64(), stream.uniform_f64()]);
+    for step in 0..STEPS {
+        let mut words = [0.0; WORDS];
+        for (word, [hertz, shift]) in words.iter_mut().zip(waves) {
+            let turns = hertz * 0.01 * step as f64 + shift;
+            *word = (0.5 + 0.4 * sin_cos(core::f64::consts::TAU * turns).0) as f32;
+        }
+        phase.commands.push(words);
+    }
+    Ok(phase)
+}
+
+/// Writes every phase as a file.
+pub(crate) fn record(scene: &Arc<Scene>, folder: &Path) -> Result<(), Failure> {
+    let [free, grasp] = scripted(scene)?;
+    let phases = [("free", free), ("waves", waves(scene)?), ("table", on_table(scene)?), ("grasp", grasp)];
+    for (name, phase) in phases {
+        fs::write(folder.join(format!("{name}.txt")), phase.text(scene))?;
+    }
+    Ok(())
+}
