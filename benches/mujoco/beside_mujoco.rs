@@ -63,7 +63,12 @@ fn time<R: Precision>(scene: &Scene, phase: &Phase, substeps: u32, seconds: f64)
     }
     let n = phase.commands.len() as f64;
     let (points, pairs) = (f64::from(points) / n, f64::from(pairs) / n);
-    println!("{:.4} {points:.2} {pairs:.1} {:.4} {:.3}", least.iter().sum::<f64>() / n * 1e6, Scalar::sqrt(slip) * 1e3, height * 1e3);
+    println!(
+        "{:.4} {points:.2} {pairs:.1} {:.4} {:.3}",
+        least.iter().sum::<f64>() / n * 1e6,
+        Scalar::sqrt(slip) * 1e3,
+        height * 1e3
+    );
     Ok(())
 }
 
@@ -101,9 +106,8 @@ fn main() -> Result<(), Failure> {
         ["lanes", phase, substeps, seconds, lanes] => {
             in_lanes::time(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?, seconds.parse()?, lanes)
         }
-        ["trace", phase, substeps, "f64"] => {
-            trace::<f64>(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?)
-        }
-        _ => Err("record FOLDER | time PHASE STEPS SECONDS | lanes PHASE STEPS SECONDS 8|16 | trace PHASE STEPS [f64]".into()),
+        ["trace", phase, substeps, "f64"] => trace::<f64>(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?),
+        _ => Err("record FOLDER | time PHASE STEPS SECONDS | lanes PHASE STEPS SECONDS 8|16 | trace PHASE STEPS [f64]"
+            .into()),
     }
 }

@@ -5,9 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use farsa::body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, Joints, Kinematics, Law, Pose, Tabletop, Twist,
-};
+use farsa::body::{Actuated, ActuatorId, ArmAndHand, Arrange, Joints, Kinematics, Law, Pose, Tabletop, Twist};
 use farsa::physics::articulated::{Model, Options, Precision, World};
 use farsa_experiments::reach_grasp_lift::Scene;
 

@@ -75,13 +75,7 @@ fn first_of(robot: &Robot) -> Vec<usize> {
 }
 
 /// What each degree of freedom that moves segment `i` does to a point of it.
-fn columns_of(
-    robot: &Robot,
-    poses: &[Pose<f64>],
-    first: &[usize],
-    mut i: usize,
-    at: [f64; 3],
-) -> Vec<(usize, Column)> {
+fn columns_of(robot: &Robot, poses: &[Pose<f64>], first: &[usize], mut i: usize, at: [f64; 3]) -> Vec<(usize, Column)> {
     let mut columns = Vec::new();
     loop {
         let joint = &robot.segments[i].joint;

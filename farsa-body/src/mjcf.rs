@@ -166,7 +166,8 @@ impl Robot {
         let weight = |collider: &Collider| collider.body.map_or(0.0, |body| weights[body.index()]);
         let surface = &pair.surface;
         let (tau, d) = impedance(surface.stiffness, weight(a) + weight(b), h);
-        let (dimensions, rolling) = if surface.rolling_friction > 0.0 { (6, surface.rolling_friction) } else { (3, 0.0) };
+        let (dimensions, rolling) =
+            if surface.rolling_friction > 0.0 { (6, surface.rolling_friction) } else { (3, 0.0) };
         let friction = numbers(&[surface.friction, surface.friction, rolling, rolling, rolling]);
         let (solref, solimp) = (numbers(&[tau, 1.0]), numbers(&[d, d, 0.001, 0.5, 2.0]));
         format!(

@@ -207,11 +207,14 @@ mod tests {
         use crate::robot::Joint;
         let mut robot = Robot::new("two");
         let ball = MassProperties::sphere(1.0, 0.1);
-        let first = Joint::revolute("world_joint", [0.0, 0.0, 2.0], Pose::identity(), [f64::NEG_INFINITY, f64::INFINITY]);
+        let first =
+            Joint::revolute("world_joint", [0.0, 0.0, 2.0], Pose::identity(), [f64::NEG_INFINITY, f64::INFINITY]);
         robot.add_segment(Segment::new("arm", None, first, ball));
         robot.add_segment(Segment::new("world", None, Joint::fixed(Pose::identity()), ball));
         let text = robot.to_urdf().expect("a valid robot");
-        assert!(text.contains("<link name=\"world_\">") && text.contains("<joint name=\"world__joint\" type=\"fixed\">"));
+        assert!(
+            text.contains("<link name=\"world_\">") && text.contains("<joint name=\"world__joint\" type=\"fixed\">")
+        );
         assert!(text.contains("type=\"continuous\"") && text.contains("<axis xyz=\"0.0 0.0 1.0\"/>"), "{text}");
         assert!(!text.contains("lower"));
     }

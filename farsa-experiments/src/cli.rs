@@ -8,15 +8,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::FromArgMatches as _;
 
 use crate::arguments::{
-    Cli, Command, CompletionsArgs, ExportArgs, ExportRobotArgs, ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
+    Cli, Command, CompletionsArgs, ExportArgs, ExportRobotArgs, ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs,
+    ReportArgs, RunArgs, TestArgs,
 };
 use crate::directory::{Directory, create_result, create_results};
 use crate::draw;
 use crate::error::Error;
 use crate::evolution::{GENERATIONS, POPULATION};
 use crate::exam;
-use crate::export;
 use crate::experiment::Experiment;
+use crate::export;
 use crate::info::{self, pretty};
 use crate::manual;
 use crate::plan::{self, ConfigFile, Plan};
