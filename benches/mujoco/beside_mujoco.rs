@@ -4,6 +4,7 @@
 //! script `run` beside it calls it.
 #![allow(missing_docs)]
 
+#[cfg(target_arch = "x86_64")]
 mod in_lanes;
 mod phase;
 mod record;
@@ -103,6 +104,7 @@ fn main() -> Result<(), Failure> {
             time::<f32>(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?, seconds.parse()?)
         }
         ["trace", phase, substeps] => trace::<f32>(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?),
+        #[cfg(target_arch = "x86_64")]
         ["lanes", phase, substeps, seconds, lanes] => {
             in_lanes::time(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?, seconds.parse()?, lanes)
         }

@@ -16,7 +16,6 @@ const AHEAD: usize = 5;
 /// Microseconds per world and control step: eight lanes at AVX2, sixteen at AVX-512; nothing where they do not run.
 pub(crate) fn time(scene: &Scene, phase: &Phase, substeps: u32, seconds: f64, lanes: &str) -> Result<(), Failure> {
     let model = model::<f32>(scene, substeps, phase.contacts)?;
-    #[cfg(target_arch = "x86_64")]
     match lanes {
         "8" => {
             if let Some(simd) = Level::new().as_avx2() {

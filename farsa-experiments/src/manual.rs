@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::experiment::Experiment;
 
 /// Without headings and spare lines, so that a screen of 24 lines has room for the tour.
-const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}\n\n{subcommands}\n\n{options}{after-help}";
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n\n{subcommands}\n\n{options}{after-help}";
 
 /// The command line under the name of the program, with examples about its own first experiment.
 pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command {
