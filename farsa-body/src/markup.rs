@@ -65,7 +65,7 @@ pub(crate) fn quoted(name: &str) -> String {
 }
 
 /// `wanted`, or with as many `_` behind as it takes to be none of the names.
-pub(crate) fn unused<'a>(wanted: &str, names: impl Iterator<Item = &'a str> + Clone) -> String {
+pub(crate) fn unused<'a>(wanted: &str, names: &(impl Iterator<Item = &'a str> + Clone)) -> String {
     let mut name = wanted.to_owned();
     while names.clone().any(|other| other == name) {
         name.push('_');
@@ -76,7 +76,7 @@ pub(crate) fn unused<'a>(wanted: &str, names: impl Iterator<Item = &'a str> + Cl
 /// The segments' names, changed where one is `reserved` by the format.
 pub(crate) fn segment_names(robot: &Robot, reserved: &str) -> Vec<String> {
     let all = robot.segments.iter().map(|segment| segment.name.as_str());
-    let name = |own: &str| if own == reserved { unused(own, all.clone()) } else { own.to_owned() };
+    let name = |own: &str| if own == reserved { unused(own, &all) } else { own.to_owned() };
     all.clone().map(name).collect()
 }
 
@@ -88,6 +88,6 @@ mod tests {
     fn names_and_numbers_are_safe_in_attributes() {
         assert_eq!(quoted("a<b> & \"c\"\n"), "\"a&lt;b&gt; &amp; &quot;c&quot;&#10;\"");
         assert_eq!(numbers(&[-0.0, 1.0, 1e-7, 0.1]), "0.0 1.0 1e-7 0.1");
-        assert_eq!(unused("world", ["world", "world_"].into_iter()), "world__");
+        assert_eq!(unused("world", &["world", "world_"].into_iter()), "world__");
     }
 }

@@ -81,7 +81,7 @@ impl Robot {
         let mut names: Vec<String> = self.segments.iter().map(|segment| segment.joint.name.clone()).collect();
         for i in 0..names.len() {
             if names[i].is_empty() {
-                names[i] = unused(&format!("{}_joint", segments[i]), names.iter().map(String::as_str));
+                names[i] = unused(&format!("{}_joint", segments[i]), &names.iter().map(String::as_str));
             }
         }
         names
