@@ -54,6 +54,18 @@ macro_rules! lanes {
                 self[index] = x;
             }
             #[inline(always)]
+            fn load(simd: S, from: &[f32]) -> Self {
+                SimdBase::from_slice(simd, &from[..$count])
+            }
+            #[inline(always)]
+            fn store(self, to: &mut [f32]) {
+                SimdBase::store_slice(&self, &mut to[..$count]);
+            }
+            #[inline(always)]
+            fn vectorize<T>(simd: S, work: impl FnOnce() -> T) -> T {
+                Simd::vectorize(simd, work)
+            }
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 SimdFloat::sqrt(self)
             }

@@ -75,8 +75,23 @@ pub(crate) fn edge_distance<S: Scalar>(
 }
 
 /// Contact point `index` of a pair.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn find<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    pair: &Pair<S::Real>,
+    placed: &[Placed<S>],
+    index: usize,
+) -> Point<S> {
+    S::vectorize(
+        simd,
+        #[inline(always)]
+        || point(simd, model, pair, placed, index),
+    )
+}
+
+#[inline(always)]
+fn point<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     pair: &Pair<S::Real>,

@@ -4,12 +4,18 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(all(feature = "lanes", not(test)))]
+mod batch;
 #[cfg(feature = "alloc")]
 mod collision;
 #[cfg(feature = "alloc")]
 mod contact;
+#[cfg(all(feature = "lanes", not(test)))]
+mod lane;
 #[cfg(feature = "alloc")]
 mod links;
+#[cfg(all(feature = "lanes", not(test)))]
+mod lockstep;
 #[cfg(feature = "alloc")]
 mod model;
 #[cfg(feature = "alloc")]
@@ -29,10 +35,16 @@ mod stop;
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
 mod tree;
 #[cfg(feature = "alloc")]
+mod view;
+#[cfg(feature = "alloc")]
 mod world;
 
 /// Articulated rigid bodies in reduced coordinates with compliant contacts.
 pub mod articulated {
+    #[cfg(all(feature = "lanes", not(test)))]
+    pub use crate::batch::{Batch, LANES};
+    #[cfg(all(feature = "lanes", not(test)))]
+    pub use crate::lane::Lane;
     #[cfg(feature = "alloc")]
     pub use crate::model::{Model, ModelError, Options};
     pub use crate::spatial::Spatial;

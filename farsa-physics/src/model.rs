@@ -71,6 +71,13 @@ pub enum ModelError {
         /// How many.
         count: usize,
     },
+    /// A number of lanes that there are no vectors for.
+    Lanes {
+        /// The number.
+        lanes: usize,
+        /// The nearest one of [`LANES`](crate::articulated::LANES).
+        nearest: usize,
+    },
 }
 
 impl From<RobotError> for ModelError {
@@ -86,6 +93,7 @@ impl fmt::Display for ModelError {
             Self::Option { name, value } => write!(f, "option {name} is {value}"),
             Self::Weightless { segment } => write!(f, "segment {segment}: its joint moves no mass and has no armature"),
             Self::TooMany { what, count } => write!(f, "{count} {what}: at most 65534"),
+            Self::Lanes { lanes, nearest } => write!(f, "{lanes} worlds in lanes: the nearest number is {nearest}"),
         }
     }
 }
@@ -226,9 +234,13 @@ impl<R: Real> Model<R> {
     pub fn state_len(&self) -> usize {
         self.first_point() + POINT_WORDS * self.points + 3 * self.rolling
     }
+    /// Where the commands begin in a state.
+    pub(crate) fn first_command(&self) -> usize {
+        self.positions + self.dofs
+    }
     /// Where the words of the contact points begin in a state.
     pub(crate) fn first_point(&self) -> usize {
-        self.positions + self.dofs + 2 * self.actuators.len()
+        self.first_command() + 2 * self.actuators.len()
     }
     /// The link of a body's segment and the velocity it begins with; `None` for what is fixed to the world.
     pub fn link_of(&self, body: BodyId) -> Option<usize> {

@@ -1,13 +1,12 @@
 //! Ray casts against the colliders of an articulated world.
 
-use farsa_body::{BodyId, Hit, Rays};
+use farsa_body::{BodyId, Hit};
 use farsa_num::Real;
 
 use crate::model::Form;
 use crate::spatial::{Matrix, Vector, add, dot, product, rotate, rotate_back, scale, sub};
-use crate::step::Precision;
 use crate::tree::WORLD;
-use crate::world::World;
+use crate::view::View;
 
 /// Where a ray enters a shape, in the shape's frame: distance and outward normal. Rays that begin inside meet nothing.
 type Entry<R> = Option<(R, Vector<R>)>;
@@ -94,42 +93,44 @@ fn plane<R: Real>(origin: Vector<R>, direction: Vector<R>) -> Entry<R> {
     Some((-origin[2] / direction[2], [zero, zero, R::of(1.0)]))
 }
 
-impl<R: Precision> World<R> {
-    /// The frame of a collider in the world.
-    fn collider_frame(&self, index: usize) -> (Matrix<R>, Vector<R>) {
-        let mount = &self.model().colliders[index].mount;
-        if mount.link == WORLD {
-            return (mount.rotation, mount.position);
-        }
-        let w = &self.links()[usize::from(mount.link)];
-        (product(&w.rotation, &mount.rotation), add(w.position, rotate(&w.rotation, mount.position)))
+/// The frame of a collider in the world.
+fn collider_frame<R: Real>(world: &impl View<R>, index: usize) -> (Matrix<R>, Vector<R>) {
+    let mount = &world.model().colliders[index].mount;
+    if mount.link == WORLD {
+        return (mount.rotation, mount.position);
     }
+    let (rotation, position) = world.place(usize::from(mount.link));
+    (product(&rotation, &mount.rotation), add(position, rotate(&rotation, mount.position)))
 }
 
-impl<R: Precision> Rays for World<R> {
-    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
-        let origin = origin.map(|x| R::of(f64::from(x)));
-        let direction = direction.map(|x| R::of(f64::from(x)));
-        let mut best: Option<Hit<BodyId>> = None;
-        for (i, collider) in self.model().colliders.iter().enumerate() {
-            let (rotation, position) = self.collider_frame(i);
-            let o = rotate_back(&rotation, sub(origin, position));
-            let d = rotate_back(&rotation, direction);
-            let entry = match collider.form {
-                Form::Ball { radius } => ball(o, d, [R::of(0.0); 3], radius),
-                Form::Capsule { radius, half_length } => capsule(o, d, radius, half_length),
-                Form::Block { half } => block(o, d, half),
-                Form::Plane => plane(o, d),
-            };
-            let Some((t, normal)) = entry else { continue };
-            let distance = t.to_f64() as f32;
-            if distance <= range && best.is_none_or(|hit| distance < hit.distance) {
-                let normal = rotate(&rotation, normal).map(|x| x.to_f64() as f32);
-                best = Some(Hit { distance, normal, body: self.model().collider_bodies[i] });
-            }
+/// The first collider on a ray.
+pub(crate) fn cast<R: Real>(
+    world: &impl View<R>,
+    origin: [f32; 3],
+    direction: [f32; 3],
+    range: f32,
+) -> Option<Hit<BodyId>> {
+    let origin = origin.map(|x| R::of(f64::from(x)));
+    let direction = direction.map(|x| R::of(f64::from(x)));
+    let mut best: Option<Hit<BodyId>> = None;
+    for (i, collider) in world.model().colliders.iter().enumerate() {
+        let (rotation, position) = collider_frame(world, i);
+        let o = rotate_back(&rotation, sub(origin, position));
+        let d = rotate_back(&rotation, direction);
+        let entry = match collider.form {
+            Form::Ball { radius } => ball(o, d, [R::of(0.0); 3], radius),
+            Form::Capsule { radius, half_length } => capsule(o, d, radius, half_length),
+            Form::Block { half } => block(o, d, half),
+            Form::Plane => plane(o, d),
+        };
+        let Some((t, normal)) = entry else { continue };
+        let distance = t.to_f64() as f32;
+        if distance <= range && best.is_none_or(|hit| distance < hit.distance) {
+            let normal = rotate(&rotation, normal).map(|x| x.to_f64() as f32);
+            best = Some(Hit { distance, normal, body: world.model().collider_bodies[i] });
         }
-        best
     }
+    best
 }
 
 #[cfg(test)]

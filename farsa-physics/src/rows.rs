@@ -103,8 +103,27 @@ fn pull<S: Scalar>(
 }
 
 /// Writes the rows of three unit forces (or moments) on both sides of a pair, and their response.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn write_rows<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    pair: &Pair<S::Real>,
+    work: &[LinkWork<S>],
+    roots: &[Root<S>],
+    root_of: &[S],
+    load: Load<S>,
+    axes: &[Vector<S>; 3],
+    rows: &mut [[S; 3]],
+) -> [S; 6] {
+    S::vectorize(
+        simd,
+        #[inline(always)]
+        || write(simd, model, pair, work, roots, root_of, load, axes, rows),
+    )
+}
+
+#[inline(always)]
+fn write<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     pair: &Pair<S::Real>,

@@ -83,8 +83,23 @@ pub(crate) struct Solver<'a, S: Scalar> {
 impl<S: Scalar> Solver<'_, S> {
     /// Finds the points that may carry an impulse and sets their rows up; returns how many there are, and in which lanes
     /// there are any and any that push a joint with a stop.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn set_up(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        points: &mut [S],
+        turns: &mut [S],
+    ) -> (usize, [S::Mask; 2]) {
+        S::vectorize(
+            simd,
+            #[inline(always)]
+            || self.set_up_all(simd, model, points, turns),
+        )
+    }
+
+    #[inline(always)]
+    fn set_up_all(
         &mut self,
         simd: S::Simd,
         model: &Model<S::Real>,
@@ -221,8 +236,17 @@ impl<S: Scalar> Solver<'_, S> {
     }
 
     /// Sweeps over the active points, forwards and backwards in turn, and over the stops.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn sweep(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
+        S::vectorize(
+            simd,
+            #[inline(always)]
+            || self.sweep_all(simd, model, count, stops),
+        );
+    }
+
+    #[inline(always)]
+    fn sweep_all(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
         for round in 0..model.sweeps {
             for k in 0..count {
                 let (p, index) = self.active[if round % 2 == 0 { k } else { count - 1 - k }];

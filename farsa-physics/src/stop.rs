@@ -37,8 +37,28 @@ impl<S: Scalar> Stop<S> {
 ///
 /// `rows` (one word per entry) and `stops` [links] receive them; `v` are predicted velocities, `pushed` the
 /// lanes with contacts on them.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn set_up_stops<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    q: &[S],
+    v: &[S],
+    work: &[LinkWork<S>],
+    roots: &[crate::tree::Root<S>],
+    root_of: &[S],
+    pushed: S::Mask,
+    rows: &mut [S],
+    stops: &mut [Stop<S>],
+) -> usize {
+    S::vectorize(
+        simd,
+        #[inline(always)]
+        || watch(simd, model, q, v, work, roots, root_of, pushed, rows, stops),
+    )
+}
+
+#[inline(always)]
+fn watch<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     q: &[S],

@@ -4,15 +4,16 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, PairContact, PairId, Pose,
-    Snapshot, Twist,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
+    Pose, Rays, Snapshot, Twist,
 };
 use farsa_num::Real;
 
-use crate::model::{Model, POINT_WORDS};
-use crate::spatial::{Matrix, add, cross, product, rotate, sub};
-use crate::step::{Precision, Scratch, parts};
-use crate::tree::{LinkWork, Motion, WORLD};
+use crate::model::Model;
+use crate::ray;
+use crate::spatial::{Matrix, Spatial, Vector, sub};
+use crate::step::{Precision, Scratch};
+use crate::view::{self, View};
 
 /// One articulated world: a model and its state.
 #[derive(Clone, Debug)]
@@ -20,34 +21,6 @@ pub struct World<R: Precision> {
     model: Model<R>,
     state: Vec<R>,
     scratch: Scratch<R>,
-}
-
-/// The unit quaternion [x, y, z, w] of a rotation, w >= 0 where it is not close to 0.
-fn quaternion<R: Real>(m: &Matrix<R>) -> [R; 4] {
-    let one = R::of(1.0);
-    let half = R::of(0.5);
-    let trace = m[0][0] + m[1][1] + m[2][2];
-    if trace > R::of(0.0) {
-        let s = (trace + one).sqrt();
-        let k = half / s;
-        return [(m[2][1] - m[1][2]) * k, (m[0][2] - m[2][0]) * k, (m[1][0] - m[0][1]) * k, s * half];
-    }
-    let i = if m[0][0] >= m[1][1] && m[0][0] >= m[2][2] {
-        0
-    } else if m[1][1] >= m[2][2] {
-        1
-    } else {
-        2
-    };
-    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-    let s = (m[i][i] - m[j][j] - m[k][k] + one).sqrt();
-    let t = half / s;
-    let mut q = [R::of(0.0); 4];
-    q[i] = s * half;
-    q[j] = (m[j][i] + m[i][j]) * t;
-    q[k] = (m[k][i] + m[i][k]) * t;
-    q[3] = (m[k][j] - m[j][k]) * t;
-    q
 }
 
 fn f32_of<R: Real>(x: [R; 3]) -> [f32; 3] {
@@ -67,10 +40,6 @@ impl<R: Precision> World<R> {
     /// The constant part.
     pub fn model(&self) -> &Model<R> {
         &self.model
-    }
-
-    pub(crate) fn links(&self) -> &[LinkWork<R>] {
-        &self.scratch.links
     }
 
     /// Positions, velocities, commands and contacts [`Model::state_len`].
@@ -131,33 +100,32 @@ impl<R: Precision> World<R> {
 
     /// Pose of a body's frame in full precision.
     pub fn pose_of(&self, body: BodyId) -> Pose<R> {
-        let Some(mount) = self.model.mounts.get(body.index()) else { return Pose::identity() };
-        if mount.link == WORLD {
-            return Pose { position: mount.position, rotation: quaternion(&mount.rotation) };
-        }
-        let w = &self.scratch.links[usize::from(mount.link)];
-        Pose {
-            position: add(w.position, rotate(&w.rotation, mount.position)),
-            rotation: quaternion(&product(&w.rotation, &mount.rotation)),
-        }
-    }
-
-    /// Whether a pair's points tell of the second collider instead of the first, and the points' words.
-    fn points(&self, pair: PairId) -> Option<(bool, &[R])> {
-        let pair = self.model.pairs.get(pair.index())?;
-        let first = self.model.first_point() + POINT_WORDS * pair.point;
-        Some((pair.flipped, self.state.get(first..first + POINT_WORDS * pair.points)?))
+        view::pose(self, body)
     }
 
     /// Velocity of a body's origin and its angular velocity in full precision.
     pub fn velocity_of(&self, body: BodyId) -> Twist<R> {
-        let Some(mount) = self.model.mounts.get(body.index()) else { return Twist::default() };
-        if mount.link == WORLD {
-            return Twist::default();
-        }
-        let w = &self.scratch.links[usize::from(mount.link)];
-        let origin = add(w.position, rotate(&w.rotation, mount.position));
-        Twist { linear: w.velocity.at(sub(origin, w.reference)), angular: w.velocity.angular }
+        view::velocity(self, body)
+    }
+}
+
+impl<R: Precision> View<R> for World<R> {
+    fn model(&self) -> &Model<R> {
+        &self.model
+    }
+    fn word(&self, index: usize) -> R {
+        self.state[index]
+    }
+    fn set_word(&mut self, index: usize, x: R) {
+        self.state[index] = x;
+    }
+    fn place(&self, link: usize) -> (Matrix<R>, Vector<R>) {
+        let w = &self.scratch.links[link];
+        (w.rotation, w.position)
+    }
+    fn motion(&self, link: usize) -> (Spatial<R>, Vector<R>) {
+        let w = &self.scratch.links[link];
+        (w.velocity, w.reference)
     }
 }
 
@@ -188,21 +156,16 @@ impl<R: Precision> Kinematics for World<R> {
 
 impl<R: Precision> Joints for World<R> {
     fn position(&self, joint: JointId) -> f32 {
-        self.model.joint_index(joint).map_or(0.0, |(q, _)| self.state[q].to_f64() as f32)
+        view::joint_position(self, joint)
     }
     fn speed(&self, joint: JointId) -> f32 {
-        self.model.joint_index(joint).map_or(0.0, |(_, v)| self.state[self.model.positions + v].to_f64() as f32)
+        view::joint_speed(self, joint)
     }
 }
 
 impl<R: Precision> Actuated for World<R> {
     fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
-        let parts = parts(&self.model, &mut self.state);
-        let at = 2 * actuator.index();
-        if let Some(words) = parts.commands.get_mut(at..at + 2) {
-            words[0] = R::of(f64::from(value[0]));
-            words[1] = R::of(f64::from(value[1]));
-        }
+        view::command(self, actuator.index(), value);
     }
 }
 
@@ -210,43 +173,20 @@ impl<R: Precision> Contacts for World<R> {
     fn pairs(&self) -> usize {
         self.model.pairs.len()
     }
-
     fn pair_bodies(&self, pair: PairId) -> [Option<BodyId>; 2] {
         self.model.pair_bodies.get(pair.index()).copied().unwrap_or([None; 2])
     }
-
-    fn touches(&self, pair: PairId) -> bool {
-        let Some(pair) = self.model.pairs.get(pair.index()) else { return false };
-        let first = self.model.first_point() + POINT_WORDS * pair.point;
-        let impulse = |point: usize| self.state.get(first + 3 + POINT_WORDS * point);
-        (0..pair.points).any(|point| impulse(point).is_some_and(|impulse| *impulse > R::of(0.0)))
-    }
-
     fn pair_contact(&self, pair: PairId) -> PairContact {
-        let Some((flipped, points)) = self.points(pair) else { return PairContact::default() };
-        let mut contact = PairContact { depth: f32::NEG_INFINITY, ..PairContact::default() };
-        let (mut force, mut normal, mut moment) = ([0.0; 3], 0.0, [0.0; 3]);
-        let per_second = 1.0 / self.model.h.to_f64();
-        for words in points.chunks_exact(POINT_WORDS) {
-            let w = |k: usize| words[k].to_f64();
-            contact.depth = contact.depth.max(-w(7) as f32);
-            if w(3) > 0.0 {
-                contact.points += 1;
-                let f = w(3) * per_second;
-                normal += f;
-                for k in 0..3 {
-                    force[k] += w(k) * per_second;
-                    moment[k] += w(4 + k) * f;
-                }
-            }
-        }
-        if contact.points > 0 {
-            let sign = if flipped { -1.0 } else { 1.0 };
-            contact.force = force.map(|x| (sign * x) as f32);
-            contact.normal_force = normal as f32;
-            contact.point = moment.map(|x| (x / normal) as f32);
-        }
-        contact
+        view::pair_contact(self, pair)
+    }
+    fn touches(&self, pair: PairId) -> bool {
+        view::touches(self, pair)
+    }
+}
+
+impl<R: Precision> Rays for World<R> {
+    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+        ray::cast(self, origin, direction, range)
     }
 }
 
@@ -274,38 +214,11 @@ impl<R: Precision> Arrange for World<R> {
     }
 
     fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
-        if let Some((q, v)) = self.model.joint_index(joint) {
-            self.state[q] = R::of(f64::from(position));
-            self.state[self.model.positions + v] = R::of(f64::from(speed));
-        }
+        view::place_joint(self, joint, position, speed);
     }
-
     fn place_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
-        let Some(link) = self.model.link_of(body) else { return };
-        let link = &self.model.links[link];
-        if link.motion != Motion::Floating || self.model.joints[body.index()] != farsa_body::JointKind::Floating {
-            return;
-        }
-        let (q, v) = (usize::from(link.q), self.model.positions + usize::from(link.dof));
-        let pose: Pose<R> = pose.cast();
-        let [angular, linear] = [twist.angular, twist.linear].map(|a| a.map(|x| R::of(f64::from(x))));
-        let rotation = pose.rotation;
-        let length = (rotation[0] * rotation[0]
-            + rotation[1] * rotation[1]
-            + rotation[2] * rotation[2]
-            + rotation[3] * rotation[3])
-            .sqrt();
-        let centre = add(linear, cross(angular, pose.rotate(link.centre)));
-        for k in 0..3 {
-            self.state[q + k] = pose.position[k];
-            self.state[v + k] = angular[k];
-            self.state[v + 3 + k] = centre[k];
-        }
-        for k in 0..4 {
-            self.state[q + 3 + k] = rotation[k] / length;
-        }
+        view::place_body(self, body, pose, twist);
     }
-
     fn arranged(&mut self) {
         R::place(&self.model, &self.state, &mut self.scratch);
     }

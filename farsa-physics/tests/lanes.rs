@@ -3,13 +3,23 @@
 
 mod common;
 
-use common::{Babble, commands, first_point, model, points_of, scene, start};
-use farsa_body::{ArmAndHand, Arrange, Robot, ServoRange, World as _};
-use farsa_num::fearless_simd::{Level, f32x8};
-use farsa_num::{Digest, Domain, Scalar, Stream};
-use farsa_physics::articulated::{Model, Options, Scratch, World, step};
+use std::cell::RefCell;
 
-const STEPS: usize = 2000;
+use common::{Babble, commands, drive, first_point, model, points_of, scene, start};
+use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
+use farsa_body::{
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics,
+    PairContact, PairId, Pose, Rays, Robot, ServoRange, Snapshot, Twist, World as _,
+};
+use farsa_num::fearless_simd::Level;
+use farsa_num::{Digest, Domain, Stream};
+use farsa_physics::articulated::{Batch, LANES, Lane, Model, ModelError, Options, World};
+
+/// Control steps of every lane; ten times as many with `FARSA_LONG=1`.
+fn steps() -> usize {
+    if std::env::var_os("FARSA_LONG").is_some() { 20_000 } else { 2000 }
+}
+
 const WORLDS: usize = 16;
 /// Lanes are refilled every so often, but not together: each begins in another phase.
 const LIFE: usize = 600;
@@ -27,7 +37,7 @@ fn beginning(robot: &Robot, world: &mut World<f32>, groups: &[Vec<ServoRange>; 9
     start(robot, world, &mut Stream::new(5, Domain::Start, life, 0, 0), life as usize);
     let mut babble = Babble::new(5, life);
     for _ in 0..13 * (life as usize % 8) {
-        common::drive(world, &commands(groups, babble.next()));
+        drive(world, &commands(groups, babble.next()));
         world.step();
     }
     (world.state().to_vec(), babble)
@@ -55,7 +65,7 @@ fn alone(robot: &Robot, model: &Model<f32>, groups: &[Vec<ServoRange>; 9], lane:
     let first = first_point(robot, model);
     let of_table: usize = first + 8 * (0..table).map(|p| points_of(robot, p)).sum::<usize>();
     let points: usize = (0..robot.pairs.len()).map(|p| points_of(robot, p)).sum();
-    for t in 0..STEPS {
+    for t in 0..steps() {
         if let Some(life) = begins(lane, t) {
             let (state, new) = beginning(robot, &mut other, groups, life);
             world.state_mut().copy_from_slice(&state);
@@ -66,7 +76,7 @@ fn alone(robot: &Robot, model: &Model<f32>, groups: &[Vec<ServoRange>; 9], lane:
             world.state_mut()[4] = f32::NAN;
             world.arranged();
         }
-        common::drive(&mut world, &commands(groups, babble.next()));
+        drive(&mut world, &commands(groups, babble.next()));
         world.step();
         let state = world.state();
         truth.digests.push(digest(state));
@@ -77,59 +87,46 @@ fn alone(robot: &Robot, model: &Model<f32>, groups: &[Vec<ServoRange>; 9], lane:
     truth
 }
 
-#[inline(always)]
-fn together<S: Scalar<Real = f32>>(
-    simd: S::Simd,
-    name: &str,
-    robot: &Robot,
-    model: &Model<f32>,
-    groups: &[Vec<ServoRange>; 9],
-    truths: &[Truth],
-) {
-    let mut other = World::new(model.clone());
-    let mut state = vec![S::splat(simd, 0.0); model.state_len()];
-    let mut scratch = Scratch::new(simd, model);
-    let mut babbles = vec![Babble::new(0, 0); S::LANES];
-    let command = model.positions() + model.dofs();
-    let mut own = vec![0.0; model.state_len()];
-    for t in 0..STEPS {
-        let mut changed = false;
-        for lane in 0..S::LANES {
+/// Steps a batch through what the worlds alone have lived and compares every state word after every step.
+fn together(name: &str, robot: &Robot, batch: &mut Batch, groups: &[Vec<ServoRange>; 9], truths: &[Truth]) {
+    let mut other = World::new(batch.model().clone());
+    let lanes = batch.lanes();
+    let mut babbles = vec![Babble::new(0, 0); lanes];
+    let mut own = vec![0.0; batch.model().state_len()];
+    for t in 0..steps() {
+        for lane in 0..lanes {
+            let mut world = batch.lane(lane);
             if let Some(life) = begins(lane, t) {
                 let (start, new) = beginning(robot, &mut other, groups, life);
-                for (x, w) in state.iter_mut().zip(start) {
-                    x.set_lane(lane, w);
-                }
+                world.restore(&start);
                 babbles[lane] = new;
-                changed = true;
             }
             if (lane, t) == LOST {
-                state[4].set_lane(lane, f32::NAN);
-                changed = true;
+                world.save(&mut own);
+                own[4] = f32::NAN;
+                world.restore(&own);
             }
-            for (i, c) in commands(groups, babbles[lane].next()).into_iter().enumerate() {
-                state[command + 2 * i].set_lane(lane, c[0]);
-                state[command + 2 * i + 1].set_lane(lane, c[1]);
-            }
+            drive(&mut world, &commands(groups, babbles[lane].next()));
         }
-        if changed {
-            scratch.place(simd, model, &state);
-        }
-        step(simd, model, &mut state, &mut scratch);
-        for lane in 0..S::LANES {
-            for (o, x) in own.iter_mut().zip(&state) {
-                *o = x.lane(lane);
-            }
+        batch.step();
+        for lane in 0..lanes {
+            batch.lane(lane).save(&mut own);
             assert!(digest(&own) == truths[lane].digests[t], "{name}: lane {lane} differs after step {t}");
         }
     }
-    for lane in 0..S::LANES {
-        for (k, (x, truth)) in state.iter().zip(&truths[lane].last).enumerate() {
-            let x = x.lane(lane);
+    for lane in 0..lanes {
+        let world = batch.lane(lane);
+        world.save(&mut own);
+        for (k, (x, truth)) in own.iter().zip(&truths[lane].last).enumerate() {
             assert!(x.to_bits() == truth.to_bits() || x.is_nan() && truth.is_nan(), "{name}: lane {lane} word {k}");
         }
+        other.restore(&own);
+        for body in 0..robot.segments.len() {
+            let body = BodyId(body as u16);
+            assert_eq!((world.pose(body), world.velocity(body)), (other.pose(body), other.velocity(body)), "{name}");
+        }
     }
-    println!("{name}: {} lanes x {STEPS} control steps, equal bits", S::LANES);
+    println!("{name}: {lanes} lanes x {} control steps, equal bits", steps());
 }
 
 #[test]
@@ -140,32 +137,167 @@ fn every_lane_has_the_bits_of_the_world_alone() {
     let truths: Vec<Truth> = (0..WORLDS).map(|lane| alone(&robot, &model, &groups, lane)).collect();
     let contacts: Vec<usize> = truths.iter().map(|t| t.contacts).collect();
     println!("steps with contacts of the hand: {contacts:?}");
-    assert!(contacts.iter().enumerate().all(|(lane, n)| lane == LOST.0 || *n > STEPS / 20));
+    assert!(contacts.iter().enumerate().all(|(lane, n)| lane == LOST.0 || *n > steps() / 20));
     // The lost lane forgets when it is refilled.
     assert!(truths[LOST.0].last.iter().all(|x| x.is_finite()));
-    in_lanes(&robot, &model, &groups, &truths);
+    let mut ran = 0;
+    for level in Batch::levels(Level::new()) {
+        for lanes in LANES {
+            let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
+            let name = format!("{level:?}").split('(').next().unwrap().to_owned();
+            together(&name, &robot, &mut batch, &groups, &truths);
+            ran += lanes * steps();
+        }
+    }
+    println!("{ran} control steps in lanes");
+    assert!(ran >= 100_000 || Batch::levels(Level::new()).count() < 3);
 }
 
-/// The narrowest and the usual instruction set of x86-64: every instance of the step takes the compiler a minute or more,
-/// so SSE4.2, AVX-512 and sixteen lanes are left to the benchmarks of lanes.
-#[cfg(target_arch = "x86_64")]
-fn in_lanes(robot: &Robot, model: &Model<f32>, groups: &[Vec<ServoRange>; 9], truths: &[Truth]) {
-    use farsa_num::fearless_simd::Simd;
-    if let Some(simd) = Level::new().as_sse2() {
-        simd.vectorize(
-            #[inline(always)]
-            || together::<f32x8<_>>(simd, "SSE2", robot, model, groups, truths),
-        );
-    }
-    if let Some(simd) = Level::new().as_avx2() {
-        simd.vectorize(
-            #[inline(always)]
-            || together::<f32x8<_>>(simd, "AVX2", robot, model, groups, truths),
-        );
+#[test]
+fn a_number_of_lanes_that_there_is_not_is_refused() {
+    let model = model(&scene(), Options::default());
+    for (lanes, nearest) in [(0, 8), (1, 8), (9, 8), (13, 16), (64, 16)] {
+        let error = Batch::new(model.clone(), lanes, Level::baseline()).unwrap_err();
+        assert_eq!(error, ModelError::Lanes { lanes, nearest });
     }
 }
 
-#[cfg(not(target_arch = "x86_64"))]
-fn in_lanes(robot: &Robot, model: &Model<f32>, groups: &[Vec<ServoRange>; 9], truths: &[Truth]) {
-    farsa_num::fearless_simd::dispatch!(Level::new(), simd => together::<f32x8<_>>(simd, "8", robot, model, groups, truths));
+/// One lane of a batch that is stepped whenever the lane is: a world as the kit wants it.
+struct Alone {
+    batch: RefCell<Batch>,
+    lane: usize,
+}
+
+impl Alone {
+    fn new(model: &Model<f32>, lane: usize) -> Self {
+        Self { batch: RefCell::new(Batch::new(model.clone(), LANES[0], Level::new()).unwrap()), lane }
+    }
+    fn with<T>(&self, ask: impl FnOnce(&mut Lane<'_>) -> T) -> T {
+        ask(&mut self.batch.borrow_mut().lane(self.lane))
+    }
+}
+
+impl Handles for Alone {
+    type Body = BodyId;
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+
+impl farsa_body::World for Alone {
+    fn step(&mut self) {
+        self.batch.get_mut().step();
+    }
+    fn time_step(&self) -> f32 {
+        0.01
+    }
+}
+
+impl Kinematics for Alone {
+    fn pose(&self, body: BodyId) -> Pose {
+        self.with(|lane| lane.pose(body))
+    }
+    fn velocity(&self, body: BodyId) -> Twist {
+        self.with(|lane| lane.velocity(body))
+    }
+}
+
+impl Joints for Alone {
+    fn position(&self, joint: JointId) -> f32 {
+        self.with(|lane| lane.position(joint))
+    }
+    fn speed(&self, joint: JointId) -> f32 {
+        self.with(|lane| lane.speed(joint))
+    }
+}
+
+impl Actuated for Alone {
+    fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
+        self.with(|lane| lane.command(actuator, value));
+    }
+}
+
+impl Contacts for Alone {
+    fn pairs(&self) -> usize {
+        self.with(|lane| lane.pairs())
+    }
+    fn pair_bodies(&self, pair: PairId) -> [Option<BodyId>; 2] {
+        self.with(|lane| lane.pair_bodies(pair))
+    }
+    fn pair_contact(&self, pair: PairId) -> PairContact {
+        self.with(|lane| lane.pair_contact(pair))
+    }
+    fn touches(&self, pair: PairId) -> bool {
+        self.with(|lane| lane.touches(pair))
+    }
+}
+
+impl Rays for Alone {
+    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+        self.with(|lane| lane.cast(origin, direction, range))
+    }
+}
+
+impl Snapshot for Alone {
+    fn snapshot_len(&self) -> usize {
+        self.with(|lane| lane.snapshot_len())
+    }
+    fn save(&self, out: &mut [f32]) {
+        self.with(|lane| lane.save(out));
+    }
+    fn restore(&mut self, from: &[f32]) {
+        self.with(|lane| lane.restore(from));
+    }
+}
+
+impl Arrange for Alone {
+    fn clear(&mut self) {
+        self.with(|lane| lane.clear());
+    }
+    fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
+        self.with(|lane| lane.place_joint(joint, position, speed));
+    }
+    fn place_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
+        self.with(|lane| lane.place_body(body, pose, twist));
+    }
+    fn arranged(&mut self) {
+        self.with(|lane| lane.arranged());
+    }
+}
+
+#[test]
+fn a_lane_conforms() {
+    let robot = scene();
+    let model = model(&robot, Options::default());
+    let probe = Probe::of(&robot);
+    let make = || {
+        let mut world = Alone::new(&model, 5);
+        for (j, degrees) in common::POSES[0].into_iter().enumerate() {
+            world.place_joint(JointId(j as u16), degrees.to_radians() as f32, 0.0);
+        }
+        world.arranged();
+        world
+    };
+    assert_eq!(check_world(make, &probe), Ok(()));
+    assert_eq!(check_rays(&make(), &probe.bodies, &[[0.1, -0.3, 0.3], [0.3, 0.0, 0.1]], 1.0), Ok(()));
+    assert_eq!(check_arrange(|| Alone::new(&model, 7), &probe), Ok(()));
+}
+
+#[test]
+fn a_cloned_batch_goes_on_with_the_same_bits() {
+    let robot = scene();
+    let mut batch = Batch::new(model(&robot, Options::default()), 8, Level::new()).unwrap();
+    for _ in 0..20 {
+        batch.step();
+    }
+    let mut copy = batch.clone();
+    for _ in 0..20 {
+        batch.step();
+        copy.step();
+    }
+    let [original, copy] = [&mut batch, &mut copy].map(|batch| {
+        let mut words = vec![0.0; batch.model().state_len()];
+        batch.lane(3).save(&mut words);
+        words.into_iter().map(f32::to_bits).collect::<Vec<_>>()
+    });
+    assert_eq!(original, copy);
 }

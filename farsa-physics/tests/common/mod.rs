@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "every test uses a part of it")]
 
 use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, Contacts, Joint, JointId, Law, PairId, Pose, Robot, ServoRange, Shape,
-    Surface, Tabletop, Twist,
+    Actuated, ActuatorId, ArmAndHand, Arrange, Contacts, Handles, Joint, JointId, Law, PairId, Pose, Robot, ServoRange,
+    Shape, Surface, Tabletop, Twist,
 };
 use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{Model, Options, Precision, World};
@@ -76,7 +76,10 @@ pub(crate) fn commands(groups: &[Vec<ServoRange>; 9], y: &[f32; OUTPUTS]) -> [[f
     c
 }
 
-pub(crate) fn drive<R: Precision>(world: &mut World<R>, commands: &[[f32; 2]; 27]) {
+pub(crate) fn drive<W>(world: &mut W, commands: &[[f32; 2]; 27])
+where
+    W: Actuated + Handles<Actuator = ActuatorId>,
+{
     for (i, c) in commands.iter().enumerate() {
         world.command(ActuatorId(i as u16), *c);
     }
