@@ -81,7 +81,7 @@ impl Batch {
     /// One of the worlds; the last one for a number beyond it, which is a mistake.
     pub fn lane(&mut self, index: usize) -> Lane<'_> {
         debug_assert!(index < self.words.lanes, "lane {index} of {}", self.words.lanes);
-        Lane { lane: index.min(self.words.lanes - 1), model: &self.model, words: &mut self.words }
+        Lane { index: index.min(self.words.lanes - 1), model: &self.model, words: &mut self.words }
     }
 
     /// Lets one control step pass in every world.

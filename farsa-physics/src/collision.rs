@@ -84,14 +84,21 @@ pub(crate) fn nearest_of_segments<S: Scalar>(
     (add(c1, scale(d1, s)), add(c2, scale(d2, t)))
 }
 
+/// -1 below 0, else 1.
+#[inline(always)]
+fn sign_of<S: Scalar>(x: S) -> S {
+    let one = x.constant(1.0);
+    S::select(x.lt(x.constant(0.0)), -one, one)
+}
+
 /// Signed distance of a point to a box and the outward normal, both in the box's axes.
 #[inline(always)]
 fn box_distance<S: Scalar>(p: Vector<S>, half: Vector<S>) -> (S, Vector<S>) {
     let zero = p[0].constant(0.0);
     let one = p[0].constant(1.0);
-    let sign = [0, 1, 2].map(|k| S::select(p[k].lt(zero), -one, one));
-    let q = [0, 1, 2].map(|k: usize| p[k].abs() - half[k]);
-    let out = [0, 1, 2].map(|k: usize| q[k].max(zero));
+    let sign = [sign_of(p[0]), sign_of(p[1]), sign_of(p[2])];
+    let q = sub([p[0].abs(), p[1].abs(), p[2].abs()], half);
+    let out = [q[0].max(zero), q[1].max(zero), q[2].max(zero)];
     let squared = dot(out, out);
     let outside = squared.gt(zero);
     let length = S::select(outside, squared, one).sqrt();
@@ -100,7 +107,7 @@ fn box_distance<S: Scalar>(p: Vector<S>, half: Vector<S>) -> (S, Vector<S>) {
     let y_face = !x_face & q[1].ge(q[2]);
     let z_face = !x_face & !y_face;
     let inner = [S::select(x_face, sign[0], zero), S::select(y_face, sign[1], zero), S::select(z_face, sign[2], zero)];
-    let outer = [0, 1, 2].map(|k: usize| sign[k] * (out[k] / length));
+    let outer = [sign[0] * (out[0] / length), sign[1] * (out[1] / length), sign[2] * (out[2] / length)];
     let depth = q[0].max(q[1]).max(q[2]);
     (S::select(outside, length, depth), select(outside, outer, inner))
 }
@@ -173,8 +180,13 @@ pub(crate) fn ball_plane<S: Scalar>(p: Vector<S>, radius: S, plane: &Placed<S>) 
 /// Corner `index` (0..8) of a box in the world.
 #[inline(always)]
 pub(crate) fn corner<S: Scalar>(place: &Placed<S>, half: Vector<S>, index: usize) -> Vector<S> {
-    let side = |k: usize| if index >> k & 1 == 0 { -half[k] } else { half[k] };
-    add(place.position, rotate(&place.rotation, [side(0), side(1), side(2)]))
+    let mut at = half;
+    for k in 0..3 {
+        if index >> k & 1 == 0 {
+            at[k] = -half[k];
+        }
+    }
+    add(place.position, rotate(&place.rotation, at))
 }
 
 /// Edge `index` (0..12) of a box in the world: middle, direction, half length.

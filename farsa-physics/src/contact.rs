@@ -7,7 +7,7 @@ use crate::collision::{
     segment_box,
 };
 use crate::model::{Form, Model, Pair};
-use crate::spatial::{add, dot, product, rotate, scale, splat, sub};
+use crate::spatial::{Vector, add, dot, product, rotate, scale, splat, splat_matrix, sub};
 use crate::tree::{LinkWork, WORLD};
 
 /// The colliders in the world.
@@ -19,7 +19,7 @@ pub(crate) fn place_colliders<S: Scalar>(
     out: &mut [Placed<S>],
 ) {
     for (c, o) in model.colliders.iter().zip(out) {
-        let own = c.mount.rotation.map(|row| splat::<S>(simd, row));
+        let own = splat_matrix(simd, c.mount.rotation);
         let offset = splat::<S>(simd, c.mount.position);
         *o = if c.mount.link == WORLD {
             Placed { rotation: own, position: offset, velocity: [S::splat(simd, S::Real::of(0.0)); 3] }
@@ -74,6 +74,12 @@ pub(crate) fn edge_distance<S: Scalar>(
     }
 }
 
+/// One end of a capsule's axis, the upper one unless `index` is 0.
+#[inline(always)]
+fn end<S: Scalar>(place: &Placed<S>, index: usize, half: S) -> Vector<S> {
+    add(place.position, scale(place.axis(), if index == 0 { -half } else { half }))
+}
+
 /// Contact point `index` of a pair.
 #[inline(never)]
 pub(crate) fn find<S: Scalar>(
@@ -98,48 +104,58 @@ fn point<S: Scalar>(
     placed: &[Placed<S>],
     index: usize,
 ) -> Point<S> {
-    let k = |x: S::Real| S::splat(simd, x);
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
-    let end = |half: S::Real| {
-        let h = k(half);
-        add(pa.position, scale(pa.axis(), if index == 0 { -h } else { h }))
-    };
     match (model.colliders[a].form, model.colliders[b].form) {
-        (Form::Ball { radius: ra }, Form::Ball { radius: rb }) => balls(pa.position, k(ra), pb.position, k(rb)),
-        (Form::Ball { radius: ra }, Form::Capsule { radius: rb, half_length }) => {
-            let near = nearest_on_segment(pb.position, pb.axis(), k(half_length), pa.position);
-            balls(pa.position, k(ra), near, k(rb))
+        (Form::Ball { radius: ra }, Form::Ball { radius: rb }) => {
+            balls(pa.position, S::splat(simd, ra), pb.position, S::splat(simd, rb))
         }
-        (Form::Ball { radius }, Form::Block { half }) => ball_box(pa.position, k(radius), pb, splat::<S>(simd, half)),
-        (Form::Ball { radius }, Form::Plane) => ball_plane(pa.position, k(radius), pb),
+        (Form::Ball { radius: ra }, Form::Capsule { radius: rb, half_length }) => {
+            let near = nearest_on_segment(pb.position, pb.axis(), S::splat(simd, half_length), pa.position);
+            balls(pa.position, S::splat(simd, ra), near, S::splat(simd, rb))
+        }
+        (Form::Ball { radius }, Form::Block { half }) => {
+            ball_box(pa.position, S::splat(simd, radius), pb, splat::<S>(simd, half))
+        }
+        (Form::Ball { radius }, Form::Plane) => ball_plane(pa.position, S::splat(simd, radius), pb),
         (Form::Capsule { radius: ra, half_length: la }, Form::Capsule { radius: rb, half_length: lb }) => {
-            let (na, nb) = nearest_of_segments(pa.position, pa.axis(), k(la), pb.position, pb.axis(), k(lb));
-            balls(na, k(ra), nb, k(rb))
+            let (na, nb) = nearest_of_segments(
+                pa.position,
+                pa.axis(),
+                S::splat(simd, la),
+                pb.position,
+                pb.axis(),
+                S::splat(simd, lb),
+            );
+            balls(na, S::splat(simd, ra), nb, S::splat(simd, rb))
         }
         (Form::Capsule { radius, half_length }, Form::Block { half }) => {
             let half = splat::<S>(simd, half);
             if index < 2 {
-                ball_box(end(half_length), k(radius), pb, half)
+                ball_box(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb, half)
             } else {
-                segment_box(pa.position, pa.axis(), k(half_length), k(radius), pb, half)
+                segment_box(pa.position, pa.axis(), S::splat(simd, half_length), S::splat(simd, radius), pb, half)
             }
         }
-        (Form::Capsule { radius, half_length }, _) => ball_plane(end(half_length), k(radius), pb),
+        (Form::Capsule { radius, half_length }, _) => {
+            ball_plane(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb)
+        }
         (Form::Block { half: ha }, Form::Block { half: hb }) => {
-            let zero = k(S::Real::of(0.0));
+            let zero = S::splat(simd, S::Real::of(0.0));
             let (ha, hb) = (splat::<S>(simd, ha), splat::<S>(simd, hb));
             if index < 8 {
                 ball_box(corner(pa, ha, index), zero, pb, hb)
             } else {
                 let (middle, direction, length) = edge(pb, hb, index - 8);
                 let mut found = segment_box(middle, direction, length, zero, pa, ha);
-                found.normal = scale(found.normal, k(S::Real::of(-1.0)));
+                found.normal = scale(found.normal, S::splat(simd, S::Real::of(-1.0)));
                 found
             }
         }
-        (Form::Block { half }, _) => ball_plane(corner(pa, splat::<S>(simd, half), index), k(S::Real::of(0.0)), pb),
-        (Form::Plane, _) => ball_plane(pa.position, k(S::Real::of(0.0)), pb),
+        (Form::Block { half }, _) => {
+            ball_plane(corner(pa, splat::<S>(simd, half), index), S::splat(simd, S::Real::of(0.0)), pb)
+        }
+        (Form::Plane, _) => ball_plane(pa.position, S::splat(simd, S::Real::of(0.0)), pb),
     }
 }
 

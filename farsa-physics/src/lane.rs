@@ -68,7 +68,7 @@ fn link_words(w: &LinkWork<f32>) -> [f32; LINK_WORDS] {
 pub struct Lane<'a> {
     pub(crate) model: &'a Model<f32>,
     pub(crate) words: &'a mut Words,
-    pub(crate) lane: usize,
+    pub(crate) index: usize,
 }
 
 impl Lane<'_> {
@@ -78,7 +78,7 @@ impl Lane<'_> {
     }
 
     fn link<const N: usize>(&self, link: usize, first: usize) -> [f32; N] {
-        let at = (LINK_WORDS * link + first) * self.words.lanes + self.lane;
+        let at = (LINK_WORDS * link + first) * self.words.lanes + self.index;
         core::array::from_fn(|k| self.words.links[at + k * self.words.lanes])
     }
 
@@ -94,11 +94,11 @@ impl View<f32> for Lane<'_> {
     }
     #[inline]
     fn word(&self, index: usize) -> f32 {
-        self.words.state[index * self.words.lanes + self.lane]
+        self.words.state[index * self.words.lanes + self.index]
     }
     #[inline]
     fn set_word(&mut self, index: usize, x: f32) {
-        self.words.state[index * self.words.lanes + self.lane] = x;
+        self.words.state[index * self.words.lanes + self.index] = x;
     }
     fn place(&self, link: usize) -> (Matrix<f32>, Vector<f32>) {
         (self.link_matrix(link), self.link(link, 9))
@@ -192,7 +192,7 @@ impl Arrange for Lane<'_> {
         self.words.arranged = true;
     }
     fn arranged(&mut self) {
-        self.words.place(self.model, self.lane);
+        self.words.place(self.model, self.index);
         self.words.arranged = true;
     }
 }

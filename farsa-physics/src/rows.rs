@@ -3,7 +3,7 @@
 //! [`crate::tree::accelerations`] has already factorised the joint-space inertia: a row `y` along the path from a link to
 //! its root gives every product `J M^-1 J^T` that is needed.
 
-use farsa_num::{Real, Scalar};
+use farsa_num::{Mask, Real, Scalar};
 
 use crate::model::{Model, Pair};
 use crate::spatial::{Spatial, Vector, sub};
@@ -53,8 +53,8 @@ fn climb<S: Scalar>(
     if l.motion == Motion::Floating {
         for k in 0..3 {
             let y = roots[usize::from(l.root)].factor.half(p[k]);
-            for (o, y) in out.iter_mut().zip(y) {
-                o[k] = y;
+            for (o, y) in out.iter_mut().zip(&y) {
+                o[k] = *y;
             }
         }
         return 6;
@@ -94,7 +94,11 @@ fn pull<S: Scalar>(
         return [zero; 3];
     }
     match load {
-        Load::Moments => axes.map(|axis| Spatial { angular: axis, linear: zero.linear }),
+        Load::Moments => [
+            Spatial { angular: axes[0], linear: zero.linear },
+            Spatial { angular: axes[1], linear: zero.linear },
+            Spatial { angular: axes[2], linear: zero.linear },
+        ],
         Load::Forces(point) => {
             let arm = sub(point, work[usize::from(link)].reference);
             [Spatial::force_at(arm, axes[0]), Spatial::force_at(arm, axes[1]), Spatial::force_at(arm, axes[2])]
@@ -169,6 +173,12 @@ fn entries<R: Real>(model: &Model<R>, link: u16) -> usize {
     if model.links[usize::from(link)].motion == Motion::Floating { 6 } else { 1 }
 }
 
+/// Whether two numbers are equal; false with a NaN.
+#[inline(always)]
+pub(crate) fn equal<S: Scalar>(a: S, b: S) -> S::Mask {
+    a.le(b) & b.le(a)
+}
+
 /// The relative velocity of a block under the response so far.
 #[inline(always)]
 pub(crate) fn velocity<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], mut v: [S; 3], response: &[S]) -> [S; 3] {
@@ -181,9 +191,18 @@ pub(crate) fn velocity<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], mut v: [S; 3], 
     v
 }
 
-/// Adds a block's change of impulse to the response.
+/// Adds a block's change of impulse to the response, in the lanes that have any.
+///
+/// A change of zero would leave the response as it is (which is never -0): most blocks of a batch are loaded in some lanes
+/// only, and many in none.
 #[inline(always)]
 pub(crate) fn apply<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], change: [S; 3], mask: S::Mask, response: &mut [S]) {
+    let zero = change[0].constant(0.0);
+    let none = equal(change[0], zero) & equal(change[1], zero) & equal(change[2], zero);
+    let mask = mask & !none;
+    if !mask.any() {
+        return;
+    }
     for (&d, y) in dofs.iter().zip(rows) {
         let z = &mut response[usize::from(d)];
         *z = S::select(mask, *z + (y[0] * change[0] + y[1] * change[1] + y[2] * change[2]), *z);

@@ -133,7 +133,7 @@ impl<S: Scalar> Solver<'_, S> {
                 }
                 continue;
             }
-            let links = pair.colliders.map(|c| model.colliders[c].mount.link);
+            let links = [model.colliders[a].mount.link, model.colliders[b].mount.link];
             for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
                 let near = match edge_distance(simd, model, pair, self.placed, index) {
                     Some(distance) => near & distance.le(reach),
@@ -188,7 +188,7 @@ impl<S: Scalar> Solver<'_, S> {
                 let friction = S::splat(simd, pair.friction);
                 let normal = dot(old, axes[0]).max(zero);
                 let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
-                let impulse = [normal, across[0], across[1]].map(|x| S::select(mask, x, zero));
+                let impulse = select(mask, [normal, across[0], across[1]], [zero; 3]);
                 let (a1, a2) = (response[1] + slip, response[2] + slip);
                 self.blocks[i] = Block {
                     mask,
@@ -213,8 +213,8 @@ impl<S: Scalar> Solver<'_, S> {
                     let words = &turns[3 * (first + index)..3 * (first + index) + 3];
                     let old = [words[0], words[1], words[2]];
                     let limit = S::splat(simd, pair.rolling_friction) * impulse[0];
-                    let impulse = cap([dot(old, axes[0]), dot(old, axes[1]), dot(old, axes[2])], limit)
-                        .map(|x| S::select(mask, x, zero));
+                    let wanted = cap([dot(old, axes[0]), dot(old, axes[1]), dot(old, axes[2])], limit);
+                    let impulse = select(mask, wanted, [zero; 3]);
                     self.rolling[first + index] = Block {
                         velocity: [dot(turning, axes[0]), dot(turning, axes[1]), dot(turning, axes[2])],
                         impulse,
@@ -286,7 +286,7 @@ impl<S: Scalar> Solver<'_, S> {
         let slide = [old[1] - w1 * block.slide, old[2] - w2 * block.slide, zero];
         let holds = dot(stick, stick).le(limit * limit);
         let across = select(holds, stick, cap(slide, limit));
-        let new = [normal, across[0], across[1]].map(|x| S::select(block.mask, x, zero));
+        let new = select(block.mask, [normal, across[0], across[1]], [zero; 3]);
         block.impulse = new;
         apply(dofs, rows, sub(new, old), block.mask, self.response);
         if let Some(first) = pair.rolling {
@@ -295,8 +295,8 @@ impl<S: Scalar> Solver<'_, S> {
             let rows = &self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
             let v = velocity(dofs, rows, block.velocity, self.response);
             let old = block.impulse;
-            let wanted = [0, 1, 2].map(|k: usize| old[k] - v[k] * block.inverse[k]);
-            let new = cap(wanted, limit).map(|x| S::select(block.mask, x, zero));
+            let change = [v[0] * block.inverse[0], v[1] * block.inverse[1], v[2] * block.inverse[2]];
+            let new = select(block.mask, cap(sub(old, change), limit), [zero; 3]);
             block.impulse = new;
             apply(dofs, rows, sub(new, old), block.mask, self.response);
         }

@@ -48,6 +48,17 @@ pub(crate) fn splat<S: Scalar>(simd: S::Simd, a: [S::Real; 3]) -> Vector<S> {
 }
 
 #[inline(always)]
+pub(crate) fn splat_symmetric<S: Scalar>(simd: S::Simd, m: [S::Real; 6]) -> [S; 6] {
+    let ([a, b, c], [d, e, f]) = (splat(simd, [m[0], m[1], m[2]]), splat(simd, [m[3], m[4], m[5]]));
+    [a, b, c, d, e, f]
+}
+
+#[inline(always)]
+pub(crate) fn splat_matrix<S: Scalar>(simd: S::Simd, m: Matrix<S::Real>) -> Matrix<S> {
+    [splat(simd, m[0]), splat(simd, m[1]), splat(simd, m[2])]
+}
+
+#[inline(always)]
 pub(crate) fn rotate<S: Scalar>(m: &Matrix<S>, a: Vector<S>) -> Vector<S> {
     [dot(m[0], a), dot(m[1], a), dot(m[2], a)]
 }

@@ -234,7 +234,6 @@ fn efforts<S: Scalar>(
 ) {
     let zero = S::splat(simd, S::Real::of(0.0));
     let h = S::splat(simd, model.h);
-    let k = |x: S::Real| S::splat(simd, x);
     for link in &model.links {
         let at = usize::from(link.dof);
         if link.motion == Motion::Floating {
@@ -245,17 +244,18 @@ fn efforts<S: Scalar>(
             continue;
         }
         let (x, speed) = (q[usize::from(link.q)], v[at]);
-        let damping = k(link.damping);
+        let damping = S::splat(simd, link.damping);
         // A stop acts where the joint would be at the end of the step.
         let ahead = x + h * speed;
-        let over = ahead.gt(k(link.upper));
-        let under = ahead.lt(k(link.lower));
-        let bound = S::select(over, k(link.upper), k(link.lower));
+        let over = ahead.gt(S::splat(simd, link.upper));
+        let under = ahead.lt(S::splat(simd, link.lower));
+        let bound = S::select(over, S::splat(simd, link.upper), S::splat(simd, link.lower));
         let hard = over | under;
-        let stiffness = k(link.limit_stiffness);
-        let stop = k(link.limit_damping);
+        let stiffness = S::splat(simd, link.limit_stiffness);
+        let stop = S::splat(simd, link.limit_damping);
         tau[at] = S::select(hard, -(stiffness * (ahead - bound)) - stop * speed, zero) - damping * speed;
-        diagonal[at] = k(link.armature) + h * damping + S::select(hard, h * stop + h * h * stiffness, zero);
+        diagonal[at] =
+            S::splat(simd, link.armature) + h * damping + S::select(hard, h * stop + h * h * stiffness, zero);
     }
     for (actuator, command) in model.actuators.iter().zip(commands.chunks_exact(2)) {
         let link = &model.links[usize::from(actuator.link)];
@@ -338,7 +338,7 @@ fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &mut [S], v: &
         let one = h.constant(1.0);
         let length = (new[0] * new[0] + new[1] * new[1] + new[2] * new[2] + new[3] * new[3]).sqrt();
         let shrink = one / length;
-        let new = new.map(|x| x * shrink);
+        let new = [new[0] * shrink, new[1] * shrink, new[2] * shrink, new[3] * shrink];
         q[iq + 3..iq + 7].copy_from_slice(&new);
         let centre = splat::<S>(simd, link.centre);
         let before = sub(w.centre, w.position);

@@ -6,6 +6,7 @@
 use farsa_num::{Mask, Real, Scalar};
 
 use crate::model::Model;
+use crate::rows::equal;
 use crate::spatial::Spatial;
 use crate::tree::{LinkWork, Motion, WORLD};
 
@@ -101,9 +102,10 @@ fn watch<S: Scalar>(
         while next != WORLD {
             let l = &model.links[usize::from(next)];
             if l.motion == Motion::Floating {
-                for y in roots[usize::from(l.root)].factor.half(p) {
-                    rows[at] = y;
-                    response += y * y;
+                let half = roots[usize::from(l.root)].factor.half(p);
+                for y in &half {
+                    rows[at] = *y;
+                    response += *y * *y;
                     at += 1;
                 }
             } else {
@@ -156,8 +158,13 @@ pub(crate) fn relax_stop<S: Scalar>(
     let new = S::select(stop.mask, (under - over) * stop.gain, zero);
     let change = new - stop.impulse;
     stop.impulse = new;
+    // As for contacts: most joints near a stop do not run into it.
+    let mask = stop.mask & !equal(change, zero);
+    if !mask.any() {
+        return;
+    }
     for (&d, y) in path.dofs.iter().zip(rows) {
         let z = &mut response[usize::from(d)];
-        *z = S::select(stop.mask, *z + *y * change, *z);
+        *z = S::select(mask, *z + *y * change, *z);
     }
 }

@@ -7,7 +7,7 @@ use farsa_num::{Real, Scalar, sin_cos};
 
 use crate::spatial::{
     Cholesky, Inertia, Matrix, Spatial, Vector, add, cross, dot, matrix_of, product, rotate, rotate_symmetric, scale,
-    splat, sub,
+    splat, splat_matrix, splat_symmetric, sub,
 };
 
 /// The parent of a link that hangs on the world.
@@ -107,11 +107,7 @@ pub fn place<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], q: &[S], v: &[S]
         let (rotation, position) = if link.motion == Motion::Floating {
             (matrix_of([q[at + 3], q[at + 4], q[at + 5], q[at + 6]]), [q[at], q[at + 1], q[at + 2]])
         } else {
-            let own = [
-                splat::<S>(simd, link.rotation[0]),
-                splat::<S>(simd, link.rotation[1]),
-                splat::<S>(simd, link.rotation[2]),
-            ];
+            let own = splat_matrix(simd, link.rotation);
             let offset = splat::<S>(simd, link.offset);
             let (frame, origin) = if link.parent == WORLD {
                 (own, offset)
@@ -163,7 +159,7 @@ pub fn place<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], q: &[S], v: &[S]
 #[inline(always)]
 pub(crate) fn rigid_inertias<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut [LinkWork<S>]) {
     for (link, w) in links.iter().zip(work) {
-        let about_centre = link.inertia.map(|x| S::splat(simd, x));
+        let about_centre = splat_symmetric(simd, link.inertia);
         let turned = rotate_symmetric(&w.rotation, &about_centre);
         w.inertia = Inertia::rigid(S::splat(simd, link.mass), sub(w.centre, w.reference), turned);
     }
@@ -447,5 +443,5 @@ pub fn centre_of_mass<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &
         mass += m;
         sum = add(sum, scale(w.centre, m));
     }
-    sum.map(|x| x / mass)
+    [sum[0] / mass, sum[1] / mass, sum[2] / mass]
 }
