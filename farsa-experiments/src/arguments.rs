@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 use std::thread;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
 use clap_complete::Shell;
 
 use crate::camera::Camera;
 use crate::export::ModelFormat;
+use crate::lanes::{SIMD, Wanted};
 use crate::plan::{self, LARGEST_SEED};
 use crate::replay::Which;
 use crate::settings::Value;
@@ -86,6 +88,8 @@ pub(crate) struct RunArgs {
     pub(crate) population: Option<i64>,
     #[command(flatten)]
     pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) lanes: LanesArgs,
     /// The run's directory [default: runs/EXPERIMENT-CONDITION-SEED]
     #[arg(long, value_name = "DIR", conflicts_with = "resume", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
@@ -116,6 +120,32 @@ impl Threads {
     }
 }
 
+/// How many lives at once.
+#[derive(Args)]
+pub(crate) struct LanesArgs {
+    /// Lives side by side in each thread; the results are the same with any number
+    #[arg(long, value_name = "L", default_value = "auto", value_parser = PossibleValuesParser::new(["1", "8", "16", "auto"]))]
+    lanes: String,
+    /// Instructions for lives side by side; the results are the same with any
+    #[arg(long, value_name = "SET", default_value = "auto", value_parser = simd())]
+    simd: Simd,
+}
+
+#[derive(Clone, Copy)]
+struct Simd(Option<&'static str>);
+
+/// The name of an instruction set, or none for `auto`.
+fn simd() -> impl clap::builder::TypedValueParser<Value = Simd> {
+    let known = |name: String| Simd(SIMD.into_iter().find(|known| *known == name));
+    PossibleValuesParser::new(SIMD.into_iter().chain(["auto"])).map(known)
+}
+
+impl LanesArgs {
+    pub(crate) fn wanted(&self) -> Wanted {
+        Wanted { count: self.lanes.parse().ok(), simd: self.simd.0 }
+    }
+}
+
 #[derive(Args)]
 pub(crate) struct TestArgs {
     /// The run's directory
@@ -129,6 +159,8 @@ pub(crate) struct TestArgs {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) lanes: LanesArgs,
     /// Write what was found as JSON, without the table
     #[arg(long)]
     pub(crate) json: bool,

@@ -21,6 +21,7 @@ use crate::export;
 use crate::info::{self, pretty};
 use crate::manual;
 use crate::plan::{self, ConfigFile, Plan};
+use crate::pool::Pool;
 use crate::replay;
 use crate::report;
 use crate::run::{self, Summary};
@@ -77,9 +78,9 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             let found = start_or_resume(&args, quiet, program, experiments)?;
             summary(args.json, format!("{}\n", found.text()), &|| pretty(&found))
         }
-        Command::Test(TestArgs { directory, trials, seed, threads, json }) => {
+        Command::Test(TestArgs { directory, trials, seed, threads, lanes, json }) => {
             let (directory, plan) = existing(&directory, experiments)?;
-            let found = exam::test(&plan, &directory, trials as usize, seed, threads.count(), quiet)?;
+            let found = exam::test(&plan, &directory, trials as usize, seed, threads.count(), lanes.wanted(), quiet)?;
             summary(json, found.text(), &|| pretty(&found))
         }
         Command::Replay(args) => replay(&args, quiet, experiments),
@@ -191,6 +192,8 @@ fn start_or_resume(
     if let Some(seed) = args.seed {
         plan.seed = seed;
     }
+    // What is refused leaves no directory behind.
+    let pool = Pool::new(&plan, args.threads.count(), args.lanes.wanted())?;
     let directory = match directory {
         Some(directory) => {
             same_names(args, file.as_ref(), &plan, &directory)?;
@@ -198,7 +201,7 @@ fn start_or_resume(
         }
         None => run::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
     };
-    run::go_on(&plan, &directory, args.threads.count(), stop_on_interrupt(), program, quiet)
+    run::go_on(&plan, &directory, pool, stop_on_interrupt(), program, quiet)
 }
 
 /// The defaults of the experiment and condition that are named on the command line or else in the file.

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use crate::directory::{Directory, replace};
 use crate::error::Error;
 use crate::exam_table::{Findings, Table};
-use crate::experiment::Tape;
+use crate::experiment::Task;
+use crate::lanes::Wanted;
 use crate::life::Job;
 use crate::plan::{LARGEST_SEED, Plan};
 use crate::pool::{Pool, Unfinished};
@@ -84,6 +85,7 @@ pub(crate) fn test(
     trials: usize,
     seed: u64,
     threads: usize,
+    lanes: Wanted,
     quiet: bool,
 ) -> Result<Exam, Error> {
     let path = directory.champion();
@@ -91,29 +93,37 @@ pub(crate) fn test(
         return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
     }
     let Champion { identity, generation, individual, genes, .. } = records::read(&path, plan, directory.path())?;
-    let mut pool = Pool::new(plan, threads)?;
-    if genes.len() != pool.genes() {
+    let mut pool = Pool::new(plan, threads, lanes)?;
+    if genes.len() != pool.setup().genes() {
         return Err(Error::damaged(&path, "its genome is not one of the experiment"));
     }
     let warning = identity.same_values(&plan.identity(), &path).err().map(|error| error.to_string());
 
     let progress = Progress::new(0, trials as u64, quiet);
-    let results = pool.map(trials, &AtomicBool::new(false), |setup, index| {
-        let kinds = setup.trials().max(1);
-        let (round, trial) = ((index / kinds) as u32, (index % kinds) as u32);
+    let kinds = pool.setup().trials().max(1);
+    let task = |number: usize| {
+        let (round, trial) = ((number / kinds) as u32, (number % kinds) as u32);
         let job = Job { seed: seed | !LARGEST_SEED, generation: round, individual: 0, trial };
-        let outcome = setup.live(&genes, job, &mut Tape::off());
-        let fitness = if outcome.is_finite() { setup.fitness(std::slice::from_ref(&outcome)) } else { f64::NAN };
-        progress.advance();
-        (trial, outcome, fitness)
-    });
+        Some(Task { number, genes: &genes, job })
+    };
+    let results = pool.live(trials, &AtomicBool::new(false), task, |_, _| progress.advance());
     drop(progress);
     let results = results.map_err(|reason| match reason {
         Unfinished::Panicked => Error::Panicked { generation },
         Unfinished::Stopped => Error::Other("stopped".into()),
     })?;
+    let results: Vec<_> = results
+        .into_iter()
+        .flatten()
+        .enumerate()
+        .map(|(number, outcome)| {
+            let alone = std::slice::from_ref(&outcome);
+            let fitness = if outcome.is_finite() { pool.setup().fitness(alone) } else { f64::NAN };
+            ((number % kinds) as u32, outcome, fitness)
+        })
+        .collect();
 
-    let terms = plan.setup()?.terms();
+    let terms = pool.setup().terms();
     let table = Table::new(&terms, &results);
     let bytes = table.write(&directory.test())?;
     let record = Record { generation, individual, trials, seed, table_crc: crc32(&bytes) };

@@ -3,6 +3,7 @@
 use farsa_body::{MjcfOptions, Recorder};
 
 use crate::error::Error;
+use crate::lanes::Lanes;
 use crate::life::Job;
 use crate::settings::{Setting, Settings};
 use crate::stage::Stage;
@@ -87,12 +88,43 @@ pub trait Setup: Send {
     /// life. `genes` has [`genes`](Self::genes) entries. A life that broke down is [`Outcome::failed`].
     fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome;
 
+    /// Gets ready to live lives side by side and returns in how many lanes [`live_many`](Self::live_many) will; by default
+    /// in one.
+    ///
+    /// # Errors
+    /// Whatever keeps the lanes from being built.
+    fn use_lanes(&mut self, lanes: Lanes) -> Result<Lanes, Error> {
+        let _ = lanes;
+        Ok(Lanes::one())
+    }
+
+    /// Lives one task after the other, or several side by side, until `next` has no more; `done` takes the number of each
+    /// with what came of it, which is what [`live`](Self::live) would return.
+    ///
+    /// `next` may be asked in any order of `done`: other threads draw from the same tasks.
+    fn live_many<'g>(&mut self, next: &mut dyn FnMut() -> Option<Task<'g>>, done: &mut dyn FnMut(usize, Outcome)) {
+        while let Some(Task { number, genes, job }) = next() {
+            done(number, self.live(genes, job, &mut Tape::off()));
+        }
+    }
+
     /// The fitness of an individual from its trials, in the order of trials; `farsa test` asks for single ones too.
     ///
     /// By default the sum of all terms.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         trials.iter().flat_map(|outcome| &outcome.terms).sum()
     }
+}
+
+/// One trial of many that are to be lived.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'g> {
+    /// Its number among them.
+    pub number: usize,
+    /// Who lives.
+    pub genes: &'g [u16],
+    /// Which life.
+    pub job: Job,
 }
 
 /// What came of one trial.

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::directory::replace;
 use crate::error::Error;
+use crate::lanes::Told;
 use crate::plan::Identity;
 
 /// The whole file.
@@ -34,6 +35,9 @@ pub(crate) struct Session {
     pub(crate) farsa: String,
     pub(crate) machine: Machine,
     pub(crate) threads: usize,
+    /// Lives side by side in each thread, and by which instructions.
+    #[serde(flatten, default)]
+    pub(crate) lanes: Told,
     /// Seconds since 1970 began, UTC.
     pub(crate) started_unix: u64,
     pub(crate) seconds: f64,
@@ -86,11 +90,12 @@ impl Manifest {
 
 impl Session {
     /// A session that begins now.
-    pub(crate) fn new(threads: usize, first_generation: u32) -> Self {
+    pub(crate) fn new(threads: usize, lanes: Told, first_generation: u32) -> Self {
         Self {
             farsa: env!("CARGO_PKG_VERSION").into(),
             machine: Machine::here(),
             threads,
+            lanes,
             started_unix: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
             seconds: 0.0,
             first_generation,

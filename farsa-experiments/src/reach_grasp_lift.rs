@@ -15,11 +15,13 @@ use farsa_body::{
 };
 use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, Leak, Network, ParameterKind};
-use farsa_physics::articulated::{Model, World};
+use farsa_physics::articulated::{Batch, Model, World};
 
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
+use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape, Task};
+use crate::lanes::Lanes;
 use crate::life::{Job, Life};
+use crate::live_in_lanes::live_in_lanes;
 use crate::settings::{Setting, Settings};
 use crate::stage::{Channel, Stage};
 
@@ -61,12 +63,40 @@ impl Experiment for ReachGraspLift {
 /// The scene in its world with a network that genes are decoded into: everything that a thread needs to live lives.
 pub struct Lives {
     world: World<f32>,
-    life: ReachLife<Network<Vec<f32>, Vec<f32>>>,
+    life: NetworkLife,
     decoder: Decoder,
     /// The arm's muscles, to tell their lengths and torques.
     muscles: Vec<MusclePair<f32>>,
     /// The bodies that have a shape, but for the palm and the sphere.
     other_bodies: Vec<BodyId>,
+    /// For lives side by side.
+    together: Option<Together>,
+}
+
+/// The controller's life in a trial.
+type NetworkLife = ReachLife<Network<Vec<f32>, Vec<f32>>>;
+
+/// Worlds in lanes, and the life in each with the number of its task.
+struct Together {
+    batch: Batch,
+    lives: Vec<Numbered>,
+}
+
+struct Numbered {
+    life: NetworkLife,
+    number: usize,
+}
+
+impl<W: ?Sized> Life<W> for Numbered
+where
+    NetworkLife: Life<W>,
+{
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.life.start(world, job);
+    }
+    fn tick(&mut self, world: &mut W) -> Option<f64> {
+        self.life.tick(world)
+    }
 }
 
 /// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces.
@@ -106,7 +136,7 @@ impl Lives {
         let told = [Tabletop::SPHERE, ArmAndHand::PALM];
         let other_bodies = scene.robot.shaped_bodies().filter(|body| !told.contains(body)).collect();
         let life = ReachLife::new(Arc::new(scene), network)?;
-        Ok(Self { world: World::new(model), life, decoder, muscles, other_bodies })
+        Ok(Self { world: World::new(model), life, decoder, muscles, other_bodies, together: None })
     }
 
     /// Tells what was sensed, computed and done before the step that has just been judged, and what it led to.
@@ -159,8 +189,8 @@ impl Lives {
         recorder.tick((f64::from(trial.steps) * scene.config.time_step * 1e9).round() / 1e9);
     }
 
-    fn outcome(&self) -> Outcome {
-        let (judge, time_step) = (self.life.judge(), self.life.judge().scene().config.time_step);
+    fn outcome(judge: &Judge) -> Outcome {
+        let time_step = judge.scene().config.time_step;
         let trial = judge.trial();
         let Ledger { reach, grasp, lift, bonus } = trial.ledger;
         let second = judge.scene().config.steps_per_second();
@@ -287,10 +317,7 @@ impl Setup for Lives {
     }
 
     fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        // A genome of another length, or a range of weights that f32 cannot hold, has no life.
-        let decoded = self.decoder.decode(genes);
-        if !decoded || self.life.controller_mut().copy_parameters(&self.decoder.parameters).is_err() {
-            debug_assert!(false, "{} genes for {} parameters", genes.len(), self.decoder.parameters.len());
+        if !self.decoder.decode_into(genes, &mut self.life) {
             return Outcome::failed();
         }
         if let Some(recorder) = tape.recorder() {
@@ -305,9 +332,43 @@ impl Setup for Lives {
                 self.tell(recorder);
             }
             if end.is_some() {
-                return self.outcome();
+                return Self::outcome(self.life.judge());
             }
         }
+    }
+
+    fn use_lanes(&mut self, lanes: Lanes) -> Result<Lanes, Error> {
+        self.together = None;
+        if lanes.count() > 1 {
+            let batch = Batch::new(self.world.model().clone(), lanes.count(), lanes.level());
+            let batch = batch.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
+            let lives = (0..lanes.count()).map(|_| Numbered { life: self.life.clone(), number: 0 }).collect();
+            self.together = Some(Together { batch, lives });
+        }
+        Ok(lanes)
+    }
+
+    fn live_many<'g>(&mut self, next: &mut dyn FnMut() -> Option<Task<'g>>, done: &mut dyn FnMut(usize, Outcome)) {
+        let Self { together: Some(Together { batch, lives }), decoder, .. } = self else {
+            while let Some(Task { number, genes, job }) = next() {
+                done(number, self.live(genes, job, &mut Tape::off()));
+            }
+            return;
+        };
+        // What came of the tasks that have no life waits until the borrowed `done` is free.
+        let done = std::cell::RefCell::new(done);
+        let begin = |Numbered { life, number }: &mut Numbered| {
+            loop {
+                let task = next()?;
+                *number = task.number;
+                if decoder.decode_into(task.genes, life) {
+                    return Some(task.job);
+                }
+                done.borrow_mut()(task.number, Outcome::failed());
+            }
+        };
+        let end = |lived: &mut Numbered, _: f64| done.borrow_mut()(lived.number, Self::outcome(lived.life.judge()));
+        live_in_lanes(lives, batch, begin, end);
     }
 
     fn fitness(&self, trials: &[Outcome]) -> f64 {
@@ -340,6 +401,13 @@ impl Decoder {
             ranges.push(genes.map_err(|error| Error::setting("network.range", error))?);
         }
         Ok(Self { layout, ranges, evonet, parameters: vec![0.0; layout.parameter_count()] })
+    }
+
+    /// Gives a life its parameters; false for a genome of another length or a range of weights that f32 cannot hold.
+    fn decode_into(&mut self, genes: &[u16], life: &mut NetworkLife) -> bool {
+        let decoded = self.decode(genes) && life.controller_mut().copy_parameters(&self.parameters).is_ok();
+        debug_assert!(decoded, "{} genes for {} parameters", genes.len(), self.parameters.len());
+        decoded
     }
 
     fn decode(&mut self, genes: &[u16]) -> bool {

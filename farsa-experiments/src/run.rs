@@ -2,16 +2,16 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Fitness, Statistics, Strategy as _, TruncationGa};
+use farsa_evo::{Fitness, Population, Statistics, Strategy as _, TruncationGa};
 use serde::Serialize;
 
 use crate::directory::{Directory, replace};
 use crate::error::Error;
 use crate::evolution;
-use crate::experiment::{Outcome, Setup, Tape};
+use crate::experiment::{Outcome, Task};
 use crate::life::Job;
 use crate::log::{HEADER, Log};
 use crate::manifest::{Manifest, Session};
@@ -84,7 +84,7 @@ impl Summary {
 pub(crate) fn go_on(
     plan: &Plan<'_>,
     directory: &Directory,
-    threads: usize,
+    mut pool: Pool,
     stop: &AtomicBool,
     program: &str,
     quiet: bool,
@@ -94,8 +94,7 @@ pub(crate) fn go_on(
     let path = directory.checkpoint();
     let Checkpoint { identity, log: mark, evolution } = records::read(&path, plan, directory.path())?;
     identity.same_values(&plan.identity(), &path)?;
-    let mut pool = Pool::new(plan, threads)?;
-    if *evolution.config() != evolution::config(&plan.settings, pool.genes())? {
+    if *evolution.config() != evolution::config(&plan.settings, pool.setup().genes())? {
         return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
     }
     let (done, last) = (evolution.generation(), plan.generations()?);
@@ -108,7 +107,7 @@ pub(crate) fn go_on(
     if fs::read_to_string(directory.config()).ok().as_ref() != Some(&text) {
         replace(&directory.config(), text.as_bytes())?;
     }
-    manifest.sessions.push(Session::new(threads, done));
+    manifest.sessions.push(Session::new(pool.threads(), pool.lanes().told(), done));
 
     let individuals = |generations: u32| u64::from(generations).saturating_mul(evolution.config().population as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
@@ -179,13 +178,7 @@ impl Run<'_> {
         let generation = self.evolution.generation();
         let genomes = self.evolution.ask();
         let seed = self.identity.seed;
-        let fitness = pool
-            .map(genomes.len(), stop, |setup, individual| {
-                let job = Job { seed, generation, individual: individual as u32, trial: 0 };
-                let fitness = genomes.get(individual).map_or(Fitness::WORST, |genes| evaluate(setup, genes, job));
-                progress.advance();
-                fitness
-            })
+        let fitness = evaluate(pool, genomes, Job { seed, generation, ..Job::default() }, stop, progress)
             .map_err(Unsuccessful::Unfinished)?;
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
         let statistics = Statistics::of(&fitness).ok_or_else(|| lost("nobody lived"))?;
@@ -249,18 +242,44 @@ impl Run<'_> {
     }
 }
 
-/// Lives all trials of an individual; `job.trial` is set for each.
-pub(crate) fn evaluate(setup: &mut dyn Setup, genes: &[u16], job: Job) -> Fitness {
-    let mut outcomes: Vec<Outcome> = Vec::with_capacity(setup.trials());
-    for trial in 0..setup.trials() {
-        let outcome = setup.live(genes, Job { trial: trial as u32, ..job }, &mut Tape::off());
-        if !outcome.is_finite() {
-            return Fitness::WORST;
+/// Lives all trials of all individuals; `of.trial` and `of.individual` are set for each.
+///
+/// The first trials of all come first, for lives side by side cost least when they are alike. A trial that failed makes
+/// its individual the worst, whatever comes of the others.
+fn evaluate(
+    pool: &mut Pool,
+    genomes: &Population,
+    of: Job,
+    stop: &AtomicBool,
+    progress: &Progress,
+) -> Result<Vec<Fitness>, Unfinished> {
+    let (count, trials) = (genomes.len(), pool.setup().trials());
+    let failed: Vec<AtomicBool> = genomes.iter().map(|_| AtomicBool::new(false)).collect();
+    let ended = AtomicUsize::new(0);
+    let task = |number: usize| {
+        let (individual, trial) = (number % count, (number / count) as u32);
+        let job = Job { individual: individual as u32, trial, ..of };
+        let alive = !failed[individual].load(Ordering::Relaxed);
+        genomes.get(individual).filter(|_| alive).map(|genes| Task { number, genes, job })
+    };
+    let done = |number: usize, outcome: Option<&Outcome>| {
+        if outcome.is_some_and(|outcome| !outcome.is_finite()) {
+            failed[number % count].store(true, Ordering::Relaxed);
         }
-        outcomes.push(outcome);
-    }
-    let fitness = setup.fitness(&outcomes);
-    if fitness.is_finite() { Fitness::nan_as_failed(fitness) } else { Fitness::WORST }
+        if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
+            progress.advance();
+        }
+    };
+    let mut lived = pool.live(count * trials, stop, task, done)?;
+    let setup = pool.setup();
+    let fitness = (0..count).map(|individual| {
+        let own = lived.iter_mut().skip(individual).step_by(count);
+        let outcomes: Option<Vec<Outcome>> = own.map(Option::take).collect();
+        let finite = outcomes.filter(|outcomes| outcomes.iter().all(Outcome::is_finite));
+        let fitness = finite.map_or(f64::NAN, |outcomes| setup.fitness(&outcomes));
+        if fitness.is_finite() { Fitness::nan_as_failed(fitness) } else { Fitness::WORST }
+    });
+    Ok(fitness.collect())
 }
 
 #[cfg(test)]
@@ -268,7 +287,8 @@ mod tests {
     use super::*;
     use crate::directory::Directory;
     use crate::exam;
-    use crate::experiment::{Description, Experiment};
+    use crate::experiment::{Description, Experiment, Setup, Tape};
+    use crate::lanes::Wanted;
     use crate::replay::{Which, replay};
     use crate::settings::{Setting, Settings, Value};
     use crate::stage::Stage;
@@ -324,8 +344,13 @@ mod tests {
         path
     }
 
+    fn pool(plan: &Plan<'_>, threads: usize) -> Pool {
+        Pool::new(plan, threads, Wanted::ONE).unwrap()
+    }
+
     fn finish(toy: Toy, directory: &Directory) -> Result<Summary, Error> {
-        go_on(&Plan::new(&toy, None, "")?, directory, 2, &AtomicBool::new(false), "farsa", true)
+        let plan = Plan::new(&toy, None, "")?;
+        go_on(&plan, directory, pool(&plan, 2), &AtomicBool::new(false), "farsa", true)
     }
 
     #[test]
@@ -362,7 +387,7 @@ mod tests {
         let replayed = said(replay(&plan, &directory, Which::default(), &mut Vec::new()).unwrap_err());
         assert!(replayed.contains("lineage.bin: ") && replayed.contains(words), "{replayed}");
         // The champion's genes are what they are; that it may behave otherwise is worth a warning.
-        let tested = exam::test(&plan, &directory, 3, 1, 1, true).unwrap().text();
+        let tested = exam::test(&plan, &directory, 3, 1, 1, Wanted::ONE, true).unwrap().text();
         assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
         fs::remove_dir_all(root).unwrap();
     }
@@ -373,16 +398,19 @@ mod tests {
         let toy = Toy { version: 1, panics: false };
         let mut plan = Plan::new(&toy, None, "").unwrap();
         let directory = create(&plan, &root).unwrap();
-        let stopped = go_on(&plan, &directory, 1, &AtomicBool::new(true), "farsa", true).unwrap_err();
+        let stopped = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
         assert_eq!(stopped.exit_code(), 130);
         assert!(stopped.to_string().contains("`farsa run --resume "), "{stopped}");
         // Nobody is best yet.
         assert!(
-            exam::test(&plan, &directory, 1, 1, 1, true).unwrap_err().to_string().contains("no generation is finished")
+            exam::test(&plan, &directory, 1, 1, 1, Wanted::ONE, true)
+                .unwrap_err()
+                .to_string()
+                .contains("no generation is finished")
         );
         assert!(replay(&plan, &directory, Which::default(), &mut Vec::new()).is_err());
         plan.settings.set("", evolution::GENERATIONS, Value::Whole(2)).unwrap();
-        go_on(&plan, &directory, 1, &AtomicBool::new(false), "farsa", true).unwrap();
+        go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap();
         assert_eq!(fs::read_to_string(directory.log()).unwrap().lines().count(), 3);
         fs::remove_dir_all(root).unwrap();
     }

@@ -6,6 +6,8 @@ use std::process::{Child, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use farsa_num::fearless_simd::Level;
+
 use crate::tool::{Said, command, content, ok, own, results, say, scratch};
 
 #[test]
@@ -101,6 +103,58 @@ fn interrupted_and_resumed() {
     let first = again.err.lines().next().expect("a line");
     assert!(first.starts_with(&format!("generation {kept}: ")), "{first}");
     assert_eq!(results(&here.join("whole")), results(&run));
+}
+
+#[test]
+fn lanes() {
+    let here = scratch("lanes");
+    let run = "run reach-grasp-lift --population 20 --set trial.steps=40 --seed 4 --generations 2";
+    let farsa = crate::tool::farsa();
+    let [avx2, avx512] = wide();
+    let known = [("avx2", avx2), ("avx512", avx512), ("baseline", true), ("auto", true)];
+    let mut runs = Vec::new();
+    for (simd, _) in known.into_iter().filter(|(_, here)| *here) {
+        for lanes in ["1", "8", "16", "auto"] {
+            for threads in [1, 2] {
+                let out = format!("{simd}-{lanes}-{threads}");
+                ok(farsa, &here, &format!("{run} --lanes {lanes} --simd {simd} --threads {threads} --out {out}"));
+                let text = fs::read_to_string(here.join(&out).join("manifest.json")).expect("the manifest");
+                let manifest: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+                let session = &manifest["sessions"][0];
+                match lanes {
+                    "auto" => assert!(session["lanes"].as_u64() > Some(1), "{session}"),
+                    "1" => assert_eq!((&session["lanes"], &session["simd"]), (&1.into(), &"none".into())),
+                    _ => assert_eq!(session["lanes"].to_string(), lanes),
+                }
+                if simd != "auto" && lanes != "1" {
+                    assert_eq!(session["simd"], simd);
+                }
+                runs.push(out);
+            }
+        }
+    }
+    for other in &runs[1..] {
+        assert_eq!(results(&here.join(&runs[0])), results(&here.join(other)), "{} and {other}", runs[0]);
+    }
+    let tests = ["1", "8", "16"].map(|lanes| ok(farsa, &here, &format!("test {} --trials 9 --lanes {lanes}", runs[0])));
+    assert!(tests.iter().all(|test| *test == tests[0]));
+    let refused = say(farsa, &here, &format!("{run} --lanes 8 --simd neon --out refused"));
+    assert!(refused.code == Some(2) && refused.err.contains("avx512"), "{refused:?}");
+    if let Some(simd) = known.iter().find_map(|(simd, here)| (!here).then_some(simd)) {
+        let refused = say(farsa, &here, &format!("{run} --simd {simd} --out refused"));
+        assert!(refused.code == Some(2) && refused.err.contains("baseline"), "{refused:?}");
+    }
+    assert!(!here.join("refused").exists());
+}
+
+/// Whether the processor has AVX2 and AVX-512.
+#[cfg(target_arch = "x86_64")]
+fn wide() -> [bool; 2] {
+    [Level::new().as_avx2().is_some(), Level::new().as_avx512().is_some()]
+}
+#[cfg(not(target_arch = "x86_64"))]
+fn wide() -> [bool; 2] {
+    [false; 2]
 }
 
 #[test]

@@ -1,0 +1,145 @@
+//! How many lives a thread lives side by side, and by which instructions.
+
+use farsa_num::fearless_simd::Level;
+use farsa_physics::articulated::{Batch, LANES};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+
+/// So many lives side by side in each thread, by these instructions; every choice gives the same results.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes {
+    count: usize,
+    level: Level,
+}
+
+impl Lanes {
+    /// One life after the other.
+    pub fn one() -> Self {
+        Self { count: 1, level: Level::baseline() }
+    }
+
+    /// So many lives side by side, 1 or one of [`LANES`], by the instructions of a level.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for another number.
+    pub fn new(count: usize, level: Level) -> Result<Self, Error> {
+        let known = [1, LANES[0], LANES[1]];
+        if !known.contains(&count) {
+            let nearest = known.into_iter().min_by_key(|known| known.abs_diff(count)).unwrap_or(1);
+            return Err(Error::Usage(format!("{count} lanes; the nearest number is {nearest}")));
+        }
+        Ok(Self { count, level })
+    }
+
+    /// The most that pays on this machine.
+    pub fn best() -> Self {
+        let level = Level::new();
+        Self { count: usual(level), level }
+    }
+
+    /// Lives side by side.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The instruction set, where there is more than one life.
+    pub fn level(&self) -> Level {
+        self.level
+    }
+
+    /// What was chosen, as the manifest tells it.
+    pub(crate) fn told(&self) -> Told {
+        let simd = if self.count == 1 { "none" } else { name(self.level) };
+        Told { lanes: self.count, simd: simd.into() }
+    }
+}
+
+/// Lanes by name, in a run's manifest.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Told {
+    pub(crate) lanes: usize,
+    pub(crate) simd: String,
+}
+
+impl Default for Told {
+    /// What sessions did before there were lanes.
+    fn default() -> Self {
+        Lanes::one().told()
+    }
+}
+
+/// What the command line asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Wanted {
+    /// As many as the machine's instructions or the experiment make sensible, if there is no number.
+    pub(crate) count: Option<usize>,
+    /// The best of the machine, if there is no name.
+    pub(crate) simd: Option<&'static str>,
+}
+
+/// The names of the instruction sets that there are steps for, on some machine.
+pub(crate) const SIMD: [&str; 3] = ["baseline", "avx2", "avx512"];
+
+/// The name of an instruction set.
+fn name(level: Level) -> &'static str {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        if level.as_avx512().is_some() {
+            return SIMD[2];
+        }
+        if level.as_avx2().is_some() {
+            return SIMD[1];
+        }
+    }
+    let _ = level;
+    SIMD[0]
+}
+
+/// How many worlds a level steps at the least cost for each.
+fn usual(level: Level) -> usize {
+    if name(level) == SIMD[2] { LANES[1] } else { LANES[0] }
+}
+
+impl Wanted {
+    /// One life after the other, for what nobody chose.
+    #[cfg(test)]
+    pub(crate) const ONE: Self = Self { count: Some(1), simd: None };
+
+    /// What of it this machine has.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for instructions that it lacks.
+    pub(crate) fn on_this_machine(self) -> Result<Lanes, Error> {
+        let levels: Vec<Level> = Batch::levels(Level::new()).collect();
+        let found = match self.simd {
+            None => levels.last(),
+            Some(wanted) => levels.iter().find(|level| name(**level) == wanted),
+        };
+        let Some(&level) = found else {
+            let names: Vec<&str> = levels.iter().map(|level| name(*level)).collect();
+            let wanted = self.simd.unwrap_or_default();
+            return Err(Error::Usage(format!("--simd {wanted}: this processor has {} only", names.join(", "))));
+        };
+        Ok(Lanes { count: self.count.unwrap_or_else(|| usual(level)), level })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_is_what_is_wanted_by_default() {
+        let best = Wanted { count: None, simd: None }.on_this_machine().unwrap();
+        assert_eq!(best.told(), Lanes::best().told());
+        let baseline = Wanted { count: None, simd: Some("baseline") }.on_this_machine().unwrap();
+        assert_eq!(baseline.told(), Told { lanes: 8, simd: "baseline".into() });
+        assert_eq!(Wanted::ONE.on_this_machine().unwrap().told(), Told::default());
+        let error = Wanted { count: None, simd: Some("neon") }.on_this_machine().unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let odd = Lanes::new(13, Level::new()).unwrap_err().to_string();
+        assert_eq!(odd, "13 lanes; the nearest number is 16");
+        assert!(error.to_string().starts_with("--simd neon: this processor has baseline"), "{error}");
+    }
+}
