@@ -7,8 +7,10 @@ mod scene;
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
-use scene::{Aba, Loop};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use farsa::num::fearless_simd::Level;
+use farsa::physics::articulated::{Batch, LANES};
+use scene::{Aba, Lanes, Loop};
 
 fn whole_loop(c: &mut Criterion) {
     let mut group = c.benchmark_group("control_step");
@@ -16,7 +18,17 @@ fn whole_loop(c: &mut Criterion) {
         let mut whole = made.expect("the default scene");
         let [[p0, p1], [n0, n1]] = whole.contacts();
         println!("control_step/{name}: {p0} to {p1} pairs touch at {n0} to {n1} points");
+        group.throughput(Throughput::Elements(1));
         group.bench_function(name, |b| b.iter(|| whole.control_step()));
+        let made = if name == "free" { Loop::free } else { Loop::grasp };
+        for (level, lanes) in Batch::levels(Level::new()).flat_map(|level| LANES.map(|lanes| (level, lanes))) {
+            let set = format!("{level:?}");
+            let set = set.split('(').next().unwrap_or_default();
+            let mut together = Lanes::new(made, lanes, level).expect("the default scene");
+            // The elements are worlds: thousands of them a second.
+            group.throughput(Throughput::Elements(lanes as u64));
+            group.bench_function(format!("{name}/{lanes} lanes/{set}"), |b| b.iter(|| together.control_step()));
+        }
     }
     group.finish();
 }

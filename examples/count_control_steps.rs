@@ -1,6 +1,6 @@
 //! A fixed amount of work for counting instructions: `./ci callgrind` runs each case and counts within `measured`.
 //!
-//! `cargo run --release --example count_control_steps free|grasp|aba7|aba27|network|muscles|life|recorded`
+//! `cargo run --release --example count_control_steps free|grasp|free8|grasp8|aba7|aba27|network|muscles|life|recorded`
 
 #[path = "../benches/scene/mod.rs"]
 mod scene;
@@ -9,9 +9,11 @@ use std::error::Error;
 use std::hint::black_box;
 
 use farsa::nn::{Controller, Layout};
+use farsa::num::fearless_simd::Level;
+use farsa::physics::articulated::Batch;
 use farsa_experiments::reach_grasp_lift::{Config, Lives};
 use farsa_experiments::{Job, Recording, Setup as _, Tape};
-use scene::{Aba, Loop};
+use scene::{Aba, Lanes, Loop};
 
 /// Repetitions of every case; counts are divided by it.
 const TIMES: usize = 100;
@@ -38,6 +40,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             let [[p0, p1], [n0, n1]] = whole.contacts();
             println!("{case}: {p0} to {p1} pairs touch at {n0} to {n1} points");
             measured(|| whole.control_step());
+        }
+        "free8" | "grasp8" => {
+            // valgrind runs AVX2, not AVX-512.
+            let level = Batch::levels(Level::new()).take(2).last().ok_or("no instructions")?;
+            let made = if case == "free8" { Loop::free } else { Loop::grasp };
+            let mut together = Lanes::new(made, 8, level)?;
+            measured(|| together.control_step());
         }
         "aba7" | "aba27" => {
             let mut aba = Aba::new(if case == "aba7" { 7 } else { 27 })?;

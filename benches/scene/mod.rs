@@ -9,7 +9,7 @@ use farsa::body::{
 use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
 use farsa::num::fearless_simd::Level;
 use farsa::num::{Domain, Stream};
-use farsa::physics::articulated::{Model, Options, Scratch, World, accelerations};
+use farsa::physics::articulated::{Batch, Model, Options, Scratch, World, accelerations};
 use farsa_experiments::reach_grasp_lift::{Config, Motors, Scene, ScriptLife, Senses, Statics, Timetable};
 use farsa_experiments::{Job, Life};
 
@@ -111,6 +111,44 @@ impl Loop {
             }
         }
         range
+    }
+}
+
+/// The same loop in every lane of a batch, each lane at another tick of the time between two restorations.
+pub(crate) struct Lanes {
+    batch: Batch,
+    loops: Vec<Loop>,
+}
+
+impl Lanes {
+    /// So many lanes, stepped by the instructions of a level.
+    pub(crate) fn new(made: impl Fn() -> Result<Loop, Failure>, lanes: usize, level: Level) -> Result<Self, Failure> {
+        let mut loops = (0..lanes).map(|_| made()).collect::<Result<Vec<_>, _>>()?;
+        let mut batch = Batch::new(loops[0].world.model().clone(), lanes, level)?;
+        for (lane, alone) in loops.iter_mut().enumerate() {
+            (0..3 * lane).for_each(|_| alone.control_step());
+            let mut state = vec![0.0; alone.world.snapshot_len()];
+            alone.world.save(&mut state);
+            batch.lane(lane).restore(&state);
+        }
+        Ok(Self { batch, loops })
+    }
+
+    /// One control step of 10 ms in every lane.
+    pub(crate) fn control_step(&mut self) {
+        for (lane, alone) in self.loops.iter_mut().enumerate() {
+            let mut world = self.batch.lane(lane);
+            if alone.tick == WINDOW {
+                alone.tick = 0;
+                world.restore(&alone.start);
+            }
+            alone.tick += 1;
+            alone.senses.read(&world, &mut alone.x);
+            alone.network.step(&alone.x, &mut alone.y);
+            let done = std::hint::black_box(&alone.y).len();
+            alone.motors.drive(&alone.held[..done], &mut world);
+        }
+        self.batch.step();
     }
 }
 

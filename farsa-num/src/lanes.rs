@@ -54,14 +54,6 @@ macro_rules! lanes {
                 self[index] = x;
             }
             #[inline(always)]
-            fn load(simd: S, from: &[f32]) -> Self {
-                SimdBase::from_slice(simd, &from[..$count])
-            }
-            #[inline(always)]
-            fn store(self, to: &mut [f32]) {
-                SimdBase::store_slice(&self, &mut to[..$count]);
-            }
-            #[inline(always)]
             fn vectorize<T>(simd: S, work: impl FnOnce() -> T) -> T {
                 Simd::vectorize(simd, work)
             }

@@ -75,16 +75,6 @@ pub trait Scalar:
     /// # Panics
     /// If `index >= LANES`.
     fn set_lane(&mut self, index: usize, x: Self::Real);
-    /// One value per lane from a slice, lane 0 first.
-    ///
-    /// # Panics
-    /// If the slice is shorter than `LANES`.
-    fn load(simd: Self::Simd, from: &[Self::Real]) -> Self;
-    /// Writes one value per lane to a slice, lane 0 first.
-    ///
-    /// # Panics
-    /// If the slice is shorter than `LANES`.
-    fn store(self, to: &mut [Self::Real]);
     /// Calls a function compiled for the instructions that the token proves.
     ///
     /// A large piece of lane code is one function of its own this way, compiled once, and not a part of each caller. The
@@ -202,14 +192,6 @@ macro_rules! real {
             fn set_lane(&mut self, index: usize, x: $real) {
                 assert!(index == 0, "lane {index} of 1");
                 *self = x;
-            }
-            #[inline(always)]
-            fn load((): (), from: &[$real]) -> Self {
-                from[0]
-            }
-            #[inline(always)]
-            fn store(self, to: &mut [$real]) {
-                to[0] = self;
             }
             #[inline(always)]
             fn vectorize<T>((): (), work: impl FnOnce() -> T) -> T {
