@@ -92,7 +92,7 @@ fn numbers_of_joints_and_parts() {
     {
         assert!(robot.pair(pair.0, pair.1).is_some());
     }
-    assert_eq!(robot.pairs.len(), 19);
+    assert_eq!(robot.pairs.len(), 25);
 }
 
 #[test]
