@@ -13,6 +13,10 @@ pub(crate) trait View<R: Real> {
     fn model(&self) -> &Model<R>;
     /// A word of the state.
     fn word(&self, index: usize) -> R;
+    /// Whether any of so many points, whose words begin at `first`, carries a normal impulse.
+    fn carries(&self, first: usize, points: usize) -> bool {
+        (0..points).any(|point| self.word(first + 3 + POINT_WORDS * point) > R::of(0.0))
+    }
     /// Changes a word of the state.
     fn set_word(&mut self, index: usize, x: R);
     /// Rotation and position of a moving link.
@@ -31,15 +35,21 @@ fn quaternion<R: Real>(m: &Matrix<R>) -> [R; 4] {
         let k = half / s;
         return [(m[2][1] - m[1][2]) * k, (m[0][2] - m[2][0]) * k, (m[1][0] - m[0][1]) * k, s * half];
     }
-    let i = if m[0][0] >= m[1][1] && m[0][0] >= m[2][2] {
-        0
+    if m[0][0] >= m[1][1] && m[0][0] >= m[2][2] {
+        quaternion_about::<R, 0>(m)
     } else if m[1][1] >= m[2][2] {
-        1
+        quaternion_about::<R, 1>(m)
     } else {
-        2
-    };
-    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-    let s = (m[i][i] - m[j][j] - m[k][k] + one).sqrt();
+        quaternion_about::<R, 2>(m)
+    }
+}
+
+/// The quaternion of a rotation whose largest component is that of axis `I`.
+#[inline(always)]
+fn quaternion_about<R: Real, const I: usize>(m: &Matrix<R>) -> [R; 4] {
+    let (i, j, k) = (I, (I + 1) % 3, (I + 2) % 3);
+    let half = R::of(0.5);
+    let s = (m[i][i] - m[j][j] - m[k][k] + R::of(1.0)).sqrt();
     let t = half / s;
     let mut q = [R::of(0.0); 4];
     q[i] = s * half;
@@ -99,8 +109,7 @@ pub(crate) fn command<R: Real>(world: &mut impl View<R>, actuator: usize, value:
 pub(crate) fn touches<R: Real>(world: &impl View<R>, pair: PairId) -> bool {
     let model = world.model();
     let Some(pair) = model.pairs.get(pair.index()) else { return false };
-    let first = model.first_point() + POINT_WORDS * pair.point;
-    (0..pair.points).any(|point| world.word(first + 3 + POINT_WORDS * point) > R::of(0.0))
+    world.carries(model.first_point() + POINT_WORDS * pair.point, pair.points)
 }
 
 /// How a pair touches.

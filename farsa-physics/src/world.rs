@@ -9,7 +9,7 @@ use farsa_body::{
 };
 use farsa_num::Real;
 
-use crate::model::Model;
+use crate::model::{Model, POINT_WORDS};
 use crate::ray;
 use crate::spatial::{Matrix, Spatial, Vector, sub};
 use crate::step::{Precision, Scratch};
@@ -115,6 +115,10 @@ impl<R: Precision> View<R> for World<R> {
     }
     fn word(&self, index: usize) -> R {
         self.state[index]
+    }
+    fn carries(&self, first: usize, points: usize) -> bool {
+        let words = &self.state[first..first + POINT_WORDS * points];
+        words.chunks_exact(POINT_WORDS).any(|words| words[3] > R::of(0.0))
     }
     fn set_word(&mut self, index: usize, x: R) {
         self.state[index] = x;
