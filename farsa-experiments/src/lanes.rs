@@ -57,6 +57,7 @@ impl Lanes {
 
 /// Lanes by name, in a run's manifest.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub(crate) struct Told {
     pub(crate) lanes: usize,
     pub(crate) simd: String,

@@ -36,7 +36,7 @@ pub(crate) struct Session {
     pub(crate) machine: Machine,
     pub(crate) threads: usize,
     /// Lives side by side in each thread, and by which instructions.
-    #[serde(flatten, default)]
+    #[serde(flatten)]
     pub(crate) lanes: Told,
     /// Seconds since 1970 began, UTC.
     pub(crate) started_unix: u64,
@@ -125,5 +125,21 @@ impl Machine {
             processor: processor.unwrap_or_default(),
             logical_processors: thread::available_parallelism().map_or(1, usize::from),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::Lanes;
+
+    #[test]
+    fn a_session_from_before_there_were_lanes_had_one() {
+        let session = Session::new(2, Lanes::best().told(), 7);
+        let mut json = serde_json::to_value(&session).unwrap();
+        assert_eq!(serde_json::from_value::<Session>(json.clone()).unwrap(), session);
+        let fields = json.as_object_mut().unwrap();
+        assert!(fields.remove("lanes").is_some() && fields.remove("simd").is_some());
+        assert_eq!(serde_json::from_value::<Session>(json).unwrap().lanes, Lanes::one().told());
     }
 }
