@@ -38,6 +38,8 @@ mod markup;
 mod mass_properties;
 #[cfg(feature = "alloc")]
 mod mjcf;
+#[cfg(feature = "alloc")]
+mod mobile;
 mod motor;
 mod muscle;
 mod noisy;
@@ -81,13 +83,15 @@ pub use kinematics::KinematicTree;
 pub use mass_properties::MassProperties;
 #[cfg(feature = "alloc")]
 pub use mjcf::{Keyframe, MjcfOptions};
+#[cfg(feature = "alloc")]
+pub use mobile::{InfraredRing, MobileParts, MobileRobot};
 pub use motor::{Muscles, ServoGroup, ServoRange, TorqueMotor};
 pub use muscle::{MusclePair, MuscleVariant, Tension};
 pub use noisy::{Noise, Noisy};
 pub use place::{Axes, BodyPose, BodyVelocity, Height, Point, TargetPosition};
 pub use ports::{
-    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Motor,
-    PairContact, PairId, Rays, Sensor, Snapshot, World,
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, Motor,
+    Near, PairContact, PairId, Planar, Rays, Sensor, Sight, Snapshot, World,
 };
 pub use pose::{Pose, Twist};
 pub use proprioception::{JointPosition, JointSpeed};

@@ -82,7 +82,8 @@ pub trait Actuated: Handles {
     /// Sets an actuator's command, which holds until the next one.
     ///
     /// A muscle pair takes [agonist, antagonist] activations [0..1]; a servo the desired position [rad or m] and a
-    /// torque motor its torque [N m or N] in the first place, and neither reads the second.
+    /// torque motor its torque [N m or N] in the first place, and neither reads the second. A wheel takes its speed [rad/s], an
+    /// LED its brightness, a signal its value and an attachment device whether it holds (above 0.5) [0..1].
     fn command(&mut self, actuator: Self::Actuator, value: [f32; 2]);
 }
 
@@ -132,6 +133,72 @@ pub trait Contacts: Handles {
     /// [`pair_contact`](Self::pair_contact).
     fn touches(&self, pair: PairId) -> bool {
         self.pair_contact(pair).points > 0
+    }
+}
+
+/// A surface near a place of a planar world, and its point that is nearest to there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near<B> {
+    /// The body whose surface it is; `None` for a wall.
+    pub body: Option<B>,
+    /// The nearest point [m].
+    pub point: [f32; 2],
+    /// Distance to that point [m]; negative within a round body.
+    pub distance: f32,
+    /// Radius of a round body [m]; 0 for a wall.
+    pub radius: f32,
+    /// What colour it shows, red, green and blue [0..1]; of a robot that of its LEDs.
+    pub color: [f32; 3],
+    /// What a robot signals [0..1]; `None` for what is no robot.
+    pub signal: Option<f32>,
+}
+
+/// What is seen along a line in a planar world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight<B> {
+    /// Distance along the line [m].
+    pub distance: f32,
+    /// The body that is seen; `None` for a wall.
+    pub body: Option<B>,
+    /// What colour it shows, red, green and blue [0..1].
+    pub color: [f32; 3],
+}
+
+/// A lamp of a planar world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lamp<B> {
+    /// The body that shines.
+    pub body: B,
+    /// Its centre [m].
+    pub position: [f32; 2],
+    /// How strong it is, in the unit of whoever lit it.
+    pub intensity: f32,
+}
+
+/// What there is to see and to stand on in a world of the plane, for sensors of mobile robots.
+#[diagnostic::on_unimplemented(message = "`{Self}` does not show its surfaces, colours and lamps (port `Planar`)")]
+pub trait Planar: Handles {
+    /// Tells every surface that has a point within `range` [m] of `from` [m], in the order of walls and bodies.
+    ///
+    /// The robot that asks is told of itself, too.
+    fn near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(Near<Self::Body>));
+    /// The first surface along the unit vector `direction` from `from` [m] within `range` [m], other than that of `but`;
+    /// what `from` lies within is not seen.
+    fn look(
+        &self,
+        from: [f32; 2],
+        direction: [f32; 2],
+        range: f32,
+        but: Option<Self::Body>,
+    ) -> Option<Sight<Self::Body>>;
+    /// The colour of the ground at a place [m]: red, green and blue [0..1].
+    fn ground(&self, at: [f32; 2]) -> [f32; 3];
+    /// Tells every lamp.
+    fn lamps(&self, tell: &mut dyn FnMut(Lamp<Self::Body>));
+    /// What a robot's attachment device holds.
+    fn attached(&self, robot: Self::Body) -> Option<Self::Body> {
+        let _ = robot;
+        None
     }
 }
 
