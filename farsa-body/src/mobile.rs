@@ -106,7 +106,7 @@ impl MobileRobot {
         }
     }
 
-    /// The MarXbot: 85 mm, wheels of 27 mm 126.5 mm apart, 10 rad/s, 24 infrared sensors, twelve of the ground, LEDs, an
+    /// The `MarXbot`: 85 mm, wheels of 27 mm 126.5 mm apart, 10 rad/s, 24 infrared sensors, twelve of the ground, LEDs, an
     /// attachment device.
     ///
     /// Numbers: FARSA2's. Ours: height, colour, places of the ground sensors (four within, eight around), reach of the
