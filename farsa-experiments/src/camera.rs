@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::picture::Picture;
+use crate::stage::View;
 use crate::vector::{Vector, across, add, along, cross, dot, scale, sub, unit};
 
 /// A named direction to look from; the frame is fitted to what there is to see.
@@ -80,6 +81,14 @@ impl Camera {
     pub fn named(name: &str) -> Result<Self, Error> {
         let known = CAMERAS.into_iter().find(|camera| camera.name == name);
         known.ok_or_else(|| Error::unknown("", "camera", name, Self::NAMES))
+    }
+
+    /// The one that a view of a stage begins with.
+    pub(crate) fn for_view(view: View) -> Self {
+        match view {
+            View::Free => CAMERAS[0],
+            View::Top => CAMERAS[3],
+        }
     }
 
     /// Its name.

@@ -3,20 +3,28 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use farsa_body::Pose;
+use farsa_body::{BodyId, Pose};
 
 use crate::camera::Camera;
 use crate::directory::{Directory, create_result};
 use crate::error::Error;
-use crate::picture::{Beam, Picture, Push};
+use crate::form::Form;
+use crate::picture::{Beam, Color, OKABE_ITO, Picture, Placed, Push, Role};
 use crate::plan::Plan;
+use crate::prop::Prop;
 use crate::recording::Recording;
 use crate::replay::{Relived, Which};
+use crate::stage::View;
+use crate::vector::{Vector, length, sub};
 
 /// Width and height of a picture where none are asked for.
 const SIZE: (u32, u32) = (1200, 800);
 /// The same for a picture in a report.
 const REPORT_SIZE: [u32; 2] = [600, 400];
+/// How high above the ground trails are drawn [m].
+const TRAIL: f64 = 1e-3;
+/// The colours of trails, by number: those that are seen best on the ground come first.
+const TRAILS: [usize; 6] = [4, 5, 2, 6, 0, 1];
 /// Largest width and height.
 const LARGEST: u32 = 8192;
 
@@ -51,7 +59,7 @@ pub(crate) fn draw(
     path: &Path,
 ) -> Result<String, Error> {
     let format = Format::of(path)?;
-    let camera = camera.map_or(Ok(Camera::default()), Camera::named)?;
+    let camera = camera.map(Camera::named).transpose()?;
     let (width, height) = size.unwrap_or(SIZE);
     if !(16..=LARGEST).contains(&width) || !(16..=LARGEST).contains(&height) {
         return Err(Error::Usage(format!("a picture of {width}x{height}: each side is 16 to {LARGEST} pixels")));
@@ -61,6 +69,7 @@ pub(crate) fn draw(
     let mut recording = Recording::new(relived.setup.stage());
     relived.live(trial, &mut recording);
     let tick = tick_at(&recording, time)?;
+    let camera = camera.unwrap_or(Camera::for_view(recording.stage().view));
     let mut picture = moment(&recording, tick).ok_or_else(|| {
         Error::Usage(format!("{}: lives of `{}` have no bodies to draw", directory.path().display(), plan.name()))
     })?;
@@ -95,7 +104,7 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     let Some(last) = recording.times().len().checked_sub(1) else { return Ok(None) };
     let Some(mut picture) = moment(&recording, last) else { return Ok(None) };
     picture.caption = Some(format!("{}: champion, trial {trial}, {:.2} s", plan.name(), recording.times()[last]));
-    Ok(Some(picture.svg(Camera::default(), REPORT_SIZE, prefix)))
+    Ok(Some(picture.svg(Camera::for_view(recording.stage().view), REPORT_SIZE, prefix)))
 }
 
 /// The tick that is nearest to a time; the last if none is named.
@@ -117,10 +126,25 @@ fn tick_at(recording: &Recording, time: Option<f64>) -> Result<usize, Error> {
 /// What is to be seen at a tick; `None` if the recording has no bodies.
 fn moment(recording: &Recording, tick: usize) -> Option<Picture> {
     let stage = recording.stage();
-    let robot = stage.robot.as_ref()?;
+    if stage.robot.is_none() && stage.props.is_empty() {
+        return None;
+    }
     let mut picture = Picture::default();
     let pose = |body| recording.pose_at(tick, body).map_or_else(Pose::identity, |pose| pose.cast());
-    picture.add_robot(robot, pose);
+    if let Some(robot) = &stage.robot {
+        picture.add_robot(robot, pose);
+    }
+    let place = |prop: &Prop| prop.placed(&prop.body.map_or_else(Pose::identity, pose));
+    picture.shapes.extend(stage.props.iter().map(place));
+    if stage.view == View::Top {
+        picture.trails = trails(recording, tick);
+        // What stands around belongs into the frame: an arena is seen whole.
+        let walls = picture.shapes.iter().filter(|placed| matches!(placed.form, Form::Box { .. }));
+        let corners = |placed: &Placed| {
+            placed.form.hull().into_iter().map(|(corner, _)| placed.pose.transform(corner)).collect::<Vec<_>>()
+        };
+        picture.frame = walls.flat_map(corners).collect();
+    }
     let f64_of = |position: [f32; 3]| position.map(f64::from);
     picture.contacts = (recording.contacts_at(tick).iter())
         .map(|contact| Push { point: f64_of(contact.point), force: f64_of(contact.force) })
@@ -134,6 +158,35 @@ fn moment(recording: &Recording, tick: usize) -> Option<Picture> {
     };
     picture.points = stage.points.iter().enumerate().filter_map(point).collect();
     Some(picture)
+}
+
+/// The ways that robots went up to a tick, a little above the ground, each in the colour of its robot's hull.
+fn trails(recording: &Recording, tick: usize) -> Vec<(Vec<Vector>, Color)> {
+    let stage = recording.stage();
+    let bodies: Vec<BodyId> =
+        stage.props.iter().filter(|prop| prop.role == Role::Robot).filter_map(|prop| prop.body).collect();
+    let mut seen = Vec::new();
+    let mut trails = Vec::new();
+    for body in bodies {
+        if seen.contains(&body) {
+            continue;
+        }
+        seen.push(body);
+        let mut way: Vec<Vector> = Vec::new();
+        for place in
+            (0..=tick).filter_map(|tick| recording.pose_at(tick, body)).map(|pose| pose.position.map(f64::from))
+        {
+            let place = [place[0], place[1], TRAIL];
+            let moved = way.last().is_none_or(|last| length(sub(place, *last)) > 1e-4);
+            if moved && place.iter().all(|x| x.is_finite()) {
+                way.push(place);
+            }
+        }
+        if way.len() > 1 {
+            trails.push((way, OKABE_ITO[TRAILS[(seen.len() - 1) % TRAILS.len()]]));
+        }
+    }
+    trails
 }
 
 #[cfg(test)]
@@ -171,5 +224,58 @@ mod tests {
         let recording = recording(2);
         let robot = recording.stage().robot.as_ref().unwrap();
         assert_eq!(moment(&recording, 1).unwrap().shapes.len(), robot.colliders.len());
+    }
+
+    /// A round robot that drove a quarter of a circle between walls, and a post.
+    fn arena() -> Recording {
+        let on_ground = |x: f64, y: f64, z: f64| Pose::at([x, y, z]);
+        let (robot, post) = (BodyId(0), BodyId(1));
+        let hull = Form::Cylinder { radius: 0.035, half_length: 0.015 };
+        let wall = Form::Box { half: [0.2, 0.005, 0.02] };
+        let stage = Stage {
+            bodies: vec!["robot".into(), "post".into()],
+            props: vec![
+                Prop::new("ground", Form::Rectangle { half: [0.2; 2] }, Pose::identity(), Role::Ground),
+                Prop::new("nest", Form::Disc { radius: 0.05 }, on_ground(0.1, 0.1, 0.0), Role::Area),
+                Prop::new("north", wall, on_ground(0.0, 0.205, 0.02), Role::Ground),
+                Prop::new("south", wall, on_ground(0.0, -0.205, 0.02), Role::Ground),
+                Prop::new("hull", hull, on_ground(0.0, 0.0, 0.015), Role::Robot).on(robot),
+                Prop::new("post", hull, on_ground(0.0, 0.0, 0.015), Role::Thing).on(post).with_color([200, 30, 30]),
+            ],
+            view: View::Top,
+            ..Stage::default()
+        };
+        let mut recording = Recording::new(stage);
+        for tick in 0..=20u8 {
+            let (sine, cosine) = farsa_num::sin_cos(f32::from(tick) * 0.078);
+            recording.pose(robot, Pose::at([0.1 * cosine - 0.1, 0.1 * sine, 0.0]));
+            recording.pose(post, Pose::at([-0.1, -0.05, 0.0]));
+            recording.ray([0.0; 3], [0.05, 0.0, 0.0], tick % 2 == 0);
+            recording.tick(0.05 * f64::from(tick));
+        }
+        recording
+    }
+
+    #[test]
+    fn an_arena_shows_its_props_and_the_way_of_its_robot() {
+        let recording = arena();
+        let picture = moment(&recording, 20).unwrap();
+        assert_eq!((picture.shapes.len(), picture.trails.len(), picture.rays.len()), (6, 1, 1));
+        assert_eq!(picture.trails[0].0.len(), 21);
+        // Twice the eight corners of two walls.
+        assert_eq!(picture.frame.len(), 8 * 2);
+        let place = picture.shapes[4].pose.position;
+        assert!((place[0] - (0.1 * (20.0_f64 * 0.078).cos() - 0.1)).abs() < 1e-6 && place[2] == 0.015, "{place:?}");
+        assert_eq!(picture.shapes[5].color(), [200, 30, 30]);
+        let svg = picture.svg(Camera::for_view(View::Top), [600, 600], "p");
+        assert!(svg.starts_with("<svg") && svg.contains("<title>"), "{svg}");
+        let page = crate::Page::new("arena").with("a", recording).html();
+        for part in ["\"kind\":\"cylinder\"", "\"role\":\"area\"", "\"color\":\"#c81e1e\"", "\"robot\",\"post\""] {
+            assert!(page.contains(part), "{part}");
+        }
+        if let Some(path) = std::env::var_os("FARSA_LOOK") {
+            std::fs::write(std::path::Path::new(&path).join("arena.svg"), svg).unwrap();
+            std::fs::write(std::path::Path::new(&path).join("arena.html"), page).unwrap();
+        }
     }
 }

@@ -4,12 +4,14 @@ use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use farsa_body::{BodyId, Shape};
+use farsa_body::{BodyId, Pose};
 use farsa_num::crc32;
 use serde_json::{Value, json};
 
+use crate::form::Form;
 use crate::recording::Recording;
 use crate::stage::{Channel, View};
+use crate::svg_data::hex;
 
 const TEMPLATE: &str = include_str!("viewer/page.html");
 const STYLE: &str = include_str!("viewer/viewer.css");
@@ -247,37 +249,49 @@ impl Film {
     }
 
     fn names(&self, bodies: &[BodyId]) -> Vec<&str> {
-        let robot = self.recording.stage().robot.as_ref();
-        bodies.iter().filter_map(|body| Some(robot?.segments.get(body.index())?.name.as_str())).collect()
+        bodies.iter().map(|body| self.recording.stage().body_name(*body)).collect()
     }
 
     fn shapes(&self, bodies: &[BodyId]) -> Vec<Value> {
         let stage = self.recording.stage();
-        let colliders = stage.robot.iter().flat_map(|robot| &robot.colliders);
-        colliders
-            .map(|collider| {
-                let body = collider.body.and_then(|body| bodies.iter().position(|other| *other == body));
-                let role = match collider.body {
-                    None => "ground",
-                    Some(body) if stage.is_thing(body) => "thing",
-                    Some(_) => "robot",
-                };
-                let mut shape = match collider.shape {
-                    Shape::Sphere { radius } => json!({"kind": "sphere", "radius": radius}),
-                    Shape::Capsule { radius, half_length } => {
-                        json!({"kind": "capsule", "radius": radius, "half_length": half_length})
-                    }
-                    Shape::Box { half } => json!({"kind": "box", "half": half}),
-                    Shape::Plane => json!({"kind": "plane"}),
-                };
-                shape["name"] = collider.name.as_str().into();
-                shape["body"] = body.map_or_else(|| (-1).into(), Value::from);
-                shape["role"] = role.into();
-                shape["position"] = json!(collider.placement.position);
-                shape["rotation"] = json!(collider.placement.rotation);
-                shape
-            })
-            .collect()
+        let shape = |name: &str, body: Option<BodyId>, form: Form, placement: &Pose<f64>, role: &str| {
+            let mut shape = match form {
+                Form::Sphere { radius } => json!({"kind": "sphere", "radius": radius}),
+                Form::Capsule { radius, half_length } => {
+                    json!({"kind": "capsule", "radius": radius, "half_length": half_length})
+                }
+                Form::Cylinder { radius, half_length } => {
+                    json!({"kind": "cylinder", "radius": radius, "half_length": half_length})
+                }
+                Form::Box { half } => json!({"kind": "box", "half": half}),
+                Form::Plane => json!({"kind": "plane"}),
+                Form::Disc { radius } => json!({"kind": "cylinder", "radius": radius, "half_length": 0.0}),
+                Form::Rectangle { half: [x, y] } => json!({"kind": "box", "half": [x, y, 0.0]}),
+            };
+            let body = body.and_then(|body| bodies.iter().position(|other| *other == body));
+            shape["name"] = name.into();
+            shape["body"] = body.map_or_else(|| (-1).into(), Value::from);
+            shape["role"] = role.into();
+            shape["position"] = json!(placement.position);
+            shape["rotation"] = json!(placement.rotation);
+            shape
+        };
+        let colliders = stage.robot.iter().flat_map(|robot| &robot.colliders).map(|collider| {
+            let role = match collider.body {
+                None => "ground",
+                Some(body) if stage.is_thing(body) => "thing",
+                Some(_) => "robot",
+            };
+            shape(&collider.name, collider.body, collider.shape.into(), &collider.placement, role)
+        });
+        let props = stage.props.iter().map(|prop| {
+            let mut value = shape(&prop.name, prop.body, prop.form, &prop.placement, prop.role.name());
+            if let Some(color) = prop.color {
+                value["color"] = hex(color).into();
+            }
+            value
+        });
+        colliders.chain(props).collect()
     }
 
     fn pairs(&self) -> Vec<[&str; 2]> {

@@ -25,6 +25,18 @@ pub enum Role {
     Area,
 }
 
+impl Role {
+    /// The word for it in a page.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Robot => "robot",
+            Self::Thing => "thing",
+            Self::Ground => "ground",
+            Self::Area => "area",
+        }
+    }
+}
+
 /// A shape in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {

@@ -100,14 +100,14 @@ impl Recording {
         // One copy of a line of unknowns is cheaper than filling each.
         let Self { blank, poses, points, values, scalars, stage, .. } = self;
         let count = |per_tick: usize| blank.get(..per_tick).unwrap_or(&[]);
-        poses.extend_from_slice(count(POSE * stage.robot.as_ref().map_or(0, |robot| robot.segments.len())));
+        poses.extend_from_slice(count(POSE * stage.body_count()));
         points.extend_from_slice(count(3 * stage.points.len()));
         values.extend_from_slice(count(stage.sensors.len() + stage.neurons.len() + stage.outputs.len()));
         scalars.resize(scalars.len() + stage.scalars.len(), f64::NAN);
     }
 
     fn bodies(&self) -> usize {
-        self.stage.robot.as_ref().map_or(0, |robot| robot.segments.len())
+        self.stage.body_count()
     }
 
     fn width(&self) -> usize {

@@ -3,6 +3,8 @@
 use farsa_body::{BodyId, JointKind, Robot};
 use farsa_nn::{Layout, ParameterKind};
 
+use crate::prop::Prop;
+
 /// Something that has one value per tick, as tables and pages name it.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Channel {
@@ -99,6 +101,10 @@ pub struct NodeParameters {
 pub struct Stage {
     /// The bodies with their shapes; `None` if there is nothing to see.
     pub robot: Option<Robot>,
+    /// The names of the bodies where no robot names them, by number.
+    pub bodies: Vec<String>,
+    /// What is to be seen beside the robot's shapes.
+    pub props: Vec<Prop>,
     /// What is sensed.
     pub sensors: Vec<Channel>,
     /// The neurons between sensors and motors.
@@ -168,7 +174,26 @@ impl Stage {
 
     /// The bodies that can be seen.
     pub fn shown(&self) -> impl Iterator<Item = BodyId> + '_ {
-        self.robot.iter().flat_map(Robot::shaped_bodies)
+        let of_robot = self.robot.iter().flat_map(Robot::shaped_bodies);
+        let mut of_props: Vec<BodyId> = self.props.iter().filter_map(|prop| prop.body).collect();
+        of_props.sort_unstable();
+        of_props.dedup();
+        let known = |body: &BodyId| self.robot.as_ref().is_some_and(|robot| robot.shaped_bodies().any(|b| b == *body));
+        of_props.retain(|body| !known(body));
+        of_robot.chain(of_props)
+    }
+
+    /// Number of bodies, seen or not.
+    pub(crate) fn body_count(&self) -> usize {
+        self.robot.as_ref().map_or(self.bodies.len(), |robot| robot.segments.len())
+    }
+
+    /// What a body is called; empty if there is none.
+    pub(crate) fn body_name(&self, body: BodyId) -> &str {
+        match &self.robot {
+            Some(robot) => robot.segments.get(body.index()).map_or("", |segment| segment.name.as_str()),
+            None => self.bodies.get(body.index()).map_or("", String::as_str),
+        }
     }
 
     /// All channels with the prefix that tells sensors, neurons and outputs from other values, in the order of tables.
