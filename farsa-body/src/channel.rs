@@ -29,6 +29,15 @@ pub enum ChannelError {
         /// How many channels there are.
         channels: usize,
     },
+    /// A list cannot be divided into groups of one size, or is empty.
+    Groups {
+        /// What is listed.
+        field: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many make a group.
+        size: usize,
+    },
     /// The memory given to a wrapper is too short.
     Memory {
         /// Its length.
@@ -44,6 +53,7 @@ impl fmt::Display for ChannelError {
             Self::Value { field, value } => write!(f, "{field} is {value}"),
             Self::Range { from, to } => write!(f, "no range from {from} to {to}"),
             Self::Selection { start, end, channels } => write!(f, "channels {start}..{end} of {channels}"),
+            Self::Groups { field, count, size } => write!(f, "{count} {field} are no whole groups of {size}"),
             Self::Memory { given, needed } => write!(f, "memory of {given} values, {needed} are needed"),
         }
     }
@@ -59,6 +69,26 @@ pub(crate) fn finite(field: &'static str, value: f32) -> Result<f32, ChannelErro
 /// Passes a finite number > 0 on.
 pub(crate) fn positive(field: &'static str, value: f32) -> Result<f32, ChannelError> {
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err(ChannelError::Value { field, value }) }
+}
+
+/// Passes a finite number >= 0 on.
+pub(crate) fn not_negative(field: &'static str, value: f32) -> Result<f32, ChannelError> {
+    if value.is_finite() && value >= 0.0 { Ok(value) } else { Err(ChannelError::Value { field, value }) }
+}
+
+/// Checks that so many things are one or more groups of this size.
+pub(crate) fn groups(field: &'static str, count: usize, size: usize) -> Result<(), ChannelError> {
+    if size > 0 && count > 0 && count.is_multiple_of(size) {
+        Ok(())
+    } else {
+        Err(ChannelError::Groups { field, count, size })
+    }
+}
+
+/// Checks that a direction of the plane has length 1.
+pub(crate) fn direction(field: &'static str, [x, y]: [f32; 2]) -> Result<(), ChannelError> {
+    let length = farsa_num::Scalar::sqrt(x * x + y * y);
+    if (length - 1.0).abs() < 1e-3 { Ok(()) } else { Err(ChannelError::Value { field, value: length }) }
 }
 
 /// Checks that a range has two finite ends with a finite distance.
@@ -82,4 +112,10 @@ pub(crate) fn write<const N: usize>(out: &mut [f32], values: [f32; N]) {
 #[inline]
 pub(crate) fn unit(y: f32) -> f32 {
     farsa_num::Scalar::clamp(y, 0.0, 1.0)
+}
+
+/// The value in [-1, 1] nearest to `x`; 0 for NaN.
+#[inline]
+pub(crate) fn signed_unit(x: f32) -> f32 {
+    if x.is_nan() { 0.0 } else { farsa_num::Scalar::clamp(x, -1.0, 1.0) }
 }

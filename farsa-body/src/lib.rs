@@ -12,6 +12,7 @@ extern crate alloc;
 mod actuator;
 #[cfg(feature = "alloc")]
 mod arm_and_hand;
+mod beam;
 mod channel;
 #[cfg(feature = "alloc")]
 mod check_arrange;
@@ -26,12 +27,16 @@ mod delayed;
 mod faulty;
 #[cfg(feature = "alloc")]
 mod goal;
+mod infrared_analytic;
+mod infrared_model;
+mod infrared_rays;
 #[cfg(feature = "alloc")]
 mod inverse_kinematics;
 #[cfg(feature = "alloc")]
 mod inverse_weight;
 #[cfg(feature = "alloc")]
 mod kinematics;
+mod laser_distance;
 #[cfg(feature = "alloc")]
 mod markup;
 #[cfg(feature = "alloc")]
@@ -45,6 +50,8 @@ mod muscle;
 mod noisy;
 mod place;
 #[cfg(feature = "alloc")]
+mod plane_world;
+#[cfg(feature = "alloc")]
 mod point_world;
 mod ports;
 mod pose;
@@ -54,6 +61,7 @@ mod recorder;
 mod robot;
 mod scaled;
 mod signal;
+mod stance;
 #[cfg(feature = "alloc")]
 mod tabletop;
 #[cfg(feature = "alloc")]
@@ -65,20 +73,27 @@ mod trace;
 mod urdf;
 #[cfg(feature = "alloc")]
 mod validation;
+mod wheel_speed;
+mod wheels;
 mod wrap;
 
 pub use actuator::{Effort, Held, Law, Servo, Torque};
 #[cfg(feature = "alloc")]
 pub use arm_and_hand::{ArmAndHand, Finger};
+pub use beam::Beam;
 pub use channel::ChannelError;
 pub use delayed::Delayed;
 pub use faulty::{Lesioned, Stuck, StuckAt};
 #[cfg(feature = "alloc")]
 pub use goal::{Goal, Orientation};
+pub use infrared_analytic::InfraredAnalytic;
+pub use infrared_model::AnalyticInfrared;
+pub use infrared_rays::InfraredRays;
 #[cfg(feature = "alloc")]
 pub use inverse_kinematics::{InverseKinematics, InverseKinematicsError, Solution};
 #[cfg(feature = "alloc")]
 pub use kinematics::KinematicTree;
+pub use laser_distance::LaserDistance;
 #[cfg(feature = "alloc")]
 pub use mass_properties::MassProperties;
 #[cfg(feature = "alloc")]
@@ -105,3 +120,5 @@ pub use tabletop::Tabletop;
 pub use touch::{ContactForce, Touch};
 #[cfg(feature = "alloc")]
 pub use validation::RobotError;
+pub use wheel_speed::{Traction, WheelSpeed};
+pub use wheels::{SpeedAndTurn, WheelVelocity};

@@ -14,6 +14,7 @@ pub use crate::check_arrange::check_arrange;
 pub use crate::check_channels::{check_motor, check_sensor};
 pub use crate::check_rays::check_rays;
 pub use crate::check_world::check_world;
+pub use crate::plane_world::PlaneWorld;
 pub use crate::point_world::PointWorld;
 
 use crate::actuator::Law;

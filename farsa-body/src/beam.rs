@@ -1,0 +1,88 @@
+//! Rays that a robot sends out into the plane of its sensors.
+
+use farsa_num::{Scalar, sin_cos};
+
+use crate::channel::{ChannelError, direction, finite};
+use crate::ports::{Kinematics, Rays};
+
+/// A ray fixed to a robot's hull, in the robot's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Beam {
+    /// Where it leaves the hull [m].
+    pub from: [f32; 2],
+    /// Where it goes to, a unit vector.
+    pub direction: [f32; 2],
+}
+
+impl Beam {
+    /// Ray number `ray` of `rays` over a cone that leaves a round hull of `radius` [m] at `angle` [rad], counter-clockwise
+    /// from ahead.
+    ///
+    /// All rays of a cone start at the same point of the hull. The first and the last lie `aperture` [rad] to the right
+    /// and to the left of `angle`, the others evenly between them; a single ray lies in the middle. Without an allocator:
+    ///
+    /// ```
+    /// use farsa_body::Beam;
+    ///
+    /// let degree = core::f64::consts::PI / 180.0;
+    /// let angles = [30.0 * degree, -30.0 * degree];
+    /// let beams: [Beam; 6] = core::array::from_fn(|i| Beam::in_cone(0.035, angles[i / 3], 10.0 * degree, i % 3, 3));
+    /// assert_eq!(beams[1].from, beams[2].from);
+    /// ```
+    pub fn in_cone(radius: f64, angle: f64, aperture: f64, ray: usize, rays: usize) -> Self {
+        let last = rays.max(1) - 1;
+        // Mirror images have opposite shares, to the bit.
+        let share = if last == 0 { 0.0 } else { (2.0 * ray as f64 - last as f64) / last as f64 };
+        let (out, along) = (sin_cos(angle), sin_cos(angle + share * aperture));
+        Self { from: [(radius * out.1) as f32, (radius * out.0) as f32], direction: [along.1 as f32, along.0 as f32] }
+    }
+
+    /// Checks that it has a place and a direction.
+    pub(crate) fn check(&self) -> Result<(), ChannelError> {
+        for x in self.from {
+            finite("place of a beam", x)?;
+        }
+        direction("length of a beam's direction", self.direction)
+    }
+}
+
+/// How far within the hull a ray starts [m], so that a robot which touches a wall sees it; also how far outside it
+/// starts where the world shows the hull from within.
+const WITHIN: f32 = 1e-3;
+
+/// The plane of a robot's beams in a world.
+pub(crate) struct BeamFrame<B> {
+    body: B,
+    origin: [f32; 3],
+    ahead: [f32; 3],
+    left: [f32; 3],
+}
+
+impl<B: Copy + PartialEq> BeamFrame<B> {
+    /// The plane at `height` [m] above the robot's origin.
+    #[inline]
+    pub(crate) fn of<W: Kinematics<Body = B> + ?Sized>(world: &W, body: B, height: f32) -> Self {
+        let pose = world.pose(body);
+        Self {
+            body,
+            origin: pose.transform([0.0, 0.0, height]),
+            ahead: pose.rotate([1.0, 0.0, 0.0]),
+            left: pose.rotate([0.0, 1.0, 0.0]),
+        }
+    }
+
+    /// How far from the hull a beam meets something [m], at least 0; `None` if nothing within `range` [m].
+    #[inline]
+    pub(crate) fn distance<W: Rays<Body = B> + ?Sized>(&self, world: &W, beam: &Beam, range: f32) -> Option<f32> {
+        let turn = |[x, y]: [f32; 2]| [0, 1, 2].map(|i| self.ahead[i] * x + self.left[i] * y);
+        let (from, along) = (turn(beam.from), turn(beam.direction));
+        let start = |out: f32| [0, 1, 2].map(|i| self.origin[i] + from[i] + out * along[i]);
+        let hit = world.cast(start(-WITHIN), along, range + WITHIN)?;
+        if hit.body == Some(self.body) {
+            world.cast(start(WITHIN), along, range - WITHIN).map(|hit| hit.distance + WITHIN)
+        } else {
+            Some(Scalar::max(hit.distance - WITHIN, 0.0))
+        }
+    }
+}

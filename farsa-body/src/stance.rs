@@ -1,0 +1,59 @@
+//! Where a mobile robot stands in the plane and where it looks to.
+
+use farsa_num::Scalar;
+
+use crate::ports::{Kinematics, Near};
+
+/// The pose of a robot in the plane; a tilted one is seen from above.
+#[derive(Clone, Copy)]
+pub(crate) struct Stance {
+    /// Where its origin is [m].
+    pub(crate) at: [f32; 2],
+    /// Unit vector of its x axis.
+    pub(crate) ahead: [f32; 2],
+}
+
+impl Stance {
+    #[inline]
+    pub(crate) fn of<W: Kinematics + ?Sized>(world: &W, body: W::Body) -> Self {
+        let pose = world.pose(body);
+        let [x, y, _] = pose.rotate([1.0, 0.0, 0.0]);
+        let length = Scalar::sqrt(x * x + y * y);
+        // One that stands on its head or its tail looks along the world's x axis, for want of better.
+        let ahead = if length > 0.0 { [x / length, y / length] } else { [1.0, 0.0] };
+        Self { at: [pose.position[0], pose.position[1]], ahead }
+    }
+
+    /// A vector of the robot's frame in the world's axes.
+    #[inline]
+    pub(crate) fn turn(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let [c, s] = self.ahead;
+        [c * x - s * y, s * x + c * y]
+    }
+
+    /// A point of the robot's frame [m] in the world [m].
+    #[inline]
+    pub(crate) fn place(&self, point: [f32; 2]) -> [f32; 2] {
+        let [x, y] = self.turn(point);
+        [self.at[0] + x, self.at[1] + y]
+    }
+
+    /// The way from the robot's origin to a point of the world [m], in the robot's frame.
+    #[inline]
+    pub(crate) fn way_to(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let ([c, s], dx, dy) = (self.ahead, x - self.at[0], y - self.at[1]);
+        [c * dx + s * dy, c * dy - s * dx]
+    }
+
+    /// The unit vector towards the nearest point of a surface, in the robot's frame.
+    ///
+    /// Within a round body that is the way out of it turned round, so that it points to the body's centre all the same.
+    /// Straight ahead where the point is the origin itself.
+    #[inline]
+    pub(crate) fn bearing<B>(&self, near: &Near<B>) -> [f32; 2] {
+        let [x, y] = self.way_to(near.point);
+        let length = Scalar::sqrt(x * x + y * y);
+        let length = if near.distance < 0.0 { -length } else { length };
+        if length == 0.0 { [1.0, 0.0] } else { [x / length, y / length] }
+    }
+}
