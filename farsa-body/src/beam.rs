@@ -38,6 +38,17 @@ impl Beam {
         Self { from: [(radius * out.1) as f32, (radius * out.0) as f32], direction: [along.1 as f32, along.0 as f32] }
     }
 
+    /// Ray number `ray` of `rays` over a field of view [rad] around straight ahead, from left to right, from a place in the
+    /// robot's frame [m].
+    ///
+    /// Each ray lies in the middle of one of `rays` equal parts of the field, so that those of a whole turn are evenly
+    /// spread, too.
+    pub fn in_view(from: [f64; 2], field_of_view: f64, ray: usize, rays: usize) -> Self {
+        let share = (rays as f64 - 1.0 - 2.0 * ray as f64) / (2.0 * rays.max(1) as f64);
+        let (s, c) = sin_cos(share * field_of_view);
+        Self { from: from.map(|x| x as f32), direction: [c as f32, s as f32] }
+    }
+
     /// Checks that it has a place and a direction.
     pub(crate) fn check(&self) -> Result<(), ChannelError> {
         for x in self.from {

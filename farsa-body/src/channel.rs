@@ -71,11 +71,6 @@ pub(crate) fn positive(field: &'static str, value: f32) -> Result<f32, ChannelEr
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err(ChannelError::Value { field, value }) }
 }
 
-/// Passes a finite number >= 0 on.
-pub(crate) fn not_negative(field: &'static str, value: f32) -> Result<f32, ChannelError> {
-    if value.is_finite() && value >= 0.0 { Ok(value) } else { Err(ChannelError::Value { field, value }) }
-}
-
 /// Checks that so many things are one or more groups of this size.
 pub(crate) fn groups(field: &'static str, count: usize, size: usize) -> Result<(), ChannelError> {
     if size > 0 && count > 0 && count.is_multiple_of(size) {

@@ -3,6 +3,7 @@
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
 
+#[cfg(feature = "alloc")]
 use crate::beam::Beam;
 use crate::channel::{ChannelError, direction, groups, positive};
 use crate::infrared_model::AnalyticInfrared;
@@ -84,6 +85,8 @@ where
                 }
             }
         });
-        out.iter_mut().for_each(|o| *o = AnalyticInfrared::reading(*o));
+        for o in out {
+            *o = AnalyticInfrared::reading(*o);
+        }
     }
 }

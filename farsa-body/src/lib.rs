@@ -12,12 +12,15 @@ extern crate alloc;
 mod actuator;
 #[cfg(feature = "alloc")]
 mod arm_and_hand;
+mod attachment;
 mod beam;
 mod channel;
 #[cfg(feature = "alloc")]
 mod check_arrange;
 #[cfg(feature = "alloc")]
 mod check_channels;
+#[cfg(feature = "alloc")]
+mod check_planar;
 #[cfg(feature = "alloc")]
 mod check_rays;
 #[cfg(feature = "alloc")]
@@ -27,9 +30,12 @@ mod delayed;
 mod faulty;
 #[cfg(feature = "alloc")]
 mod goal;
+mod ground_color;
 mod infrared_analytic;
 mod infrared_model;
 mod infrared_rays;
+#[cfg(feature = "alloc")]
+mod infrared_table;
 #[cfg(feature = "alloc")]
 mod inverse_kinematics;
 #[cfg(feature = "alloc")]
@@ -37,6 +43,9 @@ mod inverse_weight;
 #[cfg(feature = "alloc")]
 mod kinematics;
 mod laser_distance;
+mod leds;
+mod light_sensors;
+mod linear_camera;
 #[cfg(feature = "alloc")]
 mod markup;
 #[cfg(feature = "alloc")]
@@ -59,8 +68,11 @@ mod proprioception;
 mod recorder;
 #[cfg(feature = "alloc")]
 mod robot;
+#[cfg(feature = "alloc")]
+mod sampled_infrared;
 mod scaled;
 mod signal;
+mod signal_sensor;
 mod stance;
 #[cfg(feature = "alloc")]
 mod tabletop;
@@ -80,20 +92,27 @@ mod wrap;
 pub use actuator::{Effort, Held, Law, Servo, Torque};
 #[cfg(feature = "alloc")]
 pub use arm_and_hand::{ArmAndHand, Finger};
+pub use attachment::{AttachmentMotor, AttachmentSensor};
 pub use beam::Beam;
 pub use channel::ChannelError;
 pub use delayed::Delayed;
 pub use faulty::{Lesioned, Stuck, StuckAt};
 #[cfg(feature = "alloc")]
 pub use goal::{Goal, Orientation};
+pub use ground_color::GroundColor;
 pub use infrared_analytic::InfraredAnalytic;
 pub use infrared_model::AnalyticInfrared;
 pub use infrared_rays::InfraredRays;
+#[cfg(feature = "alloc")]
+pub use infrared_table::{InfraredTable, InfraredTableError};
 #[cfg(feature = "alloc")]
 pub use inverse_kinematics::{InverseKinematics, InverseKinematicsError, Solution};
 #[cfg(feature = "alloc")]
 pub use kinematics::KinematicTree;
 pub use laser_distance::LaserDistance;
+pub use leds::{Leds, SignalMotor};
+pub use light_sensors::LightSensors;
+pub use linear_camera::{ColorBand, LinearCamera};
 #[cfg(feature = "alloc")]
 pub use mass_properties::MassProperties;
 #[cfg(feature = "alloc")]
@@ -113,8 +132,11 @@ pub use proprioception::{JointPosition, JointSpeed};
 pub use recorder::{Recorder, record_world};
 #[cfg(feature = "alloc")]
 pub use robot::{Actuator, Collider, Joint, JointKind, Offsets, Pair, Robot, Segment, Shape, Surface};
+#[cfg(feature = "alloc")]
+pub use sampled_infrared::{InfraredTables, SampledInfrared};
 pub use scaled::{Recorded, Saturated, Scaled};
 pub use signal::Signal;
+pub use signal_sensor::SignalSensor;
 #[cfg(feature = "alloc")]
 pub use tabletop::Tabletop;
 pub use touch::{ContactForce, Touch};

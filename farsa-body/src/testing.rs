@@ -12,6 +12,7 @@ use core::fmt;
 
 pub use crate::check_arrange::check_arrange;
 pub use crate::check_channels::{check_motor, check_sensor};
+pub use crate::check_planar::check_planar;
 pub use crate::check_rays::check_rays;
 pub use crate::check_world::check_world;
 pub use crate::plane_world::PlaneWorld;
@@ -125,6 +126,12 @@ pub enum Promise {
     Arranged,
     /// A ray meets the nearest surface within its range, and tells how.
     Ray,
+    /// What is near in the plane is told, where it is.
+    Near,
+    /// The nearest surface in a direction of the plane is seen.
+    Look,
+    /// Colours, signals and lamps are numbers of their ranges.
+    Shown,
     /// A sensor writes all its channels.
     SensorFills,
     /// A sensor or motor touches no value beyond its channels.
