@@ -18,8 +18,9 @@ const CLOSE: f32 = 1e-4;
 ///
 /// What is near is told within its range, with the distance of its point, and again within twice the range; what is seen
 /// in a random direction is the nearest thing there, told as near and not seen without its body; a round body that is near
-/// is in sight or behind something nearer. Colours and signals are in [0, 1]. `bodies` are all bodies of the world.
-/// Something must be near and something in sight.
+/// is in sight or behind something nearer. Colours and signals are in [0, 1].
+///
+/// `bodies` are all bodies of the world; no place lies within a wall. Something must be near and something in sight.
 ///
 /// # Errors
 /// [`Promise::Near`], [`Promise::Look`] or [`Promise::Shown`] with what was wrong.

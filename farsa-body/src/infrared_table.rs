@@ -37,7 +37,7 @@ impl InfraredTable {
     /// use farsa_body::InfraredTable;
     ///
     /// let table = InfraredTable::parse("2 3 1 5 2\nTURN 0\n0 512\n256 0\n0 0\nEND\n").unwrap();
-    /// assert_eq!(table.response(0.006, 0.1), Some(&[0.0, 0.5][..])); // 6 mm from the hull, ahead
+    /// assert_eq!(table.response(0.006, 0.0), Some(&[0.0, 0.5][..])); // 6 mm from the hull, ahead
     /// assert_eq!(table.response(0.006, -2.2), Some(&[0.25, 0.0][..])); // to the right: the second of three rows
     /// assert_eq!(table.response(0.007, 0.0), None);
     ///

@@ -53,7 +53,7 @@ impl ColorBand {
 /// let mut camera = LinearCamera::of_view(robot.body, 1.0, 2, 10, [red, blue], 5.0)?;
 /// let mut x = [0.0; 4];
 /// camera.read(&world, &mut x);
-/// assert_eq!(x, [0.7, 0.0, 0.0, 0.0]);
+/// assert_eq!(x, [0.8, 0.0, 0.0, 0.0]);
 /// # }
 /// # Ok::<(), farsa_body::ChannelError>(())
 /// ```
