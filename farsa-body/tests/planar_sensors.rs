@@ -140,7 +140,8 @@ fn light_falls_with_the_square_of_the_distance_and_the_cosine_and_is_hidden() {
     let mut dark = PlaneWorld::new();
     let own = dark.add_lamp([0.0, 0.0], 0.03, 1.0);
     assert_eq!(parts.body, own);
-    assert_eq!(read(&mut light, &dark), [0.0; 3]);
+    let back = [Beam { from: [0.03, 0.0], direction: [-1.0, 0.0] }];
+    assert_eq!(read(&mut LightSensors::new(own, back, 0.1).unwrap(), &dark), [0.0]);
 }
 
 #[test]
