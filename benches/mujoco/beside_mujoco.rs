@@ -1,11 +1,16 @@
-//! Our side of the comparison with MuJoCo: records four phases, steps them, prints times or joint angles.
+//! Our side of the comparison with MuJoCo: records four phases, steps them, prints times or joint angles; plays scripts in
+//! either engine and prints what comes of it.
 //!
-//! `record FOLDER`, `time|trace PHASE.txt STEPS_PER_10_MS SECONDS`, `lanes PHASE.txt STEPS_PER_10_MS SECONDS 8|16`; the
-//! script `run` beside it calls it.
+//! `record FOLDER`, `time|trace PHASE.txt STEPS_PER_10_MS SECONDS`, `lanes PHASE.txt STEPS_PER_10_MS SECONDS 8|16`,
+//! `grasps STARTS seen|blind CM STEPS_PER_10_MS`, `rest|press STEPS_PER_10_MS`, the last three with the program
+//! `step_mujoco` and a model after it for MuJoCo; the script `run` beside it calls it.
 #![allow(missing_docs)]
 
+mod drive;
+mod engine;
 #[cfg(target_arch = "x86_64")]
 mod in_lanes;
+mod outcome;
 mod phase;
 mod record;
 
@@ -14,6 +19,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use engine::{Engine, Ours, Theirs};
 use farsa::body::{ArmAndHand, Contacts, PairId, Snapshot, Tabletop, World as _};
 use farsa::num::Scalar;
 use farsa::physics::articulated::{Precision, World};
@@ -89,6 +95,25 @@ fn trace<R: Precision>(scene: &Scene, phase: &Phase, substeps: u32) -> Result<()
     Ok(())
 }
 
+/// A script in one engine.
+fn play<E: Engine>(scene: &Arc<Scene>, engine: &mut E, script: &[&str]) -> Result<(), Failure> {
+    match *script {
+        ["grasps", starts, knowledge] => outcome::grasps(scene, engine, starts.parse()?, knowledge == "blind"),
+        ["rest"] => outcome::rest(scene, engine),
+        ["press"] => outcome::press(scene, engine),
+        _ => Err("grasps STARTS seen|blind, rest or press".into()),
+    }
+}
+
+/// The same in ours, or in MuJoCo where its program and model are named.
+fn play_in(scene: &Arc<Scene>, script: &[&str], substeps: u32, theirs: &[&str]) -> Result<(), Failure> {
+    match *theirs {
+        [] => play(scene, &mut Ours::new(scene, substeps)?, script),
+        [program, model] => play(scene, &mut Theirs::new(scene, substeps, program, model)?, script),
+        _ => Err("a program and a model".into()),
+    }
+}
+
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -108,8 +133,19 @@ fn main() -> Result<(), Failure> {
         ["lanes", phase, substeps, seconds, lanes] => {
             in_lanes::time(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?, seconds.parse()?, lanes)
         }
+        ["grasps", starts, knowledge, centimetres, substeps, ref theirs @ ..] => {
+            let config = Config { sphere_displacement: centimetres.parse()?, ..Config::default() };
+            let scene = Arc::new(Scene::new(config)?);
+            play_in(&scene, &["grasps", starts, knowledge], substeps.parse()?, theirs)
+        }
+        [script @ ("rest" | "press"), substeps, ref theirs @ ..] => {
+            play_in(&scene, &[script], substeps.parse()?, theirs)
+        }
         ["trace", phase, substeps, "f64"] => trace::<f64>(&scene, &Phase::read(Path::new(phase))?, substeps.parse()?),
-        _ => Err("record FOLDER | time PHASE STEPS SECONDS | lanes PHASE STEPS SECONDS 8|16 | trace PHASE STEPS [f64]"
-            .into()),
+        _ => Err(
+            "record FOLDER | time PHASE STEPS SECONDS | lanes PHASE STEPS SECONDS 8|16 | trace PHASE STEPS [f64] | \
+                  grasps STARTS seen|blind CM STEPS [PROGRAM MODEL] | rest|press STEPS [PROGRAM MODEL]"
+                .into(),
+        ),
     }
 }

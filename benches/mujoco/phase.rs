@@ -37,6 +37,17 @@ impl Phase {
     }
 
     pub(crate) fn text(&self, scene: &Scene) -> String {
+        let commands = self.commands.iter().flatten().map(|x| f64::from(*x));
+        let mut text = self.start(scene, self.commands.len());
+        for word in commands {
+            // Writing into a string cannot fail.
+            let _ = writeln!(text, "{word:?}");
+        }
+        text
+    }
+
+    /// The muscles, where the phase begins, and that so many commands follow.
+    pub(crate) fn start(&self, scene: &Scene, commands: usize) -> String {
         let mut words: Vec<f64> = Vec::new();
         for actuator in &scene.robot.actuators {
             if let Law::MusclePair(m) = actuator.law {
@@ -50,11 +61,9 @@ impl Phase {
         let state = self.q.iter().chain(&self.v).chain(&self.sphere.0.position);
         let state = state.chain(&turned).chain(&linear).chain(&angular);
         words.extend(state.map(|x| f64::from(*x)));
-        words.extend([f64::from(u8::from(self.contacts)), self.commands.len() as f64]);
-        words.extend(self.commands.iter().flatten().map(|x| f64::from(*x)));
+        words.extend([f64::from(u8::from(self.contacts)), commands as f64]);
         let mut text = String::new();
         for word in words {
-            // Writing into a string cannot fail.
             let _ = writeln!(text, "{word:?}");
         }
         text

@@ -4,44 +4,13 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use farsa::body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Handles, JointId, Joints, Motor as _, Pose, Tabletop, Twist,
-    World as _,
-};
+use farsa::body::{ArmAndHand, Arrange, Motor as _, Pose, Tabletop, Twist, World as _};
 use farsa::num::{Domain, Stream, sin_cos};
 use farsa_experiments::reach_grasp_lift::{Scene, ScriptLife, Statics, Timetable};
 use farsa_experiments::{Job, Life};
 
-use crate::phase::{Failure, JOINTS, MUSCLES, Phase, STEPS, WORDS, command, world};
-
-/// Takes commands instead of a world.
-struct Sink([[f32; 2]; JOINTS]);
-
-impl Handles for Sink {
-    type Body = BodyId;
-    type Joint = JointId;
-    type Actuator = ActuatorId;
-}
-
-impl Actuated for Sink {
-    fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
-        self.0[actuator.index()] = value;
-    }
-}
-
-impl Sink {
-    fn words(&self) -> [f32; WORDS] {
-        let mut words = [0.0; WORDS];
-        for (i, command) in self.0.iter().enumerate() {
-            if i < MUSCLES {
-                words[2 * i..2 * i + 2].copy_from_slice(command);
-            } else {
-                words[MUSCLES + i] = command[0];
-            }
-        }
-        words
-    }
-}
+use crate::drive::{Press, Sink, hold};
+use crate::phase::{Failure, MUSCLES, Phase, STEPS, WORDS, command, world};
 
 /// The script of the experiment from its first start: reaching, and later holding.
 fn scripted(scene: &Arc<Scene>) -> Result<[Phase; 2], Failure> {
@@ -51,17 +20,17 @@ fn scripted(scene: &Arc<Scene>) -> Result<[Phase; 2], Failure> {
     script.start(&mut world, Job::default());
     let mut phases = [Phase::at(&world), Phase::at(&world)];
     // Lifted since 4.4 s.
-    let hold = 600 - 150;
+    let lifted = 600 - 150;
     for tick in 0..600 {
-        if tick == hold {
+        if tick == lifted {
             phases[1] = Phase::at(&world);
         }
         script.tick(&mut world);
-        let mut sink = Sink([[0.0; 2]; JOINTS]);
+        let mut sink = Sink::default();
         motors.clone().drive(script.done(), &mut sink);
         if tick < STEPS {
             phases[0].commands.push(sink.words());
-        } else if tick >= hold {
+        } else if tick >= lifted {
             phases[1].commands.push(sink.words());
         }
         world.step();
@@ -71,7 +40,7 @@ fn scripted(scene: &Arc<Scene>) -> Result<[Phase; 2], Failure> {
 
 /// The open hand on the table, pressed down with 4 to 16 N once a second, the sphere far away.
 fn on_table(scene: &Scene) -> Result<Phase, Failure> {
-    let (statics, time) = (Statics::new(scene)?, Timetable::default());
+    let statics = Statics::new(scene)?;
     let wanted = statics.above([0.24, -0.18], 0.02)?;
     let mut world = world::<f32>(scene, scene.config.substeps, true)?;
     for (joint, q) in ArmAndHand::joints().into_iter().zip(&wanted) {
@@ -87,20 +56,8 @@ fn on_table(scene: &Scene) -> Result<Phase, Failure> {
             phase = Phase::at(&world);
         }
         let force = 10.0 + 6.0 * sin_cos(core::f64::consts::TAU * 0.01 * tick as f64).0;
-        let joints = ArmAndHand::joints();
-        let q: Vec<f64> = joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
-        let poses = statics.tree().poses(&q);
-        let pressing = statics.tree().jacobian(&poses, ArmAndHand::PALM, scene.arm.palm_centre);
-        let mut torques = statics.gravity_torques(&q);
-        for i in 0..MUSCLES {
-            torques[i] += time.stiffness[i] * (wanted[i] - q[i]) - time.damping[i] * f64::from(world.speed(joints[i]));
-            torques[i] -= pressing[i][5] * force;
-        }
-        let (activations, _) = statics.activations(&q, &torques);
-        let mut words = [0.0; WORDS];
-        for (word, activation) in words.iter_mut().zip(activations.into_iter().flatten()) {
-            *word = activation as f32;
-        }
+        let press = Press { body: ArmAndHand::PALM, point: scene.arm.palm_centre, force };
+        let words = hold(&statics, &world, &wanted, &press);
         if tick >= settle {
             phase.commands.push(words);
         }

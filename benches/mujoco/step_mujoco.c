@@ -1,6 +1,10 @@
 // Steps an exported model in MuJoCo with recorded commands: times mj_step alone, or prints the arm's joint angles.
 //
 //   step_mujoco MODEL.xml PHASE.txt time|trace STEPS_PER_10_MS SECONDS
+//   step_mujoco MODEL.xml - drive STEPS_PER_10_MS 0
+//
+// `drive` takes phases from the standard input, one after the other, their commands one by one: each after a line that
+// tells the state and the contacts.
 //
 // The muscles' law is farsa-body/src/muscle.rs: torque without its damping part in qfrc_applied; damping, and stiffness
 // times the step, in dof_damping, which MuJoCo integrates implicitly. Both are computed before every mj_step and are not
@@ -38,12 +42,8 @@ static double number(FILE* file) {
   return x;
 }
 
-static void read_phase(const char* name) {
-  FILE* file = fopen(name, "r");
-  if (!file) {
-    perror(name);
-    exit(1);
-  }
+// Where a phase begins and how many commands it has.
+static void read_start(FILE* file) {
   for (int i = 0; i < MUSCLES; i++) {
     double* word = &muscles[i].tension;
     for (int k = 0; k < 10; k++) word[k] = number(file);
@@ -53,6 +53,15 @@ static void read_phase(const char* name) {
   for (int i = 0; i < 13; i++) sphere[i] = number(file);
   contacts = (int)number(file);
   steps = (int)number(file);
+}
+
+static void read_phase(const char* name) {
+  FILE* file = fopen(name, "r");
+  if (!file) {
+    perror(name);
+    exit(1);
+  }
+  read_start(file);
   if (steps > MOST) exit(1);
   for (int t = 0; t < steps; t++)
     for (int i = 0; i < WORDS; i++) commands[t][i] = number(file);
@@ -113,6 +122,47 @@ static void held(const mjModel* m, mjData* d, double* at) {
   mju_mulMatTVec3(at, d->xmat + 9 * palm, away);
 }
 
+// One line: joint angles and speeds, the sphere in the hand and its height, every contact's geoms, depth and normal force.
+static void tell(const mjModel* m, mjData* d) {
+  double at[3];
+  held(m, d, at);
+  for (int i = 0; i < JOINTS; i++) printf("%.9g %.9g ", d->qpos[qadr[i]], d->qvel[vadr[i]]);
+  printf("%.9g %.9g %.9g %.9g", at[0], at[1], at[2], d->xpos[3 * ball + 2]);
+  for (int i = 0; i < d->ncon; i++) {
+    const mjContact* c = &d->contact[i];
+    double force[6];
+    mj_contactForce(m, d, i, force);
+    const char* names[2];
+    for (int k = 0; k < 2; k++) names[k] = mj_id2name(m, mjOBJ_GEOM, c->geom[k]);
+    printf(" %s %s %.9g %.9g", names[0], names[1], -c->dist, force[0]);
+  }
+  printf("\n");
+  fflush(stdout);
+}
+
+static void drive(const mjModel* m, mjData* d, const int* motor, int substeps) {
+  for (;;) {
+    int next;
+    do next = getchar();
+    while (next == ' ' || next == '\n');
+    if (next == EOF) return;
+    ungetc(next, stdin);
+    read_start(stdin);
+    place(m, d);
+    tell(m, d);
+    for (int t = 0; t < steps; t++) {
+      double command[WORDS];
+      for (int i = 0; i < WORDS; i++) command[i] = number(stdin);
+      for (int i = MUSCLES; i < JOINTS; i++) d->ctrl[motor[i]] = command[14 + i - MUSCLES];
+      for (int k = 0; k < substeps; k++) {
+        pull(m, d, command);
+        mj_step(m, d);
+      }
+      tell(m, d);
+    }
+  }
+}
+
 int main(int argc, char** argv) {
   if (argc != 6) return 2;
   char error[1000] = "";
@@ -121,14 +171,14 @@ int main(int argc, char** argv) {
     fprintf(stderr, "%s\n", error);
     return 1;
   }
-  read_phase(argv[2]);
-  int trace = !strcmp(argv[3], "trace");
+  int driven = !strcmp(argv[3], "drive"), trace = !strcmp(argv[3], "trace");
+  if (!driven) read_phase(argv[2]);
   int substeps = atoi(argv[4]);
   double seconds = atof(argv[5]);
   m->opt.timestep = 0.01 / substeps;
   // A few per cent faster than implicitfast, and as good here.
   m->opt.integrator = mjINT_EULER;
-  if (!contacts) m->opt.disableflags |= mjDSBL_CONTACT;
+  if (!driven && !contacts) m->opt.disableflags |= mjDSBL_CONTACT;
   mjData* d = mj_makeData(m);
   int motor[JOINTS];
   for (int i = 0; i < JOINTS; i++) {
@@ -146,6 +196,10 @@ int main(int argc, char** argv) {
   sphere_q = m->jnt_qposadr[m->body_jntadr[ball]];
   sphere_v = m->jnt_dofadr[m->body_jntadr[ball]];
 
+  if (driven) {
+    drive(m, d, motor, substeps);
+    return 0;
+  }
   double begin = now(), points = 0, rows = 0, iterations = 0, slip = 0, height = 0;
   long count = 0;
   do {
