@@ -1,5 +1,5 @@
-//! Our side of the comparison with MuJoCo: records four phases, steps them, prints times or joint angles; plays scripts in
-//! either engine and prints what comes of it.
+//! Our side of the comparison with MuJoCo: records four phases, steps them, prints times or joint angles; plays scripts
+//! in either engine and prints what comes of it.
 //!
 //! `record FOLDER`, `time|trace PHASE.txt STEPS_PER_10_MS SECONDS`, `lanes PHASE.txt STEPS_PER_10_MS SECONDS 8|16`,
 //! `grasps STARTS seen|blind CM STEPS_PER_10_MS`, `rest|press STEPS_PER_10_MS`, the last three with the program

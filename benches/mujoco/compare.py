@@ -119,8 +119,8 @@ def errors():
 
 
 def cost_at(points):
-    """Time at the error EQUAL, between its neighbours in logarithms; of the coarsest step if that is good enough."""
-    points = sorted(points, reverse=True)
+    """Time at the error EQUAL, between its neighbours in logarithms; of the coarsest step, the first, if that is good
+    enough: errors need not fall with the step."""
     if points[0][0] <= EQUAL:
         return points[0][1]
     for (e1, t1), (e2, t2) in zip(points, points[1:]):
@@ -175,11 +175,13 @@ def print_times(measured):
 def print_errors(off, measured):
     """Without times where none are known."""
     engines = [e for e in STEPS if ("grasp", e, DEFAULT) in measured or (not measured and e in (FARSA, MUJOCO))]
-    print("\nRMS error of J1 to J7 [deg] against the engine's own 0.05 ms, and microseconds per 10 ms:\n")
+    beside = ", and microseconds per 10 ms" if measured else " (no times: part times has not run)"
+    print(f"\nRMS error of J1 to J7 [deg] against the engine's own 0.05 ms{beside}:\n")
     steps = STEPS[MUJOCO]
     head("phase", "engine", *map(milliseconds, steps), f"us at {EQUAL} deg", "MuJoCo : ours")
     for phase in COMPARED:
-        costs = {e: cost_at([(off[phase, e, s], median(measured[phase, e, s])) for s in steps]) for e in engines if measured}
+        points = {e: [(off[phase, e, s], median(measured[phase, e, s])) for s in steps] for e in engines if measured}
+        costs = {engine: cost_at(points[engine]) for engine in points}
         for engine in engines:
             cells = [f"{off[phase, engine, s]:.4f}" for s in steps]
             if not measured:
@@ -223,8 +225,6 @@ def print_outcomes():
 
 
 def main():
-    if PART not in ("times", "errors", "outcomes", "all"):
-        sys.exit(f"{PART} is no part: times, errors, outcomes or all (picture needs no engine)")
     if PART in ("times", "all"):
         keep("times.json", times())
         print_times(kept("times.json"))

@@ -48,8 +48,8 @@ pub(crate) struct Press {
     pub(crate) force: f64,
 }
 
-/// Activations that hold the arm in a posture \[J1..J27, rad\], gravity and what presses made up for; the hand's servos go to
-/// theirs.
+/// Commands that hold a posture \[J1..J27, rad\]: activations of the arm, gravity and what presses made up for, and the
+/// hand's positions.
 pub(crate) fn hold<W>(statics: &Statics, world: &W, wanted: &[f64], press: &Press) -> [f32; WORDS]
 where
     W: Joints<Joint = JointId> + ?Sized,

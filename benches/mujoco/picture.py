@@ -113,7 +113,8 @@ def main():
         out += [point(shape, x + 5, 20, colour), text(x + 16, 24, engine, "start")]
         x += 40 + 7 * len(engine)
     out.append(text(width - GAP, 24, "dashed: 0.5 degrees", "end", ' fill="#555"'))
-    out.append(text(LEFT, 44, "points: steps of 10, 5, 2.5, 2 and 1 ms from the lowest up, named at MuJoCo's", "start", ' fill="#555"'))
+    steps = "points: steps of 10, 5, 2.5, 2 and 1 ms from the lowest up, named at MuJoCo's"
+    out.append(text(LEFT, 44, steps, "start", ' fill="#555"'))
     for number, phase in enumerate(phases):
         out += panel(found, phase, LEFT + number * (WIDTH + GAP))
     out.append(text(LEFT + (width - LEFT - GAP) / 2, height - 10, "RMS error of J1 to J7 [deg]"))

@@ -122,7 +122,7 @@ static void held(const mjModel* m, mjData* d, double* at) {
   mju_mulMatTVec3(at, d->xmat + 9 * palm, away);
 }
 
-// One line: joint angles and speeds, the sphere in the hand and its height, every contact's geoms, depth and normal force.
+// One line: joint angles and speeds, the sphere in the hand and its height, every contact's geoms, depth, normal force.
 static void tell(const mjModel* m, mjData* d) {
   double at[3];
   held(m, d, at);
