@@ -10,14 +10,13 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use farsa::num::fearless_simd::Level;
 use farsa::physics::articulated::{Batch, LANES};
-use scene::{Aba, Lanes, Loop};
+use scene::{Aba, Lanes, Loop, Step};
 
 fn whole_loop(c: &mut Criterion) {
     let mut group = c.benchmark_group("control_step");
     for (name, made) in [("free", Loop::free()), ("grasp", Loop::grasp())] {
         let mut whole = made.expect("the default scene");
-        let [[p0, p1], [n0, n1]] = whole.contacts();
-        println!("control_step/{name}: {p0} to {p1} pairs touch at {n0} to {n1} points");
+        println!("control_step/{name}: {}", whole.contacts());
         group.throughput(Throughput::Elements(1));
         group.bench_function(name, |b| b.iter(|| whole.control_step()));
         let made = if name == "free" { Loop::free } else { Loop::grasp };
@@ -33,8 +32,22 @@ fn whole_loop(c: &mut Criterion) {
     group.finish();
 }
 
+/// The world's step from one state, with the scene's pairs and without: the difference is the contacts' part.
+fn contacts(c: &mut Criterion) {
+    let mut group = c.benchmark_group("contacts");
+    for (name, made) in [("free", Loop::free()), ("grasp", Loop::grasp())] {
+        let mut whole = made.expect("the default scene");
+        for (pairs, name) in [(false, format!("{name}/without pairs")), (true, name.into())] {
+            let mut alone = Step::of(&mut whole, pairs).expect("the default scene");
+            println!("contacts/{name}: {}", alone.contacts());
+            group.bench_function(name, |b| b.iter(|| alone.step()));
+        }
+    }
+    group.finish();
+}
+
 fn kernels(c: &mut Criterion) {
-    for joints in [7, 27] {
+    for joints in [7, 27, 100] {
         let mut aba = Aba::new(joints).expect("the default arm");
         c.bench_function(&format!("aba/{joints}"), |b| b.iter(|| black_box(aba.accelerations())));
     }
@@ -48,5 +61,5 @@ fn kernels(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, whole_loop, kernels);
+criterion_group!(benches, whole_loop, contacts, kernels);
 criterion_main!(benches);

@@ -37,8 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     match case.as_str() {
         "free" | "grasp" => {
             let mut whole = if case == "free" { Loop::free()? } else { Loop::grasp()? };
-            let [[p0, p1], [n0, n1]] = whole.contacts();
-            println!("{case}: {p0} to {p1} pairs touch at {n0} to {n1} points");
+            println!("{case}: {}", whole.contacts());
             measured(|| whole.control_step());
         }
         "free8" | "grasp8" => {

@@ -1,10 +1,12 @@
 //! What is measured: control steps of the whole loop in two states that can be kept, and the kernels below them.
 
 use std::error::Error;
+use std::fmt;
 use std::sync::Arc;
 
 use farsa::body::{
-    ArmAndHand, Channels, Contacts, Law, Motor, MusclePair, PairId, Robot, Sensor, Snapshot, Tabletop, World as _,
+    ArmAndHand, BodyId, Channels, Contacts, Law, Motor, MusclePair, PairId, Robot, Segment, Sensor, Snapshot, Tabletop,
+    World as _,
 };
 use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
 use farsa::num::fearless_simd::Level;
@@ -99,18 +101,85 @@ impl Loop {
         self.world.step();
     }
 
-    /// How many pairs and how many points touch, least and most over the steps between two restorations.
-    pub(crate) fn contacts(&mut self) -> [[u32; 2]; 2] {
-        let mut range = [[u32::MAX, 0]; 2];
+    /// How many pairs are evaluated, how many of them touch, and at how many points.
+    pub(crate) fn contacts(&mut self) -> Touching {
+        let mut touching = Touching::of(&self.world);
         for _ in 0..WINDOW {
             self.control_step();
-            let points = (0..self.world.pairs() as u16).map(|i| self.world.pair_contact(PairId(i)).points);
-            let (pairs, points) = points.fold((0, 0), |(pairs, sum), n| (pairs + u32::from(n > 0), sum + n));
-            for (range, n) in range.iter_mut().zip([pairs, points]) {
-                *range = [range[0].min(n), range[1].max(n)];
-            }
+            touching.count(&self.world);
         }
-        range
+        touching
+    }
+}
+
+/// How many pairs there are; of how many the surfaces were looked at, how many touched, and at how many points: least and
+/// most over the steps between two restorations.
+pub(crate) struct Touching {
+    pairs: usize,
+    ranges: [[usize; 2]; 3],
+}
+
+impl Touching {
+    fn of(world: &World<f32>) -> Self {
+        Self { pairs: world.pairs(), ranges: [[usize::MAX, 0]; 3] }
+    }
+
+    fn count(&mut self, world: &World<f32>) {
+        let points = (0..self.pairs as u16).map(|i| world.pair_contact(PairId(i)).points as usize);
+        let (touch, points) = points.fold((0, 0), |(pairs, sum), n| (pairs + usize::from(n > 0), sum + n));
+        let near = if self.pairs == 0 { 0 } else { world.near_pairs() };
+        for (range, n) in self.ranges.iter_mut().zip([near, touch, points]) {
+            *range = [range[0].min(n), range[1].max(n)];
+        }
+    }
+}
+
+impl fmt::Display for Touching {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [near, touch, points] = self.ranges.map(|[least, most]| format!("{least} to {most}"));
+        write!(f, "of {} pairs {near} are evaluated and {touch} touch, at {points} points", self.pairs)
+    }
+}
+
+/// The world's step alone, over and over from one state of the whole loop; with the pairs of the scene, or without any, so
+/// that the difference is what contacts cost.
+#[allow(dead_code, reason = "instructions are counted of the whole loop")]
+pub(crate) struct Step {
+    world: World<f32>,
+    start: Vec<f32>,
+}
+
+#[allow(dead_code, reason = "instructions are counted of the whole loop")]
+impl Step {
+    /// From the state that a loop is restored to.
+    pub(crate) fn of(whole: &mut Loop, pairs: bool) -> Result<Self, Failure> {
+        whole.world.restore(&whole.start);
+        // Commands that are held are given at every step; here they stay in the state.
+        whole.motors.drive(&whole.held, &mut whole.world);
+        let (scene, mut world) = Loop::scene()?;
+        if !pairs {
+            let robot = Robot { pairs: Vec::new(), ..scene.robot.clone() };
+            world = World::new(Model::new(&robot, &scene.config.options())?);
+        }
+        // Contact points are a state's last words: without them it is the beginning of the same.
+        let mut start = vec![0.0; whole.world.snapshot_len()];
+        whole.world.save(&mut start);
+        start.truncate(world.snapshot_len());
+        Ok(Self { world, start })
+    }
+
+    /// One control step of 10 ms of the world.
+    pub(crate) fn step(&mut self) {
+        self.world.restore(&self.start);
+        self.world.step();
+    }
+
+    /// How many pairs are evaluated, how many of them touch, and at how many points.
+    pub(crate) fn contacts(&mut self) -> Touching {
+        let mut touching = Touching::of(&self.world);
+        self.step();
+        touching.count(&self.world);
+        touching
     }
 }
 
@@ -163,14 +232,15 @@ pub(crate) struct Aba {
 }
 
 impl Aba {
-    /// For the first so many joints of the arm and hand.
+    /// For the first so many joints of the arm and hand; for more than it has, arms of seven joints, each on the last.
     pub(crate) fn new(joints: usize) -> Result<Self, Failure> {
-        let whole = ArmAndHand::default().robot()?;
-        let robot = Robot {
-            name: "tree".into(),
-            segments: whole.segments.into_iter().take(joints).collect(),
-            ..Robot::default()
-        };
+        let whole = ArmAndHand::default().robot()?.segments;
+        let arm = whole.iter().take(7).cycle().take(joints).enumerate().map(|(index, segment)| {
+            let parent = index.checked_sub(1).map(|parent| BodyId(parent as u16));
+            Segment { parent, ..segment.clone() }
+        });
+        let segments = if joints <= whole.len() { whole[..joints].to_vec() } else { arm.collect() };
+        let robot = Robot { name: "tree".into(), segments, ..Robot::default() };
         let model = Model::new(&robot, &Options::default())?;
         let scratch = Scratch::new((), &model);
         let mut state = vec![0.0; model.state_len()];

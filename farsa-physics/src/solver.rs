@@ -10,7 +10,7 @@ use farsa_num::{Mask, Real, Scalar};
 
 use crate::collision::Placed;
 use crate::contact::{clearance, edge_distance, find};
-use crate::model::{Model, POINT_WORDS};
+use crate::model::{Model, POINT_WORDS, Pair};
 use crate::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
 use crate::spatial::{Vector, add, dot, scale, select, sub};
 use crate::stop::{Stop, relax_stop};
@@ -80,6 +80,27 @@ pub(crate) struct Solver<'a, S: Scalar> {
     pub(crate) stop_rows: &'a [S],
 }
 
+/// Distance between a pair's bounds, and the distance within which its surfaces are looked at [m].
+///
+/// The bounds close by the centres' relative velocity, and a little more for turning.
+#[inline(always)]
+fn bounds<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Real>, placed: &[Placed<S>]) -> [S; 2] {
+    let h = S::splat(simd, model.h);
+    let [a, b] = pair.colliders;
+    let approach = sub(placed[a].velocity, placed[b].velocity);
+    let reach = S::splat(simd, model.margin) + h * (dot(approach, approach).sqrt() + h.constant(TURNING));
+    [clearance(simd, model, pair, placed), reach]
+}
+
+/// How many pairs a step that left the colliders at these places has looked at the surfaces of.
+pub(crate) fn near_pairs<R: Real>(model: &Model<R>, placed: &[Placed<R>]) -> usize {
+    let near = |pair: &&Pair<R>| {
+        let [far, reach] = bounds((), model, pair, placed);
+        far <= reach
+    };
+    model.pairs.iter().filter(near).count()
+}
+
 impl<S: Scalar> Solver<'_, S> {
     /// Finds the points that may carry an impulse and sets their rows up; returns how many there are, and in which lanes
     /// there are any and any that push a joint with a stop.
@@ -114,11 +135,8 @@ impl<S: Scalar> Solver<'_, S> {
         let mut touched = [zero.lt(zero); 2];
         for (p, pair) in model.pairs.iter().enumerate() {
             let own = &mut points[POINT_WORDS * pair.point..POINT_WORDS * (pair.point + pair.points)];
-            let far = clearance(simd, model, pair, self.placed);
-            // The bounds close by the centres' relative velocity, and a little more for turning.
+            let [far, reach] = bounds(simd, model, pair, self.placed);
             let [a, b] = pair.colliders;
-            let approach = sub(self.placed[a].velocity, self.placed[b].velocity);
-            let reach = margin + h * (dot(approach, approach).sqrt() + h.constant(TURNING));
             let near = far.le(reach);
             // Overlapping bounds say nothing of the surfaces.
             let far = far.max(zero);

@@ -23,7 +23,7 @@ pub struct Scratch<S: Scalar> {
     qdd: Vec<S>,
     root_of: Vec<S>,
     response: Vec<S>,
-    placed: Vec<Placed<S>>,
+    pub(crate) placed: Vec<Placed<S>>,
     blocks: Vec<Block<S>>,
     rolling: Vec<Block<S>>,
     rows: Vec<[S; 3]>,

@@ -98,6 +98,13 @@ impl<R: Precision> World<R> {
         self.arranged();
     }
 
+    /// Number of pairs that the last dynamics step has looked at the surfaces of: those whose bounds were near.
+    ///
+    /// Before the first step it means nothing.
+    pub fn near_pairs(&self) -> usize {
+        crate::solver::near_pairs(&self.model, &self.scratch.placed)
+    }
+
     /// Pose of a body's frame in full precision.
     pub fn pose_of(&self, body: BodyId) -> Pose<R> {
         view::pose(self, body)

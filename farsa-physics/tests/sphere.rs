@@ -205,3 +205,27 @@ fn rolling_friction_stops_a_rolling_ball() {
     }
     assert!(w.velocity_of(BodyId(0)).linear[0].abs() < 1e-6);
 }
+
+#[test]
+fn only_near_surfaces_are_looked_at() {
+    let robot = ball_on(Shape::Plane, Pose::identity(), surface(1.0, 0.0));
+    let options = Options { substeps: 10, gravity: [0.0; 3], ..Options::default() };
+    let mut w = World::<f64>::new(Model::new(&robot, &options).unwrap());
+    let h = 0.001;
+    for speed in [0.0_f32, 0.5, 2.0] {
+        // What the bounds may close by within a step at this speed, turning included, and the way until the last step.
+        let reach = options.margin + h * (f64::from(speed) + 1.5);
+        let gap = reach + 9.0 * h * f64::from(speed);
+        for (gap, near) in [(gap - 1e-5, 1), (gap + 1e-5, 0), (1.0, 0)] {
+            w.place_body(BodyId(0), at(RADIUS + gap), Twist { linear: [0.0, 0.0, -speed], angular: [0.0; 3] });
+            w.arranged();
+            w.step();
+            assert_eq!(w.near_pairs(), near, "{gap} m at {speed} m/s");
+            assert!(!w.touches(PairId(0)));
+        }
+    }
+    w.place_body(BodyId(0), at(RADIUS - 1e-4), Twist::default());
+    w.arranged();
+    w.step();
+    assert!(w.touches(PairId(0)) && w.near_pairs() == 1);
+}
