@@ -43,6 +43,8 @@ pub(crate) enum Command {
     Report(ReportArgs),
     /// Write an experiment's robot for other simulators
     Export(ExportArgs),
+    /// Measure how fast lives are lived here, and foretell a whole study
+    Bench(BenchArgs),
     /// Write a shell's completions to the standard output
     Completions(CompletionsArgs),
     /// Write the manual's pages
@@ -90,9 +92,13 @@ pub(crate) struct RunArgs {
     pub(crate) threads: Threads,
     #[command(flatten)]
     pub(crate) lanes: LanesArgs,
-    /// The run's directory [default: runs/EXPERIMENT-CONDITION-SEED]
+    /// The run's directory [default: runs/EXPERIMENT-CONDITION-SEED]; with --replications what they lie in [default: runs]
     #[arg(long, value_name = "DIR", conflicts_with = "resume", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
+    /// So many runs with seeds from --seed on, one after the other; the same command again skips what is finished and
+    /// goes on with what is not
+    #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
+    pub(crate) replications: Option<u32>,
     /// Take settings from a TOML file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
@@ -144,6 +150,38 @@ impl LanesArgs {
     pub(crate) fn wanted(&self) -> Wanted {
         Wanted { count: self.lanes.parse().ok(), simd: self.simd.0 }
     }
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct BenchArgs {
+    /// The experiment [default: the first of the list]
+    pub(crate) experiment: Option<String>,
+    /// One of its conditions [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) condition: Option<String>,
+    /// Change a setting; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
+    pub(crate) set: Vec<(String, Value)>,
+    /// Live the last generation of this run, under its configuration [default: random genomes]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["experiment", "condition"], value_hint = ValueHint::DirPath)]
+    pub(crate) run: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) lanes: LanesArgs,
+    /// How long to measure, in seconds: whole generations until then, cut short only if it is the first
+    #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
+    pub(crate) seconds: f64,
+    /// Write what was found as JSON, without the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A time to measure for.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.01..=86400.0).contains(seconds));
+    seconds.ok_or_else(|| "not a number of seconds from 0.01 to 86400".into())
 }
 
 #[derive(Args)]

@@ -8,9 +8,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::FromArgMatches as _;
 
 use crate::arguments::{
-    Cli, Command, CompletionsArgs, ExportArgs, ExportRobotArgs, ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs,
-    ReportArgs, RunArgs, TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, ExportArgs, ExportRobotArgs, ExportWhat, InfoArgs, ListArgs, ManArgs,
+    ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
+use crate::bench::{self, Bench, Sample};
 use crate::directory::{Directory, create_result, create_results};
 use crate::draw;
 use crate::error::Error;
@@ -23,6 +24,7 @@ use crate::manual;
 use crate::plan::{self, ConfigFile, Plan};
 use crate::pool::Pool;
 use crate::replay;
+use crate::replications::{self, Replications};
 use crate::report;
 use crate::run::{self, Summary};
 use crate::settings::Value;
@@ -74,6 +76,10 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             let plan = Plan::new(plan::find(experiments, &experiment, "")?, condition.as_deref(), "")?;
             say(&if json { info::as_json(&plan)? } else { info::as_text(&plan)? })
         }
+        Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
+            let found = replicate(&args, count, quiet, program, experiments)?;
+            summary(args.json, found.text(), &|| pretty(&found))
+        }
         Command::Run(args) => {
             let found = start_or_resume(&args, quiet, program, experiments)?;
             summary(args.json, format!("{}\n", found.text()), &|| pretty(&found))
@@ -87,13 +93,8 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
         Command::Draw(args) => {
             let (directory, plan) = existing(&args.directory, experiments)?;
             let camera = args.camera.as_deref();
-            let text = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
-            let all = serde_json::json!({
-                "directory": directory.path().display().to_string(),
-                "file": args.out.display().to_string(),
-                "summary": text,
-            });
-            summary(args.json, format!("{text}\n"), &|| pretty(&all))
+            let found = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
+            summary(args.json, format!("{}\n", found.summary), &|| pretty(&found))
         }
         Command::Report(ReportArgs { directories, html, md, json }) => {
             let runs = directories.iter().map(|path| existing(path, experiments)).collect::<Result<Vec<_>, _>>()?;
@@ -110,6 +111,10 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
                 Some(path) => create_results(&[(path, text)]),
             }
         }
+        Command::Bench(args) => {
+            let found = bench(&args, experiments)?;
+            summary(args.json, found.text(), &|| pretty(&found))
+        }
         Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, experiments)),
         Command::Man(ManArgs { out: None }) => say(&manual::page(program, experiments)?),
         Command::Man(ManArgs { out: Some(path) }) => {
@@ -122,7 +127,7 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
 fn replay(args: &ReplayArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<(), Error> {
     let (directory, plan) = existing(&args.directory, experiments)?;
     let which = args.life.which();
-    let text = match (&args.html, &args.out) {
+    let mut found = match (&args.html, &args.out) {
         (Some(path), _) => {
             let other = args.compare.as_deref().map(|path| existing(path, experiments)).transpose()?;
             let other = other.as_ref().map(|(directory, plan)| (plan, directory));
@@ -131,21 +136,16 @@ fn replay(args: &ReplayArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Re
         (None, Some(path)) => replay::replay(&plan, &directory, which, &mut create_result(path)?)?,
         (None, None) => replay::replay(&plan, &directory, which, &mut io::stdout().lock())?,
     };
-    let file = args.html.as_ref().or(args.out.as_ref()).map(|path| path.display().to_string());
+    found.file = args.html.as_ref().or(args.out.as_ref()).map(|path| path.display().to_string());
     if args.json {
-        let summary = serde_json::json!({
-            "directory": directory.path().display().to_string(),
-            "file": file,
-            "summary": text,
-        });
-        let summary = pretty(&summary)?;
+        let summary = pretty(&found)?;
         // The standard output is free only when the steps went elsewhere.
-        if file.is_some() {
+        if found.file.is_some() {
             return say(&summary);
         }
         let _ = write!(io::stderr(), "{summary}");
     } else if !quiet {
-        let _ = writeln!(io::stderr(), "{text}");
+        let _ = writeln!(io::stderr(), "{}", found.summary);
     }
     Ok(())
 }
@@ -162,6 +162,34 @@ fn existing<'e>(path: &std::path::Path, experiments: &[&'e dyn Experiment]) -> R
     Ok((directory, plan))
 }
 
+fn bench(args: &BenchArgs, experiments: &[&dyn Experiment]) -> Result<Bench, Error> {
+    let run = args.run.as_deref().map(|path| existing(path, experiments)).transpose()?;
+    let (evolved, mut plan) = match (run, &args.experiment, experiments.first()) {
+        (Some((directory, plan)), ..) => (Some(Sample::of_run(&plan, &directory)?), plan),
+        (None, Some(name), _) => (None, Plan::new(plan::find(experiments, name, "")?, args.condition.as_deref(), "")?),
+        (None, None, Some(first)) => (None, Plan::new(*first, args.condition.as_deref(), "")?),
+        (None, None, None) => return Err(Error::Usage("there is no experiment".into())),
+    };
+    args.set.iter().try_for_each(|(key, value)| plan.settings.set("--set", key, value.clone()))?;
+    let pool = Pool::new(&plan, args.threads.count(), args.lanes.wanted())?;
+    let sample = evolved.map_or_else(|| Sample::random(&plan), Ok)?;
+    bench::bench(&plan, &sample, pool, args.seconds)
+}
+
+/// Runs of one plan with one seed after the other; each is begun, gone on with, or finished already.
+fn replicate(
+    args: &RunArgs,
+    count: u32,
+    quiet: bool,
+    program: &str,
+    experiments: &[&dyn Experiment],
+) -> Result<Replications, Error> {
+    let (_, plan) = planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref(), experiments)?;
+    let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
+    let pool = |plan: &Plan<'_>| Pool::new(plan, args.threads.count(), args.lanes.wanted());
+    replications::run(plan, count, &root, &pool, stop_on_interrupt, program, quiet)
+}
+
 fn start_or_resume(
     args: &RunArgs,
     quiet: bool,
@@ -169,14 +197,33 @@ fn start_or_resume(
     experiments: &[&dyn Experiment],
 ) -> Result<Summary, Error> {
     let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
+    let (directory, plan) = planned(args, file.as_ref(), experiments)?;
+    // What is refused leaves no directory behind.
+    let pool = Pool::new(&plan, args.threads.count(), args.lanes.wanted())?;
+    let directory = match directory {
+        Some(directory) => {
+            same_names(args, file.as_ref(), &plan, &directory)?;
+            directory
+        }
+        None => run::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
+    };
+    run::go_on(&plan, &directory, pool, stop_on_interrupt(), program, quiet)
+}
+
+/// What the command line and its file ask for, and the directory that is to be gone on with.
+fn planned<'e>(
+    args: &RunArgs,
+    file: Option<&ConfigFile>,
+    experiments: &[&'e dyn Experiment],
+) -> Result<(Option<Directory>, Plan<'e>), Error> {
     let (directory, mut plan) = match &args.resume {
         Some(path) => {
             let (directory, plan) = existing(path, experiments)?;
             (Some(directory), plan)
         }
-        None => (None, fresh(args, file.as_ref(), experiments)?),
+        None => (None, fresh(args, file, experiments)?),
     };
-    if let Some(file) = &file {
+    if let Some(file) = file {
         plan.apply(file)?;
     }
     for (key, value) in &args.set {
@@ -192,16 +239,7 @@ fn start_or_resume(
     if let Some(seed) = args.seed {
         plan.seed = seed;
     }
-    // What is refused leaves no directory behind.
-    let pool = Pool::new(&plan, args.threads.count(), args.lanes.wanted())?;
-    let directory = match directory {
-        Some(directory) => {
-            same_names(args, file.as_ref(), &plan, &directory)?;
-            directory
-        }
-        None => run::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
-    };
-    run::go_on(&plan, &directory, pool, stop_on_interrupt(), program, quiet)
+    Ok((directory, plan))
 }
 
 /// The defaults of the experiment and condition that are named on the command line or else in the file.

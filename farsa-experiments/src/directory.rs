@@ -104,7 +104,10 @@ fn occupied(path: &Path, why: &str) -> Error {
 }
 
 /// Whether a run can be put at a place: there is nothing, or an empty directory.
-fn vacant(path: &Path) -> Result<(), Error> {
+///
+/// # Errors
+/// [`Error::Occupied`], [`Error::Io`].
+pub(crate) fn vacant(path: &Path) -> Result<(), Error> {
     match fs::read_dir(path).map(|mut entries| entries.next().is_none()) {
         Ok(true) => Ok(()),
         Ok(false) if path.join("config.toml").is_file() => {

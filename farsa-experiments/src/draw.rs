@@ -4,6 +4,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use farsa_body::{BodyId, Pose};
+use serde::Serialize;
 
 use crate::camera::Camera;
 use crate::directory::{Directory, create_result};
@@ -13,7 +14,7 @@ use crate::picture::{Beam, Color, OKABE_ITO, Picture, Placed, Push, Role};
 use crate::plan::Plan;
 use crate::prop::Prop;
 use crate::recording::Recording;
-use crate::replay::{Relived, Which};
+use crate::replay::{Lived, Relived, Which};
 use crate::stage::View;
 use crate::vector::{Vector, length, sub};
 
@@ -46,7 +47,23 @@ impl Format {
     }
 }
 
-/// Draws the moment `time` \[s\] of a life, by default its last, and writes it to a new file. Returns a line about it.
+/// What was drawn.
+#[derive(Debug, Serialize)]
+pub(crate) struct Drawn {
+    /// The whole life, of which the picture is a moment.
+    #[serde(flatten)]
+    life: Lived,
+    /// The moment [s].
+    time: f64,
+    camera: &'static str,
+    width: u32,
+    height: u32,
+    file: String,
+    /// The same in a line of words.
+    pub(crate) summary: String,
+}
+
+/// Draws the moment `time` \[s\] of a life, by default its last, and writes it to a new file.
 ///
 /// Of the trials the first is drawn if none is named.
 pub(crate) fn draw(
@@ -57,7 +74,7 @@ pub(crate) fn draw(
     camera: Option<&str>,
     size: Option<(u32, u32)>,
     path: &Path,
-) -> Result<String, Error> {
+) -> Result<Drawn, Error> {
     let format = Format::of(path)?;
     let camera = camera.map(Camera::named).transpose()?;
     let (width, height) = size.unwrap_or(SIZE);
@@ -67,7 +84,7 @@ pub(crate) fn draw(
     let mut relived = Relived::find(plan, directory, which)?;
     let trial = relived.trials.start;
     let mut recording = Recording::new(relived.setup.stage());
-    relived.live(trial, &mut recording);
+    let outcome = relived.live(trial, &mut recording);
     let tick = tick_at(&recording, time)?;
     let camera = camera.unwrap_or(Camera::for_view(recording.stage().view));
     let mut picture = moment(&recording, tick).ok_or_else(|| {
@@ -83,7 +100,15 @@ pub(crate) fn draw(
         Format::Svg => picture.svg(camera, [width, height], "p").into_bytes(),
     };
     create_result(path)?.write_all(&bytes).map_err(Error::io("write", path))?;
-    Ok(format!("{caption}, camera {}: {width}x{height}", camera.name()))
+    Ok(Drawn {
+        life: relived.lived(plan, directory, std::slice::from_ref(&outcome)),
+        time: seconds,
+        camera: camera.name(),
+        width,
+        height,
+        file: path.display().to_string(),
+        summary: format!("{caption}, camera {}: {width}x{height}", camera.name()),
+    })
 }
 
 /// The end of the best trial of a run's champion, as an SVG to stand in a page; `None` if it has no bodies.

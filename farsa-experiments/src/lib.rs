@@ -2,6 +2,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod arguments;
+mod bench;
 mod camera;
 pub mod cli;
 mod directory;
@@ -43,6 +44,7 @@ mod reach_grasp_lift_settings;
 mod recording;
 mod records;
 mod replay;
+mod replications;
 mod report;
 mod report_curves;
 mod report_page;

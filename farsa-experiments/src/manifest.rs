@@ -106,6 +106,11 @@ impl Session {
 }
 
 impl Machine {
+    /// Processors that a process may use.
+    pub(crate) fn cores(&self) -> usize {
+        self.logical_processors
+    }
+
     /// The machine in a few words.
     pub(crate) fn describe(&self) -> String {
         let Self { os, architecture, processor, logical_processors } = self;
@@ -113,7 +118,8 @@ impl Machine {
         format!("{processor}, {logical_processors} logical processors, {os} {architecture}")
     }
 
-    fn here() -> Self {
+    /// The machine that this process runs on.
+    pub(crate) fn here() -> Self {
         // Linux alone tells the processor's name in a file; elsewhere it is left out.
         let processor = fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
             let line = text.lines().find(|line| line.starts_with("model name"))?;

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::experiment::Experiment;
 
 /// Without headings and spare lines, so that a screen of 24 lines has room for the tour.
-const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n\n{subcommands}\n\n{options}{after-help}";
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\n{options}{after-help}";
 
 /// The command line under the name of the program, with examples about its own first experiment.
 pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command {
@@ -52,6 +52,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
                 format!("run {experiment} --set evolution.mutation_rate=0.02 --out mine"),
                 format!("run --resume {run} --generations 2000"),
                 format!("run --config {run}/config.toml --out again"),
+                format!("run {experiment}{other} --replications 20"),
             ],
         ),
         ("test", vec![format!("test {run} --trials 1000 --seed 2")]),
@@ -84,6 +85,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
                 format!("export robot {experiment} --format urdf"),
             ],
         ),
+        ("bench", vec![format!("bench {experiment}"), format!("bench --run {run} --threads 1 --lanes 1 --seconds 60")]),
         ("completions", vec![format!("completions bash > ~/.local/share/bash-completion/completions/{program}")]),
         ("man", vec!["man | man -l -".into(), "man --out ~/.local/share/man/man1".into()]),
     ] {
@@ -115,7 +117,7 @@ pub(crate) fn completions(shell: Shell, program: &str, experiments: &[&dyn Exper
             .mut_arg("experiment", |arg| arg.value_parser(known(&names)))
             .mut_arg("condition", |arg| arg.value_parser(known(&conditions)))
     };
-    for subcommand in ["info", "run"] {
+    for subcommand in ["info", "run", "bench"] {
         command = command.mut_subcommand(subcommand, taught);
     }
     command = command.mut_subcommand("export", |export| export.mut_subcommand("robot", taught));

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use farsa_body::Recorder;
 use farsa_evo::Fitness;
+use serde::Serialize;
 
 use crate::directory::{Directory, create_result};
 use crate::error::Error;
@@ -89,24 +90,95 @@ impl Relived {
         fitness.get()
     }
 
-    /// A line about the trials that were lived.
-    fn summary(&self, outcomes: &[Outcome]) -> String {
-        let Self { generation, individual, trials, .. } = self;
-        let what =
-            if trials.len() == 1 { format!("trial {}", trials.start) } else { format!("{} trials", trials.len()) };
-        let steps: u32 = outcomes.iter().map(|outcome| outcome.steps).sum();
-        let fitness = self.fitness(outcomes);
+    /// What came of the trials that were lived, the first of the wanted and so on.
+    pub(crate) fn lived(&self, plan: &Plan<'_>, directory: &Directory, outcomes: &[Outcome]) -> Lived {
+        let trials = self.trials.clone().zip(outcomes).map(|(trial, outcome)| LivedTrial {
+            trial,
+            steps: outcome.steps,
+            fitness: self.fitness(std::slice::from_ref(outcome)),
+            success: outcome.success,
+        });
+        Lived {
+            directory: directory.path().display().to_string(),
+            experiment: plan.experiment.name().into(),
+            condition: plan.condition.clone(),
+            seed: self.seed,
+            generation: self.generation,
+            individual: self.individual,
+            trials: trials.collect(),
+            steps: outcomes.iter().map(|outcome| outcome.steps).sum(),
+            fitness: self.fitness(outcomes),
+            success: outcomes.iter().all(|outcome| outcome.success),
+        }
+    }
+}
+
+/// Which lives were lived and what came of them. A fitness that a life failed to earn is no number in JSON.
+#[derive(Debug, Serialize)]
+pub(crate) struct Lived {
+    directory: String,
+    experiment: String,
+    condition: String,
+    seed: u64,
+    generation: u32,
+    individual: u32,
+    trials: Vec<LivedTrial>,
+    /// Of all trials.
+    steps: u32,
+    /// Of all trials: that of the individual if no trial was left out.
+    fitness: f64,
+    /// Whether every trial succeeded.
+    success: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct LivedTrial {
+    trial: u32,
+    steps: u32,
+    /// Of the trial alone.
+    fitness: f64,
+    success: bool,
+}
+
+impl Lived {
+    /// The same in a line of words.
+    fn text(&self) -> String {
+        let Self { generation, individual, trials, steps, fitness, .. } = self;
+        let what = match trials.as_slice() {
+            [LivedTrial { trial, .. }] => format!("trial {trial}"),
+            trials => format!("{} trials", trials.len()),
+        };
         format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {fitness:?}")
     }
 }
 
-/// Writes the lives as CSV, a line per step. Returns a line about them.
+/// What a replay came to.
+#[derive(Debug, Serialize)]
+pub(crate) struct Replayed {
+    #[serde(flatten)]
+    life: Lived,
+    /// The same choice in another run, if there is one.
+    compared: Option<Lived>,
+    /// Where the lives went, as the caller knows; none for the standard output.
+    pub(crate) file: Option<String>,
+    /// The same in words, a line each.
+    pub(crate) summary: String,
+}
+
+impl Replayed {
+    fn new(life: Lived, compared: Option<Lived>) -> Self {
+        let lines: Vec<String> = [&life].into_iter().chain(&compared).map(Lived::text).collect();
+        Self { life, compared, file: None, summary: lines.join("\n") }
+    }
+}
+
+/// Writes the lives as CSV, a line per step.
 pub(crate) fn replay(
     plan: &Plan<'_>,
     directory: &Directory,
     which: Which,
     out: &mut dyn Write,
-) -> Result<String, Error> {
+) -> Result<Replayed, Error> {
     let mut relived = Relived::find(plan, directory, which)?;
     let failed = |source: io::Error| Error::Io { doing: "write", path: "the replay".into(), source };
     let mut table = Table::new(out, &relived.setup.stage()).map_err(failed)?;
@@ -116,21 +188,21 @@ pub(crate) fn replay(
         outcomes.push(relived.live(trial, &mut table));
     }
     table.finish().map_err(failed)?;
-    Ok(relived.summary(&outcomes))
+    let life = relived.lived(plan, directory, &outcomes);
+    Ok(Replayed::new(life, None))
 }
 
-/// Writes the lives, and those of the same choice in another run, as a page for a browser. Returns a line about them.
+/// Writes the lives, and those of the same choice in another run, as a page for a browser.
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,
     which: Which,
     compare: Option<(&Plan<'_>, &Directory)>,
     path: &Path,
-) -> Result<String, Error> {
+) -> Result<Replayed, Error> {
     let title = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
     let mut page = Page::new(&title);
-    let mut lines = Vec::new();
-    for (plan, directory) in [(plan, directory)].into_iter().chain(compare) {
+    let mut add = |plan: &Plan<'_>, directory: &Directory| {
         let mut relived = Relived::find(plan, directory, which)?;
         let mut outcomes = Vec::new();
         for trial in relived.trials.clone() {
@@ -143,11 +215,13 @@ pub(crate) fn page(
             page.add(&name, facts(&relived, &outcome), recording);
             outcomes.push(outcome);
         }
-        lines.push(relived.summary(&outcomes));
-    }
+        Ok(relived.lived(plan, directory, &outcomes))
+    };
+    let life = add(plan, directory)?;
+    let compared = compare.map(|(plan, directory)| add(plan, directory)).transpose()?;
     let html = page.html();
     create_result(path)?.write_all(html.as_bytes()).map_err(Error::io("write", path))?;
-    Ok(lines.join("\n"))
+    Ok(Replayed::new(life, compared))
 }
 
 /// What came of a trial, by name.

@@ -44,23 +44,23 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
 /// What came of a run; the champion is that of the last generation.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
-    directory: String,
-    experiment: String,
-    condition: String,
-    seed: u64,
-    generations: u32,
+    pub(crate) directory: String,
+    pub(crate) experiment: String,
+    pub(crate) condition: String,
+    pub(crate) seed: u64,
+    pub(crate) generations: u32,
     /// Lives lived by this process, not those of earlier sessions.
-    evaluations: u64,
-    seconds: f64,
+    pub(crate) evaluations: u64,
+    pub(crate) seconds: f64,
     /// None if there was nothing left to do.
-    champion: Option<Winner>,
+    pub(crate) champion: Option<Winner>,
 }
 
 #[derive(Debug, Serialize)]
-struct Winner {
-    generation: u32,
-    individual: u32,
-    fitness: f64,
+pub(crate) struct Winner {
+    pub(crate) generation: u32,
+    pub(crate) individual: u32,
+    pub(crate) fitness: f64,
 }
 
 impl Summary {
@@ -242,10 +242,9 @@ impl Run<'_> {
     }
 }
 
-/// Lives all trials of all individuals; `of.trial` and `of.individual` are set for each.
+/// Lives all trials of all individuals and says what fitness each comes to.
 ///
-/// The first trials of all come first, for lives side by side cost least when they are alike. A trial that failed makes
-/// its individual the worst, whatever comes of the others.
+/// A trial that failed makes its individual the worst, whatever comes of the others.
 fn evaluate(
     pool: &mut Pool,
     genomes: &Population,
@@ -254,23 +253,13 @@ fn evaluate(
     progress: &Progress,
 ) -> Result<Vec<Fitness>, Unfinished> {
     let (count, trials) = (genomes.len(), pool.setup().trials());
-    let failed: Vec<AtomicBool> = genomes.iter().map(|_| AtomicBool::new(false)).collect();
     let ended = AtomicUsize::new(0);
-    let task = |number: usize| {
-        let (individual, trial) = (number % count, (number / count) as u32);
-        let job = Job { individual: individual as u32, trial, ..of };
-        let alive = !failed[individual].load(Ordering::Relaxed);
-        genomes.get(individual).filter(|_| alive).map(|genes| Task { number, genes, job })
-    };
-    let done = |number: usize, outcome: Option<&Outcome>| {
-        if outcome.is_some_and(|outcome| !outcome.is_finite()) {
-            failed[number % count].store(true, Ordering::Relaxed);
-        }
+    let done = |_: Option<&Outcome>| {
         if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
             progress.advance();
         }
     };
-    let mut lived = pool.live(count * trials, stop, task, done)?;
+    let mut lived = live_all(pool, genomes, of, stop, done)?;
     let setup = pool.setup();
     let fitness = (0..count).map(|individual| {
         let own = lived.iter_mut().skip(individual).step_by(count);
@@ -280,6 +269,34 @@ fn evaluate(
         if fitness.is_finite() { Fitness::nan_as_failed(fitness) } else { Fitness::WORST }
     });
     Ok(fitness.collect())
+}
+
+/// Lives all trials of all individuals, the first of all before the second of any: trial t of individual i has number
+/// t x individuals + i. `of.trial` and `of.individual` are set for each; `done` hears of every one that ends.
+///
+/// Lives side by side cost least when they are alike. What an individual has left after a trial that failed is not lived.
+pub(crate) fn live_all(
+    pool: &mut Pool,
+    genomes: &Population,
+    of: Job,
+    stop: &AtomicBool,
+    done: impl Fn(Option<&Outcome>) + Sync,
+) -> Result<Vec<Option<Outcome>>, Unfinished> {
+    let (count, trials) = (genomes.len(), pool.setup().trials());
+    let failed: Vec<AtomicBool> = genomes.iter().map(|_| AtomicBool::new(false)).collect();
+    let task = |number: usize| {
+        let (individual, trial) = (number % count, (number / count) as u32);
+        let job = Job { individual: individual as u32, trial, ..of };
+        let alive = !failed[individual].load(Ordering::Relaxed);
+        genomes.get(individual).filter(|_| alive).map(|genes| Task { number, genes, job })
+    };
+    let heard = |number: usize, outcome: Option<&Outcome>| {
+        if outcome.is_some_and(|outcome| !outcome.is_finite()) {
+            failed[number % count].store(true, Ordering::Relaxed);
+        }
+        done(outcome);
+    };
+    pool.live(count * trials, stop, task, heard)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ mod files;
 mod look;
 mod manners;
 mod own;
+mod replications;
 mod report;
 mod same_bytes;
 mod tool;

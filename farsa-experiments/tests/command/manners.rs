@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use crate::tool::{command, farsa, ok, own, say, scratch};
+use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 10] =
-    ["list", "info", "run", "test", "replay", "draw", "report", "export", "completions", "man"];
+const SUBCOMMANDS: [&str; 11] =
+    ["list", "info", "run", "test", "replay", "draw", "report", "export", "bench", "completions", "man"];
 
 #[test]
 fn the_help_is_a_tour_on_one_screen() {
@@ -39,6 +39,9 @@ fn the_nearest_word_is_named() {
         ("completions fihs", "fish"),
         ("replay x --htlm y", "'--html'"),
         ("info crat", "`cart`"),
+        ("bench crat", "`cart`"),
+        ("bench cart --secods 1", "'--seconds'"),
+        ("run cart --replicatoins 3", "'--replications'"),
         ("info cart --condition smoth", "`smooth`"),
     ] {
         let said = say(own(), &here, arguments);
@@ -120,7 +123,103 @@ fn json_is_json() {
     assert!(said.out.starts_with("trial,step,"));
     assert_eq!(parsed(&said.err)["file"], serde_json::Value::Null);
     let said = say(own(), &here, "replay r --json --out life.csv");
-    assert_eq!((&parsed(&said.out)["file"], said.err.as_str()), (&"life.csv".into(), ""));
+    let life = parsed(&said.out);
+    assert_eq!((&life["file"], said.err.as_str()), (&"life.csv".into(), ""));
+    assert_eq!((&life["directory"], &life["experiment"], &life["seed"]), (&"r".into(), &"cart".into(), &1.into()));
+    assert_eq!((&life["generation"], &life["individual"]), (&2.into(), &run["champion"]["individual"]));
+    assert_eq!((&life["fitness"], &life["steps"]), (&best.into(), &1500.into()));
+    assert_eq!(life["compared"], serde_json::Value::Null);
+    let trials = life["trials"].as_array().expect("a list");
+    let sum: f64 = trials.iter().map(|trial| trial["fitness"].as_f64().expect("a number")).sum();
+    assert!((sum - best).abs() < 1e-12 && trials.len() == 3, "{life}");
+    assert_eq!((&trials[2]["trial"], &trials[2]["steps"]), (&2.into(), &500.into()));
+    assert_eq!(life["success"], trials.iter().all(|trial| trial["success"] == true));
+
+    // A life that failed has earned no number; the other run is told of as well.
+    let other = "run cart --generations 1 --seed 5 --set cart.friction=0 --out s";
+    ok(own(), &here, other);
+    let log = fs::read_to_string(here.join("s/fitness.csv")).expect("the log");
+    assert!(!log.ends_with(",0\n"), "some carts leave the track: {log}");
+    let lives = (0..20).map(|individual| {
+        let page = format!("{individual}.html");
+        let line = format!("replay s --generation 0 --individual {individual} --trial 1 --compare r --html {page}");
+        parsed(&ok(own(), &here, &format!("{line} --json")))
+    });
+    let lives: Vec<serde_json::Value> = lives.collect();
+    for (individual, life) in lives.iter().enumerate() {
+        assert_eq!((&life["individual"], &life["compared"]["individual"]), (&individual.into(), &individual.into()));
+        assert_eq!((&life["directory"], &life["compared"]["directory"]), (&"s".into(), &"r".into()));
+        assert_eq!(life["fitness"].is_null(), life["steps"] == 0, "{life}");
+        let words = life["summary"].as_str().expect("words");
+        assert!(words.lines().count() == 2 && words.contains(", trial 1: "), "{words}");
+    }
+    assert!(lives.iter().any(|life| life["fitness"].is_null()) && lives.iter().any(|life| life["steps"] == 500));
+}
+
+#[test]
+fn a_picture_is_told_of() {
+    let here = scratch("drawn");
+    let run = "run reach-grasp-lift --population 20 --set trial.steps=20 --generations 2 --out r";
+    ok(farsa(), &here, run);
+    let line = "draw r --individual 3 --trial 2 --time 0.1 --camera top --size 64x48 --out p.svg --json";
+    let drawn: serde_json::Value = serde_json::from_str(&ok(farsa(), &here, line)).expect("JSON");
+    assert_eq!(
+        (&drawn["file"], &drawn["camera"], &drawn["condition"]),
+        (&"p.svg".into(), &"top".into(), &"labels".into())
+    );
+    assert_eq!(
+        (&drawn["generation"], &drawn["individual"], &drawn["trials"][0]["trial"]),
+        (&1.into(), &3.into(), &2.into())
+    );
+    assert_eq!((&drawn["time"], &drawn["width"], &drawn["height"]), (&0.1.into(), &64.into(), &48.into()));
+    assert_eq!((&drawn["steps"], drawn["trials"].as_array().map(Vec::len)), (&20.into(), Some(1)));
+    assert_eq!(drawn["fitness"], drawn["trials"][0]["fitness"]);
+    assert!(drawn["summary"].as_str().is_some_and(|words| words.contains("individual 3, trial 2, 0.10 s")), "{drawn}");
+}
+
+#[test]
+fn a_bench_counts_lives() {
+    let here = scratch("bench");
+    let parsed = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect(text);
+    let short = "--set trial.steps=50 --set evolution.generations=30 --set cart.friction=5 --seconds 0.05";
+    let found = parsed(&ok(own(), &here, &format!("bench {short} --threads 1 --json")));
+    assert_eq!((&found["experiment"], &found["condition"]), (&"cart".into(), &"rough".into()));
+    let number = |key: &str| found[key].as_f64().expect(key);
+    // Nobody leaves the track in half a second, so a generation is 60 lives of 50 steps.
+    assert_eq!((number("lives"), number("steps")), (60.0 * number("rounds"), 3000.0 * number("rounds")));
+    assert!(number("rounds") >= 1.0 && number("seconds") > 0.0);
+    assert_eq!((number("steps") / number("seconds"), number("threads")), (number("steps_per_second"), 1.0));
+    assert_eq!(number("steps_per_second_and_core"), number("steps_per_second"));
+    assert_eq!((&found["lanes"], &found["simd"], &found["run"]), (&1.into(), &"none".into(), &serde_json::Value::Null));
+    assert_eq!(found["study"]["control_steps"], 20.0 * 30.0 * 20.0 * 3.0 * 50.0);
+    assert_eq!(found["predictions"][1]["cores"], 64);
+    let seconds = found["predictions"][1]["seconds"].as_f64().expect("a number");
+    let expected = 20.0 * 30.0 * 3000.0 / (64.0 * number("steps_per_second"));
+    assert!((seconds / expected - 1.0).abs() < 1e-9, "{found}");
+
+    // The genomes of a run, under its settings; neither is anything written.
+    ok(own(), &here, "run cart --condition smooth --generations 3 --set trial.steps=50 --out r");
+    let before = content(&here);
+    let text = ok(own(), &here, "bench --run r --seconds 0.05");
+    assert!(
+        text.starts_with("cart smooth\ncounted: ") && text.contains("the 20 genomes of generation 2 of r: "),
+        "{text}"
+    );
+    assert!(text.contains("\ngenerations per hour ") && text.contains("x 3 trials x 50 steps"), "{text}");
+    let more = parsed(&ok(own(), &here, "bench --run r --seconds 0.05 --set trial.steps=7 --json --quiet"));
+    assert_eq!((&more["generation"], &more["study"]["steps"]), (&2.into(), &7.0.into()));
+    assert_eq!(content(&here), before);
+    assert!(ok(own(), &here, &format!("bench cart {short} --quiet")).is_empty());
+    for (arguments, word) in [
+        ("bench cart --run r", "--run"),
+        ("bench --run nowhere", "nowhere: there is no such directory"),
+        ("bench cart --seconds 0", "0.01 to 86400"),
+        ("bench cart --set cart.fricton=1", "`cart.friction`"),
+        ("bench cart --lanes 8", "cart has 1 only"),
+    ] {
+        let said = say(own(), &here, arguments);
+        assert!(said.code == Some(2) && said.err.contains(word), "{arguments}: {said:?}");
+    }
 }
 
 /// Whether there is a byte that colours or moves the cursor.
