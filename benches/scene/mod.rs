@@ -5,7 +5,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use farsa::body::{
-    ArmAndHand, BodyId, Channels, Contacts, Law, Motor, MusclePair, PairId, Robot, Segment, Sensor, Snapshot, Tabletop,
+    ArmAndHand, BodyId, Channels, Contacts, Law, Motor, MusclePair, PairId, Robot, Sensor, Snapshot, Tabletop,
     World as _,
 };
 use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
@@ -236,8 +236,11 @@ impl Aba {
     pub(crate) fn new(joints: usize) -> Result<Self, Failure> {
         let whole = ArmAndHand::default().robot()?.segments;
         let arm = whole.iter().take(7).cycle().take(joints).enumerate().map(|(index, segment)| {
-            let parent = index.checked_sub(1).map(|parent| BodyId(parent as u16));
-            Segment { parent, ..segment.clone() }
+            let mut segment = segment.clone();
+            segment.parent = index.checked_sub(1).map(|parent| BodyId(parent as u16));
+            segment.name = format!("link {index}");
+            segment.joint.name = format!("joint {index}");
+            segment
         });
         let segments = if joints <= whole.len() { whole[..joints].to_vec() } else { arm.collect() };
         let robot = Robot { name: "tree".into(), segments, ..Robot::default() };

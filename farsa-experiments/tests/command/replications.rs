@@ -87,7 +87,7 @@ fn what_is_in_the_way_stops_them_before_they_begin() {
 }
 
 /// Lives long enough that a generation takes a few milliseconds.
-const SLOW: &str = "run cart --set trial.steps=5000 --set cart.friction=5 --generations 300 --seed 2";
+const SLOW: &str = "run cart --set trial.steps=5000 --set cart.friction=5 --generations 600 --seed 2";
 
 fn generations(run: &Path) -> usize {
     fs::read_to_string(run.join("fitness.csv")).map_or(0, |log| log.lines().count().saturating_sub(1))
@@ -128,11 +128,11 @@ fn killed_interrupted_and_repeated() {
     assert_eq!(said.code, Some(130), "{said:?}");
     assert!(said.err.contains(&format!("interrupted; go on with `own-experiment {line}`")), "{said:?}");
     assert!(said.err.contains("replication 2 of 3: runs/cart-rough-3: goes on\n"), "{said:?}");
-    assert!(generations(&here.join("runs/cart-rough-3")) < 300 && !here.join("runs/cart-rough-4").exists());
+    assert!(generations(&here.join("runs/cart-rough-3")) < 600 && !here.join("runs/cart-rough-4").exists());
 
     let said = say(own(), &here, &line);
     assert_eq!(said.code, Some(0), "{said:?}");
-    assert!(said.err.contains("replication 1 of 3: runs/cart-rough-2: all 300 generations are finished"), "{said:?}");
+    assert!(said.err.contains("replication 1 of 3: runs/cart-rough-2: all 600 generations are finished"), "{said:?}");
     assert_eq!(content(&here.join("runs/cart-rough-2")), first, "what is finished is not touched");
     for seed in [2, 3, 4] {
         ok(own(), &here, &format!("{} --seed {seed} --out single-{seed}", SLOW.trim_end_matches(" --seed 2")));
