@@ -12,7 +12,7 @@ const NEAR: f32 = 1e-4;
 
 /// Checks what every world promises about being set up for a new life, on worlds that `make` makes all alike.
 ///
-/// A cleared world knows nothing of its past, joints and floating bodies are where they were placed, and what the ports
+/// A cleared world knows nothing of its past, joints, floating and planar bodies are where they were placed, and what the ports
 /// tell after [`Arrange::arranged`] is what a snapshot brings back.
 ///
 /// # Errors
@@ -74,6 +74,13 @@ fn body_place(index: usize) -> (Pose, Twist) {
     )
 }
 
+/// A place on the plane, another for each, far from everything.
+fn planar_place(index: usize) -> Pose {
+    let i = index as f32;
+    let (sine, cosine) = farsa_num::sin_cos(0.5 * (0.3 + i));
+    Pose { position: [10.0 + i, -20.0, 0.0], rotation: [0.0, 0.0, sine, cosine] }
+}
+
 fn place<W: Arrange>(world: &mut W, probe: &Probe<W::Body, W::Joint, W::Actuator>) {
     for (index, &(joint, range)) in probe.joints.iter().enumerate() {
         let [position, speed] = joint_place(index, range);
@@ -82,6 +89,9 @@ fn place<W: Arrange>(world: &mut W, probe: &Probe<W::Body, W::Joint, W::Actuator
     for (index, &body) in probe.floating.iter().enumerate() {
         let (pose, twist) = body_place(index);
         world.place_body(body, pose, twist);
+    }
+    for (index, &body) in probe.planar.iter().enumerate() {
+        world.place_body(body, planar_place(index), Twist::default());
     }
 }
 
@@ -104,16 +114,20 @@ where
     for (index, &body) in probe.floating.iter().enumerate() {
         let (pose, twist) = body_place(index);
         let (told, moving) = (world.pose(body), world.velocity(body));
-        // Either quaternion of the orientation will do.
-        let same: f32 = pose.rotation.iter().zip(told.rotation).fold(0.0, |sum, (a, b)| sum + a * b);
         let kept = near(&pose.position, &told.position)
-            && same.abs() > 1.0 - NEAR
+            && same_turn(&pose, &told)
             && near(&twist.linear, &moving.linear)
             && near(&twist.angular, &moving.angular);
         ensure(kept, Promise::BodyPlaced, || format!("floating body {index}: {told:?}, {moving:?}"))?;
     }
+    for (index, &body) in probe.planar.iter().enumerate() {
+        let (pose, told, moving) = (planar_place(index), world.pose(body), world.velocity(body));
+        let kept = near(&pose.position, &told.position) && same_turn(&pose, &told) && moving == Twist::default();
+        ensure(kept, Promise::BodyPlaced, || format!("planar body {index}: {told:?}, {moving:?}"))?;
+    }
     let before = Instant::of(world, probe);
-    for &body in probe.bodies.iter().filter(|body| !probe.floating.contains(body)) {
+    let placed = |body| probe.floating.contains(body) || probe.planar.contains(body);
+    for &body in probe.bodies.iter().filter(|body| !placed(body)) {
         world.place_body(body, Pose::at([1.0, 2.0, 3.0]), Twist::default());
     }
     world.arranged();
@@ -121,6 +135,12 @@ where
     ensure(difference.is_none(), Promise::BodyPlaced, || {
         format!("a body on a joint was placed: {}", difference.unwrap_or_default())
     })
+}
+
+/// Whether two orientations are the same; either quaternion will do.
+fn same_turn(a: &Pose, b: &Pose) -> bool {
+    let same: f32 = a.rotation.iter().zip(b.rotation).fold(0.0, |sum, (a, b)| sum + a * b);
+    same.abs() > 1.0 - NEAR
 }
 
 fn near(a: &[f32], b: &[f32]) -> bool {

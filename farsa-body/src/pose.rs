@@ -46,6 +46,20 @@ impl<R: Real> Pose<R> {
         Self { position, ..Self::identity() }
     }
 
+    /// A pose on the ground, at `place` [m], turned counter-clockwise by `heading` [rad] about the vertical.
+    pub fn planar([x, y]: [R; 2], heading: R) -> Self {
+        let o = R::of(0.0);
+        let (sine, cosine) = farsa_num::sin_cos(R::of(0.5) * heading);
+        Self { position: [x, y, o], rotation: [o, o, sine, cosine] }
+    }
+
+    /// Where the frame's x axis points to, seen from above, counter-clockwise from that of the reference frame [rad].
+    pub fn heading(&self) -> R {
+        let [x, y, z, w] = self.rotation;
+        let (one, two) = (R::of(1.0), R::of(2.0));
+        farsa_num::atan2(two * (w * z + x * y), one - two * (y * y + z * z))
+    }
+
     /// A vector of this frame in the axes of the reference frame.
     pub fn rotate(&self, v: [R; 3]) -> [R; 3] {
         let [x, y, z, w] = self.rotation;
@@ -140,6 +154,16 @@ mod tests {
             let narrow: Pose = a.cast();
             prop_assert_eq!(narrow.position, a.position.map(|x| x as f32));
             prop_assert_eq!(narrow.cast::<f64>().rotation, a.rotation.map(|x| f64::from(x as f32)));
+        }
+    }
+
+    #[test]
+    fn a_heading_is_told_as_it_was_given() {
+        for heading in [0.0, 0.5, -3.0, 3.1, 1.6_f64] {
+            let pose = Pose::planar([1.0, 2.0], heading);
+            assert!((pose.heading() - heading).abs() < 1e-14);
+            let (sine, cosine) = farsa_num::sin_cos(heading);
+            assert!(same(pose.transform([1.0, 0.0, 0.0]), [1.0 + cosine, 2.0 + sine, 0.0]));
         }
     }
 

@@ -29,6 +29,8 @@ pub struct Probe<B = BodyId, J = JointId, A = ActuatorId> {
     pub bodies: Vec<B>,
     /// The bodies that move freely.
     pub floating: Vec<B>,
+    /// The bodies that can be put anywhere on a plane: place and heading are kept, and they are at rest.
+    pub planar: Vec<B>,
     /// The joints with two positions [rad or m] between which they can be placed.
     pub joints: Vec<(J, [f32; 2])>,
     /// The actuators with the lower and upper ends of the two numbers of their commands.
@@ -62,6 +64,7 @@ impl Probe {
         Self {
             bodies: kinds().map(|(i, _)| BodyId(i as u16)).collect(),
             floating: kinds().filter(|(_, k)| *k == JointKind::Floating).map(|(i, _)| BodyId(i as u16)).collect(),
+            planar: Vec::new(),
             joints: robot.joints().map(|joint| (joint, range(joint))).collect(),
             actuators: (0u16..).map(ActuatorId).zip(robot.actuators.iter().map(command)).collect(),
             steps: Self::STEPS,
@@ -74,6 +77,7 @@ impl Probe {
         Self {
             bodies: (0..count).map(BodyId).collect(),
             floating: Vec::new(),
+            planar: Vec::new(),
             joints: (0..count).map(|i| (JointId(i), [0.0, 1.0])).collect(),
             actuators: (0..count).map(|i| (ActuatorId(i), commands)).collect(),
             steps: Self::STEPS,
@@ -120,7 +124,7 @@ pub enum Promise {
     ClearForgets,
     /// A joint is where it was placed.
     JointPlaced,
-    /// A floating body is where it was placed, and only a floating one.
+    /// A floating or planar body is where it was placed, and no other.
     BodyPlaced,
     /// After the setting up every port tells the truth.
     Arranged,

@@ -4,6 +4,26 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "alloc")]
+mod arena_crowd;
+#[cfg(feature = "alloc")]
+mod arena_description;
+#[cfg(feature = "alloc")]
+mod arena_error;
+#[cfg(feature = "alloc")]
+mod arena_grid;
+#[cfg(feature = "alloc")]
+mod arena_model;
+#[cfg(feature = "alloc")]
+mod arena_place;
+#[cfg(feature = "alloc")]
+mod arena_step;
+#[cfg(feature = "alloc")]
+mod arena_surface;
+#[cfg(feature = "alloc")]
+mod arena_view;
+#[cfg(feature = "alloc")]
+mod arena_world;
 #[cfg(all(feature = "lanes", not(test)))]
 mod batch;
 #[cfg(feature = "alloc")]
@@ -56,4 +76,13 @@ pub mod articulated {
     };
     #[cfg(feature = "alloc")]
     pub use crate::world::World;
+}
+
+/// Kinematic planar worlds of wheeled robots.
+#[cfg(feature = "alloc")]
+pub mod arena {
+    pub use crate::arena_description::{Area, AreaShape, Arena, CollisionRule, Cylinder, Placed, Search, Wall};
+    pub use crate::arena_error::{ArenaError, Part};
+    pub use crate::arena_place::FreePlace;
+    pub use crate::arena_world::World;
 }

@@ -57,7 +57,7 @@ fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R)
     best
 }
 
-fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vector<R>) -> Entry<R> {
+pub(crate) fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vector<R>) -> Entry<R> {
     let zero = R::of(0.0);
     let one = R::of(1.0);
     let mut enter: Entry<R> = None;
