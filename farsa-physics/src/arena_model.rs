@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use farsa_body::{ActuatorId, BodyId, JointId, MobileParts, MobileRobot};
+use farsa_body::{ActuatorId, AnalyticInfrared, BodyId, JointId, MobileParts, MobileRobot};
 use farsa_num::{Scalar, atan2, sin_cos};
 
 use crate::arena_description::{AreaShape, Arena, CollisionRule, Search};
@@ -31,6 +31,8 @@ pub(crate) struct Kind {
     pub(crate) speeds: [f32; 2],
     /// Where the infrared sensors look, in the robot's frame.
     pub(crate) infrared: Vec<[f32; 2]>,
+    /// How infrared sensors see it.
+    pub(crate) seen: AnalyticInfrared,
 }
 
 /// A wall.
@@ -54,6 +56,7 @@ pub(crate) struct Round {
     pub(crate) height: f32,
     pub(crate) color: [f32; 3],
     pub(crate) lamp: f32,
+    pub(crate) seen: AnalyticInfrared,
 }
 
 /// An area.
@@ -80,6 +83,8 @@ pub(crate) struct Model {
     /// Whether any robot has an attachment device.
     pub(crate) attachments: bool,
     pub(crate) grid: bool,
+    /// How infrared sensors see a wall.
+    pub(crate) wall_seen: AnalyticInfrared,
     /// The largest radius of a robot or cylinder [m].
     pub(crate) largest: f32,
     /// The longest way of a robot in a step [m].
@@ -145,6 +150,7 @@ fn kind(robot: &MobileRobot, time_step: f64) -> Kind {
         advance: (0.5 * wheel * time_step) as f32,
         speeds: narrow([0.5 * wheel, wheel / robot.track]),
         infrared: robot.infrared.angles.iter().map(|angle| direction(*angle)).collect(),
+        seen: AnalyticInfrared::of(robot.radius as f32),
         robot: robot.clone(),
     }
 }
@@ -307,6 +313,7 @@ impl Model {
             height: cylinder.height as f32,
             color: narrow(cylinder.color),
             lamp: cylinder.lamp as f32,
+            seen: AnalyticInfrared::of(cylinder.radius as f32),
         });
         let patches = arena.areas.iter().map(|area| {
             let (half, disc) = match area.shape {
@@ -333,6 +340,7 @@ impl Model {
                 Search::All => false,
                 Search::Grid => true,
             },
+            wall_seen: AnalyticInfrared::of(0.0),
             actuators: 0,
             initial: Vec::new(),
             kinds,
@@ -403,6 +411,15 @@ impl Model {
         match body.checked_sub(self.robots.len()) {
             None => self.kind(body).radius,
             Some(round) => self.rounds[round].radius,
+        }
+    }
+
+    /// How infrared sensors see a robot or cylinder.
+    #[inline(always)]
+    pub(crate) fn seen(&self, body: usize) -> &AnalyticInfrared {
+        match body.checked_sub(self.robots.len()) {
+            None => &self.kind(body).seen,
+            Some(round) => &self.rounds[round].seen,
         }
     }
 

@@ -11,7 +11,7 @@ pub(crate) const SWEEPS: usize = 8;
 /// What pushing leaves between discs, in parts of the radius: enough for rounding not to let them overlap.
 pub(crate) const LEFT: f32 = 1e-4;
 /// Half the range of a wheel's position [rad]: it goes on at the other end, a whole number of turns further.
-const WHEEL_RANGE: f64 = 128.0 * core::f64::consts::PI;
+const WHEEL_RANGE: f64 = 32.0 * core::f64::consts::PI;
 
 /// Words of a robot between its steps' parts: where it was, what it is pushed by, whether it is set back or will be.
 pub(crate) const WORK_WORDS: usize = POSE_WORDS + 5;

@@ -357,6 +357,17 @@ pub(crate) fn attached(world: &impl View, robot: BodyId) -> Option<BodyId> {
     (robot.index() < world.model().robots.len()).then(|| body_of(robot_word(world, robot.index(), HELD)))?
 }
 
+/// Whether an attachment device holds or wants to.
+pub(crate) fn holds(world: &impl View) -> bool {
+    let model = world.model();
+    let wants = |robot: usize| {
+        let device = model.kind(robot).robot.attachment.is_some();
+        let last = model.kind(robot).robot.actuators() - 1;
+        robot_word(world, robot, HELD) >= 0.0 || device && world.word(model.command(robot, last)) > 0.5
+    };
+    model.attachments && (0..model.robots.len()).any(wants)
+}
+
 pub(crate) fn clear(world: &mut impl View) {
     for i in 0..world.model().len() {
         world.set_word(i, world.model().initial[i]);

@@ -11,7 +11,8 @@ use farsa_body::{
 use crate::arena_crowd::Crowd;
 use crate::arena_description::Arena;
 use crate::arena_error::ArenaError;
-use crate::arena_model::{HELD, Model};
+use crate::arena_infrared::ring_among;
+use crate::arena_model::Model;
 use crate::arena_step::{WORK_WORDS, step};
 use crate::arena_view::{self as view, View};
 
@@ -19,7 +20,7 @@ use crate::arena_view::{self as view, View};
 ///
 /// - *Motion*: along an arc about the instantaneous centre of rotation, exactly; commands of wheels are brought within the robot's
 ///   greatest wheel speed, a NaN stands still. LEDs and signals are shown from the next step on. Wheels turn whatever becomes of
-///   the motion; their positions go on at the other end of +-64 turns.
+///   the motion; their positions go on at the other end of +-16 turns.
 /// - *Collisions*: [`CollisionRule`](crate::arena::CollisionRule). A robot that was set back is told to be at rest.
 /// - *Contacts*: pair `r` is robot `r` and whatever it overlapped most in the last step, before that was undone or pushed
 ///   apart, with a nominal normal force of 1 N; `None` is a wall, and nothing where it does not touch.
@@ -62,16 +63,26 @@ impl World {
         self.model.parts(robot)
     }
 
-    /// Whether a device holds or wants to.
-    fn holds(&self) -> bool {
-        let wants = |robot: usize| {
-            let kind = self.model.kind(robot);
-            let holds = self.words[self.model.robot_word(robot, HELD)] >= 0.0;
-            holds
-                || kind.robot.attachment.is_some()
-                    && self.words[self.model.command(robot, kind.robot.actuators() - 1)] > 0.5
-        };
-        self.model.attachments && (0..self.robots()).any(wants)
+    /// Readings of a robot's ring of infrared sensors by [`AnalyticInfrared`](farsa_body::AnalyticInfrared); `out` [sensors].
+    ///
+    /// The same as a sensor that asks [`Planar::near`], but faster, and in lanes, too: `Batch::infrared`.
+    /// A shorter slice gets the first sensors.
+    pub fn infrared(&self, robot: usize, out: &mut [f32]) {
+        let robot = robot.min(self.robots() - 1);
+        ring_among(&self.model, &self.words, robot, out, |[x, y], reach, tell| {
+            view::in_order(self, [x - reach, y - reach], [x + reach, y + reach], tell);
+        });
+    }
+
+    /// The state, to be changed; [`Arrange::arranged`] must follow.
+    #[cfg(all(feature = "lanes", not(test)))]
+    pub(crate) fn words_mut(&mut self) -> &mut [f32] {
+        &mut self.words
+    }
+
+    #[cfg(all(feature = "lanes", not(test)))]
+    pub(crate) fn words(&self) -> &[f32] {
+        &self.words
     }
 }
 
@@ -98,7 +109,7 @@ impl View for World {
 
 impl farsa_body::World for World {
     fn step(&mut self) {
-        if self.crowd.grid.is_some() || self.holds() {
+        if self.crowd.grid.is_some() || view::holds(self) {
             self.crowd.step(&self.model, &mut self.words, &mut self.work);
         } else {
             step::<f32>((), &self.model, &mut self.words, &mut self.work);

@@ -4,6 +4,8 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(all(feature = "lanes", not(test)))]
+mod arena_batch;
 #[cfg(feature = "alloc")]
 mod arena_crowd;
 #[cfg(feature = "alloc")]
@@ -12,6 +14,10 @@ mod arena_description;
 mod arena_error;
 #[cfg(feature = "alloc")]
 mod arena_grid;
+#[cfg(feature = "alloc")]
+mod arena_infrared;
+#[cfg(all(feature = "lanes", not(test)))]
+mod arena_lockstep;
 #[cfg(feature = "alloc")]
 mod arena_model;
 #[cfg(feature = "alloc")]
@@ -81,6 +87,8 @@ pub mod articulated {
 /// Kinematic planar worlds of wheeled robots.
 #[cfg(feature = "alloc")]
 pub mod arena {
+    #[cfg(all(feature = "lanes", not(test)))]
+    pub use crate::arena_batch::{Batch, Lane};
     pub use crate::arena_description::{Area, AreaShape, Arena, CollisionRule, Cylinder, Placed, Search, Wall};
     pub use crate::arena_error::{ArenaError, Part};
     pub use crate::arena_place::FreePlace;

@@ -1,0 +1,320 @@
+//! A lane of a batch of planar worlds is the world alone, bit for bit, at every instruction set of this machine.
+#![allow(missing_docs, clippy::unwrap_used)]
+#![cfg(feature = "lanes")]
+
+use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, MobileRobot,
+    PairContact, PairId, Planar, Pose, Rays, Snapshot, Twist, World as _,
+};
+use farsa_num::fearless_simd::Level;
+use farsa_num::{Digest, Domain, Stream};
+use farsa_physics::arena::{Arena, ArenaError, Batch, CollisionRule, Cylinder, FreePlace, Lane, Wall, World};
+
+/// Control steps of every lane; ten times as many with `FARSA_LONG=1`.
+fn steps() -> usize {
+    if std::env::var_os("FARSA_LONG").is_some() { 1_000_000 } else { 100_000 }
+}
+
+const WORLDS: usize = 16;
+/// Lanes are refilled every so often, but not together.
+const LIFE: usize = 700;
+/// The lane whose commands are no numbers.
+const LOST: usize = 3;
+
+fn khepera() -> Arena {
+    let mut arena = Arena::walled(0.4, 0.4);
+    arena.add_cylinder(Cylinder::new([0.3, 0.3], 0.0125));
+    arena.add_robot(MobileRobot::khepera(), [0.1, 0.2], 0.0);
+    arena
+}
+
+/// Three robots, two of which can hold, in a small square.
+fn three(collisions: CollisionRule) -> Arena {
+    let mut arena = Arena { collisions, ..Arena::walled(0.7, 0.7) };
+    arena.add_wall(Wall::segment([0.3, 0.3], [0.4, 0.35], 0.02));
+    arena.add_cylinder(Cylinder::new([0.6, 0.6], 0.02));
+    arena.add_robot(MobileRobot::e_puck(), [0.1, 0.6], 0.0);
+    arena.add_robot(MobileRobot::marxbot(), [0.2, 0.2], 0.0);
+    arena.add_robot(MobileRobot::marxbot(), [0.55, 0.3], 0.0);
+    arena
+}
+
+/// What happens in one lane before each step, the same alone and in a batch.
+struct Script {
+    lane: usize,
+    stream: Stream,
+    robots: Vec<(MobileRobot, usize)>,
+    holds: bool,
+}
+
+impl Script {
+    fn new(arena: &Arena, lane: usize, holds: bool) -> Self {
+        let mut first = 0;
+        let robots = arena.robots.iter().map(|placed| {
+            first += placed.robot.actuators();
+            (placed.robot.clone(), first - placed.robot.actuators())
+        });
+        let robots = robots.collect();
+        Self { lane, stream: Stream::new(9, Domain::Motor, lane as u32, 0, 0), robots, holds }
+    }
+
+    fn act<W>(&mut self, world: &mut W, t: usize)
+    where
+        W: Planar<Body = BodyId> + Arrange<Joint = JointId> + Actuated<Actuator = ActuatorId>,
+    {
+        let shifted = t + 37 * self.lane;
+        if t > 0 && shifted.is_multiple_of(LIFE) {
+            world.clear();
+            let mut placed: Vec<(BodyId, f32)> = Vec::new();
+            // From the largest on, or there may be no room left.
+            for i in (0..self.robots.len()).rev() {
+                let size = if self.robots.len() == 1 { 0.4 } else { 0.7 };
+                let radius = self.robots[i].0.radius as f32;
+                let free = FreePlace { walls: 0.001, ..FreePlace::new([[0.0; 2], [size; 2]], radius) };
+                if let Ok(at) = free.clear_of(&placed).find(world, &mut self.stream) {
+                    let heading = self.stream.range(-3.0, 3.0);
+                    world.place_body(BodyId(i as u16), Pose::planar(at, heading), Twist::default());
+                    world.arranged();
+                }
+                placed.push((BodyId(i as u16), 0.001));
+            }
+        }
+        if shifted.is_multiple_of(11) {
+            for (robot, first) in &self.robots {
+                for k in 0..robot.actuators() {
+                    let most = if k < 2 { robot.max_wheel_speed as f32 } else { 1.0 };
+                    let value = self.stream.range(-0.5 * most, most);
+                    let device = robot.attachment.is_some() && k + 1 == robot.actuators();
+                    let value = if device && !self.holds { 0.0 } else { value };
+                    let value = if self.lane == LOST && t > 1000 { f32::NAN } else { value };
+                    world.command(ActuatorId((first + k) as u16), [value, 0.0]);
+                }
+            }
+        }
+    }
+}
+
+fn digest(world: &impl Snapshot, words: &mut [f32]) -> Digest {
+    world.save(words);
+    let mut digest = Digest::new();
+    digest.add_f32s(words);
+    digest
+}
+
+fn equal(name: &str, arena: &Arena, steps: usize, holds: bool) {
+    let mut truths = Vec::new();
+    let (mut touches, mut held) = (0, 0);
+    for lane in 0..WORLDS {
+        let mut world = World::new(arena).unwrap();
+        let mut script = Script::new(arena, lane, holds);
+        let mut words = vec![0.0; world.snapshot_len()];
+        let mut digests = Vec::new();
+        for t in 0..steps {
+            script.act(&mut world, t);
+            world.step();
+            digests.push(digest(&world, &mut words));
+            touches += (0..world.pairs()).filter(|pair| world.touches(PairId(*pair as u16))).count();
+            held += (0..world.robots()).filter(|r| world.attached(BodyId(*r as u16)).is_some()).count();
+        }
+        let mut rings = [[0.0_f32; 24]; 3];
+        (0..world.robots()).for_each(|robot| world.infrared(robot, &mut rings[robot]));
+        truths.push((digests, words, rings));
+    }
+    println!("{name}: {touches} touches, {held} held in {WORLDS} x {steps} steps");
+    assert!(touches > steps / 2 && (held > 0) == holds);
+    for level in Batch::levels(Level::new()) {
+        for lanes in [8, 16] {
+            let mut batch = Batch::new(arena, lanes, level).unwrap();
+            let mut scripts: Vec<Script> = (0..lanes).map(|lane| Script::new(arena, lane, holds)).collect();
+            let mut own = truths[0].1.clone();
+            for t in 0..steps {
+                for (lane, script) in scripts.iter_mut().enumerate() {
+                    script.act(&mut batch.lane(lane), t);
+                }
+                batch.step();
+                for (lane, truth) in truths.iter().enumerate().take(lanes) {
+                    let same = digest(&batch.lane(lane), &mut own) == truth.0[t];
+                    assert!(same, "{name}, {lanes} lanes, {level:?}: lane {lane} differs after step {t}");
+                }
+            }
+            for (robot, placed) in arena.robots.iter().enumerate() {
+                let sensors = placed.robot.infrared.angles.len();
+                let mut ring = vec![f32::NAN; sensors * lanes];
+                batch.infrared(robot, &mut ring);
+                for (lane, truth) in truths.iter().enumerate().take(lanes) {
+                    for k in 0..sensors {
+                        assert_eq!(ring[k * lanes + lane].to_bits(), truth.2[robot][k].to_bits(), "{name} {level:?}");
+                    }
+                }
+            }
+            println!("{name}: {lanes} lanes of {level:?}, equal bits");
+        }
+    }
+}
+
+#[test]
+fn a_khepera_in_a_lane_is_the_khepera_alone() {
+    equal("one khepera", &khepera(), steps(), false);
+}
+
+#[test]
+fn robots_that_meet_and_hold_in_a_lane_are_those_alone() {
+    equal("undone", &three(CollisionRule::Undone), steps() / 10, false);
+    equal("circles", &three(CollisionRule::Circles), steps() / 10, false);
+    equal("holding", &three(CollisionRule::Undone), steps() / 20, true);
+}
+
+#[test]
+fn readings_of_the_ring_are_the_models() {
+    use farsa_body::AnalyticInfrared;
+    let arena = khepera();
+    let mut world = World::new(&arena).unwrap();
+    let mut stream = Stream::new(5, Domain::Start, 0, 0, 0);
+    let mut seen = 0;
+    for _ in 0..2000 {
+        let at = [stream.range(0.036, 0.364), stream.range(0.036, 0.364)];
+        let pose = Pose::planar(at, stream.range(-3.0, 3.0));
+        world.place_body(BodyId(0), pose, Twist::default());
+        world.arranged();
+        let mut ring = [0.0; 8];
+        world.infrared(0, &mut ring);
+        for (k, angle) in arena.robots[0].robot.infrared.angles.iter().enumerate() {
+            let (sine, cosine) = farsa_num::sin_cos(pose.heading() + *angle as f32);
+            let mut sum = 0.0;
+            world.near(at, 0.1, &mut |near| {
+                if near.body != Some(BodyId(0)) {
+                    let [x, y] = [near.point[0] - at[0], near.point[1] - at[1]];
+                    let toward = (x * cosine + y * sine) / (x * x + y * y).sqrt();
+                    sum += AnalyticInfrared::of(near.radius).response(near.distance - 0.035, toward);
+                }
+            });
+            assert!((ring[k] - sum.clamp(0.0, 1.0)).abs() < 1e-3, "{k}: {} {sum}", ring[k]);
+            seen += usize::from(ring[k] > 0.0);
+        }
+    }
+    assert!(seen > 1000, "{seen}");
+}
+
+#[test]
+fn a_command_for_all_lanes_is_one_for_each() {
+    let arena = khepera();
+    let [mut all, mut each] = [(); 2].map(|()| Batch::new(&arena, 8, Level::new()).unwrap());
+    let values: Vec<f32> = (0..8).map(|i| i as f32 - 2.0).collect();
+    all.command(ActuatorId(1), &values);
+    all.command(ActuatorId(2), &values);
+    for (lane, value) in values.iter().enumerate() {
+        each.lane(lane).command(ActuatorId(1), [*value, 0.0]);
+    }
+    all.step();
+    each.step();
+    assert_eq!(format!("{all:?}"), format!("{each:?}"));
+    assert_eq!(Batch::new(&arena, 12, Level::new()).err(), Some(ArenaError::Lanes { lanes: 12, nearest: 8 }));
+}
+
+/// One lane of a batch as a world; its neighbours do something else.
+struct InLane(std::cell::RefCell<Batch>);
+
+impl InLane {
+    const LANE: usize = 5;
+
+    fn with<T>(&self, ask: impl FnOnce(&mut Lane<'_>) -> T) -> T {
+        ask(&mut self.0.borrow_mut().lane(Self::LANE))
+    }
+}
+
+impl Handles for InLane {
+    type Body = BodyId;
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+impl farsa_body::World for InLane {
+    fn step(&mut self) {
+        let batch = self.0.get_mut();
+        batch.lane(2).command(ActuatorId(0), [3.0, 0.0]);
+        batch.step();
+    }
+    fn time_step(&self) -> f32 {
+        0.05
+    }
+}
+impl Kinematics for InLane {
+    fn pose(&self, body: BodyId) -> Pose {
+        self.with(|lane| lane.pose(body))
+    }
+    fn velocity(&self, body: BodyId) -> Twist {
+        self.with(|lane| lane.velocity(body))
+    }
+}
+impl Joints for InLane {
+    fn position(&self, joint: JointId) -> f32 {
+        self.with(|lane| lane.position(joint))
+    }
+    fn speed(&self, joint: JointId) -> f32 {
+        self.with(|lane| lane.speed(joint))
+    }
+}
+impl Actuated for InLane {
+    fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
+        self.with(|lane| lane.command(actuator, value));
+    }
+}
+impl Contacts for InLane {
+    fn pairs(&self) -> usize {
+        self.with(|lane| lane.pairs())
+    }
+    fn pair_bodies(&self, pair: PairId) -> [Option<BodyId>; 2] {
+        self.with(|lane| lane.pair_bodies(pair))
+    }
+    fn pair_contact(&self, pair: PairId) -> PairContact {
+        self.with(|lane| lane.pair_contact(pair))
+    }
+}
+impl Rays for InLane {
+    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+        self.with(|lane| lane.cast(origin, direction, range))
+    }
+}
+impl Snapshot for InLane {
+    fn snapshot_len(&self) -> usize {
+        self.with(|lane| lane.snapshot_len())
+    }
+    fn save(&self, out: &mut [f32]) {
+        self.with(|lane| lane.save(out));
+    }
+    fn restore(&mut self, from: &[f32]) {
+        self.with(|lane| lane.restore(from));
+    }
+}
+impl Arrange for InLane {
+    fn clear(&mut self) {
+        self.with(Arrange::clear);
+    }
+    fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
+        self.with(|lane| lane.place_joint(joint, position, speed));
+    }
+    fn place_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
+        self.with(|lane| lane.place_body(body, pose, twist));
+    }
+    fn arranged(&mut self) {
+        self.with(Arrange::arranged);
+    }
+}
+
+#[test]
+fn a_lane_conforms() {
+    let arena = three(CollisionRule::Undone);
+    let bodies: Vec<BodyId> = (0..4).map(BodyId).collect();
+    let motors = (0..3).flat_map(|robot| arena.parts(robot).motors.map(|motor| (motor, [[-6.0, 0.0], [6.0, 0.0]])));
+    let probe = Probe {
+        planar: bodies.clone(),
+        joints: (0..6).map(|joint| (JointId(joint), [-3.0, 3.0])).collect(),
+        actuators: motors.collect(),
+        bodies,
+        ..Probe::numbered(0, [[0.0; 2]; 2])
+    };
+    let make = || InLane(std::cell::RefCell::new(Batch::new(&arena, 8, Level::new()).unwrap()));
+    assert_eq!(check_world(make, &probe), Ok(()));
+    assert_eq!(check_arrange(make, &probe), Ok(()));
+    assert_eq!(check_rays(&make(), &probe.bodies, &[[0.1, 0.4, 0.05]], 1.0), Ok(()));
+}
