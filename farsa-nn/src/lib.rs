@@ -8,6 +8,7 @@ mod layout;
 mod leak;
 mod network;
 mod perceptron;
+mod perceptron_lanes;
 
 pub use controller::Controller;
 pub use error::Error;
@@ -15,3 +16,4 @@ pub use layout::{Layout, ParameterKind, Parts};
 pub use leak::Leak;
 pub use network::Network;
 pub use perceptron::Perceptron;
+pub use perceptron_lanes::PerceptronLanes;

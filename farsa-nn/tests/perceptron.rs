@@ -1,6 +1,6 @@
 //! The single layer against its equation, and through the trait.
 
-use farsa_nn::{Controller, Error, Perceptron};
+use farsa_nn::{Controller, Error, Perceptron, PerceptronLanes};
 use farsa_num::fearless_simd::Level;
 use farsa_num::levels;
 use proptest::prelude::*;
@@ -29,6 +29,47 @@ proptest! {
             }
         }
     }
+}
+
+proptest! {
+    #[test]
+    fn a_lane_has_the_bits_of_the_layer_alone(
+        lanes in 1..40_usize, (inputs, outputs) in (0..9_usize, 0..4_usize), seed in any::<u64>(),
+    ) {
+        let mut stream = farsa_num::Stream::new(seed, farsa_num::Domain::Network, 0, 0, 0);
+        let count = Perceptron::parameter_count(inputs, outputs);
+        let mut draw = |len: usize| (0..len).map(|_| stream.range(-6.0, 6.0)).collect::<Vec<f32>>();
+        let genomes: Vec<Vec<f32>> = (0..lanes).map(|_| draw(count)).collect();
+        let x = draw(inputs * lanes);
+        for level in levels(Level::new()) {
+            let mut together = PerceptronLanes::new(inputs, outputs, 0.7, lanes, vec![0.0; count * lanes])?.with_level(level);
+            for (lane, genome) in genomes.iter().enumerate() {
+                together.set_lane(lane, genome)?;
+            }
+            let mut y = vec![f32::NAN; outputs * lanes];
+            together.step(&x, &mut y);
+            for (lane, genome) in genomes.iter().enumerate() {
+                let own: Vec<f32> = x.iter().skip(lane).step_by(lanes).copied().collect();
+                let mut alone = vec![f32::NAN; outputs];
+                Perceptron::new(inputs, outputs, 0.7, genome)?.step(&own, &mut alone);
+                for (i, y_alone) in alone.iter().enumerate() {
+                    prop_assert_eq!(y[i * lanes + lane].to_bits(), y_alone.to_bits(), "{:?}", level);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn lanes_are_checked_like_the_layer_alone() {
+    let build = |slope, parameters: &[f32]| PerceptronLanes::new(6, 2, slope, 2, parameters).err();
+    assert_eq!(build(1.0, &[0.0; 28]), None);
+    assert_eq!(build(1.0, &[0.0; 14]), Some(Error::ParameterCount { expected: 28, found: 14 }));
+    assert_eq!(build(f32::INFINITY, &[0.0; 28]), Some(Error::Slope { value: f32::INFINITY }));
+    let mut layers = PerceptronLanes::new(1, 1, 1.0, 2, [1.0; 4]).expect("valid");
+    assert_eq!(layers.set_lane(0, &[0.0]), Err(Error::ParameterCount { expected: 2, found: 1 }));
+    assert_eq!(layers.set_lane(0, &[0.0, f32::NAN]), Err(Error::NotFinite { index: 1 }));
+    assert_eq!(layers.lanes(), 2);
 }
 
 #[test]

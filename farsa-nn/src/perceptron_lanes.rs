@@ -1,0 +1,149 @@
+//! Many single layers side by side, one in each lane: for the lanes of a batch of worlds.
+
+use farsa_num::fearless_simd::{Level, Simd, f32x8, f32x16};
+use farsa_num::{Scalar, logistic};
+
+use crate::kernel::level;
+use crate::{Error, Perceptron};
+
+/// [`Perceptron`]s of one shape and slope, each with parameters of its own, that step together.
+///
+/// Everything is `[values x lanes]`: one value of every lane, then the next value of every lane. Each lane has the bits of
+/// the [`Perceptron`] alone.
+///
+/// ```
+/// use farsa_nn::{Controller, Perceptron, PerceptronLanes};
+///
+/// let mut layers = PerceptronLanes::new(1, 1, 1.0, 8, [0.0; 16])?;
+/// for lane in 0..8 {
+///     layers.set_lane(lane, &[lane as f32, 0.5])?;
+/// }
+/// let mut y = [0.0; 8];
+/// layers.step(&[1.0; 8], &mut y);
+/// let mut alone = [0.0];
+/// Perceptron::new(1, 1, 1.0, [3.0, 0.5])?.step(&[1.0], &mut alone);
+/// assert_eq!(y[3], alone[0]);
+/// # Ok::<(), farsa_nn::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PerceptronLanes<P> {
+    inputs: usize,
+    outputs: usize,
+    slope: f32,
+    lanes: usize,
+    parameters: P,
+    level: Level,
+}
+
+impl<P: AsRef<[f32]>> PerceptronLanes<P> {
+    /// Layers over these parameters [[`parameter_count`](Perceptron::parameter_count) x lanes].
+    ///
+    /// # Errors
+    /// [`Error::Slope`], [`Error::ParameterCount`] or [`Error::NotFinite`]: the first that applies.
+    pub fn new(inputs: usize, outputs: usize, slope: f32, lanes: usize, parameters: P) -> Result<Self, Error> {
+        if !slope.is_finite() {
+            return Err(Error::Slope { value: slope });
+        }
+        let expected = Perceptron::parameter_count(inputs, outputs).saturating_mul(lanes);
+        let found = parameters.as_ref().len();
+        if expected != found {
+            return Err(Error::ParameterCount { expected, found });
+        }
+        match parameters.as_ref().iter().position(|p| !p.is_finite()) {
+            Some(index) => Err(Error::NotFinite { index }),
+            None => Ok(Self { inputs, outputs, slope, lanes, parameters, level: level() }),
+        }
+    }
+
+    /// The same layers over the instructions of this level.
+    pub fn with_level(self, level: Level) -> Self {
+        Self { level, ..self }
+    }
+
+    /// Number of layers.
+    pub fn lanes(&self) -> usize {
+        self.lanes
+    }
+
+    /// Steps every layer: `x` [inputs x lanes] to `y` [outputs x lanes]; does nothing if one of them is shorter.
+    pub fn step(&self, x: &[f32], y: &mut [f32]) {
+        let enough = x.len() >= self.inputs * self.lanes && y.len() >= self.outputs * self.lanes;
+        debug_assert!(enough, "{} inputs and {} outputs of {} lanes", self.inputs, self.outputs, self.lanes);
+        if !enough {
+            return;
+        }
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            if let (Some(simd), true) = (self.level.as_avx512(), self.lanes >= 16) {
+                return self.vectors::<f32x16<_>>(simd, x, y);
+            }
+            if let Some(simd) = self.level.as_avx2() {
+                return self.vectors::<f32x8<_>>(simd, x, y);
+            }
+            if let Some(simd) = self.level.as_sse2() {
+                return self.vectors::<f32x8<_>>(simd, x, y);
+            }
+        }
+        farsa_num::fearless_simd::dispatch!(self.level, simd => self.any(simd, x, y));
+    }
+
+    #[inline(always)]
+    fn any<V: Simd>(&self, simd: V, x: &[f32], y: &mut [f32]) {
+        self.vectors::<f32x8<V>>(simd, x, y);
+    }
+
+    fn vectors<S: Scalar<Real = f32>>(&self, simd: S::Simd, x: &[f32], y: &mut [f32]) {
+        S::vectorize(
+            simd,
+            #[inline(always)]
+            || {
+                let whole = self.lanes - self.lanes % S::LANES;
+                self.over::<S>(simd, 0..whole, x, y);
+                self.over::<f32>((), whole..self.lanes, x, y);
+            },
+        );
+    }
+
+    #[inline(always)]
+    fn over<S: Scalar<Real = f32>>(&self, simd: S::Simd, lanes: core::ops::Range<usize>, x: &[f32], y: &mut [f32]) {
+        let parameters = self.parameters.as_ref();
+        let (stride, targets) = (self.lanes, self.outputs);
+        let slope = S::splat(simd, self.slope);
+        let mut first = lanes.start;
+        while first < lanes.end {
+            for i in 0..targets {
+                let mut sum = S::load(simd, &parameters[(self.inputs * targets + i) * stride + first..]);
+                for j in 0..self.inputs {
+                    let weight = S::load(simd, &parameters[(j * targets + i) * stride + first..]);
+                    sum += weight * S::load(simd, &x[j * stride + first..]);
+                }
+                logistic(slope * sum).store(&mut y[i * stride + first..]);
+            }
+            first += S::LANES;
+        }
+    }
+}
+
+impl<P: AsRef<[f32]> + AsMut<[f32]>> PerceptronLanes<P> {
+    /// Gives one layer its parameters [[`parameter_count`](Perceptron::parameter_count)], in the order of a [`Perceptron`].
+    ///
+    /// A lane beyond the last changes nothing, which is a mistake.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`] or [`Error::NotFinite`]; nothing is changed then.
+    pub fn set_lane(&mut self, lane: usize, parameters: &[f32]) -> Result<(), Error> {
+        debug_assert!(lane < self.lanes, "lane {lane} of {}", self.lanes);
+        let (expected, found) = (Perceptron::parameter_count(self.inputs, self.outputs), parameters.len());
+        if expected != found {
+            return Err(Error::ParameterCount { expected, found });
+        }
+        if let Some(index) = parameters.iter().position(|p| !p.is_finite()) {
+            return Err(Error::NotFinite { index });
+        }
+        if lane < self.lanes {
+            let own = self.parameters.as_mut().iter_mut().skip(lane).step_by(self.lanes);
+            own.zip(parameters).for_each(|(to, x)| *to = *x);
+        }
+        Ok(())
+    }
+}
