@@ -114,7 +114,9 @@ impl Crowd {
         match others.get_mut(..count) {
             Some(others) => {
                 others.sort_unstable();
-                others.iter().for_each(|body| each(usize::from(*body)));
+                for body in others {
+                    each(usize::from(*body));
+                }
             }
             None => (0..model.round_bodies()).filter(|body| touched(*body)).for_each(each),
         }

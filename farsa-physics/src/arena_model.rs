@@ -251,13 +251,12 @@ impl Model {
         for (i, start) in arena.robots.iter().enumerate() {
             placed(Part::Robot(i), start.at, start.heading)?;
             let known = kinds.iter().position(|kind| kind.robot == start.robot);
-            let number = match known {
-                Some(number) => number,
-                None => {
-                    check_robot(i, &start.robot, arena.time_step)?;
-                    kinds.push(kind(&start.robot, arena.time_step));
-                    kinds.len() - 1
-                }
+            let number = if let Some(number) = known {
+                number
+            } else {
+                check_robot(i, &start.robot, arena.time_step)?;
+                kinds.push(kind(&start.robot, arena.time_step));
+                kinds.len() - 1
             };
             numbers.push((number as u16, first as u16));
             first += start.robot.actuators();

@@ -135,13 +135,11 @@ pub(crate) fn pair_contact(world: &impl View, pair: PairId) -> PairContact {
 /// What colour a robot or cylinder shows.
 fn color(world: &impl View, body: usize) -> [f32; 3] {
     let model = world.model();
-    match body.checked_sub(model.robots.len()) {
-        Some(round) => model.rounds[round].color,
-        None => {
-            let shown = [0, 1, 2].map(|k| robot_word(world, body, SHOWN + k));
-            if shown.iter().any(|x| *x > 0.0) { shown } else { model.kind(body).color }
-        }
+    if let Some(round) = body.checked_sub(model.robots.len()) {
+        return model.rounds[round].color;
     }
+    let shown = [0, 1, 2].map(|k| robot_word(world, body, SHOWN + k));
+    if shown.iter().any(|x| *x > 0.0) { shown } else { model.kind(body).color }
 }
 
 fn signal(world: &impl View, body: usize) -> Option<f32> {
@@ -395,7 +393,9 @@ pub(crate) fn place_body(world: &mut impl View, body: BodyId, pose: Pose) {
     if body < world.model().robots.len() {
         let first = world.model().robot_word(body, 0);
         (VELOCITY..VELOCITY + 3).chain(CONTACT..CONTACT + 5).for_each(|k| world.set_word(first + k, 0.0));
-        [MET, HELD].into_iter().for_each(|k| world.set_word(first + k, NOTHING));
+        for k in [MET, HELD] {
+            world.set_word(first + k, NOTHING);
+        }
         for holder in 0..world.model().robots.len() {
             let held = world.model().robot_word(holder, HELD);
             if world.model().attachments && world.word(held) == body as f32 {

@@ -1,7 +1,7 @@
 //! Robots that run into things and into each other, and hold each other.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use farsa_body::{Actuated, BodyId, Contacts, Kinematics, MobileRobot, PairId, Planar, Snapshot, World as _};
+use farsa_body::{Actuated, BodyId, Contacts, Kinematics, MobileRobot, PairId, Planar, Rays, Snapshot, World as _};
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, CollisionRule, Cylinder, Search, Wall, World};
 
@@ -134,7 +134,6 @@ fn the_grid_changes_no_bit() {
                 let (sine, cosine) = farsa_num::sin_cos(stream.range(-3.0, 3.0));
                 let look = |world: &World| world.look(from, [cosine, sine], range, Some(BodyId(1)));
                 assert_eq!(look(&all), look(&grid));
-                use farsa_body::Rays;
                 let cast = |world: &World| world.cast([from[0], from[1], z], [0.8 * cosine, 0.8 * sine, 0.6], range);
                 assert_eq!(cast(&all), cast(&grid));
             }
