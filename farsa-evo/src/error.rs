@@ -31,6 +31,44 @@ pub enum EvoError {
         /// The probability asked for.
         rate: f64,
     },
+    /// A mutation rate that would end above its start.
+    RisingRate {
+        /// The first rate.
+        first: f64,
+        /// The last rate.
+        last: f64,
+    },
+    /// A gene has 1 to 16 bits.
+    GeneBits {
+        /// Bits asked for.
+        bits: u32,
+    },
+    /// Co-evolution needs at least two populations.
+    FewPopulations {
+        /// Populations asked for.
+        populations: usize,
+    },
+    /// Co-evolving populations have the same number of individuals.
+    UnequalPopulations {
+        /// Individuals of population 0.
+        first: usize,
+        /// The population that differs.
+        population: usize,
+        /// Its individuals.
+        individuals: usize,
+    },
+    /// Lineages of co-evolving populations that are not of one run: another seed or another number of generations.
+    OtherRun {
+        /// The population that does not belong to population 0.
+        population: usize,
+    },
+    /// A recorded history of as many generations does not have so many bytes, or has bits beyond them.
+    History {
+        /// Generations recorded.
+        generations: u32,
+        /// Bytes found.
+        bytes: usize,
+    },
     /// A population of more genes than [`Population::MAX_GENES`](crate::Population::MAX_GENES).
     TooLarge {
         /// Individuals asked for.
@@ -118,6 +156,20 @@ impl fmt::Display for EvoError {
                 write!(f, "a population of {population} is not a multiple of {parents} parents")
             }
             Self::Rate { rate } => write!(f, "a mutation rate of {rate} is not a probability"),
+            Self::RisingRate { first, last } => write!(f, "a mutation rate cannot fall from {first} to {last}"),
+            Self::GeneBits { bits } => write!(f, "a gene of {bits} bits, where 1 to 16 are possible"),
+            Self::FewPopulations { populations } => {
+                write!(f, "co-evolution of {populations} populations, fewer than 2")
+            }
+            Self::UnequalPopulations { first, population, individuals } => {
+                write!(f, "population {population} has {individuals} individuals, population 0 has {first}")
+            }
+            Self::OtherRun { population } => {
+                write!(f, "population {population} has another seed or other generations than population 0")
+            }
+            Self::History { generations, bytes } => {
+                write!(f, "{bytes} bytes are not the history of {generations} generations")
+            }
             Self::TooLarge { population, genes } => {
                 let limit = crate::Population::MAX_GENES;
                 write!(f, "{population} genomes of {genes} genes are more than {limit} genes")

@@ -4,6 +4,7 @@
 
 extern crate alloc;
 
+mod coevolution;
 mod decode;
 mod error;
 mod fitness;
@@ -14,9 +15,12 @@ mod random_search;
 #[cfg(feature = "serde")]
 mod saved;
 mod statistics;
+mod steady_history;
+mod steady_state;
 mod strategy;
 mod truncation;
 
+pub use coevolution::{Coevolution, Lineages};
 pub use decode::{GeneRange, decode};
 pub use error::EvoError;
 pub use fitness::Fitness;
@@ -25,5 +29,7 @@ pub use mutation::{BitMutation, Mutation, randomize};
 pub use population::Population;
 pub use random_search::{Found, RandomSearch};
 pub use statistics::Statistics;
+pub use steady_history::SteadyHistory;
+pub use steady_state::{SteadyState, SteadyStateConfig};
 pub use strategy::Strategy;
 pub use truncation::{GaConfig, TruncationGa};

@@ -6,7 +6,8 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::{BitMutation, EvoError, GaConfig, Population, randomize};
+use crate::mutation::randomize_bits;
+use crate::{BitMutation, EvoError, GaConfig, Population};
 
 /// The configuration, the seed and the selected parents of every generation of a [`TruncationGa`](crate::TruncationGa).
 ///
@@ -25,6 +26,9 @@ pub struct Lineage {
     seed: u64,
     /// Individuals selected from each generation, best first [generations x parents].
     selected: Vec<u32>,
+    /// Which of several populations of a run this is, told again by whoever reads it: the trial of its streams.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    number: u32,
 }
 
 impl Lineage {
@@ -34,7 +38,12 @@ impl Lineage {
     /// Those of [`GaConfig::validate`].
     pub fn new(config: GaConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
-        Ok(Self { config, seed, selected: Vec::new() })
+        Ok(Self { config, seed, selected: Vec::new(), number: 0 })
+    }
+
+    /// The same selections in another of several populations.
+    pub(crate) fn numbered(self, number: u32) -> Self {
+        Self { number, ..self }
     }
 
     /// Records the individuals \[parents\] selected from the latest generation, best first, which makes the next one.
@@ -152,9 +161,9 @@ impl Lineage {
 
     /// Turns the genes \[genes\] of its parent into those of an individual: drawn, kept or mutated.
     pub(crate) fn vary(&self, mutation: BitMutation, generation: u32, individual: usize, genes: &mut [u16]) {
-        let stream = |domain| Stream::new(self.seed, domain, 0, individual as u32, generation);
+        let stream = |domain| Stream::new(self.seed, domain, self.number, individual as u32, generation);
         if generation == 0 {
-            randomize(genes, &mut stream(Domain::InitialGenome));
+            randomize_bits(genes, self.config.gene_bits, &mut stream(Domain::InitialGenome));
         } else if !individual.is_multiple_of(self.config.copies()) {
             mutation.apply(genes, &mut stream(Domain::Mutation));
         }

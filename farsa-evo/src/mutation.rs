@@ -4,8 +4,13 @@ use farsa_num::{Stream, ln};
 
 use crate::EvoError;
 
-/// Bits of a gene.
-const BITS: u64 = u16::BITS as u64;
+/// Whether genes can have so many bits.
+///
+/// # Errors
+/// [`EvoError::GeneBits`] outside 1 to 16.
+pub(crate) const fn check_gene_bits(bits: u32) -> Result<(), EvoError> {
+    if 1 <= bits && bits <= u16::BITS { Ok(()) } else { Err(EvoError::GeneBits { bits }) }
+}
 
 /// What happens to a bit that mutation hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,6 +32,8 @@ pub enum Mutation {
 pub struct BitMutation {
     /// ln(1 - p) of the probability p that a bit flips.
     log_keep: f64,
+    /// Bits of a gene.
+    gene_bits: u64,
 }
 
 impl BitMutation {
@@ -44,18 +51,27 @@ impl BitMutation {
         };
         // 1 - p loses the digits of a small p; the series does not.
         let log_keep = if p < 1e-8 { -p - 0.5 * p * p } else { ln(1.0 - p) };
-        Ok(Self { log_keep })
+        Ok(Self { log_keep, gene_bits: u64::from(u16::BITS) })
+    }
+
+    /// The same mutation of genes that have only so many bits, 1 to 16; the others stay as they are.
+    ///
+    /// # Errors
+    /// [`EvoError::GeneBits`].
+    pub fn of_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
+        check_gene_bits(bits)?;
+        Ok(Self { gene_bits: u64::from(bits), ..self })
     }
 
     /// Mutates `genes` \[genes\], drawing a gap for each bit that flips and one for the end of the genome.
     ///
     /// Bits are counted from the first gene on, and from the least significant bit within a gene.
     pub fn apply(self, genes: &mut [u16], stream: &mut Stream) {
-        let bits = genes.len() as u64 * BITS;
+        let bits = genes.len() as u64 * self.gene_bits;
         let mut bit = stream.geometric(self.log_keep);
         while bit < bits {
-            if let Some(gene) = genes.get_mut((bit / BITS) as usize) {
-                *gene ^= 1 << (bit % BITS);
+            if let Some(gene) = genes.get_mut((bit / self.gene_bits) as usize) {
+                *gene ^= 1 << (bit % self.gene_bits);
             }
             bit = bit.saturating_add(1).saturating_add(stream.geometric(self.log_keep));
         }
@@ -70,6 +86,13 @@ pub fn randomize(genes: &mut [u16], stream: &mut Stream) {
             *gene = half;
         }
     }
+}
+
+/// Draws genes as [`randomize`] does and keeps the upper `bits` bits of each, 1 to 16.
+pub(crate) fn randomize_bits(genes: &mut [u16], bits: u32, stream: &mut Stream) {
+    randomize(genes, stream);
+    let spare = u16::BITS.saturating_sub(bits);
+    genes.iter_mut().for_each(|gene| *gene = gene.checked_shr(spare).unwrap_or(0));
 }
 
 #[cfg(test)]
@@ -160,6 +183,38 @@ mod tests {
         let mut genes = [0b1010, 0xffff, 0];
         BitMutation::new(Mutation::Flip, 1.0).unwrap().apply(&mut genes, &mut stream(0));
         assert_eq!(genes, [!0b1010, 0, 0xffff]);
+    }
+
+    #[test]
+    fn narrow_genes_stay_narrow_and_flip_as_often() {
+        const RUNS: u32 = 20_000;
+        let (n, p) = (f64::from(RUNS), 0.3);
+        for bits in [1, 5, 8, 15] {
+            let mutation = BitMutation::new(Mutation::Flip, p).unwrap().of_gene_bits(bits).unwrap();
+            let mut counts = vec![0.0; 3 * bits as usize];
+            for run in 0..RUNS {
+                let mut genes = [0_u16; 3];
+                mutation.apply(&mut genes, &mut stream(run));
+                for (index, count) in counts.iter_mut().enumerate() {
+                    let gene = &mut genes[index / bits as usize];
+                    *count += f64::from(*gene & 1);
+                    *gene >>= 1;
+                }
+                assert_eq!(genes, [0; 3], "{bits} bits");
+            }
+            for (bit, count) in counts.into_iter().enumerate() {
+                assert!((count - n * p).abs() <= 5.0 * (n * p * (1.0 - p)).sqrt(), "{bits} bits, bit {bit}: {count}");
+            }
+            let (mut wide, mut narrow) = (vec![0; 999], vec![0; 999]);
+            randomize(&mut wide, &mut stream(1));
+            randomize_bits(&mut narrow, bits, &mut stream(1));
+            assert!(wide.iter().zip(&narrow).all(|(wide, narrow)| wide >> (16 - bits) == *narrow));
+        }
+        let mutation = BitMutation::new(Mutation::Flip, p).unwrap();
+        assert_eq!(mutation.of_gene_bits(16).unwrap(), mutation);
+        for bits in [0, 17, u32::MAX] {
+            assert_eq!(mutation.of_gene_bits(bits), Err(EvoError::GeneBits { bits }));
+        }
     }
 
     #[test]

@@ -2,15 +2,22 @@
 
 use alloc::vec::Vec;
 
+use crate::mutation::check_gene_bits;
 use crate::strategy::next_generation;
 use crate::{BitMutation, EvoError, Fitness, Lineage, Mutation, Population, Strategy};
 
 /// What a [`TruncationGa`] needs to know; a plain value that is checked where it is used.
+///
+/// Under the feature `serde` the number of bits of a gene is saved only where it is not 16, within the word for the
+/// mutation: what was saved before there was a choice is still read, and written as before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "SavedConfig", into = "SavedConfig"))]
 pub struct GaConfig {
-    /// Number of genes of a genome, 16 bits each.
+    /// Number of genes of a genome.
     pub genes: usize,
+    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
+    pub gene_bits: u32,
     /// Number of individuals of a generation.
     pub population: usize,
     /// Number of individuals that are selected; each makes population / parents copies.
@@ -22,17 +29,18 @@ pub struct GaConfig {
 }
 
 impl GaConfig {
-    /// The evolution of \[Ferrauto2010\] for genomes of this many genes: the best 20 of 100 make five copies each, one
+    /// The evolution of \[Ferrauto2010\] for genomes of this many genes of 16 bits: the best 20 of 100 make five copies each, one
     /// unchanged and four mutated with 1.5 % a bit, [`Mutation::Resample`].
     pub const fn new(genes: usize) -> Self {
-        Self { genes, population: 100, parents: 20, mutation_rate: 0.015, mutation: Mutation::Resample }
+        let (gene_bits, mutation) = (u16::BITS, Mutation::Resample);
+        Self { genes, gene_bits, population: 100, parents: 20, mutation_rate: 0.015, mutation }
     }
 
     /// Checks every number.
     ///
     /// # Errors
     /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::NoParents`],
-    /// [`EvoError::TooManyParents`], [`EvoError::UnevenCopies`] or [`EvoError::Rate`].
+    /// [`EvoError::TooManyParents`], [`EvoError::UnevenCopies`], [`EvoError::Rate`] or [`EvoError::GeneBits`].
     pub fn validate(&self) -> Result<(), EvoError> {
         let Self { genes, population, parents, .. } = *self;
         Population::check(population, genes)?;
@@ -45,6 +53,7 @@ impl GaConfig {
         if !population.is_multiple_of(parents) {
             return Err(EvoError::UnevenCopies { population, parents });
         }
+        check_gene_bits(self.gene_bits)?;
         self.bit_mutation().map(|_| ())
     }
 
@@ -54,7 +63,36 @@ impl GaConfig {
     }
 
     pub(crate) fn bit_mutation(&self) -> Result<BitMutation, EvoError> {
-        BitMutation::new(self.mutation, self.mutation_rate)
+        BitMutation::new(self.mutation, self.mutation_rate)?.of_gene_bits(self.gene_bits)
+    }
+}
+
+/// A configuration as it is saved.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "GaConfig")]
+struct SavedConfig {
+    genes: usize,
+    population: usize,
+    parents: usize,
+    mutation_rate: f64,
+    mutation: crate::saved::SavedMutation,
+}
+
+#[cfg(feature = "serde")]
+impl From<SavedConfig> for GaConfig {
+    fn from(saved: SavedConfig) -> Self {
+        let SavedConfig { genes, population, parents, mutation_rate, mutation } = saved;
+        let (mutation, gene_bits) = mutation.into();
+        Self { genes, gene_bits, population, parents, mutation_rate, mutation }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<GaConfig> for SavedConfig {
+    fn from(config: GaConfig) -> Self {
+        let GaConfig { genes, gene_bits, population, parents, mutation_rate, mutation } = config;
+        Self { genes, population, parents, mutation_rate, mutation: (mutation, gene_bits).into() }
     }
 }
 

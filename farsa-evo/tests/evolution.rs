@@ -4,7 +4,10 @@
 
 use std::time::Instant;
 
-use farsa_evo::{EvoError, Fitness, GaConfig, Mutation, Population, RandomSearch, Statistics, Strategy, TruncationGa};
+use farsa_evo::{
+    Coevolution, EvoError, Fitness, GaConfig, Mutation, Population, RandomSearch, Statistics, SteadyState,
+    SteadyStateConfig, Strategy, TruncationGa,
+};
 use proptest::prelude::*;
 use proptest::strategy::Strategy as _;
 
@@ -60,6 +63,9 @@ fn every_generation_is_rebuilt_bit_for_bit() {
     rebuilds(TruncationGa::new(GaConfig { population: 1, parents: 1, ..GaConfig::new(5) }, 17).unwrap());
     rebuilds(TruncationGa::new(GaConfig { population: 12, parents: 12, ..GaConfig::new(5) }, 17).unwrap());
     rebuilds(RandomSearch::new(9, 30, 17).unwrap());
+    rebuilds(TruncationGa::new(GaConfig { gene_bits: 5, ..GaConfig::new(9) }, 17).unwrap());
+    rebuilds(SteadyState::new(SteadyStateConfig::new(14), 17).unwrap());
+    rebuilds(Coevolution::new(&[GaConfig::new(9), GaConfig { gene_bits: 8, ..GaConfig::new(12) }], 17).unwrap());
 }
 
 #[test]
@@ -70,6 +76,18 @@ fn onemax_converges_and_random_search_does_not() {
     let mut search = RandomSearch::new(10, 100, 1).unwrap();
     evolve(&mut search, 300, ones);
     assert!(search.best().unwrap().fitness.get() < 120.0);
+}
+
+#[test]
+fn a_steady_state_climbs_and_keeps_its_genes_narrow() {
+    let mut search = SteadyState::new(SteadyStateConfig::new(14), 1).unwrap();
+    let (lived, _) = evolve(&mut search, 500, ones);
+    assert!(lived.iter().all(|pair| pair.as_slice().iter().all(|&gene| gene < 256)));
+    let (fitness, evaluations) = search.parent_fitness().unwrap();
+    assert!(fitness.get() > 100.0 && evaluations > 1, "{fitness:?} of 112 in {evaluations}");
+    // Without noise the fitness of a parent is what it always was, and never falls.
+    let parents: Vec<f64> = lived.iter().map(|pair| ones(pair.get(0).unwrap())).collect();
+    assert!(parents.windows(2).all(|pair| pair[0] <= pair[1]));
 }
 
 #[test]
@@ -120,6 +138,7 @@ fn configs() -> impl proptest::strategy::Strategy<Value = GaConfig> {
             genes,
             population: parents * copies,
             parents,
+            gene_bits: 16,
             mutation_rate: rate,
             mutation: if flip { Mutation::Flip } else { Mutation::Resample },
         },

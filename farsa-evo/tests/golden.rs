@@ -1,7 +1,10 @@
 //! The bits themselves. A change here is a change of every recorded run: it stands in CHANGELOG.md as value-breaking.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use farsa_evo::{Fitness, GaConfig, GeneRange, Mutation, RandomSearch, Strategy, TruncationGa, decode};
+use farsa_evo::{
+    Coevolution, Fitness, GaConfig, GeneRange, Mutation, RandomSearch, SteadyState, SteadyStateConfig, Strategy,
+    TruncationGa, decode,
+};
 use farsa_num::Digest;
 
 /// A rugged toy: it rewards a pattern within genes and its repetition between them.
@@ -50,6 +53,24 @@ fn evolution_keeps_its_bits() {
         ([0xbbb0_2d05_cf69_826c, 0x180a_9454_cc35_1fc1, 0xd096_885a_c7bc_b587], 0x8355_a462_922a_9395),
     ];
     assert_eq!(got, want, "{got:#018x?}");
+}
+
+#[test]
+fn a_steady_state_keeps_its_bits() {
+    let mut search = SteadyState::new(SteadyStateConfig::new(14), 2010).unwrap();
+    let initial = search.ask().digest();
+    evolve(&mut search, 50);
+    let accepted = (0..50).filter(|&generation| search.history().accepted(generation) == Some(true)).count();
+    let got = ([initial, search.ask().digest(), search.genomes_at(17).unwrap().digest()], accepted);
+    let want = ([0xac22_87e6_5b0c_8a05, 0x0c87_188c_2de1_9b05, 0x08e5_4d5e_4327_1e57], 7);
+    assert_eq!(got, want, "{got:#018x?}");
+}
+
+#[test]
+fn coevolution_keeps_its_bits() {
+    let narrow = GaConfig { gene_bits: 8, ..GaConfig::new(20) };
+    let got = digests(&mut Coevolution::new(&[GaConfig::new(33), narrow], 2010).unwrap());
+    assert_eq!(got, [0xe7ae_3b09_c1ca_3298, 0xaaaf_3e62_d775_210e, 0x5a48_e5e8_d5b3_4951], "{got:#018x?}");
 }
 
 #[test]

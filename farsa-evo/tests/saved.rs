@@ -3,7 +3,10 @@
 #![cfg(feature = "serde")]
 #![allow(clippy::unwrap_used)]
 
-use farsa_evo::{Fitness, GaConfig, Lineage, Mutation, RandomSearch, Strategy, TruncationGa};
+use farsa_evo::{
+    Coevolution, Fitness, GaConfig, Lineage, Lineages, Mutation, RandomSearch, SteadyHistory, SteadyState,
+    SteadyStateConfig, Strategy, TruncationGa,
+};
 use postcard::{from_bytes, to_allocvec};
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -32,6 +35,74 @@ fn interrupted_is_uninterrupted<S: Strategy + Serialize + DeserializeOwned + Par
 fn interrupted_evolution_gives_the_same_bits() {
     interrupted_is_uninterrupted(|| TruncationGa::new(GaConfig::new(12), 6).unwrap());
     interrupted_is_uninterrupted(|| RandomSearch::new(12, 20, 6).unwrap());
+    interrupted_is_uninterrupted(|| SteadyState::new(SteadyStateConfig::new(12), 6).unwrap());
+    let narrow = GaConfig { gene_bits: 8, ..GaConfig::new(12) };
+    interrupted_is_uninterrupted(|| TruncationGa::new(narrow, 6).unwrap());
+    interrupted_is_uninterrupted(|| Coevolution::new(&[GaConfig::new(12), narrow], 6).unwrap());
+}
+
+/// A configuration as it was saved before genes had a number of bits.
+#[derive(Serialize)]
+struct Old {
+    genes: usize,
+    population: usize,
+    parents: usize,
+    mutation_rate: f64,
+    mutation: Mutation,
+}
+
+#[test]
+fn a_configuration_of_16_bits_is_saved_as_ever() {
+    for mutation in [Mutation::Resample, Mutation::Flip] {
+        let config = GaConfig { mutation, ..GaConfig::new(300) };
+        let old = Old { genes: 300, population: 100, parents: 20, mutation_rate: 0.015, mutation };
+        let bytes = to_allocvec(&old).unwrap();
+        assert_eq!(to_allocvec(&config).unwrap(), bytes);
+        assert_eq!(from_bytes::<GaConfig>(&bytes).unwrap(), config);
+        let narrow = GaConfig { gene_bits: 8, ..config };
+        assert_eq!(from_bytes::<GaConfig>(&to_allocvec(&narrow).unwrap()).unwrap(), narrow);
+    }
+}
+
+#[test]
+fn a_forged_history_is_refused() {
+    let mut search = SteadyState::new(SteadyStateConfig::new(5), 6).unwrap();
+    live(&mut search, 11);
+    assert_eq!(&from_bytes::<SteadyHistory>(&to_allocvec(search.history()).unwrap()).unwrap(), search.history());
+    let config = *search.config();
+    let read = |config: SteadyStateConfig, generations: u32, accepted: &[u8]| {
+        from_bytes::<SteadyHistory>(&to_allocvec(&(config, 6_u64, generations, accepted.to_vec())).unwrap())
+    };
+    assert_eq!(read(config, 11, &[3, 4]).unwrap().latest(), 11);
+    assert!(read(config, 16, &[3, 255]).is_ok());
+    for (generations, accepted) in [(11, &[3][..]), (11, &[3, 8]), (11, &[3, 4, 0]), (8, &[3, 0]), (0, &[0])] {
+        assert!(read(config, generations, accepted).is_err(), "{generations} {accepted:?}");
+    }
+    assert!(read(SteadyStateConfig { gene_bits: 0, ..config }, 3, &[3]).is_err());
+    assert!(read(SteadyStateConfig { last_rate: 0.9, ..config }, 3, &[3]).is_err());
+    // Another seed or history, with the digest of these genomes.
+    let bytes = |seed: u64, accepted: bool| {
+        let mut history = SteadyHistory::new(config, seed).unwrap();
+        (0..11).for_each(|g| history.record(accepted ^ search.history().accepted(g).unwrap()).unwrap());
+        to_allocvec(&((history, Fitness::WORST), search.ask().digest())).unwrap()
+    };
+    assert!(from_bytes::<SteadyState>(&bytes(6, false)).is_ok());
+    assert!(from_bytes::<SteadyState>(&bytes(7, false)).is_err());
+    assert!(from_bytes::<SteadyState>(&bytes(6, true)).is_err());
+}
+
+#[test]
+fn forged_lineages_are_refused() {
+    let mut all = Coevolution::new(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap();
+    live(&mut all, 3);
+    assert_eq!(from_bytes::<Lineages>(&to_allocvec(&all.lineages()).unwrap()).unwrap(), all.lineages());
+    let mut apart: Vec<Lineage> = all.lineages().into();
+    let digest = all.ask().digest();
+    assert_eq!(from_bytes::<Coevolution>(&to_allocvec(&(&apart, digest)).unwrap()).unwrap(), all);
+    apart.swap(0, 1);
+    assert!(from_bytes::<Coevolution>(&to_allocvec(&(&apart, digest)).unwrap()).is_err());
+    apart.pop();
+    assert!(from_bytes::<Lineages>(&to_allocvec(&apart).unwrap()).is_err());
 }
 
 #[test]
