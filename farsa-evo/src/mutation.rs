@@ -92,7 +92,9 @@ pub fn randomize(genes: &mut [u16], stream: &mut Stream) {
 pub(crate) fn randomize_bits(genes: &mut [u16], bits: u32, stream: &mut Stream) {
     randomize(genes, stream);
     let spare = u16::BITS.saturating_sub(bits);
-    genes.iter_mut().for_each(|gene| *gene = gene.checked_shr(spare).unwrap_or(0));
+    for gene in genes {
+        *gene = gene.checked_shr(spare).unwrap_or(0);
+    }
 }
 
 #[cfg(test)]

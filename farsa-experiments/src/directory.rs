@@ -89,6 +89,10 @@ impl Directory {
     pub(crate) fn lineage(&self) -> PathBuf {
         self.path.join("lineage.bin")
     }
+    /// Genotypes that were imported, in the place of checkpoint and lineage.
+    pub(crate) fn genotypes(&self) -> PathBuf {
+        self.path.join("genotypes.bin")
+    }
     /// The champion's trials on fresh starts.
     pub(crate) fn test(&self) -> PathBuf {
         self.path.join("test.csv")

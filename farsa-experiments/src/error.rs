@@ -41,6 +41,17 @@ pub enum Error {
         /// The value asked for.
         asked: String,
     },
+    /// A run that depends on a file whose content is no longer what it was.
+    OtherFile {
+        /// The file.
+        path: PathBuf,
+        /// The run's directory.
+        directory: PathBuf,
+        /// CRC-32 of the file that the run was made with.
+        run: String,
+        /// CRC-32 of the file as it is.
+        found: String,
+    },
     /// A run whose lives this program would live differently.
     OtherVersion {
         /// The file that says so.
@@ -133,6 +144,7 @@ impl Error {
             | Self::Occupied { .. }
             | Self::NoRun { .. } => 2,
             Self::OtherVersion { .. }
+            | Self::OtherFile { .. }
             | Self::Damaged { .. }
             | Self::Io { .. }
             | Self::Panicked { .. }
@@ -169,6 +181,12 @@ impl fmt::Display for Error {
             Self::OtherConfiguration { directory, key, run, asked } => write!(
                 f,
                 "the run in {} has `{key}` = {run}, not {asked}: another configuration is another run",
+                directory.display()
+            ),
+            Self::OtherFile { path, directory, run, found } => write!(
+                f,
+                "{}: is another file than the run in {} was made with (CRC-32 {found}, not {run})",
+                path.display(),
                 directory.display()
             ),
             Self::OtherVersion { path, what, file, program } => write!(

@@ -1,8 +1,10 @@
 //! The settings of evolution that all experiments share.
 
-use farsa_evo::{EvoError, GaConfig, Mutation};
+use farsa_evo::{EvoError, GaConfig, Mutation, SteadyStateConfig};
 
 use crate::error::Error;
+use crate::experiment::Setup;
+use crate::search::Search;
 use crate::settings::{Setting, Settings};
 
 /// Evaluated generations.
@@ -12,6 +14,9 @@ pub(crate) const POPULATION: &str = "evolution.population";
 const PARENTS: &str = "evolution.parents";
 const MUTATION: &str = "evolution.mutation";
 const RATE: &str = "evolution.mutation_rate";
+const FIRST_RATE: &str = "evolution.first_rate";
+const RATE_STEP: &str = "evolution.rate_step";
+const LAST_RATE: &str = "evolution.last_rate";
 
 /// The settings of the truncation algorithm, with the defaults of \[Ferrauto2010\].
 pub fn settings() -> Vec<Setting> {
@@ -32,9 +37,31 @@ pub fn settings() -> Vec<Setting> {
     ]
 }
 
+/// The settings of the steady-state search, with the defaults of the original's discrimination experiment.
+pub fn steady_state_settings() -> Vec<Setting> {
+    vec![
+        Setting::whole(GENERATIONS, 500, 1..=i64::from(u32::MAX) - 1)
+            .given()
+            .doc("Generations of one parent and one mutant; the one thing that a resumed run may change."),
+        Setting::word(MUTATION, "flip", &["flip", "resample"])
+            .given()
+            .doc("What happens to a bit that mutation hits: it flips, or it is drawn anew."),
+        Setting::number(FIRST_RATE, 0.5, 0.0..=1.0)
+            .given()
+            .doc("Probability that mutation hits a bit of the first mutant."),
+        Setting::number(RATE_STEP, 0.01, 0.0..=1.0)
+            .given()
+            .doc("What that probability falls by from generation to generation."),
+        Setting::number(LAST_RATE, 0.02, 0.0..=1.0).given().doc("The probability below which it does not fall."),
+    ]
+}
+
 /// The experiment's table with the settings of evolution that it does not define itself in front.
-pub(crate) fn complete(mut own: Vec<Setting>) -> Vec<Setting> {
-    let mut table = settings();
+pub(crate) fn complete(mut own: Vec<Setting>, search: Search) -> Vec<Setting> {
+    let mut table = match search {
+        Search::Truncation => settings(),
+        Search::SteadyState => steady_state_settings(),
+    };
     for setting in &mut table {
         if let Some(index) = own.iter().position(|other| other.key() == setting.key()) {
             *setting = own.remove(index);
@@ -44,18 +71,42 @@ pub(crate) fn complete(mut own: Vec<Setting>) -> Vec<Setting> {
     table
 }
 
-/// The algorithm's configuration for genomes of some genes.
+fn mutation(settings: &Settings) -> Result<Mutation, Error> {
+    Ok(if settings.word(MUTATION)? == "flip" { Mutation::Flip } else { Mutation::Resample })
+}
+
+/// The steady-state search's configuration for the genomes of an experiment.
+///
+/// # Errors
+/// [`Error::Setting`] when the values do not go together, [`Error::Other`] for genomes that cannot be.
+pub(crate) fn steady_state(settings: &Settings, setup: &dyn Setup) -> Result<SteadyStateConfig, Error> {
+    let config = SteadyStateConfig {
+        genes: setup.genes(),
+        gene_bits: setup.gene_bits(),
+        first_rate: settings.number(FIRST_RATE)?,
+        rate_step: settings.number(RATE_STEP)?,
+        last_rate: settings.number(LAST_RATE)?,
+        mutation: mutation(settings)?,
+    };
+    config.validate().map_err(|error| match error {
+        EvoError::RisingRate { .. } => Error::setting(LAST_RATE, error),
+        _ => Error::Other(error.to_string()),
+    })?;
+    Ok(config)
+}
+
+/// The truncation algorithm's configuration for the genomes of an experiment.
 ///
 /// # Errors
 /// [`Error::Setting`] when the values do not go together.
-pub(crate) fn config(settings: &Settings, genes: usize) -> Result<GaConfig, Error> {
-    let mutation = if settings.word(MUTATION)? == "flip" { Mutation::Flip } else { Mutation::Resample };
+pub(crate) fn config(settings: &Settings, genes: usize, gene_bits: u32) -> Result<GaConfig, Error> {
     let config = GaConfig {
         genes,
+        gene_bits,
         population: settings.count(POPULATION)?,
         parents: settings.count(PARENTS)?,
         mutation_rate: settings.number(RATE)?,
-        mutation,
+        mutation: mutation(settings)?,
     };
     config.validate().map_err(|error| {
         let key = match error {
@@ -76,13 +127,13 @@ mod tests {
     #[test]
     fn the_defaults_are_those_of_the_library() {
         let settings = Settings::new(settings()).unwrap();
-        assert_eq!(config(&settings, 792).unwrap(), GaConfig::new(792));
+        assert_eq!(config(&settings, 792, 16).unwrap(), GaConfig::new(792));
     }
 
     #[test]
     fn an_experiment_replaces_a_default_in_its_place() {
         let own = vec![Setting::flag("world.flat", true), Setting::whole(POPULATION, 30, 1..=100)];
-        let table = complete(own);
+        let table = complete(own, Search::Truncation);
         let keys: Vec<&str> = table.iter().map(Setting::key).collect();
         assert_eq!(keys, [GENERATIONS, POPULATION, PARENTS, MUTATION, RATE, "world.flat"]);
         assert_eq!(table[1].default_value(), &Value::Whole(30));
@@ -92,7 +143,7 @@ mod tests {
     fn fewer_individuals_than_parents_are_refused_by_name() {
         let mut settings = Settings::new(settings()).unwrap();
         settings.set("", POPULATION, Value::Whole(10)).unwrap();
-        let error = config(&settings, 3).unwrap_err().to_string();
+        let error = config(&settings, 3, 16).unwrap_err().to_string();
         assert_eq!(error, "`evolution.population`: 20 parents from a population of 10");
     }
 }

@@ -9,14 +9,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::directory::{Directory, replace};
 use crate::error::Error;
-use crate::exam_table::{Findings, Table};
-use crate::experiment::Task;
+use crate::evolution::POPULATION;
+use crate::exam_table::{Findings, Table, Tried};
+use crate::experiment::{Outcome, Task};
 use crate::lanes::Wanted;
 use crate::life::Job;
 use crate::plan::{LARGEST_SEED, Plan};
 use crate::pool::{Pool, Unfinished};
 use crate::progress::Progress;
-use crate::records::{self, Champion};
+use crate::records::{Best, Champions};
 
 /// `test.json`: which champion `test.csv` is about, and how to make it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,6 +53,9 @@ pub(crate) struct Exam {
     directory: String,
     generation: u32,
     individual: u32,
+    /// The champions of all populations, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    individuals: Vec<u32>,
     seed: u64,
     #[serde(flatten)]
     findings: Findings,
@@ -67,7 +71,13 @@ impl Exam {
         let Self { generation, individual, seed, .. } = self;
         let mut text = self.table.aligned();
         // Writing into a string cannot fail.
-        let _ = writeln!(text, "\nindividual {individual} of generation {generation}, test seed {seed}");
+        let _ = match self.individuals.as_slice() {
+            [] => writeln!(text, "\nindividual {individual} of generation {generation}, test seed {seed}"),
+            all => {
+                let all = all.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+                writeln!(text, "\nindividuals {all} of generation {generation} against each other, test seed {seed}")
+            }
+        };
         text.push_str(&self.findings.text());
         if let Some(warning) = &self.warning {
             let _ = writeln!(text, "warning: {warning}");
@@ -78,7 +88,8 @@ impl Exam {
 
 /// Lives `trials` fresh trials of the champion and writes `test.csv`.
 ///
-/// Trial i of the test is trial i modulo the experiment's number of trials, with random numbers of its own.
+/// Trial i of the test is trial i modulo the experiment's number of trials, with random numbers of its own. The champions
+/// of several populations live against each other: each trial is lived once for each of them, with the same numbers.
 pub(crate) fn test(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -92,36 +103,27 @@ pub(crate) fn test(
     if !path.is_file() && directory.checkpoint().is_file() {
         return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
     }
-    let Champion { identity, generation, individual, genes, .. } = records::read(&path, plan, directory.path())?;
+    let Champions { identity, generation, best } = Champions::read(plan, directory)?;
     let mut pool = Pool::new(plan, threads, lanes)?;
-    if genes.len() != pool.setup().genes() {
+    let genes = pool.setup().genes();
+    if best.len() != pool.setup().populations() || best.iter().any(|best| best.genes.len() != genes) {
         return Err(Error::damaged(&path, "its genome is not one of the experiment"));
     }
-    let warning = identity.same_values(&plan.identity(), &path).err().map(|error| error.to_string());
+    let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
+    let size = if best.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
+    let genomes: Vec<&[u16]> = best.iter().map(|best| best.genes.as_slice()).collect();
 
     let progress = Progress::new(0, trials as u64, quiet);
-    let kinds = pool.setup().trials().max(1);
-    let task = |number: usize| {
-        let (round, trial) = ((number / kinds) as u32, (number % kinds) as u32);
-        let job = Job { seed: seed | !LARGEST_SEED, generation: round, individual: 0, trial };
-        Some(Task { number, genes: &genes, job })
-    };
-    let results = pool.live(trials, &AtomicBool::new(false), task, |_, _| progress.advance());
+    let tried = lives(&mut pool, &genomes, size, trials, seed, &progress);
     drop(progress);
-    let results = results.map_err(|reason| match reason {
+    let results = tried.map_err(|reason| match reason {
         Unfinished::Panicked => Error::Panicked { generation },
         Unfinished::Stopped => Error::Other("stopped".into()),
     })?;
-    let results: Vec<_> = results
-        .into_iter()
-        .flatten()
-        .enumerate()
-        .map(|(number, outcome)| {
-            let alone = std::slice::from_ref(&outcome);
-            let fitness = if outcome.is_finite() { pool.setup().fitness(alone) } else { f64::NAN };
-            ((number % kinds) as u32, outcome, fitness)
-        })
-        .collect();
+    let Some(&Best { individual, .. }) = best.first() else {
+        return Err(Error::damaged(&path, "there is nobody in it"));
+    };
+    let individuals = if best.len() > 1 { best.iter().map(|best| best.individual).collect() } else { Vec::new() };
 
     let terms = pool.setup().terms();
     let table = Table::new(&terms, &results);
@@ -130,5 +132,49 @@ pub(crate) fn test(
     let text = serde_json::to_string_pretty(&record).map_err(|error| Error::Other(error.to_string()))?;
     replace(&directory.test_record(), format!("{text}\n").as_bytes())?;
     let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
-    Ok(Exam { directory: path, generation, individual, seed, findings, warning, table })
+    Ok(Exam { directory: path, generation, individual, individuals, seed, findings, warning, table })
+}
+
+/// Lives fresh trials of some genomes, of one or one of each population of `size` individuals.
+pub(crate) fn lives(
+    pool: &mut Pool,
+    genomes: &[&[u16]],
+    size: usize,
+    trials: usize,
+    seed: u64,
+    progress: &Progress,
+) -> Result<Vec<Tried>, Unfinished> {
+    let (count, kinds) = (genomes.len().max(1), pool.setup().trials().max(1));
+    let others: Vec<Vec<&[u16]>> = (0..genomes.len())
+        .map(|own| genomes.iter().enumerate().filter(|(other, _)| *other != own).map(|(_, &genes)| genes).collect())
+        .collect();
+    let task = |number: usize| {
+        let (population, trial) = (number % count, number / count);
+        let (round, trial) = ((trial / kinds) as u32, (trial % kinds) as u32);
+        let individual = (population * size) as u32;
+        let job = Job { seed: seed | !LARGEST_SEED, generation: round, individual, trial };
+        Some(Task { number, genes: genomes.get(population)?, opponents: others.get(population)?, job })
+    };
+    let done = |number: usize, _: Option<&Outcome>| {
+        if number.is_multiple_of(count) {
+            progress.advance();
+        }
+    };
+    let outcomes = pool.live(trials * count, &AtomicBool::new(false), task, done)?;
+    let fitness = |outcome: &Outcome| {
+        let alone = std::slice::from_ref(outcome);
+        if outcome.is_finite() { pool.setup().fitness(alone) } else { f64::NAN }
+    };
+    let mut tried: Vec<Tried> = Vec::with_capacity(trials);
+    for (number, outcome) in outcomes.into_iter().flatten().enumerate() {
+        let earned = fitness(&outcome);
+        match tried.last_mut().filter(|_| !number.is_multiple_of(count)) {
+            Some(first) => first.others.push((earned, outcome.success)),
+            None => {
+                let trial = (number / count % kinds) as u32;
+                tried.push(Tried { trial, outcome, fitness: earned, others: Vec::new() });
+            }
+        }
+    }
+    Ok(tried)
 }

@@ -13,8 +13,18 @@ use crate::experiment::{Note, Outcome};
 /// The columns that every test has; the terms of the fitness, if there are more than one, and the notes follow.
 const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
 
-/// One trial: which of the experiment's trials it was, what came of it, and its fitness (NaN if it broke down).
-pub(crate) type Tried = (u32, Outcome, f64);
+/// One trial.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Tried {
+    /// Which of the experiment's trials it was.
+    pub(crate) trial: u32,
+    /// What came of it.
+    pub(crate) outcome: Outcome,
+    /// Its fitness; NaN if it broke down.
+    pub(crate) fitness: f64,
+    /// Fitness and success of the opponents in the same trial, which is their life in their populations.
+    pub(crate) others: Vec<(f64, bool)>,
+}
 
 /// The trials of a test as text, the head first; every line is as long as the head.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,11 +41,16 @@ impl Table {
         // A life that broke down has no notes: the names are those of the first that has.
         let names: Vec<&str> = trials
             .iter()
-            .map(|(_, outcome, _)| &outcome.notes)
+            .map(|tried| &tried.outcome.notes)
             .find(|notes| !notes.is_empty())
             .map_or_else(Vec::new, |notes| notes.iter().map(|(name, _)| *name).collect());
         head.extend(names.iter().map(|&name| name.to_owned()));
-        let lines = trials.iter().enumerate().map(|(index, (trial, outcome, fitness))| {
+        // Ones and zeros, so that the mean of a success is its share.
+        let others = trials.first().map_or(0, |tried| tried.others.len());
+        head.extend(
+            (1..=others).flat_map(|other| ["fitness", "success"].map(|what| format!("{what} of population {other}"))),
+        );
+        let lines = trials.iter().enumerate().map(|(index, Tried { trial, outcome, fitness, others })| {
             let mut line = vec![
                 index.to_string(),
                 trial.to_string(),
@@ -49,6 +64,9 @@ impl Table {
                 Some((_, Note::Text(text))) => text.clone(),
                 None => String::new(),
             }));
+            line.extend(
+                others.iter().flat_map(|(fitness, success)| [number(*fitness), u8::from(*success).to_string()]),
+            );
             line
         });
         Self { lines: std::iter::once(head).chain(lines).collect() }
@@ -249,13 +267,33 @@ mod tests {
             success,
             notes: vec![("phase", phase.into()), ("height", height.into())],
         };
+        let tried = |trial, outcome, fitness| Tried { trial, outcome, fitness, others: Vec::new() };
         let trials = [
-            (0, outcome("reach", 1.0, false), 3.5),
-            (1, outcome("lift", 6.0, true), 3.5),
-            (2, Outcome::failed(), f64::NAN),
-            (0, outcome("lift", 8.0, true), 7.0),
+            tried(0, outcome("reach", 1.0, false), 3.5),
+            tried(1, outcome("lift", 6.0, true), 3.5),
+            tried(2, Outcome::failed(), f64::NAN),
+            tried(0, outcome("lift", 8.0, true), 7.0),
         ];
         Table::new(&["a".into(), "b".into()], &trials)
+    }
+
+    #[test]
+    fn opponents_have_columns_of_their_own() {
+        let outcome = Outcome { terms: vec![2.0], steps: 6, notes: vec![("at", 1.0.into())], ..Outcome::default() };
+        let tried =
+            |others: &[(f64, bool)]| Tried { trial: 0, outcome: outcome.clone(), fitness: 2.0, others: others.into() };
+        let table =
+            Table::new(&["a".into()], &[tried(&[(3.0, true), (0.5, false)]), tried(&[(1.0, false), (0.5, false)])]);
+        assert_eq!(
+            table.lines[0][5..].join(","),
+            "at,fitness of population 1,success of population 1,fitness of population 2,success of population 2"
+        );
+        assert_eq!(table.lines[1].join(","), "0,0,6,false,2.0,1.0,3.0,1,0.5,0");
+        let notes = table.findings(&["a".into()]).notes;
+        assert_eq!(
+            notes[1..3].iter().map(|note| note.1.clone()).collect::<Vec<_>>(),
+            [Finding::Mean(2.0), Finding::Mean(0.5)]
+        );
     }
 
     #[test]

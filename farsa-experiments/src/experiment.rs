@@ -1,10 +1,13 @@
 //! What an experiment is to the command: a name, a table of settings, and lives of genomes.
 
+use std::path::PathBuf;
+
 use farsa_body::{MjcfOptions, Recorder};
 
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::life::Job;
+use crate::search::Search;
 use crate::settings::{Setting, Settings};
 use crate::stage::Stage;
 
@@ -31,12 +34,31 @@ pub trait Experiment: Sync {
         1
     }
 
+    /// How a run searches for good genomes under a condition; by default with the truncation algorithm.
+    fn search(&self, condition: &str) -> Search {
+        let _ = condition;
+        Search::Truncation
+    }
+
     /// Every setting of the experiment under a condition (`""` if there are none), with its default.
     ///
-    /// The settings of evolution (`evolution.*`, [`evolution::settings`](crate::evolution::settings)) are added by the
-    /// command; a setting here with the same key replaces the one there, which is how an experiment has its own
+    /// The settings of evolution (`evolution.*`, [`evolution::settings`](crate::evolution::settings) or, as
+    /// [`search`](Self::search) says, [`evolution::steady_state_settings`](crate::evolution::steady_state_settings)) are
+    /// added by the command; a setting here with the same key replaces the one there, which is how an experiment has its own
     /// defaults.
     fn settings(&self, condition: &str) -> Vec<Setting>;
+
+    /// The files whose content lives depend on, such as tables of sensors that a setting names; by default none.
+    ///
+    /// A run remembers their checksums and is neither resumed, replayed nor tested with other ones. Relative paths are
+    /// relative to the current directory.
+    ///
+    /// # Errors
+    /// [`Error::setting`] for a value that names no file.
+    fn files(&self, condition: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {
+        let _ = (condition, settings);
+        Ok(Vec::new())
+    }
 
     /// Builds what one thread needs to live lives under a condition and checked settings.
     ///
@@ -52,8 +74,21 @@ pub trait Experiment: Sync {
 /// A life must depend on the genes and the [`Job`] alone, never on the lives this value lived before: that is what
 /// makes runs repeatable, resumable and the same on any number of threads.
 pub trait Setup: Send {
-    /// Number of genes, 16 bits each.
+    /// Number of genes; where populations differ, of the one with the most.
     fn genes(&self) -> usize;
+
+    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
+    fn gene_bits(&self) -> u32 {
+        16
+    }
+
+    /// Number of populations that evolve against each other, each of `evolution.population` individuals; by default one.
+    ///
+    /// The individuals of all are numbered through, one population after the other: see [`Job::population`]. With more
+    /// than one, [`live_against`](Self::live_against) lives the lives.
+    fn populations(&self) -> usize {
+        1
+    }
 
     /// Trials of an evaluation.
     fn trials(&self) -> usize {
@@ -82,11 +117,22 @@ pub trait Setup: Send {
     /// Lives one trial, `job.trial`, from its start to its end.
     ///
     /// A run's seeds are below 2^63. In `farsa test` the seed has bit 63 set, so that no number is shared with any run;
-    /// the individual is then 0 and the generation counts the earlier lives of the same trial.
+    /// the individual is then the first of its population and the generation counts the earlier lives of the same trial.
     ///
     /// What [`stage`](Self::stage) names goes to the tape at every step when it is on; whether it is must not change the
     /// life. `genes` has [`genes`](Self::genes) entries. A life that broke down is [`Outcome::failed`].
     fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome;
+
+    /// Lives one trial against opponents, one of each other population in the order of the populations; by default there
+    /// are none and it is [`live`](Self::live).
+    ///
+    /// Which population `genes` is of follows from `job`, [`Job::population`]. Trial t of generation g is lived against the
+    /// champions of generation g - 1 - t, and where there were none yet against individual t (modulo their number) of the
+    /// other populations of generation g.
+    fn live_against(&mut self, genes: &[u16], opponents: &[&[u16]], job: Job, tape: &mut Tape<'_>) -> Outcome {
+        let _ = opponents;
+        self.live(genes, job, tape)
+    }
 
     /// Gets ready to live lives side by side and returns in how many lanes [`live_many`](Self::live_many) will; by default
     /// in one.
@@ -99,12 +145,13 @@ pub trait Setup: Send {
     }
 
     /// Lives one task after the other, or several side by side, until `next` has no more; `done` takes the number of each
-    /// with what came of it, which is what [`live`](Self::live) would return.
+    /// with what came of it, which is what [`live`](Self::live), or [`live_against`](Self::live_against) the task's
+    /// opponents, would return.
     ///
     /// `next` may be asked in any order of `done`: other threads draw from the same tasks.
     fn live_many<'g>(&mut self, next: &mut dyn FnMut() -> Option<Task<'g>>, done: &mut dyn FnMut(usize, Outcome)) {
-        while let Some(Task { number, genes, job }) = next() {
-            done(number, self.live(genes, job, &mut Tape::off()));
+        while let Some(Task { number, genes, opponents, job }) = next() {
+            done(number, self.live_against(genes, opponents, job, &mut Tape::off()));
         }
     }
 
@@ -123,6 +170,8 @@ pub struct Task<'g> {
     pub number: usize,
     /// Who lives.
     pub genes: &'g [u16],
+    /// Whom it lives against, one of each other population; empty where there is only one.
+    pub opponents: &'g [&'g [u16]],
     /// Which life.
     pub job: Job,
 }

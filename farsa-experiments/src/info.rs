@@ -106,7 +106,7 @@ impl Info {
             network,
             parameters,
             genes: setup.genes(),
-            genome_bits: 16 * setup.genes(),
+            genome_bits: setup.gene_bits() as usize * setup.genes(),
             trials: setup.trials(),
             steps,
             step_seconds,

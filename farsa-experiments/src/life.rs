@@ -16,6 +16,13 @@ pub struct Job {
     pub trial: u32,
 }
 
+impl Job {
+    /// The population of the individual, from 0, where each has `size` individuals (`evolution.population`).
+    pub fn population(&self, size: usize) -> usize {
+        self.individual as usize / size.max(1)
+    }
+}
+
 /// An experiment as it is lived in a world of type `W`.
 ///
 /// A life steps no world: whoever runs it does, so that the same life runs alone ([`live`]) or in a lane of a batch.

@@ -11,8 +11,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 
-/// The first line.
-pub(crate) const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n";
+/// The first line where there is one population.
+const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n";
+
+/// The first line: with several populations three more columns for each of them.
+pub(crate) fn header(populations: usize) -> String {
+    let mut text = HEADER.trim_end().to_owned();
+    for population in (0..populations).filter(|_| populations > 1) {
+        // Writing into a string cannot fail.
+        let _ = write!(text, ",best {population},mean {population},worst {population}");
+    }
+    text + "\n"
+}
 
 /// One generation's best, mean and worst fitness.
 pub(crate) type Row = [f64; 3];
@@ -42,8 +52,8 @@ pub(crate) struct Log {
 
 impl Log {
     /// The mark of a log that has only its header.
-    pub(crate) fn start() -> Mark {
-        mark(HEADER)
+    pub(crate) fn start(populations: usize) -> Mark {
+        mark(&header(populations))
     }
 
     /// Takes possession of a run's log and reads it, whole.
@@ -76,13 +86,22 @@ impl Log {
         Ok(())
     }
 
-    /// Appends a generation.
-    pub(crate) fn append(&mut self, statistics: &Statistics, evaluations: usize) -> Result<(), Error> {
+    /// Appends a generation; `each` has the statistics of every population where there are several.
+    pub(crate) fn append(
+        &mut self,
+        statistics: &Statistics,
+        evaluations: usize,
+        each: &[Statistics],
+    ) -> Result<(), Error> {
         let Statistics { best, mean, worst, failed, .. } = *statistics;
         let start = self.text.len();
         let generation = self.rows.len();
         // The debug form is the shortest that reads back as the same number. Writing into a string cannot fail.
-        let _ = writeln!(self.text, "{generation},{best:?},{mean:?},{worst:?},{evaluations},{failed}");
+        let _ = write!(self.text, "{generation},{best:?},{mean:?},{worst:?},{evaluations},{failed}");
+        for Statistics { best, mean, worst, .. } in each {
+            let _ = write!(self.text, ",{best:?},{mean:?},{worst:?}");
+        }
+        self.text.push('\n');
         self.rows.push([best, mean, worst]);
         self.file.write_all(&self.text.as_bytes()[start..]).map_err(Error::io("write", &self.path))
     }
@@ -126,8 +145,12 @@ fn mark(text: &str) -> Mark {
 
 /// The lines' numbers, if it is a log.
 fn lines(text: &str) -> Option<Vec<Line>> {
-    let lines = text.strip_prefix(HEADER)?.lines();
+    let (first, lines) = text.split_once('\n')?;
+    let columns = first.split(',').count();
+    let populations = columns.saturating_sub(6) / 3;
+    (header(populations).trim_end() == first).then_some(())?;
     lines
+        .lines()
         .enumerate()
         .map(|(index, line)| {
             let mut fields = line.split(',');
@@ -135,7 +158,10 @@ fn lines(text: &str) -> Option<Vec<Line>> {
             let mut number = || fields.next()?.parse().ok();
             let row = [number()?, number()?, number()?];
             let mut count = || fields.next()?.parse().ok();
-            Some(Line { row, evaluations: count()?, failed: count()? })
+            let (evaluations, failed) = (count()?, count()?);
+            (columns == 6 || fields.filter(|field| field.parse::<f64>().is_ok()).count() == columns - 6)
+                .then_some(())?;
+            Some(Line { row, evaluations, failed })
         })
         .collect()
 }
@@ -155,6 +181,15 @@ mod tests {
         assert_eq!(lines("generation\n"), None);
         for line in ["1,1,1,1,1,1", "0,1,x,1,1,1", "0,1,1,1,1", "0,1,1,1,1,-1"] {
             assert_eq!(lines(&format!("{HEADER}{line}\n")), None, "{line}");
+        }
+        // Each of two populations has columns of its own.
+        let head = header(2);
+        assert_eq!(head.trim_end(), format!("{},best 0,mean 0,worst 0,best 1,mean 1,worst 1", HEADER.trim_end()));
+        assert_eq!((header(0), header(1)), (HEADER.into(), HEADER.into()));
+        let both = Line { row: [3.0, 2.0, 1.0], evaluations: 20, failed: 0 };
+        assert_eq!(lines(&format!("{head}0,3.0,2.0,1.0,20,0,1.0,1.0,1.0,3.0,3.0,-inf\n")), Some(vec![both]));
+        for rest in ["", ",1,1,1,1,1", ",1,1,1,1,1,x", ",1,1,1,1,1,1,1"] {
+            assert_eq!(lines(&format!("{head}0,3.0,2.0,1.0,20,0{rest}\n")), None, "{rest}");
         }
     }
 }

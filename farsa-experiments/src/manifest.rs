@@ -1,5 +1,6 @@
 //! `manifest.json`: what made a run, when and how fast; nothing in it changes a result.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -25,6 +26,12 @@ pub(crate) struct Manifest {
     pub(crate) values_version: u32,
     /// [`crate::Experiment::values_version`].
     pub(crate) experiment_version: u32,
+    /// The files that lives depend on, with the CRC-32 of their content.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) files: BTreeMap<String, String>,
+    /// The files that genotypes were imported from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) imported: Vec<String>,
     /// One for the start and one for every time the run was resumed.
     pub(crate) sessions: Vec<Session>,
 }
@@ -66,6 +73,8 @@ impl Manifest {
             seed: identity.seed,
             values_version: identity.values_version,
             experiment_version: identity.experiment_version,
+            files: identity.files().map(|(path, crc)| (path.to_owned(), crc.to_string().replace('"', ""))).collect(),
+            imported: Vec::new(),
             sessions: Vec::new(),
         }
     }

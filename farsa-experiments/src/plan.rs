@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use farsa_num::crc32;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -12,6 +13,7 @@ use crate::VALUES_VERSION;
 use crate::error::Error;
 use crate::evolution::{self, GENERATIONS};
 use crate::experiment::{Experiment, Setup};
+use crate::search::Search;
 use crate::settings::{Settings, Value};
 
 /// The largest seed of a run; bit 63 marks the lives of a test.
@@ -38,7 +40,8 @@ impl<'e> Plan<'e> {
                 .find(|&&known| known == name)
                 .ok_or_else(|| Error::unknown(place, "condition", name, conditions.iter().copied()))?,
         };
-        let settings = Settings::new(evolution::complete(experiment.settings(condition)))?;
+        let settings =
+            Settings::new(evolution::complete(experiment.settings(condition), experiment.search(condition)))?;
         Ok(Self { experiment, condition: condition.into(), seed: 1, settings })
     }
 
@@ -62,6 +65,11 @@ impl<'e> Plan<'e> {
         Ok(plan)
     }
 
+    /// How the run searches.
+    pub(crate) fn search(&self) -> Search {
+        self.experiment.search(&self.condition)
+    }
+
     /// The experiment made ready for one thread.
     pub(crate) fn setup(&self) -> Result<Box<dyn Setup>, Error> {
         self.experiment.prepare(&self.condition, &self.settings)
@@ -81,19 +89,27 @@ impl<'e> Plan<'e> {
         }
     }
 
-    /// All that the results depend on.
-    pub(crate) fn identity(&self) -> Identity {
+    /// All that the results depend on, the content of files included.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a file that cannot be read, and those of [`Experiment::files`].
+    pub(crate) fn identity(&self) -> Result<Identity, Error> {
         let settings = self.settings.table().iter().filter(|setting| setting.key() != GENERATIONS);
-        Identity {
+        let mut settings: Vec<(String, Value)> = settings
+            .filter_map(|setting| Some((setting.key().to_owned(), self.settings.get(setting.key()).ok()?.clone())))
+            .collect();
+        for path in self.experiment.files(&self.condition, &self.settings)? {
+            let bytes = fs::read(&path).map_err(Error::io("read", &path))?;
+            settings.push((format!("{FILE}{}", path.display()), Value::Word(format!("{:08x}", crc32(&bytes)))));
+        }
+        Ok(Identity {
             experiment: self.experiment.name().into(),
             condition: self.condition.clone(),
             seed: self.seed,
             values_version: VALUES_VERSION,
             experiment_version: self.experiment.values_version(),
-            settings: settings
-                .filter_map(|setting| Some((setting.key().to_owned(), self.settings.get(setting.key()).ok()?.clone())))
-                .collect(),
-        }
+            settings,
+        })
     }
 
     /// The complete configuration as TOML, with the documentation, unit and source of every value.
@@ -142,6 +158,9 @@ pub(crate) fn find<'e>(
     found.ok_or_else(|| Error::unknown(place, "experiment", name, names))
 }
 
+/// What the checksums of files begin with among the settings of an [`Identity`]; no setting's key has a blank in it.
+const FILE: &str = "CRC-32 of ";
+
 /// All that the results of a run depend on; it stands in every file whose content means nothing without it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Identity {
@@ -150,7 +169,8 @@ pub(crate) struct Identity {
     pub(crate) seed: u64,
     pub(crate) values_version: u32,
     pub(crate) experiment_version: u32,
-    /// Every setting but the number of generations, which a run does not depend on up to the last of them.
+    /// Every setting but the number of generations, which a run does not depend on up to the last of them; then the
+    /// checksums of files.
     pub(crate) settings: Vec<(String, Value)>,
 }
 
@@ -174,8 +194,17 @@ impl Identity {
         });
         match differing.next().or_else(|| settings.next()) {
             None => Ok(()),
+            Some((key, run, asked)) if key.starts_with(FILE) => {
+                let (path, directory) = (key[FILE.len()..].into(), directory.into());
+                Err(Error::OtherFile { path, directory, run: run.replace('"', ""), found: asked.replace('"', "") })
+            }
             Some((key, run, asked)) => Err(Error::OtherConfiguration { directory: directory.into(), key, run, asked }),
         }
+    }
+
+    /// The files that the results depend on, each with the checksum of its content.
+    pub(crate) fn files(&self) -> impl Iterator<Item = (&str, &Value)> {
+        self.settings.iter().filter_map(|(key, value)| Some((key.strip_prefix(FILE)?, value)))
     }
 
     /// Whether this program lives the lives that the file `path` speaks of.
@@ -314,6 +343,8 @@ pub(crate) fn assignment(text: &str) -> Result<(String, Value), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::PathBuf;
+
     use crate::settings::Setting;
 
     struct Toy;
@@ -333,7 +364,12 @@ mod tests {
                 Setting::number("world.step", 0.01, 0.001..=0.1).unit("s").doc("Time step."),
                 Setting::numbers("robot.arm.lengths", &[1.0, 2.0], 0.0..=5.0).given(),
                 Setting::word("world.kind", "flat", &["flat", "round"]),
+                Setting::text("world.map", ""),
             ]
+        }
+        fn files(&self, _: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {
+            let map = settings.text("world.map")?;
+            Ok(if map.is_empty() { Vec::new() } else { vec![map.into()] })
         }
         fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Setup>, Error> {
             Err(Error::Other("never".into()))
@@ -351,7 +387,7 @@ mod tests {
         assert!(text.contains("not the default"), "{text}");
         let file = ConfigFile::parse("config.toml", &text).unwrap();
         let again = Plan::of_file(&[&Toy], &file).unwrap();
-        assert_eq!(again.identity(), plan.identity());
+        assert_eq!(again.identity().unwrap(), plan.identity().unwrap());
         assert_eq!(again.settings, plan.settings);
         assert_eq!(again.name(), "toy-without-7");
     }
@@ -398,16 +434,37 @@ mod tests {
     fn another_configuration_is_named() {
         let (plan, mut other) = (Plan::new(&Toy, None, "").unwrap(), Plan::new(&Toy, None, "").unwrap());
         other.settings.set("", GENERATIONS, Value::Whole(5)).unwrap();
-        plan.identity().same_run(&other.identity(), Path::new("d")).unwrap();
+        plan.identity().unwrap().same_run(&other.identity().unwrap(), Path::new("d")).unwrap();
         other.settings.set("", "world.step", Value::Number(0.02)).unwrap();
-        let error = plan.identity().same_run(&other.identity(), Path::new("d")).unwrap_err();
+        let error = plan.identity().unwrap().same_run(&other.identity().unwrap(), Path::new("d")).unwrap_err();
         assert_eq!(
             error.to_string(),
             "the run in d has `world.step` = 0.01, not 0.02: another configuration is another run"
         );
-        let mut newer = plan.identity();
+        let mut newer = plan.identity().unwrap();
         newer.experiment_version = 2;
-        let error = plan.identity().same_values(&newer, Path::new("d/checkpoint.bin")).unwrap_err();
+        let error = plan.identity().unwrap().same_values(&newer, Path::new("d/checkpoint.bin")).unwrap_err();
         assert!(error.to_string().starts_with("d/checkpoint.bin: made with version 1 of the values of toy"), "{error}");
+    }
+
+    #[test]
+    fn a_file_that_changed_or_went_is_named() {
+        let path = std::env::temp_dir().join(format!("farsa plan \"map\" {}", std::process::id()));
+        fs::write(&path, "here be dragons").unwrap();
+        let mut plan = Plan::new(&Toy, None, "").unwrap();
+        let without = plan.identity().unwrap();
+        plan.settings.set("", "world.map", Value::Word(path.display().to_string())).unwrap();
+        let file = ConfigFile::parse("config.toml", &plan.to_toml().unwrap()).unwrap();
+        assert_eq!(Plan::of_file(&[&Toy], &file).unwrap().settings, plan.settings);
+        let run = plan.identity().unwrap();
+        assert_eq!((run.settings.len(), run.files().count()), (without.settings.len() + 1, 1));
+        run.same_run(&plan.identity().unwrap(), Path::new("d")).unwrap();
+        fs::write(&path, "here be none").unwrap();
+        let error = run.same_run(&plan.identity().unwrap(), Path::new("d")).unwrap_err();
+        let (name, said) = (path.display().to_string(), error.to_string());
+        assert!(said.starts_with(&format!("{name}: is another file than the run in d was made with")), "{said}");
+        fs::remove_file(&path).unwrap();
+        let said = plan.identity().unwrap_err().to_string();
+        assert!(said.starts_with(&format!("cannot read {name}: ")), "{said}");
     }
 }

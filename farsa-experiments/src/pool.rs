@@ -143,7 +143,7 @@ mod tests {
     }
 
     fn task(number: usize, genes: &[u16]) -> Task<'_> {
-        Task { number, genes, job: Job { individual: number as u32, ..Job::default() } }
+        Task { number, genes, opponents: &[], job: Job { individual: number as u32, ..Job::default() } }
     }
 
     #[test]

@@ -350,7 +350,7 @@ impl Setup for Lives {
 
     fn live_many<'g>(&mut self, next: &mut dyn FnMut() -> Option<Task<'g>>, done: &mut dyn FnMut(usize, Outcome)) {
         let Self { together: Some(Together { batch, lives }), decoder, .. } = self else {
-            while let Some(Task { number, genes, job }) = next() {
+            while let Some(Task { number, genes, job, .. }) = next() {
                 done(number, self.live(genes, job, &mut Tape::off()));
             }
             return;

@@ -12,18 +12,19 @@ use crate::directory::{Directory, create_result};
 use crate::error::Error;
 use crate::experiment::{Note, Outcome, Setup, Tape};
 use crate::life::Job;
+use crate::opponents;
 use crate::page::{Page, readable};
 use crate::plan::Plan;
 use crate::recording::Recording;
-use crate::records::{self, Ancestry};
+use crate::records::Ancestry;
 use crate::table::Table;
 
-/// Which lives to live again.
+/// Which lives to live again; individuals are counted through all populations.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Which {
     /// The generation; the last finished one if none is named.
     pub(crate) generation: Option<u32>,
-    /// The individual; the best of the generation if none is named.
+    /// The individual; the best of the generation, in the first population, if none is named.
     pub(crate) individual: Option<u32>,
     /// The trial; all of them if none is named.
     pub(crate) trial: Option<u32>,
@@ -33,6 +34,8 @@ pub(crate) struct Which {
 pub(crate) struct Relived {
     pub(crate) setup: Box<dyn Setup>,
     genes: Vec<u16>,
+    /// For every trial that was asked for.
+    opponents: Vec<Vec<Vec<u16>>>,
     seed: u64,
     pub(crate) generation: u32,
     pub(crate) individual: u32,
@@ -47,19 +50,18 @@ impl Relived {
     /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
     /// keeps the run of another version from being lived again.
     pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, which: Which) -> Result<Self, Error> {
-        let path = directory.lineage();
-        let Ancestry { identity, lineage } = records::read(&path, plan, directory.path())?;
-        identity.same_values(&plan.identity(), &path)?;
-        let finished = lineage.latest();
+        let (Ancestry { identity, descent }, path) = Ancestry::read(plan, directory)?;
+        identity.same_values(&plan.identity()?, &path)?;
+        let finished = descent.finished();
         let generation = which.generation.unwrap_or(finished.saturating_sub(1));
-        let Some(&best) = lineage.selected(generation).and_then(<[u32]>::first) else {
+        let Some(best) = descent.champion(0, generation) else {
             return Err(Error::Usage(format!(
                 "{}: generation {generation} of {finished} finished ones (the first is 0)",
                 directory.path().display()
             )));
         };
-        let individual = which.individual.unwrap_or(best);
-        let genes = lineage
+        let individual = which.individual.unwrap_or(best as u32);
+        let genes = descent
             .genome_of(generation, individual as usize)
             .map_err(|error| Error::Usage(format!("generation {generation}: {error}")))?;
         let setup = plan.setup()?;
@@ -74,13 +76,17 @@ impl Relived {
                 return Err(Error::Usage(format!("trial {trial} of {} (the first is 0)", trials.end)));
             }
         };
-        Ok(Self { setup, genes, seed: plan.seed, generation, individual, trials })
+        let opponents = trials.clone().map(|trial| opponents::met(&descent, generation, individual as usize, trial));
+        let opponents = opponents.collect::<Result<_, _>>().map_err(|error| Error::damaged(&path, error))?;
+        Ok(Self { setup, genes, opponents, seed: plan.seed, generation, individual, trials })
     }
 
-    /// Lives one trial again.
+    /// Lives one of the trials that were asked for again.
     pub(crate) fn live(&mut self, trial: u32, recorder: &mut dyn Recorder) -> Outcome {
         let job = Job { seed: self.seed, generation: self.generation, individual: self.individual, trial };
-        self.setup.live(&self.genes, job, &mut Tape::to(recorder))
+        let opponents = self.opponents.get((trial - self.trials.start) as usize).map_or(&[][..], Vec::as_slice);
+        let opponents: Vec<&[u16]> = opponents.iter().map(Vec::as_slice).collect();
+        self.setup.live_against(&self.genes, &opponents, job, &mut Tape::to(recorder))
     }
 
     /// What the trials that were lived earned, as a fitness.

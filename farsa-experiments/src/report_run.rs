@@ -10,7 +10,7 @@ use crate::exam_table::{Findings, Table};
 use crate::log::{self, Line};
 use crate::manifest::Manifest;
 use crate::plan::Plan;
-use crate::records::{self, Checkpoint};
+use crate::records::{Checkpoint, evolved};
 use crate::settings::Value;
 
 /// All of a run that a report tells.
@@ -37,9 +37,10 @@ impl<'e> Run<'e> {
     /// [`Error::Damaged`] when a file is, or no generation is finished; [`Error::OtherConfiguration`] when the
     /// configuration was changed by hand; [`Error::Io`].
     pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
+        evolved(&directory)?;
         let manifest = Manifest::read(&directory.manifest())?;
         // The checkpoint first: of a run under way the log knows at least as much.
-        let Checkpoint { log: mark, .. } = records::read(&directory.checkpoint(), &plan, directory.path())?;
+        let Checkpoint { log: mark, .. } = Checkpoint::read(&plan, &directory)?;
         let lines = log::read(&directory.log(), mark)?;
         if lines.is_empty() {
             return Err(Error::damaged(&directory.log(), "no generation is finished yet"));

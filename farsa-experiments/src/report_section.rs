@@ -109,11 +109,15 @@ fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
                 Ok(all) if all as usize > run.lines.len() => format!("{} of {all}", run.lines.len()),
                 _ => run.lines.len().to_string(),
             })),
-            run.value(POPULATION).map(ToString::to_string).unwrap_or_default(),
+            match (run.value(POPULATION), setup.populations()) {
+                (Some(size), 1) => size.to_string(),
+                (Some(size), populations) => format!("{populations} populations of {size}"),
+                (None, _) => "1 parent and 1 mutant".into(),
+            },
             setup.trials().to_string(),
             format!("at most {}{clock}", description.steps),
             description.network,
-            format!("{} genes of 16 bits", setup.genes()),
+            format!("{} genes of {} bits", setup.genes(), setup.gene_bits()),
             setup.terms().join(" + "),
         ];
         table.head.push(group.label.clone());

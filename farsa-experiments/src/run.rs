@@ -5,39 +5,37 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Fitness, Population, Statistics, Strategy as _, TruncationGa};
+use farsa_evo::{Fitness, Population, Statistics};
 use serde::Serialize;
 
 use crate::directory::{Directory, replace};
 use crate::error::Error;
-use crate::evolution;
 use crate::experiment::{Outcome, Task};
 use crate::life::Job;
-use crate::log::{HEADER, Log};
+use crate::log::{self, Log};
 use crate::manifest::{Manifest, Session};
+use crate::opponents::{Hall, Meeting};
 use crate::plan::{Identity, Plan};
 use crate::plot;
 use crate::pool::{Pool, Unfinished};
 use crate::progress::Progress;
-use crate::records::{self, Ancestry, Champion, Checkpoint};
-use crate::sealed;
+use crate::records::{Ancestry, Best, Champions, Checkpoint, evolved};
+use crate::search::Evolution;
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
 
 /// Makes the directory of a new run, ready for its first generation.
 pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
-    let config = evolution::config(&plan.settings, plan.setup()?.genes())?;
-    let evolution = TruncationGa::new(config, plan.seed).map_err(|error| Error::Other(error.to_string()))?;
-    let text = plan.to_toml()?;
+    let evolution = Evolution::new(plan, plan.setup()?.as_ref())?;
+    let (text, identity) = (plan.to_toml()?, plan.identity()?);
     Directory::create(path, |directory| {
-        let identity = plan.identity();
         replace(&directory.config(), text.as_bytes())?;
         Manifest::new(&identity).write(&directory.manifest())?;
-        replace(&directory.log(), HEADER.as_bytes())?;
-        let ancestry = Ancestry { identity: identity.clone(), lineage: evolution.lineage().clone() };
-        sealed::write(&directory.lineage(), &ancestry)?;
-        sealed::write(&directory.checkpoint(), &Checkpoint { identity, log: Log::start(), evolution })
+        let populations = evolution.populations();
+        replace(&directory.log(), log::header(populations).as_bytes())?;
+        Ancestry { identity: identity.clone(), descent: evolution.descent() }.write(&directory.lineage())?;
+        Checkpoint { identity, log: Log::start(populations), evolution }.write(&directory.checkpoint())
     })
 }
 
@@ -52,11 +50,14 @@ pub(crate) struct Summary {
     /// Lives lived by this process, not those of earlier sessions.
     pub(crate) evaluations: u64,
     pub(crate) seconds: f64,
-    /// None if there was nothing left to do.
+    /// None if there was nothing left to do; of several populations the first one's.
     pub(crate) champion: Option<Winner>,
+    /// Those of all populations, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    champions: Vec<Winner>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub(crate) struct Winner {
     pub(crate) generation: u32,
     pub(crate) individual: u32,
@@ -67,6 +68,13 @@ impl Summary {
     /// The same in a line of words.
     pub(crate) fn text(&self) -> String {
         let Self { directory, generations, .. } = self;
+        if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
+            let all = self.champions.iter().enumerate().map(|(population, Winner { individual, fitness, .. })| {
+                format!("population {population} individual {individual}, fitness {fitness:?}")
+            });
+            let all = all.collect::<Vec<_>>().join("; ");
+            return format!("{directory}: {generations} generations; champions of generation {generation}: {all}");
+        }
         match &self.champion {
             None => format!("{directory}: all {generations} generations are finished already"),
             Some(Winner { generation, individual, fitness }) => format!(
@@ -89,14 +97,17 @@ pub(crate) fn go_on(
     program: &str,
     quiet: bool,
 ) -> Result<Summary, Error> {
+    evolved(directory)?;
     // The lock comes before anything is read that another process might be writing.
     let mut log = Log::open(&directory.log())?;
     let path = directory.checkpoint();
-    let Checkpoint { identity, log: mark, evolution } = records::read(&path, plan, directory.path())?;
-    identity.same_values(&plan.identity(), &path)?;
-    if *evolution.config() != evolution::config(&plan.settings, pool.setup().genes())? {
+    let Checkpoint { identity, log: mark, evolution } = Checkpoint::read(plan, directory)?;
+    identity.same_values(&plan.identity()?, &path)?;
+    if !evolution.is_like(&Evolution::new(plan, pool.setup())?) {
         return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
     }
+    let hall = Hall::before(&evolution.descent(), pool.setup().trials());
+    let hall = hall.map_err(|error| Error::damaged(&path, error))?;
     let (done, last) = (evolution.generation(), plan.generations()?);
     if last < done {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
@@ -109,16 +120,17 @@ pub(crate) fn go_on(
     }
     manifest.sessions.push(Session::new(pool.threads(), pool.lanes().told(), done));
 
-    let individuals = |generations: u32| u64::from(generations).saturating_mul(evolution.config().population as u64);
+    let individuals = |generations: u32| u64::from(generations).saturating_mul(evolution.ask().len() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
     let mut run = Run {
         directory,
         title: plan.name(),
         identity,
         evolution,
+        hall,
         log,
         manifest,
-        champion: None,
+        champions: None,
         started: Instant::now(),
     };
     let mut saved = Instant::now();
@@ -152,11 +164,13 @@ struct Run<'d> {
     directory: &'d Directory,
     title: String,
     identity: Identity,
-    evolution: TruncationGa,
+    evolution: Evolution,
+    /// Whom several populations still have to meet.
+    hall: Hall,
     log: Log,
     manifest: Manifest,
     /// The best of the last generation, once one is finished in this process.
-    champion: Option<Champion>,
+    champions: Option<Champions>,
     started: Instant,
 }
 
@@ -177,24 +191,25 @@ impl Run<'_> {
     fn generation(&mut self, pool: &mut Pool, stop: &AtomicBool, progress: &Progress) -> Result<(), Unsuccessful> {
         let generation = self.evolution.generation();
         let genomes = self.evolution.ask();
-        let seed = self.identity.seed;
-        let fitness = evaluate(pool, genomes, Job { seed, generation, ..Job::default() }, stop, progress)
-            .map_err(Unsuccessful::Unfinished)?;
+        let (seed, populations) = (self.identity.seed, self.evolution.populations());
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
-        let statistics = Statistics::of(&fitness).ok_or_else(|| lost("nobody lived"))?;
-        let best = statistics.best_index;
-        let (Some(&fitness_of_best), Some(genes)) = (fitness.get(best), genomes.get(best)) else {
-            return Err(lost("nobody is best").into());
-        };
-        self.champion = Some(Champion {
-            identity: self.identity.clone(),
-            generation,
-            individual: best as u32,
-            fitness: fitness_of_best,
-            genes: genes.to_vec(),
+        let meeting = Meeting { generation, populations, size: genomes.len() / populations };
+        let opponents = self.hall.opponents(meeting, genomes).ok_or_else(|| lost("an opponent is missing"))?;
+        let job = Job { seed, generation, ..Job::default() };
+        let fitness =
+            evaluate(pool, genomes, Opponents { genes: &opponents, each: populations - 1 }, job, stop, progress)
+                .map_err(Unsuccessful::Unfinished)?;
+        let judged = self.evolution.judged(&fitness).map_err(|error| lost(&error.to_string()))?;
+        let statistics = Statistics::of(&judged).ok_or_else(|| lost("nobody lived"))?;
+        let best = self.evolution.champions(&judged).into_iter().map(|best| {
+            let (fitness, genes) = (*judged.get(best)?, genomes.get(best)?.to_vec());
+            Some(Best { individual: best as u32, fitness, genes })
         });
-        self.log.append(&statistics, fitness.len())?;
+        let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("nobody is best"))?;
+        self.log.append(&statistics, fitness.len(), &self.evolution.of_each(&judged))?;
         self.evolution.tell(&fitness).map_err(|error| lost(&error.to_string()))?;
+        self.hall.add(best.iter().map(|best| best.genes.clone()).collect());
+        self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.generations += 1;
             session.evaluations += fitness.len() as u64;
@@ -207,13 +222,13 @@ impl Run<'_> {
     fn save(&mut self) -> Result<(), Error> {
         let (directory, identity) = (self.directory, &self.identity);
         let mark = self.log.sync()?;
-        let ancestry = Ancestry { identity: identity.clone(), lineage: self.evolution.lineage().clone() };
-        sealed::write(&directory.lineage(), &ancestry)?;
-        if let Some(champion) = &self.champion {
-            sealed::write(&directory.champion(), champion)?;
+        let descent = self.evolution.descent();
+        Ancestry { identity: identity.clone(), descent }.write(&directory.lineage())?;
+        if let Some(champions) = &self.champions {
+            champions.write(&directory.champion())?;
         }
-        let checkpoint = Checkpoint { identity: identity.clone(), log: mark, evolution: self.evolution.clone() };
-        sealed::write(&directory.checkpoint(), &checkpoint)?;
+        let evolution = self.evolution.clone();
+        Checkpoint { identity: identity.clone(), log: mark, evolution }.write(&directory.checkpoint())?;
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.seconds = self.started.elapsed().as_secs_f64();
         }
@@ -225,6 +240,15 @@ impl Run<'_> {
     fn summary(&self) -> Summary {
         let Identity { experiment, condition, seed, .. } = self.identity.clone();
         let session = self.manifest.sessions.last();
+        let champions: Vec<Winner> = (self.champions.iter())
+            .flat_map(|Champions { generation, best, .. }| {
+                best.iter().map(|&Best { individual, fitness, .. }| Winner {
+                    generation: *generation,
+                    individual,
+                    fitness: fitness.get(),
+                })
+            })
+            .collect();
         Summary {
             directory: self.directory.path().display().to_string(),
             experiment,
@@ -233,12 +257,23 @@ impl Run<'_> {
             generations: self.evolution.generation(),
             evaluations: session.map_or(0, |session| session.evaluations),
             seconds: session.map_or(0.0, |session| session.seconds),
-            champion: self.champion.as_ref().map(|&Champion { generation, individual, fitness, .. }| Winner {
-                generation,
-                individual,
-                fitness: fitness.get(),
-            }),
+            champion: champions.first().cloned(),
+            champions: if champions.len() > 1 { champions } else { Vec::new() },
         }
+    }
+}
+
+/// Whom the lives of a generation are lived against, in the order of the lives, so many for each.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Opponents<'g> {
+    genes: &'g [&'g [u16]],
+    each: usize,
+}
+
+impl<'g> Opponents<'g> {
+    /// Those of the life with a number.
+    fn of(&self, number: usize) -> &'g [&'g [u16]] {
+        self.genes.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
     }
 }
 
@@ -248,6 +283,7 @@ impl Run<'_> {
 fn evaluate(
     pool: &mut Pool,
     genomes: &Population,
+    opponents: Opponents<'_>,
     of: Job,
     stop: &AtomicBool,
     progress: &Progress,
@@ -259,7 +295,7 @@ fn evaluate(
             progress.advance();
         }
     };
-    let mut lived = live_all(pool, genomes, of, stop, done)?;
+    let mut lived = live_all(pool, genomes, opponents, of, stop, done)?;
     let setup = pool.setup();
     let fitness = (0..count).map(|individual| {
         let own = lived.iter_mut().skip(individual).step_by(count);
@@ -278,6 +314,7 @@ fn evaluate(
 pub(crate) fn live_all(
     pool: &mut Pool,
     genomes: &Population,
+    opponents: Opponents<'_>,
     of: Job,
     stop: &AtomicBool,
     done: impl Fn(Option<&Outcome>) + Sync,
@@ -288,7 +325,8 @@ pub(crate) fn live_all(
         let (individual, trial) = (number % count, (number / count) as u32);
         let job = Job { individual: individual as u32, trial, ..of };
         let alive = !failed[individual].load(Ordering::Relaxed);
-        genomes.get(individual).filter(|_| alive).map(|genes| Task { number, genes, job })
+        let opponents = opponents.of(number);
+        genomes.get(individual).filter(|_| alive).map(|genes| Task { number, genes, opponents, job })
     };
     let heard = |number: usize, outcome: Option<&Outcome>| {
         if outcome.is_some_and(|outcome| !outcome.is_finite()) {
@@ -303,6 +341,7 @@ pub(crate) fn live_all(
 mod tests {
     use super::*;
     use crate::directory::Directory;
+    use crate::evolution;
     use crate::exam;
     use crate::experiment::{Description, Experiment, Setup, Tape};
     use crate::lanes::Wanted;

@@ -4,7 +4,7 @@
 //! (postcard), `u32` CRC-32 of everything before it.
 
 use std::fs;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 use farsa_num::crc32;
@@ -42,6 +42,14 @@ pub(crate) fn write<T: Sealed>(path: &Path, content: &T) -> Result<(), Error> {
     let checksum = crc32(&bytes);
     bytes.extend(checksum.to_le_bytes());
     replace(path, &bytes)
+}
+
+/// The first bytes of a file, which say of what kind it is; none if it is too short.
+pub(crate) fn magic(path: &Path) -> Result<Option<[u8; 8]>, Error> {
+    let mut magic = Vec::new();
+    let file = fs::File::open(path).map_err(Error::io("read", path))?;
+    file.take(8).read_to_end(&mut magic).map_err(Error::io("read", path))?;
+    Ok(magic.try_into().ok())
 }
 
 /// Reads a sealed file.

@@ -17,7 +17,7 @@ pub enum Value {
     Whole(i64),
     /// A number.
     Number(f64),
-    /// One of a few words.
+    /// One of a few words, or any text.
     Word(String),
     /// A list of numbers.
     Numbers(Vec<f64>),
@@ -31,10 +31,26 @@ impl fmt::Display for Value {
             Self::Whole(n) => write!(f, "{n}"),
             // The debug form is the shortest that reads back as the same number, and always looks like a float.
             Self::Number(x) => write!(f, "{x:?}"),
-            Self::Word(word) => write!(f, "{word:?}"),
+            Self::Word(word) => write_string(f, word),
             Self::Numbers(list) => write!(f, "{list:?}"),
         }
     }
+}
+
+/// Writes a text as a basic string of TOML.
+fn write_string(f: &mut fmt::Formatter<'_>, text: &str) -> fmt::Result {
+    f.write_str("\"")?;
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => write!(f, "\\{c}")?,
+            '\n' => f.write_str("\\n")?,
+            '\t' => f.write_str("\\t")?,
+            '\r' => f.write_str("\\r")?,
+            c if c.is_ascii_control() => write!(f, "\\u{:04X}", u32::from(c))?,
+            c => write!(f, "{c}")?,
+        }
+    }
+    f.write_str("\"")
 }
 
 /// Where a default comes from.
@@ -68,6 +84,7 @@ enum Allowed {
     Whole(RangeInclusive<i64>),
     Number(RangeInclusive<f64>),
     Word(Vec<String>),
+    Text,
     /// As many numbers as in the default, each in the range.
     Numbers(RangeInclusive<f64>),
 }
@@ -107,6 +124,11 @@ impl Setting {
     pub fn word(key: &str, default: &str, choices: &[&str]) -> Self {
         let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
         Self::new(key, Value::Word(default.into()), Allowed::Word(choices))
+    }
+
+    /// Any text, such as the path of a file.
+    pub fn text(key: &str, default: &str) -> Self {
+        Self::new(key, Value::Word(default.into()), Allowed::Text)
     }
 
     /// A list of as many numbers as the default has, each within limits, both included.
@@ -167,6 +189,7 @@ impl Setting {
     pub fn allowed(&self) -> String {
         match &self.allowed {
             Allowed::Flag => "true or false".into(),
+            Allowed::Text => "any text".into(),
             Allowed::Whole(range) => format!("{} to {}", range.start(), range.end()),
             Allowed::Number(range) => format!("{:?} to {:?}", range.start(), range.end()),
             Allowed::Word(choices) => match choices.split_last() {
@@ -190,7 +213,9 @@ impl Setting {
     fn check(&self, value: Value) -> Result<Value, String> {
         let outside = |x: &dyn fmt::Display| Err(format!("{x} is outside {}", self.allowed()));
         match (&self.allowed, value) {
-            (Allowed::Flag, value @ Value::Flag(_)) => Ok(value),
+            (Allowed::Flag, value @ Value::Flag(_)) | (Allowed::Text, value @ Value::Word(_)) => Ok(value),
+            // What was written is no longer known: 1.50 and 1.5 are one number, but not one name of a file.
+            (Allowed::Text, value) => Err(format!("{value} is not a text; write it in quotes: \"{value}\"")),
             (Allowed::Whole(range), Value::Whole(n)) if range.contains(&n) => Ok(Value::Whole(n)),
             (Allowed::Whole(_), Value::Whole(n)) => outside(&n),
             (Allowed::Number(_), Value::Whole(n)) => self.check(Value::Number(n as f64)),
@@ -224,6 +249,7 @@ impl Setting {
     fn wanted(&self) -> String {
         match &self.allowed {
             Allowed::Flag => "true or false".into(),
+            Allowed::Text => "a text".into(),
             Allowed::Whole(_) => "a whole number".into(),
             Allowed::Number(_) => "a number".into(),
             Allowed::Word(_) => format!("one of {}", self.allowed()),
@@ -338,6 +364,17 @@ impl Settings {
         }
     }
 
+    /// Any text.
+    ///
+    /// # Errors
+    /// As [`number`](Self::number).
+    pub fn text(&self, key: &str) -> Result<&str, Error> {
+        match self.get(key)? {
+            Value::Word(text) => Ok(text),
+            other => Err(Self::other_kind(key, other, "a text")),
+        }
+    }
+
     /// A list of numbers.
     ///
     /// # Errors
@@ -371,6 +408,7 @@ mod tests {
             Setting::flag("noise.on", false),
             Setting::word("net.leak", "filter", &["filter", "two-tap", "evonet"]),
             Setting::numbers("start.sphere", &[1.0, 2.0], -5.0..=5.0).unit("cm"),
+            Setting::text("robot.tables", ""),
         ])
         .unwrap()
     }
@@ -382,6 +420,8 @@ mod tests {
         s.set("", "start.sphere", Value::Numbers(vec![0.0, -5.0])).unwrap();
         s.set("", "net.leak", Value::Word("evonet".into())).unwrap();
         s.set("", "noise.on", Value::Flag(true)).unwrap();
+        s.set("", "robot.tables", Value::Word("a \"b\"".into())).unwrap();
+        assert_eq!(s.text("robot.tables").unwrap(), "a \"b\"");
         s.set("", "evolution.population", Value::Whole(7)).unwrap();
         assert_eq!(s.number("world.step").unwrap(), 0.005);
         assert_eq!(s.numbers("start.sphere").unwrap(), [0.0, -5.0]);
@@ -417,6 +457,10 @@ mod tests {
             wrong("start.sphere", Value::Numbers(vec![0.0, f64::NAN])),
             "--set: `start.sphere`: NaN is not a number"
         );
+        assert_eq!(
+            wrong("robot.tables", Value::Number(1.5)),
+            "--set: `robot.tables`: 1.5 is not a text; write it in quotes: \"1.5\""
+        );
         assert_eq!(wrong("noise.no", Value::Flag(true)), "--set: unknown key `noise.no`; the nearest is `noise.on`");
         assert_eq!(s, settings());
     }
@@ -438,6 +482,10 @@ mod tests {
             (Value::Numbers(vec![1.0, -0.5]), "[1.0, -0.5]"),
             (Value::Word("two-tap".into()), "\"two-tap\""),
             (Value::Whole(-3), "-3"),
+            (
+                Value::Word("C:\\a \"b\"\t\u{1}\u{7f}é\u{301}'".into()),
+                "\"C:\\\\a \\\"b\\\"\\t\\u0001\\u007Fé\u{301}'\"",
+            ),
         ] {
             assert_eq!(value.to_string(), text);
         }

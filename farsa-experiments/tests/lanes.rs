@@ -75,7 +75,7 @@ fn lives_of_networks_in_lanes_are_those_alone() {
     let task = |number: usize| {
         let genes = genomes.get(number / TRIALS)?;
         let job = Job { seed: 3, generation: 1, individual: (number / TRIALS) as u32, trial: (number % TRIALS) as u32 };
-        Some(Task { number, genes, job })
+        Some(Task { number, genes, opponents: &[], job })
     };
     let alone: Vec<Outcome> =
         (0..).map_while(task).map(|Task { genes, job, .. }| setup.live(genes, job, &mut Tape::off())).collect();

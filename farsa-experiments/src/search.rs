@@ -1,0 +1,206 @@
+//! How a run searches: the strategies of farsa-evo behind one face.
+
+use farsa_evo::{
+    Coevolution, EvoError, Fitness, Lineage, Lineages, Population, Statistics, SteadyHistory, SteadyState, Strategy,
+    TruncationGa,
+};
+
+use crate::error::Error;
+use crate::evolution;
+use crate::experiment::Setup;
+use crate::plan::Plan;
+
+/// How an experiment searches for good genomes, [`Experiment::search`](crate::Experiment::search).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Search {
+    /// The best of a generation make mutated copies, [`farsa_evo::TruncationGa`]; with several populations within each of
+    /// them, [`farsa_evo::Coevolution`].
+    #[default]
+    Truncation,
+    /// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::SteadyState`].
+    ///
+    /// The log of such a run is about the mean fitness of the parent over its life and the fitness of the mutant: the
+    /// best of the two is that of the survivor, which is the champion.
+    SteadyState,
+}
+
+/// A search under way.
+#[derive(Debug, Clone)]
+pub(crate) enum Evolution {
+    Truncation(TruncationGa),
+    SteadyState(SteadyState),
+    Several(Coevolution),
+}
+
+impl Evolution {
+    /// The search that a plan asks for, at its first generation.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] when settings do not go together, [`Error::Other`] for genomes that cannot be.
+    pub(crate) fn new(plan: &Plan<'_>, setup: &dyn Setup) -> Result<Self, Error> {
+        let refused = |error: EvoError| Error::Other(format!("{}: {error}", plan.experiment.name()));
+        let (populations, seed) = (setup.populations(), plan.seed);
+        match (plan.search(), populations) {
+            (_, 0) => Err(Error::Other(format!("{}: no population", plan.experiment.name()))),
+            (Search::SteadyState, 1) => {
+                let config = evolution::steady_state(&plan.settings, setup)?;
+                SteadyState::new(config, seed).map(Self::SteadyState).map_err(refused)
+            }
+            (Search::SteadyState, _) => {
+                Err(Error::Other(format!("{}: a steady-state search of several populations", plan.experiment.name())))
+            }
+            (Search::Truncation, populations) => {
+                let config = evolution::config(&plan.settings, setup.genes(), setup.gene_bits())?;
+                if populations == 1 {
+                    TruncationGa::new(config, seed).map(Self::Truncation).map_err(refused)
+                } else {
+                    Coevolution::new(&vec![config; populations], seed).map(Self::Several).map_err(refused)
+                }
+            }
+        }
+    }
+
+    fn strategy(&self) -> &dyn Strategy {
+        match self {
+            Self::Truncation(ga) => ga,
+            Self::SteadyState(search) => search,
+            Self::Several(all) => all,
+        }
+    }
+
+    /// Whether another search is of the same kind with the same configuration.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Truncation(a), Self::Truncation(b)) => a.config() == b.config(),
+            (Self::SteadyState(a), Self::SteadyState(b)) => a.config() == b.config(),
+            (Self::Several(a), Self::Several(b)) => a.configs().eq(b.configs()),
+            _ => false,
+        }
+    }
+
+    /// The generation that waits for its fitness.
+    pub(crate) fn generation(&self) -> u32 {
+        self.strategy().generation()
+    }
+
+    /// Everyone of the generation that waits for its fitness.
+    pub(crate) fn ask(&self) -> &Population {
+        self.strategy().ask()
+    }
+
+    /// Populations that evolve beside each other.
+    pub(crate) fn populations(&self) -> usize {
+        if let Self::Several(all) = self { all.populations() } else { 1 }
+    }
+
+    /// Takes the fitness of the current generation and makes the next.
+    pub(crate) fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        match self {
+            Self::Truncation(ga) => ga.tell(fitness),
+            Self::SteadyState(search) => search.tell(fitness),
+            Self::Several(all) => all.tell(fitness),
+        }
+    }
+
+    /// The fitness that individuals are ranked by, if this is what they earned: for the parent of a steady-state search
+    /// the mean over its life.
+    pub(crate) fn judged(&self, fitness: &[Fitness]) -> Result<Vec<Fitness>, EvoError> {
+        match self {
+            Self::SteadyState(search) => search.judged(fitness).map(Into::into),
+            Self::Truncation(_) | Self::Several(_) => Ok(fitness.into()),
+        }
+    }
+
+    /// The best individual of each population by the fitness that they are ranked by.
+    pub(crate) fn champions(&self, judged: &[Fitness]) -> Vec<usize> {
+        match self {
+            // Ties go to the mutant.
+            Self::SteadyState(_) => vec![usize::from(judged.get(1) >= judged.first())],
+            Self::Truncation(_) | Self::Several(_) => {
+                let size = (judged.len() / self.populations()).max(1);
+                let best = |fitness: &[Fitness]| Statistics::of(fitness).map_or(0, |statistics| statistics.best_index);
+                judged.chunks(size).enumerate().map(|(population, own)| population * size + best(own)).collect()
+            }
+        }
+    }
+
+    /// The statistics of each of several populations; none of a single one.
+    pub(crate) fn of_each(&self, judged: &[Fitness]) -> Vec<Statistics> {
+        let size = (judged.len() / self.populations()).max(1);
+        let each = judged.chunks(size).filter(|_| self.populations() > 1);
+        each.filter_map(Statistics::of).collect()
+    }
+
+    /// Who descends from whom so far.
+    pub(crate) fn descent(&self) -> Descent {
+        match self {
+            Self::Truncation(ga) => Descent::Truncation(ga.lineage().clone()),
+            Self::SteadyState(search) => Descent::SteadyState(search.history().clone()),
+            Self::Several(all) => Descent::Several(all.lineages()),
+        }
+    }
+}
+
+/// What the genomes of a run are rebuilt from.
+#[derive(Debug, Clone)]
+pub(crate) enum Descent {
+    Truncation(Lineage),
+    SteadyState(SteadyHistory),
+    Several(Lineages),
+    /// Genomes from elsewhere, as the only generation.
+    Imported(Vec<Vec<u16>>),
+}
+
+impl Descent {
+    /// Number of finished generations.
+    pub(crate) fn finished(&self) -> u32 {
+        match self {
+            Self::Truncation(lineage) => lineage.latest(),
+            Self::SteadyState(history) => history.latest(),
+            Self::Several(lineages) => lineages.latest(),
+            Self::Imported(_) => 1,
+        }
+    }
+
+    /// Populations that evolve beside each other.
+    pub(crate) fn populations(&self) -> usize {
+        if let Self::Several(lineages) = self { lineages.populations() } else { 1 }
+    }
+
+    /// Individuals of each population.
+    pub(crate) fn size(&self) -> usize {
+        match self {
+            Self::Truncation(lineage) => lineage.config().population,
+            Self::SteadyState(_) => SteadyHistory::INDIVIDUALS,
+            Self::Several(lineages) => lineages.size(),
+            Self::Imported(genomes) => genomes.len(),
+        }
+    }
+
+    /// The best individual of a population in a finished generation, counted through all populations.
+    pub(crate) fn champion(&self, population: usize, generation: u32) -> Option<usize> {
+        let first = |selected: Option<&[u32]>| selected.and_then(<[u32]>::first).map(|&individual| individual as usize);
+        match self {
+            Self::Truncation(lineage) => first(lineage.selected(generation)),
+            Self::SteadyState(history) => history.survivor(generation),
+            Self::Several(lineages) => {
+                Some(population * lineages.size() + first(lineages.selected(population, generation))?)
+            }
+            Self::Imported(_) => (generation == 0).then_some(0),
+        }
+    }
+
+    /// The genome of an individual.
+    pub(crate) fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError> {
+        match self {
+            Self::Truncation(lineage) => lineage.genome_of(generation, individual),
+            Self::SteadyState(history) => history.genome_of(generation, individual),
+            Self::Several(lineages) => lineages.genome_of(generation, individual),
+            Self::Imported(genomes) => {
+                let beyond = EvoError::NoSuchIndividual { individual, population: genomes.len() };
+                genomes.get(individual).cloned().ok_or(beyond)
+            }
+        }
+    }
+}
