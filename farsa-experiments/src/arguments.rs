@@ -7,6 +7,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
 use clap_complete::Shell;
 
+use crate::arguments_genotypes::{EvaluateArgs, ImportArgs};
 use crate::camera::Camera;
 use crate::export::ModelFormat;
 use crate::lanes::{SIMD, Wanted};
@@ -35,6 +36,10 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Put a run's champion to the test on fresh starts
     Test(TestArgs),
+    /// Evaluate anybody's genotype on random trials
+    Evaluate(EvaluateArgs),
+    /// Make genotypes of the original FARSA a run to test and replay
+    Import(ImportArgs),
     /// Live a life of a run again, exactly
     Replay(ReplayArgs),
     /// Draw a moment of a life as a picture

@@ -15,10 +15,12 @@ use crate::bench::{self, Bench, Sample};
 use crate::directory::{Directory, create_result, create_results};
 use crate::draw;
 use crate::error::Error;
+use crate::evaluate;
 use crate::evolution::{GENERATIONS, POPULATION};
 use crate::exam;
 use crate::experiment::Experiment;
 use crate::export;
+use crate::import;
 use crate::info::{self, pretty};
 use crate::manual;
 use crate::plan::{self, ConfigFile, Plan};
@@ -88,6 +90,14 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             let (directory, plan) = existing(&directory, experiments)?;
             let found = exam::test(&plan, &directory, trials as usize, seed, threads.count(), lanes.wanted(), quiet)?;
             summary(json, found.text(), &|| pretty(&found))
+        }
+        Command::Evaluate(args) => {
+            let found = evaluate::evaluate(&args, quiet, experiments)?;
+            say(&if args.json { pretty(&found)? } else { found.text() })
+        }
+        Command::Import(args) => {
+            let found = import::import(&args, experiments)?;
+            summary(args.json, format!("{}\n", found.text()), &|| pretty(&found))
         }
         Command::Replay(args) => replay(&args, quiet, experiments),
         Command::Draw(args) => {

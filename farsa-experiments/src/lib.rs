@@ -2,6 +2,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod arguments;
+mod arguments_genotypes;
 mod bench;
 mod camera;
 pub mod cli;
@@ -9,6 +10,7 @@ mod directory;
 mod draw;
 mod draw_order;
 mod error;
+mod evaluate;
 pub mod evolution;
 mod exam;
 mod exam_table;
@@ -16,6 +18,8 @@ mod experiment;
 mod export;
 mod fitness;
 mod form;
+mod genotypes;
+mod import;
 mod info;
 mod lanes;
 mod life;
@@ -56,6 +60,8 @@ mod run;
 mod script;
 mod sealed;
 mod search;
+#[cfg(test)]
+mod search_runs;
 mod settings;
 mod stage;
 mod statistics;
@@ -67,6 +73,7 @@ pub use camera::Camera;
 pub use error::Error;
 pub use experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape, Task};
 pub use form::Form;
+pub use genotypes::read_genotypes;
 pub use lanes::Lanes;
 pub use life::{Job, Life, live};
 pub use live_in_lanes::live_in_lanes;

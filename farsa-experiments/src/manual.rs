@@ -13,8 +13,8 @@ use crate::directory::create_results;
 use crate::error::Error;
 use crate::experiment::Experiment;
 
-/// Without headings and spare lines, so that a screen of 24 lines has room for the tour.
-const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\n{options}{after-help}";
+/// Without headings and spare lines, so that a screen of 24 lines has room for the tour, which follows.
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\n{options}\n";
 
 /// The command line under the name of the program, with examples about its own first experiment.
 pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command {
@@ -36,12 +36,14 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
         format!("replay {run} --html life.html"),
         format!("report {run} --html report.html"),
     ];
+    let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
     let mut command = Cli::command()
         .name(program.to_owned())
         .bin_name(program.to_owned())
         .version(version(program))
-        .help_template(TEMPLATE)
-        .after_help(examples(&tour).replacen("Examples:", "A first tour:", 1));
+        .disable_help_subcommand(true)
+        .help_template(format!("{TEMPLATE}{tour}"))
+        .after_help(tour);
     for (name, lines) in [
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),
@@ -56,6 +58,20 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
             ],
         ),
         ("test", vec![format!("test {run} --trials 1000 --seed 2")]),
+        (
+            "evaluate",
+            vec![
+                format!("evaluate {experiment} --genes-file best.gen --trials 2000"),
+                format!("evaluate {experiment} --genes 90,93,0,220 --seed 2 --json"),
+            ],
+        ),
+        (
+            "import",
+            vec![
+                format!("import G500S53.gen --experiment {experiment} --out original"),
+                format!("import *.gen --experiment {experiment} --out originals"),
+            ],
+        ),
         (
             "replay",
             vec![
@@ -117,7 +133,7 @@ pub(crate) fn completions(shell: Shell, program: &str, experiments: &[&dyn Exper
             .mut_arg("experiment", |arg| arg.value_parser(known(&names)))
             .mut_arg("condition", |arg| arg.value_parser(known(&conditions)))
     };
-    for subcommand in ["info", "run", "bench"] {
+    for subcommand in ["info", "run", "bench", "evaluate", "import"] {
         command = command.mut_subcommand(subcommand, taught);
     }
     command = command.mut_subcommand("export", |export| export.mut_subcommand("robot", taught));

@@ -3,6 +3,7 @@
 mod bad_input;
 mod export;
 mod files;
+mod genotypes;
 mod look;
 mod manners;
 mod own;

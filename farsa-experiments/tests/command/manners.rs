@@ -5,8 +5,21 @@ use std::path::Path;
 
 use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 11] =
-    ["list", "info", "run", "test", "replay", "draw", "report", "export", "bench", "completions", "man"];
+const SUBCOMMANDS: [&str; 13] = [
+    "list",
+    "info",
+    "run",
+    "test",
+    "evaluate",
+    "import",
+    "replay",
+    "draw",
+    "report",
+    "export",
+    "bench",
+    "completions",
+    "man",
+];
 
 #[test]
 fn the_help_is_a_tour_on_one_screen() {

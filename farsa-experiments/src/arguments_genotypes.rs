@@ -1,0 +1,76 @@
+//! The words of the commands about genotypes from elsewhere.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint, value_parser};
+
+use crate::arguments::{LanesArgs, Threads};
+use crate::plan::{self, LARGEST_SEED};
+use crate::settings::Value;
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct EvaluateArgs {
+    /// The experiment
+    pub(crate) experiment: String,
+    /// One of its conditions [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) condition: Option<String>,
+    /// Change a setting; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
+    pub(crate) set: Vec<(String, Value)>,
+    /// The tables of the infrared sensors (robot.infrared_tables)
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) ir_tables: Option<PathBuf>,
+    /// The genes, whole numbers with commas between them
+    #[arg(long, value_name = "G,G,...", allow_hyphen_values = true, required_unless_present = "genes_file")]
+    pub(crate) genes: Option<String>,
+    /// A file with the genes: a .gen file of the original FARSA, or a list
+    #[arg(long, value_name = "FILE", conflicts_with = "genes", value_hint = ValueHint::FilePath)]
+    pub(crate) genes_file: Option<PathBuf>,
+    /// Which of the file's genotypes, from 0 [default: its only one]
+    #[arg(long, value_name = "N", requires = "genes_file")]
+    pub(crate) genotype: Option<usize>,
+    /// Random trials
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]
+    pub(crate) trials: u32,
+    /// Where the random numbers come from, as in a test; never those of a run
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) lanes: LanesArgs,
+    /// Write JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct ImportArgs {
+    /// .gen files of the original FARSA; the first genotype becomes the champion
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) files: Vec<PathBuf>,
+    /// The experiment that they are genotypes of
+    #[arg(long, value_name = "NAME")]
+    pub(crate) experiment: String,
+    /// One of its conditions [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) condition: Option<String>,
+    /// Change a setting; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
+    pub(crate) set: Vec<(String, Value)>,
+    /// The tables of the infrared sensors (robot.infrared_tables)
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) ir_tables: Option<PathBuf>,
+    /// Where the random numbers of replayed lives come from
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
+    /// The new directory
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) out: PathBuf,
+    /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
