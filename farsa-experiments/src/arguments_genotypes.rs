@@ -8,6 +8,9 @@ use crate::arguments::{LanesArgs, Threads};
 use crate::plan::{self, LARGEST_SEED};
 use crate::settings::Value;
 
+/// A setting's key in a comment would want the marks of code, which a terminal shows as they are.
+const IR_TABLES: &str = "Tables of the infrared sensors (robot.infrared_tables)";
+
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct EvaluateArgs {
@@ -19,8 +22,7 @@ pub(crate) struct EvaluateArgs {
     /// Change a setting; may be repeated
     #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
     pub(crate) set: Vec<(String, Value)>,
-    /// The tables of the infrared sensors (robot.infrared_tables)
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(long, value_name = "DIR", help = IR_TABLES, value_hint = ValueHint::DirPath)]
     pub(crate) ir_tables: Option<PathBuf>,
     /// The genes, whole numbers with commas between them
     #[arg(long, value_name = "G,G,...", allow_hyphen_values = true, required_unless_present = "genes_file")]
@@ -61,8 +63,7 @@ pub(crate) struct ImportArgs {
     /// Change a setting; may be repeated
     #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
     pub(crate) set: Vec<(String, Value)>,
-    /// The tables of the infrared sensors (robot.infrared_tables)
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(long, value_name = "DIR", help = IR_TABLES, value_hint = ValueHint::DirPath)]
     pub(crate) ir_tables: Option<PathBuf>,
     /// Where the random numbers of replayed lives come from
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]

@@ -5,20 +5,21 @@ use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Lineage, Population};
+use farsa_evo::Population;
 use serde::Serialize;
 
 use crate::directory::Directory;
 use crate::error::Error;
-use crate::evolution;
 use crate::experiment::Outcome;
 use crate::lanes::Told;
 use crate::life::Job;
 use crate::manifest::Machine;
+use crate::opponents::{Hall, Meeting};
 use crate::plan::Plan;
 use crate::pool::{Pool, Unfinished};
-use crate::records::{self, Ancestry};
-use crate::run::live_all;
+use crate::records::Ancestry;
+use crate::run::{Opponents, live_all};
+use crate::search::{Descent, Evolution};
 
 /// Runs of a study.
 const REPLICATIONS: u64 = 20;
@@ -28,6 +29,9 @@ const MANY: usize = 64;
 /// The genomes that live.
 pub(crate) struct Sample {
     genomes: Population,
+    /// Whom they live against, in the order of the lives.
+    opponents: Vec<Vec<u16>>,
+    populations: usize,
     /// Seed and generation that their lives are drawn from; later rounds count on from it.
     seed: u64,
     generation: u32,
@@ -38,24 +42,40 @@ pub(crate) struct Sample {
 impl Sample {
     /// The first generation of a run of this plan.
     pub(crate) fn random(plan: &Plan<'_>) -> Result<Self, Error> {
-        let config = evolution::config(&plan.settings, plan.setup()?.genes())?;
-        let genomes = Lineage::new(config, plan.seed).and_then(|lineage| lineage.genomes_at(0));
-        let genomes = genomes.map_err(|error| Error::Other(error.to_string()))?;
-        Ok(Self { genomes, seed: plan.seed, generation: 0, run: None })
+        let evolution = Evolution::new(plan, plan.setup()?.as_ref())?;
+        Self::new(plan, evolution.ask().clone(), &evolution.descent(), 0)
     }
 
     /// The last generation that a run has finished, or its first one.
     ///
     /// A run of other values serves as well: its genomes are lived, not lived again.
     pub(crate) fn of_run(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
-        let path = directory.lineage();
-        let Ancestry { lineage, .. } = records::read(&path, plan, directory.path())?;
-        let generation = lineage.latest().saturating_sub(1);
-        let genomes = lineage.genomes_at(generation).map_err(|error| Error::damaged(&path, error))?;
-        if genomes.genome_len() != plan.setup()?.genes() {
-            return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
+        let (Ancestry { descent, .. }, path) = Ancestry::read(plan, directory)?;
+        let generation = descent.finished().saturating_sub(1);
+        let damaged = |why: &dyn std::fmt::Display| Error::damaged(&path, why);
+        let genes = plan.setup()?.genes();
+        let mut genomes =
+            Population::new(descent.populations() * descent.size(), genes).map_err(|error| damaged(&error))?;
+        for (individual, genome) in genomes.iter_mut().enumerate() {
+            let rebuilt = descent.genome_of(generation, individual).map_err(|error| damaged(&error))?;
+            if rebuilt.len() != genes {
+                return Err(damaged(&"its genomes are not those of the experiment"));
+            }
+            genome.copy_from_slice(&rebuilt);
         }
-        Ok(Self { genomes, seed: plan.seed, generation, run: Some(directory.path().display().to_string()) })
+        let sample = Self::new(plan, genomes, &descent, generation)?;
+        Ok(Self { run: Some(directory.path().display().to_string()), ..sample })
+    }
+
+    /// Several populations live against the champions that there are, and against each other.
+    fn new(plan: &Plan<'_>, genomes: Population, descent: &Descent, generation: u32) -> Result<Self, Error> {
+        let lost = |why: &dyn std::fmt::Display| Error::Other(format!("the opponents of {}: {why}", plan.name()));
+        let populations = descent.populations();
+        let hall = Hall::before(descent, plan.setup()?.trials()).map_err(|error| lost(&error))?;
+        let meeting = Meeting { generation: descent.finished(), populations, size: genomes.len() / populations };
+        let opponents = hall.opponents(meeting, &genomes).ok_or_else(|| lost(&"one is missing"))?;
+        let opponents = opponents.into_iter().map(<[u16]>::to_vec).collect();
+        Ok(Self { genomes, opponents, populations, seed: plan.seed, generation, run: None })
     }
 }
 
@@ -114,7 +134,9 @@ struct Prediction {
 /// # Errors
 /// [`Error::Panicked`], and [`Error::Other`] if nothing was lived.
 pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
-    let Sample { genomes, seed, generation, run } = sample;
+    let Sample { genomes, seed, generation, run, .. } = sample;
+    let opponents: Vec<&[u16]> = sample.opponents.iter().map(Vec::as_slice).collect();
+    let opponents = Opponents { genes: &opponents, each: sample.populations - 1 };
     let limit = Duration::from_secs_f64(seconds);
     let (lives, steps, stop) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
     let (started, used) = (Instant::now(), processor_seconds());
@@ -130,7 +152,7 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
                 stop.store(true, Ordering::Relaxed);
             }
         };
-        match live_all(&mut pool, genomes, job, &stop, done) {
+        match live_all(&mut pool, genomes, opponents, job, &stop, done) {
             Ok(_) => rounds += 1,
             Err(Unfinished::Stopped) => break,
             Err(Unfinished::Panicked) => return Err(Error::Panicked { generation: job.generation }),
@@ -287,6 +309,7 @@ fn ticks(stat: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolution;
     use crate::experiment::{Description, Experiment, Setup, Tape};
     use crate::lanes::Wanted;
     use crate::settings::{Setting, Settings, Value};

@@ -168,12 +168,11 @@ pub(crate) fn lives(
     let mut tried: Vec<Tried> = Vec::with_capacity(trials);
     for (number, outcome) in outcomes.into_iter().flatten().enumerate() {
         let earned = fitness(&outcome);
-        match tried.last_mut().filter(|_| !number.is_multiple_of(count)) {
-            Some(first) => first.others.push((earned, outcome.success)),
-            None => {
-                let trial = (number / count % kinds) as u32;
-                tried.push(Tried { trial, outcome, fitness: earned, others: Vec::new() });
-            }
+        if let Some(first) = tried.last_mut().filter(|_| !number.is_multiple_of(count)) {
+            first.others.push((earned, outcome.success));
+        } else {
+            let trial = (number / count % kinds) as u32;
+            tried.push(Tried { trial, outcome, fitness: earned, others: Vec::new() });
         }
     }
     Ok(tried)

@@ -5,14 +5,13 @@ use std::io::{self, Write as _};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use farsa_evo::Strategy as _;
 use serde::Serialize;
 
 use crate::directory::{Directory, vacant};
 use crate::error::Error;
 use crate::plan::{LARGEST_SEED, Plan};
 use crate::pool::Pool;
-use crate::records::{self, Champion, Checkpoint};
+use crate::records::{Champions, Checkpoint};
 use crate::run::{self, Summary, Winner};
 use crate::statistics::{Quartiles, median};
 
@@ -111,8 +110,8 @@ pub(crate) fn run(
 fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
     let Ok(directory) = Directory::open(path) else { return vacant(path).map(|()| None) };
     let file = directory.checkpoint();
-    let Checkpoint { identity, evolution, .. } = records::read(&file, plan, path)?;
-    identity.same_values(&plan.identity(), &file)?;
+    let Checkpoint { identity, evolution, .. } = Checkpoint::read(plan, &directory)?;
+    identity.same_values(&plan.identity()?, &file)?;
     let (done, asked) = (evolution.generation(), plan.generations()?);
     if done < asked {
         return Ok(None);
@@ -120,7 +119,7 @@ fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
     if done > asked {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", path.display())));
     }
-    let Champion { generation, individual, fitness, .. } = records::read(&directory.champion(), plan, path)?;
+    let champions = Winner::of(&Champions::read(plan, &directory)?);
     Ok(Some(Summary {
         directory: path.display().to_string(),
         experiment: identity.experiment,
@@ -129,7 +128,8 @@ fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
         generations: done,
         evaluations: 0,
         seconds: 0.0,
-        champion: Some(Winner { generation, individual, fitness: fitness.get() }),
+        champion: champions.first().cloned(),
+        champions: if champions.len() > 1 { champions } else { Vec::new() },
     }))
 }
 

@@ -54,7 +54,7 @@ pub(crate) struct Summary {
     pub(crate) champion: Option<Winner>,
     /// Those of all populations, if there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    champions: Vec<Winner>,
+    pub(crate) champions: Vec<Winner>,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -62,6 +62,19 @@ pub(crate) struct Winner {
     pub(crate) generation: u32,
     pub(crate) individual: u32,
     pub(crate) fitness: f64,
+}
+
+impl Winner {
+    /// The best of every population.
+    pub(crate) fn of(champions: &Champions) -> Vec<Self> {
+        let Champions { generation, best, .. } = champions;
+        let winner = |&Best { individual, fitness, .. }: &Best| Self {
+            generation: *generation,
+            individual,
+            fitness: fitness.get(),
+        };
+        best.iter().map(winner).collect()
+    }
 }
 
 impl Summary {
@@ -240,15 +253,7 @@ impl Run<'_> {
     fn summary(&self) -> Summary {
         let Identity { experiment, condition, seed, .. } = self.identity.clone();
         let session = self.manifest.sessions.last();
-        let champions: Vec<Winner> = (self.champions.iter())
-            .flat_map(|Champions { generation, best, .. }| {
-                best.iter().map(|&Best { individual, fitness, .. }| Winner {
-                    generation: *generation,
-                    individual,
-                    fitness: fitness.get(),
-                })
-            })
-            .collect();
+        let champions: Vec<Winner> = self.champions.iter().flat_map(Winner::of).collect();
         Summary {
             directory: self.directory.path().display().to_string(),
             experiment,
@@ -266,8 +271,8 @@ impl Run<'_> {
 /// Whom the lives of a generation are lived against, in the order of the lives, so many for each.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Opponents<'g> {
-    genes: &'g [&'g [u16]],
-    each: usize,
+    pub(crate) genes: &'g [&'g [u16]],
+    pub(crate) each: usize,
 }
 
 impl<'g> Opponents<'g> {

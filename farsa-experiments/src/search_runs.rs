@@ -47,10 +47,14 @@ impl Experiment for Numbers {
     }
     fn settings(&self, _: &str) -> Vec<Setting> {
         if self.search == Search::SteadyState {
-            return Vec::new();
+            return vec![Setting::text("numbers.file", "")];
         }
-        let size = SIZE as i64;
+        let size = i64::try_from(SIZE).unwrap();
         vec![Setting::whole(evolution::POPULATION, size, 1..=100), Setting::whole("evolution.parents", 2, 1..=100)]
+    }
+    fn files(&self, _: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {
+        let file = settings.text("numbers.file").unwrap_or_default();
+        Ok(if file.is_empty() { Vec::new() } else { vec![file.into()] })
     }
     fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Setup>, Error> {
         Ok(Box::new(*self))
@@ -150,7 +154,7 @@ fn rows(directory: &Directory) -> Vec<Vec<f64>> {
 
 fn replayed(plan: &Plan<'_>, directory: &Directory, which: Which) -> (String, String) {
     let mut out = Vec::new();
-    let summary = replay(plan, directory, which, &mut out).unwrap();
+    let summary = replay(plan, directory, which, &mut out).unwrap().summary;
     (String::from_utf8(out).unwrap(), summary)
 }
 
@@ -179,7 +183,7 @@ fn a_steady_state_keeps_the_better_of_two() {
         let survivor = usize::from(mutant >= parent);
         assert_eq!(descent.champion(0, generation), Some(survivor), "generation {generation}");
         let (best, worst) = (parent.max(mutant), parent.min(mutant));
-        for (found, expected) in row[1..4].iter().zip([best, (best + worst) / 2.0, worst]) {
+        for (found, expected) in row[1..4].iter().zip([best, f64::midpoint(best, worst), worst]) {
             assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{row:?} {expected}");
         }
         assert_eq!(row[4..], [2.0, 0.0]);
@@ -253,7 +257,7 @@ fn populations_meet_each_others_champions() {
             let (_, summary) = replayed(&plan, &directory, which);
             assert!(summary.ends_with(&format!("fitness {:?}", all[individual as usize])), "{summary}");
             let (one, _) = replayed(&plan, &directory, Which { trial: Some(2), ..which });
-            let other = if individual < 10 { 1 } else { 0 };
+            let other = usize::from(individual < 10);
             let met = match generation.checked_sub(3) {
                 Some(earlier) => genes(earlier, descent.champion(other, earlier).unwrap()),
                 None => genes(generation, other * SIZE + 2),
@@ -279,6 +283,41 @@ fn populations_meet_each_others_champions() {
     assert_eq!(csv.lines().nth(2).unwrap(), format!("1,1,1,{},{seeker:?},{first:?},1,{second:?},1", seeker >= 0.0));
     assert_eq!(csv.lines().count(), 5);
     assert_eq!(text, exam::test(&plan, &directory, 4, 1, 1, Wanted::ONE, true).unwrap().text());
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn a_run_knows_the_files_that_it_was_made_with() {
+    let root = scratch("files");
+    fs::create_dir_all(&root).unwrap();
+    let file = root.join("numbers \"one\".txt");
+    let plan = |generations| {
+        let mut plan = plan(&STEADY, generations);
+        plan.settings.set("", "numbers.file", Value::Word(file.display().to_string())).unwrap();
+        plan
+    };
+    let refused = |words: &str| {
+        let (five, directory) = (plan(5), Directory::open(&root.join("run")).unwrap());
+        let errors = [
+            go_on(&five, &directory, pool(&five, 1), &AtomicBool::new(false), "farsa", true).unwrap_err(),
+            replay(&five, &directory, Which::default(), &mut Vec::new()).unwrap_err(),
+            exam::test(&five, &directory, 1, 1, 1, Wanted::ONE, true).unwrap_err(),
+        ];
+        for error in errors.map(|error| error.to_string()) {
+            assert!(error.contains(words) && error.contains("numbers \"one\".txt"), "{error}");
+        }
+    };
+    assert!(create(&plan(3), &root.join("run")).is_err() && !root.join("run").exists());
+    fs::write(&file, "1 2 3").unwrap();
+    let directory = create(&plan(3), &root.join("run")).unwrap();
+    run(&plan(3), &directory, 1);
+    assert!(fs::read_to_string(directory.manifest()).unwrap().contains("\"files\""));
+    fs::write(&file, "1 2 4").unwrap();
+    refused("is another file than the run in ");
+    fs::remove_file(&file).unwrap();
+    refused("cannot read ");
+    fs::write(&file, "1 2 3").unwrap();
+    run(&plan(5), &directory, 1);
     fs::remove_dir_all(root).unwrap();
 }
 
