@@ -31,7 +31,7 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "genes", value_hint = ValueHint::FilePath)]
     pub(crate) genes_file: Option<PathBuf>,
     /// Which of the file's genotypes, from 0 [default: its only one]
-    #[arg(long, value_name = "N", requires = "genes_file")]
+    #[arg(long, value_name = "N", requires = "genes_file", conflicts_with = "genes")]
     pub(crate) genotype: Option<usize>,
     /// Random trials
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]

@@ -76,7 +76,7 @@ fn wrong_genes_are_named() {
         ("evaluate cart --genes 1,x", 2, &["gene 1 (the first is 0) is `x`, not a whole number from 0 to 65535"]),
         ("evaluate cart --genes 1,2 --trials 0", 2, &["--trials"]),
         ("evaluate cart --genes 1,2 --ir-tables .", 2, &["--ir-tables: cart has no setting `robot.infrared_tables`"]),
-        ("evaluate cart --genes 1,2 --genotype 0", 2, &["--genes-file"]),
+        ("evaluate cart --genes 1,2 --genotype 0", 2, &["--genotype"]),
         ("evaluate cart --genes-file none.gen", 1, &["cannot read none.gen"]),
         ("evaluate cart --genes-file two.gen", 2, &["two.gen: holds 2 genotypes", "--genotype"]),
         ("evaluate cart --genes-file two.gen --genotype 2", 2, &["two.gen: genotype 2 of 2"]),
