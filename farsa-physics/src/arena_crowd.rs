@@ -21,6 +21,8 @@ pub(crate) struct Crowd {
     /// Whether anybody holds anybody.
     held: bool,
     back: Vec<bool>,
+    /// Whether those that hold together are set back, by the first of them.
+    stopped: Vec<bool>,
     pushes: Vec<(u16, [f32; 2])>,
     /// Who is set back now, and who was in the last round.
     now: Vec<u16>,
@@ -44,6 +46,7 @@ impl Crowd {
             group: (0..robots).map(|robot| robot as u16).collect(),
             held: false,
             back: vec![false; robots],
+            stopped: vec![false; robots],
             pushes: Vec::with_capacity(robots),
             now: Vec::with_capacity(robots),
             last: Vec::with_capacity(robots),
@@ -147,12 +150,17 @@ impl Crowd {
         }
         for robot in 0..model.robots.len() {
             let kind = model.kind(robot);
-            let Some(reach) = kind.robot.attachment else { continue };
-            let wants = words[model.command(robot, kind.robot.actuators() - 1)] > 0.5;
             let held = model.robot_word(robot, HELD);
+            // Whatever was restored, only a robot is held, and only by a device.
+            let Some(reach) = kind.robot.attachment else {
+                words[held] = NOTHING;
+                continue;
+            };
+            let wants = words[model.command(robot, kind.robot.actuators() - 1)] > 0.5;
+            let holds = words[held] >= 0.0 && (words[held] as usize) < model.robots.len();
             if !wants {
                 words[held] = NOTHING;
-            } else if words[held] < 0.0 {
+            } else if !holds {
                 words[held] = self.ahead(model, words, robot, kind.radius + reach as f32);
             }
             self.held |= words[held] >= 0.0;
@@ -319,16 +327,16 @@ impl Crowd {
                 self.back[usize::from(*robot)] = true;
             }
             if self.held {
-                let all = 0..robots as u16;
-                let with = |robot: &u16| {
-                    now.iter().any(|other| self.group[usize::from(*other)] == self.group[usize::from(*robot)])
-                };
-                self.last.clear();
-                self.last.extend(all.filter(|robot| !self.back[usize::from(*robot)] && with(robot)));
-                for robot in &self.last {
-                    self.back[usize::from(*robot)] = true;
+                self.stopped.fill(false);
+                for robot in &now {
+                    self.stopped[usize::from(self.group[usize::from(*robot)])] = true;
                 }
-                now.extend_from_slice(&self.last);
+                for robot in 0..robots {
+                    if !self.back[robot] && self.stopped[usize::from(self.group[robot])] {
+                        self.back[robot] = true;
+                        now.push(robot as u16);
+                    }
+                }
             }
             for robot in &now {
                 Self::set_back(model, words, work, usize::from(*robot));
