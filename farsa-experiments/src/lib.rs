@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod arena_stage;
 mod arguments;
 mod arguments_genotypes;
 mod bench;

@@ -1,0 +1,186 @@
+//! A planar world as something to be seen.
+
+use farsa_body::{BodyId, Pose};
+use farsa_num::sin_cos;
+use farsa_physics::arena::{Area, AreaShape, Arena, Cylinder, Wall};
+
+use crate::form::Form;
+use crate::picture::{Color, OKABE_ITO, Role};
+use crate::prop::{Prop, screen_color};
+use crate::stage::{Stage, View};
+
+/// Walls that are given no colour: dark, so that ways along them are seen.
+const WALL: Color = [84, 90, 99];
+/// The stripe that shows where a robot looks to.
+const STRIPE: Color = [250, 250, 245];
+/// How high an area lies above the one under it [m].
+const LAYER: f64 = 1e-4;
+
+/// A frame on the ground, turned about the vertical.
+fn standing([x, y]: [f64; 2], z: f64, heading: f64) -> Pose<f64> {
+    let (sine, cosine) = sin_cos(0.5 * heading);
+    Pose { position: [x, y, z], rotation: [0.0, 0.0, sine, cosine] }
+}
+
+/// `name` where there is one of it, else `name 1`, `name 2` ...
+fn numbered<'a>(names: impl Iterator<Item = &'a str> + Clone) -> Vec<String> {
+    let mut counted: Vec<(&str, usize)> = Vec::new();
+    names
+        .clone()
+        .map(|name| {
+            let at = counted.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
+                counted.push((name, 0));
+                counted.len() - 1
+            });
+            counted[at].1 += 1;
+            if names.clone().filter(|other| *other == name).nth(1).is_some() {
+                format!("{name} {}", counted[at].1)
+            } else {
+                name.into()
+            }
+        })
+        .collect()
+}
+
+/// The ground of an arena that has a size, else an endless one.
+fn ground(arena: &Arena) -> Prop {
+    let (form, middle) = match arena.size {
+        Some(size) => (Form::Rectangle { half: size.map(|x| 0.5 * x) }, size.map(|x| 0.5 * x)),
+        None => (Form::Plane, [0.0; 2]),
+    };
+    Prop::new("ground", form, standing(middle, 0.0, 0.0), Role::Ground).with_color(screen_color(arena.ground))
+}
+
+fn wall(number: usize, wall: &Wall) -> Prop {
+    let [length, thickness] = wall.size;
+    let up = 0.5 * wall.height;
+    let form = Form::Box { half: [0.5 * length, 0.5 * thickness, up] };
+    let color = if wall.color == Wall::COLOR { WALL } else { screen_color(wall.color) };
+    let name = format!("wall {}", number + 1);
+    Prop::new(&name, form, standing(wall.centre, up, wall.heading), Role::Ground).with_color(color)
+}
+
+fn area(number: usize, area: &Area) -> Prop {
+    let form = match area.shape {
+        AreaShape::Circle { radius } => Form::Disc { radius },
+        AreaShape::Rectangle { size } => Form::Rectangle { half: size.map(|x| 0.5 * x) },
+    };
+    // Where several lie over each other, the last one is seen.
+    let place = standing([0.0; 2], LAYER * (number + 1) as f64, 0.0);
+    Prop::new("area", form, place, Role::Area).with_color(screen_color(area.color))
+}
+
+/// A cylinder in its colour; of those without one, lamps are yellow and the others as things are.
+fn cylinder(cylinder: &Cylinder) -> Prop {
+    let up = 0.5 * cylinder.height;
+    let form = Form::Cylinder { radius: cylinder.radius, half_length: up };
+    let plain = Prop::new("cylinder", form, standing([0.0; 2], up, 0.0), Role::Thing);
+    match cylinder.color {
+        color if color != Wall::COLOR => plain.with_color(screen_color(color)),
+        _ if cylinder.lamp > 0.0 => plain.with_color(OKABE_ITO[3]),
+        _ => plain,
+    }
+}
+
+impl Stage {
+    /// The bodies of a planar world, seen from above, by the numbers that they have there: robots, cylinders, areas.
+    ///
+    /// A robot is its hull with a light stripe that points ahead; it is drawn in its own colour, whatever its LEDs show.
+    ///
+    /// ```
+    /// use farsa_body::MobileRobot;
+    /// use farsa_experiments::Stage;
+    /// use farsa_physics::arena::{Arena, Cylinder};
+    ///
+    /// let mut arena = Arena::walled(0.4, 0.4);
+    /// arena.add_robot(MobileRobot::khepera(), [0.1, 0.2], 0.0);
+    /// arena.add_cylinder(Cylinder::new([0.3, 0.2], 0.0125));
+    /// let stage = Stage::of_arena(&arena).with_sensors(["front"]);
+    /// assert_eq!(stage.bodies, ["Khepera", "cylinder"]);
+    /// ```
+    pub fn of_arena(arena: &Arena) -> Self {
+        let robots = arena.robots.iter().map(|placed| placed.robot.name.as_str());
+        let cylinders = arena.cylinders.iter().map(|cylinder| if cylinder.lamp > 0.0 { "lamp" } else { "cylinder" });
+        let areas = arena.areas.iter().map(|_| "area");
+        let bodies = numbered(robots.chain(cylinders).chain(areas));
+        let mut props = vec![ground(arena)];
+        props.extend(arena.walls.iter().enumerate().map(|(number, it)| wall(number, it)));
+        let moving = |prop: Prop, body: BodyId| {
+            let name = bodies.get(body.index()).cloned().unwrap_or_default();
+            Prop { name, ..prop.on(body) }
+        };
+        props.extend(arena.areas.iter().enumerate().map(|(i, it)| moving(area(i, it), arena.area(i))));
+        props.extend(arena.cylinders.iter().enumerate().map(|(i, it)| moving(cylinder(it), arena.cylinder(i))));
+        for (number, placed) in arena.robots.iter().enumerate() {
+            let (robot, body) = (&placed.robot, BodyId(number as u16));
+            let up = 0.5 * robot.height;
+            let hull = Form::Cylinder { radius: robot.radius, half_length: up };
+            let hull = Prop::new("hull", hull, standing([0.0; 2], up, 0.0), Role::Robot);
+            props.push(moving(hull.with_color(screen_color(robot.color)), body));
+            let half = [0.4 * robot.radius, 0.09 * robot.radius, 0.01 * robot.radius];
+            let at = standing([0.55 * robot.radius, 0.0], robot.height + half[2], 0.0);
+            let stripe = Prop::new("", Form::Box { half }, at, Role::Robot).with_color(STRIPE);
+            props.push(Prop { name: format!("{} ahead", bodies[number]), ..stripe.on(body) });
+        }
+        Self { bodies, props, view: View::Top, ..Self::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_body::{Kinematics, MobileRobot, Recorder as _};
+    use farsa_physics::arena::World;
+
+    use crate::recording::Recording;
+
+    #[test]
+    fn every_part_of_an_arena_is_seen_in_its_place() {
+        let mut arena = Arena::walled(1.0, 0.5);
+        arena.add_robot(MobileRobot::khepera(), [0.2, 0.2], 0.5);
+        arena.add_robot(MobileRobot::khepera(), [0.4, 0.2], 0.0);
+        arena.add_robot(MobileRobot::e_puck(), [0.6, 0.2], -1.0);
+        arena.add_cylinder(Cylinder { lamp: 1.0, ..Cylinder::new([0.8, 0.2], 0.01) });
+        arena.add_cylinder(Cylinder { color: [1.0, 0.0, 0.0], ..Cylinder::new([0.9, 0.4], 0.02) });
+        arena.add_area(Area::circle([0.5, 0.4], 0.05, [0.0, 1.0, 0.0]));
+        arena.add_area(Area::rectangle([0.1, 0.4], [0.1, 0.05], 0.3, [0.0, 0.0, 1.0]));
+        let stage = Stage::of_arena(&arena);
+        assert_eq!(stage.bodies, ["Khepera 1", "Khepera 2", "e-puck", "lamp", "cylinder", "area 1", "area 2"]);
+        // The ground, four walls, two areas, two cylinders and twice three robots.
+        assert_eq!(stage.props.len(), 1 + 4 + 2 + 2 + 6);
+        let world = World::new(&arena).unwrap();
+        assert!(stage.shown().eq((0..7).map(BodyId)));
+        for prop in stage.props.iter().filter(|prop| prop.role != Role::Ground) {
+            let body = prop.body.unwrap();
+            let ahead = prop.name.ends_with(" ahead");
+            assert_eq!(prop.name.trim_end_matches(" ahead"), stage.bodies[body.index()]);
+            let pose = world.pose(body).cast::<f64>();
+            let at = pose.compose(&prop.placement).position;
+            let off = prop.placement.position[0];
+            let expected = pose.transform([off, 0.0, prop.placement.position[2]]);
+            assert_eq!((off > 0.0, at), (ahead, expected), "{}", prop.name);
+        }
+        let inner: Vec<f64> = stage.props[1..5]
+            .iter()
+            .map(|prop| {
+                let Form::Box { half } = prop.form else { panic!("{prop:?}") };
+                let at = prop.placement.position;
+                if half[0] > half[1] { (at[1] - 0.25).abs() - half[1] } else { (at[0] - 0.5).abs() - half[0] }
+            })
+            .collect();
+        assert!(inner.iter().zip([0.25, 0.25, 0.5, 0.5]).all(|(a, b)| (a - b).abs() < 1e-12), "{inner:?}");
+        let mut recording = Recording::new(stage);
+        (0..7).for_each(|body| recording.pose(BodyId(body), world.pose(BodyId(body))));
+        recording.tick(0.0);
+        assert!(crate::Page::new("x").with("y", recording).html().contains("Khepera 2 ahead"));
+    }
+
+    #[test]
+    fn a_plane_without_end_has_ground_and_no_walls() {
+        let mut arena = Arena::new();
+        arena.add_robot(MobileRobot::marxbot(), [0.0, 0.0], 0.0);
+        let stage = Stage::of_arena(&arena);
+        assert_eq!((stage.props.len(), stage.props[0].form), (3, Form::Plane));
+        assert_eq!(stage.bodies, ["MarXbot"]);
+    }
+}
