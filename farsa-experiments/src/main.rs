@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-use farsa_experiments::{ReachGraspLift, cli};
+use farsa_experiments::{Discrimination, DiscriminationCylinders, ReachGraspLift, cli};
 
 fn main() -> ExitCode {
-    cli::main(&[&ReachGraspLift])
+    cli::main(&[&ReachGraspLift, &Discrimination, &DiscriminationCylinders])
 }

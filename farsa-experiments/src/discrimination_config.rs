@@ -1,0 +1,187 @@
+//! The values of `discrimination` and `discrimination-cylinders`, as settings.
+
+use farsa_body::MobileRobot;
+use farsa_physics::arena::{Arena, Cylinder, World};
+
+use crate::error::Error;
+use crate::infrared::InfraredModel;
+use crate::settings::{Setting, Settings};
+
+/// The front infrared sensors that the robot uses, of the Khepera's eight.
+pub const EYES: usize = 6;
+
+/// What a robot does among cylinders; the defaults are those of `discrimination`.
+///
+/// Lengths are metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    /// Width and depth of the arena between its walls.
+    pub size: [f64; 2],
+    /// Control step \[s\].
+    pub time_step: f64,
+    /// Trials of an evaluation, each with places of its own.
+    pub trials: usize,
+    /// Steps of a trial.
+    pub steps: u32,
+    /// Radii of the cylinders: of the one to stay at, and perhaps of another.
+    pub radii: Vec<f64>,
+    /// Least distance of a cylinder's surface from the walls.
+    pub object_to_wall: f64,
+    /// Least distance between the surfaces of two cylinders.
+    pub object_to_object: f64,
+    /// Least distance of the robot's hull from the walls at the start.
+    pub robot_to_wall: f64,
+    /// Least distance of the robot's hull from the cylinders at the start.
+    pub robot_to_object: f64,
+    /// The robot is near a cylinder while their surfaces are less than this apart.
+    pub near: f64,
+    /// What a step near the other cylinder costs, in steps near the first.
+    pub cost: f64,
+    /// How the infrared sensors read.
+    pub infrared: InfraredModel,
+    /// Whether the robot senses how fast its wheels turn.
+    pub wheel_speeds: bool,
+    /// Weights and biases are decoded to plus and minus this.
+    pub weight_range: f64,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            size: [0.4, 0.4],
+            time_step: 0.05,
+            trials: 25,
+            steps: 600,
+            radii: vec![0.0125],
+            object_to_wall: 0.05,
+            object_to_object: 0.0,
+            robot_to_wall: 0.01,
+            robot_to_object: 0.1,
+            near: 0.08,
+            cost: 0.0,
+            infrared: InfraredModel::Analytic,
+            wheel_speeds: false,
+            weight_range: 5.0,
+        }
+    }
+}
+
+impl Config {
+    /// The defaults of `discrimination-cylinders`, all chosen but the radii and those that it shares.
+    ///
+    /// The arena is as much larger as two cylinders and the ways between them need.
+    pub fn two_cylinders(wheel_speeds: bool) -> Self {
+        Self {
+            size: [0.6, 0.6],
+            radii: vec![0.027, 0.0125],
+            object_to_object: 0.2,
+            cost: 1.0,
+            wheel_speeds,
+            ..Self::default()
+        }
+    }
+
+    /// Every value as a setting, with these as defaults.
+    pub fn table(&self) -> Vec<Setting> {
+        let length = |key: &str, default: f64, most: f64| Setting::number(key, default, 0.0..=most).unit("m");
+        let mut table = vec![
+            Setting::numbers("world.size", &self.size, 0.1..=100.0)
+                .unit("m")
+                .given()
+                .doc("Width and depth of the arena between its walls."),
+            Setting::number("world.time_step", self.time_step, 0.001..=0.2).unit("s").given().doc("Control step."),
+            Setting::whole("trial.count", self.trials as i64, 1..=100_000).given().doc("Trials of an evaluation."),
+            Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000)
+                .given()
+                .doc("Steps of a trial; a collision ends it before."),
+            Setting::numbers("object.radii", &self.radii, 0.001..=1.0)
+                .unit("m")
+                .given()
+                .doc("Radius of the cylinder to stay at, and of the other one where there is one."),
+            length("object.to_wall", self.object_to_wall, 10.0)
+                .given()
+                .doc("Least distance of a cylinder's surface from the walls."),
+            length("start.to_wall", self.robot_to_wall, 10.0)
+                .given()
+                .doc("Least distance of the robot's hull from the walls at the start."),
+            length("start.to_object", self.robot_to_object, 10.0)
+                .given()
+                .doc("Least distance of the robot's hull from a cylinder's surface at the start."),
+            length("fitness.near", self.near, 10.0)
+                .given()
+                .doc("A step counts while the surfaces of robot and cylinder are less than this apart."),
+            Setting::number("net.weight_range", self.weight_range, 0.0..=1000.0)
+                .given()
+                .doc("Weights and biases are decoded from gene 0 at plus to the largest gene at minus this."),
+        ];
+        if self.radii.len() > 1 {
+            table.push(length("object.to_object", self.object_to_object, 10.0).doc(
+                "Least distance between the cylinders' surfaces: more than twice `fitness.near`, so that nothing is near both.",
+            ));
+            table.push(
+                Setting::number("fitness.cost", self.cost, 0.0..=100.0)
+                    .doc("What a step near the other cylinder costs, in steps near the first; 1: who stays anywhere gains nothing."),
+            );
+        }
+        table.extend(InfraredModel::settings());
+        table
+    }
+
+    /// These values with those of checked settings, and the tables of the infrared sensors.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for what does not go together, and those of [`InfraredModel::read`].
+    pub fn read(self, settings: &Settings) -> Result<Self, Error> {
+        let length = |key: &str| settings.number(key);
+        let several = self.radii.len() > 1;
+        let size = settings.numbers("world.size")?;
+        let radii = settings.numbers("object.radii")?.to_vec();
+        Ok(Self {
+            size: [size[0], size[1]],
+            time_step: length("world.time_step")?,
+            trials: settings.count("trial.count")?,
+            steps: settings.count("trial.steps")? as u32,
+            object_to_wall: length("object.to_wall")?,
+            object_to_object: if several { length("object.to_object")? } else { self.object_to_object },
+            robot_to_wall: length("start.to_wall")?,
+            robot_to_object: length("start.to_object")?,
+            near: length("fitness.near")?,
+            cost: if several { settings.number("fitness.cost")? } else { self.cost },
+            infrared: InfraredModel::read(settings)?,
+            weight_range: settings.number("net.weight_range")?,
+            radii,
+            ..self
+        })
+    }
+
+    /// The robot.
+    pub fn robot(&self) -> MobileRobot {
+        MobileRobot::khepera()
+    }
+
+    /// The arena with the robot and the cylinders parked beside it: every trial places them anew.
+    pub fn arena(&self) -> Arena {
+        let mut arena = Arena { time_step: self.time_step, ..Arena::walled(self.size[0], self.size[1]) };
+        let mut x = self.size[0] + 1.0;
+        arena.add_robot(self.robot(), [x, 0.0], 0.0);
+        for radius in &self.radii {
+            x += 1.0 + 2.0 * radius;
+            arena.add_cylinder(Cylinder::new([x, 0.0], *radius));
+        }
+        arena
+    }
+
+    /// A world of that arena.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for values that make no world.
+    pub fn world(&self) -> Result<World, Error> {
+        let parked = Arena { size: None, ..self.arena() };
+        World::new(&parked).map_err(|error| Error::Other(error.to_string()))
+    }
+
+    /// Channels that the network reads.
+    pub fn inputs(&self) -> usize {
+        EYES + 2 * usize::from(self.wheel_speeds)
+    }
+}

@@ -1,0 +1,176 @@
+//! Which of the three models reads a robot's infrared sensors, as settings.
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use farsa_body::{
+    BodyId, ChannelError, Channels, Handles, InfraredAnalytic, InfraredRays, InfraredTable, InfraredTables, Kinematics,
+    MobileRobot, Planar, Rays, SampledInfrared, Sensor,
+};
+
+use crate::error::Error;
+use crate::settings::{Setting, Settings};
+
+const MODEL: &str = "robot.infrared";
+const TABLES: &str = "robot.infrared_tables";
+const ANALYTIC: &str = "analytic";
+const RAYS: &str = "rays";
+const SAMPLED: &str = "sampled";
+
+/// The measured tables in a directory; for round bodies with the radius at which they were measured \[m\].
+const WALLS: &str = "wall.sam";
+const BODIES: [(&str, f32); 2] = [("small.sam", 0.0125), ("round.sam", 0.027)];
+
+/// A model of infrared sensors.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub enum InfraredModel {
+    /// By a formula, [`InfraredAnalytic`].
+    #[default]
+    Analytic,
+    /// By rays, [`InfraredRays`].
+    Rays,
+    /// By measured tables, [`SampledInfrared`].
+    Sampled(Arc<InfraredTables>),
+}
+
+impl InfraredModel {
+    /// The two settings that choose the model.
+    pub fn settings() -> Vec<Setting> {
+        vec![
+            Setting::word(MODEL, ANALYTIC, &[ANALYTIC, RAYS, SAMPLED]).doc(
+                "Model of the infrared sensors: a formula, rays, or measured tables as the source's; the formula needs no files.",
+            ),
+            Setting::text(TABLES, "").doc("Directory of wall.sam, small.sam and round.sam, which `sampled` needs."),
+        ]
+    }
+
+    /// The files that the model reads under these settings.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] if measured tables are wanted and no directory is named.
+    pub fn files(settings: &Settings) -> Result<Vec<PathBuf>, Error> {
+        if settings.word(MODEL)? != SAMPLED {
+            return Ok(Vec::new());
+        }
+        let directory = settings.text(TABLES)?;
+        if directory.is_empty() {
+            let why = format!("names no directory of tables, which `{MODEL} = \"{SAMPLED}\"` needs");
+            return Err(Error::setting(TABLES, why));
+        }
+        Ok(core::iter::once(WALLS)
+            .chain(BODIES.map(|(name, _)| name))
+            .map(|name| PathBuf::from(directory).join(name))
+            .collect())
+    }
+
+    /// The model of these settings, with its tables.
+    ///
+    /// # Errors
+    /// Those of [`files`](Self::files), [`Error::Io`] for a file that cannot be read, and what is wrong in a table.
+    pub fn read(settings: &Settings) -> Result<Self, Error> {
+        match settings.word(MODEL)? {
+            RAYS => return Ok(Self::Rays),
+            SAMPLED => {}
+            _ => return Ok(Self::Analytic),
+        }
+        let mut tables = Vec::new();
+        for path in Self::files(settings)? {
+            let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
+            let table = InfraredTable::parse(&text);
+            tables.push(table.map_err(|error| Error::setting(TABLES, format!("{}: {error}", path.display())))?);
+        }
+        let walls = tables.remove(0);
+        let bodies = BODIES.iter().map(|(_, radius)| *radius).zip(tables).collect();
+        let tables = InfraredTables::new(walls, bodies).map_err(|error| Error::setting(TABLES, error))?;
+        Ok(Self::Sampled(Arc::new(tables)))
+    }
+
+    /// The word for it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Analytic => ANALYTIC,
+            Self::Rays => RAYS,
+            Self::Sampled(_) => SAMPLED,
+        }
+    }
+}
+
+/// The first infrared sensors of a robot, read by one of the models; one channel each in \[0, 1\].
+#[derive(Clone, Debug)]
+pub struct Infrared {
+    ring: Ring,
+    /// The same sensors as one ray each, to be drawn: where it leaves the hull and its direction, in the robot's frame.
+    rays: Vec<farsa_body::Beam>,
+    range: f32,
+    height: f32,
+}
+
+#[derive(Clone, Debug)]
+enum Ring {
+    Analytic(InfraredAnalytic<Vec<[f32; 2]>>),
+    Rays(InfraredRays<Vec<farsa_body::Beam>>),
+    Sampled(SampledInfrared<Arc<InfraredTables>>),
+}
+
+impl Infrared {
+    /// The first `sensors` of a robot whose body this is.
+    ///
+    /// # Errors
+    /// [`ChannelError`] if the robot or the tables have fewer sensors, or no sensor can be built from their numbers.
+    pub fn of(robot: &MobileRobot, body: BodyId, sensors: usize, model: &InfraredModel) -> Result<Self, ChannelError> {
+        let channels = robot.infrared.angles.len();
+        if sensors > channels {
+            return Err(ChannelError::Selection { start: 0, end: sensors, channels });
+        }
+        let mut part = robot.clone();
+        part.infrared.angles.truncate(sensors);
+        let ring = match model {
+            InfraredModel::Analytic => Ring::Analytic(InfraredAnalytic::of(&part, body)?),
+            InfraredModel::Rays => Ring::Rays(InfraredRays::of(&part, body)?),
+            InfraredModel::Sampled(tables) => {
+                let all = SampledInfrared::new(body, robot.radius as f32, Arc::clone(tables))?;
+                Ring::Sampled(all.first(sensors)?)
+            }
+        };
+        let ray = |angle: &f64| farsa_body::Beam::in_cone(robot.radius, *angle, 0.0, 0, 1);
+        Ok(Self {
+            ring,
+            rays: part.infrared.angles.iter().map(ray).collect(),
+            range: robot.infrared.range as f32,
+            height: (0.5 * robot.height) as f32,
+        })
+    }
+
+    /// Tells a recorder a ray for each sensor: it ends where a thing would be of which rays read as much.
+    ///
+    /// `x` \[sensors\] is what was read when the robot was at `pose`.
+    pub fn tell(&self, pose: farsa_body::Pose, x: &[f32], recorder: &mut dyn farsa_body::Recorder) {
+        for (ray, &x) in self.rays.iter().zip(x) {
+            let length = self.range * (1.0 - x);
+            let end = [0, 1].map(|k| ray.from[k] + length * ray.direction[k]);
+            let [from, to] = [ray.from, end].map(|[u, v]| pose.transform([u, v, self.height]));
+            recorder.ray(from, to, x > 0.0);
+        }
+    }
+}
+
+impl Channels for Infrared {
+    fn channels(&self) -> usize {
+        self.rays.len()
+    }
+}
+
+impl<W> Sensor<W> for Infrared
+where
+    W: Planar + Rays + Kinematics + Handles<Body = BodyId> + ?Sized,
+{
+    #[inline]
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        match &mut self.ring {
+            Ring::Analytic(ring) => ring.read(world, out),
+            Ring::Rays(ring) => ring.read(world, out),
+            Ring::Sampled(ring) => ring.read(world, out),
+        }
+    }
+}
