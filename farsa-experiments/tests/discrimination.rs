@@ -1,0 +1,230 @@
+//! `discrimination`: the original's genotypes, the starts of trials, lives.
+
+use std::path::{Path, PathBuf};
+
+use farsa_body::{Arrange as _, Kinematics as _, Pose, Twist};
+use farsa_experiments::discrimination::{Config, CylinderLife, Lives};
+use farsa_experiments::{
+    Discrimination, DiscriminationCylinders, Experiment, Job, Life, Outcome, Settings, Setup, Tape, Value, live,
+};
+use farsa_nn::Perceptron;
+use farsa_physics::arena::World;
+
+fn fixtures() -> Option<PathBuf> {
+    let directory = std::env::var_os("FARSA_FIXTURES").map(|path| Path::new(&path).join("khepera"));
+    if directory.is_none() {
+        println!("skipped: FARSA_FIXTURES is not set");
+    }
+    directory
+}
+
+fn settings(experiment: &dyn Experiment, condition: &str, values: &[(&str, Value)]) -> Settings {
+    let mut settings = Settings::new(experiment.settings(condition)).unwrap();
+    for (key, value) in values {
+        settings.set("", key, value.clone()).unwrap();
+    }
+    settings
+}
+
+fn sampled(directory: &Path) -> Vec<(&'static str, Value)> {
+    let directory = directory.to_str().unwrap().to_owned();
+    vec![("robot.infrared", Value::Word("sampled".into())), ("robot.infrared_tables", Value::Word(directory))]
+}
+
+/// Mean fitness, its standard error and collisions per trial.
+fn measure(setup: &mut dyn Setup, genes: &[u16], trials: u32) -> [f64; 3] {
+    let outcomes: Vec<Outcome> = (0..trials)
+        .map(|trial| setup.live(genes, Job { seed: 1, generation: 0, individual: 0, trial }, &mut Tape::off()))
+        .collect();
+    let count = f64::from(trials);
+    let mean = setup.fitness(&outcomes);
+    let square: f64 = outcomes.iter().map(|outcome| (outcome.terms[0] - mean).powi(2)).sum();
+    let collisions = outcomes.iter().filter(|o| o.notes.contains(&("end", "collision".into()))).count();
+    [mean, (square / count / (count - 1.0)).sqrt(), collisions as f64 / count]
+}
+
+#[test]
+fn genotypes_of_the_original_stay_near_as_long_as_in_an_independent_replay() {
+    let Some(directory) = fixtures() else { return };
+    for (name, expected) in [("G500S53.gen", 0.699), ("G500S54.gen", 0.761)] {
+        let text = std::fs::read_to_string(directory.join(name)).unwrap();
+        let genes: Vec<u16> = text.lines().filter_map(|line| line.trim().parse().ok()).collect();
+        assert_eq!(genes.len(), 14);
+        let settings = settings(&Discrimination, "", &sampled(&directory));
+        let mut setup = Discrimination.prepare("", &settings).unwrap();
+        let [mean, error, collisions] =
+            measure(&mut *setup, &genes, 2000);
+        println!("{name}, tables: {mean:.4} +- {error:.4}, {collisions:.4} collisions per trial");
+        let mut analytic = Lives::new(Config::default()).unwrap();
+        let [other, error, collisions] = measure(&mut analytic, &genes, 2000);
+        println!("{name}, analytic: {other:.4} +- {error:.4}, {collisions:.4} collisions per trial");
+        assert!((mean - expected).abs() < 0.02, "{name}: {mean}");
+    }
+}
+
+/// A controller of the layer with all weights 0: the robot drives straight on or stands.
+fn constant(config: &Config, outputs: [f32; 2]) -> Perceptron<Vec<f32>> {
+    let inputs = config.inputs();
+    let mut parameters = vec![0.0; Perceptron::parameter_count(inputs, 2)];
+    parameters[2 * inputs..].copy_from_slice(&outputs);
+    Perceptron::new(inputs, 2, 1.0, parameters).unwrap()
+}
+
+#[test]
+fn trials_start_where_the_rules_allow() {
+    for config in [Config::default(), Config::two_cylinders(true)] {
+        let mut world = config.world().unwrap();
+        let mut life = CylinderLife::new(config.clone(), constant(&config, [0.0; 2])).unwrap();
+        let (mut starts, mut quadrants) = (Vec::new(), [0; 4]);
+        for trial in 0..1000 {
+            life.arrange(&mut world, Job { seed: 3, trial, ..Job::default() }).unwrap();
+            let robot = world.pose(life.parts().body).position.map(f64::from);
+            let to_wall = |[x, y, _]: [f64; 3]| {
+                let [w, h] = config.size;
+                x.min(y).min(w - x).min(h - y)
+            };
+            let apart = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
+            assert!(to_wall(robot) - 0.035 > 0.01 - 1e-5, "{robot:?}");
+            let places: Vec<_> =
+                life.cylinders().iter().map(|body| world.pose(*body).position.map(f64::from)).collect();
+            for (place, radius) in places.iter().zip(&config.radii) {
+                assert!(to_wall(*place) - radius > 0.05 - 1e-5, "{place:?}");
+                assert!(apart(*place, robot) - radius - 0.035 > 0.1 - 1e-5, "{place:?} {robot:?}");
+            }
+            if let [a, b] = places[..] {
+                assert!(apart(a, b) - config.radii.iter().sum::<f64>() > config.object_to_object - 1e-5);
+            }
+            let heading = world.pose(life.parts().body).heading();
+            quadrants[((heading + core::f32::consts::PI) / core::f32::consts::FRAC_PI_2).min(3.0) as usize] += 1;
+            starts.push(robot);
+        }
+        assert!(quadrants.iter().all(|count| (200..300).contains(count)), "{quadrants:?}");
+        let mut again = |job| {
+            life.arrange(&mut world, job).unwrap();
+            world.pose(life.parts().body).position.map(f64::from)
+        };
+        let job = Job { seed: 3, trial: 5, ..Job::default() };
+        assert_eq!(again(job), starts[5]);
+        for other in [Job { seed: 4, ..job }, Job { individual: 1, ..job }, Job { generation: 1, ..job }] {
+            assert_ne!(again(other), starts[5]);
+        }
+    }
+}
+
+#[test]
+fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
+    let config = Config { steps: 40, ..Config::default() };
+    let mut world = config.world().unwrap();
+    // Full speed ahead, 5.18 mm a step.
+    let mut life = CylinderLife::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
+    // A trial whose cylinder stands in the middle; the robot drives towards it, and from beside it to the wall.
+    let place = |life: &mut CylinderLife<Perceptron<Vec<f32>>>, world: &mut World, trial| {
+        life.begin(world, Job { trial, ..Job::default() });
+        world.pose(life.cylinders()[0]).position
+    };
+    let central = |at: [f32; 3]| at[..2].iter().all(|x| (x - 0.2).abs() < 0.05);
+    let trial = (0..).find(|trial| central(place(&mut life, &mut world, *trial))).unwrap();
+    for (start, expected) in [(-0.1, "cylinder"), (0.06, "wall")] {
+        let at = place(&mut life, &mut world, trial);
+        world.place_body(life.parts().body, Pose::planar([at[0] + start, at[1]], 0.0), Twist::default());
+        world.arranged();
+        let mut distances = Vec::new();
+        let fitness = loop {
+            life.act(&mut world);
+            farsa_body::World::step(&mut world);
+            let end = life.judge(&world);
+            distances.push(life.trial().distance[0]);
+            if let Some(fitness) = end {
+                break fitness;
+            }
+        };
+        let near = distances.iter().filter(|distance| **distance < 0.08).count() as u32;
+        assert_eq!((life.trial().near[0], life.trial().steps as usize), (near, distances.len()));
+        assert_eq!(fitness, f64::from(near) / 40.0);
+        assert!(life.trial().collided && distances.len() < 40, "{expected}: {distances:?}");
+        assert!(distances.iter().all(|distance| *distance >= 0.0), "{expected}");
+    }
+}
+
+#[test]
+fn lives_can_be_repeated_taped_and_lived_as_a_life() {
+    let cases: [(&dyn Experiment, &str, Config); 3] = [
+        (&Discrimination, "", Config::default()),
+        (&DiscriminationCylinders, "wheels", Config::two_cylinders(true)),
+        (&DiscriminationCylinders, "no-wheels", Config::two_cylinders(false)),
+    ];
+    for (experiment, condition, config) in cases {
+        for model in ["analytic", "rays"] {
+            let settings = settings(experiment, condition, &[("robot.infrared", Value::Word(model.into()))]);
+            let mut setup = experiment.prepare(condition, &settings).unwrap();
+            let genes: Vec<u16> = (0..setup.genes()).map(|i| (i * 97 % 256) as u16).collect();
+            let job = Job { seed: 9, generation: 3, individual: 1, trial: 4 };
+            let plain = setup.live(&genes, job, &mut Tape::off());
+            setup.live(&genes, Job { trial: 7, ..job }, &mut Tape::off());
+            let mut recording = farsa_experiments::Recording::new(setup.stage());
+            assert_eq!(setup.live(&genes, job, &mut Tape::to(&mut recording)), plain);
+            let ticks = recording.times().len();
+            assert_eq!(ticks, plain.steps as usize);
+            assert!((0..ticks).all(|tick| recording.row(tick).all(f64::is_finite)));
+            assert_eq!(recording.rays_at(ticks - 1).len(), 6);
+            let description = setup.description();
+            assert_eq!(description.sensors.iter().map(|g| g.count).sum::<usize>(), config.inputs());
+            assert_eq!(description.parameters, setup.genes());
+            // The same as a `Life` of its own controller.
+            let zeros = vec![128; setup.genes()];
+            let mut world = config.world().unwrap();
+            let w = 5.0 - 128.0 / 255.0 * 10.0;
+            let parameters = vec![w as f32; setup.genes()];
+            let layer = Perceptron::new(config.inputs(), 2, 1.0, parameters).unwrap();
+            if model == "analytic" {
+                let mut life = CylinderLife::new(config.clone(), layer).unwrap();
+                let fitness = live(&mut life, &mut world, job);
+                let lived = setup.live(&zeros, job, &mut Tape::off());
+                assert_eq!(fitness, setup.fitness(&[lived]));
+                Life::start(&mut life, &mut world, job);
+                assert_eq!(life.trial().steps, 0);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let refused = |experiment: &dyn Experiment, condition, values: &[(&str, Value)]| {
+        let settings = settings(experiment, condition, values);
+        experiment.prepare(condition, &settings).err().unwrap().to_string()
+    };
+    let crowded = refused(&Discrimination, "", &[("object.radii", Value::Numbers(vec![0.15]))]);
+    assert!(crowded.starts_with("`world.size`: no free place for a disc of 0.035 m in 1000 tries"), "{crowded}");
+    let crowded = refused(&DiscriminationCylinders, "wheels", &[("object.to_object", Value::Number(5.0))]);
+    assert!(crowded.starts_with("`world.size`: no free place"), "{crowded}");
+    let sampled = ("robot.infrared", Value::Word("sampled".into()));
+    let without = refused(&Discrimination, "", &[sampled.clone()]);
+    assert!(without.starts_with("`robot.infrared_tables`: names no directory"), "{without}");
+    let missing = Value::Word("no/such/place".into());
+    let missing = refused(&Discrimination, "", &[sampled, ("robot.infrared_tables", missing)]);
+    assert!(missing.contains("wall.sam"), "{missing}");
+    let slow = refused(
+        &Discrimination,
+        "",
+        &[("world.time_step", Value::Number(0.2)), ("world.size", Value::Numbers(vec![0.1; 2]))],
+    );
+    assert!(slow.starts_with("`world.size`"), "{slow}");
+}
+
+#[test]
+fn a_damaged_table_is_named() {
+    let directory = std::env::temp_dir().join(format!("farsa-tables-{}", std::process::id()));
+    std::fs::create_dir_all(&directory).unwrap();
+    let table = |row: &str| format!("8 1 1 5 2\nTURN 0\n{row}\nEND\n");
+    for name in ["wall.sam", "small.sam", "round.sam"] {
+        std::fs::write(directory.join(name), table("1 2 3 4 5 6 7 8")).unwrap();
+    }
+    let settings = settings(&Discrimination, "", &sampled(&directory));
+    assert!(Discrimination.prepare("", &settings).is_ok());
+    assert_eq!(Discrimination.files("", &settings).unwrap().len(), 3);
+    std::fs::write(directory.join("small.sam"), table("1 2 3 4 5 6 7")).unwrap();
+    let error = Discrimination.prepare("", &settings).err().unwrap().to_string();
+    assert!(error.contains("small.sam: line 3: 7 numbers instead of 8"), "{error}");
+    std::fs::remove_dir_all(&directory).unwrap();
+}
