@@ -7,7 +7,7 @@ pub use crate::infrared::{Infrared, InfraredModel};
 
 use std::path::PathBuf;
 
-use farsa_body::{Kinematics as _, MobileRobot, Recorder, World as _, record_world};
+use farsa_body::{Kinematics as _, MobileRobot, Pose, Recorder, World as _, record_world};
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
 
@@ -84,7 +84,7 @@ impl Lives {
     }
 
     /// Tells what was sensed, computed and done before the step that has just been judged, and what it led to.
-    fn tell(&self, was: farsa_body::Pose, recorder: &mut dyn Recorder) {
+    fn tell(&self, was: Pose, recorder: &mut dyn Recorder) {
         let Self { world, life } = self;
         let (trial, parts) = (life.trial(), life.parts());
         recorder.sensors(life.sensed());

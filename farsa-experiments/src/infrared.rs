@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use farsa_body::{
-    BodyId, ChannelError, Channels, Handles, InfraredAnalytic, InfraredRays, InfraredTable, InfraredTables, Kinematics,
-    MobileRobot, Planar, Rays, SampledInfrared, Sensor,
+    Beam, BodyId, ChannelError, Channels, Handles, InfraredAnalytic, InfraredRays, InfraredTable, InfraredTables,
+    Kinematics, MobileRobot, Planar, Pose, Rays, Recorder, SampledInfrared, Sensor,
 };
 
 use crate::error::Error;
@@ -14,6 +14,7 @@ use crate::settings::{Setting, Settings};
 
 const MODEL: &str = "robot.infrared";
 const TABLES: &str = "robot.infrared_tables";
+const AUTO: &str = "auto";
 const ANALYTIC: &str = "analytic";
 const RAYS: &str = "rays";
 const SAMPLED: &str = "sampled";
@@ -38,10 +39,11 @@ impl InfraredModel {
     /// The two settings that choose the model.
     pub fn settings() -> Vec<Setting> {
         vec![
-            Setting::word(MODEL, ANALYTIC, &[ANALYTIC, RAYS, SAMPLED]).doc(
-                "Model of the infrared sensors: a formula, rays, or measured tables as the source's; the formula needs no files.",
+            Setting::word(MODEL, AUTO, &[AUTO, ANALYTIC, RAYS, SAMPLED]).doc(
+                "Model of the infrared sensors: a formula, rays, or measured tables as the source's; auto takes tables where \
+                 they are named, else the formula, which needs no files.",
             ),
-            Setting::text(TABLES, "").doc("Directory of wall.sam, small.sam and round.sam, which `sampled` needs."),
+            Setting::text(TABLES, "").doc("Directory of wall.sam, small.sam and round.sam for the model `sampled`."),
         ]
     }
 
@@ -50,13 +52,14 @@ impl InfraredModel {
     /// # Errors
     /// [`Error::Setting`] if measured tables are wanted and no directory is named.
     pub fn files(settings: &Settings) -> Result<Vec<PathBuf>, Error> {
-        if settings.word(MODEL)? != SAMPLED {
-            return Ok(Vec::new());
-        }
         let directory = settings.text(TABLES)?;
-        if directory.is_empty() {
-            let why = format!("names no directory of tables, which `{MODEL} = \"{SAMPLED}\"` needs");
-            return Err(Error::setting(TABLES, why));
+        match (settings.word(MODEL)?, directory.is_empty()) {
+            (SAMPLED, true) => {
+                let why = format!("names no directory of tables, which `{MODEL} = \"{SAMPLED}\"` needs");
+                return Err(Error::setting(TABLES, why));
+            }
+            (SAMPLED | AUTO, false) => {}
+            _ => return Ok(Vec::new()),
         }
         Ok(core::iter::once(WALLS)
             .chain(BODIES.map(|(name, _)| name))
@@ -69,13 +72,12 @@ impl InfraredModel {
     /// # Errors
     /// Those of [`files`](Self::files), [`Error::Io`] for a file that cannot be read, and what is wrong in a table.
     pub fn read(settings: &Settings) -> Result<Self, Error> {
-        match settings.word(MODEL)? {
-            RAYS => return Ok(Self::Rays),
-            SAMPLED => {}
-            _ => return Ok(Self::Analytic),
+        let paths = Self::files(settings)?;
+        if paths.is_empty() {
+            return Ok(if settings.word(MODEL)? == RAYS { Self::Rays } else { Self::Analytic });
         }
         let mut tables = Vec::new();
-        for path in Self::files(settings)? {
+        for path in paths {
             let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
             let table = InfraredTable::parse(&text);
             tables.push(table.map_err(|error| Error::setting(TABLES, format!("{}: {error}", path.display())))?);
@@ -101,7 +103,7 @@ impl InfraredModel {
 pub struct Infrared {
     ring: Ring,
     /// The same sensors as one ray each, to be drawn: where it leaves the hull and its direction, in the robot's frame.
-    rays: Vec<farsa_body::Beam>,
+    rays: Vec<Beam>,
     range: f32,
     height: f32,
 }
@@ -109,7 +111,7 @@ pub struct Infrared {
 #[derive(Clone, Debug)]
 enum Ring {
     Analytic(InfraredAnalytic<Vec<[f32; 2]>>),
-    Rays(InfraredRays<Vec<farsa_body::Beam>>),
+    Rays(InfraredRays<Vec<Beam>>),
     Sampled(SampledInfrared<Arc<InfraredTables>>),
 }
 
@@ -133,7 +135,7 @@ impl Infrared {
                 Ring::Sampled(all.first(sensors)?)
             }
         };
-        let ray = |angle: &f64| farsa_body::Beam::in_cone(robot.radius, *angle, 0.0, 0, 1);
+        let ray = |angle: &f64| Beam::in_cone(robot.radius, *angle, 0.0, 0, 1);
         Ok(Self {
             ring,
             rays: part.infrared.angles.iter().map(ray).collect(),
@@ -145,7 +147,7 @@ impl Infrared {
     /// Tells a recorder a ray for each sensor: it ends where a thing would be of which rays read as much.
     ///
     /// `x` \[sensors\] is what was read when the robot was at `pose`.
-    pub fn tell(&self, pose: farsa_body::Pose, x: &[f32], recorder: &mut dyn farsa_body::Recorder) {
+    pub fn tell(&self, pose: Pose, x: &[f32], recorder: &mut dyn Recorder) {
         for (ray, &x) in self.rays.iter().zip(x) {
             let length = self.range * (1.0 - x);
             let end = [0, 1].map(|k| ray.from[k] + length * ray.direction[k]);

@@ -5,6 +5,8 @@ mod arena_stage;
 mod arguments;
 mod arguments_genotypes;
 mod bench;
+pub mod braitenberg;
+mod braitenberg_life;
 mod camera;
 pub mod cli;
 mod directory;
@@ -75,6 +77,7 @@ mod svg_data;
 mod table;
 mod vector;
 
+pub use braitenberg::Braitenberg;
 pub use camera::Camera;
 pub use discrimination::{Discrimination, DiscriminationCylinders};
 pub use error::Error;

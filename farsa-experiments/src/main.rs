@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-use farsa_experiments::{Discrimination, DiscriminationCylinders, ReachGraspLift, cli};
+use farsa_experiments::{Braitenberg, Discrimination, DiscriminationCylinders, ReachGraspLift, cli};
 
 fn main() -> ExitCode {
-    cli::main(&[&ReachGraspLift, &Discrimination, &DiscriminationCylinders])
+    cli::main(&[&ReachGraspLift, &Discrimination, &DiscriminationCylinders, &Braitenberg])
 }

@@ -52,8 +52,7 @@ fn genotypes_of_the_original_stay_near_as_long_as_in_an_independent_replay() {
         assert_eq!(genes.len(), 14);
         let settings = settings(&Discrimination, "", &sampled(&directory));
         let mut setup = Discrimination.prepare("", &settings).unwrap();
-        let [mean, error, collisions] =
-            measure(&mut *setup, &genes, 2000);
+        let [mean, error, collisions] = measure(&mut *setup, &genes, 2000);
         println!("{name}, tables: {mean:.4} +- {error:.4}, {collisions:.4} collisions per trial");
         let mut analytic = Lives::new(Config::default()).unwrap();
         let [other, error, collisions] = measure(&mut analytic, &genes, 2000);

@@ -1,0 +1,111 @@
+//! `braitenberg`: what the four vehicles do, and their symmetries.
+
+use core::f32::consts::PI;
+
+use farsa_body::{Kinematics as _, World as _};
+use farsa_experiments::braitenberg::{Config, Vehicle, VehicleLife};
+use farsa_experiments::{Braitenberg, Experiment, Job, Outcome, Settings, Tape, Value};
+use farsa_physics::arena::World;
+use proptest::prelude::*;
+
+/// Steps a vehicle from a start to the end; its places and headings, and the life.
+fn drive(vehicle: Vehicle, [distance, direction, heading]: [f32; 3], steps: u32) -> (Vec<[f32; 3]>, VehicleLife) {
+    let config = Config { steps, ..Config::of(vehicle) };
+    let mut world = World::new(&config.arena()).unwrap();
+    let mut life = VehicleLife::new(config).unwrap();
+    life.place(&mut world, distance, direction, heading);
+    let mut way = Vec::new();
+    loop {
+        life.act(&mut world);
+        world.step();
+        let end = life.judge(&world);
+        let pose = world.pose(life.parts().body);
+        way.push([pose.position[0] - 1.0, pose.position[1] - 1.0, pose.heading()]);
+        if end.is_some() {
+            return (way, life);
+        }
+    }
+}
+
+/// Two fears flee and two loves come, from wherever a vehicle looks at the start.
+#[test]
+fn distances_change_as_the_names_say() {
+    for vehicle in Vehicle::ALL {
+        let settings = Settings::new(Braitenberg.settings(vehicle.name())).unwrap();
+        let mut setup = Braitenberg.prepare(vehicle.name(), &settings).unwrap();
+        let job = |trial| Job { seed: 1, trial, ..Job::default() };
+        let outcomes: Vec<Outcome> = (0..400).map(|trial| setup.live(&[0], job(trial), &mut Tape::off())).collect();
+        let right = outcomes.iter().filter(|outcome| outcome.success).count();
+        println!("{}: {right} of 400 as expected, mean approach {:.3} m", vehicle.name(), setup.fitness(&outcomes));
+        assert!(right >= 380, "{vehicle:?}: {right}");
+    }
+}
+
+#[test]
+fn vehicles_end_as_they_are_known_to() {
+    // The lamp is ahead, 60 degrees to the left.
+    let start = [0.3, 0.0, PI - PI / 3.0];
+    let end = |vehicle| drive(vehicle, start, 600).1;
+    let aggression = end(Vehicle::Aggression);
+    assert!(aggression.distances()[1] < 0.06 && aggression.steps()[1] > 0, "{:?}", aggression.distances());
+    let love = end(Vehicle::Love);
+    assert!(love.distances()[1] < 0.3 && love.bearing().abs() < 0.2, "{:?} {}", love.distances(), love.bearing());
+    assert!(love.done().iter().all(|y| (y - 0.5).abs() < 0.02), "comes to rest: {:?}", love.done());
+    for vehicle in [Vehicle::Fear, Vehicle::Explorer] {
+        let life = end(vehicle);
+        assert!(
+            life.distances()[1] > 0.5 && life.bearing().abs() > 2.5,
+            "{vehicle:?}: {:?} {}",
+            life.distances(),
+            life.bearing()
+        );
+    }
+    // Where it is bright fear hurries and love lingers.
+    let pace = |vehicle, distance: f32| {
+        let (way, _) = drive(vehicle, [distance, 0.0, PI / 2.0], 1);
+        (way[0][0] - distance).hypot(way[0][1])
+    };
+    assert!(pace(Vehicle::Fear, 0.15) > 2.0 * pace(Vehicle::Fear, 0.5));
+    assert!(pace(Vehicle::Explorer, 0.15) < 0.8 * pace(Vehicle::Explorer, 0.5));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn a_symmetric_start_is_a_straight_line(which in 0_usize..4, distance in 0.1_f32..0.5, away: bool) {
+        let heading = if away { 0.0 } else { PI };
+        let (way, life) = drive(Vehicle::ALL[which], [distance, 0.0, heading], 400);
+        for [x, y, turned] in way {
+            prop_assert!(y.abs() < 1e-3, "{x} {y}");
+            prop_assert!((turned.abs() - heading).abs() < 1e-2, "{turned}");
+        }
+        prop_assert!(away == (life.distances()[1] > life.distances()[0]));
+    }
+
+    #[test]
+    fn mirrored_starts_go_mirrored_ways(
+        which in 0_usize..4, distance in 0.1_f32..0.5, direction in -3.0_f32..3.0, heading in -3.0_f32..3.0,
+    ) {
+        let (way, _) = drive(Vehicle::ALL[which], [distance, direction, heading], 100);
+        let (mirrored, _) = drive(Vehicle::ALL[which], [distance, -direction, -heading], 100);
+        for (a, b) in way.iter().zip(&mirrored) {
+            prop_assert!((a[0] - b[0]).abs() < 1e-4 && (a[1] + b[1]).abs() < 1e-4, "{a:?} {b:?}");
+            let turned = a[2] + b[2];
+            prop_assert!(turned.abs() < 1e-3 || (turned.abs() - 2.0 * PI).abs() < 1e-3, "{a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_evolves_and_bad_values_are_refused() {
+    let mut settings = Settings::new(Braitenberg.settings("2a")).unwrap();
+    let error = settings.set("", "evolution.generations", Value::Whole(5)).unwrap_err().to_string();
+    assert_eq!(error, "`evolution.generations`: 5 is outside 1 to 1");
+    settings.set("", "lamp.radius", Value::Number(0.02)).unwrap();
+    for list in [vec![0.3, 0.2], vec![0.05, 0.2], vec![0.5, 5.0]] {
+        settings.set("", "start.distance", Value::Numbers(list.clone())).unwrap();
+        let error = Braitenberg.prepare("2a", &settings).err().unwrap().to_string();
+        assert!(error.starts_with("`start.distance`: from "), "{list:?}: {error}");
+    }
+}
