@@ -2,8 +2,18 @@
 
 use std::process::ExitCode;
 
-use farsa_experiments::{Braitenberg, Discrimination, DiscriminationCylinders, ReachGraspLift, cli};
+use farsa_experiments::{
+    Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PredatorPrey, ReachGraspLift, cli,
+};
 
 fn main() -> ExitCode {
-    cli::main(&[&ReachGraspLift, &Discrimination, &DiscriminationCylinders, &Braitenberg])
+    cli::main(&[
+        &ReachGraspLift,
+        &Discrimination,
+        &DiscriminationCylinders,
+        &Braitenberg,
+        &Foraging,
+        &Aggregation,
+        &PredatorPrey,
+    ])
 }
