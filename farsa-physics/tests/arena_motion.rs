@@ -2,9 +2,11 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, JointId, Joints, Kinematics, MobileRobot, Pose, Snapshot, Twist, World as _,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, Joints, Kinematics, MobileRobot, PairId, Planar, Pose,
+    Snapshot, Twist, World as _,
 };
-use farsa_physics::arena::{Arena, Cylinder, World};
+use farsa_num::{Domain, Stream};
+use farsa_physics::arena::{Arena, CollisionRule, Cylinder, Wall, World};
 use proptest::prelude::*;
 
 fn plane(robot: MobileRobot, at: [f64; 2], heading: f64) -> World {
@@ -76,40 +78,50 @@ proptest! {
         prop_assert!((f64::from(end.linear[0]) - speed * farsa_num::sin_cos(turn).1).abs() < 1e-6);
         prop_assert!((f64::from(end.angular[2]) - (right - left) * wheel / track).abs() < 1e-5);
     }
+}
 
-    #[test]
-    fn a_mirrored_arena_gives_the_mirrored_life(
-        starts in prop::collection::vec((0.1_f64..0.9, 0.1_f64..0.9, -3.0_f64..3.0), 3),
-        commands in prop::collection::vec([-6.0_f32..6.0, -6.0_f32..6.0], 90),
-    ) {
-        // About the x axis: exact in floating-point numbers, so the lives are mirrored bit for bit.
-        let make = |sign: f64| {
-            let mut arena = Arena::new();
-            for (i, (x, y, heading)) in starts.iter().enumerate() {
-                arena.add_robot(MobileRobot::khepera(), [*x + i as f64, sign * y], sign * heading);
-            }
-            arena.add_cylinder(Cylinder::new([0.0, sign * 0.5], 0.05));
-            World::new(&arena).unwrap()
-        };
-        let [mut plain, mut mirrored] = [1.0, -1.0].map(make);
-        for group in commands.chunks_exact(3) {
-            for (robot, [left, right]) in group.iter().enumerate() {
-                let [l, r] = plain.parts(robot).motors;
-                plain.command(l, [*left, 0.0]);
-                plain.command(r, [*right, 0.0]);
-                mirrored.command(l, [*right, 0.0]);
-                mirrored.command(r, [*left, 0.0]);
-            }
-            for _ in 0..5 {
+#[test]
+fn a_mirrored_arena_gives_the_mirrored_life() {
+    // About the x axis: exact in floating-point numbers, so the lives are mirrored bit for bit.
+    let mut touches = [0; 2];
+    for life in 0..40 {
+        for (rule, touches) in [CollisionRule::Undone, CollisionRule::Circles].into_iter().zip(&mut touches) {
+            let make = |sign: f64| {
+                let mut stream = Stream::new(3, Domain::Start, life, 0, 0);
+                let mut arena = Arena { collisions: rule, ..Arena::new() };
+                for i in 0..3 {
+                    let at = [0.1 * f64::from(i) + stream.range_f64(0.0, 0.02), sign * stream.range_f64(0.0, 0.02)];
+                    arena.add_robot(MobileRobot::khepera(), at, sign * stream.range_f64(-3.0, 3.0));
+                }
+                arena.add_cylinder(Cylinder::new([0.1, sign * 0.12], 0.02));
+                arena.add_wall(Wall::cuboid([0.15, sign * -0.1], [0.3, 0.02], sign * 0.2));
+                World::new(&arena).unwrap()
+            };
+            let [mut plain, mut mirrored] = [1.0, -1.0].map(make);
+            let mut stream = Stream::new(3, Domain::Motor, life, 0, 0);
+            for t in 0..200 {
+                for robot in 0..3 {
+                    if t % 9 == 0 {
+                        let [left, right] = [stream.range(-3.0, 6.0), stream.range(-3.0, 6.0)];
+                        let [l, r] = plain.parts(robot).motors;
+                        plain.command(l, [left, 0.0]);
+                        plain.command(r, [right, 0.0]);
+                        mirrored.command(l, [right, 0.0]);
+                        mirrored.command(r, [left, 0.0]);
+                    }
+                }
                 plain.step();
                 mirrored.step();
-            }
-            for robot in 0..3 {
-                let [x, y, heading] = state(&plain, robot);
-                prop_assert_eq!([x, -y, -heading], state(&mirrored, robot));
+                for robot in 0..3 {
+                    let [x, y, heading] = state(&plain, robot);
+                    assert_eq!([x, -y, -heading], state(&mirrored, robot), "life {life}, step {t}, {rule:?}");
+                    *touches += usize::from(plain.touches(PairId(robot)));
+                    assert_eq!(plain.touches(PairId(robot)), mirrored.touches(PairId(robot)));
+                }
             }
         }
     }
+    assert!(touches.iter().all(|touches| *touches > 1000), "{touches:?}");
 }
 
 #[test]
@@ -135,7 +147,6 @@ fn wheels_turn_as_told_within_their_limits() {
 
 #[test]
 fn leds_and_signals_are_in_the_snapshot_and_act_from_the_next_step() {
-    use farsa_body::Planar;
     let mut world = plane(MobileRobot::e_puck(), [0.0; 2], 0.0);
     let parts = world.parts(0);
     let seen = |world: &World| {
