@@ -30,7 +30,8 @@ use crate::arena_view::{self as view, View};
 /// - *Arranging*: a body keeps its place and heading of a pose, nothing else; it is at rest, and no longer held.
 ///   A robot that is put into something stays there until it is put elsewhere.
 ///
-/// A handle that does not exist reads as zero and takes commands without effect.
+/// A handle that does not exist reads as zero and takes commands without effect. A world is `Sync`: sensors of many robots may be
+/// read in threads.
 #[derive(Clone, Debug)]
 pub struct World {
     model: Model,

@@ -142,6 +142,32 @@ fn the_grid_changes_no_bit() {
 }
 
 #[test]
+fn robots_read_in_threads_read_the_same() {
+    let arena = crowd(60, Search::Auto, CollisionRule::Undone);
+    let mut world = World::new(&arena).unwrap();
+    let mut stream = Stream::new(6, Domain::Motor, 0, 0, 0);
+    for _ in 0..20 {
+        babble(&mut world, &mut stream);
+        world.step();
+    }
+    let read = |robots: std::ops::Range<usize>| {
+        let ring = |robot| {
+            let mut ring = [0.0; 8];
+            world.infrared(robot, &mut ring);
+            ring
+        };
+        robots.map(ring).collect::<Vec<_>>()
+    };
+    let robots = world.robots();
+    let [first, second] = std::thread::scope(|scope| {
+        let halves = [0..robots / 2, robots / 2..robots];
+        halves.map(|half| scope.spawn(|| read(half))).map(|thread| thread.join().unwrap())
+    });
+    assert_eq!([first, second].concat(), read(0..robots));
+    assert!(read(0..robots).concat().iter().filter(|x| **x > 0.0).count() > 50);
+}
+
+#[test]
 fn a_blocked_robot_stays_where_it_was_and_tells_what_it_met() {
     let mut arena = Arena::walled(0.4, 0.4);
     arena.add_robot(MobileRobot::khepera(), [0.3625, 0.2], 0.0);
