@@ -98,7 +98,9 @@ where
             *sum += strength * model.angle_term(ahead * x + left * y);
         }
     });
-    out.iter_mut().for_each(|sum| *sum = AnalyticInfrared::reading(*sum));
+    for sum in out {
+        *sum = AnalyticInfrared::reading(*sum);
+    }
 }
 
 /// As many worlds as there are lanes, each with a network of its own: ring, network, wheels, step.
@@ -127,7 +129,9 @@ fn lanes(c: &mut Criterion) -> Result<(), ArenaError> {
                 batch.infrared(0, &mut x);
                 network.step(black_box(&x), &mut y);
                 for (motor, y) in parts.motors.into_iter().zip(y.chunks_exact_mut(lanes)) {
-                    y.iter_mut().for_each(|y| *y = (2.0 * *y - 1.0) * MOST);
+                    for y in &mut *y {
+                        *y = (2.0 * *y - 1.0) * MOST;
+                    }
                     batch.command(motor, y);
                 }
                 batch.step();
