@@ -25,7 +25,7 @@ pub struct SteadyStateConfig {
 }
 
 impl SteadyStateConfig {
-    /// The search of the original FARSA's discrimination experiment for genomes of this many genes of 8 bits: half of all
+    /// The search of the discrimination experiment of \[FARSA2\] for genomes of this many genes of 8 bits: half of all
     /// bits flip at first, 1 % fewer every generation, down to 2 %.
     pub const fn new(genes: usize) -> Self {
         Self { genes, gene_bits: 8, first_rate: 0.5, rate_step: 0.01, last_rate: 0.02, mutation: Mutation::Flip }
@@ -66,8 +66,8 @@ impl SteadyStateConfig {
 /// place when its own first evaluation is at least as good. A failed evaluation makes that mean the worst there is, so
 /// that a parent that failed once gives way to any mutant. [`SteadyHistory`] says which numbers are drawn.
 ///
-/// Source: the steady-state algorithm of the original FARSA's discrimination experiment with one individual. Deviations:
-/// none known.
+/// Source: the steady-state algorithm of \[FARSA2\] with one individual, whose fitness is averaged over generations.
+/// Deviation: the random numbers are ours.
 ///
 /// Under the feature `serde` it is saved as its history, the parent's summed fitness and a digest of the current genomes,
 /// which are rebuilt when it is read.

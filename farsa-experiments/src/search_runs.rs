@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use farsa_num::{Domain, Stream};
 
+use crate::bench::{Sample, bench};
 use crate::directory::Directory;
 use crate::error::Error;
 use crate::evolution;
@@ -283,6 +284,23 @@ fn populations_meet_each_others_champions() {
     assert_eq!(csv.lines().nth(2).unwrap(), format!("1,1,1,{},{seeker:?},{first:?},1,{second:?},1", seeker >= 0.0));
     assert_eq!(csv.lines().count(), 5);
     assert_eq!(text, exam::test(&plan, &directory, 4, 1, 1, Wanted::ONE, true).unwrap().text());
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn lives_of_every_search_can_be_measured() {
+    let root = scratch("bench");
+    for (numbers, lives) in [(STEADY, 2 * TRIALS), (CHASE, 30 * TRIALS)] {
+        let plan = plan(&numbers, 2);
+        let directory = create(&plan, &root.join(format!("{}", numbers.populations))).unwrap();
+        run(&plan, &directory, 1);
+        for sample in [Sample::random(&plan), Sample::of_run(&plan, &directory)] {
+            let told = serde_json::to_value(bench(&plan, &sample.unwrap(), pool(&plan, 2), 1e-3).unwrap()).unwrap();
+            let rounds = told["rounds"].as_u64().unwrap();
+            assert!(rounds == 0 || told["lives"].as_u64().unwrap() >= rounds * u64::from(lives), "{told}");
+            assert!(told["lives"].as_u64().unwrap() > 0, "{told}");
+        }
+    }
     fs::remove_dir_all(root).unwrap();
 }
 
