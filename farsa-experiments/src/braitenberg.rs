@@ -116,7 +116,7 @@ impl Lives {
         record_world(world, [life.parts().body, life.config().arena().cylinder(0)], recorder);
         let pose = world.pose(life.parts().body);
         let [x, y, _] = pose.position.map(f64::from);
-        recorder.scalars(&[x, y, f64::from(pose.heading()), life.distances()[1], life.bearing()]);
+        recorder.scalars(&[x, y, f64::from(pose.heading()), life.distances()[1], life.bearings()[1]]);
         recorder.tick((f64::from(life.steps()[0]) * life.config().time_step * 1e9).round() / 1e9);
     }
 
@@ -124,6 +124,7 @@ impl Lives {
         let life = &self.life;
         let [start, end] = life.distances();
         let [steps, collisions] = life.steps();
+        let off = life.bearings().map(|bearing| bearing.abs().to_degrees());
         // 2b and 3a come near, 2a and 3b leave.
         let comes = life.config().vehicle.crossed() == life.config().vehicle.excited();
         Outcome {
@@ -133,7 +134,8 @@ impl Lives {
             notes: vec![
                 ("distance at the start [m]", Note::from(start)),
                 ("distance at the end [m]", Note::from(end)),
-                ("lamp off ahead at the end [deg]", Note::from(life.bearing().abs().to_degrees())),
+                ("lamp off ahead at the start [deg]", Note::from(off[0])),
+                ("lamp off ahead at the end [deg]", Note::from(off[1])),
                 ("steps in collision", Note::from(f64::from(collisions))),
             ],
         }

@@ -137,7 +137,7 @@ impl Config {
             trials: 20,
             steps: 600,
             lamp_radius: 0.01,
-            reference: 0.15,
+            reference: if vehicle.excited() { 0.25 } else { 0.15 },
             start: [0.15, 0.5],
             gain: 0.5,
             base: if vehicle.excited() { 0.1 } else { 0.5 },
@@ -173,8 +173,8 @@ pub struct VehicleLife {
     begun: bool,
     /// From the robot's centre to the lamp's, at the start and now \[m\].
     distances: [f64; 2],
-    /// The lamp's bearing from straight ahead, now \[rad\].
-    bearing: f64,
+    /// The lamp's bearing from straight ahead, at the start and now \[rad\].
+    bearings: [f64; 2],
     collisions: u32,
 }
 
@@ -190,7 +190,7 @@ impl VehicleLife {
         let wheels = WheelVelocity::new(parts.motors, robot.max_wheel_speed as f32).map_err(wrong)?;
         let wiring = Wiring::new(config.vehicle, &robot.infrared.angles, config.gain, config.base);
         let (x, y) = ([0.0; LIGHTS], [0.5; 2]);
-        let (distances, bearing) = ([0.0; 2], 0.0);
+        let (distances, bearings) = ([0.0; 2], [0.0; 2]);
         Ok(Self {
             config,
             parts,
@@ -202,7 +202,7 @@ impl VehicleLife {
             steps: 0,
             begun: false,
             distances,
-            bearing,
+            bearings,
             collisions: 0,
         })
     }
@@ -221,6 +221,7 @@ impl VehicleLife {
         (self.steps, self.collisions, self.begun) = (0, 0, false);
         self.look(world);
         self.distances[0] = self.distances[1];
+        self.bearings[0] = self.bearings[1];
     }
 
     /// Measures where the lamp is.
@@ -229,7 +230,7 @@ impl VehicleLife {
         let middle = 0.5 * self.config.size;
         let [x, y, _] = pose.rotate_back([middle - pose.position[0], middle - pose.position[1], 0.0]);
         self.distances[1] = Scalar::sqrt(x * x + y * y);
-        self.bearing = farsa_num::atan2(y, x);
+        self.bearings[1] = farsa_num::atan2(y, x);
     }
 
     /// Senses and acts.
@@ -278,9 +279,9 @@ impl VehicleLife {
         self.distances
     }
 
-    /// The lamp's bearing now, counter-clockwise from straight ahead \[rad\].
-    pub fn bearing(&self) -> f64 {
-        self.bearing
+    /// The lamp's bearing at the start and now, counter-clockwise from straight ahead \[rad\].
+    pub fn bearings(&self) -> [f64; 2] {
+        self.bearings
     }
 
     /// Steps lived, and of these how many ended in a collision.

@@ -69,13 +69,14 @@ impl Default for Config {
 impl Config {
     /// The defaults of `discrimination-cylinders`, all chosen but the radii and those that it shares.
     ///
-    /// The arena is as much larger as two cylinders and the ways between them need.
+    /// The arena is as much larger as two cylinders and a way between them need.
     pub fn two_cylinders(wheel_speeds: bool) -> Self {
         Self {
-            size: [0.6, 0.6],
+            size: [0.5, 0.5],
+            trials: 20,
             radii: vec![0.027, 0.0125],
-            object_to_object: 0.2,
-            cost: 1.0,
+            object_to_object: 0.17,
+            cost: 0.5,
             wheel_speeds,
             ..Self::default()
         }
@@ -83,45 +84,41 @@ impl Config {
 
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
-        let length = |key: &str, default: f64, most: f64| Setting::number(key, default, 0.0..=most).unit("m");
+        let several = self.radii.len() > 1;
+        // What the source gives for one cylinder is chosen for two.
+        let given = |setting: Setting| if several { setting } else { setting.given() };
+        let length = |key: &str, default: f64| given(Setting::number(key, default, 0.0..=10.0).unit("m"));
         let mut table = vec![
-            Setting::numbers("world.size", &self.size, 0.1..=100.0)
+            given(Setting::numbers("world.size", &self.size, 0.1..=100.0))
                 .unit("m")
-                .given()
                 .doc("Width and depth of the arena between its walls."),
             Setting::number("world.time_step", self.time_step, 0.001..=0.2).unit("s").given().doc("Control step."),
-            Setting::whole("trial.count", self.trials as i64, 1..=100_000).given().doc("Trials of an evaluation."),
-            Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000)
-                .given()
+            given(Setting::whole("trial.count", self.trials as i64, 1..=100_000)).doc("Trials of an evaluation."),
+            given(Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000))
                 .doc("Steps of a trial; a collision ends it before."),
             Setting::numbers("object.radii", &self.radii, 0.001..=1.0)
                 .unit("m")
                 .given()
                 .doc("Radius of the cylinder to stay at, and of the other one where there is one."),
-            length("object.to_wall", self.object_to_wall, 10.0)
-                .given()
-                .doc("Least distance of a cylinder's surface from the walls."),
-            length("start.to_wall", self.robot_to_wall, 10.0)
-                .given()
+            length("object.to_wall", self.object_to_wall).doc("Least distance of a cylinder's surface from the walls."),
+            length("start.to_wall", self.robot_to_wall)
                 .doc("Least distance of the robot's hull from the walls at the start."),
-            length("start.to_object", self.robot_to_object, 10.0)
-                .given()
+            length("start.to_object", self.robot_to_object)
                 .doc("Least distance of the robot's hull from a cylinder's surface at the start."),
-            length("fitness.near", self.near, 10.0)
-                .given()
+            length("fitness.near", self.near)
                 .doc("A step counts while the surfaces of robot and cylinder are less than this apart."),
             Setting::number("net.weight_range", self.weight_range, 0.0..=1000.0)
                 .given()
                 .doc("Weights and biases are decoded from gene 0 at plus to the largest gene at minus this."),
         ];
-        if self.radii.len() > 1 {
-            table.push(length("object.to_object", self.object_to_object, 10.0).doc(
-                "Least distance between the cylinders' surfaces: more than twice `fitness.near`, so that nothing is near both.",
+        if several {
+            table.push(length("object.to_object", self.object_to_object).doc(
+                "Least distance between the cylinders' surfaces: more than twice fitness.near, so that nothing is near both.",
             ));
-            table.push(
-                Setting::number("fitness.cost", self.cost, 0.0..=100.0)
-                    .doc("What a step near the other cylinder costs, in steps near the first; 1: who stays anywhere gains nothing."),
-            );
+            table.push(Setting::number("fitness.cost", self.cost, 0.0..=100.0).doc(
+                "What a step near the other cylinder costs, in steps near the first; at 1, staying anywhere would gain \
+                 nothing, and nothing evolved.",
+            ));
         }
         table.extend(InfraredModel::settings());
         table

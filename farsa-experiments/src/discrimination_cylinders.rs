@@ -38,7 +38,7 @@ impl Experiment for DiscriminationCylinders {
     fn settings(&self, condition: &str) -> Vec<Setting> {
         let mut table = Config::two_cylinders(condition != NO_WHEELS).table();
         table.extend([
-            Setting::whole("evolution.generations", 200, 1..=i64::from(u32::MAX) - 1)
+            Setting::whole("evolution.generations", 300, 1..=i64::from(u32::MAX) - 1)
                 .doc("Generations that are evaluated; the one thing that a resumed run may change."),
             Setting::whole("evolution.population", 40, 1..=1_000_000)
                 .doc("Individuals of a generation, a multiple of the parents."),

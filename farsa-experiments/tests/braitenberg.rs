@@ -4,7 +4,7 @@ use core::f32::consts::PI;
 
 use farsa_body::{Kinematics as _, World as _};
 use farsa_experiments::braitenberg::{Config, Vehicle, VehicleLife};
-use farsa_experiments::{Braitenberg, Experiment, Job, Outcome, Settings, Tape, Value};
+use farsa_experiments::{Braitenberg, Experiment, Job, Note, Outcome, Settings, Tape, Value};
 use farsa_physics::arena::World;
 use proptest::prelude::*;
 
@@ -27,17 +27,32 @@ fn drive(vehicle: Vehicle, [distance, direction, heading]: [f32; 3], steps: u32)
     }
 }
 
-/// Two fears flee and two loves come, from wherever a vehicle looks at the start.
 #[test]
 fn distances_change_as_the_names_say() {
     for vehicle in Vehicle::ALL {
         let settings = Settings::new(Braitenberg.settings(vehicle.name())).unwrap();
         let mut setup = Braitenberg.prepare(vehicle.name(), &settings).unwrap();
         let job = |trial| Job { seed: 1, trial, ..Job::default() };
-        let outcomes: Vec<Outcome> = (0..400).map(|trial| setup.live(&[0], job(trial), &mut Tape::off())).collect();
+        let mut outcomes: Vec<Outcome> = (0..400).map(|trial| setup.live(&[0], job(trial), &mut Tape::off())).collect();
+        if vehicle == Vehicle::Love {
+            // It comes if the lamp is before it and farther than where it comes to rest; from behind it leaves unawares.
+            let number = |outcome: &Outcome, name: &str| {
+                let note = outcome.notes.iter().find(|(key, _)| *key == name).unwrap();
+                let Note::Number(x) = note.1 else { panic!("{note:?}") };
+                x
+            };
+            outcomes.retain(|outcome| {
+                let off = number(outcome, "lamp off ahead at the start [deg]");
+                off < 90.0 && number(outcome, "distance at the start [m]") > 0.3
+            });
+        }
         let right = outcomes.iter().filter(|outcome| outcome.success).count();
-        println!("{}: {right} of 400 as expected, mean approach {:.3} m", vehicle.name(), setup.fitness(&outcomes));
-        assert!(right >= 380, "{vehicle:?}: {right}");
+        println!("{}: {right} of {}, approach {:.3} m", vehicle.name(), outcomes.len(), setup.fitness(&outcomes));
+        assert!(
+            outcomes.len() > 80 && 100 * right >= 95 * outcomes.len(),
+            "{vehicle:?}: {right} of {}",
+            outcomes.len()
+        );
     }
 }
 
@@ -49,15 +64,20 @@ fn vehicles_end_as_they_are_known_to() {
     let aggression = end(Vehicle::Aggression);
     assert!(aggression.distances()[1] < 0.06 && aggression.steps()[1] > 0, "{:?}", aggression.distances());
     let love = end(Vehicle::Love);
-    assert!(love.distances()[1] < 0.3 && love.bearing().abs() < 0.2, "{:?} {}", love.distances(), love.bearing());
+    assert!(
+        love.distances()[1] < 0.3 && love.bearings()[1].abs() < 0.2,
+        "{:?} {}",
+        love.distances(),
+        love.bearings()[1]
+    );
     assert!(love.done().iter().all(|y| (y - 0.5).abs() < 0.02), "comes to rest: {:?}", love.done());
     for vehicle in [Vehicle::Fear, Vehicle::Explorer] {
         let life = end(vehicle);
         assert!(
-            life.distances()[1] > 0.5 && life.bearing().abs() > 2.5,
+            life.distances()[1] > 0.5 && life.bearings()[1].abs() > 2.5,
             "{vehicle:?}: {:?} {}",
             life.distances(),
-            life.bearing()
+            life.bearings()[1]
         );
     }
     // Where it is bright fear hurries and love lingers.
@@ -80,7 +100,8 @@ proptest! {
             prop_assert!(y.abs() < 1e-3, "{x} {y}");
             prop_assert!((turned.abs() - heading).abs() < 1e-2, "{turned}");
         }
-        prop_assert!(away == (life.distances()[1] > life.distances()[0]));
+        let [start, end] = life.distances();
+        prop_assert!(if away { end >= start } else { end <= start }, "{start} {end}");
     }
 
     #[test]
