@@ -13,6 +13,8 @@ use crate::stage::{Stage, View};
 const WALL: Color = [84, 90, 99];
 /// The stripe that shows where a robot looks to.
 const STRIPE: Color = [250, 250, 245];
+/// The ground around a lamp.
+const GLOW: Color = [255, 238, 170];
 /// How high an area lies above the one under it [m].
 const LAYER: f64 = 1e-4;
 
@@ -23,20 +25,20 @@ fn standing([x, y]: [f64; 2], z: f64, heading: f64) -> Pose<f64> {
 }
 
 /// `name` where there is one of it, else `name 1`, `name 2` ...
-fn numbered<'a>(names: impl Iterator<Item = &'a str> + Clone) -> Vec<String> {
+fn numbered(names: &[&str]) -> Vec<String> {
     let mut counted: Vec<(&str, usize)> = Vec::new();
     names
-        .clone()
+        .iter()
         .map(|name| {
-            let at = counted.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
+            let at = counted.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
                 counted.push((name, 0));
                 counted.len() - 1
             });
             counted[at].1 += 1;
-            if names.clone().filter(|other| *other == name).nth(1).is_some() {
+            if names.iter().filter(|other| *other == name).nth(1).is_some() {
                 format!("{name} {}", counted[at].1)
             } else {
-                name.into()
+                (*name).into()
             }
         })
         .collect()
@@ -85,7 +87,7 @@ fn cylinder(cylinder: &Cylinder) -> Prop {
 impl Stage {
     /// The bodies of a planar world, seen from above, by the numbers that they have there: robots, cylinders, areas.
     ///
-    /// A robot is its hull with a light stripe that points ahead; it is drawn in its own colour, whatever its LEDs show.
+    /// A lamp stands on a light disc. A robot is its hull with a light stripe that points ahead; it is drawn in its own colour, whatever its LEDs show.
     ///
     /// ```
     /// use farsa_body::MobileRobot;
@@ -102,7 +104,7 @@ impl Stage {
         let robots = arena.robots.iter().map(|placed| placed.robot.name.as_str());
         let cylinders = arena.cylinders.iter().map(|cylinder| if cylinder.lamp > 0.0 { "lamp" } else { "cylinder" });
         let areas = arena.areas.iter().map(|_| "area");
-        let bodies = numbered(robots.chain(cylinders).chain(areas));
+        let bodies = numbered(&robots.chain(cylinders).chain(areas).collect::<Vec<_>>());
         let mut props = vec![ground(arena)];
         props.extend(arena.walls.iter().enumerate().map(|(number, it)| wall(number, it)));
         let moving = |prop: Prop, body: BodyId| {
@@ -110,7 +112,16 @@ impl Stage {
             Prop { name, ..prop.on(body) }
         };
         props.extend(arena.areas.iter().enumerate().map(|(i, it)| moving(area(i, it), arena.area(i))));
-        props.extend(arena.cylinders.iter().enumerate().map(|(i, it)| moving(cylinder(it), arena.cylinder(i))));
+        for (i, it) in arena.cylinders.iter().enumerate() {
+            let body = arena.cylinder(i);
+            if it.lamp > 0.0 {
+                let disc = Form::Disc { radius: 3.0 * it.radius };
+                let place = standing([0.0; 2], LAYER * (arena.areas.len() + 1) as f64, 0.0);
+                let glow = Prop::new("", disc, place, Role::Area).with_color(GLOW);
+                props.push(Prop { name: format!("{} light", bodies[body.index()]), ..glow.on(body) });
+            }
+            props.push(moving(cylinder(it), body));
+        }
         for (number, placed) in arena.robots.iter().enumerate() {
             let (robot, body) = (&placed.robot, BodyId(number as u16));
             let up = 0.5 * robot.height;
@@ -146,14 +157,14 @@ mod tests {
         arena.add_area(Area::rectangle([0.1, 0.4], [0.1, 0.05], 0.3, [0.0, 0.0, 1.0]));
         let stage = Stage::of_arena(&arena);
         assert_eq!(stage.bodies, ["Khepera 1", "Khepera 2", "e-puck", "lamp", "cylinder", "area 1", "area 2"]);
-        // The ground, four walls, two areas, two cylinders and twice three robots.
-        assert_eq!(stage.props.len(), 1 + 4 + 2 + 2 + 6);
+        // The ground, four walls, two areas, two cylinders, a light and twice three robots.
+        assert_eq!(stage.props.len(), 1 + 4 + 2 + 3 + 6);
         let world = World::new(&arena).unwrap();
         assert!(stage.shown().eq((0..7).map(BodyId)));
         for prop in stage.props.iter().filter(|prop| prop.role != Role::Ground) {
             let body = prop.body.unwrap();
             let ahead = prop.name.ends_with(" ahead");
-            assert_eq!(prop.name.trim_end_matches(" ahead"), stage.bodies[body.index()]);
+            assert_eq!(prop.name.trim_end_matches(" ahead").trim_end_matches(" light"), stage.bodies[body.index()]);
             let pose = world.pose(body).cast::<f64>();
             let at = pose.compose(&prop.placement).position;
             let off = prop.placement.position[0];

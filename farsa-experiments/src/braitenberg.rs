@@ -2,7 +2,7 @@
 
 pub use crate::braitenberg_life::{Config, LIGHTS, Vehicle, VehicleLife, Wiring};
 
-use farsa_body::{Kinematics as _, Recorder, World as _, record_world};
+use farsa_body::{Kinematics as _, Recorder, World as _};
 use farsa_physics::arena::World;
 
 use crate::error::Error;
@@ -49,7 +49,7 @@ impl Experiment for Braitenberg {
                 .unit("m")
                 .doc("Side of the walled square in whose middle the lamp stands; wide, so that a vehicle that leaves is seen to."),
             Setting::number("world.time_step", config.time_step, 0.001..=0.2).unit("s").doc("Control step, as in `discrimination`."),
-            Setting::whole("trial.count", config.trials as i64, 1..=100_000).doc("Trials, each with a start of its own."),
+            Setting::whole("trial.count", i64::from(config.trials), 1..=100_000).doc("Trials, each with a start of its own."),
             Setting::whole("trial.steps", i64::from(config.steps), 1..=1_000_000).doc("Steps of a trial; collisions do not end it."),
             Setting::number("lamp.radius", config.lamp_radius, 0.001..=0.1).unit("m").given().doc("Radius of the lamp."),
             Setting::number("lamp.reference", config.reference, 0.001..=10.0).unit("m").doc(
@@ -71,7 +71,7 @@ impl Experiment for Braitenberg {
             vehicle: vehicle(condition),
             size: settings.number("world.size")?,
             time_step: settings.number("world.time_step")?,
-            trials: settings.count("trial.count")?,
+            trials: settings.count("trial.count")? as u32,
             steps: settings.count("trial.steps")? as u32,
             lamp_radius: settings.number("lamp.radius")?,
             reference: settings.number("lamp.reference")?,
@@ -113,10 +113,20 @@ impl Lives {
         let Self { world, life } = self;
         recorder.sensors(life.sensed());
         recorder.outputs(life.done());
-        record_world(world, [life.parts().body, life.config().arena().cylinder(0)], recorder);
+        // No contacts: their forces are nominal.
+        for body in [life.parts().body, life.lamp()] {
+            recorder.pose(body, world.pose(body));
+        }
         let pose = world.pose(life.parts().body);
         let [x, y, _] = pose.position.map(f64::from);
-        recorder.scalars(&[x, y, f64::from(pose.heading()), life.distances()[1], life.bearings()[1]]);
+        recorder.scalars(&[
+            x,
+            y,
+            f64::from(pose.heading()),
+            life.distances()[1],
+            life.bearings()[1],
+            f64::from(life.steps()[1]),
+        ]);
         recorder.tick((f64::from(life.steps()[0]) * life.config().time_step * 1e9).round() / 1e9);
     }
 
@@ -152,7 +162,7 @@ impl Setup for Lives {
     }
 
     fn trials(&self) -> usize {
-        self.life.config().trials
+        self.life.config().trials as usize
     }
 
     fn terms(&self) -> Vec<String> {
@@ -161,7 +171,8 @@ impl Setup for Lives {
 
     fn stage(&self) -> Stage {
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
-        let places = ["x [m]", "y [m]", "heading [rad]", "distance of the lamp [m]", "bearing of the lamp [rad]"];
+        let places =
+            ["x [m]", "y [m]", "heading [rad]", "distance of the lamp [m]", "bearing of the lamp [rad]", "collisions"];
         let mut stage = Stage::of_arena(&self.life.config().arena())
             .with_sensors((1..=LIGHTS).map(|number| format!("light {number}")))
             .with_outputs(["left wheel", "right wheel"]);

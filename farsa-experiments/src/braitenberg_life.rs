@@ -74,7 +74,9 @@ impl Wiring {
         for (pair, angle) in parameters[..2 * LIGHTS].chunks_exact_mut(2).zip(angles) {
             let on_the_left = farsa_num::sin_cos(*angle).0 > 0.0;
             pair.copy_from_slice(if on_the_left == vehicle.crossed() { &[0.0, 1.0] } else { &[1.0, 0.0] });
-            pair.iter_mut().for_each(|weight| *weight *= gain);
+            for weight in pair {
+                *weight *= gain;
+            }
         }
         Self { parameters }
     }
@@ -112,7 +114,7 @@ pub struct Config {
     /// Control step \[s\].
     pub time_step: f64,
     /// Trials.
-    pub trials: usize,
+    pub trials: u32,
     /// Steps of a trial.
     pub steps: u32,
     /// Radius of the lamp \[m\].
@@ -164,6 +166,7 @@ impl Config {
 pub struct VehicleLife {
     config: Config,
     parts: MobileParts,
+    lamp: BodyId,
     lights: LightSensors<Vec<Beam>>,
     wheels: WheelVelocity,
     wiring: Wiring,
@@ -185,7 +188,8 @@ impl VehicleLife {
     /// [`Error::Other`] for values of which no sensor or motor can be built.
     pub fn new(config: Config) -> Result<Self, Error> {
         let wrong = |error: ChannelError| Error::Other(format!("braitenberg: {error}"));
-        let (robot, parts) = (config.robot(), config.arena().parts(0));
+        let (robot, arena) = (config.robot(), config.arena());
+        let (parts, lamp) = (arena.parts(0), arena.cylinder(0));
         let lights = LightSensors::of(&robot, parts.body, config.reference as f32).map_err(wrong)?;
         let wheels = WheelVelocity::new(parts.motors, robot.max_wheel_speed as f32).map_err(wrong)?;
         let wiring = Wiring::new(config.vehicle, &robot.infrared.angles, config.gain, config.base);
@@ -194,6 +198,7 @@ impl VehicleLife {
         Ok(Self {
             config,
             parts,
+            lamp,
             lights,
             wheels,
             wiring,
@@ -267,6 +272,11 @@ impl VehicleLife {
     /// By which numbers the robot's parts are known.
     pub fn parts(&self) -> &MobileParts {
         &self.parts
+    }
+
+    /// The body of the lamp.
+    pub fn lamp(&self) -> BodyId {
+        self.lamp
     }
 
     /// The wiring.

@@ -7,7 +7,7 @@ pub use crate::infrared::{Infrared, InfraredModel};
 
 use std::path::PathBuf;
 
-use farsa_body::{Kinematics as _, MobileRobot, Pose, Recorder, World as _, record_world};
+use farsa_body::{Kinematics as _, MobileRobot, Pose, Recorder, World as _};
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
 
@@ -18,7 +18,7 @@ use crate::search::Search;
 use crate::settings::{Setting, Settings};
 use crate::stage::{Channel, Links, NodeParameters, Stage};
 
-/// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2; Nolfi1996\]
+/// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2\]
 ///
 /// A Khepera with six infrared sensors and a layer of two logistic units, which drive its wheels, evolves to find a small
 /// cylinder in a walled arena and to stay near it. One parent makes one mutant a generation. Sources and choices are in
@@ -90,7 +90,9 @@ impl Lives {
         recorder.sensors(life.sensed());
         recorder.outputs(life.done());
         life.infrared().tell(was, life.sensed(), recorder);
-        record_world(world, core::iter::once(parts.body).chain(life.cylinders().iter().copied()), recorder);
+        // No contacts: their forces are nominal.
+        let bodies = core::iter::once(parts.body).chain(life.cylinders().iter().copied());
+        bodies.for_each(|body| recorder.pose(body, world.pose(body)));
         let pose = world.pose(parts.body);
         let [x, y, _] = pose.position.map(f64::from);
         let mut scalars = vec![x, y, f64::from(pose.heading())];
@@ -152,7 +154,7 @@ impl Setup for Lives {
     }
 
     fn trials(&self) -> usize {
-        self.life.config().trials
+        self.life.config().trials as usize
     }
 
     fn terms(&self) -> Vec<String> {
@@ -252,5 +254,37 @@ impl Setup for Lives {
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         let sum: f64 = trials.iter().flat_map(|outcome| &outcome.terms).sum();
         sum / trials.len().max(1) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_nn::Controller as _;
+
+    #[test]
+    fn genes_are_read_as_the_original_wrote_them() {
+        // Biases +5 and -5; of each wheel the weights of sensors 0 to 5.
+        let genes = [0, 255, 10, 20, 30, 40, 50, 60, 110, 120, 130, 140, 150, 160];
+        let mut layer = layer(6, decode(&genes, 6, 5.0)).unwrap();
+        let weight = |gene: u16| 5.0 - f64::from(gene) / 255.0 * 10.0;
+        for (wheel, bias) in [(0, 5.0), (1, -5.0)] {
+            for sensor in 0..6 {
+                let (mut x, mut y) = ([0.0; 6], [0.0; 2]);
+                x[sensor] = 0.7;
+                layer.step(&x, &mut y);
+                let net = bias + 0.7 * weight(genes[2 + 6 * wheel + sensor]);
+                let expected: f64 = farsa_num::logistic(net);
+                assert!((f64::from(y[wheel]) - expected).abs() < 1e-6, "{wheel} {sensor}");
+            }
+        }
+    }
+
+    #[test]
+    fn fitness_is_the_mean_of_the_trials() {
+        let lives = Lives::new(Config::default()).unwrap();
+        let trial = |near| Outcome { terms: vec![near], ..Outcome::default() };
+        assert_eq!(lives.fitness(&[trial(0.25), trial(0.75), trial(0.5)]), 0.5);
+        assert!(lives.fitness(&[trial(0.25), Outcome::failed()]).is_nan());
     }
 }

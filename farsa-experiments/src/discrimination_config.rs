@@ -20,7 +20,7 @@ pub struct Config {
     /// Control step \[s\].
     pub time_step: f64,
     /// Trials of an evaluation, each with places of its own.
-    pub trials: usize,
+    pub trials: u32,
     /// Steps of a trial.
     pub steps: u32,
     /// Radii of the cylinders: of the one to stay at, and perhaps of another.
@@ -93,7 +93,7 @@ impl Config {
                 .unit("m")
                 .doc("Width and depth of the arena between its walls."),
             Setting::number("world.time_step", self.time_step, 0.001..=0.2).unit("s").given().doc("Control step."),
-            given(Setting::whole("trial.count", self.trials as i64, 1..=100_000)).doc("Trials of an evaluation."),
+            given(Setting::whole("trial.count", i64::from(self.trials), 1..=100_000)).doc("Trials of an evaluation."),
             given(Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000))
                 .doc("Steps of a trial; a collision ends it before."),
             Setting::numbers("object.radii", &self.radii, 0.001..=1.0)
@@ -136,7 +136,7 @@ impl Config {
         Ok(Self {
             size: [size[0], size[1]],
             time_step: length("world.time_step")?,
-            trials: settings.count("trial.count")?,
+            trials: settings.count("trial.count")? as u32,
             steps: settings.count("trial.steps")? as u32,
             object_to_wall: length("object.to_wall")?,
             object_to_object: if several { length("object.to_object")? } else { self.object_to_object },

@@ -1,4 +1,5 @@
 //! `braitenberg`: what the four vehicles do, and their symmetries.
+#![allow(missing_docs, clippy::unwrap_used)]
 
 use core::f32::consts::PI;
 
