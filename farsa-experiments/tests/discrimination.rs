@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use farsa_body::{Arrange as _, Kinematics as _, Pose, Twist};
-use farsa_experiments::discrimination::{Config, CylinderLife, Lives};
+use farsa_experiments::discrimination::{Config, CylinderLife};
 use farsa_experiments::{Discrimination, DiscriminationCylinders, Experiment, Job, Life, Settings, Tape, Value, live};
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
