@@ -115,7 +115,7 @@ impl Stage {
         for (i, it) in arena.cylinders.iter().enumerate() {
             let body = arena.cylinder(i);
             if it.lamp > 0.0 {
-                let disc = Form::Disc { radius: 3.0 * it.radius };
+                let disc = Form::Disc { radius: 5.0 * it.radius };
                 let place = standing([0.0; 2], LAYER * (arena.areas.len() + 1) as f64, 0.0);
                 let glow = Prop::new("", disc, place, Role::Area).with_color(GLOW);
                 props.push(Prop { name: format!("{} light", bodies[body.index()]), ..glow.on(body) });

@@ -101,7 +101,7 @@ impl Lives {
         if near < radius + config.lamp_radius || far > most || near > far {
             let least = radius + config.lamp_radius;
             let why = format!(
-                "from {near} to {far} m: must rise and lie between {least} m, the lamp, and {most} m, the wall"
+                "from {near} to {far} m: must rise and lie between {least:.3} m, the lamp, and {most:.3} m, the wall"
             );
             return Err(Error::setting("start.distance", why));
         }
