@@ -4,7 +4,7 @@ pub use crate::aggregation_by_hand::BeaconSeeker;
 pub use crate::aggregation_life::{AggregationConfig, AggregationLife};
 pub use crate::aggregation_measure::{Gathering, mean_distances};
 
-use farsa_body::{BodyId, Recorder, World as _, record_world};
+use farsa_body::{BodyId, Kinematics as _, Recorder, World as _};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
@@ -76,7 +76,7 @@ impl Lives {
         recorder.neurons(team.controllers()[0].hidden());
         recorder.outputs(team.done(0));
         let bodies = team.robots() + life.config().nests;
-        record_world(world, (0..bodies as u16).map(BodyId), recorder);
+        (0..bodies as u16).map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
         let Gathering { dispersion, clusters, largest } = life.gathering();
         let home = life.homes().iter().flatten().count() as f64;
         recorder.scalars(&[home, dispersion, clusters as f64, largest as f64, life.fitness()]);

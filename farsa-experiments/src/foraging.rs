@@ -7,7 +7,7 @@ pub use crate::swarm_config::TeamConfig;
 pub use crate::swarm_robot::RobotEyes;
 pub use crate::swarm_team::{Team, TeamNetwork};
 
-use farsa_body::{BodyId, Recorder, World as _, record_world};
+use farsa_body::{BodyId, Kinematics as _, Recorder, World as _};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
@@ -80,7 +80,7 @@ impl Lives {
         recorder.neurons(team.controllers()[0].hidden());
         recorder.outputs(team.done(0));
         let bodies = 0..=team.robots() as u16;
-        record_world(world, bodies.map(BodyId), recorder);
+        bodies.map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
         let mut scalars: Vec<f64> =
             field.robots().iter().flat_map(|forager| [forager.energy, f64::from(forager.carried)]).collect();
         scalars.extend([f64::from(field.collected()), f64::from(field.lost()), field.left() as f64]);

@@ -9,6 +9,7 @@ mod arena_stage;
 mod arguments;
 mod arguments_genotypes;
 mod bench;
+mod best_of_run;
 pub mod braitenberg;
 mod braitenberg_life;
 mod camera;
@@ -92,6 +93,7 @@ mod table;
 mod vector;
 
 pub use aggregation::Aggregation;
+pub use best_of_run::BestOfRun;
 pub use braitenberg::Braitenberg;
 pub use camera::Camera;
 pub use discrimination::{Discrimination, DiscriminationCylinders};

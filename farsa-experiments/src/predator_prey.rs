@@ -3,7 +3,7 @@
 pub use crate::predator_prey_by_hand::Chaser;
 pub use crate::predator_prey_life::{PredatorPreyConfig, PredatorPreyLife};
 
-use farsa_body::{BodyId, Recorder, World as _, record_world};
+use farsa_body::{BodyId, Kinematics as _, Recorder, World as _};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
@@ -64,7 +64,9 @@ impl Lives {
         recorder.sensors(team.sensed(own));
         recorder.neurons(team.controllers()[own].hidden());
         recorder.outputs(team.done(own));
-        record_world(world, [PREDATOR, PREY].map(|robot| BodyId(robot as u16)), recorder);
+        for body in [PREDATOR, PREY].map(|robot| BodyId(robot as u16)) {
+            recorder.pose(body, world.pose(body));
+        }
         recorder.scalars(&[life.gap(), life.reward(PREDATOR), life.reward(PREY)]);
         // Rounded to the nanosecond: 201 steps of 0.1 s print as 20.1.
         recorder.tick((f64::from(life.steps()) * life.config().team.time_step * 1e9).round() / 1e9);

@@ -12,7 +12,7 @@ use crate::life::{Job, Life};
 use crate::settings::{Setting, Settings};
 use crate::swarm_config::TeamConfig;
 use crate::swarm_robot::{BLUE, RED};
-use crate::swarm_team::{Team, distance};
+use crate::swarm_team::{NetworkDecoder, Team, TeamNetwork, distance};
 
 /// Outputs of a controller: speed and turn.
 pub(crate) const OUTPUTS: usize = 2;
@@ -103,6 +103,20 @@ impl PredatorPreyConfig {
     /// [`Error::Other`] for values that make no world.
     pub fn world(&self) -> Result<World, Error> {
         World::new(&Arena { size: None, ..self.arena() }).map_err(|error| Error::Other(error.to_string()))
+    }
+
+    /// The network of a genome.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a genome of another length.
+    pub fn network(&self, genes: &[u16]) -> Result<TeamNetwork, Error> {
+        let mut decoder = NetworkDecoder::new(self.team.layout(self.inputs(), OUTPUTS), self.team.weight_range)?;
+        let mut network = decoder.network()?;
+        if decoder.decode_into(genes, core::slice::from_mut(&mut network)) {
+            return Ok(network);
+        }
+        let (found, wanted) = (genes.len(), decoder.layout.parameter_count());
+        Err(Error::Other(format!("predator-prey: {found} genes where {wanted} are wanted")))
     }
 
     /// Channels that a controller reads: infrared and camera.

@@ -1,0 +1,194 @@
+//! Evolved robots against hand-written and random ones, on 100 starts that no run has met.
+//!
+//! `cargo run --release -p farsa-experiments --example swarm_baselines -- RUN...` takes directories of runs of `foraging`,
+//! `aggregation` and `predator-prey` and prints tables: means with 95 % confidence intervals (Student's t), those in
+//! docs/results/swarm.md. Everybody lives the same starts, so that differences are taken start by start.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use farsa_evo::randomize;
+use farsa_experiments::aggregation::{AggregationConfig, AggregationLife, BeaconSeeker, aggregate};
+use farsa_experiments::foraging::{ForagingConfig, ForagingLife, HomingForager, TeamNetwork, forage};
+use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyLife, chase};
+use farsa_experiments::{Aggregation, BestOfRun, Error, Foraging, Job, Note, Outcome, PredatorPrey, Tape};
+use farsa_nn::Controller;
+use farsa_num::{Domain, Stream};
+
+/// The first of the seeds of the starts; runs have small ones.
+const FIRST: u64 = 1_000_001;
+const COUNT: usize = 100;
+/// The 97.5 % quantile of Student's t with 99 degrees of freedom.
+const T: f64 = 1.984;
+
+/// Mean and half the 95 % confidence interval.
+fn interval(values: &[f64]) -> [f64; 2] {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+    [mean, T * farsa_num::Scalar::sqrt(variance / n)]
+}
+
+fn told(values: &[f64]) -> String {
+    let [mean, half] = interval(values);
+    format!("{mean:.2} ± {half:.2}")
+}
+
+fn jobs() -> impl Iterator<Item = Job> {
+    (FIRST..).take(COUNT).map(|seed| Job { seed, ..Job::default() })
+}
+
+/// A genome of its own for every start.
+fn random_genes(count: usize, job: Job, which: u32) -> Vec<u16> {
+    let mut genes = vec![0; count];
+    randomize(&mut genes, &mut Stream::new(job.seed, Domain::InitialGenome, which, 0, 0));
+    genes
+}
+
+fn earned(outcomes: &[Outcome]) -> Vec<f64> {
+    outcomes.iter().map(|outcome| outcome.terms.iter().sum()).collect()
+}
+
+/// A row: who, what they earned, how much more the evolved ones earned, and the notes.
+fn row(who: &str, outcomes: &[Outcome], evolved: &[Outcome]) -> String {
+    let mut row = format!("| {who} | {} |", told(&earned(outcomes)));
+    let differences: Vec<f64> = earned(evolved).iter().zip(earned(outcomes)).map(|(a, b)| a - b).collect();
+    row += &if who == "evolved" { " |".into() } else { format!(" {} |", told(&differences)) };
+    for k in 0..evolved[0].notes.len() {
+        let number = |outcome: &Outcome| match &outcome.notes[k].1 {
+            Note::Number(x) => *x,
+            Note::Text(_) => f64::NAN,
+        };
+        row += &format!(" {} |", told(&outcomes.iter().map(number).collect::<Vec<_>>()));
+    }
+    row
+}
+
+fn team(best: &mut BestOfRun) -> Result<(), Error> {
+    let BestOfRun { condition, settings, genomes, setup, .. } = best;
+    let evolved: Vec<Outcome> = jobs().map(|job| setup.live(&genomes[0], job, &mut Tape::off())).collect();
+    let count = setup.genes();
+    let random: Vec<Outcome> =
+        jobs().map(|job| setup.live(&random_genes(count, job, 0), job, &mut Tape::off())).collect();
+    let by_hand: Vec<Outcome> = if best.experiment == "foraging" {
+        let config = ForagingConfig::of_condition(condition).read(settings)?;
+        let mut world = config.world()?;
+        let robots = vec![HomingForager::new(&config); config.team.robots];
+        let mut life = ForagingLife::new(config, robots)?;
+        jobs().map(|job| forage(&mut life, &mut world, job)).collect()
+    } else {
+        let config = AggregationConfig::of_condition(condition).read(settings)?;
+        let mut world = config.world()?;
+        let robots = vec![BeaconSeeker::new(&config); config.team.robots];
+        let mut life = AggregationLife::new(config, robots)?;
+        jobs().map(|job| aggregate(&mut life, &mut world, job)).collect()
+    };
+    let names: Vec<&str> = evolved[0].notes.iter().map(|(name, _)| *name).collect();
+    println!("| controller | fitness | evolved more by | {} |", names.join(" | "));
+    println!("|---|---|---|{}", "---|".repeat(names.len()));
+    for (who, outcomes) in [("evolved", &evolved), ("hand-written", &by_hand), ("random genomes", &random)] {
+        println!("{}", row(who, outcomes, &evolved));
+    }
+    Ok(())
+}
+
+/// Who drives a robot.
+enum Mind {
+    Network(TeamNetwork),
+    ByHand(Chaser),
+}
+
+impl Controller for Mind {
+    fn inputs(&self) -> usize {
+        match self {
+            Self::Network(network) => network.inputs(),
+            Self::ByHand(chaser) => chaser.inputs(),
+        }
+    }
+    fn outputs(&self) -> usize {
+        match self {
+            Self::Network(network) => network.outputs(),
+            Self::ByHand(chaser) => chaser.outputs(),
+        }
+    }
+    fn reset(&mut self) {
+        match self {
+            Self::Network(network) => network.reset(),
+            Self::ByHand(chaser) => chaser.reset(),
+        }
+    }
+    fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        match self {
+            Self::Network(network) => network.step(x, y),
+            Self::ByHand(chaser) => chaser.step(x, y),
+        }
+    }
+}
+
+const WHO: [&str; 3] = ["evolved", "hand-written", "random genomes"];
+
+fn pair(best: &BestOfRun) -> Result<(), Error> {
+    let config = PredatorPreyConfig::default().read(&best.settings)?;
+    let count = best.setup.genes();
+    let mut world = config.world()?;
+    let mind = |who: usize, robot: usize, job: Job| {
+        Ok::<Mind, Error>(match (who, robot) {
+            (0, robot) => Mind::Network(config.network(&best.genomes[robot])?),
+            (1, 0) => Mind::ByHand(Chaser::predator(&config)),
+            (1, _) => Mind::ByHand(Chaser::prey(&config)),
+            (_, robot) => Mind::Network(config.network(&random_genes(count, job, robot as u32))?),
+        })
+    };
+    let mut rewards = vec![vec![Vec::new(); 3]; 3];
+    let mut captures = [[0; 3]; 3];
+    for predator in 0..3 {
+        for prey in 0..3 {
+            for job in jobs() {
+                let minds = [mind(predator, 0, job)?, mind(prey, 1, job)?];
+                let mut life = PredatorPreyLife::new(config.clone(), minds)?;
+                rewards[predator][prey].push(chase(&mut life, &mut world, job).terms[0]);
+                captures[predator][prey] += u32::from(life.captured());
+            }
+        }
+    }
+    println!("Reward of the predator (that of the prey is the rest of 1); captures of {COUNT}:\n");
+    println!("| predator | evolved prey | hand-written prey | prey of random genomes |\n|---|---|---|---|");
+    for predator in 0..3 {
+        let cells: Vec<String> =
+            (0..3).map(|prey| format!("{}; {}", told(&rewards[predator][prey]), captures[predator][prey])).collect();
+        println!("| {} | {} |", WHO[predator], cells.join(" | "));
+    }
+    println!("\nHow much more the evolved one earns than the other, against the same opponents:\n");
+    println!("| role | instead of | evolved opponent | hand-written opponent | opponent of random genomes |");
+    println!("|---|---|---|---|---|");
+    for other in 1..3 {
+        let more = |opponent: usize, prey: bool| {
+            let of = |who: usize| if prey { &rewards[opponent][who] } else { &rewards[who][opponent] };
+            let sign = if prey { -1.0 } else { 1.0 };
+            told(&of(0).iter().zip(of(other)).map(|(a, b)| sign * (a - b)).collect::<Vec<_>>())
+        };
+        for (role, prey) in [("predator", false), ("prey", true)] {
+            let cells: Vec<String> = (0..3).map(|opponent| more(opponent, prey)).collect();
+            println!("| {role} | {} | {} |", WHO[other], cells.join(" | "));
+        }
+    }
+    Ok(())
+}
+
+fn compare(directory: &Path) -> Result<(), Error> {
+    let mut best = BestOfRun::read(directory, &[&Foraging, &Aggregation, &PredatorPrey])?;
+    let BestOfRun { experiment, condition, seed, generation, .. } = &best;
+    println!("\n{experiment} {condition}, run of seed {seed}, best of generation {generation}:\n");
+    if best.genomes.len() > 1 { pair(&best) } else { team(&mut best) }
+}
+
+fn main() -> ExitCode {
+    let mut failed = false;
+    for directory in std::env::args_os().skip(1) {
+        if let Err(error) = compare(Path::new(&directory)) {
+            eprintln!("{error}");
+            failed = true;
+        }
+    }
+    if failed || std::env::args_os().len() < 2 { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}

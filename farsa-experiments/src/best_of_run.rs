@@ -1,0 +1,55 @@
+//! The best of a run, for comparisons that the command does not make.
+
+use std::path::Path;
+
+use crate::directory::Directory;
+use crate::error::Error;
+use crate::experiment::{Experiment, Setup};
+use crate::plan::{ConfigFile, Plan};
+use crate::records::Champions;
+use crate::settings::Settings;
+
+/// What a run has come to: its configuration, and the best of its last finished generation.
+pub struct BestOfRun {
+    /// The experiment's name.
+    pub experiment: String,
+    /// The condition; empty if there are none.
+    pub condition: String,
+    /// The seed.
+    pub seed: u64,
+    /// Every setting.
+    pub settings: Settings,
+    /// The last finished generation, from 0.
+    pub generation: u32,
+    /// The genome of the best of each population.
+    pub genomes: Vec<Vec<u16>>,
+    /// The experiment, ready to live lives.
+    pub setup: Box<dyn Setup>,
+}
+
+impl BestOfRun {
+    /// Reads it from the directory of a run of one of these experiments.
+    ///
+    /// # Errors
+    /// [`Error`] for a directory without a run, or with one that is damaged, of another experiment or of another version.
+    pub fn read(directory: &Path, experiments: &[&dyn Experiment]) -> Result<Self, Error> {
+        let directory = Directory::open(directory)?;
+        let plan = Plan::of_file(experiments, &ConfigFile::read(&directory.config())?)?;
+        let path = directory.champion();
+        if !path.is_file() {
+            return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
+        }
+        let Champions { identity, generation, best } = Champions::read(&plan, &directory)?;
+        identity.same_values(&plan.identity()?, &path)?;
+        let setup = plan.setup()?;
+        Ok(Self {
+            experiment: plan.experiment.name().into(),
+            condition: plan.condition,
+            seed: plan.seed,
+            settings: plan.settings,
+            generation,
+            genomes: best.into_iter().map(|best| best.genes).collect(),
+            setup,
+        })
+    }
+}

@@ -1,0 +1,312 @@
+//! The experiments on teams: lives repeat, robots stay where they can be, and the books are right.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+use farsa_body::BodyId;
+use farsa_evo::randomize;
+use farsa_experiments::aggregation::{AggregationConfig, AggregationLife, BeaconSeeker, Gathering, aggregate};
+use farsa_experiments::foraging::{ForagingConfig, ForagingLife, HomingForager, forage};
+use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyLife, chase};
+use farsa_experiments::{
+    Aggregation, Experiment, Foraging, Job, Note, Outcome, PredatorPrey, Recording, Settings, Setup, Tape, Value,
+};
+use farsa_num::{Domain, Stream};
+
+const ALL: [(&dyn Experiment, &str); 7] = [
+    (&Foraging, "marxbot"),
+    (&Foraging, "e-puck"),
+    (&Foraging, "khepera"),
+    (&Aggregation, "marxbot"),
+    (&Aggregation, "e-puck"),
+    (&Aggregation, "khepera"),
+    (&PredatorPrey, ""),
+];
+
+fn settings(experiment: &dyn Experiment, condition: &str, changes: &[(&str, Value)]) -> Settings {
+    let mut settings = Settings::new(experiment.settings(condition)).unwrap();
+    changes.iter().for_each(|(key, value)| settings.set("", key, value.clone()).unwrap());
+    settings
+}
+
+fn prepare(experiment: &dyn Experiment, condition: &str, steps: i64) -> Box<dyn Setup> {
+    let settings = settings(experiment, condition, &[("trial.steps", Value::Whole(steps))]);
+    experiment.prepare(condition, &settings).unwrap()
+}
+
+fn genes(setup: &dyn Setup, number: u32) -> Vec<u16> {
+    let mut genes = vec![0; setup.genes()];
+    randomize(&mut genes, &mut Stream::new(5, Domain::InitialGenome, number, 0, 0));
+    genes
+}
+
+fn note(outcome: &Outcome, name: &str) -> f64 {
+    match outcome.notes.iter().find(|(known, _)| *known == name) {
+        Some((_, Note::Number(x))) => *x,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// Lives a trial, against `other` where there are two, with and without somebody who listens.
+fn recorded(setup: &mut dyn Setup, genes: &[u16], other: &[u16], job: Job) -> (Outcome, Recording) {
+    let plain = setup.live_against(genes, &[other], job, &mut Tape::off());
+    setup.live_against(other, &[genes], Job { trial: job.trial + 1, ..job }, &mut Tape::off());
+    let mut recording = Recording::new(setup.stage());
+    let taped = setup.live_against(genes, &[other], job, &mut Tape::to(&mut recording));
+    assert_eq!(plain, taped);
+    (plain, recording)
+}
+
+#[test]
+fn lives_repeat_and_robots_stay_between_the_walls_and_apart() {
+    for (experiment, condition) in ALL {
+        let mut setup = prepare(experiment, condition, 250);
+        let (radius, size) = match condition {
+            "e-puck" => (0.035, 2.5),
+            "khepera" => (0.035, 2.0),
+            "marxbot" => (0.085, 5.0),
+            _ => (0.085, 3.0),
+        };
+        for number in 0..3 {
+            let (own, other) = (genes(setup.as_ref(), number), genes(setup.as_ref(), number + 10));
+            let job = Job { seed: 3, generation: 2, individual: 7, trial: number };
+            let (outcome, recording) = recorded(setup.as_mut(), &own, &other, job);
+            assert!(outcome.is_finite(), "{outcome:?}");
+            let ticks = recording.times().len();
+            assert_eq!(ticks, outcome.steps as usize);
+            let robots = if condition.is_empty() { 2 } else { 10 };
+            for tick in 0..ticks {
+                let places: Vec<[f32; 2]> = (0..robots)
+                    .map(|robot| recording.pose_at(tick, BodyId(robot)).unwrap().position)
+                    .map(|at| [at[0], at[1]])
+                    .collect();
+                for (i, a) in places.iter().enumerate() {
+                    let inside = |x: f32| (radius - 1e-5..=size - radius + 1e-5).contains(&x);
+                    assert!(inside(a[0]) && inside(a[1]), "{} {tick} {i}: {a:?}", experiment.name());
+                    for b in &places[..i] {
+                        let gap = (a[0] - b[0]).hypot(a[1] - b[1]) - 2.0 * radius;
+                        assert!(gap > -1e-5, "{} {tick} {i}: {gap}", experiment.name());
+                    }
+                }
+            }
+            // Another generation, another start.
+            let next = setup.live_against(&own, &[&other], Job { generation: 3, ..job }, &mut Tape::off());
+            assert!(next.is_finite());
+        }
+    }
+}
+
+#[test]
+fn the_book_of_food_is_what_the_robots_ways_tell() {
+    let mut setup = prepare(&Foraging, "marxbot", 400);
+    let columns = setup.stage().columns();
+    let column = |name: &str| columns.iter().position(|c| c == name).unwrap_or_else(|| panic!("{name}"));
+    let (mut deaths, mut food) = (0.0, 0.0);
+    for number in 0..6 {
+        let own = genes(setup.as_ref(), number);
+        let (outcome, recording) = recorded(setup.as_mut(), &own, &own, Job { trial: number, ..Job::default() });
+        // From the poses alone: who is where, from the first step on.
+        let mut left = [[true; 20]; 20];
+        let (mut carried, mut away, mut paid, mut lost) = ([0.0; 10], [0; 10], 0.0, 0.0);
+        let mut grave: [Option<[f32; 3]>; 10] = [None; 10];
+        for tick in 0..recording.times().len() {
+            let nest = recording.pose_at(tick, BodyId(10)).unwrap().position.map(f64::from);
+            for robot in 0..10 {
+                let pose = recording.pose_at(tick, BodyId(robot as u16)).unwrap();
+                if let Some(grave) = grave[robot] {
+                    assert_eq!(pose.position, grave, "the dead do not move");
+                    continue;
+                }
+                let [x, y, _] = pose.position.map(f64::from);
+                away[robot] += 1;
+                let home = (x - nest[0]).powi(2) + (y - nest[1]).powi(2) <= 0.4 * 0.4;
+                let dead = away[robot] == 100 && !home;
+                let cell = &mut left[(y / 0.25) as usize][(x / 0.25) as usize];
+                if !dead && std::mem::take(cell) {
+                    carried[robot] += 1.0;
+                }
+                if home {
+                    paid += std::mem::take(&mut carried[robot]);
+                    away[robot] = 0;
+                } else if dead {
+                    lost += std::mem::take(&mut carried[robot]);
+                    grave[robot] = Some(pose.position);
+                }
+            }
+            let row: Vec<f64> = recording.row(tick).collect();
+            assert_eq!([row[column("collected")], row[column("lost")]], [paid, lost]);
+            for robot in 0..10 {
+                assert_eq!(row[column(&format!("carried {}", robot + 1))], carried[robot]);
+                let energy = if grave[robot].is_some() { 0.0 } else { 1.0 - 0.01 * f64::from(away[robot]) };
+                assert!((row[column(&format!("energy {}", robot + 1))] - energy).abs() < 1e-9);
+            }
+        }
+        assert_eq!(outcome.terms, [paid]);
+        assert_eq!(note(&outcome, "deaths"), grave.iter().flatten().count() as f64);
+        assert_eq!(note(&outcome, "food carried at the end"), carried.iter().sum::<f64>());
+        deaths += note(&outcome, "deaths");
+        food += paid;
+    }
+    assert!(deaths > 0.0 && food > 0.0, "nothing happened: {deaths} {food}");
+}
+
+#[test]
+fn the_reward_of_aggregation_is_that_of_the_last_places() {
+    let mut setup = prepare(&Aggregation, "marxbot", 200);
+    let radius = 0.085;
+    for number in 0..5 {
+        let own = genes(setup.as_ref(), number);
+        let (outcome, recording) = recorded(setup.as_mut(), &own, &own, Job { trial: number, ..Job::default() });
+        let place = |body: u16| {
+            let [x, y, _] = recording.pose_at(199, BodyId(body)).unwrap().position;
+            [x, y]
+        };
+        let far = |a: [f32; 2], b: [f32; 2]| f64::from((a[0] - b[0]).hypot(a[1] - b[1]));
+        let (mut reward, mut home) = (0.0, 0);
+        for robot in 0..10 {
+            let nests = (10..12).filter(|nest| far(place(robot), place(*nest)) <= 6.0 * radius).count();
+            home += nests.min(1);
+            let sum: f64 = (0..10).map(|other| far(place(robot), place(other))).sum();
+            reward += 100.0 * nests.min(1) as f64 + 1.0 - sum / 9.0 / (5.0 * 2.0_f64.sqrt());
+        }
+        assert!((outcome.terms.iter().sum::<f64>() - reward / 10.0).abs() < 1e-5, "{outcome:?} {reward}");
+        assert!((note(&outcome, "share on a nest") - home as f64 / 10.0).abs() < 1e-9);
+        let gathering = Gathering::of(&(0..10).map(place).collect::<Vec<_>>(), radius);
+        assert_eq!(note(&outcome, "clusters"), gathering.clusters as f64);
+    }
+}
+
+#[test]
+fn capture_is_the_same_for_both() {
+    let mut setup = prepare(&PredatorPrey, "", 400);
+    let (mut captures, mut escapes) = (0, 0);
+    for number in 0..24 {
+        let (own, other) = (genes(setup.as_ref(), number), genes(setup.as_ref(), number + 100));
+        let job = Job { seed: 9, individual: 4, trial: number, ..Job::default() };
+        let predator = setup.live_against(&own, &[&other], job, &mut Tape::off());
+        // The prey of the same place in its population, 30 individuals further.
+        let prey = setup.live_against(&other, &[&own], Job { individual: 34, ..job }, &mut Tape::off());
+        assert_eq!(predator.terms[0] + prey.terms[0], 1.0);
+        assert_eq!((predator.steps, &predator.notes), (prey.steps, &prey.notes));
+        assert_ne!(predator.success, prey.success);
+        let captured = note(&predator, "captures") > 0.0;
+        assert_eq!((captured, predator.success), (predator.steps < 400 || captured, captured));
+        let earned = if captured { 1.0 - f64::from(predator.steps) / 400.0 } else { 0.0 };
+        assert_eq!(predator.terms, [earned]);
+        captures += u32::from(captured);
+        escapes += u32::from(!captured);
+    }
+    assert!(captures > 0 && escapes > 0, "{captures} {escapes}");
+}
+
+#[test]
+fn robots_that_drive_into_each_other_are_caught_wherever_they_are() {
+    let config = PredatorPreyConfig::default();
+    let minds = [Chaser::predator(&config), Chaser::prey(&config)];
+    let mut world = config.world().unwrap();
+    let mut life = PredatorPreyLife::new(config.clone(), minds).unwrap();
+    for seed in 0..10 {
+        let outcome = chase(&mut life, &mut world, Job { seed, ..Job::default() });
+        // Capture leaves no gap that a step could not close; without it there was one at every step.
+        assert!(!life.captured() || life.gap() < 2.0 * 0.027, "{seed}: {}", life.gap());
+        assert!(outcome.is_finite());
+    }
+    // A predator that steers to a prey that steers to it: no chase lasts long.
+    let minds = [Chaser::predator(&config), Chaser::predator(&config)];
+    let mut life = PredatorPreyLife::new(config, minds).unwrap();
+    for seed in 0..10 {
+        let outcome = chase(&mut life, &mut world, Job { seed, ..Job::default() });
+        assert!(life.captured() && outcome.steps < 60, "{seed}: {outcome:?}");
+    }
+}
+
+#[test]
+fn hand_written_teams_do_what_they_are_for() {
+    let jobs = || (0..3).map(|seed| Job { seed, ..Job::default() });
+    let mean = |outcomes: &[Outcome]| {
+        outcomes.iter().map(|outcome| outcome.terms.iter().sum::<f64>()).sum::<f64>() / outcomes.len() as f64
+    };
+    for condition in ["marxbot", "e-puck", "khepera"] {
+        let mut setup = prepare(&Foraging, condition, 1000);
+        let random: Vec<_> =
+            jobs().map(|job| setup.live(&genes(setup.as_ref(), job.seed as u32), job, &mut Tape::off())).collect();
+        let config = ForagingConfig::of_condition(condition);
+        let mut world = config.world().unwrap();
+        let mut life = ForagingLife::new(config.clone(), vec![HomingForager::new(&config); 10]).unwrap();
+        let by_hand: Vec<_> = jobs().map(|job| forage(&mut life, &mut world, job)).collect();
+        assert!(mean(&by_hand) > 2.0 * mean(&random), "{condition}: {} {}", mean(&by_hand), mean(&random));
+
+        let config = AggregationConfig::of_condition(condition);
+        let mut world = config.world().unwrap();
+        let mut life = AggregationLife::new(config.clone(), vec![BeaconSeeker::new(&config); 10]).unwrap();
+        let by_hand: Vec<_> = jobs().map(|job| aggregate(&mut life, &mut world, job)).collect();
+        assert!(mean(&by_hand) > 30.0, "{condition}: {}", mean(&by_hand));
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let refused = |experiment: &dyn Experiment, condition: &str, key: &str, value: Value| {
+        let settings = settings(experiment, condition, &[(key, value)]);
+        experiment.prepare(condition, &settings).err().unwrap().to_string()
+    };
+    let error = refused(&Foraging, "marxbot", "team.robots", Value::Whole(200));
+    assert!(error.starts_with("`team.robots`: no free place for a disc of 0.085 m in 1000 tries"), "{error}");
+    let error = refused(&Foraging, "khepera", "nest.to_wall", Value::Number(1.5));
+    assert!(error.contains("`nest.to_wall`") && error.contains("at most 1 m"), "{error}");
+    let error = refused(&Foraging, "marxbot", "robot.speed", Value::Number(5.0));
+    assert!(error.contains("robot 0 may go 0.5 m in a step"), "{error}");
+    let error = refused(&Foraging, "marxbot", "nest.radius", Value::Number(0.0));
+    assert!(error.contains("`nest.radius`"), "{error}");
+    let error = refused(&Aggregation, "marxbot", "nest.count", Value::Whole(50));
+    assert!(error.contains("no free place for a disc of 0.51 m in 1000 tries"), "{error}");
+    let error = refused(&Aggregation, "e-puck", "world.size", Value::Number(0.2));
+    assert!(error.contains("`nest.to_wall`"), "{error}");
+    let error = refused(&PredatorPrey, "", "world.size", Value::Number(0.5));
+    assert!(error.contains("`world.size`: no free place"), "{error}");
+    for (experiment, condition) in ALL {
+        let given = experiment.settings(condition);
+        let source = |key: &str| given.iter().find(|setting| setting.key() == key).unwrap().source().name();
+        assert_eq!((source("world.size"), source("camera.rays")), ("given", "chosen"));
+        if !condition.is_empty() {
+            let mut table = Settings::new(given.clone()).unwrap();
+            assert!(table.set("", "team.robots", Value::Whole(0)).is_err());
+        }
+    }
+}
+
+fn directory(name: &str) -> PathBuf {
+    let path = env::temp_dir().join(format!("farsa-swarm-{}-{name}", std::process::id()));
+    let _ = fs::remove_dir_all(&path);
+    path
+}
+
+fn run(experiment: &str, path: &Path, threads: &str) {
+    let status = Command::new(env!("CARGO_BIN_EXE_farsa"))
+        .args(["run", experiment, "--seed", "4", "--generations", "2", "--population", "6", "--quiet"])
+        .args(["--set", "evolution.parents=3", "--set", "trial.steps=60", "--set", "trial.count=2"])
+        .args(["--threads", threads, "--out"])
+        .arg(path)
+        .status()
+        .unwrap();
+    assert!(status.success(), "{experiment}: {status}");
+}
+
+#[test]
+fn threads_do_not_show_in_a_run() {
+    for experiment in ["foraging", "aggregation", "predator-prey"] {
+        let [one, two] = ["1", "2"].map(|threads| {
+            let path = directory(&format!("{experiment}-{threads}"));
+            run(experiment, &path, threads);
+            path
+        });
+        for file in ["champion.bin", "lineage.bin", "checkpoint.bin", "fitness.csv", "config.toml"] {
+            assert!(fs::read(one.join(file)).unwrap() == fs::read(two.join(file)).unwrap(), "{experiment}: {file}");
+        }
+        for path in [one, two] {
+            fs::remove_dir_all(path).unwrap();
+        }
+    }
+}
