@@ -20,7 +20,7 @@ use crate::swarm_team::{NetworkDecoder, OUTPUTS, TeamNetwork};
 /// Can robots that feel a nest only when they are on it gather there, with each other's help? \[FARSA2\]
 ///
 /// A team with one genome starts anywhere in an arena; when the time is up, every robot earns 100 if it is on a nest, and up
-/// to 1 for being near the others. The condition is the robot: the MarXbots' arena, steps and rewards are the source's; nests
+/// to 1 for being near the others. The condition is the robot: the `MarXbot`s' arena, steps and rewards are the source's; nests
 /// and all that the settings call chosen are ours, and sensors and motors are those of `foraging` without energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Aggregation;

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::foraging_life::{COLORS, NEST, on_nest};
 use crate::life::{Job, Life};
 use crate::settings::{Setting, Settings};
-use crate::swarm_config::TeamConfig;
+use crate::swarm_config::{TeamConfig, whole};
 use crate::swarm_team::{OUTPUTS, Team, distance};
 
 /// What the robots aggregate in; the defaults are those of a condition, the robot's name.
@@ -48,7 +48,7 @@ impl AggregationConfig {
         let mut table = crate::swarm_config::evolution(100, 40, 10);
         table.extend(self.team.table(true));
         table.extend([
-            Setting::whole("nest.count", self.nests as i64, 1..=100).doc("Nests; two, so that robots may part."),
+            Setting::whole("nest.count", whole(self.nests), 1..=100).doc("Nests; two, so that robots may part."),
             length("nest.radius", self.nest_radius)
                 .doc("Radius of a nest; six of a robot's, so that ten robots fit with room to drive by."),
             length("nest.to_wall", self.nest_to_wall)

@@ -24,7 +24,7 @@ use crate::swarm_team::{NetworkDecoder, OUTPUTS};
 /// A team with one genome leaves the nest, takes the food that it drives over, and must be back before its energy is
 /// used up. The condition is the robot: arenas, nests, energy, steps, sensors, motors and hidden neurons are the source's;
 /// the number of robots, the time step, the camera's view and the network's other traits are ours, as the settings say.
-/// What a robot carries is not limited. Each infrared channel of a MarXbot is the largest of three of its 24 sensors; the
+/// What a robot carries is not limited. Each infrared channel of a `MarXbot` is the largest of three of its 24 sensors; the
 /// source's bias neuron is the network's biases, which only its hidden neurons have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Foraging;

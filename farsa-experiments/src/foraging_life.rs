@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::foraging_field::Field;
 use crate::life::{Job, Life};
 use crate::settings::{Setting, Settings};
-use crate::swarm_config::TeamConfig;
+use crate::swarm_config::{TeamConfig, whole};
 use crate::swarm_robot::{BLUE, RED};
 use crate::swarm_team::{OUTPUTS, Team};
 
@@ -71,7 +71,7 @@ impl ForagingConfig {
             length("nest.to_wall", self.nest_to_wall).doc("Least distance of the nest's middle from the walls."),
             length("start.within", self.start_within)
                 .doc("Greatest distance of a robot's middle from the nest's middle at the start."),
-            Setting::whole("food.cells", self.cells as i64, 1..=1000)
+            Setting::whole("food.cells", whole(self.cells), 1..=1000)
                 .given()
                 .doc("Cells along a side of the arena; each has one piece of food, which the first robot there takes."),
             Setting::number("energy.cost", self.cost, 0.0..=1.0).given().doc(

@@ -10,7 +10,7 @@ use farsa_physics::arena::{Arena, World};
 use crate::error::Error;
 use crate::life::{Job, Life};
 use crate::settings::{Setting, Settings};
-use crate::swarm_config::TeamConfig;
+use crate::swarm_config::{TeamConfig, whole};
 use crate::swarm_robot::{BLUE, RED};
 use crate::swarm_team::{NetworkDecoder, Team, TeamNetwork, distance};
 
@@ -57,7 +57,7 @@ impl Default for PredatorPreyConfig {
 impl PredatorPreyConfig {
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
-        let mut table = crate::swarm_config::evolution(60, self.population as i64, 6);
+        let mut table = crate::swarm_config::evolution(60, whole(self.population), 6);
         table.extend(self.team.table(false));
         table.push(
             Setting::number("capture.touch", self.touch, 0.0..=1.0)

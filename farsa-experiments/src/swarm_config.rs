@@ -75,12 +75,12 @@ impl TeamConfig {
             Setting::number("world.time_step", self.time_step, 0.001..=0.2)
                 .unit("s")
                 .doc("Control step; 0.1 s is that of the source's other experiments on these robots."),
-            Setting::whole("trial.count", self.trials as i64, 1..=100_000)
+            Setting::whole("trial.count", whole(self.trials), 1..=100_000)
                 .doc("Trials of an evaluation; few, because a trial is the mean of many robots' luck already."),
             Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000).given().doc("Steps of a trial."),
         ];
         if robots {
-            table.push(Setting::whole("team.robots", self.robots as i64, 1..=10_000).doc(
+            table.push(Setting::whole("team.robots", whole(self.robots), 1..=10_000).doc(
                 "Robots of the team, one genome in all of them; 10 fit into the nests and leave room to miss each other.",
             ));
         }
@@ -88,7 +88,7 @@ impl TeamConfig {
             Setting::number("camera.field_of_view", self.field_of_view.to_degrees(), 1.0..=360.0)
                 .unit("deg")
                 .doc("How much the camera sees, around straight ahead: sectors of 36 degrees as the real e-puck's camera, or all around."),
-            Setting::whole("camera.rays", self.rays as i64, 1..=1000)
+            Setting::whole("camera.rays", whole(self.rays), 1..=1000)
                 .doc("Rays by which each sector is searched; a sector reads the share of them that see its colour."),
             Setting::number("net.weight_range", self.weight_range, 0.0..=1000.0)
                 .doc("Weights and biases are decoded to plus and minus this, for a logistic function of slope 1."),
@@ -138,6 +138,11 @@ impl TeamConfig {
     pub(crate) fn layout(&self, inputs: usize, outputs: usize) -> Layout {
         Layout::new(inputs, self.hidden, outputs).with_slope(1.0)
     }
+}
+
+/// A count as a setting's default.
+pub(crate) fn whole(count: usize) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
 }
 
 /// Infrared channels of every robot.
