@@ -51,17 +51,17 @@ fn earned(outcomes: &[Outcome]) -> Vec<f64> {
 
 /// A row: who, what they earned, how much more the evolved ones earned, and the notes.
 fn row(who: &str, outcomes: &[Outcome], evolved: &[Outcome]) -> String {
-    let mut row = format!("| {who} | {} |", told(&earned(outcomes)));
     let differences: Vec<f64> = earned(evolved).iter().zip(earned(outcomes)).map(|(a, b)| a - b).collect();
-    row += &if who == "evolved" { " |".into() } else { format!(" {} |", told(&differences)) };
+    let more = if who == "evolved" { String::new() } else { told(&differences) };
+    let mut cells = vec![who.to_owned(), told(&earned(outcomes)), more];
     for k in 0..evolved[0].notes.len() {
         let number = |outcome: &Outcome| match &outcome.notes[k].1 {
             Note::Number(x) => *x,
             Note::Text(_) => f64::NAN,
         };
-        row += &format!(" {} |", told(&outcomes.iter().map(number).collect::<Vec<_>>()));
+        cells.push(told(&outcomes.iter().map(number).collect::<Vec<_>>()));
     }
-    row
+    format!("| {} |", cells.join(" | "))
 }
 
 fn team(best: &mut BestOfRun) -> Result<(), Error> {

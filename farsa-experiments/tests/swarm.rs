@@ -27,7 +27,9 @@ const ALL: [(&dyn Experiment, &str); 7] = [
 
 fn settings(experiment: &dyn Experiment, condition: &str, changes: &[(&str, Value)]) -> Settings {
     let mut settings = Settings::new(experiment.settings(condition)).unwrap();
-    changes.iter().for_each(|(key, value)| settings.set("", key, value.clone()).unwrap());
+    for (key, value) in changes {
+        settings.set("", key, value.clone()).unwrap();
+    }
     settings
 }
 
@@ -121,7 +123,8 @@ fn the_book_of_food_is_what_the_robots_ways_tell() {
                 }
                 let [x, y, _] = pose.position.map(f64::from);
                 away[robot] += 1;
-                let home = (x - nest[0]).powi(2) + (y - nest[1]).powi(2) <= 0.4 * 0.4;
+                let [u, v] = [x - nest[0], y - nest[1]];
+                let home = u * u + v * v <= 0.4 * 0.4;
                 let dead = away[robot] == 100 && !home;
                 let cell = &mut left[(y / 0.25) as usize][(x / 0.25) as usize];
                 if !dead && std::mem::take(cell) {
