@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use farsa_body::{Arrange as _, BodyId, ColorBand, Contacts as _, PairId, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
-use farsa_physics::arena::{Arena, World};
+use farsa_physics::arena::{Arena, CollisionRule, World};
 
 use crate::error::Error;
 use crate::life::{Job, Life};
@@ -14,6 +14,9 @@ use crate::swarm_config::{TeamConfig, whole};
 use crate::swarm_robot::{BLUE, RED};
 use crate::swarm_team::{NetworkDecoder, Team, TeamNetwork, distance};
 
+/// Words for the rules of collisions.
+const CIRCLES: &str = "circles";
+const UNDONE: &str = "undone";
 /// Outputs of a controller: speed and turn.
 pub(crate) const OUTPUTS: usize = 2;
 /// The predator is robot 0, the prey robot 1.
@@ -33,6 +36,8 @@ pub struct PredatorPreyConfig {
     pub team: TeamConfig,
     /// Hulls that are as near as this touch, as do those whose last step would have led into each other.
     pub touch: f64,
+    /// What happens to robots that run into something.
+    pub collisions: CollisionRule,
     /// Individuals of each population.
     pub population: usize,
 }
@@ -50,7 +55,7 @@ impl Default for PredatorPreyConfig {
             hidden: 6,
             ..TeamConfig::of_condition("marxbot")
         };
-        Self { team, touch: 0.002, population: 30 }
+        Self { team, touch: 0.002, collisions: CollisionRule::Circles, population: 30 }
     }
 }
 
@@ -59,6 +64,10 @@ impl PredatorPreyConfig {
     pub fn table(&self) -> Vec<Setting> {
         let mut table = crate::swarm_config::evolution(60, whole(self.population), 6);
         table.extend(self.team.table(false));
+        table.push(
+            Setting::word("world.collisions", CIRCLES, &[CIRCLES, UNDONE])
+                .doc("Robots slide along what they run into; undone as in the original, a predator beside its prey stays stuck at the wall, and prey evolve to have it so."),
+        );
         table.push(
             Setting::number("capture.touch", self.touch, 0.0..=1.0)
                 .unit("m")
@@ -75,6 +84,10 @@ impl PredatorPreyConfig {
         let read = Self {
             team: self.team.read(false, settings)?,
             touch: settings.number("capture.touch")?,
+            collisions: match settings.word("world.collisions")? {
+                UNDONE => CollisionRule::Undone,
+                _ => CollisionRule::Circles,
+            },
             population: settings.count("evolution.population")?,
         };
         let [size, radius] = [read.team.size, read.team.robot.radius];
@@ -89,7 +102,7 @@ impl PredatorPreyConfig {
 
     /// The arena with the red predator and the blue prey.
     pub fn arena(&self) -> Arena {
-        let mut arena = self.team.arena();
+        let mut arena = Arena { collisions: self.collisions, ..self.team.arena() };
         arena.robots.iter_mut().zip(COLORS).for_each(|(placed, color)| placed.robot.color = color);
         for (placed, name) in arena.robots.iter_mut().zip(["predator", "prey"]) {
             placed.robot.name = name.into();
