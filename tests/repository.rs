@@ -34,8 +34,11 @@ fn files() -> Vec<(PathBuf, String)> {
     found
 }
 
-/// A source's key: a name with a capital letter and a year, as in the entries of REFERENCES.md.
+/// A source's key: a name with a capital letter and a year, as in the entries of REFERENCES.md, or a program that has none.
 fn is_key(word: &str) -> bool {
+    if word == "FARSA2" {
+        return true;
+    }
     let Some((name, year)) = word.len().checked_sub(4).and_then(|at| word.split_at_checked(at)) else { return false };
     name.len() > 1
         && name.starts_with(|c: char| c.is_ascii_uppercase())
