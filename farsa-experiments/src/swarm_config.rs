@@ -158,7 +158,7 @@ pub(crate) fn evolution(generations: i64, population: i64, parents: i64) -> Vec<
         Setting::whole("evolution.parents", parents, 1..=1_000_000)
             .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
         Setting::number("evolution.mutation_rate", 0.004, 0.0..=1.0).doc(
-            "Probability that mutation hits a bit, which is then drawn anew: 3 % of the genes change; five times as much kept foragers at half of what they reach with this.",
+            "Probability that mutation hits a bit, which is then drawn anew: 3 % of the genes change; five times as much kept foragers lower (docs/results/swarm.md).",
         ),
     ]
 }
