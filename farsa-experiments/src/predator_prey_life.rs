@@ -66,7 +66,7 @@ impl PredatorPreyConfig {
         table.extend(self.team.table(false));
         table.push(
             Setting::word("world.collisions", CIRCLES, &[CIRCLES, UNDONE])
-                .doc("Robots slide along what they run into; undone as in the original, a predator beside its prey stays stuck at the wall, and prey evolve to have it so."),
+                .doc("Robots slide along what they run into; undone as in the original, chases were seen to end with both stuck a few centimetres apart."),
         );
         table.push(
             Setting::number("capture.touch", self.touch, 0.0..=1.0)
