@@ -166,6 +166,16 @@ async function arithmetic(browser) {
   const arena = await browser.run(() => [farsa.view, document.querySelector("#top").ariaPressed, document.querySelector("#trails").ariaPressed, document.querySelector("#forces").hidden, document.querySelector("#network").hidden]);
   check("an arena is seen from above with trails, without what it has not", arena.join() === "top,true,true,true,true", arena.join());
   await silent(browser, "arena");
+
+  // A network whose sensors drive its outputs, without neurons in between.
+  const reflex = arenaLife(0);
+  const nodes = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map((channel) => ({ channel, layer: channel < 8 ? 0 : 2, name: `node ${channel}` }));
+  reflex.network = { nodes, links: [{ from: [0, 8], to: [8, 10], first: 0 }], values: [{ name: "bias", nodes: [8, 10], first: 16 }] };
+  reflex.weights = Array.from({ length: 18 }, (_, i) => Math.sin(i));
+  await opened(browser, write("reflex.html", compose(pageOf([reflex], "top"))));
+  const drawn = await browser.run(() => [farsa.ready, farsa.error, document.querySelector("#message").hidden, document.querySelector("#network").hidden]);
+  check("a network without neurons is drawn", drawn.join() === "true,,true,false", drawn.join());
+  await silent(browser, "reflexes");
 }
 
 // ---- The page itself.

@@ -119,6 +119,7 @@ function graphOf() {
 		c.fillStyle = soft;
 		for (let layer = 0; layer <= last; layer++) {
 			const column = nodes.filter((n) => n.layer === layer);
+			if (!column[0]) continue;
 			c.textAlign = side(layer, "right", "center", "left");
 			c.fillText(`${column.length} ${side(layer, "sensors", "neurons", "outputs")}`, column[0].x + side(layer, 6, 0, -6), max(7, column[0].y - 18));
 		}
