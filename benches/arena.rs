@@ -7,7 +7,8 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use farsa::body::{
-    Actuated, AnalyticInfrared, Arrange, BodyId, Kinematics, MobileParts, MobileRobot, Planar, Pose, Twist, World as _,
+    Actuated, AnalyticInfrared, Arrange, BodyId, InfraredAnalytic, Kinematics, MobileParts, MobileRobot, Motor as _,
+    Planar, Pose, Sensor as _, Twist, WheelVelocity, World as _,
 };
 use farsa::nn::{Controller, Perceptron, PerceptronLanes};
 use farsa::num::fearless_simd::Level;
@@ -38,12 +39,13 @@ fn one_through_ports(c: &mut Criterion) -> Result<(), ArenaError> {
     let parts = world.parts(0);
     let mut network = Perceptron::new(6, 2, 1.0, parameters()).expect("finite");
     let (mut x, mut y) = ([0.0; 8], [0.0; 2]);
-    let axes: Vec<[f32; 2]> = axes();
-    group.bench_function("world/near", |b| {
+    let mut infrared = InfraredAnalytic::of(&MobileRobot::khepera(), parts.body).expect("a Khepera's ring");
+    let mut wheels = WheelVelocity::new(parts.motors, MOST).expect("a Khepera's wheels");
+    group.bench_function("world/sensor and motor", |b| {
         b.iter(|| {
-            ring(&world, parts.body, 0.035, &axes, &mut x);
+            infrared.read(&world, &mut x);
             network.step(black_box(&x[..6]), &mut y);
-            drive(&mut world, &parts, y);
+            wheels.drive(&y, &mut world);
             world.step();
         });
     });
