@@ -46,7 +46,7 @@ impl AggregationConfig {
         let length = |key: &str, default: f64| Setting::number(key, default, 0.0..=1000.0).unit("m");
         let reward = |key: &str, default: f64| Setting::number(key, default, 0.0..=1e6).given();
         let mut table = crate::swarm_config::evolution(80, 30, 6);
-        table.extend(self.team.table(true));
+        table.extend(self.team.table(true, self.team.of_marxbots()));
         table.extend([
             Setting::whole("nest.count", whole(self.nests), 1..=100).doc("Nests; two, so that robots may part."),
             length("nest.radius", self.nest_radius)

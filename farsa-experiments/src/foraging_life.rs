@@ -59,10 +59,9 @@ impl ForagingConfig {
     pub fn table(&self) -> Vec<Setting> {
         let length = |key: &str, default: f64| Setting::number(key, default, 0.0..=1000.0).unit("m").given();
         let mut table = crate::swarm_config::evolution(80, 30, 6);
-        table.extend(self.team.table(true));
+        table.extend(self.team.table(true, true));
         let speed = Setting::number("robot.speed", self.team.speed, 1e-3..=10.0).unit("m/s");
-        let marxbot = self.team.robot.name == "MarXbot";
-        let speed = if marxbot { speed.given() } else { speed };
+        let speed = if self.team.of_marxbots() { speed.given() } else { speed };
         table.extend([
             speed.doc(
                 "The fastest that a robot drives; the source's 500 mm/s are a MarXbot's, the others keep their own.",

@@ -63,7 +63,7 @@ impl PredatorPreyConfig {
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
         let mut table = crate::swarm_config::evolution(60, whole(self.population), 6);
-        table.extend(self.team.table(false));
+        table.extend(self.team.table(false, true));
         table.push(
             Setting::word("world.collisions", CIRCLES, &[CIRCLES, UNDONE])
                 .doc("Robots slide along what they run into; undone as in the original, chases were seen to end with both stuck a few centimetres apart."),

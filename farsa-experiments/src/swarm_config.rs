@@ -65,13 +65,18 @@ impl TeamConfig {
         }
     }
 
-    /// Every value as a setting, with these as defaults; `robots`: whether their number is one of them.
-    pub(crate) fn table(&self, robots: bool) -> Vec<Setting> {
+    /// Whether the team is of the robot that the source's numbers are for.
+    pub(crate) fn of_marxbots(&self) -> bool {
+        self.robot.name == "MarXbot"
+    }
+
+    /// Every value as a setting, with these as defaults; `robots`: whether their number is one of them; `size_given`: whether
+    /// the source states the arena's size for this robot.
+    pub(crate) fn table(&self, robots: bool, size_given: bool) -> Vec<Setting> {
+        let size = Setting::number("world.size", self.size, 0.1..=1000.0).unit("m");
+        let size = if size_given { size.given() } else { size };
         let mut table = vec![
-            Setting::number("world.size", self.size, 0.1..=1000.0)
-                .unit("m")
-                .given()
-                .doc("Side of the square arena between its walls."),
+            size.doc("Side of the square arena between its walls."),
             Setting::number("world.time_step", self.time_step, 0.001..=0.2)
                 .unit("s")
                 .doc("Control step; 0.1 s is that of the source's other experiments on these robots."),
