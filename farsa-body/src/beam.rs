@@ -83,15 +83,25 @@ impl<B: Copy + PartialEq> BeamFrame<B> {
         }
     }
 
-    /// How far from the hull a beam meets something [m], at least 0; `None` if nothing within `range` [m].
+    /// How far from the hull a beam meets something [m], at least 0; `None` if nothing within `range` [m], or if `asked`
+    /// about the beam from its start to its end [m] says that there is nothing.
     #[inline]
-    pub(crate) fn distance<W: Rays<Body = B> + ?Sized>(&self, world: &W, beam: &Beam, range: f32) -> Option<f32> {
+    pub(crate) fn distance<W: Rays<Body = B> + ?Sized>(
+        &self,
+        world: &W,
+        beam: &Beam,
+        range: f32,
+        mut asked: impl FnMut([f32; 3], [f32; 3]) -> bool,
+    ) -> Option<f32> {
         let turn = |[x, y]: [f32; 2]| [0, 1, 2].map(|i| self.ahead[i] * x + self.left[i] * y);
         let (from, along) = (turn(beam.from), turn(beam.direction));
-        let start = |out: f32| [0, 1, 2].map(|i| self.origin[i] + from[i] + out * along[i]);
-        let hit = world.cast(start(-WITHIN), along, range + WITHIN)?;
+        let at = |out: f32| [0, 1, 2].map(|i| self.origin[i] + from[i] + out * along[i]);
+        if !asked(at(-WITHIN), at(range)) {
+            return None;
+        }
+        let hit = world.cast(at(-WITHIN), along, range + WITHIN)?;
         if hit.body == Some(self.body) {
-            world.cast(start(WITHIN), along, range - WITHIN).map(|hit| hit.distance + WITHIN)
+            world.cast(at(WITHIN), along, range - WITHIN).map(|hit| hit.distance + WITHIN)
         } else {
             Some(Scalar::max(hit.distance - WITHIN, 0.0))
         }

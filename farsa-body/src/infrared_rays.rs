@@ -55,6 +55,29 @@ impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
     }
 }
 
+impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
+    /// Reads as [`Sensor::read`] does, without casting the rays that meet nothing, which one may know who knows what is near.
+    ///
+    /// `meets` gets the ends of a ray \[m\] and says whether there may be something between them; a ray of which it says
+    /// no reads 0.
+    #[inline]
+    pub fn read_where<W>(&self, world: &W, out: &mut [f32], mut meets: impl FnMut([f32; 3], [f32; 3]) -> bool)
+    where
+        W: Rays<Body = B> + Kinematics + ?Sized,
+    {
+        let frame = BeamFrame::of(world, self.body, self.height);
+        for (o, cone) in out.iter_mut().zip(self.beams.as_ref().chunks_exact(self.rays)) {
+            let mut nearest = self.range;
+            for beam in cone {
+                if let Some(distance) = frame.distance(world, beam, self.range, &mut meets) {
+                    nearest = Scalar::min(nearest, distance);
+                }
+            }
+            *o = unit(1.0 - nearest / self.range);
+        }
+    }
+}
+
 #[cfg(feature = "alloc")]
 impl<B> InfraredRays<Vec<Beam>, B> {
     /// The ring of a robot whose body this is, at half its height, in the order of [`crate::InfraredRing::angles`].
@@ -83,15 +106,6 @@ where
     W: Rays<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let frame = BeamFrame::of(world, self.body, self.height);
-        for (o, cone) in out.iter_mut().zip(self.beams.as_ref().chunks_exact(self.rays)) {
-            let mut nearest = self.range;
-            for beam in cone {
-                if let Some(distance) = frame.distance(world, beam, self.range) {
-                    nearest = Scalar::min(nearest, distance);
-                }
-            }
-            *o = unit(1.0 - nearest / self.range);
-        }
+        self.read_where(world, out, |_, _| true);
     }
 }

@@ -141,11 +141,15 @@ where
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let (stance, bands) = (Stance::of(world, self.body), self.bands.as_ref());
-        let sectors = self.rays.as_ref().chunks_exact(self.per_sector);
-        for (values, sector) in out.chunks_mut(bands.len()).zip(sectors) {
+        let rays = self.rays.as_ref();
+        let shown = Shown::of(world, &stance, rays, self.range, |color| bands.iter().any(|band| band.shows(color)));
+        for (values, sector) in out.chunks_mut(bands.len()).zip(rays.chunks_exact(self.per_sector)) {
             values.fill(0.0);
             for ray in sector {
                 let (from, direction) = (stance.place(ray.from), stance.turn(ray.direction));
+                if !shown.may_meet(from, direction) {
+                    continue;
+                }
                 if let Some(sight) = world.look(from, direction, self.range, Some(self.body)) {
                     for (o, band) in values.iter_mut().zip(bands) {
                         *o += if band.shows(sight.color) { 1.0 } else { 0.0 };
@@ -156,5 +160,61 @@ where
                 *o /= self.per_sector as f32;
             }
         }
+    }
+}
+
+/// What a camera's bands show of what is around: only a ray that may meet some of it can change what the camera reads.
+struct Shown {
+    /// Centre and radius of round bodies [m].
+    rounds: [([f32; 2], f32); MOST_SHOWN],
+    count: usize,
+    /// A wall is shown, or more bodies than there is room for: every ray may meet something.
+    anywhere: bool,
+}
+
+/// As many bodies as there usually are; of more it does not pay to try each before every ray.
+const MOST_SHOWN: usize = 16;
+
+impl Shown {
+    #[inline]
+    fn of<W: Planar + ?Sized>(
+        world: &W,
+        stance: &Stance,
+        rays: &[Beam],
+        range: f32,
+        shows: impl Fn([f32; 3]) -> bool,
+    ) -> Self {
+        let mut shown = Self { rounds: [([0.0; 2], 0.0); MOST_SHOWN], count: 0, anywhere: false };
+        let aside = |ray: &Beam| ray.from[0].abs() + ray.from[1].abs();
+        let reach = rays.iter().map(aside).fold(0.0, f32::max) + range;
+        world.near(stance.at, reach, &mut |near| {
+            if shown.anywhere || !shows(near.color) {
+                return;
+            }
+            // The middle lies a radius behind the nearest point, which does not tell it from close by.
+            let told = near.body.is_some() && near.distance > 0.5 * near.radius;
+            let Some(room) = shown.rounds.get_mut(shown.count).filter(|_| told) else {
+                shown.anywhere = true;
+                return;
+            };
+            let behind = near.radius / near.distance;
+            let centre = [0, 1].map(|k| near.point[k] + (near.point[k] - stance.at[k]) * behind);
+            *room = (centre, near.radius);
+            shown.count += 1;
+        });
+        shown
+    }
+
+    /// Whether a ray of unit direction may meet something shown; sometimes also if it does not.
+    #[inline]
+    fn may_meet(&self, from: [f32; 2], direction: [f32; 2]) -> bool {
+        self.anywhere
+            || self.rounds[..self.count].iter().any(|(centre, radius)| {
+                let [x, y] = [centre[0] - from[0], centre[1] - from[1]];
+                let (along, across) = (x * direction[0] + y * direction[1], x * direction[1] - y * direction[0]);
+                // A little more than the radius, for rounding; and never "no" for a number that is none.
+                let room = 1.01 * radius + 1e-3 * (x.abs() + y.abs());
+                !(along < -room || across.abs() > room)
+            })
     }
 }

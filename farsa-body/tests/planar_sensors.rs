@@ -472,6 +472,32 @@ proptest! {
         }
     }
 
+    /// Rays that cannot meet a colour are left out; that must not show, be the discs few, many, near or around the robot.
+    #[test]
+    fn a_camera_reads_what_all_of_its_rays_see(
+        discs in prop::collection::vec((-PI..PI, 0.01_f32..2.0, 0.05_f32..1.5, 0_usize..3), 0..24),
+        aside in prop::array::uniform2(-0.3_f64..0.3),
+        wall in prop::option::of(0_usize..3),
+    ) {
+        const RAYS: usize = 30;
+        let mut world = world_of(&discs, 1.0);
+        if let Some(color) = wall {
+            world.add_wall([[1.0, -1.0], [1.0, 2.0]], [RED, BLUE, GREEN][color]);
+        }
+        let beams: Vec<Beam> = (0..RAYS).map(|ray| Beam::in_view(aside, 6.0, ray, RAYS)).collect();
+        let mut camera = LinearCamera::new(BodyId(0), beams.clone(), 10, bands(), 1.5).unwrap();
+        let values = read(&mut camera, &world);
+        // The robot stands at the origin and looks along x.
+        let sights = beams.iter().map(|beam| world.look(beam.from, beam.direction, 1.5, Some(BodyId(0))));
+        let seen: Vec<_> = sights.map(|sight| sight.map(|sight| sight.color)).collect();
+        for (sector, colors) in seen.chunks(10).enumerate() {
+            for (k, band) in bands().iter().enumerate() {
+                let count = colors.iter().flatten().filter(|color| band.shows(**color)).count();
+                prop_assert_eq!(values[2 * sector + k], count as f32 / 10.0, "sector {} colour {}", sector, k);
+            }
+        }
+    }
+
     #[test]
     fn cameras_and_lamps_are_mirror_symmetric(discs in discs(), lamp in (-PI..PI, 0.2_f32..2.0)) {
         const SECTORS: usize = 5;

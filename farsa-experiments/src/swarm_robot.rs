@@ -19,13 +19,9 @@ pub(crate) const BLUE: ColorBand = ColorBand { low: [0.0, 0.0, 0.5], high: [1.0,
 #[derive(Clone, Debug)]
 pub struct RobotEyes {
     body: BodyId,
-    /// Every sensor of the ring by itself, so that those are not read that have nothing before them.
-    infrared: Vec<InfraredRays<Vec<Beam>>>,
+    infrared: InfraredRays<Vec<Beam>>,
     /// Readings of all sensors of the ring.
     ring: Vec<f32>,
-    /// The disc that all rays of each sensor lie in: its middle in the robot's frame, and their radius \[m\].
-    discs: Vec<[f32; 2]>,
-    disc: f32,
     /// What is near: the nearest point of a wall with the unit vector to it, or a body's middle and radius.
     things: Vec<Thing>,
     /// From the middle of the robot to where its infrared sensors see \[m\].
@@ -40,18 +36,27 @@ enum Thing {
 }
 
 impl Thing {
-    /// Whether some of it may lie in a disc; sometimes also if none does.
-    fn reaches(&self, at: [f32; 2], disc: f32) -> bool {
+    /// Whether some of it may lie on a way from one place to another; sometimes also if none does.
+    fn meets(&self, from: [f32; 2], to: [f32; 2]) -> bool {
         match self {
             // A wall is convex: all of it lies beyond its nearest point.
-            Self::Wall { point, out } => (at[0] - point[0]) * out[0] + (at[1] - point[1]) * out[1] >= -disc,
+            Self::Wall { point, out } => {
+                let beyond = |at: [f32; 2]| (at[0] - point[0]) * out[0] + (at[1] - point[1]) * out[1] >= -HAIR;
+                beyond(from) || beyond(to)
+            }
             Self::Round { centre, radius } => {
-                let ([x, y], far) = ([at[0] - centre[0], at[1] - centre[1]], radius + disc);
+                let [u, v] = [to[0] - from[0], to[1] - from[1]];
+                let [x, y] = [centre[0] - from[0], centre[1] - from[1]];
+                let share = ((x * u + y * v) / (u * u + v * v)).clamp(0.0, 1.0);
+                let ([x, y], far) = ([x - share * u, y - share * v], radius + HAIR);
                 x * x + y * y <= far * far
             }
         }
     }
 }
+
+/// For rounding \[m\].
+const HAIR: f32 = 1e-4;
 
 impl RobotEyes {
     /// The eyes of a robot of the team, with a camera for these colours.
@@ -64,22 +69,12 @@ impl RobotEyes {
         if count == 0 || !count.is_multiple_of(EYES) {
             return Err(ChannelError::Groups { field: "infrared sensors", count, size: EYES });
         }
-        let ring = &robot.infrared;
-        let sensor = |angle: &f64| {
-            let beam = |ray| Beam::in_cone(robot.radius, *angle, ring.aperture, ray, ring.rays);
-            let beams = (0..ring.rays).map(beam).collect();
-            InfraredRays::new(parts.body, beams, ring.rays, (0.5 * robot.height) as f32, ring.range as f32)
-        };
-        let middle = |angle: &f64| Beam::in_cone(robot.radius + 0.5 * ring.range, *angle, 0.0, 0, 1).from;
         // Farther than the arena's diagonal nothing is to be seen.
         let (range, view) = (1.5 * config.size as f32, config.field_of_view);
         Ok(Self {
             body: parts.body,
-            infrared: ring.angles.iter().map(sensor).collect::<Result<_, _>>()?,
+            infrared: InfraredRays::of(robot, parts.body)?,
             ring: vec![0.0; count],
-            discs: ring.angles.iter().map(middle).collect(),
-            // No point of a ray is farther from the middle of the cone; the hair's breadth is for rounding.
-            disc: (ring.range * (0.5 + farsa_num::sin_cos(ring.aperture).0.abs()) + 1e-4) as f32,
             things: Vec::with_capacity(64),
             reach: (robot.radius + robot.infrared.range) as f32,
             camera: LinearCamera::of_view(parts.body, view, config.sectors, config.rays, colors.to_vec(), range)?,
@@ -89,7 +84,7 @@ impl RobotEyes {
     /// Reads the infrared channels and then the camera's \[8 + sectors x colours\].
     pub fn read(&mut self, world: &World, out: &mut [f32]) {
         let (near, seen) = out.split_at_mut(EYES);
-        let Self { body, infrared, ring, discs, disc, things, .. } = self;
+        let Self { body, infrared, ring, things, .. } = self;
         let pose = world.pose(*body);
         let [x, y, _] = pose.position;
         things.clear();
@@ -108,14 +103,9 @@ impl RobotEyes {
             // What the rays would read, too: nothing is within their range.
             near.fill(0.0);
         } else {
-            for ((sensor, disc_at), o) in infrared.iter_mut().zip(discs).zip(ring) {
-                let [u, v, _] = pose.transform([disc_at[0], disc_at[1], 0.0]);
-                if things.iter().any(|thing| thing.reaches([u, v], *disc)) {
-                    sensor.read(world, core::slice::from_mut(o));
-                } else {
-                    *o = 0.0;
-                }
-            }
+            infrared.read_where(world, ring, |[x, y, _], [u, v, _]| {
+                things.iter().any(|thing| thing.meets([x, y], [u, v]))
+            });
             let group = self.ring.len() / EYES;
             for (first, o) in near.iter_mut().enumerate() {
                 let of_group = (0..group).map(|k| (first * group + k + self.ring.len() - group / 2) % self.ring.len());

@@ -49,6 +49,14 @@ pub(crate) struct Slab {
     pub(crate) color: [f32; 3],
 }
 
+impl Slab {
+    /// Whether some of it may be within `range` [m] of a place.
+    #[inline]
+    pub(crate) fn within_reach(&self, from: [f32; 2], range: f32) -> bool {
+        (0..2).all(|k| (from[k] - self.centre[k]).abs() <= self.around[k] + range)
+    }
+}
+
 /// A cylinder.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Round {

@@ -151,8 +151,7 @@ fn signal(world: &impl View, body: usize) -> Option<f32> {
 pub(crate) fn near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl FnMut(Near<BodyId>)) {
     let model = world.model();
     for slab in &model.slabs {
-        let beyond = |k: usize| (from[k] - slab.centre[k]).abs() > slab.around[k] + range;
-        if beyond(0) || beyond(1) {
+        if !slab.within_reach(from, range) {
             continue;
         }
         let [x, y] = to_wall(slab, from);
@@ -208,8 +207,13 @@ fn along(
         let end = if i < PIECES { (start + piece).min(range) } else { range };
         let ends = [start, end].map(|t| [0, 1].map(|k| if way[k] == 0.0 { from[k] } else { from[k] + t * way[k] }));
         let rim = |pick: fn(f32, f32) -> f32, by: f32| [0, 1].map(|k: usize| pick(ends[0][k], ends[1][k]) + by);
-        world
-            .visit(rim(f32::min, -1.01 * reach), rim(f32::max, 1.01 * reach), |body| found = found.min(try_body(body)));
+        let (low, high) = (rim(f32::min, -1.01 * reach), rim(f32::max, 1.01 * reach));
+        world.visit(low, high, |body| {
+            let [x, y] = place(world, body);
+            if x >= low[0] && x <= high[0] && y >= low[1] && y <= high[1] {
+                found = found.min(try_body(body));
+            }
+        });
         if end >= range || found <= end {
             return;
         }
@@ -290,10 +294,12 @@ pub(crate) fn cast(world: &impl View, origin: [f32; 3], direction: [f32; 3], ran
             hit = Some(Hit { distance, normal, body: None });
         }
     };
+    // A hair farther than the ray, for rounding.
+    let reach = 1.001 * range;
     if origin[2] >= 0.0 && direction[2] < 0.0 {
         meet(origin[2] / -direction[2], [0.0, 0.0, 1.0]);
     }
-    for slab in &model.slabs {
+    for slab in model.slabs.iter().filter(|slab| slab.within_reach([origin[0], origin[1]], reach)) {
         let [c, s] = slab.axis;
         let turn = |x: f32, y: f32| [x * c + y * s, y * c - x * s];
         let [x, y] = turn(origin[0] - slab.centre[0], origin[1] - slab.centre[1]);
