@@ -46,7 +46,9 @@ where
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let frame = BeamFrame::of(world, self.body, self.height);
         for (o, beam) in out.iter_mut().zip(self.beams.as_ref()) {
-            *o = frame.distance(world, beam, self.range, |_, _| true).map_or(1.0, |distance| unit(distance / self.range));
+            *o = frame
+                .distance(world, beam, self.range, |_, _| true)
+                .map_or(1.0, |distance| unit(distance / self.range));
         }
     }
 }

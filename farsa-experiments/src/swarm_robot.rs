@@ -103,9 +103,8 @@ impl RobotEyes {
             // What the rays would read, too: nothing is within their range.
             near.fill(0.0);
         } else {
-            infrared.read_where(world, ring, |[x, y, _], [u, v, _]| {
-                things.iter().any(|thing| thing.meets([x, y], [u, v]))
-            });
+            infrared
+                .read_where(world, ring, |[x, y, _], [u, v, _]| things.iter().any(|thing| thing.meets([x, y], [u, v])));
             let group = self.ring.len() / EYES;
             for (first, o) in near.iter_mut().enumerate() {
                 let of_group = (0..group).map(|k| (first * group + k + self.ring.len() - group / 2) % self.ring.len());
