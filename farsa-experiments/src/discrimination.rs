@@ -7,10 +7,11 @@ pub use crate::infrared::{Infrared, InfraredModel};
 
 use std::path::PathBuf;
 
-use farsa_body::{Kinematics as _, MobileRobot, Pose, Recorder, World as _};
+use farsa_body::{Kinematics as _, Pose, Recorder, World as _};
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
 
+use crate::discrimination_config::ROBOTS;
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::life::{Job, Life as _};
@@ -20,9 +21,9 @@ use crate::stage::{Channel, Links, NodeParameters, Stage};
 
 /// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2\]
 ///
-/// A Khepera with six infrared sensors and a layer of two logistic units, which drive its wheels, evolves to find a small
-/// cylinder in a walled arena and to stay near it. One parent makes one mutant a generation. Sources and choices are in
-/// the settings; deviations: random numbers are our own, and so is the analytic model of the sensors, which is the default
+/// A robot with six infrared sensors and a layer of two logistic units, which drive its wheels, evolves to find a small
+/// cylinder in a walled arena and to stay near it. One parent makes one mutant a generation. The condition is the robot, a
+/// Khepera or an e-puck, with the source's numbers for each ([`Config::e_puck`]). Sources and choices are in the settings; deviations: random numbers are our own, and so is the analytic model of the sensors, which is the default
 /// because it needs no measured tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Discrimination;
@@ -33,23 +34,27 @@ impl Experiment for Discrimination {
     }
 
     fn summary(&self) -> &'static str {
-        "a Khepera finds a small cylinder among walls and stays near it, by its infrared sensors alone"
+        "a robot finds a small cylinder among walls and stays near it, by its infrared sensors alone"
+    }
+
+    fn conditions(&self) -> &'static [&'static str] {
+        &ROBOTS
     }
 
     fn search(&self, _: &str) -> Search {
         Search::SteadyState
     }
 
-    fn settings(&self, _: &str) -> Vec<Setting> {
-        Config::default().table()
+    fn settings(&self, condition: &str) -> Vec<Setting> {
+        Config::of_condition(condition).table()
     }
 
     fn files(&self, _: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {
         InfraredModel::files(settings)
     }
 
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
-        Ok(Box::new(Lives::new(Config::default().read(settings)?)?))
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+        Ok(Box::new(Lives::new(Config::of_condition(condition).read(settings)?)?))
     }
 }
 
@@ -98,7 +103,7 @@ impl Lives {
         let mut scalars = vec![x, y, f64::from(pose.heading())];
         let count = life.cylinders().len();
         scalars.extend(&trial.distance[..count]);
-        let largest = MobileRobot::khepera().max_wheel_speed;
+        let largest = life.config().robot.max_wheel_speed;
         scalars.extend(life.done().iter().map(|y| (2.0 * f64::from(*y) - 1.0) * largest));
         scalars.push(life.fitness());
         recorder.scalars(&scalars);
@@ -171,7 +176,7 @@ impl Setup for Lives {
             1 => &["distance [m]"],
             _ => &["distance of the first [m]", "distance of the other [m]"],
         };
-        let largest = config.robot().max_wheel_speed;
+        let largest = config.robot.max_wheel_speed;
         let wheels = ["left wheel [rad/s]", "right wheel [rad/s]"].map(in_group("actuator"));
         let scalars = ["x [m]", "y [m]", "heading [rad]"].map(in_group("place")).into_iter();
         let eyes = (1..=EYES).map(|number| format!("infrared {number}"));
@@ -198,6 +203,7 @@ impl Setup for Lives {
     fn description(&self) -> Description {
         let config = self.life.config();
         let model = config.infrared.name();
+        let speed = config.robot.max_wheel_speed * config.robot.wheel_radius;
         let mut sensors = vec![ChannelGroup::new(
             "infrared",
             EYES,
@@ -211,7 +217,7 @@ impl Setup for Lives {
             motors: vec![ChannelGroup::new(
                 "wheels",
                 2,
-                "left and right, 0 backwards .. 1/2 at rest .. 1 ahead, 1.1 turns/s",
+                &format!("left and right, 0 backwards .. 1/2 at rest .. 1 ahead, {:.0} mm/s", 1e3 * speed),
             )],
             network: format!("{}-2, one layer of logistic units without memory", config.inputs()),
             parameters: self.genes(),

@@ -74,7 +74,7 @@ impl<C: Controller> CylinderLife<C> {
             return Err(Error::Other(format!("discrimination: {count} cylinders where 1 or {CYLINDERS} are wanted")));
         }
         let wrong = |error: ChannelError| Error::Other(format!("discrimination: {error}"));
-        let (robot, arena) = (config.robot(), config.arena());
+        let (robot, arena) = (config.robot.clone(), config.arena());
         let parts = arena.parts(0);
         let largest = robot.max_wheel_speed as f32;
         let speeds = WheelSpeed::new(parts.wheels, largest).map_err(wrong)?;

@@ -115,7 +115,10 @@ pub(crate) fn plan<'e>(
     }
     if let Some(directory) = infrared_tables {
         if !plan.settings.table().iter().any(|setting| setting.key() == INFRARED_TABLES) {
-            return Err(Error::Usage(format!("--ir-tables: {experiment} has no setting `{INFRARED_TABLES}`")));
+            let condition = &plan.condition;
+            let under = if condition.is_empty() { String::new() } else { format!(" under condition `{condition}`") };
+            let why = format!("--ir-tables: {experiment} has no setting `{INFRARED_TABLES}`{under}");
+            return Err(Error::Usage(why));
         }
         let text = directory
             .to_str()

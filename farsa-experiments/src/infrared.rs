@@ -47,11 +47,24 @@ impl InfraredModel {
         ]
     }
 
+    /// The setting that chooses between the models that need no tables, this one by default: for robots that nobody has
+    /// measured.
+    pub fn without_tables(&self) -> Setting {
+        let name = if *self == Self::Rays { RAYS } else { ANALYTIC };
+        Setting::word(MODEL, name, &[RAYS, ANALYTIC]).doc(
+            "Model of the infrared sensors: rays, as far as this robot's sensors see, or the formula, whose distances are a \
+             Khepera's.",
+        )
+    }
+
     /// The files that the model reads under these settings.
     ///
     /// # Errors
     /// [`Error::Setting`] if measured tables are wanted and no directory is named.
     pub fn files(settings: &Settings) -> Result<Vec<PathBuf>, Error> {
+        if !settings.table().iter().any(|setting| setting.key() == TABLES) {
+            return Ok(Vec::new());
+        }
         let directory = settings.text(TABLES)?;
         match (settings.word(MODEL)?, directory.is_empty()) {
             (SAMPLED, true) => {

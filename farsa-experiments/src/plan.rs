@@ -112,6 +112,19 @@ impl<'e> Plan<'e> {
         })
     }
 
+    /// Whether a record, which was read from a file of `directory`, is one of the run that is planned here.
+    ///
+    /// # Errors
+    /// [`Error::OtherConfiguration`], [`Error::OtherFile`], and those of [`identity`](Self::identity).
+    pub(crate) fn same_run(&self, record: &Identity, directory: &Path) -> Result<(), Error> {
+        let mut asked = self.identity()?;
+        // A run from before its experiment had conditions is one of what has become the first of them.
+        if record.condition.is_empty() && self.experiment.conditions().first() == Some(&self.condition.as_str()) {
+            asked.condition.clear();
+        }
+        record.same_run(&asked, directory)
+    }
+
     /// The complete configuration as TOML, with the documentation, unit and source of every value.
     pub(crate) fn to_toml(&self) -> Result<String, Error> {
         let mut text =
@@ -441,6 +454,12 @@ mod tests {
             error.to_string(),
             "the run in d has `world.step` = 0.01, not 0.02: another configuration is another run"
         );
+        // Before there were conditions, it was the first: the other one is not.
+        let old = Identity { condition: String::new(), ..plan.identity().unwrap() };
+        plan.same_run(&old, Path::new("d")).unwrap();
+        let without = Plan::new(&Toy, Some("without"), "").unwrap();
+        let error = without.same_run(&old, Path::new("d")).unwrap_err().to_string();
+        assert!(error.contains("`condition`"), "{error}");
         let mut newer = plan.identity().unwrap();
         newer.experiment_version = 2;
         let error = plan.identity().unwrap().same_values(&newer, Path::new("d/checkpoint.bin")).unwrap_err();

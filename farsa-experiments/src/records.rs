@@ -120,7 +120,7 @@ trait Owned: Sealed {
 /// Reads a record of the run that a plan describes, as it lies in `directory`.
 fn read<T: Owned>(path: &Path, plan: &Plan<'_>, directory: &Directory) -> Result<T, Error> {
     let record: T = sealed::read(path)?;
-    record.identity().same_run(&plan.identity()?, directory.path())?;
+    plan.same_run(record.identity(), directory.path())?;
     Ok(record)
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use farsa_body::{Arrange as _, Kinematics as _, Pose, Twist};
-use farsa_experiments::discrimination::{Config, CylinderLife};
+use farsa_experiments::discrimination::{Config, CylinderLife, InfraredModel};
 use farsa_experiments::{Discrimination, DiscriminationCylinders, Experiment, Job, Life, Settings, Tape, Value, live};
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
@@ -70,7 +70,8 @@ fn constant(config: &Config, outputs: [f32; 2]) -> Perceptron<Vec<f32>> {
 
 #[test]
 fn trials_start_where_the_rules_allow() {
-    for config in [Config::default(), Config::two_cylinders(true)] {
+    for config in [Config::default(), Config::e_puck(), Config::two_cylinders(true)] {
+        let hull = config.robot.radius;
         let mut world = config.world().unwrap();
         let mut life = CylinderLife::new(config.clone(), constant(&config, [0.0; 2])).unwrap();
         let (mut starts, mut quadrants) = (Vec::new(), [0; 4]);
@@ -82,12 +83,12 @@ fn trials_start_where_the_rules_allow() {
                 x.min(y).min(w - x).min(h - y)
             };
             let apart = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
-            assert!(to_wall(robot) - 0.035 > 0.01 - 1e-5, "{robot:?}");
+            assert!(to_wall(robot) - hull > 0.01 - 1e-5, "{robot:?}");
             let places: Vec<_> =
                 life.cylinders().iter().map(|body| world.pose(*body).position.map(f64::from)).collect();
             for (place, radius) in places.iter().zip(&config.radii) {
                 assert!(to_wall(*place) - radius > 0.05 - 1e-5, "{place:?}");
-                assert!(apart(*place, robot) - radius - 0.035 > 0.1 - 1e-5, "{place:?} {robot:?}");
+                assert!(apart(*place, robot) - radius - hull > 0.1 - 1e-5, "{place:?} {robot:?}");
             }
             if let [a, b] = places[..] {
                 assert!(apart(a, b) - config.radii.iter().sum::<f64>() > config.object_to_object - 1e-5);
@@ -146,8 +147,9 @@ fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
 
 #[test]
 fn lives_can_be_repeated_taped_and_lived_as_a_life() {
-    let cases: [(&dyn Experiment, &str, Config); 3] = [
-        (&Discrimination, "", Config::default()),
+    let cases: [(&dyn Experiment, &str, Config); 4] = [
+        (&Discrimination, "khepera", Config::default()),
+        (&Discrimination, "e-puck", Config::e_puck()),
         (&DiscriminationCylinders, "wheels", Config::two_cylinders(true)),
         (&DiscriminationCylinders, "no-wheels", Config::two_cylinders(false)),
     ];
@@ -175,7 +177,8 @@ fn lives_can_be_repeated_taped_and_lived_as_a_life() {
             let parameters = vec![w as f32; setup.genes()];
             let layer = Perceptron::new(config.inputs(), 2, 1.0, parameters).unwrap();
             if model == "analytic" {
-                let mut life = CylinderLife::new(config.clone(), layer).unwrap();
+                let infrared = InfraredModel::Analytic;
+                let mut life = CylinderLife::new(Config { infrared, ..config.clone() }, layer).unwrap();
                 let fitness = live(&mut life, &mut world, job);
                 let lived = setup.live(&zeros, job, &mut Tape::off());
                 assert_eq!(fitness, setup.fitness(&[lived]));
@@ -184,6 +187,49 @@ fn lives_can_be_repeated_taped_and_lived_as_a_life() {
             }
         }
     }
+}
+
+/// The variant's numbers as they were told: half a second straight on, and near below 27.5 + 12.5 + 60 mm.
+#[test]
+fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
+    let config = Config::e_puck();
+    let mut world = config.world().unwrap();
+    let mut life = CylinderLife::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
+    let body = life.parts().body;
+    let central = |at: [f32; 3]| at[..2].iter().all(|x| (x - 0.2).abs() < 0.05);
+    let trial = (0..1000).find(|&trial| {
+        life.begin(&mut world, Job { trial, ..Job::default() });
+        central(world.pose(life.cylinders()[0]).position)
+    });
+    life.begin(&mut world, Job { trial: trial.unwrap(), ..Job::default() });
+    let at = world.pose(life.cylinders()[0]).position;
+    world.place_body(body, Pose::planar([at[0] - 0.13, at[1]], 0.0), Twist::default());
+    world.arranged();
+    // Centres 130 mm apart, 14.4 mm nearer with each step: below 100 mm from the third on.
+    let near: Vec<u32> = (0..5)
+        .map(|step| {
+            life.act(&mut world);
+            farsa_body::World::step(&mut world);
+            assert_eq!(life.judge(&world), None, "{step}");
+            let travelled = f64::from(world.pose(body).position[0] - at[0]) + 0.13;
+            assert!((travelled - 0.0144 * f64::from(step + 1)).abs() < 1e-5, "{step}: {travelled}");
+            life.trial().near[0]
+        })
+        .collect();
+    assert_eq!(near, [0, 0, 1, 2, 3]);
+    let settings = settings(&Discrimination, "e-puck", &[]);
+    let setup = Discrimination.prepare("e-puck", &settings).unwrap();
+    let description = setup.description();
+    assert_eq!((setup.trials(), description.steps, description.step_seconds), (10, 500, 0.1));
+    assert_eq!(setup.stage().bodies, ["e-puck", "cylinder"]);
+    // Nobody has measured its sensors, and a hull that its wheels stand out of is none.
+    let mut settings = settings;
+    let sampled = settings.set("", "robot.infrared", Value::Word("sampled".into())).unwrap_err().to_string();
+    assert!(sampled.contains("rays") && sampled.contains("analytic"), "{sampled}");
+    let thin = settings.set("", "robot.radius", Value::Number(0.02)).unwrap_err().to_string();
+    assert!(thin.contains("0.0265"), "{thin}");
+    settings.set("", "robot.radius", Value::Number(0.035)).unwrap();
+    assert!(Discrimination.prepare("e-puck", &settings).is_ok());
 }
 
 #[test]
