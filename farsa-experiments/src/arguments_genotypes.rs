@@ -24,15 +24,21 @@ pub(crate) struct EvaluateArgs {
     pub(crate) set: Vec<(String, Value)>,
     #[arg(long, value_name = "DIR", help = IR_TABLES, value_hint = ValueHint::DirPath)]
     pub(crate) ir_tables: Option<PathBuf>,
-    /// The genes, whole numbers with commas between them
-    #[arg(long, value_name = "G,G,...", allow_hyphen_values = true, required_unless_present = "genes_file")]
-    pub(crate) genes: Option<String>,
-    /// A file with the genes: a .gen file of the original FARSA, or a list
-    #[arg(long, value_name = "FILE", conflicts_with = "genes", value_hint = ValueHint::FilePath)]
-    pub(crate) genes_file: Option<PathBuf>,
-    /// Which of the file's genotypes, from 0 [default: its only one]
-    #[arg(long, value_name = "N", requires = "genes_file", conflicts_with = "genes")]
-    pub(crate) genotype: Option<usize>,
+    /// The genes, whole numbers with commas between them; of several populations once for each, in their order or with
+    /// their names
+    #[arg(
+        long,
+        value_name = "[POPULATION=]G,G,...",
+        allow_hyphen_values = true,
+        required_unless_present = "genes_file"
+    )]
+    pub(crate) genes: Vec<String>,
+    /// A file with the genes: a .gen file of the original FARSA, or a list; of several populations as --genes
+    #[arg(long, value_name = "[POPULATION=]FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) genes_file: Vec<PathBuf>,
+    /// Which of the file's genotypes, from 0 [default: its only one]; of several files once for each
+    #[arg(long, value_name = "N", requires = "genes_file")]
+    pub(crate) genotype: Vec<usize>,
     /// Random trials
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]
     pub(crate) trials: u32,
@@ -51,8 +57,9 @@ pub(crate) struct EvaluateArgs {
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct ImportArgs {
-    /// .gen files of the original FARSA; the first genotype becomes the champion
-    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    /// .gen files of the original FARSA; the first genotype becomes the champion. Of several populations one file for each
+    /// in their order, or any number with their names, as many genotypes for each
+    #[arg(required = true, value_name = "[POPULATION=]FILE", value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
     /// The experiment that they are genotypes of
     #[arg(long, value_name = "NAME")]

@@ -7,12 +7,14 @@ use serde::Serialize;
 
 use crate::arguments_genotypes::EvaluateArgs;
 use crate::error::Error;
+use crate::evolution::POPULATION;
 use crate::exam;
 use crate::exam_table::Tried;
 use crate::experiment::{Experiment, Note};
 use crate::genotypes::Shape;
 use crate::plan::{self, Plan};
 use crate::pool::{Pool, Unfinished};
+use crate::populations::Populations;
 use crate::progress::Progress;
 use crate::settings::Value;
 
@@ -28,59 +30,105 @@ pub(crate) struct Evaluation {
     seed: u64,
     /// Lives whose numbers were not finite; they count in nothing else.
     broken_down: usize,
-    mean_fitness: f64,
-    /// Of the mean fitness; not a number for a single trial.
-    standard_error: f64,
+    /// Of a single population; none of several, which have a place of their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mean_fitness: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    standard_error: Option<f64>,
     /// The mean of every note that is a number, under its name.
     #[serde(flatten)]
     per_trial: serde_json::Map<String, serde_json::Value>,
-    success_rate: f64,
-    /// The same in the order of the notes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    success_rate: Option<f64>,
+    /// What each of several populations earned, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    populations: Vec<Earned>,
+    /// What stands in each line, in the order of the lines.
     #[serde(skip)]
-    notes: Vec<(String, f64)>,
+    lines: Vec<(String, String)>,
+}
+
+/// What the genotype of a population earned.
+#[derive(Debug, Serialize)]
+struct Earned {
+    population: String,
+    mean_fitness: f64,
+    /// Of the mean fitness; not a number for a single trial.
+    standard_error: f64,
+    success_rate: f64,
+}
+
+impl Earned {
+    /// What population number `own` earned, of trials in which nobody broke down, and of all.
+    fn new(name: &str, own: usize, lived: &[&Tried], all: usize) -> Self {
+        let of = |tried: &Tried| match own.checked_sub(1) {
+            None => Some((tried.fitness, tried.outcome.success)),
+            Some(other) => tried.others.get(other).copied(),
+        };
+        let earned: Vec<(f64, bool)> = lived.iter().filter_map(|tried| of(tried)).collect();
+        let (mean_fitness, standard_error) = mean(&earned.iter().map(|(fitness, _)| *fitness).collect::<Vec<_>>());
+        let successes = earned.iter().filter(|(_, success)| *success).count();
+        let success_rate = successes as f64 / all.max(1) as f64;
+        Self { population: name.into(), mean_fitness, standard_error, success_rate }
+    }
 }
 
 impl Evaluation {
-    /// What `tried` says together.
-    fn new(plan: &Plan<'_>, seed: u64, tried: &[Tried]) -> Self {
-        let lived: Vec<&Tried> = tried.iter().filter(|tried| tried.fitness.is_finite()).collect();
-        let fitness: Vec<f64> = lived.iter().map(|tried| tried.fitness).collect();
-        let (mean_fitness, standard_error) = mean(&fitness);
+    /// What `tried` says together; `names` are those of the populations.
+    fn new(plan: &Plan<'_>, seed: u64, names: &[String], tried: &[Tried]) -> Self {
+        let finite = |tried: &&Tried| tried.fitness.is_finite() && tried.others.iter().all(|(x, _)| x.is_finite());
+        let lived: Vec<&Tried> = tried.iter().filter(finite).collect();
+        let broken_down = tried.len() - lived.len();
         let mut notes: Vec<(String, f64)> = Vec::new();
-        let names = lived.first().map_or(&[][..], |tried| &tried.outcome.notes);
-        for (name, _) in names.iter().filter(|(_, note)| matches!(note, Note::Number(_))) {
+        let known = lived.first().map_or(&[][..], |tried| &tried.outcome.notes);
+        for (name, _) in known.iter().filter(|(_, note)| matches!(note, Note::Number(_))) {
             let values = lived.iter().filter_map(|tried| {
                 let (_, note) = tried.outcome.notes.iter().find(|(other, _)| other == name)?;
                 if let Note::Number(x) = note { Some(*x) } else { None }
             });
             notes.push((format!("{}_per_trial", word(name)), mean(&values.collect::<Vec<_>>()).0));
         }
-        let successes = tried.iter().filter(|tried| tried.outcome.success).count();
+        let earned = names.iter().enumerate().map(|(own, name)| Earned::new(name, own, &lived, tried.len()));
+        let earned: Vec<Earned> = earned.collect();
+        let alone = if let [alone] = earned.as_slice() { Some(alone) } else { None };
+        let mut lines: Vec<(String, String)> = Vec::new();
+        let mut add = |name: &str, x: f64| lines.push((name.into(), format!("{x:?}")));
+        for each in &earned {
+            let of = if alone.is_some() { String::new() } else { format!("{}_", word(&each.population)) };
+            add(&format!("{of}mean_fitness"), each.mean_fitness);
+            add(&format!("{of}standard_error"), each.standard_error);
+            if alone.is_some() {
+                notes.iter().for_each(|(name, x)| add(name, *x));
+            }
+            add(&format!("{of}success_rate"), each.success_rate);
+        }
+        if alone.is_none() {
+            notes.iter().for_each(|(name, x)| add(name, *x));
+        }
+        if broken_down > 0 {
+            lines.push(("broken_down".into(), broken_down.to_string()));
+        }
         Self {
             experiment: plan.experiment.name().into(),
             condition: plan.condition.clone(),
             trials: tried.len(),
             seed,
-            broken_down: tried.len() - lived.len(),
-            mean_fitness,
-            standard_error,
-            per_trial: notes.iter().map(|(name, x)| (name.clone(), (*x).into())).collect(),
-            success_rate: successes as f64 / tried.len().max(1) as f64,
-            notes,
+            broken_down,
+            mean_fitness: alone.map(|alone| alone.mean_fitness),
+            standard_error: alone.map(|alone| alone.standard_error),
+            per_trial: notes.into_iter().map(|(name, x)| (name, x.into())).collect(),
+            success_rate: alone.map(|alone| alone.success_rate),
+            populations: if names.len() == 1 { Vec::new() } else { earned },
+            lines,
         }
     }
 
     /// A line for each number, its name first.
     pub(crate) fn text(&self) -> String {
-        let Self { mean_fitness, standard_error, success_rate, broken_down, .. } = self;
-        let mut text = format!("mean_fitness {mean_fitness:?}\nstandard_error {standard_error:?}\n");
         // Writing into a string cannot fail.
-        for (name, x) in &self.notes {
-            let _ = writeln!(text, "{name} {x:?}");
-        }
-        let _ = writeln!(text, "success_rate {success_rate:?}");
-        if *broken_down > 0 {
-            let _ = writeln!(text, "broken_down {broken_down}");
+        let mut text = String::new();
+        for (name, x) in &self.lines {
+            let _ = writeln!(text, "{name} {x}");
         }
         text
     }
@@ -128,41 +176,65 @@ pub(crate) fn plan<'e>(
     Ok(plan)
 }
 
-/// Lives random trials of the genes on the command line.
+/// Lives random trials of the genes on the command line; those of several populations live against each other.
 ///
 /// # Errors
-/// [`Error::Usage`] for genes that are none of the experiment's, and for an experiment of several populations.
+/// [`Error::Usage`] for genes that are none of the experiment's, and for a population without genes or with genes twice.
 pub(crate) fn evaluate(args: &EvaluateArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<Evaluation, Error> {
     let name = (args.experiment.as_str(), args.condition.as_deref());
     let plan = plan(experiments, name, &args.set, args.ir_tables.as_deref())?;
     let mut pool = Pool::new(&plan, args.threads.count(), args.lanes.wanted())?;
-    alone(&plan, pool.setup().populations())?;
-    let shape = Shape::of(pool.setup());
-    let genes = match (&args.genes, &args.genes_file) {
-        (Some(list), _) => shape.list(list).map_err(|error| Error::Usage(format!("--genes: {error}")))?,
-        (None, Some(path)) => one(shape.read(path)?, args.genotype, path)?,
-        (None, None) => return Err(Error::Usage("neither --genes nor --genes-file".into())),
-    };
+    let names = pool.setup().population_names();
+    let genes = genes(args, plan.experiment.name(), &names, Shape::of(pool.setup()))?;
+    let genomes: Vec<&[u16]> = genes.iter().map(Vec::as_slice).collect();
+    let size = if names.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
     let trials = args.trials as usize;
     let progress = Progress::new(0, trials as u64, quiet);
-    let tried = exam::lives(&mut pool, &[&genes], 0, trials, args.seed, &progress);
+    let tried = exam::lives(&mut pool, &genomes, size, trials, args.seed, &progress);
     drop(progress);
     let tried = tried.map_err(|reason| match reason {
         Unfinished::Panicked => Error::Other("a life panicked".into()),
         Unfinished::Stopped => Error::Other("stopped".into()),
     })?;
-    Ok(Evaluation::new(&plan, args.seed, &tried))
+    Ok(Evaluation::new(&plan, args.seed, &names, &tried))
 }
 
-/// Refuses an experiment whose individuals live against others.
-pub(crate) fn alone(plan: &Plan<'_>, populations: usize) -> Result<(), Error> {
-    if populations == 1 {
-        return Ok(());
+/// The genes of each population, from lists and files.
+fn genes(args: &EvaluateArgs, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<u16>>, Error> {
+    const OPTIONS: &str = "--genes, --genes-file";
+    let populations = Populations { experiment, names };
+    if args.genotype.len() > args.genes_file.len() {
+        let (numbers, files) = (args.genotype.len(), args.genes_file.len());
+        return Err(Error::Usage(format!("--genotype: {numbers} numbers for {files} of --genes-file")));
     }
-    let name = plan.experiment.name();
-    Err(Error::Usage(format!(
-        "{name} has {populations} populations: a genotype alone has no opponents to live against"
-    )))
+    let count = args.genes.len() + args.genes_file.len();
+    if names.len() == 1 && count > 1 {
+        return Err(Error::Usage(format!("{OPTIONS}: {count} genotypes where {experiment} lives with one")));
+    }
+    let mut given = Vec::new();
+    for list in &args.genes {
+        let (population, list) = populations.split("--genes", list)?;
+        let of = population.map_or_else(String::new, |population| format!("{}: ", names[population]));
+        let genes = shape.list(list).map_err(|error| Error::Usage(format!("--genes: {of}{error}")))?;
+        given.push((population, genes));
+    }
+    for (number, path) in args.genes_file.iter().enumerate() {
+        let (population, path) = populations.file("--genes-file", path)?;
+        given.push((population, one(shape.read(&path)?, args.genotype.get(number).copied(), &path)?));
+    }
+    let unnamed = given.iter().any(|(population, _)| population.is_none());
+    if names.len() > 1 && unnamed && !args.genes.is_empty() && !args.genes_file.is_empty() {
+        // They have no order between them.
+        let [first, second, ..] = names else { return Ok(Vec::new()) };
+        let why = format!("name the populations: --genes {first}=... --genes-file {second}=...");
+        return Err(Error::Usage(format!("{OPTIONS}: {experiment} has several populations: {why}")));
+    }
+    let all = populations.divide(OPTIONS, given)?;
+    let one = |(name, mut all): (&String, Vec<Vec<u16>>)| match all.len() {
+        1 => Ok(all.swap_remove(0)),
+        count => Err(Error::Usage(format!("{OPTIONS}: {count} genotypes for population `{name}`"))),
+    };
+    names.iter().zip(all).map(one).collect()
 }
 
 /// The genotype that was asked for, or the only one.

@@ -90,6 +90,11 @@ pub trait Setup: Send {
         1
     }
 
+    /// What the populations are called, in their order: one word each; by default their numbers, from 0.
+    fn population_names(&self) -> Vec<String> {
+        (0..self.populations()).map(|population| population.to_string()).collect()
+    }
+
     /// Trials of an evaluation.
     fn trials(&self) -> usize {
         1

@@ -56,6 +56,7 @@ mod picture_svg;
 mod plan;
 mod plot;
 mod pool;
+mod populations;
 pub mod predator_prey;
 mod predator_prey_by_hand;
 mod predator_prey_life;

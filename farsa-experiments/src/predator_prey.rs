@@ -102,6 +102,10 @@ impl Setup for Lives {
         2
     }
 
+    fn population_names(&self) -> Vec<String> {
+        ["predator", "prey"].map(String::from).to_vec()
+    }
+
     fn trials(&self) -> usize {
         self.life.config().team.trials
     }

@@ -55,6 +55,14 @@ pub(crate) struct Imported {
     pub(crate) genomes: Vec<Vec<u16>>,
 }
 
+/// The same of several populations, those of one after the other, as many of each.
+#[derive(Debug, Serialize, Deserialize)]
+struct ImportedSeveral {
+    identity: Identity,
+    genomes: Vec<Vec<u16>>,
+    populations: usize,
+}
+
 #[derive(Serialize, Deserialize)]
 struct CheckpointOf<E> {
     identity: Identity,
@@ -110,6 +118,7 @@ sealed! {
     ChampionOfOne: b"farsachm", "champion";
     ChampionsOfSeveral: b"farsacmc", "set of champions";
     Imported: b"farsagen", "set of genotypes";
+    ImportedSeveral: b"farsagec", "set of genotypes of several populations";
 }
 
 /// A record that says which run it belongs to.
@@ -182,7 +191,10 @@ impl Ancestry {
             Descent::Truncation(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
             Descent::SteadyState(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
             Descent::Several(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
-            Descent::Imported(genomes) => sealed::write(path, &Imported { identity, genomes }),
+            Descent::Imported { genomes, populations: 1 } => sealed::write(path, &Imported { identity, genomes }),
+            Descent::Imported { genomes, populations } => {
+                sealed::write(path, &ImportedSeveral { identity, genomes, populations })
+            }
         }
     }
 
@@ -193,8 +205,14 @@ impl Ancestry {
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<(Self, PathBuf), Error> {
         let path = directory.genotypes();
         if path.is_file() {
-            let Imported { identity, genomes } = read(&path, plan, directory)?;
-            return Ok((Self { identity, descent: Descent::Imported(genomes) }, path));
+            let (identity, genomes, populations) = if sealed::magic(&path)? == Some(ImportedSeveral::MAGIC) {
+                let ImportedSeveral { identity, genomes, populations } = read(&path, plan, directory)?;
+                (identity, genomes, populations)
+            } else {
+                let Imported { identity, genomes } = read(&path, plan, directory)?;
+                (identity, genomes, 1)
+            };
+            return Ok((Self { identity, descent: Descent::Imported { genomes, populations } }, path));
         }
         let path = directory.lineage();
         let ancestry = match sealed::magic(&path)? {

@@ -148,8 +148,11 @@ pub(crate) enum Descent {
     Truncation(Lineage),
     SteadyState(SteadyHistory),
     Several(Lineages),
-    /// Genomes from elsewhere, as the only generation.
-    Imported(Vec<Vec<u16>>),
+    /// Genomes from elsewhere, as the only generation: those of one population after the other, as many of each.
+    Imported {
+        genomes: Vec<Vec<u16>>,
+        populations: usize,
+    },
 }
 
 impl Descent {
@@ -159,13 +162,17 @@ impl Descent {
             Self::Truncation(lineage) => lineage.latest(),
             Self::SteadyState(history) => history.latest(),
             Self::Several(lineages) => lineages.latest(),
-            Self::Imported(_) => 1,
+            Self::Imported { .. } => 1,
         }
     }
 
     /// Populations that evolve beside each other.
     pub(crate) fn populations(&self) -> usize {
-        if let Self::Several(lineages) = self { lineages.populations() } else { 1 }
+        match self {
+            Self::Several(lineages) => lineages.populations(),
+            Self::Imported { populations, .. } => (*populations).max(1),
+            Self::Truncation(_) | Self::SteadyState(_) => 1,
+        }
     }
 
     /// Individuals of each population.
@@ -174,7 +181,7 @@ impl Descent {
             Self::Truncation(lineage) => lineage.config().population,
             Self::SteadyState(_) => SteadyHistory::INDIVIDUALS,
             Self::Several(lineages) => lineages.size(),
-            Self::Imported(genomes) => genomes.len(),
+            Self::Imported { genomes, .. } => genomes.len() / self.populations(),
         }
     }
 
@@ -187,7 +194,7 @@ impl Descent {
             Self::Several(lineages) => {
                 Some(population * lineages.size() + first(lineages.selected(population, generation))?)
             }
-            Self::Imported(_) => (generation == 0).then_some(0),
+            Self::Imported { .. } => (generation == 0).then_some(population * self.size()),
         }
     }
 
@@ -197,7 +204,7 @@ impl Descent {
             Self::Truncation(lineage) => lineage.genome_of(generation, individual),
             Self::SteadyState(history) => history.genome_of(generation, individual),
             Self::Several(lineages) => lineages.genome_of(generation, individual),
-            Self::Imported(genomes) => {
+            Self::Imported { genomes, .. } => {
                 let beyond = EvoError::NoSuchIndividual { individual, population: genomes.len() };
                 genomes.get(individual).cloned().ok_or(beyond)
             }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::tool::{content, ok, own, say, scratch};
+use crate::tool::{content, farsa, ok, own, say, scratch};
 
 const GOOD: &str = "**NET : 500_0_0.wts\nDYNAMICAL NN\n30000\n22000\nEND\n";
 
@@ -141,4 +141,128 @@ fn imported_genotypes_are_tested_and_replayed_and_nothing_else() {
     fs::write(here.join("r/genotypes.bin"), bytes).expect("the genotypes");
     let said = say(own(), &here, "replay r");
     assert!(said.code == Some(1) && said.err.contains("genotypes.bin: truncated"), "{said:?}");
+}
+
+/// Genotypes of predator-prey as files, the same as lists, and the options for short lives.
+const SHORT: &str = "--set trial.steps=80 --set trial.count=2";
+
+fn hunters(here: &std::path::Path) -> [String; 3] {
+    let json: serde_json::Value = serde_json::from_str(&ok(farsa(), here, "info predator-prey --json")).expect("JSON");
+    let genes = json["genes"].as_u64().expect("a number");
+    ["a", "b", "c"].map(|name| {
+        let seed = u64::from(name.as_bytes()[0]);
+        let genes: Vec<String> = (0..genes).map(|i| (i * 2_654_435_761 * seed % 65_536).to_string()).collect();
+        fs::write(here.join(format!("{name}.gen")), format!("DYNAMICAL NN\n{}\nEND\n", genes.join("\n")))
+            .expect("a file");
+        genes.join(",")
+    })
+}
+
+#[test]
+fn genotypes_of_several_populations_are_evaluated_against_each_other() {
+    let here = scratch("evaluate-several");
+    let [a, b, _] = hunters(&here);
+    let evaluate =
+        |rest: &str| ok(farsa(), &here, &format!("evaluate predator-prey --trials 12 --seed 3 {SHORT} {rest}"));
+    let text = evaluate(&format!("--genes {a} --genes {b}"));
+    let names: Vec<&str> = text.lines().filter_map(|line| line.split(' ').next()).collect();
+    let of_each = ["mean_fitness", "standard_error", "success_rate"];
+    let expected: Vec<String> =
+        ["predator", "prey"].iter().flat_map(|name| of_each.map(|what| format!("{name}_{what}"))).collect();
+    assert_eq!(names[..6], expected);
+    assert_eq!(names[6..], ["captures_per_trial", "time_s_per_trial", "gap_at_the_end_m_per_trial"]);
+    // What one gains the other loses.
+    assert!((value(&text, "predator_mean_fitness") + value(&text, "prey_mean_fitness") - 1.0).abs() < 1e-12, "{text}");
+    assert_eq!(value(&text, "predator_success_rate") + value(&text, "prey_success_rate"), 1.0);
+    for same in [
+        format!("--genes prey={b} --genes predator={a} --threads 1"),
+        "--genes-file a.gen --genes-file b.gen".into(),
+        format!("--genes-file prey=b.gen --genes predator={a} --genotype 0"),
+    ] {
+        assert_eq!(evaluate(&same), text, "{same}");
+    }
+    assert_ne!(evaluate("--genes-file b.gen --genes-file a.gen"), text);
+    let json = evaluate("--genes-file a.gen --genes-file b.gen --json");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["populations"][1]["population"], "prey");
+    assert_eq!(json["populations"][1]["mean_fitness"], value(&text, "prey_mean_fitness"));
+    assert_eq!(
+        (&json["mean_fitness"], &json["captures_per_trial"]),
+        (&serde_json::Value::Null, &value(&text, "captures_per_trial").into())
+    );
+
+    // Imported, they do in a test what they did here, trial by trial.
+    let said =
+        ok(farsa(), &here, &format!("import prey=b.gen predator=a.gen --experiment predator-prey {SHORT} --out r"));
+    assert!(said.starts_with("r: 1 of predator and of prey, "), "{said}");
+    ok(farsa(), &here, "test r --trials 12 --seed 3");
+    let csv = fs::read_to_string(here.join("r/test.csv")).expect("the test");
+    for (column, name) in [("fitness", "predator"), ("fitness of population 1", "prey")] {
+        let column = csv.lines().next().and_then(|head| head.split(',').position(|c| c == column)).expect("a column");
+        let values = csv.lines().skip(1).filter_map(|line| line.split(',').nth(column)?.parse::<f64>().ok());
+        assert_eq!(value(&text, &format!("{name}_mean_fitness")), values.sum::<f64>() / 12.0, "{name}");
+    }
+}
+
+#[test]
+fn imported_populations_meet_in_replays() {
+    let here = scratch("import-several");
+    hunters(&here);
+    let import = |rest: &str| say(farsa(), &here, &format!("import {rest} --experiment predator-prey {SHORT}"));
+    assert_eq!(import("predator=a.gen predator=b.gen prey=b.gen prey=c.gen --out r").code, Some(0));
+    let config = fs::read_to_string(here.join("r/config.toml")).expect("the configuration");
+    assert!(config.contains("\npopulation = 2\n"), "{config}");
+    let rewards = |individual: usize, trial: usize| {
+        let csv = ok(farsa(), &here, &format!("replay r --individual {individual} --trial {trial}"));
+        let head: Vec<&str> = csv.lines().next().expect("a head").split(',').collect();
+        let at = |name: &str| head.iter().position(|c| *c == name).unwrap_or_else(|| panic!("{name} in {head:?}"));
+        let last: Vec<&str> = csv.lines().last().expect("a line").split(',').collect();
+        ["time [s]", "gap [m]", "predator's reward", "prey's reward"].map(|name| last[at(name)].to_owned())
+    };
+    // In trial 0 the first of each meet: it is one life, whoever it is told of.
+    assert_eq!(rewards(0, 0), rewards(2, 0));
+    assert_eq!(rewards(1, 1), rewards(3, 1));
+    assert_ne!(rewards(0, 0), rewards(1, 0));
+    assert!(say(farsa(), &here, "replay r --individual 4").err.contains("individual 4 of a population of 4"));
+    assert_eq!(say(farsa(), &here, "draw r --individual 3 --out a.svg").code, Some(0));
+}
+
+#[test]
+fn populations_without_genes_are_named() {
+    let here = scratch("wrong-populations");
+    let [a, b, _] = hunters(&here);
+    fs::write(here.join("two.gen"), fs::read_to_string(here.join("a.gen")).expect("a file").repeat(2)).expect("a file");
+    let before = content(&here);
+    let evaluate = |rest: &str| format!("evaluate predator-prey --trials 2 {rest}");
+    let import = |rest: &str| format!("import {rest} --experiment predator-prey --out x");
+    for (arguments, words) in [
+        (evaluate(&format!("--genes {a}")), ["1 given", "2 populations, predator and prey"]),
+        (evaluate(&format!("--genes predator={a}")), ["none for population `prey`", "prey=..."]),
+        (evaluate(&format!("--genes predator={a} --genes {b}")), ["everywhere or nowhere", "predator=... prey=..."]),
+        (
+            evaluate(&format!("--genes pray={a} --genes predator={b}")),
+            ["unknown population `pray`", "nearest is `prey`"],
+        ),
+        (evaluate(&format!("--genes prey={a} --genes prey={b} --genes predator={a}")), ["2 genotypes", "`prey`"]),
+        (evaluate("--genes prey=1,2 --genes predator=1"), ["--genes: prey: 2 genes where", "are expected"]),
+        (evaluate(&format!("--genes {a} --genes-file b.gen")), ["name the populations", "--genes-file prey=..."]),
+        (evaluate("--genes-file a.gen --genes-file two.gen"), ["two.gen: holds 2 genotypes", "--genotype"]),
+        (
+            evaluate("--genes-file a.gen --genes-file b.gen --genotype 0 --genotype 0 --genotype 0"),
+            ["3 numbers", "2 of"],
+        ),
+        (import("a.gen"), ["FILE: 1 given", "predator and prey"]),
+        (import("predator=a.gen predator=b.gen"), ["none for population `prey`", "prey=..."]),
+        (import("predatr=a.gen prey=b.gen"), ["unknown population `predatr`", "nearest is `predator`"]),
+        (import("two.gen b.gen"), ["2 of predator and 1 of prey", "as many"]),
+        (import("a.gen b.gen --set evolution.population=7"), ["`evolution.population`: 1 genotypes", "wants 7"]),
+    ] {
+        let said = say(farsa(), &here, &arguments);
+        let shown = &arguments[..arguments.len().min(120)];
+        assert_eq!(said.code, Some(2), "{shown}: {said:?}");
+        for word in words {
+            assert!(said.err.contains(word), "{shown}: no {word:?} in {said:?}");
+        }
+        assert!(said.out.is_empty() && content(&here) == before, "{shown}: {said:?}");
+    }
 }

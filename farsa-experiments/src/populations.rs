@@ -1,0 +1,118 @@
+//! For which of several populations something on the command line is.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+
+/// The populations of an experiment by name, in their order.
+pub(crate) struct Populations<'n> {
+    pub(crate) experiment: &'n str,
+    pub(crate) names: &'n [String],
+}
+
+/// Something from the command line, with the population that it names.
+pub(crate) type Given<T> = (Option<usize>, T);
+
+impl Populations<'_> {
+    /// Divides `NAME=REST`, where there are several populations; without a name all of it is the rest.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest population.
+    pub(crate) fn split<'t>(&self, option: &str, text: &'t str) -> Result<Given<&'t str>, Error> {
+        let Some((name, rest)) = text.split_once('=').filter(|_| self.names.len() > 1) else {
+            return Ok((None, text));
+        };
+        let found = self.names.iter().position(|known| known == name);
+        let names = self.names.iter().map(String::as_str);
+        let found = found.ok_or_else(|| Error::unknown(option, "population", name, names))?;
+        Ok((Some(found), rest))
+    }
+
+    /// The same of a file's name; one that is not Unicode names no population.
+    ///
+    /// # Errors
+    /// Those of [`split`](Self::split).
+    pub(crate) fn file(&self, option: &str, path: &Path) -> Result<Given<PathBuf>, Error> {
+        let Some(text) = path.to_str() else { return Ok((None, path.into())) };
+        self.split(option, text).map(|(population, rest)| (population, rest.into()))
+    }
+
+    /// What is given for each population: by its name, or one for each in their order.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a population that is left without, and for names here and none there.
+    pub(crate) fn divide<T>(&self, option: &str, given: Vec<Given<T>>) -> Result<Vec<Vec<T>>, Error> {
+        let Self { experiment, names } = self;
+        let count = names.len();
+        let named = given.iter().filter(|(population, _)| population.is_some()).count();
+        let mut all: Vec<Vec<T>> = names.iter().map(|_| Vec::new()).collect();
+        let several = || format!("{experiment} has {count} populations, {}", names.join(" and "));
+        if named != 0 && named != given.len() {
+            return Err(Error::Usage(format!(
+                "{option}: {}: name it everywhere or nowhere, as in {}",
+                several(),
+                self.example()
+            )));
+        }
+        if named == 0 && count > 1 && given.len() != count {
+            let found = given.len();
+            let example = self.example();
+            return Err(Error::Usage(format!(
+                "{option}: {found} given: {}; one for each in this order, or {example}",
+                several()
+            )));
+        }
+        for (place, (population, value)) in given.into_iter().enumerate() {
+            all[population.unwrap_or(if count > 1 { place } else { 0 })].push(value);
+        }
+        if let Some(without) = all.iter().position(Vec::is_empty) {
+            let name = &names[without];
+            return Err(Error::Usage(format!("{option}: none for population `{name}`: {name}=...")));
+        }
+        Ok(all)
+    }
+
+    /// Each population's name in front of what is given for it.
+    fn example(&self) -> String {
+        self.names.iter().map(|name| format!("{name}=...")).collect::<Vec<_>>().join(" ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names() -> Vec<String> {
+        ["predator", "prey"].map(String::from).to_vec()
+    }
+
+    #[test]
+    fn names_and_orders_are_told_apart() {
+        let names = names();
+        let two = Populations { experiment: "hunt", names: &names };
+        assert_eq!(two.split("--genes", "prey=1,2").unwrap(), (Some(1), "1,2"));
+        assert_eq!(two.split("--genes", "1,2").unwrap(), (None, "1,2"));
+        assert_eq!(two.split("FILE", "prey=a=b.gen").unwrap(), (Some(1), "a=b.gen"));
+        let error = two.split("--genes", "pray=1,2").unwrap_err().to_string();
+        assert_eq!(error, "--genes: unknown population `pray`; the nearest is `prey`");
+        let one = Populations { experiment: "walk", names: &names[..1] };
+        assert_eq!(one.split("FILE", "a=b.gen").unwrap(), (None, "a=b.gen"));
+        assert_eq!(one.divide("FILE", vec![(None, 1), (None, 2)]).unwrap(), [[1, 2]]);
+        assert_eq!(two.divide("FILE", vec![(None, 1), (None, 2)]).unwrap(), [[1], [2]]);
+        let named = vec![(Some(1), 1), (Some(0), 2), (Some(1), 3)];
+        assert_eq!(two.divide("FILE", named).unwrap(), [vec![2], vec![1, 3]]);
+    }
+
+    #[test]
+    fn who_is_left_without_is_named() {
+        let names = names();
+        let two = Populations { experiment: "hunt", names: &names };
+        let said = |given: Vec<Given<u8>>| two.divide("--genes", given).unwrap_err().to_string();
+        let order = "--genes: 1 given: hunt has 2 populations, predator and prey; one for each in this order, or \
+                     predator=... prey=...";
+        assert_eq!(said(vec![(None, 1)]), order);
+        assert_eq!(said(vec![(Some(0), 1)]), "--genes: none for population `prey`: prey=...");
+        assert!(said(vec![(Some(0), 1), (None, 1)]).contains("name it everywhere or nowhere"));
+        assert!(said(vec![(None, 1); 3]).starts_with("--genes: 3 given: "));
+    }
+}
