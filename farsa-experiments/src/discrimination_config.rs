@@ -142,15 +142,21 @@ impl Config {
                 .unit("m")
                 .given()
                 .doc("Radius of the cylinder to stay at, and of the other one where there is one."),
-            of_khepera(plain("object.to_wall", self.object_to_wall).doc("Least distance of a cylinder's surface from the walls.")),
-            of_khepera(plain("start.to_wall", self.robot_to_wall)
-                .doc("Least distance of the robot's hull from the walls at the start.")),
-            of_khepera(plain("start.to_object", self.robot_to_object)
-                .doc("Least distance of the robot's hull from a cylinder's surface at the start.")),
+            of_khepera(
+                plain("object.to_wall", self.object_to_wall)
+                    .doc("Least distance of a cylinder's surface from the walls."),
+            ),
+            of_khepera(
+                plain("start.to_wall", self.robot_to_wall)
+                    .doc("Least distance of the robot's hull from the walls at the start."),
+            ),
+            of_khepera(
+                plain("start.to_object", self.robot_to_object)
+                    .doc("Least distance of the robot's hull from a cylinder's surface at the start."),
+            ),
             length("fitness.near", self.near)
                 .doc("A step counts while the surfaces of robot and cylinder are less than this apart."),
-            weights
-                .doc("Weights and biases are decoded from gene 0 at plus to the largest gene at minus this."),
+            weights.doc("Weights and biases are decoded from gene 0 at plus to the largest gene at minus this."),
         ];
         if several {
             table.push(length("object.to_object", self.object_to_object).doc(

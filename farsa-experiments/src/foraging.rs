@@ -214,6 +214,9 @@ impl Setup for Lives {
         self.life.start(&mut self.world, job);
         while !self.life.failed() {
             self.life.act(&mut self.world);
+            if let Some(recorder) = tape.recorder() {
+                self.life.team().tell_rays(&self.world, 0, recorder);
+            }
             self.world.step();
             let end = self.life.judge(&self.world);
             if let Some(recorder) = tape.recorder() {

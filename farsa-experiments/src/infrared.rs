@@ -10,6 +10,7 @@ use farsa_body::{
 };
 
 use crate::error::Error;
+use crate::sensor_rays::{SensorRays, Told};
 use crate::settings::{Setting, Settings};
 
 const MODEL: &str = "robot.infrared";
@@ -115,10 +116,7 @@ impl InfraredModel {
 #[derive(Clone, Debug)]
 pub struct Infrared {
     ring: Ring,
-    /// The same sensors as one ray each, to be drawn: where it leaves the hull and its direction, in the robot's frame.
-    rays: Vec<Beam>,
-    range: f32,
-    height: f32,
+    rays: SensorRays,
 }
 
 #[derive(Clone, Debug)]
@@ -148,31 +146,20 @@ impl Infrared {
                 Ring::Sampled(all.first(sensors)?)
             }
         };
-        let ray = |angle: &f64| Beam::in_cone(robot.radius, *angle, 0.0, 0, 1);
-        Ok(Self {
-            ring,
-            rays: part.infrared.angles.iter().map(ray).collect(),
-            range: robot.infrared.range as f32,
-            height: (0.5 * robot.height) as f32,
-        })
+        Ok(Self { ring, rays: SensorRays::of(&part) })
     }
 
     /// Tells a recorder a ray for each sensor: it ends where a thing would be of which rays read as much.
     ///
     /// `x` \[sensors\] is what was read when the robot was at `pose`.
     pub fn tell(&self, pose: Pose, x: &[f32], recorder: &mut dyn Recorder) {
-        for (ray, &x) in self.rays.iter().zip(x) {
-            let length = self.range * (1.0 - x);
-            let end = [0, 1].map(|k| ray.from[k] + length * ray.direction[k]);
-            let [from, to] = [ray.from, end].map(|[u, v]| pose.transform([u, v, self.height]));
-            recorder.ray(from, to, x > 0.0);
-        }
+        self.rays.tell(pose, x, Told::All, recorder);
     }
 }
 
 impl Channels for Infrared {
     fn channels(&self) -> usize {
-        self.rays.len()
+        self.rays.count()
     }
 }
 

@@ -83,6 +83,7 @@ mod sealed;
 mod search;
 #[cfg(test)]
 mod search_runs;
+mod sensor_rays;
 mod settings;
 mod stage;
 mod statistics;

@@ -164,6 +164,9 @@ impl Setup for Lives {
         self.life.start(&mut self.world, job);
         loop {
             self.life.act(&mut self.world);
+            if let Some(recorder) = tape.recorder() {
+                self.life.team().tell_rays(&self.world, own, recorder);
+            }
             self.world.step();
             let end = self.life.judge(&self.world);
             if let Some(recorder) = tape.recorder() {

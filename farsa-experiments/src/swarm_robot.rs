@@ -2,10 +2,11 @@
 
 use farsa_body::{
     Beam, BodyId, ChannelError, ColorBand, InfraredRays, Kinematics as _, LinearCamera, MobileParts, MobileRobot,
-    Planar as _, Sensor as _,
+    Planar as _, Recorder, Sensor as _,
 };
 use farsa_physics::arena::World;
 
+use crate::sensor_rays::{SensorRays, Told};
 use crate::swarm_config::{EYES, TeamConfig};
 
 /// What shines red, whatever else shines with it.
@@ -27,6 +28,7 @@ pub struct RobotEyes {
     /// From the middle of the robot to where its infrared sensors see \[m\].
     reach: f32,
     camera: LinearCamera<Vec<Beam>, Vec<ColorBand>>,
+    rays: SensorRays,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +80,7 @@ impl RobotEyes {
             things: Vec::with_capacity(64),
             reach: (robot.radius + robot.infrared.range) as f32,
             camera: LinearCamera::of_view(parts.body, view, config.sectors, config.rays, colors.to_vec(), range)?,
+            rays: SensorRays::of(robot),
         })
     }
 
@@ -102,6 +105,7 @@ impl RobotEyes {
         if things.is_empty() {
             // What the rays would read, too: nothing is within their range.
             near.fill(0.0);
+            ring.fill(0.0);
         } else {
             infrared
                 .read_where(world, ring, |[x, y, _], [u, v, _]| things.iter().any(|thing| thing.meets([x, y], [u, v])));
@@ -112,6 +116,17 @@ impl RobotEyes {
             }
         }
         self.camera.read(world, seen);
+    }
+
+    /// Tells a recorder a ray for each infrared sensor, of the robot where it read `x` last and in the same world.
+    ///
+    /// One that did not read because its robot does not live tells none.
+    pub(crate) fn tell(&self, world: &World, x: &[f32], told: Told, recorder: &mut dyn Recorder) {
+        let near = x.get(..EYES).unwrap_or_default();
+        let pose = world.pose(self.body);
+        if near.iter().all(|x| x.is_finite()) {
+            self.rays.tell(pose, &self.ring, told, recorder);
+        }
     }
 }
 

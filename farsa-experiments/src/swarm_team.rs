@@ -3,8 +3,8 @@
 use core::f32::consts::PI;
 
 use farsa_body::{
-    Arrange as _, BodyId, ChannelError, ColorBand, Kinematics as _, Leds, MobileParts, Motor as _, Pose, SpeedAndTurn,
-    Twist,
+    Arrange as _, BodyId, ChannelError, ColorBand, Kinematics as _, Leds, MobileParts, Motor as _, Pose, Recorder,
+    SpeedAndTurn, Twist,
 };
 use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Controller, Layout, Leak, Network, ParameterKind};
@@ -12,6 +12,7 @@ use farsa_num::Stream;
 use farsa_physics::arena::{ArenaError, FreePlace, World};
 
 use crate::error::Error;
+use crate::sensor_rays::Told;
 use crate::swarm_config::TeamConfig;
 use crate::swarm_robot::RobotEyes;
 
@@ -172,6 +173,15 @@ impl<C: Controller> Team<C> {
             if let Some(leds) = &mut member.leds {
                 leds.drive(&y[2..], world);
             }
+        }
+    }
+
+    /// Tells a recorder the infrared rays of the robots, in the world in which they sensed last: all rays of robot `own`, of
+    /// the others those that met something.
+    pub fn tell_rays(&self, world: &World, own: usize, recorder: &mut dyn Recorder) {
+        for (robot, member) in self.members.iter().enumerate() {
+            let told = if robot == own { Told::All } else { Told::Met };
+            member.eyes.tell(world, self.sensed(robot), told, recorder);
         }
     }
 

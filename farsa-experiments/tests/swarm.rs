@@ -61,6 +61,33 @@ fn recorded(setup: &mut dyn Setup, genes: &[u16], other: &[u16], job: Job) -> (O
     (plain, recording)
 }
 
+/// The whole ring of the first robot, and of the others what met something: from the hull of a robot outwards, where it was when
+/// it sensed.
+fn rays_belong_to_robots(recording: &Recording, tick: usize, sensors: usize, [radius, range, height]: [f32; 3]) {
+    let rays = recording.rays_at(tick);
+    // The dead sense nothing.
+    let eye = recording.stage().columns().iter().position(|name| name == "sensor.infrared 1").unwrap();
+    let sensors = if recording.row(tick).nth(eye).unwrap().is_nan() { 0 } else { sensors };
+    assert!(rays.len() >= sensors, "{tick}: {}", rays.len());
+    // Before the first step nobody knows where the robots were.
+    let Some(before) = tick.checked_sub(1) else { return };
+    let robots: Vec<[f32; 3]> =
+        (0..10).map_while(|robot| recording.pose_at(before, BodyId(robot))).map(|pose| pose.position).collect();
+    let mut of_own = 0;
+    for ray in rays {
+        assert!([ray.from, ray.to].iter().all(|end| (end[2] - height).abs() < 1e-6), "{tick}: {ray:?}");
+        let [u, v] = [0, 1].map(|k| ray.to[k] - ray.from[k]);
+        let length = u.hypot(v);
+        // Of a place some metres away a single is good to a micrometre.
+        assert!(length < range + 1e-5 && (ray.met || length > range - 1e-5), "{tick}: {ray:?}");
+        let to = |at: &[f32; 3]| ((ray.from[0] - at[0]).hypot(ray.from[1] - at[1]) - radius).abs();
+        assert!(robots.iter().any(|at| to(at) < 1e-5), "{tick}: {ray:?}");
+        of_own += usize::from(to(&robots[0]) < 1e-5);
+        assert!(ray.met || to(&robots[0]) < 1e-5, "{tick}: {ray:?}");
+    }
+    assert_eq!(of_own, sensors, "{tick}");
+}
+
 #[test]
 fn lives_repeat_and_robots_stay_between_the_walls_and_apart() {
     for (experiment, condition) in ALL {
@@ -79,7 +106,13 @@ fn lives_repeat_and_robots_stay_between_the_walls_and_apart() {
             let ticks = recording.times().len();
             assert_eq!(ticks, outcome.steps as usize);
             let robots = if condition.is_empty() { 2 } else { 10 };
+            let (sensors, range, height) = match condition {
+                "e-puck" => (8, 0.05, 0.025),
+                "khepera" => (8, 0.05, 0.015),
+                _ => (24, 0.1, 0.085),
+            };
             for tick in 0..ticks {
+                rays_belong_to_robots(&recording, tick, sensors, [radius, range, height]);
                 let places: Vec<[f32; 2]> = (0..robots)
                     .map(|robot| recording.pose_at(tick, BodyId(robot)).unwrap().position)
                     .map(|at| [at[0], at[1]])
