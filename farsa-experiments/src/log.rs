@@ -28,9 +28,11 @@ pub(crate) fn header(populations: usize) -> String {
 pub(crate) type Row = [f64; 3];
 
 /// What a line says about a generation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Line {
     pub(crate) row: Row,
+    /// The same of each population where there are several.
+    pub(crate) each: Vec<Row>,
     pub(crate) evaluations: u64,
     pub(crate) failed: u64,
 }
@@ -47,7 +49,7 @@ pub(crate) struct Log {
     path: PathBuf,
     file: File,
     text: String,
-    rows: Vec<Row>,
+    lines: Vec<Line>,
 }
 
 impl Log {
@@ -69,7 +71,7 @@ impl Log {
         }
         let mut text = String::new();
         file.read_to_string(&mut text).map_err(Error::io("read", path))?;
-        Ok(Self { path: path.into(), file, text, rows: Vec::new() })
+        Ok(Self { path: path.into(), file, text, lines: Vec::new() })
     }
 
     /// Drops the lines after a mark: their generations will be lived again, to the same lines.
@@ -78,7 +80,7 @@ impl Log {
     /// [`Error::Damaged`] when the lines up to the mark are not the ones that were written.
     pub(crate) fn rewind(&mut self, to: Mark) -> Result<(), Error> {
         let (kept, lines) = up_to(&self.text, to, &self.path)?;
-        self.rows = lines.into_iter().map(|line| line.row).collect();
+        self.lines = lines;
         let kept = kept.len();
         self.text.truncate(kept);
         self.file.set_len(to.bytes).map_err(Error::io("truncate", &self.path))?;
@@ -95,14 +97,20 @@ impl Log {
     ) -> Result<(), Error> {
         let Statistics { best, mean, worst, failed, .. } = *statistics;
         let start = self.text.len();
-        let generation = self.rows.len();
+        let generation = self.lines.len();
         // The debug form is the shortest that reads back as the same number. Writing into a string cannot fail.
         let _ = write!(self.text, "{generation},{best:?},{mean:?},{worst:?},{evaluations},{failed}");
-        for Statistics { best, mean, worst, .. } in each {
+        let each: Vec<Row> = each.iter().map(|&Statistics { best, mean, worst, .. }| [best, mean, worst]).collect();
+        for [best, mean, worst] in &each {
             let _ = write!(self.text, ",{best:?},{mean:?},{worst:?}");
         }
         self.text.push('\n');
-        self.rows.push([best, mean, worst]);
+        self.lines.push(Line {
+            row: [best, mean, worst],
+            each,
+            evaluations: evaluations as u64,
+            failed: failed as u64,
+        });
         self.file.write_all(&self.text.as_bytes()[start..]).map_err(Error::io("write", &self.path))
     }
 
@@ -113,8 +121,8 @@ impl Log {
     }
 
     /// The generations so far.
-    pub(crate) fn rows(&self) -> &[Row] {
-        &self.rows
+    pub(crate) fn lines(&self) -> &[Line] {
+        &self.lines
     }
 }
 
@@ -159,9 +167,10 @@ fn lines(text: &str) -> Option<Vec<Line>> {
             let row = [number()?, number()?, number()?];
             let mut count = || fields.next()?.parse().ok();
             let (evaluations, failed) = (count()?, count()?);
-            (columns == 6 || fields.filter(|field| field.parse::<f64>().is_ok()).count() == columns - 6)
-                .then_some(())?;
-            Some(Line { row, evaluations, failed })
+            let rest = fields.map(|field| field.parse().ok()).collect::<Option<Vec<f64>>>()?;
+            (rest.len() == columns - 6 || columns == 6).then_some(())?;
+            let each = rest.chunks_exact(3).take(populations).map(|each| [each[0], each[1], each[2]]).collect();
+            Some(Line { row, each, evaluations, failed })
         })
         .collect()
 }
@@ -174,8 +183,8 @@ mod tests {
     fn lines_read_back() {
         let text = format!("{HEADER}0,1.5,-0.25,-inf,20,3\n1,1e-300,0.0,-1.0,20,0\n");
         let expected = [
-            Line { row: [1.5, -0.25, f64::NEG_INFINITY], evaluations: 20, failed: 3 },
-            Line { row: [1e-300, 0.0, -1.0], evaluations: 20, failed: 0 },
+            Line { row: [1.5, -0.25, f64::NEG_INFINITY], each: Vec::new(), evaluations: 20, failed: 3 },
+            Line { row: [1e-300, 0.0, -1.0], each: Vec::new(), evaluations: 20, failed: 0 },
         ];
         assert_eq!(lines(&text), Some(expected.into()));
         assert_eq!(lines("generation\n"), None);
@@ -186,7 +195,8 @@ mod tests {
         let head = header(2);
         assert_eq!(head.trim_end(), format!("{},best 0,mean 0,worst 0,best 1,mean 1,worst 1", HEADER.trim_end()));
         assert_eq!((header(0), header(1)), (HEADER.into(), HEADER.into()));
-        let both = Line { row: [3.0, 2.0, 1.0], evaluations: 20, failed: 0 };
+        let each = vec![[1.0; 3], [3.0, 3.0, f64::NEG_INFINITY]];
+        let both = Line { row: [3.0, 2.0, 1.0], each, evaluations: 20, failed: 0 };
         assert_eq!(lines(&format!("{head}0,3.0,2.0,1.0,20,0,1.0,1.0,1.0,3.0,3.0,-inf\n")), Some(vec![both]));
         for rest in ["", ",1,1,1,1,1", ",1,1,1,1,1,x", ",1,1,1,1,1,1,1"] {
             assert_eq!(lines(&format!("{head}0,3.0,2.0,1.0,20,0{rest}\n")), None, "{rest}");

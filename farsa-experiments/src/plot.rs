@@ -3,7 +3,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use crate::log::Row;
+use crate::log::{Line, Row};
 
 /// Small, so that its letters can be read on a telephone too.
 const WIDTH: i32 = 640;
@@ -52,18 +52,56 @@ pub(crate) struct Curve {
     pub(crate) band: Vec<[f64; 2]>,
 }
 
-/// Draws the log of a run.
+/// Draws the log of a run: a chart for each population of these names, one below the other.
 ///
 /// # Errors
 /// The backend's words, should it refuse.
-pub(crate) fn draw(title: &str, rows: &[Row]) -> Result<String, String> {
-    let curve = |(color, name): (usize, &str)| Curve {
-        name: Some(name.into()),
-        color,
-        values: rows.iter().map(|row| row[color]).collect(),
-        band: Vec::new(),
+pub(crate) fn draw(title: &str, lines: &[Line], populations: &[String]) -> Result<String, String> {
+    stack(&charts(title, lines, populations))
+}
+
+/// The log of a run as a chart, or of several populations as one for each, with its name.
+pub(crate) fn charts(title: &str, lines: &[Line], populations: &[String]) -> Vec<Chart> {
+    let chart = |title: String, row: &dyn Fn(&Line) -> Row| {
+        let curve = |(color, name): (usize, &str)| Curve {
+            name: Some(name.into()),
+            color,
+            values: lines.iter().map(|line| row(line)[color]).collect(),
+            band: Vec::new(),
+        };
+        Chart { title, curves: ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect() }
     };
-    Chart { title: title.into(), curves: ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect() }.draw()
+    if populations.len() < 2 {
+        return vec![chart(title.into(), &|line| line.row)];
+    }
+    let of_each = populations.iter().enumerate().map(|(population, name)| {
+        chart(format!("{title}: {name}"), &|line| line.each.get(population).copied().unwrap_or([f64::NAN; 3]))
+    });
+    of_each.collect()
+}
+
+/// Draws charts one below the other.
+///
+/// # Errors
+/// The backend's words, should it refuse.
+fn stack(charts: &[Chart]) -> Result<String, String> {
+    let mut svg = String::new();
+    pictures(&mut svg, charts).map_err(|error| error.to_string())?;
+    Ok(svg)
+}
+
+fn pictures<'s>(svg: &'s mut String, charts: &[Chart]) -> Result<(), Box<dyn std::error::Error + 's>> {
+    let size = (SIZE.0, charts.iter().map(Chart::height).sum());
+    let all = SVGBackend::with_string(svg, size).into_drawing_area();
+    all.fill(&WHITE)?;
+    let mut rest = all.clone();
+    for chart in charts {
+        let (area, below) = rest.split_vertically(chart.height());
+        chart.picture(&area)?;
+        rest = below;
+    }
+    all.present()?;
+    Ok(())
 }
 
 impl Chart {
@@ -72,17 +110,21 @@ impl Chart {
     /// # Errors
     /// The backend's words, should it refuse.
     pub(crate) fn draw(&self) -> Result<String, String> {
-        let mut svg = String::new();
-        self.picture(&mut svg).map_err(|error| error.to_string())?;
-        Ok(svg)
+        stack(core::slice::from_ref(self))
     }
 
-    fn picture(&self, svg: &mut String) -> Result<(), Box<dyn std::error::Error + '_>> {
+    /// Height of title and names.
+    fn head(&self) -> u32 {
         let lines = self.places().last().map_or(0, |place| place.1 + 1);
-        let head = (TITLE + NAMES * lines + 8) as u32;
-        let area = SVGBackend::with_string(svg, (SIZE.0, SIZE.1 + head)).into_drawing_area();
-        area.fill(&WHITE)?;
-        let (head, body) = area.split_vertically(head);
+        (TITLE + NAMES * lines + 8) as u32
+    }
+
+    fn height(&self) -> u32 {
+        SIZE.1 + self.head()
+    }
+
+    fn picture<'s>(&self, area: &DrawingArea<SVGBackend<'s>, Shift>) -> Result<(), Box<dyn std::error::Error + 's>> {
+        let (head, body) = area.split_vertically(self.head());
         self.legend(&head)?;
         let (low, high) = self.limits();
         let generations = self.curves.iter().map(|curve| curve.values.len()).max().unwrap_or(0);
@@ -126,12 +168,11 @@ impl Chart {
                 chart.draw_series(LineSeries::new(part, style))?;
             }
         }
-        area.present()?;
         Ok(())
     }
 
     /// Title and names in lines of their own, so that they never lie on a curve.
-    fn legend(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), Box<dyn std::error::Error + '_>> {
+    fn legend<'s>(&self, area: &DrawingArea<SVGBackend<'s>, Shift>) -> Result<(), Box<dyn std::error::Error + 's>> {
         area.draw(&Text::new(self.title.clone(), (MARGIN, 12), ("sans-serif", 20).into_font().color(&INK_COLOR)))?;
         let named = self.curves.iter().filter_map(|curve| Some((curve.name.as_ref()?, curve.color)));
         for ((name, color), (x, line)) in named.zip(self.places()) {
@@ -200,12 +241,37 @@ mod tests {
             vec![failed, failed],
             vec![[3.0, 2.0, 1.0], failed, [4.0, 3.0, 2.0]],
         ] {
-            let svg = draw("a title", &rows).unwrap();
+            let lines: Vec<Line> = rows.iter().map(|row| line(*row, &[])).collect();
+            let svg = draw("a title", &lines, &["0".into()]).unwrap();
             for label in ["a title", "generation", "fitness", "best", "mean", "worst", "</svg>", PAPER, INK, GRID] {
                 assert!(svg.contains(label), "{rows:?}: no {label}");
             }
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{rows:?}");
         }
+    }
+
+    fn line(row: Row, each: &[Row]) -> Line {
+        Line { row, each: each.into(), evaluations: 20, failed: 0 }
+    }
+
+    #[test]
+    fn each_of_several_populations_has_a_chart_of_its_own() {
+        let lines = [line([9.0, 1.0, 0.0], &[[1.0, 0.5, 0.0], [9.0, 8.0, 7.0]]), line([8.0; 3], &[[2.0; 3], [8.0; 3]])];
+        let names = ["fox", "hare"].map(String::from);
+        let charts = charts("run", &lines, &names);
+        let of =
+            |chart: &Chart| (chart.title.clone(), chart.curves.iter().map(|c| c.values.clone()).collect::<Vec<_>>());
+        assert_eq!(of(&charts[0]), ("run: fox".into(), vec![vec![1.0, 2.0], vec![0.5, 2.0], vec![0.0, 2.0]]));
+        assert_eq!(of(&charts[1]), ("run: hare".into(), vec![vec![9.0, 8.0], vec![8.0, 8.0], vec![7.0, 8.0]]));
+        let both = draw("run", &lines, &names).unwrap();
+        for title in ["run: fox", "run: hare"] {
+            assert_eq!(both.matches(title).count(), 1, "{both}");
+        }
+        let one = draw("run", &lines, &names[..1]).unwrap();
+        let height =
+            |svg: &str| svg.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<u32>().unwrap();
+        assert_eq!(height(&both), 2 * height(&one));
+        assert!(one.contains(">\nrun\n<") && both.matches("generation").count() == 2, "{one}");
     }
 
     #[test]

@@ -113,8 +113,8 @@ fn summary(run: &Run<'_>) -> RunSummary {
         condition: run.plan.condition.clone(),
         seed: run.plan.seed,
         generations: run.lines.len(),
-        best: run.fitness(run.last(), 0),
-        mean: run.fitness(run.last(), 1),
+        best: run.fitness(None, run.last(), 0),
+        mean: run.fitness(None, run.last(), 1),
         success: run.success(),
     }
 }

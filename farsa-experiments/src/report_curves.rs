@@ -17,9 +17,14 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
     if let [Group { runs, .. }] = groups
         && let [run] = runs.as_slice()
     {
-        let rows: Vec<_> = run.lines.iter().map(|line| line.row).collect();
-        let caption = "Best, mean and worst individual of every generation; failed lives are left out.";
-        return Ok(vec![figure(plot::draw(&run.plan.name(), &rows), caption.into())?]);
+        let charts = plot::charts(&run.plan.name(), &run.lines, &run.populations);
+        let of_each = charts.iter().zip(run.of_each()).map(|(chart, (_, name))| {
+            let whose =
+                if name.is_empty() { "every generation".into() } else { format!("the {name} of every generation") };
+            let caption = format!("Best, mean and worst individual of {whose}; failed lives are left out.");
+            figure(chart.draw(), caption)
+        });
+        return of_each.collect();
     }
     let several = groups.iter().any(|group| group.runs.len() > 1);
     let lines = if several {
@@ -28,17 +33,21 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
         "One run each."
     };
     let mut figures = Vec::new();
-    for (which, title) in [(0, "Best of the generation"), (1, "Mean of the generation")] {
-        let chart = Chart { title: title.into(), curves: curves(groups, which) };
-        figures.push(figure(chart.draw(), format!("{title}. {lines}"))?);
+    for (population, name) in Group::of_each(groups) {
+        for (which, title) in [(0, "Best of the generation"), (1, "Mean of the generation")] {
+            let title = if name.is_empty() { title.to_owned() } else { format!("{title}, {name}") };
+            let chart = Chart { title: title.clone(), curves: curves(groups, population, which) };
+            figures.push(figure(chart.draw(), format!("{title}. {lines}"))?);
+        }
     }
     Ok(figures)
 }
 
-fn curves(groups: &[Group<'_>], which: usize) -> Vec<Curve> {
+fn curves(groups: &[Group<'_>], population: Option<usize>, which: usize) -> Vec<Curve> {
     let mut curves = Vec::new();
     for (color, group) in groups.iter().enumerate() {
-        let quartiles: Vec<Quartiles> = (0..=group.common()).filter_map(|at| quartiles(group, at, which)).collect();
+        let quartiles = (0..=group.common()).filter_map(|at| quartiles(group, population, at, which));
+        let quartiles: Vec<Quartiles> = quartiles.collect();
         let several = group.runs.len() > 1;
         let label = &group.label;
         curves.push(Curve {
@@ -48,17 +57,19 @@ fn curves(groups: &[Group<'_>], which: usize) -> Vec<Curve> {
             band: if several { quartiles.iter().map(|q| [q.lower, q.upper]).collect() } else { Vec::new() },
         });
         if several {
-            curves.extend(group.runs.iter().map(|run| Curve { color, values: whole(run, which), ..Curve::default() }));
+            let whole = |run: &Run<'_>| (0..run.lines.len()).map(|at| run.fitness(population, at, which)).collect();
+            curves.extend(group.runs.iter().map(|run| Curve { color, values: whole(run), ..Curve::default() }));
         }
     }
     curves
 }
 
 /// Over the runs of a group that have a generation.
-pub(crate) fn quartiles(group: &Group<'_>, generation: usize, which: usize) -> Option<Quartiles> {
-    Quartiles::of(&group.runs.iter().map(|run| run.fitness(generation, which)).collect::<Vec<_>>())
-}
-
-fn whole(run: &Run<'_>, which: usize) -> Vec<f64> {
-    run.lines.iter().map(|line| line.row[which]).collect()
+pub(crate) fn quartiles(
+    group: &Group<'_>,
+    population: Option<usize>,
+    generation: usize,
+    which: usize,
+) -> Option<Quartiles> {
+    Quartiles::of(&group.runs.iter().map(|run| run.fitness(population, generation, which)).collect::<Vec<_>>())
 }

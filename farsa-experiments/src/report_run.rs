@@ -18,6 +18,8 @@ pub(crate) struct Run<'e> {
     pub(crate) directory: Directory,
     pub(crate) plan: Plan<'e>,
     pub(crate) manifest: Manifest,
+    /// Names of the populations, if there are several.
+    pub(crate) populations: Vec<String>,
     /// The finished generations, at least one.
     pub(crate) lines: Vec<Line>,
     pub(crate) test: Option<Tested>,
@@ -46,13 +48,15 @@ impl<'e> Run<'e> {
             return Err(Error::damaged(&directory.log(), "no generation is finished yet"));
         }
         let path = directory.test();
+        let setup = plan.setup()?;
+        let populations = if setup.populations() > 1 { setup.population_names() } else { Vec::new() };
         let test = if path.is_file() {
-            let findings = Table::read(&path)?.findings(&plan.setup()?.terms());
+            let findings = Table::read(&path)?.findings(&setup.terms());
             Some(Tested { findings, record: Record::read(&directory)? })
         } else {
             None
         };
-        Ok(Self { directory, plan, manifest, lines, test })
+        Ok(Self { directory, plan, manifest, populations, lines, test })
     }
 
     /// The directory as the user named it.
@@ -60,9 +64,21 @@ impl<'e> Run<'e> {
         self.directory.path().display().to_string()
     }
 
-    /// Best (0), mean (1) or worst (2) fitness of a generation.
-    pub(crate) fn fitness(&self, generation: usize, which: usize) -> f64 {
-        self.lines.get(generation).map_or(f64::NAN, |line| line.row[which])
+    /// Best (0), mean (1) or worst (2) fitness of a generation, of one of several populations or of all together.
+    pub(crate) fn fitness(&self, population: Option<usize>, generation: usize, which: usize) -> f64 {
+        let row = |line: &Line| match population {
+            None => Some(line.row),
+            Some(population) => line.each.get(population).copied(),
+        };
+        self.lines.get(generation).and_then(row).map_or(f64::NAN, |row| row[which])
+    }
+
+    /// Whose fitness is told: that of each population, or of the only one, which has no name.
+    pub(crate) fn of_each(&self) -> Vec<(Option<usize>, String)> {
+        match self.populations.as_slice() {
+            [] => vec![(None, String::new())],
+            several => several.iter().enumerate().map(|(number, name)| (Some(number), name.clone())).collect(),
+        }
     }
 
     /// The last finished generation.
@@ -141,6 +157,12 @@ impl<'r> Group<'r> {
         let own: Vec<String> =
             own.filter_map(|(key, value)| Some(format!("{}={}", key.rsplit('.').next()?, value?))).collect();
         if own.is_empty() { condition.into() } else { format!("{condition}, {}", own.join(", ")) }
+    }
+
+    /// Whose fitness the runs tell: where conditions have different populations, those of the one with the most.
+    pub(crate) fn of_each(groups: &[Self]) -> Vec<(Option<usize>, String)> {
+        let runs = groups.iter().flat_map(|group| &group.runs);
+        runs.map(|run| run.of_each()).max_by_key(Vec::len).unwrap_or_default()
     }
 
     /// The last generation that all its runs have.

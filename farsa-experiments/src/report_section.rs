@@ -128,8 +128,13 @@ fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
     Ok(table)
 }
 
+/// The name of a column about one of several populations.
+fn whose(what: &str, name: &str) -> String {
+    if name.is_empty() { what.into() } else { format!("{what}, {name}") }
+}
+
 /// A number of a run at a generation, if it has one.
-type Measure = fn(&Run<'_>, usize) -> Option<f64>;
+type Measure<'m> = Box<dyn Fn(&Run<'_>) -> Option<f64> + 'm>;
 
 /// Medians at the last generation that all runs have, and whether the groups differ.
 fn outcome(groups: &[Group<'_>]) -> Vec<Block> {
@@ -140,7 +145,10 @@ fn outcome(groups: &[Group<'_>]) -> Vec<Block> {
         }
         None => "–".into(),
     };
-    let mut table = Table::new(&["condition", "runs", "best", "mean", "success of the champions"]);
+    let populations = Group::of_each(groups);
+    let mut table = Table::new(&["condition", "runs"]);
+    table.head.extend(populations.iter().flat_map(|(_, name)| ["best", "mean"].map(|what| whose(what, name))));
+    table.head.push("success of the champions".into());
     for group in groups {
         let tested: Vec<f64> = group.runs.iter().filter_map(|run| run.success()).collect();
         let of = if tested.is_empty() || tested.len() == group.runs.len() {
@@ -148,13 +156,12 @@ fn outcome(groups: &[Group<'_>]) -> Vec<Block> {
         } else {
             format!(", {} tested", tested.len())
         };
-        table.rows.push(vec![
-            group.label.clone(),
-            group.runs.len().to_string(),
-            spread(quartiles(group, last, 0), short),
-            spread(quartiles(group, last, 1), short),
-            spread(Quartiles::of(&tested), percent) + &of,
-        ]);
+        let mut row = vec![group.label.clone(), group.runs.len().to_string()];
+        for (population, _) in &populations {
+            row.extend([0, 1].map(|which| spread(quartiles(group, *population, last, which), short)));
+        }
+        row.push(spread(Quartiles::of(&tested), percent) + &of);
+        table.rows.push(row);
     }
     let mut blocks = vec![
         Block::Text(format!(
@@ -166,18 +173,20 @@ fn outcome(groups: &[Group<'_>]) -> Vec<Block> {
     let mut table = Table::new(&["first", "second", "of", "U", "P(first larger)", "p"]);
     for (index, first) in groups.iter().enumerate() {
         for second in &groups[index + 1..] {
-            let measures: [(&str, Measure); 3] = [
-                ("best", |run, last| Some(run.fitness(last, 0))),
-                ("mean", |run, last| Some(run.fitness(last, 1))),
-                ("success", |run, _| run.success()),
-            ];
-            for (name, measure) in measures {
+            let mut measures: Vec<(String, Measure<'_>)> = Vec::new();
+            for (population, name) in &populations {
+                for (which, what) in [(0, "best"), (1, "mean")] {
+                    let measure = move |run: &Run<'_>| Some(run.fitness(*population, last, which));
+                    measures.push((whose(what, name), Box::new(measure)));
+                }
+            }
+            measures.push(("success".into(), Box::new(|run: &Run<'_>| run.success())));
+            for (name, measure) in &measures {
                 // A run that lacks the number would make the comparison one of other runs.
-                let of =
-                    |group: &Group<'_>| group.runs.iter().map(|run| measure(run, last)).collect::<Option<Vec<f64>>>();
+                let of = |group: &Group<'_>| group.runs.iter().map(|run| measure(run)).collect::<Option<Vec<f64>>>();
                 let found = of(first).zip(of(second)).and_then(|(first, second)| compare(&first, &second));
                 if let Some(Comparison { u, larger, p }) = found {
-                    let words = [&first.label, &second.label, name].map(str::to_owned);
+                    let words = [&first.label, &second.label, name].map(String::clone);
                     let numbers = [format!("{u:?}"), format!("{larger:.3}"), format!("{p:.4}")];
                     table.rows.push(words.into_iter().chain(numbers).collect());
                 }
@@ -299,33 +308,21 @@ fn test_command(run: &Run<'_>, program: &str) -> Result<String, Error> {
 }
 
 fn table_of_runs(groups: &[Group<'_>]) -> Table {
-    let mut table = Table::new(&[
-        "run",
-        "condition",
-        "seed",
-        "generations",
-        "last best",
-        "last mean",
-        "highest best",
-        "evaluations",
-        "failed",
-        "time",
-    ]);
+    const FITNESS: [&str; 3] = ["last best", "last mean", "highest best"];
+    let populations = Group::of_each(groups);
+    let mut table = Table::new(&["run", "condition", "seed", "generations"]);
+    table.head.extend(populations.iter().flat_map(|(_, name)| FITNESS.map(|what| whose(what, name))));
+    table.head.extend(["evaluations", "failed", "time"].map(String::from));
     for (group, run) in groups.iter().flat_map(|group| group.runs.iter().map(move |run| (group, run))) {
         let sum = |what: fn(&crate::log::Line) -> u64| run.lines.iter().map(what).sum::<u64>().to_string();
-        let highest = run.lines.iter().map(|line| line.row[0]).fold(f64::NEG_INFINITY, f64::max);
-        table.rows.push(vec![
-            run.name(),
-            group.label.clone(),
-            run.plan.seed.to_string(),
-            run.lines.len().to_string(),
-            short(run.fitness(run.last(), 0)),
-            short(run.fitness(run.last(), 1)),
-            short(highest),
-            sum(|line| line.evaluations),
-            sum(|line| line.failed),
-            duration(run.seconds()),
-        ]);
+        let mut row = vec![run.name(), group.label.clone(), run.plan.seed.to_string(), run.lines.len().to_string()];
+        for (population, _) in &populations {
+            let best = (0..run.lines.len()).map(|at| run.fitness(*population, at, 0));
+            row.extend([0, 1].map(|which| short(run.fitness(*population, run.last(), which))));
+            row.push(short(best.fold(f64::NEG_INFINITY, f64::max)));
+        }
+        row.extend([sum(|line| line.evaluations), sum(|line| line.failed), duration(run.seconds())]);
+        table.rows.push(row);
     }
     table
 }

@@ -138,6 +138,7 @@ pub(crate) fn go_on(
     let mut run = Run {
         directory,
         title: plan.name(),
+        names: pool.setup().population_names(),
         identity,
         evolution,
         hall,
@@ -176,6 +177,8 @@ pub(crate) fn go_on(
 struct Run<'d> {
     directory: &'d Directory,
     title: String,
+    /// Of the populations.
+    names: Vec<String>,
     identity: Identity,
     evolution: Evolution,
     /// Whom several populations still have to meet.
@@ -246,7 +249,8 @@ impl Run<'_> {
             session.seconds = self.started.elapsed().as_secs_f64();
         }
         self.manifest.write(&directory.manifest())?;
-        let plot = plot::draw(&self.title, self.log.rows()).map_err(|why| Error::damaged(&directory.plot(), why))?;
+        let plot = plot::draw(&self.title, self.log.lines(), &self.names);
+        let plot = plot.map_err(|why| Error::damaged(&directory.plot(), why))?;
         replace(&directory.plot(), plot.as_bytes())
     }
 

@@ -228,3 +228,68 @@ fn what_cannot_be_reported_writes_nothing() {
     fs::write(&path, whole).expect("the log");
     ok(own(), &here, "report a --html new.html");
 }
+
+#[test]
+fn each_population_has_curves_and_columns_of_its_own() {
+    let here = scratch("report-populations");
+    let short = "--generations 3 --population 4 --set evolution.parents=2 --set trial.steps=40 --set trial.count=2";
+    for seed in [1, 2] {
+        ok(farsa(), &here, &format!("run predator-prey --seed {seed} {short} --quiet"));
+    }
+    let picture = fs::read_to_string(here.join("runs/predator-prey-1/fitness.svg")).expect("the picture");
+    for title in ["predator-prey-1: predator", "predator-prey-1: prey"] {
+        assert_eq!(picture.matches(&format!("\n{title}\n")).count(), 1, "{title}");
+    }
+    // What the log has for each: best, mean and worst from column 6 on.
+    let last = |column: usize| short_of(&log(&here, "predator-prey-1", column));
+    ok(farsa(), &here, "report runs/predator-prey-1 --md one.md");
+    let md = fs::read_to_string(here.join("one.md")).expect("the page");
+    assert!(md.contains("Best, mean and worst individual of the prey of every generation"), "{md}");
+    let row = md.lines().find(|line| line.starts_with("| runs/predator-prey-1 | ")).expect("a row");
+    let head =
+        "| last best, predator | last mean, predator | highest best, predator | last best, prey | last mean, prey |";
+    assert!(md.contains(head), "{md}");
+    let cells: Vec<&str> = row.split(" | ").collect();
+    assert_eq!(
+        [cells[4], cells[5], cells[7], cells[8]],
+        [last(6), last(7), last(9), last(10)].each_ref().map(String::as_str)
+    );
+    let said = ok(farsa(), &here, "report runs/predator-prey-1 runs/predator-prey-2 --md two.md");
+    assert!(said.contains("two-fitness-4.svg") && !said.contains("two-fitness-5.svg"), "{said}");
+    let md = fs::read_to_string(here.join("two.md")).expect("the page");
+    assert!(md.contains("Best of the generation, predator. ") && md.contains("Mean of the generation, prey. "), "{md}");
+    assert!(md.contains("| condition | runs | best, predator | mean, predator | best, prey | mean, prey |"), "{md}");
+
+    // Resumed, the picture shows what came before, too; a log of another form is refused.
+    let before = fs::read(here.join("runs/predator-prey-2/fitness.svg")).expect("the picture");
+    ok(farsa(), &here, &format!("run predator-prey --seed 3 {short} --quiet --out whole"));
+    ok(
+        farsa(),
+        &here,
+        &format!("run predator-prey --seed 3 {} --quiet --out parts", short.replace("generations 3", "generations 1")),
+    );
+    ok(farsa(), &here, "run --resume parts --generations 3 --quiet");
+    for file in ["fitness.csv", "champion.bin"] {
+        assert!(
+            fs::read(here.join("whole").join(file)).expect("a file")
+                == fs::read(here.join("parts").join(file)).expect("a file"),
+            "{file}"
+        );
+    }
+    let [whole, parts] =
+        ["whole", "parts"].map(|run| fs::read(here.join(run).join("fitness.svg")).expect("the picture"));
+    assert!(whole == parts && whole != before);
+    let path = here.join("parts/fitness.csv");
+    let text = fs::read_to_string(&path).expect("the log");
+    let six =
+        text.lines().map(|line| line.splitn(7, ',').take(6).collect::<Vec<_>>().join(",") + "\n").collect::<String>();
+    fs::write(&path, six).expect("the log");
+    let refused = say(farsa(), &here, "run --resume parts --generations 4");
+    assert!(refused.code == Some(1) && refused.err.contains("fitness.csv: truncated"), "{refused:?}");
+}
+
+/// The last number as the report has it.
+fn short_of(numbers: &[f64]) -> String {
+    let x = *numbers.last().expect("a number");
+    if x != 0.0 && x.abs() < 1e-3 { format!("{x:.3e}") } else { short(x) }
+}
