@@ -2,7 +2,7 @@
 
 use farsa_nn::Controller;
 
-use crate::aggregation_life::AggregationConfig;
+use crate::aggregation_config::AggregationConfig;
 use crate::foraging_by_hand::{away, eyes};
 use crate::swarm_config::EYES;
 use crate::swarm_team::OUTPUTS;

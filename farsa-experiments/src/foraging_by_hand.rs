@@ -2,7 +2,7 @@
 
 use farsa_nn::Controller;
 
-use crate::foraging_life::ForagingConfig;
+use crate::foraging_config::ForagingConfig;
 use crate::swarm_config::EYES;
 use crate::swarm_robot::eye_angles;
 use crate::swarm_team::OUTPUTS;

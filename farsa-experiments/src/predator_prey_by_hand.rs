@@ -3,7 +3,7 @@
 use farsa_nn::Controller;
 
 use crate::foraging_by_hand::{away, eyes};
-use crate::predator_prey_life::{OUTPUTS, PredatorPreyConfig};
+use crate::predator_prey_config::{OUTPUTS, PredatorPreyConfig};
 use crate::swarm_config::EYES;
 
 /// What to do about the other robot.
