@@ -9,9 +9,12 @@ use clap_complete::Shell;
 
 use crate::arguments_genotypes::{EvaluateArgs, ImportArgs};
 use crate::camera::Camera;
+use crate::error::Error;
+use crate::experiment::Experiment;
 use crate::export::ModelFormat;
 use crate::lanes::{SIMD, Wanted};
-use crate::plan::{self, LARGEST_SEED};
+use crate::plan::{self, LARGEST_SEED, Plan};
+use crate::pool::Pool;
 use crate::replay::Which;
 use crate::settings::Value;
 
@@ -81,9 +84,8 @@ pub(crate) struct RunArgs {
     /// The experiment
     #[arg(required_unless_present_any = ["resume", "config"])]
     pub(crate) experiment: Option<String>,
-    /// One of its conditions [default: its first]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) condition: Option<String>,
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
     /// Where all random numbers come from [default: 1]
     #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: Option<u64>,
@@ -94,9 +96,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "P")]
     pub(crate) population: Option<i64>,
     #[command(flatten)]
-    pub(crate) threads: Threads,
-    #[command(flatten)]
-    pub(crate) lanes: LanesArgs,
+    pub(crate) workers: WorkerArgs,
     /// The run's directory [default: runs/EXPERIMENT-CONDITION-SEED]; with --replications what they lie in [default: runs]
     #[arg(long, value_name = "DIR", conflicts_with = "resume", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
@@ -104,12 +104,9 @@ pub(crate) struct RunArgs {
     /// goes on with what is not
     #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
     pub(crate) replications: Option<u32>,
-    /// Take settings from a TOML file
+    /// Take settings from a TOML file; --set goes before it
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
-    /// Change a setting; may be repeated, goes before the file
-    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
-    pub(crate) set: Vec<(String, Value)>,
     /// Go on with the run in a directory; generations may be added
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) resume: Option<PathBuf>,
@@ -118,22 +115,80 @@ pub(crate) struct RunArgs {
     pub(crate) json: bool,
 }
 
+/// What of an experiment is meant.
 #[derive(Args)]
-pub(crate) struct Threads {
+pub(crate) struct VariantArgs {
+    /// One of its conditions [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) condition: Option<String>,
+    /// Change a setting; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
+    pub(crate) set: Vec<(String, Value)>,
+}
+
+impl VariantArgs {
+    /// An experiment under this condition with these settings.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] and [`Error::Setting`].
+    pub(crate) fn plan<'e>(&self, experiment: &'e dyn Experiment) -> Result<Plan<'e>, Error> {
+        let mut plan = Plan::new(experiment, self.condition.as_deref(), "")?;
+        self.apply(&mut plan)?;
+        Ok(plan)
+    }
+
+    /// Changes the settings of a plan.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] and [`Error::Setting`].
+    pub(crate) fn apply(&self, plan: &mut Plan<'_>) -> Result<(), Error> {
+        self.set.iter().try_for_each(|(key, value)| plan.settings.set("--set", key, value.clone()))
+    }
+}
+
+/// Who lives the lives.
+#[derive(Args)]
+pub(crate) struct WorkerArgs {
+    #[command(flatten)]
+    threads: Threads,
+    #[command(flatten)]
+    lanes: LanesArgs,
+}
+
+impl WorkerArgs {
+    /// Threads with a set-up each.
+    ///
+    /// # Errors
+    /// Those of [`Pool::new`].
+    pub(crate) fn pool(&self, plan: &Plan<'_>) -> Result<Pool, Error> {
+        Pool::new(plan, self.threads(), self.lanes())
+    }
+
+    pub(crate) fn threads(&self) -> usize {
+        self.threads.count()
+    }
+
+    pub(crate) fn lanes(&self) -> Wanted {
+        self.lanes.wanted()
+    }
+}
+
+#[derive(Args)]
+struct Threads {
     /// Threads to use [default: all processors]; the results are the same with any number
     #[arg(long, value_name = "T", value_parser = value_parser!(u16).range(1..=4096))]
     threads: Option<u16>,
 }
 
 impl Threads {
-    pub(crate) fn count(&self) -> usize {
+    fn count(&self) -> usize {
         self.threads.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), usize::from)
     }
 }
 
 /// How many lives at once.
 #[derive(Args)]
-pub(crate) struct LanesArgs {
+struct LanesArgs {
     /// Lives side by side in each thread; the results are the same with any number
     #[arg(long, value_name = "L", default_value = "auto", value_parser = PossibleValuesParser::new(["1", "8", "16", "auto"]))]
     lanes: String,
@@ -152,7 +207,7 @@ fn simd() -> impl clap::builder::TypedValueParser<Value = Simd> {
 }
 
 impl LanesArgs {
-    pub(crate) fn wanted(&self) -> Wanted {
+    fn wanted(&self) -> Wanted {
         Wanted { count: self.lanes.parse().ok(), simd: self.simd.0 }
     }
 }
@@ -162,19 +217,13 @@ impl LanesArgs {
 pub(crate) struct BenchArgs {
     /// The experiment [default: the first of the list]
     pub(crate) experiment: Option<String>,
-    /// One of its conditions [default: its first]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) condition: Option<String>,
-    /// Change a setting; may be repeated
-    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
-    pub(crate) set: Vec<(String, Value)>,
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
     /// Live the last generation of this run, under its configuration [default: random genomes]
     #[arg(long, value_name = "DIR", conflicts_with_all = ["experiment", "condition"], value_hint = ValueHint::DirPath)]
     pub(crate) run: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) threads: Threads,
-    #[command(flatten)]
-    pub(crate) lanes: LanesArgs,
+    pub(crate) workers: WorkerArgs,
     /// How long to measure, in seconds: whole generations until then, cut short only if it is the first
     #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
     pub(crate) seconds: f64,
@@ -201,9 +250,7 @@ pub(crate) struct TestArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]
-    pub(crate) threads: Threads,
-    #[command(flatten)]
-    pub(crate) lanes: LanesArgs,
+    pub(crate) workers: WorkerArgs,
     /// Write what was found as JSON, without the table
     #[arg(long)]
     pub(crate) json: bool,
@@ -332,12 +379,8 @@ pub(crate) enum ExportWhat {
 pub(crate) struct ExportRobotArgs {
     /// The experiment
     pub(crate) experiment: String,
-    /// One of its conditions [default: its first]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) condition: Option<String>,
-    /// Change a setting; may be repeated
-    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
-    pub(crate) set: Vec<(String, Value)>,
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
     /// Of which kind the file is
     #[arg(long, value_enum)]
     pub(crate) format: ModelFormat,

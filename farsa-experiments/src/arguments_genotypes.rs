@@ -4,26 +4,28 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint, value_parser};
 
-use crate::arguments::{LanesArgs, Threads};
-use crate::plan::{self, LARGEST_SEED};
-use crate::settings::Value;
+use crate::arguments::{VariantArgs, WorkerArgs};
+use crate::plan::LARGEST_SEED;
 
 /// A setting's key in a comment would want the marks of code, which a terminal shows as they are.
 const IR_TABLES: &str = "Tables of the infrared sensors (robot.infrared_tables)";
+
+/// What the genotypes are genotypes of, beside the experiment.
+#[derive(Args)]
+pub(crate) struct GenotypeVariant {
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
+    #[arg(long, value_name = "DIR", help = IR_TABLES, value_hint = ValueHint::DirPath)]
+    pub(crate) ir_tables: Option<PathBuf>,
+}
 
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct EvaluateArgs {
     /// The experiment
     pub(crate) experiment: String,
-    /// One of its conditions [default: its first]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) condition: Option<String>,
-    /// Change a setting; may be repeated
-    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
-    pub(crate) set: Vec<(String, Value)>,
-    #[arg(long, value_name = "DIR", help = IR_TABLES, value_hint = ValueHint::DirPath)]
-    pub(crate) ir_tables: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) variant: GenotypeVariant,
     /// The genes, whole numbers with commas between them; of several populations once for each, in their order or with
     /// their names
     #[arg(
@@ -46,9 +48,7 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]
-    pub(crate) threads: Threads,
-    #[command(flatten)]
-    pub(crate) lanes: LanesArgs,
+    pub(crate) workers: WorkerArgs,
     /// Write JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -64,14 +64,8 @@ pub(crate) struct ImportArgs {
     /// The experiment that they are genotypes of
     #[arg(long, value_name = "NAME")]
     pub(crate) experiment: String,
-    /// One of its conditions [default: its first]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) condition: Option<String>,
-    /// Change a setting; may be repeated
-    #[arg(long, value_name = "KEY=VALUE", value_parser = plan::assignment)]
-    pub(crate) set: Vec<(String, Value)>,
-    #[arg(long, value_name = "DIR", help = IR_TABLES, value_hint = ValueHint::DirPath)]
-    pub(crate) ir_tables: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) variant: GenotypeVariant,
     /// Where the random numbers of replayed lives come from
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: u64,

@@ -24,7 +24,6 @@ use crate::import;
 use crate::info::{self, pretty};
 use crate::manual;
 use crate::plan::{self, ConfigFile, Plan};
-use crate::pool::Pool;
 use crate::replay;
 use crate::replications::{self, Replications};
 use crate::report;
@@ -86,9 +85,10 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             let found = start_or_resume(&args, quiet, program, experiments)?;
             summary(args.json, format!("{}\n", found.text()), &|| pretty(&found))
         }
-        Command::Test(TestArgs { directory, trials, seed, threads, lanes, json }) => {
+        Command::Test(TestArgs { directory, trials, seed, workers, json }) => {
             let (directory, plan) = existing(&directory, experiments)?;
-            let found = exam::test(&plan, &directory, trials as usize, seed, threads.count(), lanes.wanted(), quiet)?;
+            let found =
+                exam::test(&plan, &directory, trials as usize, seed, workers.threads(), workers.lanes(), quiet)?;
             summary(json, found.text(), &|| pretty(&found))
         }
         Command::Evaluate(args) => {
@@ -112,9 +112,8 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             summary(json, found.text(), &|| pretty(&found))
         }
         Command::Export(ExportArgs { what: ExportWhat::Robot(args) }) => {
-            let ExportRobotArgs { experiment, condition, set, format, out } = args;
-            let mut plan = Plan::new(plan::find(experiments, &experiment, "")?, condition.as_deref(), "")?;
-            set.into_iter().try_for_each(|(key, value)| plan.settings.set("--set", &key, value))?;
+            let ExportRobotArgs { experiment, variant, format, out } = args;
+            let plan = variant.plan(plan::find(experiments, &experiment, "")?)?;
             let text = export::robot(&plan, format)?;
             match out {
                 None => say(&text),
@@ -174,14 +173,17 @@ fn existing<'e>(path: &std::path::Path, experiments: &[&'e dyn Experiment]) -> R
 
 fn bench(args: &BenchArgs, experiments: &[&dyn Experiment]) -> Result<Bench, Error> {
     let run = args.run.as_deref().map(|path| existing(path, experiments)).transpose()?;
-    let (evolved, mut plan) = match (run, &args.experiment, experiments.first()) {
-        (Some((directory, plan)), ..) => (Some(Sample::of_run(&plan, &directory)?), plan),
-        (None, Some(name), _) => (None, Plan::new(plan::find(experiments, name, "")?, args.condition.as_deref(), "")?),
-        (None, None, Some(first)) => (None, Plan::new(*first, args.condition.as_deref(), "")?),
+    let (evolved, plan) = match (run, &args.experiment, experiments.first()) {
+        (Some((directory, mut plan)), ..) => {
+            let evolved = Sample::of_run(&plan, &directory)?;
+            args.variant.apply(&mut plan)?;
+            (Some(evolved), plan)
+        }
+        (None, Some(name), _) => (None, args.variant.plan(plan::find(experiments, name, "")?)?),
+        (None, None, Some(first)) => (None, args.variant.plan(*first)?),
         (None, None, None) => return Err(Error::Usage("there is no experiment".into())),
     };
-    args.set.iter().try_for_each(|(key, value)| plan.settings.set("--set", key, value.clone()))?;
-    let pool = Pool::new(&plan, args.threads.count(), args.lanes.wanted())?;
+    let pool = args.workers.pool(&plan)?;
     let sample = evolved.map_or_else(|| Sample::random(&plan), Ok)?;
     bench::bench(&plan, &sample, pool, args.seconds)
 }
@@ -196,7 +198,7 @@ fn replicate(
 ) -> Result<Replications, Error> {
     let (_, plan) = planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref(), experiments)?;
     let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
-    let pool = |plan: &Plan<'_>| Pool::new(plan, args.threads.count(), args.lanes.wanted());
+    let pool = |plan: &Plan<'_>| args.workers.pool(plan);
     replications::run(plan, count, &root, &pool, stop_on_interrupt, program, quiet)
 }
 
@@ -209,7 +211,7 @@ fn start_or_resume(
     let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
     let (directory, plan) = planned(args, file.as_ref(), experiments)?;
     // What is refused leaves no directory behind.
-    let pool = Pool::new(&plan, args.threads.count(), args.lanes.wanted())?;
+    let pool = args.workers.pool(&plan)?;
     let directory = match directory {
         Some(directory) => {
             same_names(args, file.as_ref(), &plan, &directory)?;
@@ -236,9 +238,7 @@ fn planned<'e>(
     if let Some(file) = file {
         plan.apply(file)?;
     }
-    for (key, value) in &args.set {
-        plan.settings.set("--set", key, value.clone())?;
-    }
+    args.variant.apply(&mut plan)?;
     for (option, key, value) in
         [("--generations", GENERATIONS, args.generations), ("--population", POPULATION, args.population)]
     {
@@ -267,7 +267,7 @@ fn fresh<'e>(args: &RunArgs, file: Option<&ConfigFile>, experiments: &[&'e dyn E
         (None, Some(entry)) => plan::find(experiments, &entry.value, &entry.place)?,
         (None, None) => return Err(Error::Usage("neither the command line nor the file names an experiment".into())),
     };
-    match (&args.condition, file.and_then(|file| file.condition.as_ref())) {
+    match (&args.variant.condition, file.and_then(|file| file.condition.as_ref())) {
         (Some(name), _) => Plan::new(experiment, Some(name), ""),
         (None, Some(entry)) => Plan::new(experiment, Some(&entry.value), &entry.place),
         (None, None) => Plan::new(experiment, None, ""),
@@ -278,7 +278,7 @@ fn fresh<'e>(args: &RunArgs, file: Option<&ConfigFile>, experiments: &[&'e dyn E
 fn same_names(args: &RunArgs, file: Option<&ConfigFile>, plan: &Plan<'_>, directory: &Directory) -> Result<(), Error> {
     let in_file = |entry: Option<&plan::Entry<String>>| entry.map(|entry| entry.value.clone());
     let experiment = args.experiment.clone().or_else(|| in_file(file?.experiment.as_ref()));
-    let condition = args.condition.clone().or_else(|| in_file(file?.condition.as_ref()));
+    let condition = args.variant.condition.clone().or_else(|| in_file(file?.condition.as_ref()));
     for (key, run, asked) in
         [("experiment", plan.experiment.name(), experiment), ("condition", plan.condition.as_str(), condition)]
     {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::arguments_genotypes::EvaluateArgs;
+use crate::arguments_genotypes::{EvaluateArgs, GenotypeVariant};
 use crate::error::Error;
 use crate::evolution::POPULATION;
 use crate::exam;
@@ -13,7 +13,7 @@ use crate::exam_table::Tried;
 use crate::experiment::{Experiment, Note};
 use crate::genotypes::Shape;
 use crate::plan::{self, Plan};
-use crate::pool::{Pool, Unfinished};
+use crate::pool::Unfinished;
 use crate::populations::Populations;
 use crate::progress::Progress;
 use crate::settings::Value;
@@ -98,12 +98,16 @@ impl Evaluation {
             add(&format!("{of}mean_fitness"), each.mean_fitness);
             add(&format!("{of}standard_error"), each.standard_error);
             if alone.is_some() {
-                notes.iter().for_each(|(name, x)| add(name, *x));
+                for (name, x) in &notes {
+                    add(name, *x);
+                }
             }
             add(&format!("{of}success_rate"), each.success_rate);
         }
         if alone.is_none() {
-            notes.iter().for_each(|(name, x)| add(name, *x));
+            for (name, x) in &notes {
+                add(name, *x);
+            }
         }
         if broken_down > 0 {
             lines.push(("broken_down".into(), broken_down.to_string()));
@@ -153,15 +157,11 @@ fn word(name: &str) -> String {
 /// [`Error::Unknown`] and [`Error::Setting`]; [`Error::Usage`] for tables that the experiment has no setting for.
 pub(crate) fn plan<'e>(
     experiments: &[&'e dyn Experiment],
-    (experiment, condition): (&str, Option<&str>),
-    set: &[(String, Value)],
-    infrared_tables: Option<&Path>,
+    experiment: &str,
+    options: &GenotypeVariant,
 ) -> Result<Plan<'e>, Error> {
-    let mut plan = Plan::new(plan::find(experiments, experiment, "")?, condition, "")?;
-    for (key, value) in set {
-        plan.settings.set("--set", key, value.clone())?;
-    }
-    if let Some(directory) = infrared_tables {
+    let mut plan = options.variant.plan(plan::find(experiments, experiment, "")?)?;
+    if let Some(directory) = &options.ir_tables {
         if !plan.settings.table().iter().any(|setting| setting.key() == INFRARED_TABLES) {
             let condition = &plan.condition;
             let under = if condition.is_empty() { String::new() } else { format!(" under condition `{condition}`") };
@@ -181,9 +181,8 @@ pub(crate) fn plan<'e>(
 /// # Errors
 /// [`Error::Usage`] for genes that are none of the experiment's, and for a population without genes or with genes twice.
 pub(crate) fn evaluate(args: &EvaluateArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<Evaluation, Error> {
-    let name = (args.experiment.as_str(), args.condition.as_deref());
-    let plan = plan(experiments, name, &args.set, args.ir_tables.as_deref())?;
-    let mut pool = Pool::new(&plan, args.threads.count(), args.lanes.wanted())?;
+    let plan = plan(experiments, &args.experiment, &args.variant)?;
+    let mut pool = args.workers.pool(&plan)?;
     let names = pool.setup().population_names();
     let genes = genes(args, plan.experiment.name(), &names, Shape::of(pool.setup()))?;
     let genomes: Vec<&[u16]> = genes.iter().map(Vec::as_slice).collect();

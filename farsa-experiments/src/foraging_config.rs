@@ -3,7 +3,7 @@
 use farsa_physics::arena::{Area, Arena, World};
 
 use crate::error::Error;
-use crate::nest::{COLORS, NEST};
+use crate::nest::{self, COLORS, NEST};
 use crate::settings::{Setting, Settings};
 use crate::swarm_config::{TeamConfig, whole};
 use crate::swarm_setup;
@@ -85,15 +85,7 @@ impl ForagingConfig {
             cells: settings.count("food.cells")?,
             cost: settings.number("energy.cost")?,
         };
-        if read.nest_radius <= 0.0 {
-            return Err(Error::setting("nest.radius", "must be more than 0"));
-        }
-        let room = 0.5 * read.team.size;
-        if read.nest_to_wall > room {
-            let why =
-                format!("{} m from all walls of an arena of {} m: at most {room} m", read.nest_to_wall, read.team.size);
-            return Err(Error::setting("nest.to_wall", why));
-        }
+        nest::check(read.nest_radius, read.nest_to_wall, read.team.size)?;
         Ok(read)
     }
 

@@ -35,11 +35,10 @@ impl Summary {
     /// The same in a line of words.
     pub(crate) fn text(&self) -> String {
         let Self { directory, genotypes, genes, files, populations, .. } = self;
-        if let [first, others @ ..] = populations.as_slice() {
-            let others: String = others.iter().map(|name| format!(" and of {name}")).collect();
-            let files = files.join(", ");
+        if !populations.is_empty() {
+            let (of, files) = (populations.join(" and of "), files.join(", "));
             return format!(
-                "{directory}: {genotypes} of {first}{others}, of {genes} genes each, from {files}; the first are the champions"
+                "{directory}: {genotypes} of {of}, of {genes} genes each, from {files}; the first are the champions"
             );
         }
         let (what, champion) = match genotypes {
@@ -58,8 +57,7 @@ impl Summary {
 /// populations that are left without or have fewer genotypes than others; nothing is then written. [`Error::Occupied`] when
 /// there is something at the place already.
 pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Result<Summary, Error> {
-    let name = (args.experiment.as_str(), args.condition.as_deref());
-    let mut plan = evaluate::plan(experiments, name, &args.set, args.ir_tables.as_deref())?;
+    let mut plan = evaluate::plan(experiments, &args.experiment, &args.variant)?;
     plan.seed = args.seed;
     let setup = plan.setup()?;
     let names = setup.population_names();
@@ -68,7 +66,7 @@ pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Resu
     if populations > 1 {
         // By this an individual's number tells its population.
         plan.settings.set("FILE", POPULATION, Value::Whole(i64::try_from(size).unwrap_or(i64::MAX)))?;
-        if let Some((_, asked)) = args.set.iter().find(|(key, _)| key == POPULATION)
+        if let Some((_, asked)) = args.variant.variant.set.iter().find(|(key, _)| key == POPULATION)
             && *asked != *plan.settings.get(POPULATION)?
         {
             let why = format!("{size} genotypes of each population where --set wants {asked}");
