@@ -8,6 +8,7 @@ use farsa_num::sin_cos;
 use crate::arena_description::CollisionRule;
 use crate::arena_grid::Grid;
 use crate::arena_model::{CONTACT, HELD, MET, Model, NOTHING, POSE_WORDS, VELOCITY};
+use crate::arena_solid::{beside, meets_solid, overlaps_solid};
 use crate::arena_step::{LEFT, Met, SWEEPS, WORK_WORDS, act, give, note, place};
 use crate::arena_surface::{Meeting, meets_disc, meets_wall, ray_to_disc, wall_squared};
 
@@ -94,6 +95,11 @@ impl Crowd {
         for slab in &model.slabs {
             if wall_squared(slab, own) < radius * radius {
                 take(meets_wall(slab, own, radius), NOTHING, 1.0, &mut push);
+            }
+        }
+        for solid in &model.solids {
+            if beside(solid, own, radius) && overlaps_solid(solid, own, radius) {
+                take(meets_solid(solid, own, radius), NOTHING, 1.0, &mut push);
             }
         }
         let mut others = [0_u16; 16];

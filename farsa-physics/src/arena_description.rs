@@ -1,8 +1,10 @@
-//! What is in a planar world: walls, cylinders, coloured areas of the ground and wheeled robots, as data.
+//! What is in a planar world: walls, obstacles, cylinders, coloured areas of the ground and wheeled robots, as data.
 
 use alloc::vec::Vec;
 
 use farsa_body::{ActuatorId, BodyId, JointId, MobileParts, MobileRobot};
+
+use crate::arena_convex::Convex;
 
 /// A wall: a box that stands on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,6 +177,8 @@ pub struct Arena {
     pub size: Option<[f64; 2]>,
     /// The walls.
     pub walls: Vec<Wall>,
+    /// The convex obstacles.
+    pub convexes: Vec<Convex>,
     /// The cylinders.
     pub cylinders: Vec<Cylinder>,
     /// The areas; where several lie over each other, the last one is seen.
@@ -208,6 +212,7 @@ impl Arena {
         Self {
             size: None,
             walls: Vec::new(),
+            convexes: Vec::new(),
             cylinders: Vec::new(),
             areas: Vec::new(),
             robots: Vec::new(),
@@ -233,6 +238,12 @@ impl Arena {
     pub fn add_wall(&mut self, wall: Wall) -> usize {
         self.walls.push(wall);
         self.walls.len() - 1
+    }
+
+    /// Adds a convex obstacle; its number.
+    pub fn add_convex(&mut self, convex: Convex) -> usize {
+        self.convexes.push(convex);
+        self.convexes.len() - 1
     }
 
     /// Adds a cylinder; its number, see [`Arena::cylinder`].

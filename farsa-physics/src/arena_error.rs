@@ -9,6 +9,8 @@ pub enum Part {
     Arena,
     /// A wall.
     Wall(usize),
+    /// A convex obstacle.
+    Convex(usize),
     /// A cylinder.
     Cylinder(usize),
     /// An area.
@@ -22,6 +24,7 @@ impl fmt::Display for Part {
         match self {
             Self::Arena => write!(f, "the arena"),
             Self::Wall(i) => write!(f, "wall {i}"),
+            Self::Convex(i) => write!(f, "convex obstacle {i}"),
             Self::Cylinder(i) => write!(f, "cylinder {i}"),
             Self::Area(i) => write!(f, "area {i}"),
             Self::Robot(i) => write!(f, "robot {i}"),
@@ -68,10 +71,51 @@ pub enum ArenaError {
         part: Part,
         /// Where it starts [m].
         at: [f64; 2],
-        /// Its radius; 0 for an area, of which the middle counts [m].
+        /// Its radius; 0 for an area, of which the middle counts, and for a corner of a convex obstacle [m].
         radius: f64,
         /// The arena is [0, width] x [0, depth] [m].
         size: [f64; 2],
+    },
+    /// Two corners of a prism are one.
+    SameCorner {
+        /// The prism.
+        part: Part,
+        /// The numbers of the corners.
+        corners: [usize; 2],
+        /// How far they are apart [m].
+        distance: f64,
+    },
+    /// A corner of a prism lies within the hull of the others: it is not convex.
+    Dent {
+        /// The prism.
+        part: Part,
+        /// The number of the corner.
+        corner: usize,
+        /// How deep it lies [m].
+        depth: f64,
+    },
+    /// The corners of a prism do not follow each other around it.
+    OutOfTurn {
+        /// The prism.
+        part: Part,
+        /// The numbers of the corners where a side begins and ends that has corners on both hands.
+        side: [usize; 2],
+        /// The number of the first of them on the outer hand.
+        corner: usize,
+    },
+    /// Points are so close to each other or to a plane that no closed hull of them is found.
+    NoHull {
+        /// The obstacle.
+        part: Part,
+        /// The number of its points.
+        points: usize,
+    },
+    /// Something needs a feature of this crate that it was compiled without.
+    NeedsFeature {
+        /// What.
+        part: Part,
+        /// The name of the feature.
+        feature: &'static str,
     },
     /// A robot may go farther in a step than its hull's radius, and so through another.
     StepTooLong {
@@ -114,6 +158,30 @@ impl fmt::Display for ArenaError {
                     f,
                     "{part} of radius {radius} m starts at ({x}, {y}) m: not within [0, {width}] x [0, {depth}] m"
                 )
+            }
+            Self::SameCorner { part, corners: [i, j], distance } => {
+                write!(f, "corners {i} and {j} of {part} are {distance} m apart: leave one of them out")
+            }
+            Self::Dent { part, corner, depth } => {
+                write!(
+                    f,
+                    "corner {corner} of {part} lies {depth} m within the hull of the others: leave it out, or make it two obstacles"
+                )
+            }
+            Self::OutOfTurn { part, side: [i, j], corner } => {
+                write!(
+                    f,
+                    "corners of {part} are out of turn: {corner} lies on the outer side of the line from {i} to {j}; name them one after the other around it"
+                )
+            }
+            Self::NoHull { part, points } => {
+                write!(
+                    f,
+                    "no closed hull of the {points} points of {part}: leave out points that are close to others or to a face"
+                )
+            }
+            Self::NeedsFeature { part, feature } => {
+                write!(f, "{part} is a hull of points: that needs the feature `{feature}` of farsa-physics")
             }
             Self::StepTooLong { robot, travel, radius } => {
                 write!(

@@ -4,6 +4,7 @@ use farsa_body::AnalyticInfrared;
 use farsa_num::{Mask, Scalar};
 
 use crate::arena_model::{Model, POSE_WORDS};
+use crate::arena_solid::{beside, to_solid};
 use crate::arena_step::{load, place, store};
 use crate::arena_surface::to_wall;
 
@@ -56,6 +57,14 @@ fn walls<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, robot: usize, pose
     for slab in &model.slabs {
         let way = to_wall(slab, pose.at);
         add(simd, &kind.infrared, &model.wall_seen, pose.axis, way, kind.radius, out);
+    }
+    // Twice what is felt: whom the mask leaves out feels nothing anyway.
+    let reach = S::splat(simd, 2.0 * (kind.radius + model.wall_seen.range()));
+    for solid in &model.solids {
+        if beside(solid, pose.at, reach).any() {
+            let way = to_solid(solid, pose.at);
+            add(simd, &kind.infrared, &model.wall_seen, pose.axis, way, kind.radius, out);
+        }
     }
 }
 

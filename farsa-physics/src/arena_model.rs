@@ -5,8 +5,11 @@ use alloc::vec::Vec;
 use farsa_body::{ActuatorId, AnalyticInfrared, BodyId, JointId, MobileParts, MobileRobot};
 use farsa_num::{Scalar, atan2, sin_cos};
 
+use crate::arena_convex::{Convex, ConvexForm};
 use crate::arena_description::{AreaShape, Arena, CollisionRule, Search};
 use crate::arena_error::{ArenaError, Part};
+use crate::arena_outline::{check_turns, distance, width};
+use crate::arena_solid::{Face, Solid, middle, prism_faces};
 
 /// Words of a body's pose: x, y, heading and its cosine and sine.
 pub(crate) const POSE_WORDS: usize = 5;
@@ -82,6 +85,7 @@ pub(crate) struct Model {
     /// Kind and first actuator of each robot.
     pub(crate) robots: Vec<(u16, u16)>,
     pub(crate) slabs: Vec<Slab>,
+    pub(crate) solids: Vec<Solid>,
     pub(crate) rounds: Vec<Round>,
     pub(crate) patches: Vec<Patch>,
     pub(crate) ground: [f32; 3],
@@ -176,6 +180,56 @@ pub(crate) fn pose_words(at: [f32; 2], heading: f32) -> [f32; POSE_WORDS] {
     [at[0], at[1], heading, cosine, sine]
 }
 
+/// How many points a convex obstacle may have, one of a plane and one of space at least.
+const POINTS: [[f64; 2]; 2] = [[3.0, 1024.0], [4.0, 1024.0]];
+
+/// A convex obstacle, checked.
+fn solid(part: Part, convex: &Convex) -> Result<Solid, ArenaError> {
+    colored(part, convex.color)?;
+    let farthest = [-LENGTHS[1], LENGTHS[1]];
+    match &convex.form {
+        ConvexForm::Prism { corners, height } => {
+            ranged(part, "number of corners", corners.len() as f64, POINTS[0])?;
+            corners.iter().flatten().try_for_each(|x| ranged(part, "corner", *x, farthest))?;
+            ranged(part, "height", *height, LENGTHS)?;
+        }
+        ConvexForm::Hull { points } => {
+            ranged(part, "number of points", points.len() as f64, POINTS[1])?;
+            points.iter().flatten().try_for_each(|x| ranged(part, "point", *x, farthest))?;
+            points.iter().try_for_each(|[.., z]| ranged(part, "height of a point", *z, [0.0, LENGTHS[1]]))?;
+        }
+    }
+    let outline = convex.outline();
+    ranged(part, "width", width(&outline), LENGTHS)?;
+    if let ConvexForm::Prism { corners, .. } = &convex.form {
+        check_turns(part, corners, &outline)?;
+    }
+    let (centre, around) = middle(&outline);
+    let outline: Vec<[f64; 2]> = outline.iter().map(|[x, y]| [x - centre[0], y - centre[1]]).collect();
+    let faces = match &convex.form {
+        ConvexForm::Prism { height, .. } => prism_faces(&outline, *height),
+        ConvexForm::Hull { points } => {
+            let points: Vec<[f64; 3]> = points.iter().map(|[x, y, z]| [x - centre[0], y - centre[1], *z]).collect();
+            hull_faces(part, &points)?
+        }
+    };
+    Ok(Solid::new(&outline, centre, around, faces, convex.color))
+}
+
+#[cfg(feature = "parry")]
+fn hull_faces(part: Part, points: &[[f64; 3]]) -> Result<Vec<Face>, ArenaError> {
+    use crate::arena_facets::{Flaw, faces};
+    faces(points).map_err(|flaw| match flaw {
+        Flaw::Thin(value) => ArenaError::Range { part, what: "thickness", value, range: LENGTHS },
+        Flaw::Open => ArenaError::NoHull { part, points: points.len() },
+    })
+}
+
+#[cfg(not(feature = "parry"))]
+fn hull_faces(part: Part, _: &[[f64; 3]]) -> Result<Vec<Face>, ArenaError> {
+    Err(ArenaError::NeedsFeature { part, feature: "parry" })
+}
+
 /// A disc where something starts.
 struct Disc {
     part: Part,
@@ -193,6 +247,15 @@ fn check_overlaps(arena: &Arena, discs: &mut [Disc]) -> Result<(), ArenaError> {
             let depth = disc.radius - Scalar::sqrt(u * u + v * v);
             if depth > SLACK {
                 return Err(ArenaError::Overlap { parts: [disc.part, Part::Wall(i)], depth });
+            }
+        }
+    }
+    for (i, convex) in arena.convexes.iter().enumerate() {
+        let outline = convex.outline();
+        for disc in discs.iter() {
+            let depth = disc.radius - distance(&outline, disc.at);
+            if depth > SLACK {
+                return Err(ArenaError::Overlap { parts: [disc.part, Part::Convex(i)], depth });
             }
         }
     }
@@ -237,6 +300,8 @@ impl Model {
             ranged(part, "height", wall.height, LENGTHS)?;
             colored(part, wall.color)?;
         }
+        let solids = arena.convexes.iter().enumerate();
+        let solids = solids.map(|(i, convex)| solid(Part::Convex(i), convex)).collect::<Result<Vec<_>, _>>()?;
         for (i, cylinder) in arena.cylinders.iter().enumerate() {
             let part = Part::Cylinder(i);
             placed(part, cylinder.centre, 0.0)?;
@@ -270,7 +335,7 @@ impl Model {
             first += start.robot.actuators();
         }
         Self::check_places(arena)?;
-        let mut model = Self::of(arena, kinds, numbers);
+        let mut model = Self::of(arena, kinds, numbers, solids);
         model.actuators = actuators;
         model.initial = model.start(arena);
         Ok(model)
@@ -290,7 +355,11 @@ impl Model {
         let mut discs: Vec<Disc> = robots.chain(cylinders).collect();
         if let Some(size) = arena.size {
             let areas = arena.areas.iter().enumerate().map(|(i, area)| (Part::Area(i), area.centre, 0.0));
-            for (part, at, radius) in discs.iter().map(|disc| (disc.part, disc.at, disc.radius)).chain(areas) {
+            let convexes = arena.convexes.iter().enumerate();
+            let corners =
+                convexes.flat_map(|(i, convex)| convex.outline().into_iter().map(move |at| (Part::Convex(i), at, 0.0)));
+            let discs = discs.iter().map(|disc| (disc.part, disc.at, disc.radius));
+            for (part, at, radius) in discs.chain(areas).chain(corners) {
                 let within = |x: f64, size: f64| x - radius >= -SLACK && x + radius <= size + SLACK;
                 if !(within(at[0], size[0]) && within(at[1], size[1])) {
                     return Err(ArenaError::Outside { part, at, radius, size });
@@ -300,7 +369,7 @@ impl Model {
         check_overlaps(arena, &mut discs)
     }
 
-    fn of(arena: &Arena, kinds: Vec<Kind>, robots: Vec<(u16, u16)>) -> Self {
+    fn of(arena: &Arena, kinds: Vec<Kind>, robots: Vec<(u16, u16)>, solids: Vec<Solid>) -> Self {
         let slabs = arena.walls.iter().map(|wall| {
             // Walls along the axes are exactly so.
             let (sine, cosine) = sin_cos(wall.heading);
@@ -337,6 +406,7 @@ impl Model {
             travel: travels.fold(0.0, Scalar::max),
             attachments: kinds.iter().any(|kind| kind.robot.attachment.is_some()),
             slabs: slabs.collect(),
+            solids,
             rounds: rounds.collect(),
             patches: patches.collect(),
             ground: narrow(arena.ground),

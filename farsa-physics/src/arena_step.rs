@@ -4,6 +4,7 @@ use farsa_num::{Mask, Scalar, sin_cos};
 
 use crate::arena_description::CollisionRule;
 use crate::arena_model::{CONTACT, Kind, MET, Model, NOTHING, POSE_WORDS, SHOWN, VELOCITY, WHEELS};
+use crate::arena_solid::{beside, meets_solid, overlaps_solid};
 use crate::arena_surface::{Meeting, meets_disc, meets_wall, wall_squared};
 
 /// Sweeps of pushing overlapping discs apart.
@@ -138,7 +139,7 @@ pub(crate) fn act<S: Scalar<Real = f32>>(
     }
 }
 
-/// What a robot overlaps in each lane, deepest first; ties to what comes first of walls, robots, cylinders.
+/// What a robot overlaps in each lane, deepest first; ties to what comes first of walls, convex obstacles, robots, cylinders.
 #[derive(Clone, Copy)]
 pub(crate) struct Met<S> {
     pub(crate) meeting: Meeting<S>,
@@ -155,6 +156,12 @@ fn overlaps<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], 
     let mut any = zero.lt(zero);
     for slab in &model.slabs {
         any = any | wall_squared(slab, at).lt(square);
+    }
+    for solid in &model.solids {
+        let radius = S::splat(simd, own);
+        if beside(solid, at, radius).any() {
+            any = any | overlaps_solid(solid, at, radius);
+        }
     }
     for body in 0..model.round_bodies() {
         if body != robot {
@@ -182,6 +189,14 @@ fn meet<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], robo
         let mask = wall_squared(slab, at).lt(square);
         note(&mut met, mask, meeting, nothing);
         give(push, mask, meeting, meeting.depth + left);
+    }
+    for solid in &model.solids {
+        let mask = overlaps_solid(solid, at, radius);
+        if mask.any() {
+            let meeting = meets_solid(solid, at, radius);
+            note(&mut met, mask, meeting, nothing);
+            give(push, mask, meeting, meeting.depth + left);
+        }
     }
     for body in 0..model.round_bodies() {
         if body != robot {

@@ -4,6 +4,7 @@ use farsa_body::{ActuatorId, BodyId, Hit, JointId, Lamp, Near, PairContact, Pair
 use farsa_num::{Scalar, sin_cos};
 
 use crate::arena_model::{CONTACT, HELD, MET, Model, NOTHING, POSE_WORDS, SHOWN, VELOCITY, WHEELS, pose_words};
+use crate::arena_solid::{beside, cast_to_solid, ray_to_solid, to_solid};
 use crate::arena_surface::{ray_to_disc, ray_to_wall, to_wall};
 
 /// A planar world as its ports see it.
@@ -161,6 +162,15 @@ pub(crate) fn near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl
             tell(Near { body: None, point, distance, radius: 0.0, color: slab.color, signal: None });
         }
     }
+    // Farther than the range, so that rounding leaves out nothing that is within it.
+    for solid in model.solids.iter().filter(|solid| beside(solid, from, 2.0 * range.max(solid.around[0]))) {
+        let [x, y] = to_solid(solid, from);
+        let distance = Scalar::sqrt(x * x + y * y);
+        if distance <= range {
+            let point = [from[0] + x, from[1] + y];
+            tell(Near { body: None, point, distance, radius: 0.0, color: solid.color, signal: None });
+        }
+    }
     let reach = range + model.largest;
     let (low, high) = ([from[0] - reach, from[1] - reach], [from[0] + reach, from[1] + reach]);
     in_order(world, low, high, |body| {
@@ -240,6 +250,14 @@ pub(crate) fn look(
             sight = Some(Sight { distance, body: None, color: slab.color });
         }
     }
+    for solid in &model.solids {
+        if let Some(distance) = ray_to_solid(solid, from, direction)
+            && (distance < nearest || sight.is_none() && distance <= nearest)
+        {
+            nearest = distance;
+            sight = Some(Sight { distance, body: None, color: solid.color });
+        }
+    }
     let mut met: Option<(f32, usize)> = None;
     along(world, from, direction, range, nearest, |body| {
         let [x, y] = place(world, body);
@@ -308,6 +326,11 @@ pub(crate) fn cast(world: &impl View, origin: [f32; 3], direction: [f32; 3], ran
         let half = [slab.half[0], slab.half[1], up];
         if let Some((distance, [a, b, n])) = crate::ray::block([x, y, origin[2] - up], [u, v, direction[2]], half) {
             meet(distance, [a * c - b * s, a * s + b * c, n]);
+        }
+    }
+    for solid in &model.solids {
+        if let Some((distance, normal)) = cast_to_solid(solid, origin, direction) {
+            meet(distance, normal);
         }
     }
     let mut met: Option<(f32, usize, [f32; 3])> = None;

@@ -7,11 +7,15 @@ extern crate alloc;
 #[cfg(all(feature = "lanes", not(test)))]
 mod arena_batch;
 #[cfg(feature = "alloc")]
+mod arena_convex;
+#[cfg(feature = "alloc")]
 mod arena_crowd;
 #[cfg(feature = "alloc")]
 mod arena_description;
 #[cfg(feature = "alloc")]
 mod arena_error;
+#[cfg(feature = "parry")]
+mod arena_facets;
 #[cfg(feature = "alloc")]
 mod arena_grid;
 #[cfg(feature = "alloc")]
@@ -21,7 +25,11 @@ mod arena_lockstep;
 #[cfg(feature = "alloc")]
 mod arena_model;
 #[cfg(feature = "alloc")]
+mod arena_outline;
+#[cfg(feature = "alloc")]
 mod arena_place;
+#[cfg(feature = "alloc")]
+mod arena_solid;
 #[cfg(feature = "alloc")]
 mod arena_step;
 #[cfg(feature = "alloc")]
@@ -89,6 +97,7 @@ pub mod articulated {
 pub mod arena {
     #[cfg(all(feature = "lanes", not(test)))]
     pub use crate::arena_batch::{Batch, Lane};
+    pub use crate::arena_convex::{Convex, ConvexForm};
     pub use crate::arena_description::{Area, AreaShape, Arena, CollisionRule, Cylinder, Placed, Search, Wall};
     pub use crate::arena_error::{ArenaError, Part};
     pub use crate::arena_place::FreePlace;

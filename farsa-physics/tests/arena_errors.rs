@@ -3,7 +3,7 @@
 
 use farsa_body::{BodyId, MobileRobot, Planar};
 use farsa_num::{Domain, Stream};
-use farsa_physics::arena::{Area, Arena, ArenaError, Cylinder, FreePlace, Part, Wall, World};
+use farsa_physics::arena::{Area, Arena, ArenaError, Convex, Cylinder, FreePlace, Part, Wall, World};
 
 fn arena() -> Arena {
     let mut arena = Arena::walled(1.0, 0.8);
@@ -76,6 +76,131 @@ fn places_are_checked() {
         arena.add_wall(Wall::segment([0.1, 0.1], [0.1, 0.1], 0.01));
     });
     assert!(matches!(flat, ArenaError::Range { part: Part::Wall(4), what: "size", value: 0.0, .. }), "{flat}");
+}
+
+fn of_convex(convex: Convex) -> ArenaError {
+    error(|arena| {
+        arena.add_convex(Convex::prism(&[[0.1, 0.6], [0.2, 0.6], [0.1, 0.7]], 0.1));
+        arena.add_convex(convex);
+    })
+}
+
+#[test]
+fn what_is_not_convex_is_refused() {
+    let part = Part::Convex(1);
+    let range = |found: &ArenaError, what: &str| {
+        matches!(found, ArenaError::Range { part: p, what: w, value, range }
+            if *p == part && *w == what && !range.contains(value) && found.to_string().contains("convex obstacle 1"))
+    };
+    let square = [[0.7, 0.5], [0.8, 0.5], [0.8, 0.6], [0.7, 0.6]];
+    for (corners, what) in [(&square[..2], "number of corners"), (&[], "number of corners")] {
+        let found = of_convex(Convex::prism(corners, 0.1));
+        assert!(range(&found, what), "{found}");
+    }
+    for x in [f64::NAN, f64::INFINITY, -1e9] {
+        let found = of_convex(Convex::prism(&[[0.7, 0.5], [0.8, x], [0.8, 0.6]], 0.1));
+        assert!(range(&found, "corner"), "{found}");
+        let found = of_convex(Convex::hull(&[[0.7, 0.5, 0.0], [0.8, 0.5, 0.0], [0.8, x, 0.1], [0.7, 0.6, 0.1]]));
+        assert!(range(&found, "point"), "{found}");
+        assert!(
+            range(&of_convex(Convex::prism(&square, x)), "height")
+                && range(&of_convex(Convex::prism(&square, 0.0)), "height")
+        );
+        assert!(range(&of_convex(Convex::prism(&square, 0.1).with_color([0.0, x, 0.0])), "colour"));
+    }
+    let many: Vec<[f64; 2]> = (0..1025).map(|i| [0.7 + 1e-4 * f64::from(i), 0.5]).collect();
+    assert!(range(&of_convex(Convex::prism(&many, 0.1)), "number of corners"));
+    // On a line, and nearly.
+    for off in [0.0, 4e-7] {
+        let found = of_convex(Convex::prism(&[[0.6, 0.5], [0.7, 0.6 + off], [0.8, 0.7]], 0.1));
+        assert!(range(&found, "width"), "{found}");
+    }
+    // A dent, by its corner and depth.
+    let dent = of_convex(Convex::prism(&[[0.6, 0.5], [0.8, 0.5], [0.8, 0.7], [0.75, 0.55]], 0.1));
+    let ArenaError::Dent { part: p, corner: 3, depth } = dent else { panic!("{dent:?}") };
+    assert!(p == part && (depth - 0.05).abs() < 1e-9, "{dent}");
+    // Two corners at one place, the polygon closed explicitly.
+    let closed = of_convex(Convex::prism(&[square[0], square[1], square[2], square[3], square[0]], 0.1));
+    assert_eq!(closed, ArenaError::SameCorner { part, corners: [0, 4], distance: 0.0 });
+    // A bow tie and a five-pointed star: all corners on the hull.
+    let tie = of_convex(Convex::prism(&[square[0], square[1], square[3], square[2]], 0.1));
+    assert!(matches!(tie, ArenaError::OutOfTurn { part: p, .. } if p == part), "{tie}");
+    let star: [[f64; 2]; 5] = core::array::from_fn(|i| {
+        let (y, x) = farsa_num::sin_cos(2.0 * std::f64::consts::TAU * i as f64 / 5.0);
+        [0.8 + 0.1 * x, 0.6 + 0.1 * y]
+    });
+    let star = of_convex(Convex::prism(&star, 0.1));
+    assert!(matches!(star, ArenaError::OutOfTurn { part: p, .. } if p == part), "{star}");
+    for found in [tie, star, closed, dent] {
+        assert!(found.to_string().contains("convex obstacle 1"), "{found}");
+    }
+    // Either way round, and a corner on a side, are right.
+    let mut right = arena();
+    let mut corners = vec![square[0], [0.75, 0.5], square[1], square[2], square[3]];
+    right.add_convex(Convex::prism(&corners, 0.1));
+    corners.reverse();
+    right.convexes[0] = Convex::prism(&corners, 0.1);
+    World::new(&right).unwrap();
+    assert_eq!(right.convexes[0].outline(), square);
+}
+
+#[test]
+fn obstacles_lie_in_the_arena_and_on_nobody() {
+    let outside = of_convex(Convex::prism(&[[0.9, 0.5], [1.01, 0.5], [0.9, 0.6]], 0.1));
+    let expected = ArenaError::Outside { part: Part::Convex(1), at: [1.01, 0.5], radius: 0.0, size: [1.0, 0.8] };
+    assert_eq!(outside, expected);
+    // Beside the robot at (0.5, 0.4), and around the cylinder at (0.2, 0.2).
+    let overlap = of_convex(Convex::prism(&[[0.53, 0.3], [0.6, 0.3], [0.6, 0.5], [0.53, 0.5]], 0.1));
+    let ArenaError::Overlap { parts: [Part::Robot(0), Part::Convex(1)], depth } = overlap else {
+        panic!("{overlap:?}")
+    };
+    assert!((depth - 0.005).abs() < 1e-9);
+    let overlap = of_convex(Convex::prism(&[[0.1, 0.1], [0.3, 0.1], [0.3, 0.3], [0.1, 0.3]], 0.1));
+    let ArenaError::Overlap { parts: [Part::Cylinder(0), Part::Convex(1)], depth } = overlap else {
+        panic!("{overlap:?}")
+    };
+    assert!((depth - 0.15).abs() < 1e-9);
+    let mut touching = arena();
+    touching.add_convex(Convex::prism(&[[0.535, 0.3], [0.6, 0.3], [0.6, 0.5], [0.535, 0.5]], 0.1));
+    World::new(&touching).unwrap();
+}
+
+/// Corners of a slab in the corner of the arena.
+fn slab(height: f64) -> Vec<[f64; 3]> {
+    let ends = [[0.8, 0.6], [0.9, 0.6], [0.9, 0.7], [0.8, 0.7]];
+    ends.iter().flat_map(|[x, y]| [[*x, *y, 0.0], [*x, *y, height]]).collect()
+}
+
+#[cfg(not(feature = "parry"))]
+#[test]
+fn hulls_name_the_feature_that_they_need() {
+    let found = of_convex(Convex::hull(&slab(0.1)));
+    assert_eq!(found, ArenaError::NeedsFeature { part: Part::Convex(1), feature: "parry" });
+    assert!(found.to_string().contains("`parry`"), "{found}");
+}
+
+#[cfg(feature = "parry")]
+#[test]
+fn hulls_are_checked() {
+    let part = Part::Convex(1);
+    let found = of_convex(Convex::hull(&slab(0.1)[..3]));
+    assert!(
+        matches!(found, ArenaError::Range { part: p, what: "number of points", value: 3.0, .. } if p == part),
+        "{found}"
+    );
+    let found = of_convex(Convex::hull(&slab(0.0)));
+    assert!(matches!(found, ArenaError::Range { part: p, what: "thickness", value: 0.0, .. } if p == part), "{found}");
+    let upright: Vec<[f64; 3]> = slab(0.1).into_iter().map(|[x, _, z]| [x, 0.6, z]).collect();
+    let found = of_convex(Convex::hull(&upright));
+    assert!(matches!(found, ArenaError::Range { part: p, what: "width", value: 0.0, .. } if p == part), "{found}");
+    let mut below = slab(0.1);
+    below[3][2] = -0.01;
+    let found = of_convex(Convex::hull(&below));
+    assert!(matches!(found, ArenaError::Range { what: "height of a point", value: -0.01, .. }), "{found}");
+    // As thin as paper is thick enough.
+    let mut thin = arena();
+    thin.add_convex(Convex::hull(&slab(1e-4)));
+    World::new(&thin).unwrap();
 }
 
 #[test]

@@ -9,7 +9,7 @@ use farsa_body::{
 };
 use farsa_num::fearless_simd::Level;
 use farsa_num::{Digest, Domain, Stream};
-use farsa_physics::arena::{Arena, ArenaError, Batch, CollisionRule, Cylinder, FreePlace, Lane, Wall, World};
+use farsa_physics::arena::{Arena, ArenaError, Batch, CollisionRule, Convex, Cylinder, FreePlace, Lane, Wall, World};
 
 /// Control steps of every lane; ten times as many with `FARSA_LONG=1`.
 fn steps() -> usize {
@@ -37,6 +37,22 @@ fn three(collisions: CollisionRule) -> Arena {
     arena.add_robot(MobileRobot::e_puck(), [0.1, 0.6], 0.0);
     arena.add_robot(MobileRobot::marxbot(), [0.2, 0.2], 0.0);
     arena.add_robot(MobileRobot::marxbot(), [0.55, 0.3], 0.0);
+    arena
+}
+
+/// The same with convex obstacles, a hull among them where there is parry.
+fn obstructed(collisions: CollisionRule) -> Arena {
+    let mut arena = three(collisions);
+    let hexagon: [[f64; 2]; 6] = core::array::from_fn(|i| {
+        let (y, x) = farsa_num::sin_cos(std::f64::consts::TAU * i as f64 / 6.0);
+        [0.04 * x, 0.02 * y]
+    });
+    arena.add_convex(Convex::prism(&hexagon, 0.1).placed([0.38, 0.58], 0.7));
+    arena.add_convex(Convex::prism(&[[0.7, 0.0], [0.7, 0.1], [0.6, 0.0]], 0.1));
+    if cfg!(feature = "parry") {
+        let points = [[0.0, 0.0, 0.0], [0.05, 0.0, 0.0], [0.0, 0.05, 0.0], [0.01, 0.01, 0.1], [0.02, 0.02, 0.05]];
+        arena.add_convex(Convex::hull(&points).placed([0.03, 0.4], -0.3));
+    }
     arena
 }
 
@@ -163,6 +179,13 @@ fn robots_that_meet_and_hold_in_a_lane_are_those_alone() {
     equal("undone", &three(CollisionRule::Undone), steps() / 10, false);
     equal("circles", &three(CollisionRule::Circles), steps() / 10, false);
     equal("holding", &three(CollisionRule::Undone), steps() / 20, true);
+}
+
+#[test]
+fn robots_among_obstacles_in_a_lane_are_those_alone() {
+    equal("undone, obstacles", &obstructed(CollisionRule::Undone), steps() / 10, false);
+    equal("circles, obstacles", &obstructed(CollisionRule::Circles), steps() / 10, false);
+    equal("holding, obstacles", &obstructed(CollisionRule::Undone), steps() / 20, true);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! A lane of a batch is the world alone, bit for bit: the whole scene at every instruction set of this machine.
 #![allow(missing_docs, clippy::unwrap_used)]
+#![cfg(feature = "lanes")]
 
 mod common;
 
