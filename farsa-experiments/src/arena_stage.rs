@@ -1,8 +1,8 @@
 //! A planar world as something to be seen.
 
 use farsa_body::{BodyId, Pose};
-use farsa_num::sin_cos;
-use farsa_physics::arena::{Area, AreaShape, Arena, Cylinder, Wall};
+use farsa_num::{Scalar, atan2, sin_cos};
+use farsa_physics::arena::{Area, AreaShape, Arena, Convex, Cylinder, Wall};
 
 use crate::form::Form;
 use crate::picture::{Color, OKABE_ITO, Role};
@@ -15,6 +15,8 @@ const WALL: Color = [84, 90, 99];
 const STRIPE: Color = [250, 250, 245];
 /// The ground around a lamp.
 const GLOW: Color = [255, 238, 170];
+/// Thickness of the sides that a convex obstacle is drawn by [m].
+const SIDE: f64 = 2e-3;
 /// How high an area lies above the one under it [m].
 const LAYER: f64 = 1e-4;
 
@@ -62,6 +64,25 @@ fn wall(number: usize, wall: &Wall) -> Prop {
     Prop::new(&name, form, standing(wall.centre, up, wall.heading), Role::Ground).with_color(color)
 }
 
+/// A convex obstacle, as its upright sides over its outline: thin walls within it.
+fn convex(number: usize, convex: &Convex) -> Vec<Prop> {
+    let corners = convex.outline();
+    let color = if convex.color == Wall::COLOR { WALL } else { screen_color(convex.color) };
+    let up = 0.5 * convex.height();
+    let side = |i: usize| {
+        let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
+        let [x, y] = [b[0] - a[0], b[1] - a[1]];
+        let length = Scalar::sqrt(x * x + y * y);
+        // The outline runs counter-clockwise: inwards is to the left.
+        let inwards = 0.5 * SIDE / length;
+        let middle = [0.5 * (a[0] + b[0]) - inwards * y, 0.5 * (a[1] + b[1]) + inwards * x];
+        let form = Form::Box { half: [0.5 * length, 0.5 * SIDE, up] };
+        let name = format!("obstacle {} side {}", number + 1, i + 1);
+        Prop::new(&name, form, standing(middle, up, atan2(y, x)), Role::Ground).with_color(color)
+    };
+    (0..corners.len()).map(side).collect()
+}
+
 fn area(number: usize, area: &Area) -> Prop {
     let form = match area.shape {
         AreaShape::Circle { radius } => Form::Disc { radius },
@@ -87,7 +108,7 @@ fn cylinder(cylinder: &Cylinder) -> Prop {
 impl Stage {
     /// The bodies of a planar world, seen from above, by the numbers that they have there: robots, cylinders, areas.
     ///
-    /// A lamp stands on a light disc. A robot is its hull with a light stripe that points ahead; it is drawn in its own colour, whatever its LEDs show.
+    /// A convex obstacle is shown by thin walls along its outline. A lamp stands on a light disc. A robot is its hull with a light stripe that points ahead; it is drawn in its own colour, whatever its LEDs show.
     ///
     /// ```
     /// use farsa_body::MobileRobot;
@@ -107,6 +128,7 @@ impl Stage {
         let bodies = numbered(&robots.chain(cylinders).chain(areas).collect::<Vec<_>>());
         let mut props = vec![ground(arena)];
         props.extend(arena.walls.iter().enumerate().map(|(number, it)| wall(number, it)));
+        props.extend(arena.convexes.iter().enumerate().flat_map(|(number, it)| convex(number, it)));
         let moving = |prop: Prop, body: BodyId| {
             let name = bodies.get(body.index()).cloned().unwrap_or_default();
             Prop { name, ..prop.on(body) }
@@ -184,6 +206,40 @@ mod tests {
         (0..7).for_each(|body| recording.pose(BodyId(body), world.pose(BodyId(body))));
         recording.tick(0.0);
         assert!(crate::Page::new("x").with("y", recording).html().contains("Khepera 2 ahead"));
+    }
+
+    #[test]
+    fn a_convex_obstacle_is_seen_by_its_sides() {
+        let mut arena = Arena::walled(0.6, 0.5);
+        arena.add_robot(MobileRobot::khepera(), [0.1, 0.1], 0.9);
+        let hexagon: [[f64; 2]; 6] = core::array::from_fn(|i| {
+            let (y, x) = sin_cos(core::f64::consts::TAU * i as f64 / 6.0);
+            [0.08 * x, 0.08 * y]
+        });
+        arena.add_convex(Convex::prism(&hexagon, 0.1).placed([0.3, 0.25], 0.3));
+        arena.add_convex(Convex::prism(&[[0.6, 0.5], [0.5, 0.5], [0.6, 0.4]], 0.05).with_color([0.8, 0.2, 0.1]));
+        let stage = Stage::of_arena(&arena);
+        let sides: Vec<&Prop> = stage.props.iter().filter(|prop| prop.name.starts_with("obstacle")).collect();
+        assert_eq!((sides.len(), sides[8].color), (9, Some([204, 51, 26])));
+        assert_eq!(stage.bodies, ["Khepera"]);
+        // Outer edges are the sides: both ends of each are corners.
+        let corners: Vec<[f64; 2]> = arena.convexes.iter().flat_map(Convex::outline).collect();
+        for prop in &sides {
+            let Form::Box { half } = prop.form else { panic!("{prop:?}") };
+            for end in [-half[0], half[0]] {
+                let [x, y, z] = prop.placement.transform([end, -half[1], -half[2]]);
+                let near = |corner: &[f64; 2]| (corner[0] - x).hypot(corner[1] - y) < 1e-12;
+                assert!(corners.iter().any(near) && z.abs() < 1e-12, "{prop:?}");
+            }
+        }
+        if let Some(path) = std::env::var_os("FARSA_LOOK") {
+            let mut picture = crate::picture::Picture::default();
+            picture.shapes.extend(stage.props.iter().map(|prop| {
+                prop.placed(&if prop.body.is_some() { standing([0.1, 0.1], 0.0, 0.9).cast() } else { Pose::identity() })
+            }));
+            let path = std::path::Path::new(&path).join("obstacles.svg");
+            std::fs::write(path, picture.svg(crate::camera::Camera::for_view(View::Top), [600, 500], "p")).unwrap();
+        }
     }
 
     #[test]
