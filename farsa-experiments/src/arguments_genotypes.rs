@@ -28,15 +28,10 @@ pub(crate) struct EvaluateArgs {
     pub(crate) variant: GenotypeVariant,
     /// The genes, whole numbers with commas between them; of several populations once for each, in their order or with
     /// their names
-    #[arg(
-        long,
-        value_name = "[POPULATION=]G,G,...",
-        allow_hyphen_values = true,
-        required_unless_present = "genes_file"
-    )]
+    #[arg(long, value_name = "[NAME=]G,G,...", allow_hyphen_values = true, required_unless_present = "genes_file")]
     pub(crate) genes: Vec<String>,
     /// A file with the genes: a .gen file of the original FARSA, or a list; of several populations as --genes
-    #[arg(long, value_name = "[POPULATION=]FILE", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "[NAME=]FILE", value_hint = ValueHint::FilePath)]
     pub(crate) genes_file: Vec<PathBuf>,
     /// Which of the file's genotypes, from 0 [default: its only one]; of several files once for each
     #[arg(long, value_name = "N", requires = "genes_file")]
@@ -58,8 +53,8 @@ pub(crate) struct EvaluateArgs {
 #[command(allow_negative_numbers = true)]
 pub(crate) struct ImportArgs {
     /// .gen files of the original FARSA; the first genotype becomes the champion. Of several populations one file for each
-    /// in their order, or any number with their names, as many genotypes for each
-    #[arg(required = true, value_name = "[POPULATION=]FILE", value_hint = ValueHint::FilePath)]
+    /// in their order, or any number as POPULATION=FILE, as many genotypes for each
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
     /// The experiment that they are genotypes of
     #[arg(long, value_name = "NAME")]
