@@ -37,8 +37,10 @@ impl ForagingConfig {
             "khepera" => (0.12, team.speed),
             _ => (0.4, 0.5),
         };
+        // The MarXbot's camera sees all around; what shines behind a robot tells it where others are.
+        let field_of_view = if team.of_marxbots() { core::f64::consts::TAU } else { team.field_of_view };
         Self {
-            team: TeamConfig { speed, ..team },
+            team: TeamConfig { speed, field_of_view, trials: 4, ..team },
             nest_radius,
             nest_to_wall: 1.0,
             start_within: 0.5,
@@ -50,7 +52,7 @@ impl ForagingConfig {
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
         let length = |key: &str, default: f64| Setting::number(key, default, 0.0..=1000.0).unit("m").given();
-        let mut table = crate::swarm_config::evolution(80, 30, 6);
+        let mut table = crate::swarm_config::evolution(400, 40, 8);
         table.extend(self.team.table(true, true));
         let speed = Setting::number("robot.speed", self.team.speed, 1e-3..=10.0).unit("m/s");
         let speed = if self.team.of_marxbots() { speed.given() } else { speed };
