@@ -8,6 +8,8 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
+#[cfg(feature = "files")]
+extern crate std;
 
 mod actuator;
 #[cfg(feature = "alloc")]
@@ -48,12 +50,20 @@ mod light_sensors;
 mod linear_camera;
 #[cfg(feature = "alloc")]
 mod markup;
+#[cfg(feature = "files")]
+mod markup_check;
+#[cfg(feature = "files")]
+mod markup_tree;
 #[cfg(feature = "alloc")]
 mod mass_properties;
+#[cfg(feature = "files")]
+mod mesh;
 #[cfg(feature = "alloc")]
 mod mjcf;
 #[cfg(feature = "alloc")]
 mod mobile;
+#[cfg(feature = "files")]
+mod model_files;
 mod motor;
 mod muscle;
 mod noisy;
@@ -64,8 +74,32 @@ mod plane_world;
 mod point_world;
 mod ports;
 mod pose;
+#[cfg(feature = "files")]
+mod principal_axes;
 mod proprioception;
+#[cfg(feature = "files")]
+mod read_error;
+#[cfg(feature = "files")]
+mod read_mjcf;
+#[cfg(feature = "files")]
+mod read_mjcf_actuators;
+#[cfg(feature = "files")]
+mod read_mjcf_bodies;
+#[cfg(feature = "files")]
+mod read_mjcf_classes;
+#[cfg(feature = "files")]
+mod read_mjcf_contacts;
+#[cfg(feature = "files")]
+mod read_mjcf_geoms;
+#[cfg(feature = "files")]
+mod read_mjcf_joints;
+#[cfg(feature = "files")]
+mod read_urdf;
+#[cfg(feature = "files")]
+mod reading;
 mod recorder;
+#[cfg(feature = "files")]
+mod repair;
 #[cfg(feature = "alloc")]
 mod robot;
 #[cfg(feature = "alloc")]
@@ -73,6 +107,8 @@ mod sampled_infrared;
 mod scaled;
 mod signal;
 mod signal_sensor;
+#[cfg(feature = "files")]
+mod solid;
 mod stance;
 #[cfg(feature = "alloc")]
 mod tabletop;
@@ -129,6 +165,10 @@ pub use ports::{
 };
 pub use pose::{Pose, Twist};
 pub use proprioception::{JointPosition, JointSpeed};
+#[cfg(feature = "files")]
+pub use read_error::{Place, ReadError};
+#[cfg(feature = "files")]
+pub use reading::{Frame, Limits, Meshes, Note, ReadOptions, Reading, Repair};
 pub use recorder::{Recorder, record_world};
 #[cfg(feature = "alloc")]
 pub use robot::{Actuator, Collider, Joint, JointKind, Offsets, Pair, Robot, Segment, Shape, Surface};

@@ -183,14 +183,12 @@ impl Robot {
         let head = format!("name={} joint={}", quoted(&actuator.name), quoted(&joint.name));
         match actuator.law {
             Law::Servo(servo) => format!(
-                "<position {head} kp=\"{:?}\" kv=\"{:?}\" forcelimited=\"true\" forcerange=\"{}\"/>",
+                "<position {head} kp=\"{:?}\" kv=\"{:?}\"{}/>",
                 servo.stiffness,
                 servo.damping,
-                numbers(&[-servo.limit, servo.limit])
+                limited("force", servo.limit)
             ),
-            Law::Torque(motor) => {
-                format!("<motor {head} ctrllimited=\"true\" ctrlrange=\"{}\"/>", numbers(&[-motor.limit, motor.limit]))
-            }
+            Law::Torque(motor) => format!("<motor {head}{}/>", limited("ctrl", motor.limit)),
             Law::MusclePair(_) | Law::Held(_) => format!("<motor {head}/>"),
         }
     }
@@ -245,6 +243,14 @@ fn check(options: &MjcfOptions) -> Result<(), RobotError> {
         Some(value) => Err(wrong("gravity or keyframe", *value)),
         None => Ok(()),
     }
+}
+
+/// The attributes of a limit, none for an infinite one.
+fn limited(what: &str, limit: f64) -> String {
+    if limit.is_infinite() {
+        return String::new();
+    }
+    format!(" {what}limited=\"true\" {what}range=\"{}\"", numbers(&[-limit, limit]))
 }
 
 /// The attributes of a place, none for the identity.
