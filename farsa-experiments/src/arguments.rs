@@ -13,6 +13,7 @@ use crate::error::Error;
 use crate::experiment::Experiment;
 use crate::export::ModelFormat;
 use crate::lanes::{SIMD, Wanted};
+use crate::model::RobotArgs;
 use crate::plan::{self, LARGEST_SEED, Plan};
 use crate::pool::Pool;
 use crate::replay::Which;
@@ -51,6 +52,8 @@ pub(crate) enum Command {
     Report(ReportArgs),
     /// Write an experiment's robot for other simulators
     Export(ExportArgs),
+    /// Tell what is read of a robot in a model file, URDF or MJCF
+    Robot(RobotArgs),
     /// Measure how fast lives are lived here, and foretell a whole study
     Bench(BenchArgs),
     /// Write a shell's completions to the standard output

@@ -23,6 +23,7 @@ use crate::export;
 use crate::import;
 use crate::info::{self, pretty};
 use crate::manual;
+use crate::model;
 use crate::plan::{self, ConfigFile, Plan};
 use crate::replay;
 use crate::replications::{self, Replications};
@@ -118,6 +119,18 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             match out {
                 None => say(&text),
                 Some(path) => create_results(&[(path, text)]),
+            }
+        }
+        Command::Robot(args) => {
+            let reading = model::read(&args)?;
+            let found = model::Summary::of(&args, &reading);
+            match (args.format, args.out) {
+                (None, _) => say(&if args.json { pretty(&found)? } else { found.text() }),
+                (Some(format), None) => say(&model::written(&reading, format)?),
+                (Some(format), Some(path)) => {
+                    create_results(&[(path, model::written(&reading, format)?)])?;
+                    summary(false, found.text(), &|| Ok(String::new()))
+                }
             }
         }
         Command::Bench(args) => {

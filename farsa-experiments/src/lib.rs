@@ -48,6 +48,7 @@ mod log;
 mod manifest;
 mod manual;
 mod marks;
+mod model;
 mod nest;
 mod opponents;
 mod outline;

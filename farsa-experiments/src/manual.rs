@@ -101,6 +101,10 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
                 format!("export robot {experiment} --format urdf"),
             ],
         ),
+        (
+            "robot",
+            vec!["robot panda.urdf --packages share".into(), "robot ant.xml --format urdf --out ant.urdf".into()],
+        ),
         ("bench", vec![format!("bench {experiment}"), format!("bench --run {run} --threads 1 --lanes 1 --seconds 60")]),
         ("completions", vec![format!("completions bash > ~/.local/share/bash-completion/completions/{program}")]),
         ("man", vec!["man | man -l -".into(), "man --out ~/.local/share/man/man1".into()]),

@@ -9,5 +9,6 @@ mod manners;
 mod own;
 mod replications;
 mod report;
+mod robot;
 mod same_bytes;
 mod tool;
