@@ -100,6 +100,7 @@ mod swarm_setup;
 mod swarm_team;
 mod table;
 mod vector;
+mod walking_model;
 
 pub use aggregation::Aggregation;
 pub use best_of_run::BestOfRun;
@@ -123,6 +124,7 @@ pub use recording::{CastRay, Recording, Touching};
 pub use search::Search;
 pub use settings::{Setting, Settings, Source, Value};
 pub use stage::{Channel, Links, NodeParameters, Stage, View};
+pub use walking_model::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
 /// Grows by one whenever the same configuration, seed and genes come to other lives through a change in the crates that
 /// experiments are built of; see [`Experiment::values_version`] for changes in an experiment itself.
