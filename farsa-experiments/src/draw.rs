@@ -83,7 +83,7 @@ pub(crate) fn draw(
     }
     let mut relived = Relived::find(plan, directory, which)?;
     let trial = relived.trials.start;
-    let mut recording = Recording::new(relived.setup.stage());
+    let mut recording = Recording::new(relived.stage());
     let outcome = relived.live(trial, &mut recording);
     let tick = tick_at(&recording, time)?;
     let camera = camera.unwrap_or(Camera::for_view(recording.stage().view));
@@ -118,7 +118,7 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     let mut relived = Relived::find(plan, directory, Which::default())?;
     let mut best: Option<(f64, u32, Recording)> = None;
     for trial in relived.trials.clone() {
-        let mut recording = Recording::new(relived.setup.stage());
+        let mut recording = Recording::new(relived.stage());
         let outcome = relived.live(trial, &mut recording);
         let fitness = relived.fitness(core::slice::from_ref(&outcome));
         if best.as_ref().is_none_or(|(other, ..)| fitness > *other) {

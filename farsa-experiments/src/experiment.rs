@@ -108,6 +108,14 @@ pub trait Setup: Send {
     /// What a life tells its [`Tape`] at every step, by name: [`Stage::of_scalars`] if it is a row of numbers.
     fn stage(&self) -> Stage;
 
+    /// The stage of one genome's lives, where bodies are made of genes; by default [`stage`](Self::stage).
+    ///
+    /// The channels must be those of the stage, whatever the genes.
+    fn stage_of(&self, genes: &[u16]) -> Stage {
+        let _ = genes;
+        self.stage()
+    }
+
     /// What a MuJoCo model of the robot on the [`stage`](Self::stage) says beside the robot, for `farsa export`.
     ///
     /// By default the time between two steps, if the experiment has a clock, and gravity 9.81 m/s2 downwards.

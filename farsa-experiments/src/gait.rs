@@ -51,7 +51,14 @@ pub struct Rules {
 
 impl Default for Rules {
     fn default() -> Self {
-        Self { shortest_step: 0.05, lowest_hip: 0.7, longest_slide: 0.02, longest_flight: 0.1, largest_gain: 0.01, settling: 0.01 }
+        Self {
+            shortest_step: 0.05,
+            lowest_hip: 0.7,
+            longest_slide: 0.02,
+            longest_flight: 0.1,
+            largest_gain: 0.01,
+            settling: 0.01,
+        }
     }
 }
 
@@ -243,13 +250,13 @@ impl Gait {
                     rate: None,
                 };
                 self.phase = Phase::Both;
-                self.change(world, now, touching);
+                self.change(world, touching);
             }
             Phase::Falls if !is_ahead => {
                 self.phase = Phase::Passes;
                 self.ground(world, swing, false);
             }
-            Phase::Both => self.change(world, now, touching),
+            Phase::Both => self.change(world, touching),
             _ => {}
         }
     }
@@ -272,7 +279,7 @@ impl Gait {
     }
 
     /// In double support: whichever foot leaves the ground swings.
-    fn change<W>(&mut self, world: &mut W, now: &Posture, touching: [bool; 2])
+    fn change<W>(&mut self, world: &mut W, touching: [bool; 2])
     where
         W: Arrange + Handles<Joint = JointId> + ?Sized,
     {

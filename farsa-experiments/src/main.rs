@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 
 use farsa_experiments::{
-    Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PredatorPrey, ReachGraspLift, cli,
+    Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PassiveWalker,
+    PredatorPrey, ReachGraspLift, cli,
 };
 
 fn main() -> ExitCode {
@@ -15,5 +16,7 @@ fn main() -> ExitCode {
         &Foraging,
         &Aggregation,
         &PredatorPrey,
+        &PassiveWalker,
+        &BodyEvolution,
     ])
 }

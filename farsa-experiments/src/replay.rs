@@ -17,6 +17,7 @@ use crate::page::{Page, readable};
 use crate::plan::Plan;
 use crate::recording::Recording;
 use crate::records::Ancestry;
+use crate::stage::Stage;
 use crate::table::Table;
 
 /// Which lives to live again; individuals are counted through all populations.
@@ -79,6 +80,11 @@ impl Relived {
         let opponents = trials.clone().map(|trial| opponents::met(&descent, generation, individual as usize, trial));
         let opponents = opponents.collect::<Result<_, _>>().map_err(|error| Error::damaged(&path, error))?;
         Ok(Self { setup, genes, opponents, seed: plan.seed, generation, individual, trials })
+    }
+
+    /// The stage of its lives.
+    pub(crate) fn stage(&self) -> Stage {
+        self.setup.stage_of(&self.genes)
     }
 
     /// Lives one of the trials that were asked for again.
@@ -187,7 +193,7 @@ pub(crate) fn replay(
 ) -> Result<Replayed, Error> {
     let mut relived = Relived::find(plan, directory, which)?;
     let failed = |source: io::Error| Error::Io { doing: "write", path: "the replay".into(), source };
-    let mut table = Table::new(out, &relived.setup.stage()).map_err(failed)?;
+    let mut table = Table::new(out, &relived.stage()).map_err(failed)?;
     let mut outcomes = Vec::new();
     for trial in relived.trials.clone() {
         table.begin(trial);
@@ -212,7 +218,7 @@ pub(crate) fn page(
         let mut relived = Relived::find(plan, directory, which)?;
         let mut outcomes = Vec::new();
         for trial in relived.trials.clone() {
-            let mut recording = Recording::new(relived.setup.stage());
+            let mut recording = Recording::new(relived.stage());
             let outcome = relived.live(trial, &mut recording);
             let Relived { generation, individual, .. } = relived;
             // What tells lives apart comes first: a narrow screen cuts the rest.
