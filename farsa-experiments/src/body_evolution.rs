@@ -15,11 +15,11 @@ use crate::settings::{Setting, Settings};
 use crate::stage::Stage;
 use crate::walker::{Legs, Walker};
 use crate::walker_life::{Brain, Launch, SENSES, Walk, WalkerLife};
-use crate::walker_stage::{stage, tell};
+use crate::walker_stage::{drawn, exported, stage, tell};
 
 /// Which bodies walk, and what for? \[McGeer1990\]
 ///
-/// Genes make the two pairs of legs, the masses, the soles, and the push that a walker begins with; the distance that it
+/// Genes make the legs, the masses, the soles, and the push that a walker begins with; the distance that it
 /// walks is its fitness. Under `passive` it walks down a slope without motor and controller; under `powered` on flat ground,
 /// and further genes make a small network that drives a motor at the hip. Distance is counted where feet come to
 /// stand; whoever rolls, slides, hops or finds energy earns nothing by it ([`Rules`]).
@@ -32,39 +32,37 @@ pub struct BodyEvolution;
 /// What one gene of a body means, and between which values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Part {
-    /// How many genes.
-    count: usize,
     key: &'static str,
     unit: &'static str,
     range: [f64; 2],
     doc: &'static str,
 }
 
-const fn part(count: usize, key: &'static str, unit: &'static str, range: [f64; 2], doc: &'static str) -> Part {
-    Part { count, key, unit, range, doc }
+const fn part(key: &'static str, unit: &'static str, range: [f64; 2], doc: &'static str) -> Part {
+    Part { key, unit, range, doc }
 }
 
 /// The genes of a body in their order.
-const BODY: [Part; 9] = [
-    part(2, "body.leg_length", "m", [0.6, 1.0], "Length of the outer and of the inner legs: two genes."),
-    part(1, "body.hip_mass", "kg", [1.0, 20.0], "Mass at the hip: a gene."),
-    part(2, "body.leg_mass", "kg", [0.1, 5.0], "Mass along the outer and the inner legs: two genes."),
-    part(2, "body.foot_mass", "kg", [0.05, 2.0], "Mass at the outer and the inner soles: two genes."),
-    part(2, "body.foot_radius", "m", [0.01, 0.3], "Radius of the outer and the inner soles: two genes."),
+const BODY: [Part; 10] = [
+    part("body.leg_length", "m", [0.6, 1.0], "Length of the outer legs: a gene."),
+    part("body.leg_ratio", "", [0.97, 1.03], "Length of the inner legs in outer ones: a gene."),
+    part("body.hip_mass", "kg", [1.0, 20.0], "Mass at the hip: a gene."),
+    part("body.leg_mass", "kg", [0.1, 5.0], "Mass along each pair of legs: a gene."),
+    part("body.foot_mass", "kg", [0.05, 2.0], "Mass at the soles of each pair: a gene."),
+    part("body.foot_radius", "m", [0.01, 0.3], "Radius of the soles: a gene."),
     part(
-        1,
         "body.hip_spacing",
         "m",
         [0.1, 0.5],
         "Distance of the outer feet: a gene, without effect in the plane of motion.",
     ),
-    part(1, "start.angle", "rad", [0.1, 0.4], "How far the legs stand ahead and behind at the launch: a gene."),
-    part(1, "start.rate", "sqrt(g/l)", [-0.6, -0.1], "Rate of the stance leg at the launch: a gene."),
-    part(1, "start.swing_rate", "sqrt(g/l)", [-0.5, 0.5], "Rate of the swing leg at the launch: a gene."),
+    part("start.angle", "rad", [0.1, 0.4], "How far the legs stand ahead and behind at the launch: a gene."),
+    part("start.rate", "sqrt(g/l)", [-0.6, -0.1], "Rate of the stance leg at the launch: a gene."),
+    part("start.swing_rate", "sqrt(g/l)", [-0.5, 0.5], "Rate of the swing leg at the launch: a gene."),
 ];
 
 /// Genes of a body.
-const BODY_GENES: usize = 13;
+const BODY_GENES: usize = BODY.len();
 
 /// The values of `body-evolution` beside the genes' ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +76,7 @@ pub struct Config {
     /// What is the same in all bodies.
     pub walker: Walker,
     /// Lowest and highest value of each kind of gene.
-    pub ranges: [[f64; 2]; 9],
+    pub ranges: [[f64; 2]; 10],
     /// Hidden neurons of the network, if there is a motor.
     pub hidden: usize,
     /// Largest weight.
@@ -92,10 +90,10 @@ impl Config {
         let slope = if powered { 0.0 } else { 0.03 };
         let torque = if powered { 10.0 } else { 0.0 };
         Self {
-            trials: 3,
-            substeps: 5,
-            walk: Walk { slope, gravity: 9.81, time_step: 0.005, steps: 6000, noise: 0.02, rules },
-            walker: Walker { stiffness: 1e5, damping_ratio: 3.0, torque, ..Walker::default() },
+            trials: 2,
+            substeps: 3,
+            walk: Walk { slope, gravity: 9.81, time_step: 0.005, steps: 5000, noise: 0.01, rules },
+            walker: Walker { stiffness: 5e4, damping_ratio: 3.0, torque, ..Walker::default() },
             ranges: BODY.map(|part| part.range),
             hidden: 3,
             weights: 8.0,
@@ -113,8 +111,8 @@ impl Config {
     /// What the genes of a body stand for, in their order.
     fn decoded(&self, genes: &[u16]) -> Option<[f64; BODY_GENES]> {
         let mut ranges = Vec::with_capacity(BODY.len());
-        for (part, [low, high]) in BODY.iter().zip(self.ranges) {
-            ranges.push(GeneRange::new(part.count, low as f32, high as f32).ok()?);
+        for [low, high] in self.ranges {
+            ranges.push(GeneRange::new(1, low as f32, high as f32).ok()?);
         }
         let mut values = [0.0; BODY_GENES];
         decode(genes.get(..BODY_GENES)?, &ranges, &mut values).ok()?;
@@ -123,10 +121,9 @@ impl Config {
 
     /// The body and the launch that genes stand for.
     fn body(&self, genes: &[u16]) -> Option<(Walker, Launch)> {
-        let [l0, l1, hip, m0, m1, f0, f1, r0, r1, spacing, angle, rate, swing] = self.decoded(genes)?;
-        let legs = [(l0, m0, f0, r0), (l1, m1, f1, r1)];
-        let legs = legs.map(|(length, mass, foot_mass, foot_radius)| Legs { length, mass, foot_mass, foot_radius });
-        let per_second = Scalar::sqrt(self.walk.gravity / l0);
+        let [length, ratio, hip, mass, foot_mass, foot_radius, spacing, angle, rate, swing] = self.decoded(genes)?;
+        let legs = [length, length * ratio].map(|length| Legs { length, mass, foot_mass, foot_radius });
+        let per_second = Scalar::sqrt(self.walk.gravity / length);
         let launch = Launch { angles: [angle, -angle], rates: [rate * per_second, swing * per_second] };
         Some((Walker { legs, hip_mass: hip, hip_spacing: spacing, ..self.walker }, launch))
     }
@@ -186,11 +183,11 @@ impl Experiment for BodyEvolution {
         let powered = condition == CONDITIONS[1];
         let Config { trials, substeps, walk, walker, hidden, weights, .. } = Config::new(powered);
         let mut table = vec![
-            Setting::whole("evolution.generations", if powered { 100 } else { 40 }, 1..=i64::from(u32::MAX) - 1)
+            Setting::whole("evolution.generations", if powered { 60 } else { 30 }, 1..=i64::from(u32::MAX) - 1)
                 .doc("Generations that are evaluated; the one thing that a resumed run may change."),
-            Setting::whole("evolution.population", 40, 1..=1_000_000)
+            Setting::whole("evolution.population", 60, 1..=1_000_000)
                 .doc("Individuals of a generation, a multiple of the parents; with no more than them nothing is ever mutated."),
-            Setting::whole("evolution.parents", 8, 1..=1_000_000)
+            Setting::whole("evolution.parents", 12, 1..=1_000_000)
                 .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
             Setting::number("evolution.mutation_rate", 0.03, 0.0..=1.0).doc("Probability that mutation hits a bit."),
             Setting::number("world.slope", walk.slope, -0.2..=0.2).unit("rad").doc("Slope, falling ahead."),
@@ -260,7 +257,8 @@ impl Experiment for BodyEvolution {
             }
             *range = [low, high];
         }
-        let [[shortest, _], .., [_, widest], _, _, _, _] = config.ranges;
+        let [[outer, _], [ratio, _], .., [_, widest], _, _, _, _] = config.ranges;
+        let shortest = outer * ratio.min(1.0);
         if widest > shortest {
             let why = format!("up to {widest} m: at most the shortest leg, {shortest} m");
             return Err(Error::setting("body.foot_radius", why));
@@ -284,6 +282,19 @@ impl Lives {
     pub fn new(config: Config) -> Self {
         Self { config }
     }
+
+    fn body(&self, genes: &[u16]) -> Walker {
+        self.config.body(genes).map_or(self.config.walker, |(walker, _)| walker)
+    }
+
+    fn with_network(&self, stage: Stage) -> Stage {
+        let Some(layout) = self.config.layout() else { return stage };
+        let senses = ["outer legs", "inner legs against outer", "speed of the outer legs", "speed of the inner legs"];
+        let mut stage = stage.with_sensors(senses.into_iter().chain(["outer touch", "inner touch"]));
+        stage = stage.with_outputs(["hip torque"]).with_network(&layout);
+        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        stage
+    }
 }
 
 impl Setup for Lives {
@@ -301,18 +312,11 @@ impl Setup for Lives {
 
     /// The stage of the middle of all bodies.
     fn stage(&self) -> Stage {
-        self.stage_of(&vec![u16::MAX / 2; self.genes()])
+        self.with_network(stage(&exported(&self.body(&vec![u16::MAX / 2; BODY_GENES]))))
     }
 
     fn stage_of(&self, genes: &[u16]) -> Stage {
-        let walker = self.config.body(genes).map_or(self.config.walker, |(walker, _)| walker);
-        let stage = stage(&walker);
-        let Some(layout) = self.config.layout() else { return stage };
-        let senses = ["outer legs", "inner legs against outer", "speed of the outer legs", "speed of the inner legs"];
-        let mut stage = stage.with_sensors(senses.into_iter().chain(["outer touch", "inner touch"]));
-        stage = stage.with_outputs(["hip torque"]).with_network(&layout);
-        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
-        stage
+        self.with_network(stage(&drawn(&self.body(genes))))
     }
 
     fn mjcf_options(&self) -> MjcfOptions {
@@ -371,12 +375,9 @@ impl Setup for Lives {
             ("outer legs [m]", Note::from(outer.length)),
             ("inner legs [m]", Note::from(inner.length)),
             ("hip [kg]", Note::from(walker.hip_mass)),
-            ("outer shanks [kg]", Note::from(outer.mass)),
-            ("inner shanks [kg]", Note::from(inner.mass)),
-            ("outer feet [kg]", Note::from(outer.foot_mass)),
-            ("inner feet [kg]", Note::from(inner.foot_mass)),
-            ("outer soles [m]", Note::from(outer.foot_radius)),
-            ("inner soles [m]", Note::from(inner.foot_radius)),
+            ("shanks [kg]", Note::from(outer.mass)),
+            ("feet [kg]", Note::from(outer.foot_mass)),
+            ("soles [m]", Note::from(outer.foot_radius)),
             ("hip spacing [m]", Note::from(walker.hip_spacing)),
         ]);
         Outcome {

@@ -12,7 +12,7 @@ use crate::experiment::{Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::life::{Job, Life as _};
 use crate::settings::{Setting, Settings};
 use crate::stage::Stage;
-use crate::walker_stage::{stage, tell};
+use crate::walker_stage::{drawn, exported, stage, tell};
 use crate::walking_model::{ModelGait, SLOPES, WalkingModel};
 
 /// How near does a rigid body with light feet come to the simplest walking model? \[Garcia1998\]
@@ -46,9 +46,9 @@ impl Default for Config {
         let walk = Walk { slope: 0.009, gravity: 9.81, time_step: 0.002, steps: 15_000, noise: 0.01, rules };
         Self {
             trials: 5,
-            substeps: 8,
+            substeps: 16,
             walk,
-            walker: Walker { stiffness: 2e5, damping_ratio: 5.0, ..Walker::default() },
+            walker: Walker { stiffness: 1e6, damping_ratio: 5.0, ..Walker::default() },
         }
     }
 }
@@ -228,7 +228,11 @@ impl Setup for Lives {
     }
 
     fn stage(&self) -> Stage {
-        stage(&self.config.walker)
+        stage(&exported(&self.config.walker))
+    }
+
+    fn stage_of(&self, _: &[u16]) -> Stage {
+        stage(&drawn(&self.config.walker))
     }
 
     fn mjcf_options(&self) -> MjcfOptions {
