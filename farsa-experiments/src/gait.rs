@@ -73,9 +73,10 @@ pub struct Footfall {
     pub place: f64,
     /// How far its leg leant back from the ground's normal when it met the ground, `theta` of the walking model \[rad\].
     pub angle: f64,
-    /// How fast it turned after the blow, `theta'` at the time of the footfall by a straight line through the rates one and two times
-    /// [`Rules::settling`] later \[rad/s\]; none before.
-    pub rate: Option<f64>,
+    /// How fast it and the leg that then swings turned after the blow, forward of the ground's normal: `theta'` and
+    /// `theta' - phi'` of the walking model at the time of the footfall, by straight lines through the rates one and two
+    /// times [`Rules::settling`] later \[rad/s\]; none before.
+    pub rates: Option<[f64; 2]>,
 }
 
 /// Which foot stands, and what the other is allowed.
@@ -113,8 +114,8 @@ pub struct Gait {
     work: f64,
     steps: u32,
     footfalls: [Footfall; 2],
-    /// Time and rate of the standing leg once the last footfall has settled.
-    settled: Option<[f64; 2]>,
+    /// Time since the last footfall and the rates of both legs once it has settled.
+    settled: Option<(f64, [f64; 2])>,
     end: Option<End>,
 }
 
@@ -247,7 +248,7 @@ impl Gait {
                     foot: swing,
                     place: ahead,
                     angle: -between(self.last.angles[swing], now.angles[swing]),
-                    rate: None,
+                    rates: None,
                 };
                 self.phase = Phase::Both;
                 self.change(world, touching);
@@ -264,15 +265,16 @@ impl Gait {
     /// Tells the rate after the last footfall once it can be known.
     fn tell_rate(&mut self, now: &Posture) {
         let [_, fall] = &mut self.footfalls;
-        if self.steps == 0 || fall.rate.is_some() || self.phase == Phase::Both {
+        if self.steps == 0 || fall.rates.is_some() || self.phase == Phase::Both {
             return;
         }
         let since = f64::from(self.ticks) * self.time_step - fall.time;
-        let rate = -now.rates[self.stance];
+        let rates = [-now.rates[self.stance], -now.rates[1 - self.stance]];
         match self.settled {
-            None if since >= self.rules.settling => self.settled = Some([since, rate]),
-            Some([first, early]) if since >= 2.0 * self.rules.settling => {
-                fall.rate = Some(early - (rate - early) / (since - first) * first);
+            None if since >= self.rules.settling => self.settled = Some((since, rates)),
+            Some((first, early)) if since >= 2.0 * self.rules.settling => {
+                let back = |k: usize| early[k] - (rates[k] - early[k]) / (since - first) * first;
+                fall.rates = Some([back(0), back(1)]);
             }
             _ => {}
         }

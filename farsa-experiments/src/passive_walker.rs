@@ -5,6 +5,7 @@ pub use crate::walker::{Legs, Posture, Walker, WalkerParts};
 pub use crate::walker_life::{Brain, Launch, Pace, SENSES, Walk, WalkerLife};
 
 use farsa_body::{MjcfOptions, World as _};
+use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 
 use crate::error::Error;
@@ -54,11 +55,11 @@ impl Default for Config {
 }
 
 impl Config {
-    /// The world's model of a walker in these surroundings.
+    /// The walker in these surroundings as a world's model, and by which numbers its parts are known.
     ///
     /// # Errors
     /// [`Error::Other`] for a body that cannot be.
-    pub fn world(&self) -> Result<(World<f64>, WalkerParts), Error> {
+    pub fn model<R: Real>(&self) -> Result<(Model<R>, WalkerParts), Error> {
         let (robot, parts) = self.walker.robot();
         let options = Options {
             time_step: self.walk.time_step,
@@ -70,7 +71,7 @@ impl Config {
             ..Options::default()
         };
         let model = Model::new(&robot, &options).map_err(|error| Error::Other(format!("passive-walker: {error}")))?;
-        Ok((World::new(model), parts))
+        Ok((model, parts))
     }
 
     /// The walking model's gait on this slope.
@@ -85,7 +86,7 @@ impl Config {
 
     /// The launch that begins a gait, in seconds.
     pub fn launch(&self, gait: &ModelGait) -> Launch {
-        let per_second = farsa_num::Scalar::sqrt(self.walk.gravity / self.walker.legs[0].length);
+        let per_second = Scalar::sqrt(self.walk.gravity / self.walker.legs[0].length);
         // The swing leg's own angle is theta - phi.
         let rates = [gait.rate, gait.rate - gait.swing_rate].map(|rate| rate * per_second);
         Launch { angles: [gait.angle, -gait.angle], rates }
@@ -187,7 +188,7 @@ pub struct Lives {
     config: Config,
     world: World<f64>,
     life: WalkerLife,
-    model: ModelGait,
+    gait: ModelGait,
 }
 
 impl Lives {
@@ -196,10 +197,10 @@ impl Lives {
     /// # Errors
     /// [`Error::Setting`] for a slope without gait, [`Error::Other`] for a body that cannot be.
     pub fn new(config: Config) -> Result<Self, Error> {
-        let model = config.gait()?;
-        let (world, parts) = config.world()?;
-        let life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&model), None);
-        Ok(Self { config, world, life, model })
+        let gait = config.gait()?;
+        let (model, parts) = config.model()?;
+        let life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&gait), None);
+        Ok(Self { config, world: World::new(model), life, gait })
     }
 }
 
@@ -268,9 +269,9 @@ impl Setup for Lives {
         let pace = self.life.pace().unwrap_or_default();
         let unit = self.life.unit_of_time();
         let of_model = |found: f64, known: f64| 100.0 * (found / known - 1.0);
-        notes.push(("step angle off the model's [%]", Note::from(of_model(pace.angle, self.model.angle))));
-        notes.push(("step rate off the model's [%]", Note::from(of_model(pace.rate * unit, self.model.rate))));
-        notes.push(("step period off the model's [%]", Note::from(of_model(pace.period / unit, self.model.period))));
+        notes.push(("step angle off the model's [%]", Note::from(of_model(pace.angle, self.gait.angle))));
+        notes.push(("step rate off the model's [%]", Note::from(of_model(pace.rate * unit, self.gait.rate))));
+        notes.push(("step period off the model's [%]", Note::from(of_model(pace.period / unit, self.gait.period))));
         let gait = self.life.gait();
         let success = gait.end().is_none() && gait.steps() >= 20;
         Outcome { terms: vec![distance], steps: gait.ticks(), success, notes }

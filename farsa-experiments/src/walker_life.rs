@@ -52,6 +52,8 @@ pub struct Pace {
     pub angle: f64,
     /// How fast it turned after them \[rad/s\].
     pub rate: f64,
+    /// How fast the leg turned that began to swing \[rad/s\].
+    pub swing_rate: f64,
     /// Time of a step \[s\].
     pub period: f64,
     /// Length of a step \[m\].
@@ -171,7 +173,6 @@ pub struct WalkerLife {
     brain: Option<Brain>,
     told: u32,
     paces: [Pace; LAST],
-    /// Times of the last two footfalls, to tell periods by.
     begun: bool,
 }
 
@@ -217,10 +218,10 @@ impl WalkerLife {
         let work = self.brain.as_ref().map_or(0.0, |brain| brain.work(world));
         let end = self.gait.judge(world, work);
         let [before, last] = self.gait.footfalls();
-        if let Some(rate) = last.rate.filter(|_| self.gait.steps() > self.told) {
+        if let Some([rate, swing_rate]) = last.rates.filter(|_| self.gait.steps() > self.told) {
             let at = self.gait.steps() as usize % LAST;
             let (period, length) = (last.time - before.time, last.place - before.place);
-            self.paces[at] = Pace { angle: last.angle, rate, period, length };
+            self.paces[at] = Pace { angle: last.angle, rate, swing_rate, period, length };
             self.told = self.gait.steps();
         }
         let over = end.is_some() || self.gait.ticks() >= self.walk.steps;
@@ -243,6 +244,7 @@ impl WalkerLife {
         (self.told >= LAST as u32).then(|| Pace {
             angle: mean(|pace| pace.angle),
             rate: mean(|pace| pace.rate),
+            swing_rate: mean(|pace| pace.swing_rate),
             period: mean(|pace| pace.period),
             length: mean(|pace| pace.length),
         })
