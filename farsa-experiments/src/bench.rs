@@ -71,8 +71,9 @@ impl Sample {
     fn new(plan: &Plan<'_>, genomes: Population, descent: &Descent, generation: u32) -> Result<Self, Error> {
         let lost = |why: &dyn std::fmt::Display| Error::Other(format!("the opponents of {}: {why}", plan.name()));
         let populations = descent.populations();
-        let hall = Hall::before(descent, plan.setup()?.trials()).map_err(|error| lost(&error))?;
-        let meeting = Meeting { generation: descent.finished(), populations, size: genomes.len() / populations };
+        let hall = Hall::before(descent).map_err(|error| lost(&error))?;
+        let (trials, size) = (plan.setup()?.trials(), genomes.len() / populations);
+        let meeting = Meeting { generation: descent.finished(), populations, size, trials };
         let opponents = hall.opponents(meeting, &genomes).ok_or_else(|| lost(&"one is missing"))?;
         let opponents = opponents.into_iter().map(<[u16]>::to_vec).collect();
         Ok(Self { genomes, opponents, populations, seed: plan.seed, generation, run: None })

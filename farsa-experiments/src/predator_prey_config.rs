@@ -38,7 +38,7 @@ impl Default for PredatorPreyConfig {
         let team = TeamConfig {
             robots: 2,
             size: 3.0,
-            trials: 4,
+            trials: 6,
             steps: 2000,
             sectors: 8,
             field_of_view: core::f64::consts::TAU,
@@ -46,14 +46,14 @@ impl Default for PredatorPreyConfig {
             hidden: 6,
             ..TeamConfig::of_condition("marxbot")
         };
-        Self { team, touch: 0.002, collisions: CollisionRule::Circles, population: 30 }
+        Self { team, touch: 0.002, collisions: CollisionRule::Circles, population: 40 }
     }
 }
 
 impl PredatorPreyConfig {
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
-        let mut table = crate::swarm_config::evolution(60, whole(self.population), 6);
+        let mut table = crate::swarm_config::evolution(250, whole(self.population), 8);
         table.extend(self.team.table(false, true));
         table.push(
             Setting::word("world.collisions", CIRCLES, &[CIRCLES, UNDONE])

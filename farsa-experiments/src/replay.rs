@@ -77,7 +77,8 @@ impl Relived {
                 return Err(Error::Usage(format!("trial {trial} of {} (the first is 0)", trials.end)));
             }
         };
-        let opponents = trials.clone().map(|trial| opponents::met(&descent, generation, individual as usize, trial));
+        let met = |trial| opponents::met(&descent, generation, individual as usize, trial, setup.trials());
+        let opponents = trials.clone().map(met);
         let opponents = opponents.collect::<Result<_, _>>().map_err(|error| Error::damaged(&path, error))?;
         Ok(Self { setup, genes, opponents, seed: plan.seed, generation, individual, trials })
     }

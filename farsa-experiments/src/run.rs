@@ -119,7 +119,7 @@ pub(crate) fn go_on(
     if !evolution.is_like(&Evolution::new(plan, pool.setup())?) {
         return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
     }
-    let hall = Hall::before(&evolution.descent(), pool.setup().trials());
+    let hall = Hall::before(&evolution.descent());
     let hall = hall.map_err(|error| Error::damaged(&path, error))?;
     let (done, last) = (evolution.generation(), plan.generations()?);
     if last < done {
@@ -209,7 +209,8 @@ impl Run<'_> {
         let genomes = self.evolution.ask();
         let (seed, populations) = (self.identity.seed, self.evolution.populations());
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
-        let meeting = Meeting { generation, populations, size: genomes.len() / populations };
+        let trials = pool.setup().trials();
+        let meeting = Meeting { generation, populations, size: genomes.len() / populations, trials };
         let opponents = self.hall.opponents(meeting, genomes).ok_or_else(|| lost("an opponent is missing"))?;
         let job = Job { seed, generation, ..Job::default() };
         let fitness =
