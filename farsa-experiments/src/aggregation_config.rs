@@ -33,14 +33,21 @@ impl AggregationConfig {
         let team = TeamConfig::of_condition(condition);
         // Six radii: all ten robots fit onto one nest with room to drive by.
         let nest_radius = 6.0 * team.robot.radius;
-        Self { nests: 2, nest_radius, nest_to_wall: 1.5 * nest_radius, nest_reward: 100.0, near_reward: 1.0, team }
+        Self {
+            nests: 2,
+            nest_radius,
+            nest_to_wall: 1.5 * nest_radius,
+            nest_reward: 100.0,
+            near_reward: 1.0,
+            team: TeamConfig { trials: 4, ..team },
+        }
     }
 
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
         let length = |key: &str, default: f64| Setting::number(key, default, 0.0..=1000.0).unit("m");
         let reward = |key: &str, default: f64| Setting::number(key, default, 0.0..=1e6).given();
-        let mut table = crate::swarm_config::evolution(80, 30, 6);
+        let mut table = crate::swarm_config::evolution([120, 30, 6], 0.02);
         table.extend(self.team.table(true, self.team.of_marxbots()));
         table.extend([
             Setting::whole("nest.count", whole(self.nests), 1..=100).doc("Nests; two, so that robots may part."),

@@ -52,7 +52,7 @@ impl ForagingConfig {
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
         let length = |key: &str, default: f64| Setting::number(key, default, 0.0..=1000.0).unit("m").given();
-        let mut table = crate::swarm_config::evolution(400, 40, 8);
+        let mut table = crate::swarm_config::evolution([400, 40, 8], 0.004);
         table.extend(self.team.table(true, true));
         let speed = Setting::number("robot.speed", self.team.speed, 1e-3..=10.0).unit("m/s");
         let speed = if self.team.of_marxbots() { speed.given() } else { speed };

@@ -53,7 +53,7 @@ impl Default for PredatorPreyConfig {
 impl PredatorPreyConfig {
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
-        let mut table = crate::swarm_config::evolution(250, whole(self.population), 8);
+        let mut table = crate::swarm_config::evolution([250, whole(self.population), 8], 0.004);
         table.extend(self.team.table(false, true));
         table.push(
             Setting::word("world.collisions", CIRCLES, &[CIRCLES, UNDONE])

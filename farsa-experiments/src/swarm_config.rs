@@ -81,7 +81,7 @@ impl TeamConfig {
                 .unit("s")
                 .doc("Control step; 0.1 s is that of the source's other experiments on these robots."),
             Setting::whole("trial.count", whole(self.trials), 1..=100_000)
-                .doc("Trials of an evaluation; few, because a trial is the mean of many robots' luck already."),
+                .doc("Trials of an evaluation; a few, because a trial is the mean of many robots' luck already."),
             Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000).given().doc("Steps of a trial."),
         ];
         if robots {
@@ -154,7 +154,7 @@ pub(crate) fn whole(count: usize) -> i64 {
 pub(crate) const EYES: usize = 8;
 
 /// The settings of evolution with defaults of our own: the source's evolve for days.
-pub(crate) fn evolution(generations: i64, population: i64, parents: i64) -> Vec<Setting> {
+pub(crate) fn evolution([generations, population, parents]: [i64; 3], mutation_rate: f64) -> Vec<Setting> {
     vec![
         Setting::whole("evolution.generations", generations, 1..=i64::from(u32::MAX) - 1)
             .doc("Generations that are evaluated; enough for what the results tell, in minutes."),
@@ -162,8 +162,8 @@ pub(crate) fn evolution(generations: i64, population: i64, parents: i64) -> Vec<
             .doc("Individuals of a generation, of each population where there are two; a multiple of the parents."),
         Setting::whole("evolution.parents", parents, 1..=1_000_000)
             .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
-        Setting::number("evolution.mutation_rate", 0.004, 0.0..=1.0).doc(
-            "Probability that mutation hits a bit, which is then drawn anew: 3 % of the genes change; five times as much kept foragers lower (docs/results/swarm.md).",
+        Setting::number("evolution.mutation_rate", mutation_rate, 0.0..=1.0).doc(
+            "Probability that mutation hits a bit, which is then drawn anew; foragers did better with less of it, those that gather with more (docs/results/swarm.md).",
         ),
     ]
 }
