@@ -11,6 +11,7 @@ use crate::error::Error;
 use crate::export::ModelFormat;
 
 #[derive(Args)]
+#[command(allow_negative_numbers = true)]
 #[expect(clippy::struct_excessive_bools, reason = "the switches of a command")]
 pub(crate) struct RobotArgs {
     /// A URDF or MJCF file
