@@ -237,6 +237,8 @@ mod tests {
             picture.shapes.extend(stage.props.iter().map(|prop| {
                 prop.placed(&if prop.body.is_some() { standing([0.1, 0.1], 0.0, 0.9).cast() } else { Pose::identity() })
             }));
+            let corners = [[-0.03, -0.03, 0.0], [0.63, 0.53, 0.0]];
+            picture.frame = corners.into();
             let path = std::path::Path::new(&path).join("obstacles.svg");
             std::fs::write(path, picture.svg(crate::camera::Camera::for_view(View::Top), [600, 500], "p")).unwrap();
         }
