@@ -17,7 +17,7 @@ use crate::walker::{Legs, Walker};
 use crate::walker_life::{Brain, Launch, SENSES, Walk, WalkerLife};
 use crate::walker_stage::{drawn, exported, stage, tell};
 
-/// Which bodies walk, and what for? \[McGeer1990\]
+/// Which bodies walk far? `[McGeer1990]`
 ///
 /// Genes make the legs, the masses, the soles, and the push that a walker begins with; the distance that it
 /// walks is its fitness. Under `passive` it walks down a slope without motor and controller; under `powered` on flat ground,
@@ -78,7 +78,7 @@ pub struct Config {
     /// Lowest and highest value of each kind of gene.
     pub ranges: [[f64; 2]; 10],
     /// Hidden neurons of the network, if there is a motor.
-    pub hidden: usize,
+    pub hidden: u32,
     /// Largest weight.
     pub weights: f64,
 }
@@ -105,7 +105,7 @@ impl Config {
     }
 
     fn layout(&self) -> Option<Layout> {
-        self.powered().then(|| Layout::new(SENSES, self.hidden, 1).with_slope(1.0))
+        self.powered().then(|| Layout::new(SENSES, self.hidden as usize, 1).with_slope(1.0))
     }
 
     /// What the genes of a body stand for, in their order.
@@ -153,12 +153,11 @@ impl Config {
             ..Options::default()
         };
         let model = Model::new(&robot, &options).ok()?;
-        let brain = match self.powered() {
-            false => None,
-            true => {
-                let (layout, parameters) = self.parameters(genes)?;
-                Some(Brain::new(&walker, &parts, layout, parameters).ok()?)
-            }
+        let brain = if self.powered() {
+            let (layout, parameters) = self.parameters(genes)?;
+            Some(Brain::new(&walker, &parts, layout, parameters).ok()?)
+        } else {
+            None
         };
         Some((World::new(model), WalkerLife::new(walker, parts, self.walk, launch, brain)))
     }
@@ -216,7 +215,7 @@ impl Experiment for BodyEvolution {
                     .doc("Largest torque at the hip."),
             );
             table.push(
-                Setting::whole("network.hidden", hidden as i64, 1..=1000).doc("Hidden neurons, all linked to all."),
+                Setting::whole("network.hidden", i64::from(hidden), 1..=1000).doc("Hidden neurons, all linked to all."),
             );
             table.push(
                 Setting::number("network.range", weights, 0.0..=1000.0)
@@ -265,7 +264,7 @@ impl Experiment for BodyEvolution {
         }
         if powered {
             config.walker.torque = number("motor.torque")?;
-            config.hidden = settings.count("network.hidden")?;
+            config.hidden = settings.count("network.hidden")? as u32;
             config.weights = number("network.range")?;
         }
         Ok(Box::new(Lives::new(config)))
@@ -312,7 +311,7 @@ impl Setup for Lives {
 
     /// The stage of the middle of all bodies.
     fn stage(&self) -> Stage {
-        self.with_network(stage(&exported(&self.body(&vec![u16::MAX / 2; BODY_GENES]))))
+        self.with_network(stage(&exported(&self.body(&[u16::MAX / 2; BODY_GENES]))))
     }
 
     fn stage_of(&self, genes: &[u16]) -> Stage {

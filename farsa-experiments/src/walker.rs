@@ -40,7 +40,7 @@ pub struct Legs {
 /// slide aside while that pair swings. The plate slides across the plane of motion: no force of the walk acts on it, and
 /// what it weighs does not matter.
 ///
-/// \[McGeer1990\] is such a machine with round feet; \[Garcia1998\] its limit for point feet without mass.
+/// `[McGeer1990]` is such a machine with round feet; `[Garcia1998]` its limit for point feet without mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
     /// The outer legs and the inner legs.

@@ -171,7 +171,9 @@ pub struct WalkerLife {
     launch: Launch,
     gait: Gait,
     brain: Option<Brain>,
+    /// The last step whose pace is known, and how many are.
     told: u32,
+    known: usize,
     paces: [Pace; LAST],
     begun: bool,
 }
@@ -181,7 +183,7 @@ impl WalkerLife {
     pub fn new(walker: Walker, parts: WalkerParts, walk: Walk, launch: Launch, brain: Option<Brain>) -> Self {
         let gravity = Walker::gravity(walk.gravity, walk.slope);
         let gait = Gait::new(walker, parts, walk.rules, gravity, walk.time_step);
-        Self { walk, launch, gait, brain, told: 0, paces: [Pace::default(); LAST], begun: false }
+        Self { walk, launch, gait, brain, told: 0, known: 0, paces: [Pace::default(); LAST], begun: false }
     }
 
     /// Launches the walker: its rates are those of the launch times 1 + noise * u, each with its own u from -1 to 1, the stance leg's
@@ -197,7 +199,7 @@ impl WalkerLife {
         if let Some(brain) = &mut self.brain {
             brain.reset();
         }
-        (self.told, self.begun) = (0, false);
+        (self.told, self.known, self.begun) = (0, 0, false);
     }
 
     /// Thinks and acts, if there is something to think with.
@@ -219,10 +221,10 @@ impl WalkerLife {
         let end = self.gait.judge(world, work);
         let [before, last] = self.gait.footfalls();
         if let Some([rate, swing_rate]) = last.rates.filter(|_| self.gait.steps() > self.told) {
-            let at = self.gait.steps() as usize % LAST;
             let (period, length) = (last.time - before.time, last.place - before.place);
-            self.paces[at] = Pace { angle: last.angle, rate, swing_rate, period, length };
+            self.paces[self.known % LAST] = Pace { angle: last.angle, rate, swing_rate, period, length };
             self.told = self.gait.steps();
+            self.known += 1;
         }
         let over = end.is_some() || self.gait.ticks() >= self.walk.steps;
         over.then(|| self.distance())
@@ -238,10 +240,10 @@ impl WalkerLife {
         }
     }
 
-    /// The mean of the last ten steps; `None` before there were so many.
+    /// The mean of the last ten steps; `None` before so many are known.
     pub fn pace(&self) -> Option<Pace> {
         let mean = |of: fn(&Pace) -> f64| self.paces.iter().map(of).sum::<f64>() / LAST as f64;
-        (self.told >= LAST as u32).then(|| Pace {
+        (self.known >= LAST).then(|| Pace {
             angle: mean(|pace| pace.angle),
             rate: mean(|pace| pace.rate),
             swing_rate: mean(|pace| pace.swing_rate),

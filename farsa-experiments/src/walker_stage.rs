@@ -90,7 +90,9 @@ where
     W: Kinematics<Body = BodyId> + ?Sized,
 {
     let gait = life.gait();
-    bodies(gait.parts()).into_iter().for_each(|body| recorder.pose(body, world.pose(body)));
+    for body in bodies(gait.parts()) {
+        recorder.pose(body, world.pose(body));
+    }
     if let Some(brain) = life.brain() {
         recorder.sensors(brain.sensed());
         recorder.neurons(brain.hidden());

@@ -107,13 +107,13 @@ impl WalkingModel {
         if (low..=high).contains(&slope) { Ok(Self { slope }) } else { Err(SlopeError { slope }) }
     }
 
-    fn rates(&self, &[theta, rate, phi, swing]: &State) -> State {
+    fn rates(self, &[theta, rate, phi, swing]: &State) -> State {
         let (lean, upright) = sin_cos(theta - self.slope);
         let (sine, _) = sin_cos(phi);
         [rate, lean, swing, lean + rate * rate * sine - upright * sine]
     }
 
-    fn advanced(&self, state: &State, h: f64) -> State {
+    fn advanced(self, state: &State, h: f64) -> State {
         let a = self.rates(state);
         let b = self.rates(&moved(state, 0.5 * h, &a));
         let c = self.rates(&moved(state, 0.5 * h, &b));
@@ -125,7 +125,7 @@ impl WalkingModel {
     /// comes because the walker falls.
     ///
     /// The swing leg begins where the strike left it, at `2 theta` with `(1 - cos(2 theta)) theta'`.
-    pub fn step(&self, [angle, rate]: [f64; 2]) -> Option<ModelStep> {
+    pub fn step(self, [angle, rate]: [f64; 2]) -> Option<ModelStep> {
         let below = |state: &State| state[2] - 2.0 * state[0] < 0.0;
         let (_, cosine) = sin_cos(2.0 * angle);
         let mut state = [angle, rate, 2.0 * angle, (1.0 - cosine) * rate];
@@ -151,7 +151,7 @@ impl WalkingModel {
     }
 
     /// The derivative of the return map at a state, by central differences.
-    fn derivative(&self, at: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    fn derivative(self, at: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let mut columns = [[0.0; 2]; 2];
         for (k, column) in columns.iter_mut().enumerate() {
             let probe = |sign: f64| {
@@ -170,7 +170,7 @@ impl WalkingModel {
     ///
     /// The first guess, `theta* = (0.971 - 0.18 s^2) s` and `theta'* = (1.25 s^2 - 1.015) s` with `s = slope^(1/3)`, follows the gaits of
     /// small slopes; there is another gait, of a shorter period and not stable.
-    pub fn gait(&self) -> Option<ModelGait> {
+    pub fn gait(self) -> Option<ModelGait> {
         let size = farsa_num::exp(farsa_num::ln(self.slope) / 3.0);
         let square = size * size;
         let mut at = [(0.971 - 0.18 * square) * size, (1.25 * square - 1.015) * size];
