@@ -54,6 +54,20 @@ mod lockstep;
 mod model;
 #[cfg(feature = "alloc")]
 mod model_builder;
+#[cfg(feature = "rapier")]
+mod rapier_contact;
+#[cfg(feature = "rapier")]
+mod rapier_error;
+#[cfg(feature = "rapier")]
+mod rapier_model;
+#[cfg(feature = "rapier")]
+mod rapier_ports;
+#[cfg(feature = "rapier")]
+mod rapier_rules;
+#[cfg(feature = "rapier")]
+mod rapier_snapshot;
+#[cfg(feature = "rapier")]
+mod rapier_world;
 #[cfg(feature = "alloc")]
 mod ray;
 #[cfg(feature = "alloc")]
@@ -102,4 +116,12 @@ pub mod arena {
     pub use crate::arena_error::{ArenaError, Part};
     pub use crate::arena_place::FreePlace;
     pub use crate::arena_world::World;
+}
+
+/// Robots and general scenes in rapier.
+#[cfg(feature = "rapier")]
+pub mod rapier {
+    pub use crate::rapier_error::RapierError;
+    pub use crate::rapier_model::Options;
+    pub use crate::rapier_world::World;
 }
