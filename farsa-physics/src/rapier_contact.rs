@@ -1,8 +1,8 @@
 //! What rapier's contacts say, as the port tells it.
 
 use farsa_body::PairContact;
-use rapier3d::dynamics::RigidBodyHandle;
-use rapier3d::geometry::{ColliderHandle, ContactManifold};
+use rapier3d::dynamics::{FrictionModel, RigidBodyHandle};
+use rapier3d::geometry::{ColliderHandle, Contact, ContactManifold};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
@@ -18,7 +18,7 @@ fn manifolds(physics: &PhysicsWorld, [a, b]: [ColliderHandle; 2]) -> Option<(&[C
 }
 
 /// The points of a manifold that the solver has seen.
-fn points(manifold: &ContactManifold) -> impl Iterator<Item = &rapier3d::geometry::Contact> {
+fn points(manifold: &ContactManifold) -> impl Iterator<Item = &Contact> {
     manifold.data.solver_contacts.iter().filter_map(|c| manifold.points.get((c.contact_id[0] & !NEW) as usize))
 }
 
@@ -35,11 +35,11 @@ fn normal_force(physics: &PhysicsWorld, pair: &Touching) -> f32 {
     impulse / physics.integration_parameters.dt
 }
 
-/// The friction impulse of a whole step on rapier's first body.
+/// The friction impulse of a whole step at a point of a multibody, on rapier's first body.
 ///
 /// rapier keeps it along two directions that it does not tell. What it keeps for the next start are the same two numbers
-/// of the last substep and their vector in the world: from these follow the directions.
-fn friction(point: &rapier3d::geometry::Contact, normal: Vector) -> Vector {
+/// of the last iteration and their vector in the world: from these follow the directions.
+fn friction_at(point: &Contact, normal: Vector) -> Vector {
     let data = &point.data;
     let (last, world) = (data.warmstart_tangent_impulse, data.warmstart_tangent_world);
     let across = -normal.cross(world);
@@ -53,6 +53,17 @@ fn friction(point: &rapier3d::geometry::Contact, normal: Vector) -> Vector {
     }
 }
 
+/// The friction impulse of a whole step at all points of a manifold, on rapier's first body.
+///
+/// Between bodies that are no links rapier has one friction for all points, of which it keeps that of the last iteration
+/// with each of them.
+fn friction(manifold: &ContactManifold, at_points: bool, iterations: usize) -> Vector {
+    if at_points {
+        return points(manifold).map(|point| friction_at(point, manifold.data.normal)).sum();
+    }
+    points(manifold).next().map_or(Vector::ZERO, |point| point.data.warmstart_tangent_world * iterations as f32)
+}
+
 /// How a pair touched in the last step of rapier; its depth is that of the bodies' present places.
 pub(crate) fn pair_contact(physics: &PhysicsWorld, pair: &Touching) -> PairContact {
     let mut contact = PairContact { depth: f32::NEG_INFINITY, ..PairContact::default() };
@@ -60,9 +71,12 @@ pub(crate) fn pair_contact(physics: &PhysicsWorld, pair: &Touching) -> PairConta
     let [first, second] = if flipped { [pair.colliders[1], pair.colliders[0]] } else { pair.colliders };
     let (first, second) = (physics.colliders[first].position(), physics.colliders[second].position());
     let per_second = 1.0 / physics.integration_parameters.dt;
+    let parameters = &physics.integration_parameters;
+    let at_points = pair.of_links || parameters.friction_model == FrictionModel::Coulomb;
     let (mut force, mut moment) = (Vector::ZERO, Vector::ZERO);
     for manifold in manifolds {
         let normal = manifold.data.normal;
+        force += friction(manifold, at_points, parameters.num_solver_iterations) * per_second;
         let first = manifold.subshape_pos1().map_or(*first, |local| *first * *local);
         let second = manifold.subshape_pos2().map_or(*second, |local| *second * *local);
         for point in points(manifold) {
@@ -72,7 +86,7 @@ pub(crate) fn pair_contact(physics: &PhysicsWorld, pair: &Touching) -> PairConta
                 let normal_force = point.data.impulse * per_second;
                 contact.points += 1;
                 contact.normal_force += normal_force;
-                force += friction(point, normal) * per_second - normal * normal_force;
+                force -= normal * normal_force;
                 moment += (p1 + p2) * (0.5 * normal_force);
             }
         }

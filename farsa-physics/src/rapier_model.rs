@@ -84,7 +84,8 @@ impl Options {
         parameters.length_unit = self.length_unit as f32;
         parameters.contact_softness = softness;
         parameters.static_contact_softness = softness;
-        parameters.friction_model = FrictionModel::Coulomb;
+        // At each point of a box by itself friction works against itself and is a tenth too weak.
+        parameters.friction_model = FrictionModel::Simplified;
         // Who reads a contact wants the one of this step, at the points that the solver has seen.
         parameters.contact_recycling = false;
         parameters.contact_clustering = false;
@@ -120,6 +121,8 @@ pub(crate) struct Touching {
     pub(crate) bodies: [Option<BodyId>; 2],
     pub(crate) carriers: [Option<usize>; 2],
     pub(crate) rolling_friction: f32,
+    /// Whether a link of a multibody is among them.
+    pub(crate) of_links: bool,
 }
 
 /// A joint with its actuators.
@@ -245,6 +248,7 @@ pub(crate) fn build(robot: &Robot, options: &Options) -> Result<(Plan, PhysicsWo
         bodies: pair.colliders.map(|c| robot.colliders[c].body),
         carriers: pair.colliders.map(|c| on[c]),
         rolling_friction: pair.surface.rolling_friction as f32,
+        of_links: pair.colliders.iter().any(|c| on[*c].is_some_and(|c| carriers[c].link.is_some())),
     });
     let (drives, laws) = drives_of(robot, &mounts);
     let plan = Plan {
