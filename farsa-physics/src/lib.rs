@@ -65,6 +65,8 @@ mod rapier_ports;
 #[cfg(feature = "rapier")]
 mod rapier_rules;
 #[cfg(feature = "rapier")]
+mod rapier_scene;
+#[cfg(feature = "rapier")]
 mod rapier_snapshot;
 #[cfg(feature = "rapier")]
 mod rapier_world;
@@ -123,5 +125,6 @@ pub mod arena {
 pub mod rapier {
     pub use crate::rapier_error::RapierError;
     pub use crate::rapier_model::Options;
+    pub use crate::rapier_scene::{Form, Scene, Thing};
     pub use crate::rapier_world::World;
 }

@@ -17,6 +17,7 @@ use crate::links::{compose, frame, links_of, set_limits};
 use crate::model::{ModelError, Mount, Options as Stops};
 use crate::rapier_error::RapierError;
 use crate::rapier_rules::Rules;
+use crate::rapier_scene::{Scene, Side, Thing};
 use crate::spatial::{rotate, sub};
 use crate::tree::{Link, Motion, WORLD};
 use crate::view::quaternion;
@@ -161,7 +162,7 @@ fn pose(mount: &Mount<f64>) -> rapier3d::math::Pose {
     rapier3d::math::Pose::from_parts(vector(mount.position), Rotation::from_array(q).normalize())
 }
 
-fn shape_of(shape: &Shape) -> SharedShape {
+pub(crate) fn shape_of(shape: &Shape) -> SharedShape {
     match *shape {
         Shape::Sphere { radius } => SharedShape::ball(radius as f32),
         Shape::Capsule { radius, half_length } => SharedShape::capsule_z(half_length as f32, radius as f32),
@@ -200,17 +201,19 @@ fn centre_roots(links: &mut [Link<f64>], mounts: &mut [Mount<f64>]) -> Vec<[f64;
     shifts
 }
 
-/// Builds the bodies, joints and colliders of a robot.
-pub(crate) fn build(robot: &Robot, options: &Options) -> Result<(Plan, PhysicsWorld), RapierError> {
+/// Builds the bodies, joints and colliders of a scene.
+pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(Plan, PhysicsWorld), RapierError> {
+    let robot = &scene.robot;
     robot.validate()?;
     options.check()?;
+    scene.check()?;
     for (what, count) in [
-        ("segments", robot.segments.len()),
-        ("colliders", robot.colliders.len()),
-        ("pairs", robot.pairs.len()),
+        ("segments and things", robot.segments.len() + scene.things.len()),
+        ("colliders and things", robot.colliders.len() + scene.things.len()),
+        ("pairs", scene.sides().count()),
         ("actuators", robot.actuators.len()),
     ] {
-        if count >= usize::from(u16::MAX) / 8 {
+        if count >= usize::from(u16::MAX) {
             return Err(ModelError::TooMany { what, count }.into());
         }
     }
@@ -218,13 +221,13 @@ pub(crate) fn build(robot: &Robot, options: &Options) -> Result<(Plan, PhysicsWo
     check_masses(robot, &mounts, &links)?;
     let shifts = centre_roots(&mut links, &mut mounts);
     let mut physics = options.world();
-    let carriers = add_links(&mut physics, &links, &shifts);
+    let mut carriers = add_links(&mut physics, &links, &shifts);
 
     let place = |mount: &Mount<f64>| Place {
         carrier: (mount.link != WORLD).then_some(usize::from(mount.link)),
         pose: Pose { position: mount.position, rotation: quaternion(&mount.rotation) }.cast(),
     };
-    let places: Vec<_> = mounts.iter().map(place).collect();
+    let mut places: Vec<_> = mounts.iter().map(place).collect();
     let mut colliders = Vec::new();
     let mut on = Vec::new();
     for (number, collider) in robot.colliders.iter().enumerate() {
@@ -242,20 +245,43 @@ pub(crate) fn build(robot: &Robot, options: &Options) -> Result<(Plan, PhysicsWo
         colliders.push(physics.insert_collider(built, carrier.map(|c| carriers[c].body)));
         on.push(carrier);
     }
-    let rules: Vec<_> = robot.pairs.iter().map(|pair| (pair.colliders, pair.surface.friction)).collect();
-    let pairs = robot.pairs.iter().map(|pair| Touching {
-        colliders: pair.colliders.map(|c| colliders[c]),
-        bodies: pair.colliders.map(|c| robot.colliders[c].body),
-        carriers: pair.colliders.map(|c| on[c]),
-        rolling_friction: pair.surface.rolling_friction as f32,
-        of_links: pair.colliders.iter().any(|c| on[*c].is_some_and(|c| carriers[c].link.is_some())),
+    let mut bodies: Vec<_> = robot.colliders.iter().map(|c| c.body).collect();
+    let mut kinds: Vec<_> = robot.segments.iter().map(|s| s.joint.kind).collect();
+    for thing in &scene.things {
+        let carrier = thing.mass.map(|_| carriers.len());
+        bodies.push(Some(BodyId(places.len() as u16)));
+        kinds.push(if carrier.is_some() { JointKind::Floating } else { JointKind::Fixed });
+        let pose = if carrier.is_some() { Pose::identity() } else { thing.placement.cast() };
+        places.push(Place { carrier, pose });
+        let (added, collider) = add_thing(&mut physics, thing, colliders.len())?;
+        carriers.extend(added);
+        colliders.push(collider);
+        on.push(carrier);
+    }
+    let sides: Vec<_> = scene.sides().map(|sides| sides.map(|side| number_of(side, robot.colliders.len()))).collect();
+    let surface = |number: usize| robot.pairs.get(number).map(|pair| pair.surface);
+    let rules = sides.iter().enumerate().map(|(number, sides)| {
+        let thing = |number: &usize| Some(scene.things.get(number.checked_sub(robot.colliders.len())?)?.friction);
+        let between = || match (thing(&sides[0]), thing(&sides[1])) {
+            (Some(a), Some(b)) => farsa_num::Scalar::sqrt(a * b),
+            (a, b) => a.or(b).unwrap_or(0.0),
+        };
+        (*sides, surface(number).map_or_else(between, |surface| surface.friction))
+    });
+    let rules: Vec<_> = rules.collect();
+    let pairs = sides.iter().enumerate().map(|(number, sides)| Touching {
+        colliders: sides.map(|c| colliders[c]),
+        bodies: sides.map(|c| bodies[c]),
+        carriers: sides.map(|c| on[c]),
+        rolling_friction: surface(number).map_or(0.0, |surface| surface.rolling_friction as f32),
+        of_links: sides.iter().any(|c| on[*c].is_some_and(|c| carriers[c].link.is_some())),
     });
     let (drives, laws) = drives_of(robot, &mounts);
     let plan = Plan {
         pairs: pairs.collect(),
-        kinds: robot.segments.iter().map(|s| s.joint.kind).collect(),
-        collider_bodies: robot.colliders.iter().map(|c| c.body).collect(),
-        rules: Rules::new(robot.colliders.len(), &rules),
+        kinds,
+        collider_bodies: bodies,
+        rules: Rules::new(colliders.len(), &rules),
         carriers,
         places,
         colliders,
@@ -266,6 +292,33 @@ pub(crate) fn build(robot: &Robot, options: &Options) -> Result<(Plan, PhysicsWo
         substeps: options.substeps,
     };
     Ok((plan, physics))
+}
+
+/// The number of a side's collider.
+fn number_of(side: Side, colliders: usize) -> usize {
+    match side {
+        Side::Collider(number) => number,
+        Side::Thing(number) => colliders + number,
+    }
+}
+
+/// A thing's body, if it moves, and its collider.
+fn add_thing(
+    physics: &mut PhysicsWorld,
+    thing: &Thing,
+    number: usize,
+) -> Result<(Option<Carrier>, ColliderHandle), RapierError> {
+    let (shape, local) = thing.shape()?;
+    let at = pose(&frame(&thing.placement));
+    let built = ColliderBuilder::new(shape)
+        .user_data(Rules::mark(number))
+        .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS | ActiveHooks::MODIFY_SOLVER_CONTACTS);
+    let Some(mass) = thing.mass else {
+        return Ok((None, physics.insert_collider(built.position(at * local), None)));
+    };
+    let body = physics.insert_body(RigidBodyBuilder::dynamic().can_sleep(false).pose(at));
+    let collider = physics.insert_collider(built.position(local).mass(mass as f32), Some(body));
+    Ok((Some(Carrier { body, link: None, axis: 0, damping: 0.0, inertia: 0.0 }), collider))
 }
 
 /// Refuses joints that move no mass and have no armature.

@@ -13,6 +13,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use crate::rapier_contact::roll;
 use crate::rapier_error::RapierError;
 use crate::rapier_model::{Carrier, Options, Plan, build};
+use crate::rapier_scene::Scene;
 use crate::rapier_snapshot::copy;
 
 /// Stiffness of a joint's spring that only brings a torque in, next to nothing for any joint [N m/rad or N/m].
@@ -39,7 +40,15 @@ impl World {
     /// A description that is not valid, an option out of range, a joint without inertia, a plane on a moving body, more
     /// parts than 16 bits can number.
     pub fn new(robot: &Robot, options: &Options) -> Result<Self, RapierError> {
-        let (plan, physics) = build(robot, options)?;
+        Self::of_scene(&Scene::new(robot.clone()), options)
+    }
+
+    /// A world of a robot and the things around it, at their start.
+    ///
+    /// # Errors
+    /// As [`World::new`], and things that cannot be built.
+    pub fn of_scene(scene: &Scene, options: &Options) -> Result<Self, RapierError> {
+        let (plan, physics) = build(scene, options)?;
         let commands = vec![[0.0; 2]; plan.actuators];
         let mut world = Self { plan, initial: copy(&physics), physics, commands, lost: false, moved: true };
         world.settle();
@@ -219,14 +228,16 @@ impl World {
         let Some(carrier) = self.carrier(body).copied() else { return };
         self.moved = true;
         let local = self.plan.places[body.index()].pose;
-        // The carrier's frame is parallel to the body's, its origin in the centre of mass.
+        // The carrier's frame is parallel to the body's.
         let arm = pose.rotate(local.position.map(|x| -x));
-        let (arm, angular) = (Vector::from(arm), Vector::from(twist.angular));
-        let at = Vector::from(pose.position) + arm;
-        let linear = Vector::from(twist.linear) + angular.cross(arm);
-        let rotation = Rotation::from_array(pose.rotation).normalize();
+        let angular = Vector::from(twist.angular);
+        let at = Vector::from(pose.position) + Vector::from(arm);
+        let at = rapier3d::math::Pose::from_parts(at, Rotation::from_array(pose.rotation).normalize());
+        let mut linear = Vector::from(twist.linear);
         if let Some(rigid) = self.physics.bodies.get_mut(carrier.body) {
-            rigid.set_position(rapier3d::math::Pose::from_parts(at, rotation), true);
+            let centre = at.transform_point(rigid.local_center_of_mass());
+            linear += angular.cross(centre - Vector::from(pose.position));
+            rigid.set_position(at, true);
             rigid.set_linvel(linear, true);
             rigid.set_angvel(angular, true);
         }
