@@ -12,7 +12,8 @@ use rapier3d::pipeline::PhysicsWorld;
 
 use crate::rapier_contact::roll;
 use crate::rapier_error::RapierError;
-use crate::rapier_model::{Carrier, Options, Plan, build};
+use crate::rapier_model::{Carrier, Plan, build};
+use crate::rapier_options::Options;
 use crate::rapier_scene::Scene;
 use crate::rapier_snapshot::copy;
 
@@ -260,7 +261,7 @@ impl World {
         }
         let physics = &mut self.physics;
         for carrier in &self.plan.carriers {
-            let Some((multibody, 1, _) | (multibody, 0, _)) = carrier.link else { continue };
+            let Some((multibody, 0 | 1, _)) = carrier.link else { continue };
             if let Some(multibody) = physics.multibody_joints.get_multibody_mut(multibody) {
                 multibody.forward_kinematics(&physics.bodies, true);
                 multibody.update_rigid_bodies(&mut physics.bodies, true);

@@ -84,21 +84,23 @@ fn floating() -> Robot {
     robot
 }
 
+/// Thrown, turning, both joints moving.
+fn throw<W: Arrange + Handles<Body = BodyId, Joint = JointId>>(world: &mut W) {
+    let twist = Twist { linear: [0.3, -0.2, 1.0], angular: [1.0, -2.0, 0.5] };
+    world.place_body(BodyId(0), Pose { position: [0.1, 0.2, 0.3], rotation: [0.5, -0.5, 0.5, 0.5] }, twist);
+    world.place_joint(JointId(1), 0.02, -0.1);
+    world.place_joint(JointId(2), -0.4, 3.0);
+    world.arranged();
+}
+
 #[test]
 fn a_floating_robot_tumbles_as_ours_does() {
     let robot = floating();
     let fine = articulated::Options { substeps: 100, ..articulated::Options::default() };
     let mut ours = articulated::World::<f64>::new(articulated::Model::new(&robot, &fine).unwrap());
     let mut theirs = World::new(&robot, &Options { substeps: 100, ..Options::default() }).unwrap();
-    fn set<W: Arrange + Handles<Body = BodyId, Joint = JointId>>(world: &mut W) {
-        let twist = Twist { linear: [0.3, -0.2, 1.0], angular: [1.0, -2.0, 0.5] };
-        world.place_body(BodyId(0), Pose { position: [0.1, 0.2, 0.3], rotation: [0.5, -0.5, 0.5, 0.5] }, twist);
-        world.place_joint(JointId(1), 0.02, -0.1);
-        world.place_joint(JointId(2), -0.4, 3.0);
-        world.arranged();
-    }
-    set(&mut ours);
-    set(&mut theirs);
+    throw(&mut ours);
+    throw(&mut theirs);
     let mut most = [0.0_f32; 3];
     for _ in 0..50 {
         for body in (0..4).map(BodyId) {

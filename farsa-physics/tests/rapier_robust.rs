@@ -20,11 +20,12 @@ fn saved(world: &World) -> Vec<f32> {
     words
 }
 
+type Damage = fn(&mut World);
+
 #[test]
 fn a_broken_world_tells_nan_and_is_cured() {
     let robot = scene();
     let fresh = World::new(&robot, &Options::default()).unwrap();
-    type Damage = fn(&mut World);
     let damages: [(&str, Damage); 5] = [
         ("a command", |w| w.command(ActuatorId(3), [f32::NAN, 0.0])),
         ("an endless command", |w| w.command(ActuatorId(9), [0.0, f32::INFINITY])),
