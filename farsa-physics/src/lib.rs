@@ -147,11 +147,12 @@ pub mod arena {
 ///     let goods = scene.add(Thing::movable("crate", form, Pose::at([0.1, 0.0, 0.04]), 0.5));
 ///
 ///     let mut world = World::of_scene(&scene, &Options::default())?;
-///     world.command(motor, [0.2, 0.0]);
-///     for _ in 0..100 {
+///     for step in 1..=200 {
+///         world.command(motor, [0.001 * step as f32, 0.0]);
 ///         world.step();
 ///     }
-///     assert!((world.pose(goods).position[0] - 0.26).abs() < 0.005);
+///     let place = world.pose(goods).position[0];
+///     assert!((place - 0.26).abs() < 0.005, "{place} m");
 ///     Ok(())
 /// }
 /// ```
