@@ -88,9 +88,8 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
         }
         Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
             let (mut directory, mut plan) = existing(&directory, experiments)?;
-            let own = plan.identity()?;
-            engine::choose(&mut plan, world.name.as_deref())?;
-            if let Some(other) = world.name.filter(|_| plan.identity().is_ok_and(|identity| identity != own)) {
+            let other = engine::visit(&mut plan, world.name.as_deref())?;
+            if let Some(other) = world.name.filter(|_| other) {
                 directory.tests_in(&other);
             }
             let found =
@@ -141,7 +140,7 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
 
 fn replay(args: &ReplayArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<(), Error> {
     let (directory, mut plan) = existing(&args.directory, experiments)?;
-    engine::choose(&mut plan, args.world.name.as_deref())?;
+    engine::visit(&mut plan, args.world.name.as_deref())?;
     let which = args.life.which();
     let mut found = match (&args.html, &args.out) {
         (Some(path), _) => {

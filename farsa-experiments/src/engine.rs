@@ -60,6 +60,19 @@ pub(crate) fn choose(plan: &mut Plan<'_>, world: Option<&str>) -> Result<(), Err
     plan.settings.set("--world", ENGINE, Value::Word(world.into()))
 }
 
+/// Lets the lives of a run be lived in another world than the run's, and says whether it is another.
+///
+/// # Errors
+/// As [`choose`].
+pub(crate) fn visit(plan: &mut Plan<'_>, world: Option<&str>) -> Result<bool, Error> {
+    let own = plan.settings.clone();
+    choose(plan, world)?;
+    let there = std::mem::replace(&mut plan.settings, own);
+    let other = there != plan.settings;
+    plan.elsewhere = other.then_some(there);
+    Ok(other)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,6 +98,11 @@ mod tests {
         choose(&mut plan, Some("rapier")).unwrap();
         assert_ne!(plan.identity().unwrap(), before);
         assert_eq!(plan.settings.word(ENGINE).unwrap(), "rapier");
+        assert!(!visit(&mut plan, Some("rapier")).unwrap() && plan.elsewhere.is_none());
+        let run = plan.identity().unwrap();
+        assert!(visit(&mut plan, Some("articulated")).unwrap() && plan.setup().is_ok());
+        assert_eq!(plan.identity().unwrap(), run, "it is the same run");
+        assert!(!visit(&mut plan, None).unwrap() && plan.elsewhere.is_none());
         let error = choose(&mut plan, Some("rapir")).unwrap_err();
         assert!(error.to_string().starts_with("--world: `world.engine`"), "{error}");
         let mut other = Plan::new(&Braitenberg, None, "").unwrap();
