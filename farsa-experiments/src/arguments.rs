@@ -100,6 +100,8 @@ pub(crate) struct RunArgs {
     pub(crate) population: Option<i64>,
     #[command(flatten)]
     pub(crate) workers: WorkerArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
     /// The run's directory [default: runs/EXPERIMENT-CONDITION-SEED]; with --replications what they lie in [default: runs]
     #[arg(long, value_name = "DIR", conflicts_with = "resume", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
@@ -189,6 +191,15 @@ impl Threads {
     }
 }
 
+/// In which world.
+#[derive(Args)]
+pub(crate) struct WorldArgs {
+    /// The world to live in, where the experiment has a choice (world.engine): articulated, or rapier if built with it
+    /// [default: the run's own]
+    #[arg(long = "world", value_name = "NAME")]
+    pub(crate) name: Option<String>,
+}
+
 /// How many lives at once.
 #[derive(Args)]
 struct LanesArgs {
@@ -254,6 +265,8 @@ pub(crate) struct TestArgs {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) workers: WorkerArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
     /// Write what was found as JSON, without the table
     #[arg(long)]
     pub(crate) json: bool,
@@ -286,6 +299,8 @@ pub(crate) struct ReplayArgs {
     pub(crate) directory: PathBuf,
     #[command(flatten)]
     pub(crate) life: LifeArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
     /// A new file for the steps as CSV [default: the standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,

@@ -14,6 +14,7 @@ use crate::arguments::{
 use crate::bench::{self, Bench, Sample};
 use crate::directory::{Directory, create_result, create_results};
 use crate::draw;
+use crate::engine;
 use crate::error::Error;
 use crate::evaluate;
 use crate::evolution::{GENERATIONS, POPULATION};
@@ -86,8 +87,12 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             let found = start_or_resume(&args, quiet, program, experiments)?;
             summary(args.json, format!("{}\n", found.text()), &|| pretty(&found))
         }
-        Command::Test(TestArgs { directory, trials, seed, workers, json }) => {
-            let (directory, plan) = existing(&directory, experiments)?;
+        Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
+            let (mut directory, mut plan) = existing(&directory, experiments)?;
+            let other = engine::visit(&mut plan, world.name.as_deref())?;
+            if let Some(other) = world.name.filter(|_| other) {
+                directory.tests_in(&other);
+            }
             let found =
                 exam::test(&plan, &directory, trials as usize, seed, workers.threads(), workers.lanes(), quiet)?;
             summary(json, found.text(), &|| pretty(&found))
@@ -147,7 +152,8 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
 }
 
 fn replay(args: &ReplayArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<(), Error> {
-    let (directory, plan) = existing(&args.directory, experiments)?;
+    let (directory, mut plan) = existing(&args.directory, experiments)?;
+    engine::visit(&mut plan, args.world.name.as_deref())?;
     let which = args.life.which();
     let mut found = match (&args.html, &args.out) {
         (Some(path), _) => {
@@ -252,6 +258,7 @@ fn planned<'e>(
         plan.apply(file)?;
     }
     args.variant.apply(&mut plan)?;
+    engine::choose(&mut plan, args.world.name.as_deref())?;
     for (option, key, value) in
         [("--generations", GENERATIONS, args.generations), ("--population", POPULATION, args.population)]
     {

@@ -11,9 +11,20 @@ use crate::error::Error;
 #[derive(Debug, Clone)]
 pub(crate) struct Directory {
     path: PathBuf,
+    /// What the names of a test's files end with: nothing, or a hyphen and another world than the run's.
+    tests: String,
 }
 
 impl Directory {
+    fn at(path: PathBuf) -> Self {
+        Self { path, tests: String::new() }
+    }
+
+    /// Tests in another world than the run's have files of their own.
+    pub(crate) fn tests_in(&mut self, world: &str) {
+        self.tests = format!("-{world}");
+    }
+
     /// Makes a new directory out of its first files, all of them or none.
     ///
     /// They are written beside the place and moved there at once, so that nothing that is there is ever touched.
@@ -25,7 +36,7 @@ impl Directory {
         let name = path.file_name().ok_or_else(|| occupied(path, "cannot be the directory of a run"))?;
         let parent = parent(path);
         fs::create_dir_all(parent).map_err(Error::io("make", parent))?;
-        let draft = Self { path: parent.join(format!(".{}.{}", name.to_string_lossy(), process::id())) };
+        let draft = Self::at(parent.join(format!(".{}.{}", name.to_string_lossy(), process::id())));
         fs::create_dir(&draft.path).map_err(Error::io("make", &draft.path))?;
         let moved = fill(&draft).and_then(|()| {
             // Windows moves nothing onto a directory, even an empty one; a full one is in nobody's way by now.
@@ -39,7 +50,7 @@ impl Directory {
             // Only our own unfinished files; that they may stay is no reason to hide the first error.
             let _ = fs::remove_dir_all(&draft.path);
         }
-        moved.map(|()| Self { path: path.into() })
+        moved.map(|()| Self::at(path.into()))
     }
 
     /// The directory of a run that exists.
@@ -47,7 +58,7 @@ impl Directory {
     /// # Errors
     /// [`Error::NoRun`].
     pub(crate) fn open(path: &Path) -> Result<Self, Error> {
-        let directory = Self { path: path.into() };
+        let directory = Self::at(path.into());
         let why = if !path.is_dir() {
             "there is no such directory"
         } else if !directory.config().is_file() {
@@ -95,11 +106,11 @@ impl Directory {
     }
     /// The champion's trials on fresh starts.
     pub(crate) fn test(&self) -> PathBuf {
-        self.path.join("test.csv")
+        self.path.join(format!("test{}.csv", self.tests))
     }
     /// Which test that was.
     pub(crate) fn test_record(&self) -> PathBuf {
-        self.path.join("test.json")
+        self.path.join(format!("test{}.json", self.tests))
     }
 }
 

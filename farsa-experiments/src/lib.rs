@@ -23,6 +23,7 @@ mod discrimination_cylinders;
 mod discrimination_life;
 mod draw;
 mod draw_order;
+mod engine;
 mod error;
 mod evaluate;
 pub mod evolution;

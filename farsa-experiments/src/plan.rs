@@ -25,6 +25,8 @@ pub(crate) struct Plan<'e> {
     pub(crate) condition: String,
     pub(crate) seed: u64,
     pub(crate) settings: Settings,
+    /// The settings with another world, for lives that leave that of the run; none of the identity.
+    pub(crate) elsewhere: Option<Settings>,
 }
 
 impl<'e> Plan<'e> {
@@ -42,7 +44,7 @@ impl<'e> Plan<'e> {
         };
         let settings =
             Settings::new(evolution::complete(experiment.settings(condition), experiment.search(condition)))?;
-        Ok(Self { experiment, condition: condition.into(), seed: 1, settings })
+        Ok(Self { experiment, condition: condition.into(), seed: 1, settings, elsewhere: None })
     }
 
     /// Takes the seed and the values of a configuration file; experiment and condition are the caller's business.
@@ -72,7 +74,7 @@ impl<'e> Plan<'e> {
 
     /// The experiment made ready for one thread.
     pub(crate) fn setup(&self) -> Result<Box<dyn Setup>, Error> {
-        self.experiment.prepare(&self.condition, &self.settings)
+        self.experiment.prepare(&self.condition, self.elsewhere.as_ref().unwrap_or(&self.settings))
     }
 
     /// Generations to evaluate.

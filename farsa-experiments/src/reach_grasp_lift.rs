@@ -2,7 +2,7 @@
 
 pub use crate::fitness::{ContactTerm, GRASP_CAP, Judgement, LIFT_CAP, Ledger, REACH_CAP, Trial};
 pub use crate::phase::{Observation, Phase};
-pub use crate::reach_grasp_lift_config::{Config, Displacement, SphereFrame, TRIALS};
+pub use crate::reach_grasp_lift_config::{Config, Displacement, Engine, SphereFrame, TRIALS};
 pub use crate::reach_grasp_lift_life::{Judge, ReachLife};
 pub use crate::reach_grasp_lift_scene::{Motors, OUTPUTS, Scene, Senses};
 pub use crate::script::{Plan, ScriptLife, Statics, Timetable};
@@ -10,8 +10,8 @@ pub use crate::script::{Plan, ScriptLife, Statics, Timetable};
 use std::sync::Arc;
 
 use farsa_body::{
-    ArmAndHand, BodyId, Contacts, Joints, Kinematics, Law, MjcfOptions, MusclePair, PairId, Recorder, Tabletop,
-    World as _,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Law,
+    MjcfOptions, MusclePair, PairId, Recorder, Tabletop,
 };
 use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, Leak, Network, ParameterKind};
@@ -56,13 +56,22 @@ impl Experiment for ReachGraspLift {
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
-        Ok(Box::new(Lives::new(Config::read(condition != NO_LABELS, settings)?)?))
+        let config = Config::read(condition != NO_LABELS, settings)?;
+        match config.engine {
+            Engine::Articulated => Ok(Box::new(Lives::new(config)?)),
+            #[cfg(feature = "rapier")]
+            Engine::Rapier => Ok(Box::new(Lives::in_rapier(config)?)),
+            #[cfg(not(feature = "rapier"))]
+            Engine::Rapier => Err(config.engine.missing()),
+        }
     }
 }
 
 /// The scene in its world with a network that genes are decoded into: everything that a thread needs to live lives.
-pub struct Lives {
-    world: World<f32>,
+pub struct Lives<W = World<f32>> {
+    world: W,
+    /// For worlds in lanes, where there are any.
+    model: Option<Model<f32>>,
     life: NetworkLife,
     decoder: Decoder,
     /// The arm's muscles, to tell their lengths and torques.
@@ -118,29 +127,61 @@ fn on_sphere(scene: &Scene) -> impl Iterator<Item = PairId> {
     scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table])
 }
 
+fn wrong(error: &dyn std::fmt::Display) -> Error {
+    Error::Other(format!("reach-grasp-lift: {error}"))
+}
+
 impl Lives {
-    /// Lives under a configuration.
+    /// Lives under a configuration, in our articulated world.
     ///
     /// # Errors
     /// [`Error::Other`] for a configuration whose robot or network cannot be built.
     pub fn new(config: Config) -> Result<Self, Error> {
+        Self::assemble(config, |scene| {
+            let model = Model::new(&scene.robot, &scene.config.options()).map_err(|error| wrong(&error))?;
+            Ok((World::new(model.clone()), Some(model)))
+        })
+    }
+}
+
+#[cfg(feature = "rapier")]
+impl Lives<farsa_physics::rapier::World> {
+    /// Lives under a configuration, in rapier.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a configuration whose robot or network cannot be built.
+    pub fn in_rapier(config: Config) -> Result<Self, Error> {
+        Self::assemble(config, |scene| {
+            let world = farsa_physics::rapier::World::new(&scene.robot, &scene.config.rapier_options());
+            Ok((world.map_err(|error| wrong(&error))?, None))
+        })
+    }
+}
+
+impl<W> Lives<W> {
+    fn assemble(
+        config: Config,
+        world: impl FnOnce(&Scene) -> Result<(W, Option<Model<f32>>), Error>,
+    ) -> Result<Self, Error> {
         let layout = config.layout();
-        let wrong = |error: &dyn std::fmt::Display| Error::Other(format!("reach-grasp-lift: {error}"));
         let decoder = Decoder::new(layout, config.leak, config.weight_range as f32)?;
         let (zeros, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
         let network = Network::new(layout, config.leak, zeros, state).map_err(|error| wrong(&error))?;
         let scene = Scene::new(config)?;
-        let model = Model::new(&scene.robot, &scene.config.options()).map_err(|error| wrong(&error))?;
+        let (world, model) = world(&scene)?;
         let laws = scene.robot.actuators.iter().map(|actuator| actuator.law.cast::<f32>());
         let muscles = laws.map_while(|law| if let Law::MusclePair(pair) = law { Some(pair) } else { None }).collect();
         let told = [Tabletop::SPHERE, ArmAndHand::PALM];
         let other_bodies = scene.robot.shaped_bodies().filter(|body| !told.contains(body)).collect();
         let life = ReachLife::new(Arc::new(scene), network)?;
-        Ok(Self { world: World::new(model), life, decoder, muscles, other_bodies, together: None })
+        Ok(Self { world, model, life, decoder, muscles, other_bodies, together: None })
     }
 
     /// Tells what was sensed, computed and done before the step that has just been judged, and what it led to.
-    fn tell(&self, recorder: &mut dyn Recorder) {
+    fn tell(&self, recorder: &mut dyn Recorder)
+    where
+        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId>,
+    {
         let Self { world, life, muscles, .. } = self;
         let (judge, scene) = (life.judge(), life.judge().scene());
         let (trial, seen, earned) = (judge.trial(), judge.seen(), judge.earned());
@@ -212,7 +253,17 @@ impl Lives {
     }
 }
 
-impl Setup for Lives {
+impl<W> Setup for Lives<W>
+where
+    W: farsa_body::World
+        + Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+        + Send,
+{
     fn genes(&self) -> usize {
         self.decoder.parameters.len()
     }
@@ -339,8 +390,9 @@ impl Setup for Lives {
 
     fn use_lanes(&mut self, lanes: Lanes) -> Result<Lanes, Error> {
         self.together = None;
+        let Some(model) = &self.model else { return Ok(Lanes::one()) };
         if lanes.count() > 1 {
-            let batch = Batch::new(self.world.model().clone(), lanes.count(), lanes.level());
+            let batch = Batch::new(model.clone(), lanes.count(), lanes.level());
             let batch = batch.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
             let lives = (0..lanes.count()).map(|_| Numbered { life: self.life.clone(), number: 0 }).collect();
             self.together = Some(Together { batch, lives });

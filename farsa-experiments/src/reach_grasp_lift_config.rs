@@ -4,6 +4,7 @@ use farsa_body::{ArmAndHand, Axes, MuscleVariant, Servo, Surface, Tabletop};
 use farsa_nn::{Layout, Leak};
 use farsa_physics::articulated::Options;
 
+pub use crate::engine::Engine;
 use crate::fitness::Judgement;
 
 /// Trials of an evaluation, each with its own start \[Ferrauto2010, 2.3.4\].
@@ -36,6 +37,8 @@ pub enum SphereFrame {
 pub struct Config {
     /// Whether the controller is told the phase: condition A `labels`, or B `no-labels`.
     pub labels: bool,
+    /// What moves the bodies.
+    pub engine: Engine,
     /// Control step \[s\].
     pub time_step: f64,
     /// Dynamics steps per control step.
@@ -127,6 +130,7 @@ impl Default for Config {
         let (arm, table, options) = (ArmAndHand::default(), Tabletop::default(), Options::default());
         Self {
             labels: true,
+            engine: Engine::default(),
             time_step: options.time_step,
             substeps: options.substeps,
             gravity: -options.gravity[2],
@@ -236,7 +240,18 @@ impl Config {
         }
     }
 
-    /// How the physics moves the scene.
+    /// How rapier moves the scene; the other numbers of [`Config::options`] mean nothing there.
+    #[cfg(feature = "rapier")]
+    pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
+        farsa_physics::rapier::Options {
+            time_step: self.time_step,
+            substeps: self.substeps,
+            gravity: [0.0, 0.0, -self.gravity],
+            ..farsa_physics::rapier::Options::default()
+        }
+    }
+
+    /// How our physics moves the scene.
     pub fn options(&self) -> Options {
         Options {
             time_step: self.time_step,

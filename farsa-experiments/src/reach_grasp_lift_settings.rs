@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use farsa_body::{Axes, MuscleVariant};
 
+use crate::engine::{ENGINE, Engine};
 use crate::error::Error;
 use crate::fitness::ContactTerm;
 use crate::reach_grasp_lift_config::{Config, Displacement, SphereFrame};
@@ -34,6 +35,13 @@ fn entries() -> Vec<Entry> {
     use Field::{Number, Numbers, Whole, Word};
     use Source::{Chosen, Given};
     vec![
+        entry(
+            ENGINE,
+            Word(&Engine::NAMES, |c| c.engine.name(), |c, w| c.engine = w.parse().unwrap_or_default()),
+            "",
+            Chosen,
+            "Whose dynamics: ours, or rapier's, which knows no sweeps, slip, limit frequency, stiffness and damping of contacts.",
+        ),
         entry("world.time_step", Number(|c| &mut c.time_step, 0.001..=0.05), "s", Given, "Control step."),
         entry(
             "world.substeps",

@@ -54,6 +54,24 @@ mod lockstep;
 mod model;
 #[cfg(feature = "alloc")]
 mod model_builder;
+#[cfg(feature = "rapier")]
+mod rapier_contact;
+#[cfg(feature = "rapier")]
+mod rapier_error;
+#[cfg(feature = "rapier")]
+mod rapier_model;
+#[cfg(feature = "rapier")]
+mod rapier_options;
+#[cfg(feature = "rapier")]
+mod rapier_ports;
+#[cfg(feature = "rapier")]
+mod rapier_rules;
+#[cfg(feature = "rapier")]
+mod rapier_scene;
+#[cfg(feature = "rapier")]
+mod rapier_snapshot;
+#[cfg(feature = "rapier")]
+mod rapier_world;
 #[cfg(feature = "alloc")]
 mod ray;
 #[cfg(feature = "alloc")]
@@ -102,4 +120,47 @@ pub mod arena {
     pub use crate::arena_error::{ArenaError, Part};
     pub use crate::arena_place::FreePlace;
     pub use crate::arena_world::World;
+}
+
+/// The same robots, and general scenes, in rapier.
+///
+/// A block on a slide pushes a crate over the ground:
+///
+/// ```
+/// use farsa_body::{
+///     Actuated, Collider, Joint, JointId, Kinematics, Law, MassProperties, Pose, Robot, Segment, Servo, Shape, World as _,
+/// };
+/// use farsa_physics::rapier::{Form, Options, RapierError, Scene, Thing, World};
+///
+/// fn main() -> Result<(), RapierError> {
+///     let half = [0.02, 0.05, 0.02];
+///     let mut robot = Robot::new("pusher");
+///     let slide = Joint::prismatic("slide", [1.0, 0.0, 0.0], Pose::at([0.0, 0.0, 0.03]), [-1.0, 1.0]);
+///     let block = robot.add_segment(Segment::new("block", None, slide, MassProperties::cuboid(1.0, half)));
+///     robot.add_collider(Collider::new("front", Some(block), Shape::Box { half }, Pose::identity()));
+///     let servo = Servo { stiffness: 2000.0, damping: 200.0, limit: 50.0 };
+///     let motor = robot.add_actuator("slide", JointId(block.0), Law::Servo(servo));
+///
+///     let mut scene = Scene::new(robot);
+///     scene.add(Thing::fixed("ground", Form::Simple(Shape::Plane), Pose::identity()));
+///     let form = Form::Simple(Shape::Box { half: [0.04; 3] });
+///     let goods = scene.add(Thing::movable("crate", form, Pose::at([0.1, 0.0, 0.04]), 0.5));
+///
+///     let mut world = World::of_scene(&scene, &Options::default())?;
+///     for step in 1..=200 {
+///         world.command(motor, [0.001 * step as f32, 0.0]);
+///         world.step();
+///     }
+///     // 0.26 m, less what the servo's damping lags behind at 0.1 m/s.
+///     let place = world.pose(goods).position[0];
+///     assert!((place - 0.25).abs() < 0.005, "{place} m");
+///     Ok(())
+/// }
+/// ```
+#[cfg(feature = "rapier")]
+pub mod rapier {
+    pub use crate::rapier_error::RapierError;
+    pub use crate::rapier_options::Options;
+    pub use crate::rapier_scene::{Form, Scene, Thing};
+    pub use crate::rapier_world::World;
 }

@@ -26,7 +26,7 @@ pub(crate) trait View<R: Real> {
 }
 
 /// The unit quaternion [x, y, z, w] of a rotation, w >= 0 where it is not close to 0.
-fn quaternion<R: Real>(m: &Matrix<R>) -> [R; 4] {
+pub(crate) fn quaternion<R: Real>(m: &Matrix<R>) -> [R; 4] {
     let one = R::of(1.0);
     let half = R::of(0.5);
     let trace = m[0][0] + m[1][1] + m[2][2];

@@ -18,6 +18,32 @@ fn refused(program: &Path, here: &Path, arguments: &str, code: i32, words: &[&st
 }
 
 #[test]
+fn worlds() {
+    let here = scratch("worlds");
+    let run = "run reach-grasp-lift --generations 1 --population 20";
+    let unknown = ["--world: ", "`world.engine`", "rapir"];
+    refused(farsa(), &here, &format!("{run} --world rapir"), 2, &unknown);
+    refused(farsa(), &here, "run braitenberg --world rapier", 2, &["--world rapier: braitenberg has one world only"]);
+    if cfg!(feature = "rapier") {
+        ok(farsa(), &here, &format!("{run} --set trial.steps=5 --world rapier --out r"));
+        let other = ["`world.engine` = \"rapier\", not \"articulated\""];
+        refused(farsa(), &here, "run --resume r --generations 2 --world articulated", 2, &other);
+        // A test may leave the run's world, and keeps what it finds to itself.
+        ok(farsa(), &here, "test r --trials 4 --world articulated");
+        assert!(here.join("r/test-articulated.csv").is_file() && !here.join("r/test.csv").exists());
+        ok(farsa(), &here, "test r --trials 4 --world rapier");
+        assert!(here.join("r/test.csv").is_file());
+        ok(farsa(), &here, "replay r --trial 0 --world articulated --out life.csv");
+    } else {
+        let how = ["world `rapier`", "--features rapier"];
+        refused(farsa(), &here, &format!("{run} --world rapier"), 2, &how);
+        ok(farsa(), &here, &format!("{run} --set trial.steps=5 --world articulated --out r"));
+        refused(farsa(), &here, "test r --trials 4 --world rapier", 2, &how);
+        refused(farsa(), &here, "replay r --trial 0 --world rapier", 2, &how);
+    }
+}
+
+#[test]
 fn the_command_line() {
     let here = scratch("line");
     for (arguments, words) in [

@@ -1,0 +1,50 @@
+//! The world of rapier keeps what `farsa_body::testing` says that every world promises.
+#![cfg(feature = "rapier")]
+#![allow(missing_docs, clippy::unwrap_used)]
+
+mod common;
+
+use common::{CLOSED, POSES, WRIST, Wrist, hand_and_sphere, scene};
+use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
+use farsa_body::{ArmAndHand, Arrange, JointId, Law, Pose, Tabletop, Twist};
+use farsa_physics::rapier::{Options, World};
+
+#[test]
+fn the_whole_scene_conforms() {
+    let robot = scene();
+    let fresh = World::new(&robot, &Options::default()).unwrap();
+    let probe = Probe { steps: 64, ..Probe::of(&robot) };
+    for pose in POSES {
+        let make = || {
+            let mut world = fresh.clone();
+            for (j, degrees) in pose.into_iter().enumerate() {
+                world.place_joint(JointId(j as u16), degrees.to_radians() as f32, 0.0);
+            }
+            world.arranged();
+            world
+        };
+        assert_eq!(check_world(make, &probe), Ok(()));
+        assert_eq!(check_rays(&make(), &probe.bodies, &[[0.1, -0.3, 0.3], [0.3, 0.0, 0.1]], 1.0), Ok(()));
+    }
+    assert_eq!(check_arrange(|| fresh.clone(), &probe), Ok(()));
+}
+
+#[test]
+fn a_hand_around_a_sphere_conforms() {
+    let arm = ArmAndHand::default();
+    let robot = hand_and_sphere(Wrist::Fixed, arm.surface, Some(Law::Servo(arm.servo)));
+    let fresh = World::new(&robot, &Options::default()).unwrap();
+    let make = || {
+        let mut world = fresh.clone();
+        let at = [WRIST[0] + 0.0625 + 0.015, WRIST[1], WRIST[2] - 0.010 - 0.025 - 0.001];
+        world.place_body(Tabletop::SPHERE, Pose::at(at.map(|x| x as f32)), Twist::default());
+        for (group, y) in ArmAndHand::default().servo_groups().iter().zip(CLOSED) {
+            for s in group {
+                world.place_joint(JointId(s.servo.0), s.from + (s.to - s.from) * 0.5 * y, 0.0);
+            }
+        }
+        world.arranged();
+        world
+    };
+    assert_eq!(check_world(make, &Probe { steps: 96, ..Probe::of(&robot) }), Ok(()));
+}
