@@ -11,7 +11,7 @@ use crate::arguments_genotypes::{EvaluateArgs, ImportArgs};
 use crate::camera::Camera;
 use crate::error::Error;
 use crate::experiment::Experiment;
-use crate::export::ModelFormat;
+use crate::export::{DataFormat, ModelFormat};
 use crate::lanes::{SIMD, Wanted};
 use crate::model::RobotArgs;
 use crate::plan::{self, LARGEST_SEED, Plan};
@@ -50,7 +50,7 @@ pub(crate) enum Command {
     Draw(DrawArgs),
     /// Write a page about one or many runs
     Report(ReportArgs),
-    /// Write an experiment's robot for other simulators
+    /// Write a robot, a controller or starts for other simulators
     Export(ExportArgs),
     /// Tell what is read of a robot in a model file, URDF or MJCF
     Robot(RobotArgs),
@@ -390,6 +390,42 @@ pub(crate) struct ExportArgs {
 pub(crate) enum ExportWhat {
     /// Write the robot with everything around it as a model file
     Robot(ExportRobotArgs),
+    /// Write the controller of a run's champion, with what it senses and drives
+    Controller(ExportControllerArgs),
+    /// Write how the trials of `test` start
+    Starts(ExportStartsArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct ExportControllerArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: DataFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportStartsArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Trials of the test
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) trials: u32,
+    /// The test's seed
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: DataFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Args)]

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::FromArgMatches as _;
 
 use crate::arguments::{
-    BenchArgs, Cli, Command, CompletionsArgs, ExportArgs, ExportRobotArgs, ExportWhat, InfoArgs, ListArgs, ManArgs,
-    ReplayArgs, ReportArgs, RunArgs, TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, ExportArgs, ExportControllerArgs, ExportRobotArgs, ExportStartsArgs,
+    ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
 use crate::bench::{self, Bench, Sample};
 use crate::directory::{Directory, create_result, create_results};
@@ -20,7 +20,7 @@ use crate::evaluate;
 use crate::evolution::{GENERATIONS, POPULATION};
 use crate::exam;
 use crate::experiment::Experiment;
-use crate::export;
+use crate::export::{self, DataFormat};
 use crate::import;
 use crate::info::{self, pretty};
 use crate::manual;
@@ -117,10 +117,8 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             let found = report::report(runs, html.as_deref(), md.as_deref(), program)?;
             summary(json, found.text(), &|| pretty(&found))
         }
-        Command::Export(ExportArgs { what: ExportWhat::Robot(args) }) => {
-            let ExportRobotArgs { experiment, variant, format, out } = args;
-            let plan = variant.plan(plan::find(experiments, &experiment, "")?)?;
-            let text = export::robot(&plan, format)?;
+        Command::Export(ExportArgs { what }) => {
+            let (text, out) = exported(what, experiments)?;
             match out {
                 None => say(&text),
                 Some(path) => create_results(&[(path, text)]),
@@ -147,6 +145,24 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
         Command::Man(ManArgs { out: Some(path) }) => {
             let pages = manual::pages(&path, program, experiments)?;
             summary(false, format!("{}: {pages} pages\n", path.display()), &|| Ok(String::new()))
+        }
+    }
+}
+
+/// What is to be exported, and where to.
+fn exported(what: ExportWhat, experiments: &[&dyn Experiment]) -> Result<(String, Option<PathBuf>), Error> {
+    match what {
+        ExportWhat::Robot(ExportRobotArgs { experiment, variant, format, out }) => {
+            let plan = variant.plan(plan::find(experiments, &experiment, "")?)?;
+            Ok((export::robot(&plan, format)?, out))
+        }
+        ExportWhat::Controller(ExportControllerArgs { directory, format: DataFormat::Json, out }) => {
+            let (directory, plan) = existing(&directory, experiments)?;
+            Ok((export::controller(&plan, &directory)?, out))
+        }
+        ExportWhat::Starts(ExportStartsArgs { directory, trials, seed, format: DataFormat::Json, out }) => {
+            let (_, plan) = existing(&directory, experiments)?;
+            Ok((export::starts(&plan, trials as usize, seed)?, out))
         }
     }
 }

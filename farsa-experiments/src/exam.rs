@@ -135,6 +135,13 @@ pub(crate) fn test(
     Ok(Exam { directory: path, generation, individual, individuals, seed, findings, warning, table })
 }
 
+/// The life of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
+pub(crate) fn job(trial: usize, kinds: usize, seed: u64) -> Job {
+    let kinds = kinds.max(1);
+    let (generation, trial) = ((trial / kinds) as u32, (trial % kinds) as u32);
+    Job { seed: seed | !LARGEST_SEED, generation, individual: 0, trial }
+}
+
 /// Lives fresh trials of some genomes, of one or one of each population of `size` individuals.
 pub(crate) fn lives(
     pool: &mut Pool,
@@ -150,9 +157,7 @@ pub(crate) fn lives(
         .collect();
     let task = |number: usize| {
         let (population, trial) = (number % count, number / count);
-        let (round, trial) = ((trial / kinds) as u32, (trial % kinds) as u32);
-        let individual = (population * size) as u32;
-        let job = Job { seed: seed | !LARGEST_SEED, generation: round, individual, trial };
+        let job = Job { individual: (population * size) as u32, ..job(trial, kinds, seed) };
         Some(Task { number, genes: genomes.get(population)?, opponents: others.get(population)?, job })
     };
     let done = |number: usize, _: Option<&Outcome>| {

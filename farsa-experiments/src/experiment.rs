@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use farsa_body::{MjcfOptions, Recorder};
 
+use crate::controller_export::{ControllerExport, StartExport};
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::life::Job;
@@ -122,6 +123,18 @@ pub trait Setup: Send {
     fn mjcf_options(&self) -> MjcfOptions {
         let (plain, step) = (MjcfOptions::default(), self.description().step_seconds);
         MjcfOptions { time_step: if step > 0.0 { step } else { plain.time_step }, ..plain }
+    }
+
+    /// The controller of these genes with its channels, for `farsa export controller`; by default there is none to export.
+    fn controller(&self, genes: &[u16]) -> Option<ControllerExport> {
+        let _ = genes;
+        None
+    }
+
+    /// How the trial of a job starts, for `farsa export starts`; by default that cannot be told.
+    fn start(&self, job: Job) -> Option<StartExport> {
+        let _ = job;
+        None
     }
 
     /// What the robot senses, does and computes with, for `farsa info`.

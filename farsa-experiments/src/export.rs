@@ -1,9 +1,15 @@
-//! `farsa export`: an experiment's robot as a file for other simulators.
+//! `farsa export`: robots, controllers and starts as files for other simulators.
 
 use clap::ValueEnum;
+use serde::Serialize;
 
+use crate::controller_export::{ControllerExport, StartExport};
+use crate::directory::Directory;
 use crate::error::Error;
+use crate::exam;
+use crate::info::pretty;
 use crate::plan::Plan;
+use crate::records::{Best, Champions};
 
 /// The formats of model files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -12,6 +18,13 @@ pub(crate) enum ModelFormat {
     Mjcf,
     /// The robot alone: joints, inertias, shapes
     Urdf,
+}
+
+/// The formats of controllers and starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DataFormat {
+    /// Names and numbers
+    Json,
 }
 
 /// The robot of an experiment under a condition and its settings.
@@ -27,4 +40,68 @@ pub(crate) fn robot(plan: &Plan<'_>, format: ModelFormat) -> Result<String, Erro
         ModelFormat::Urdf => robot.to_urdf(),
     };
     text.map_err(|error| Error::Other(format!("{name}: {error}")))
+}
+
+/// Whose controller it is.
+#[derive(Serialize)]
+struct Whose<'a> {
+    /// Grows when the meaning of a field changes.
+    format: u32,
+    experiment: &'a str,
+    condition: &'a str,
+    seed: u64,
+    generation: u32,
+    individual: u32,
+    #[serde(flatten)]
+    controller: ControllerExport,
+}
+
+/// The starts of a test.
+#[derive(Serialize)]
+struct Starts<'a> {
+    format: u32,
+    experiment: &'a str,
+    condition: &'a str,
+    /// The test's, not the run's.
+    seed: u64,
+    starts: Vec<StartExport>,
+}
+
+/// The champion's controller of a run.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
+pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory) -> Result<String, Error> {
+    let path = directory.champion();
+    if !path.is_file() {
+        return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
+    }
+    let Champions { identity, generation, best } = Champions::read(plan, directory)?;
+    identity.same_values(&plan.identity()?, &path)?;
+    let setup = plan.setup()?;
+    let name = plan.experiment.name();
+    let [Best { individual, genes, .. }] = best.as_slice() else {
+        return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));
+    };
+    if genes.len() != setup.genes() {
+        return Err(Error::damaged(&path, "its genome is not one of the experiment"));
+    }
+    let controller = setup.controller(genes);
+    let controller = controller.ok_or_else(|| Error::Usage(format!("{name}: its controllers cannot be exported")))?;
+    let (seed, condition) = (plan.seed, plan.condition.as_str());
+    let individual = *individual;
+    pretty(&Whose { format: 1, experiment: name, condition, seed, generation, individual, controller })
+}
+
+/// How the trials of `farsa test` start.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment whose starts cannot be told.
+pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String, Error> {
+    let setup = plan.setup()?;
+    let name = plan.experiment.name();
+    let starts = (0..trials).map(|trial| setup.start(exam::job(trial, setup.trials(), seed)));
+    let starts: Option<Vec<_>> = starts.collect();
+    let starts = starts.ok_or_else(|| Error::Usage(format!("{name}: its starts cannot be exported")))?;
+    pretty(&Starts { format: 1, experiment: name, condition: &plan.condition, seed, starts })
 }

@@ -16,6 +16,7 @@ pub mod braitenberg;
 mod braitenberg_life;
 mod camera;
 pub mod cli;
+mod controller_export;
 mod directory;
 pub mod discrimination;
 mod discrimination_config;
@@ -73,6 +74,7 @@ mod progress;
 mod prop;
 pub mod reach_grasp_lift;
 mod reach_grasp_lift_config;
+mod reach_grasp_lift_export;
 mod reach_grasp_lift_life;
 mod reach_grasp_lift_scene;
 mod reach_grasp_lift_settings;
@@ -114,6 +116,10 @@ pub use best_of_run::BestOfRun;
 pub use body_evolution::BodyEvolution;
 pub use braitenberg::Braitenberg;
 pub use camera::Camera;
+pub use controller_export::{
+    ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport,
+    SensorReading, ServoExport, StartExport,
+};
 pub use discrimination::{Discrimination, DiscriminationCylinders};
 pub use error::Error;
 pub use experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape, Task};

@@ -99,6 +99,8 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
             vec![
                 format!("export robot {experiment} --format mjcf --out {experiment}.xml"),
                 format!("export robot {experiment} --format urdf"),
+                format!("export controller {run} --format json --out controller.json"),
+                format!("export starts {run} --trials 100 --seed 1 --format json --out starts.json"),
             ],
         ),
         (

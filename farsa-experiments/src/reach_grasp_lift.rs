@@ -17,6 +17,7 @@ use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, Leak, Network, ParameterKind};
 use farsa_physics::articulated::{Batch, Model, World};
 
+use crate::controller_export::{ControllerExport, NetworkExport, StartExport};
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape, Task};
 use crate::lanes::Lanes;
@@ -318,6 +319,19 @@ where
     fn mjcf_options(&self) -> MjcfOptions {
         let scene = self.life.judge().scene();
         scene.mjcf_options()
+    }
+
+    fn controller(&self, genes: &[u16]) -> Option<ControllerExport> {
+        let (scene, life) = (self.life.judge().scene(), &self.life);
+        let config = &scene.config;
+        let mut decoder = Decoder::new(config.layout(), config.leak, config.weight_range as f32).ok()?;
+        let network =
+            decoder.decode(genes).then(|| NetworkExport::new(&config.layout(), config.leak, &decoder.parameters));
+        Some(scene.controller(network?, life.senses().names(), life.motors().names()))
+    }
+
+    fn start(&self, job: Job) -> Option<StartExport> {
+        Some(self.life.judge().scene().start_by_name(job))
     }
 
     fn description(&self) -> Description {

@@ -14,6 +14,8 @@ use crate::reach_grasp_lift_config::{Config, Displacement, TRIALS};
 
 /// Sensor channels beside the labels.
 const PLAIN_SENSORS: usize = 26;
+/// Units per metre of the sphere's position: centimetres.
+pub(crate) const TARGET_SCALE: f32 = 100.0;
 /// Output channels: an activation for each of the 14 muscles, a position for each of the 9 servo groups.
 pub const OUTPUTS: usize = 23;
 
@@ -95,29 +97,13 @@ impl Scene {
     /// # Errors
     /// [`Error::Other`] for ranges of joints that are empty.
     pub fn senses(&self) -> Result<Senses, Error> {
-        let mut joints = Vec::new();
-        for (joint, [low, high]) in ArmAndHand::joints().into_iter().zip(self.arm.arm_ranges) {
-            joints.push(JointPosition::new(joint, low as f32, high as f32).map_err(wrong_channel)?);
-        }
-        for number in SENSED_HAND_JOINTS {
-            // Abduction over its range; opposition and flexion from extended, the upper limit.
-            let (from, to) = match number {
-                8 => (self.arm.opposition_range[1], self.arm.opposition_range[0]),
-                16 => (self.arm.abduction_ranges[1][0], self.arm.abduction_ranges[1][1]),
-                _ => (self.arm.flexion_range[1], self.arm.flexion_range[0]),
-            };
-            let joint = JointId(number as u16 - 1);
-            joints.push(JointPosition::new(joint, from as f32, to as f32).map_err(wrong_channel)?);
-        }
-        let mut patches: TouchPatches = Vec::new();
-        let colliders = Finger::ALL.map(|finger| ArmAndHand::phalange_colliders(finger).to_vec());
-        for own in colliders.into_iter().chain([vec![ArmAndHand::ARM_COLLIDERS[2]]]) {
-            patches.push(
-                Touch::new(self.foreign_pairs(&own), self.config.touch_saturation as f32).map_err(wrong_channel)?,
-            );
-        }
+        let joints = self.sensed_joints().into_iter();
+        let joints = joints.map(|(joint, [from, to])| JointPosition::new(joint, from, to).map_err(wrong_channel));
+        let saturation = self.config.touch_saturation as f32;
+        let patches = self.patches().into_iter().map(|pairs| Touch::new(pairs, saturation).map_err(wrong_channel));
+        let (joints, patches) = (joints.collect::<Result<Vec<_>, _>>()?, patches.collect::<Result<TouchPatches, _>>()?);
         let palm = Point { body: ArmAndHand::PALM, at: self.arm.palm_centre.map(|x| x as f32) };
-        let target = TargetPosition::new(Point::origin(Tabletop::SPHERE), palm, self.config.target_axes, 100.0);
+        let target = TargetPosition::new(Point::origin(Tabletop::SPHERE), palm, self.config.target_axes, TARGET_SCALE);
         let label_amplitude = self.config.label_amplitude as f32;
         let label = self.config.labels.then(|| Signal::one_hot(Phase::Reach.index(), label_amplitude));
         Ok(Senses { parts: (joints, patches, target.map_err(wrong_channel)?, label), label_amplitude })
@@ -131,6 +117,28 @@ impl Scene {
         let muscles = (0..7).map(|i| Muscles::new(ActuatorId(i))).collect();
         let groups: Result<Vec<_>, _> = self.arm.servo_groups().into_iter().map(ServoGroup::new).collect();
         Ok(Motors { parts: (muscles, groups.map_err(wrong_channel)?) })
+    }
+
+    /// The joints that are sensed, with the positions that read 0 and 1 \[rad\].
+    pub(crate) fn sensed_joints(&self) -> Vec<(JointId, [f32; 2])> {
+        let arm = ArmAndHand::joints().into_iter().zip(self.arm.arm_ranges);
+        let hand = SENSED_HAND_JOINTS.into_iter().map(|number| {
+            // Abduction over its range; opposition and flexion from extended, the upper limit.
+            let [low, high] = match number {
+                8 => self.arm.opposition_range,
+                16 => self.arm.abduction_ranges[1],
+                _ => self.arm.flexion_range,
+            };
+            (JointId(number as u16 - 1), if number == 16 { [low, high] } else { [high, low] })
+        });
+        arm.chain(hand).map(|(joint, range)| (joint, range.map(|x| x as f32))).collect()
+    }
+
+    /// The pairs of the tactile sensors: thumb, index, middle, ring, little finger, palm.
+    pub(crate) fn patches(&self) -> Vec<Vec<PairId>> {
+        let fingers = Finger::ALL.map(|finger| ArmAndHand::phalange_colliders(finger).to_vec());
+        let patches = fingers.into_iter().chain([vec![ArmAndHand::ARM_COLLIDERS[2]]]);
+        patches.map(|own| self.foreign_pairs(&own)).collect()
     }
 
     /// The pairs of these colliders with anything that is not of the arm and hand.

@@ -1,4 +1,4 @@
-//! `farsa export`: model files for other simulators.
+//! `farsa export`: robots, controllers and starts for other simulators.
 
 use std::fs;
 
@@ -25,6 +25,7 @@ fn the_robot_is_written_once() {
 #[test]
 fn what_cannot_be_exported_is_said() {
     let here = scratch("export-nothing");
+    ok(own(), &here, "run cart --generations 1 --quiet --out r");
     for (program, arguments, word) in [
         (own(), "export robot cart --format mjcf", "cart has no robot"),
         (own(), "export robot crat --format mjcf", "`cart`"),
@@ -32,9 +33,41 @@ fn what_cannot_be_exported_is_said() {
         (farsa(), "export robot reach-grasp-lift", "--format"),
         (farsa(), "export robot reach-grasp-lift --format urdf --set world.substep=2", "world.substeps"),
         (farsa(), "export robto reach-grasp-lift", "'robot'"),
+        (farsa(), "export controller nowhere --format json", "nowhere"),
+        (farsa(), "export starts nowhere --format json", "nowhere"),
+        (farsa(), "export controller nowhere --format mjcf", "'mjcf'"),
+        (own(), "export controller r --format json", "cart: its controllers cannot be exported"),
+        (own(), "export starts r --format json", "cart: its starts cannot be exported"),
     ] {
         let said = say(program, &here, arguments);
         assert_eq!(said.code, Some(2), "{arguments}: {said:?}");
         assert!(said.err.contains(word), "{arguments}: no {word} in {said:?}");
     }
+}
+
+#[test]
+fn a_champion_is_written_with_its_channels_and_starts() {
+    let here = scratch("export-controller");
+    ok(farsa(), &here, "run reach-grasp-lift --generations 1 --quiet --set trial.steps=2 --out r");
+    let printed = ok(farsa(), &here, "export controller r --format json");
+    let told: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
+    let count = |what: &serde_json::Value| what.as_array().map_or(0, Vec::len);
+    assert_eq!([count(&told["sensors"]), count(&told["motors"]), count(&told["actuators"])], [29, 23, 27]);
+    let kinds = ["sensor_weights", "recurrent_weights", "output_weights", "biases", "leaks"];
+    assert_eq!(kinds.map(|kind| count(&told["network"][kind])), [348, 144, 276, 12, 12]);
+    assert_eq!((&told["format"], &told["network"]["leak"], &told["generation"]), (&1.into(), &"filter".into(), &0.into()));
+    assert_eq!(told["sensors"][0]["reads"], "joint-position");
+    assert_eq!(told["motors"][16]["servos"][1]["actuator"], "J11");
+    assert!(told["actuators"][0]["law"]["muscle-pair"]["tension"].is_number());
+    ok(farsa(), &here, "export controller r --format json --out c.json");
+    assert_eq!(fs::read_to_string(here.join("c.json")).expect("the file"), printed);
+
+    let starts = |seed: u32| {
+        let printed = ok(farsa(), &here, &format!("export starts r --trials 9 --seed {seed} --format json"));
+        serde_json::from_str::<serde_json::Value>(&printed).expect("JSON")["starts"].clone()
+    };
+    let (first, other) = (starts(1), starts(2));
+    assert_eq!((count(&first), count(&first[0]["joints"]), first == starts(1)), (9, 27, true));
+    // The same place of the table, displaced anew.
+    assert!(first[0] != first[4] && first[0] != other[0] && first[0]["bodies"][0][0] == "sphere");
 }
