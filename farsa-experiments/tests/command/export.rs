@@ -55,7 +55,10 @@ fn a_champion_is_written_with_its_channels_and_starts() {
     assert_eq!([count(&told["sensors"]), count(&told["motors"]), count(&told["actuators"])], [29, 23, 27]);
     let kinds = ["sensor_weights", "recurrent_weights", "output_weights", "biases", "leaks"];
     assert_eq!(kinds.map(|kind| count(&told["network"][kind])), [348, 144, 276, 12, 12]);
-    assert_eq!((&told["format"], &told["network"]["leak"], &told["generation"]), (&1.into(), &"filter".into(), &0.into()));
+    assert_eq!(
+        (&told["format"], &told["network"]["leak"], &told["generation"]),
+        (&1.into(), &"filter".into(), &0.into())
+    );
     assert_eq!(told["sensors"][0]["reads"], "joint-position");
     assert_eq!(told["motors"][16]["servos"][1]["actuator"], "J11");
     assert!(told["actuators"][0]["law"]["muscle-pair"]["tension"].is_number());

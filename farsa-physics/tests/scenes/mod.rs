@@ -41,6 +41,8 @@ pub(crate) struct Scene {
     pub(crate) watched: Vec<Watched>,
     /// Of what is watched.
     pub(crate) unit: &'static str,
+    /// What is watched at a time [s], where a formula tells it: compared with instead of MuJoCo's limit.
+    pub(crate) formula: Option<fn(f64) -> Vec<f64>>,
 }
 
 /// Everything that a scene asks of a world.
@@ -72,6 +74,7 @@ impl Scene {
             commands: Vec::new(),
             watched: Vec::new(),
             unit: "m",
+            formula: None,
         }
     }
 
@@ -157,6 +160,7 @@ impl Scene {
 }
 
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+const GRAVITY: f64 = 9.81;
 const RADIUS: f64 = 0.025;
 const MASS: f64 = 0.05;
 
@@ -165,8 +169,8 @@ fn surface(friction: f64) -> Surface {
 }
 
 /// So many rods in a row, hinged about the y axis, released level.
-fn pendulum(name: &'static str, rods: usize) -> Scene {
-    let mut robot = Robot::new(name);
+fn pendulum(name: &'static str, model: &'static str, rods: usize) -> Scene {
+    let mut robot = Robot::new(model);
     let rod = MassProperties::capsule(0.2, 0.01, 0.12).placed(&Pose::at([0.0, 0.0, -0.13]));
     let mut above = None;
     for i in 0..rods {
@@ -177,7 +181,7 @@ fn pendulum(name: &'static str, rods: usize) -> Scene {
     let hinges: Vec<_> = (0..rods as u16).map(JointId).collect();
     let joints = hinges.iter().map(|joint| (*joint, if joint.0 == 0 { 1.2 } else { 0.3 })).collect();
     let watched = hinges.iter().copied().map(Watched::Joint).collect();
-    Scene { joints, watched, unit: "rad", ..Scene::new(name, name, robot, 1.0) }
+    Scene { joints, watched, unit: "rad", ..Scene::new(name, model, robot, 1.0) }
 }
 
 /// The arm at its first start, nothing touches; muscles under one command, the hand's servos this far to their ends.
@@ -219,6 +223,20 @@ fn ball(name: &'static str, height: f64, speed: f32, friction: f64, watched: Vec
     Scene { bodies, watched, ..thing(name, Shape::Sphere { radius: RADIUS }, friction, 0.0) }
 }
 
+/// A ball thrown along the ground slides with mu g until it rolls with 5/7 of its speed.
+fn rolls(time: f64) -> Vec<f64> {
+    let (slowing, slides) = (0.3 * GRAVITY, 2.0 / (7.0 * 0.3 * GRAVITY));
+    let t = time.min(slides);
+    vec![t - 0.5 * slowing * t * t + 5.0 / 7.0 * (time - t)]
+}
+
+/// A box slides down with g (sin - mu cos).
+fn slides(time: f64) -> Vec<f64> {
+    let (sin, cos) = sin_cos(29.0_f64.to_radians());
+    let way = 0.5 * GRAVITY * (sin - 0.5 * cos) * time * time;
+    vec![sin * RADIUS / 2.0 + cos * way, cos * RADIUS / 2.0 - sin * way]
+}
+
 /// A box on a slope steeper than its friction.
 fn slide() -> Scene {
     let half = [RADIUS, RADIUS, RADIUS / 2.0];
@@ -227,7 +245,7 @@ fn slide() -> Scene {
     let slope = Pose { position: [0.0; 3], rotation };
     let pose = Pose { position: slope.rotate([0.0, 0.0, half[2]]), rotation };
     let watched = vec![Watched::Place(BodyId(0), 0), Watched::Place(BodyId(0), 2)];
-    Scene { bodies: vec![(BodyId(0), pose.cast(), Twist::default())], watched, ..scene }
+    Scene { bodies: vec![(BodyId(0), pose.cast(), Twist::default())], watched, formula: Some(slides), ..scene }
 }
 
 fn servo(stiffness: f64, damping: f64, limit: f64) -> Law<f64> {
@@ -312,8 +330,12 @@ fn power_grasp() -> Scene {
     let robot = hand("power grasp", axis, servo(50.0, 2.0, 50.0));
     let turned = core::f32::consts::PI;
     let at = [WRIST[0] + 0.0775, WRIST[1], WRIST[2] + 0.035].map(|x| x as f32);
-    let commands =
-        vec![(0, hand_commands(turned, 1.0)), (60, hand_commands(turned, 1.0)), (160, hand_commands(0.0, 1.0))];
+    let commands = vec![
+        (0, hand_commands(turned, 0.0)),
+        (60, hand_commands(turned, 1.0)),
+        (80, hand_commands(turned, 1.0)),
+        (180, hand_commands(0.0, 1.0)),
+    ];
     Scene {
         joints: vec![(JointId(6), turned)],
         bodies: vec![(Tabletop::SPHERE, Pose::at(at), Twist::default())],
@@ -346,13 +368,13 @@ fn lift() -> Scene {
 pub(crate) fn scenes() -> Vec<Scene> {
     let along = vec![Watched::Place(BodyId(0), 0)];
     vec![
-        pendulum("pendulum", 1),
-        pendulum("double_pendulum", 2),
+        pendulum("pendulum", "pendulum", 1),
+        pendulum("double pendulum", "double_pendulum", 2),
         arm("arm swing", 0..7, [0.0; 2], 0.0),
         arm("servo step", 7..27, [0.0; 2], 0.6),
         arm("unequal activations", 0..7, [0.3, 0.1], 0.0),
         ball("drop", 0.1, 0.0, 0.5, vec![Watched::Place(BodyId(0), 2)]),
-        ball("roll", 0.0, 1.0, 0.3, along),
+        Scene { formula: Some(rolls), ..ball("roll", 0.0, 1.0, 0.3, along) },
         slide(),
         push(),
         pinch(),
