@@ -58,7 +58,7 @@ struct Whose<'a> {
 
 /// The starts of a test.
 #[derive(Serialize)]
-struct Starts<'a> {
+struct TestExport<'a> {
     format: u32,
     experiment: &'a str,
     condition: &'a str,
@@ -103,5 +103,5 @@ pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String
     let starts = (0..trials).map(|trial| setup.start(exam::job(trial, setup.trials(), seed)));
     let starts: Option<Vec<_>> = starts.collect();
     let starts = starts.ok_or_else(|| Error::Usage(format!("{name}: its starts cannot be exported")))?;
-    pretty(&Starts { format: 1, experiment: name, condition: &plan.condition, seed, starts })
+    pretty(&TestExport { format: 1, experiment: name, condition: &plan.condition, seed, starts })
 }

@@ -294,7 +294,7 @@ fn pinch() -> Scene {
 }
 
 /// The experiment's hand on one joint in the place of the arm, which a servo moves, with the sphere and the table.
-fn hand(name: &'static str, wrist: Joint, law: Law<f64>) -> Robot {
+fn hand(name: &'static str, wrist: &Joint, law: Law<f64>) -> Robot {
     let mut robot = Tabletop::default().scene(&ArmAndHand::default()).unwrap();
     name.clone_into(&mut robot.name);
     robot.actuators.drain(..6);
@@ -303,7 +303,7 @@ fn hand(name: &'static str, wrist: Joint, law: Law<f64>) -> Robot {
         segment.joint = Joint::fixed(segment.joint.placement);
     }
     let palm = &mut robot.segments[6];
-    palm.joint = Joint { placement: palm.joint.placement, name: palm.joint.name.clone(), ..wrist };
+    palm.joint = Joint { placement: palm.joint.placement, name: palm.joint.name.clone(), ..wrist.clone() };
     robot
 }
 
@@ -327,7 +327,7 @@ fn in_the_palm() -> Vec<Watched> {
 /// The sphere lies in the palm; the hand closes, turns over and holds it.
 fn power_grasp() -> Scene {
     let axis = Joint::revolute("", [1.0, 0.0, 0.0], Pose::identity(), ENDLESS).with_armature(0.01);
-    let robot = hand("power grasp", axis, servo(50.0, 2.0, 50.0));
+    let robot = hand("power grasp", &axis, servo(50.0, 2.0, 50.0));
     let turned = core::f32::consts::PI;
     let at = [WRIST[0] + 0.0775, WRIST[1], WRIST[2] + 0.035].map(|x| x as f32);
     let commands = vec![
@@ -348,7 +348,7 @@ fn power_grasp() -> Scene {
 /// The hand over the sphere on the table closes, rises by 10 cm and holds.
 fn lift() -> Scene {
     let axis = Joint::prismatic("", [0.0, 0.0, 1.0], Pose::identity(), ENDLESS);
-    let robot = hand("lift", axis, servo(2000.0, 100.0, 100.0));
+    let robot = hand("lift", &axis, servo(2000.0, 100.0, 100.0));
     let down = (0.0605 - WRIST[2]) as f32;
     let at = [WRIST[0] + 0.0775, WRIST[1], 0.025].map(|x| x as f32);
     let commands =
