@@ -159,16 +159,21 @@ fn pair(best: &BestOfRun) -> Result<(), Error> {
         println!("| {} | {} |", WHO[predator], cells.join(" | "));
     }
     println!("\nHow much more the evolved one earns than the other, against the same opponents:\n");
-    println!("| role | instead of | evolved opponent | hand-written opponent | opponent of random genomes |");
-    println!("|---|---|---|---|---|");
+    println!(
+        "| role | instead of | evolved opponent | hand-written opponent | opponent of random genomes | mean of the three |"
+    );
+    println!("|---|---|---|---|---|---|");
     for other in 1..3 {
-        let more = |opponent: usize, prey: bool| {
+        let more = |opponent: usize, prey: bool| -> Vec<f64> {
             let of = |who: usize| if prey { &rewards[opponent][who] } else { &rewards[who][opponent] };
             let sign = if prey { -1.0 } else { 1.0 };
-            told(&of(0).iter().zip(of(other)).map(|(a, b)| sign * (a - b)).collect::<Vec<_>>())
+            of(0).iter().zip(of(other)).map(|(a, b)| sign * (a - b)).collect()
         };
         for (role, prey) in [("predator", false), ("prey", true)] {
-            let cells: Vec<String> = (0..3).map(|opponent| more(opponent, prey)).collect();
+            let differences: Vec<Vec<f64>> = (0..3).map(|opponent| more(opponent, prey)).collect();
+            let means: Vec<f64> =
+                (0..COUNT).map(|start| differences.iter().map(|d| d[start]).sum::<f64>() / 3.0).collect();
+            let cells: Vec<String> = differences.iter().chain([&means]).map(|d| told(d)).collect();
             println!("| {role} | {} | {} |", WHO[other], cells.join(" | "));
         }
     }
