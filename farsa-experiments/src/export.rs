@@ -56,9 +56,9 @@ struct Whose<'a> {
     controller: ControllerExport,
 }
 
-/// The starts of a test.
+/// How the trials of a test start.
 #[derive(Serialize)]
-struct TestExport<'a> {
+struct Trials<'a> {
     format: u32,
     experiment: &'a str,
     condition: &'a str,
@@ -103,5 +103,5 @@ pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String
     let starts = (0..trials).map(|trial| setup.start(exam::job(trial, setup.trials(), seed)));
     let starts: Option<Vec<_>> = starts.collect();
     let starts = starts.ok_or_else(|| Error::Usage(format!("{name}: its starts cannot be exported")))?;
-    pretty(&TestExport { format: 1, experiment: name, condition: &plan.condition, seed, starts })
+    pretty(&Trials { format: 1, experiment: name, condition: &plan.condition, seed, starts })
 }
