@@ -88,7 +88,7 @@ fn main() {
         let gait = WalkingModel::new(slope).expect("a slope").gait().expect("a gait");
         let known = [gait.angle, gait.rate, gait.period];
         for &stiffness in stiffnesses {
-            println!("\nslope {slope}, stiffness {stiffness:.0e}\n");
+            println!("\nslope {slope}, stiffness {stiffness:e}\n");
             println!("| feet/hip | theta* | off | theta'* | off | period | off |\n|---|---|---|---|---|---|---|");
             let mut start = [gait.angle, gait.rate, gait.rate - gait.swing_rate];
             let (mut walked, mut found): (Vec<f64>, [Vec<f64>; 4]) = Default::default();

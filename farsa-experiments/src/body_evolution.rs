@@ -1,6 +1,6 @@
 //! The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
 
-use farsa_body::{MjcfOptions, World as _};
+use farsa_body::MjcfOptions;
 use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, ParameterKind};
 use farsa_num::Scalar;
@@ -10,12 +10,12 @@ use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::gait::Rules;
 use crate::life::{Job, Life as _};
-use crate::passive_walker::notes;
 use crate::settings::{Setting, Settings};
 use crate::stage::Stage;
 use crate::walker::{Legs, Walker};
 use crate::walker_life::{Brain, Launch, SENSES, Walk, WalkerLife};
-use crate::walker_stage::{drawn, exported, stage, tell};
+use crate::walker_settings::{live_to_the_end, mean, mjcf_options, on_contacts, walk};
+use crate::walker_stage::{drawn, exported, stage};
 
 /// Which bodies walk far? `[McGeer1990]`
 ///
@@ -232,20 +232,8 @@ impl Experiment for BodyEvolution {
         let mut config = Config {
             trials: settings.count("trial.count")? as u32,
             substeps: settings.count("world.substeps")? as u32,
-            walk: Walk {
-                slope: number("world.slope")?,
-                gravity: number("world.gravity")?,
-                time_step: number("world.time_step")?,
-                steps: settings.count("trial.steps")? as u32,
-                noise: number("start.noise")?,
-                ..plain.walk
-            },
-            walker: Walker {
-                friction: number("contact.friction")?,
-                stiffness: number("contact.stiffness")?,
-                damping_ratio: number("contact.damping_ratio")?,
-                ..plain.walker
-            },
+            walk: walk(settings, plain.walk)?,
+            walker: on_contacts(settings, plain.walker)?,
             ..plain
         };
         for (range, part) in config.ranges.iter_mut().zip(BODY) {
@@ -319,8 +307,7 @@ impl Setup for Lives {
     }
 
     fn mjcf_options(&self) -> MjcfOptions {
-        let Walk { slope, gravity, time_step, .. } = self.config.walk;
-        MjcfOptions { time_step, gravity: Walker::gravity(gravity, slope), ..MjcfOptions::default() }
+        mjcf_options(&self.config.walk)
     }
 
     fn description(&self) -> Description {
@@ -353,24 +340,13 @@ impl Setup for Lives {
             recorder.parameters(brain.parameters());
         }
         life.start(&mut world, job);
-        let distance = loop {
-            life.act(&mut world);
-            world.step();
-            let end = life.judge(&mut world);
-            if let Some(recorder) = tape.recorder() {
-                tell(&life, &world, recorder);
-            }
-            if let Some(distance) = end {
-                break distance;
-            }
-        };
+        let mut outcome = live_to_the_end(&mut life, &mut world, tape);
         let gait = life.gait();
         let walker = gait.walker();
-        let mut notes = notes(&life);
-        notes.push(("work of the motor [J]", Note::from(gait.energies()[0])));
-        notes.push(("energy gained [J]", Note::from(gait.energies()[1])));
+        outcome.notes.push(("work of the motor [J]", Note::from(gait.energies()[0])));
+        outcome.notes.push(("energy gained [J]", Note::from(gait.energies()[1])));
         let [outer, inner] = walker.legs;
-        notes.extend([
+        outcome.notes.extend([
             ("outer legs [m]", Note::from(outer.length)),
             ("inner legs [m]", Note::from(inner.length)),
             ("hip [kg]", Note::from(walker.hip_mass)),
@@ -379,16 +355,11 @@ impl Setup for Lives {
             ("soles [m]", Note::from(outer.foot_radius)),
             ("hip spacing [m]", Note::from(walker.hip_spacing)),
         ]);
-        Outcome {
-            terms: vec![distance],
-            steps: gait.ticks(),
-            success: gait.end().is_none() && gait.steps() >= 20,
-            notes,
-        }
+        outcome
     }
 
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
-        trials.iter().flat_map(|outcome| &outcome.terms).sum::<f64>() / trials.len().max(1) as f64
+        mean(trials)
     }
 }

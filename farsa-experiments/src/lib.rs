@@ -108,6 +108,7 @@ mod table;
 mod vector;
 mod walker;
 mod walker_life;
+mod walker_settings;
 mod walker_stage;
 mod walking_model;
 

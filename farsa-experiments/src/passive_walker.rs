@@ -4,7 +4,7 @@ pub use crate::gait::{End, Footfall, Gait, Rules};
 pub use crate::walker::{Legs, Posture, Walker, WalkerParts};
 pub use crate::walker_life::{Brain, Launch, Pace, SENSES, Walk, WalkerLife};
 
-use farsa_body::{MjcfOptions, World as _};
+use farsa_body::MjcfOptions;
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 
@@ -13,7 +13,8 @@ use crate::experiment::{Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::life::{Job, Life as _};
 use crate::settings::{Setting, Settings};
 use crate::stage::Stage;
-use crate::walker_stage::{drawn, exported, stage, tell};
+use crate::walker_settings::{live_to_the_end, mean, mjcf_options, on_contacts, walk};
+use crate::walker_stage::{drawn, exported, stage};
 use crate::walking_model::{ModelGait, SLOPES, WalkingModel};
 
 /// How near does a rigid body with light feet come to the simplest walking model? \[Garcia1998\]
@@ -161,22 +162,12 @@ impl Experiment for PassiveWalker {
         let config = Config {
             trials: settings.count("trial.count")? as u32,
             substeps: settings.count("world.substeps")? as u32,
-            walk: Walk {
-                slope: number("world.slope")?,
-                gravity: number("world.gravity")?,
-                time_step: number("world.time_step")?,
-                steps: settings.count("trial.steps")? as u32,
-                noise: number("start.noise")?,
-                ..plain.walk
-            },
+            walk: walk(settings, plain.walk)?,
             walker: Walker {
                 legs: [legs; 2],
                 hip_mass: number("walker.hip_mass")?,
                 hip_range: number("walker.hip_range")?,
-                friction: number("contact.friction")?,
-                stiffness: number("contact.stiffness")?,
-                damping_ratio: number("contact.damping_ratio")?,
-                ..plain.walker
+                ..on_contacts(settings, plain.walker)?
             },
         };
         Ok(Box::new(Lives::new(config)?))
@@ -202,13 +193,6 @@ impl Lives {
         let life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&gait), None);
         Ok(Self { config, world: World::new(model), life, gait })
     }
-}
-
-/// What `farsa test` tells of any walk.
-pub(crate) fn notes(life: &WalkerLife) -> Vec<(&'static str, Note)> {
-    let gait = life.gait();
-    let end = gait.end().map_or("time", End::name);
-    vec![("end", Note::from(end)), ("steps", Note::from(f64::from(gait.steps())))]
 }
 
 impl Setup for Lives {
@@ -237,8 +221,7 @@ impl Setup for Lives {
     }
 
     fn mjcf_options(&self) -> MjcfOptions {
-        let Walk { slope, gravity, time_step, .. } = self.config.walk;
-        MjcfOptions { time_step, gravity: Walker::gravity(gravity, slope), ..MjcfOptions::default() }
+        mjcf_options(&self.config.walk)
     }
 
     fn description(&self) -> Description {
@@ -251,34 +234,24 @@ impl Setup for Lives {
         }
     }
 
-    /// Success is ten strides, twenty steps.
+    /// Success is ten strides, twenty steps, without a fall.
     fn live(&mut self, _: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
         self.life.start(&mut self.world, job);
-        let distance = loop {
-            self.world.step();
-            let end = self.life.judge(&mut self.world);
-            if let Some(recorder) = tape.recorder() {
-                tell(&self.life, &self.world, recorder);
-            }
-            if let Some(distance) = end {
-                break distance;
-            }
-        };
-        let mut notes = notes(&self.life);
+        let mut outcome = live_to_the_end(&mut self.life, &mut self.world, tape);
         // A walk of fewer steps has no pace: 0 of everything, so that the same notes stand in every trial.
         let pace = self.life.pace().unwrap_or_default();
         let unit = self.life.unit_of_time();
         let of_model = |found: f64, known: f64| 100.0 * (found / known - 1.0);
-        notes.push(("step angle off the model's [%]", Note::from(of_model(pace.angle, self.gait.angle))));
-        notes.push(("step rate off the model's [%]", Note::from(of_model(pace.rate * unit, self.gait.rate))));
-        notes.push(("step period off the model's [%]", Note::from(of_model(pace.period / unit, self.gait.period))));
-        let gait = self.life.gait();
-        let success = gait.end().is_none() && gait.steps() >= 20;
-        Outcome { terms: vec![distance], steps: gait.ticks(), success, notes }
+        outcome.notes.push(("step angle off the model's [%]", Note::from(of_model(pace.angle, self.gait.angle))));
+        outcome.notes.push(("step rate off the model's [%]", Note::from(of_model(pace.rate * unit, self.gait.rate))));
+        outcome
+            .notes
+            .push(("step period off the model's [%]", Note::from(of_model(pace.period / unit, self.gait.period))));
+        outcome
     }
 
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
-        trials.iter().flat_map(|outcome| &outcome.terms).sum::<f64>() / trials.len().max(1) as f64
+        mean(trials)
     }
 }

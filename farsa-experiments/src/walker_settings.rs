@@ -1,0 +1,78 @@
+//! The settings that all experiments with walkers have, and how a walk is lived and told.
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, World,
+};
+
+use crate::error::Error;
+use crate::experiment::{Note, Outcome, Tape};
+use crate::gait::End;
+use crate::settings::Settings;
+use crate::walker::Walker;
+use crate::walker_life::{Walk, WalkerLife};
+use crate::walker_stage::tell;
+
+/// The surroundings that settings ask for; the rules are those of `plain`.
+pub(crate) fn walk(settings: &Settings, plain: Walk) -> Result<Walk, Error> {
+    Ok(Walk {
+        slope: settings.number("world.slope")?,
+        gravity: settings.number("world.gravity")?,
+        time_step: settings.number("world.time_step")?,
+        steps: settings.count("trial.steps")? as u32,
+        noise: settings.number("start.noise")?,
+        ..plain
+    })
+}
+
+/// The walker with the contacts that settings ask for.
+pub(crate) fn on_contacts(settings: &Settings, walker: Walker) -> Result<Walker, Error> {
+    Ok(Walker {
+        friction: settings.number("contact.friction")?,
+        stiffness: settings.number("contact.stiffness")?,
+        damping_ratio: settings.number("contact.damping_ratio")?,
+        ..walker
+    })
+}
+
+/// What a MuJoCo model of a walker says beside the robot.
+pub(crate) fn mjcf_options(walk: &Walk) -> MjcfOptions {
+    let gravity = Walker::gravity(walk.gravity, walk.slope);
+    MjcfOptions { time_step: walk.time_step, gravity, ..MjcfOptions::default() }
+}
+
+/// Lives a walk that has been started to its end; success is ten strides, twenty steps, without a fall.
+pub(crate) fn live_to_the_end<W>(life: &mut WalkerLife, world: &mut W, tape: &mut Tape<'_>) -> Outcome
+where
+    W: World
+        + Kinematics
+        + Joints
+        + Contacts
+        + Actuated
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
+{
+    let distance = loop {
+        life.act(world);
+        world.step();
+        let end = life.judge(world);
+        if let Some(recorder) = tape.recorder() {
+            tell(life, world, recorder);
+        }
+        if let Some(distance) = end {
+            break distance;
+        }
+    };
+    let gait = life.gait();
+    let end = gait.end().map_or("time", End::name);
+    Outcome {
+        terms: vec![distance],
+        steps: gait.ticks(),
+        success: gait.end().is_none() && gait.steps() >= 20,
+        notes: vec![("end", Note::from(end)), ("steps made", Note::from(f64::from(gait.steps())))],
+    }
+}
+
+/// The mean of the trials' terms, of which a walk has one.
+pub(crate) fn mean(trials: &[Outcome]) -> f64 {
+    trials.iter().flat_map(|outcome| &outcome.terms).sum::<f64>() / trials.len().max(1) as f64
+}
