@@ -220,6 +220,11 @@ fn populations_meet_each_others_champions() {
     let plan = plan(&CHASE, GENERATIONS);
     let (Ancestry { descent, .. }, _) = Ancestry::read(&plan, &directory).unwrap();
     let rows = rows(&directory);
+    // Of three trials two are against the last two champions, one against that in the middle of all before.
+    let rule = |generation: u32, trial: u32| match trial {
+        0 | 1 => generation.checked_sub(1 + trial),
+        _ => (generation > 2).then(|| (generation - 2) / 2),
+    };
     // By hand: everyone's fitness against whom the rule names, and the best of each population.
     for (generation, row) in (0..9_u32).zip(&rows) {
         let genes = |generation, individual| descent.genome_of(generation, individual).unwrap();
@@ -229,12 +234,10 @@ fn populations_meet_each_others_champions() {
                 let others: Vec<Vec<u16>> = (0..3)
                     .filter(|other| *other != own)
                     .map(|other| {
-                        if trial < generation {
-                            let earlier = generation - 1 - trial;
-                            genes(earlier, descent.champion(other, earlier).unwrap())
-                        } else {
-                            genes(generation, other * SIZE + trial as usize)
-                        }
+                        rule(generation, trial).map_or_else(
+                            || genes(generation, other * SIZE + trial as usize),
+                            |earlier| genes(earlier, descent.champion(other, earlier).unwrap()),
+                        )
                     })
                     .collect();
                 let others: Vec<&[u16]> = others.iter().map(Vec::as_slice).collect();
@@ -259,7 +262,7 @@ fn populations_meet_each_others_champions() {
             assert!(summary.ends_with(&format!("fitness {:?}", all[individual as usize])), "{summary}");
             let (one, _) = replayed(&plan, &directory, Which { trial: Some(2), ..which });
             let other = usize::from(individual < 10);
-            let met = match generation.checked_sub(3) {
+            let met = match rule(generation, 2) {
                 Some(earlier) => genes(earlier, descent.champion(other, earlier).unwrap()),
                 None => genes(generation, other * SIZE + 2),
             };
