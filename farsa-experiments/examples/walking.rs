@@ -83,7 +83,7 @@ fn main() {
     let quick = std::env::args().any(|word| word == "quick");
     let slopes: &[f64] = if quick { &[0.009] } else { &[0.009, 0.004, 0.014] };
     let masses: &[f64] = if quick { &[0.001] } else { &[0.001, 0.003, 0.01, 0.03, 0.1] };
-    let stiffnesses: &[f64] = if quick { &[1e4] } else { &[4e5, 1.6e6] };
+    let stiffnesses: &[f64] = if quick { &[3e4] } else { &[4e5, 1.6e6] };
     for &slope in slopes {
         let gait = WalkingModel::new(slope).expect("a slope").gait().expect("a gait");
         let known = [gait.angle, gait.rate, gait.period];
