@@ -111,10 +111,10 @@ fn what_cannot_be_built_is_refused() {
     let mut heavy = robot;
     heavy.segments[0].mass = -1.0;
     let error = refused(&heavy, Options::default());
-    assert!(matches!(error, RapierError::Model(ModelError::Robot(RobotError::Inertia { .. }))), "{error}");
+    assert!(matches!(error, RapierError::Model(ModelError::Robot(RobotError::Value { .. }))), "{error}");
 }
 
-/// Ten thousand control steps; a hundred thousand where the environment has `FARSA_LONG`.
+/// Six thousand control steps; a hundred thousand where the environment has `FARSA_LONG`.
 #[test]
 fn random_commands_break_nothing() {
     let steps = if std::env::var_os("FARSA_LONG").is_some() { 100_000 } else { 6_000 };
