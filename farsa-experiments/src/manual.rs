@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::experiment::Experiment;
 
 /// Without headings and spare lines, so that a screen of 24 lines has room for the tour, which follows.
-const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\n{options}\n";
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n{options}\n";
 
 /// The command line under the name of the program, with examples about its own first experiment.
 pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 13] = [
+const SUBCOMMANDS: [&str; 14] = [
     "list",
     "info",
     "run",
@@ -16,6 +16,7 @@ const SUBCOMMANDS: [&str; 13] = [
     "draw",
     "report",
     "export",
+    "robot",
     "bench",
     "completions",
     "man",
