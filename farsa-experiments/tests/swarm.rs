@@ -222,8 +222,8 @@ fn capture_is_the_same_for_both() {
         let (own, other) = (genes(setup.as_ref(), number), genes(setup.as_ref(), number + 100));
         let job = Job { seed: 9, individual: 4, trial: number, ..Job::default() };
         let predator = setup.live_against(&own, &[&other], job, &mut Tape::off());
-        // The prey of the same place in its population, 30 individuals further.
-        let prey = setup.live_against(&other, &[&own], Job { individual: 34, ..job }, &mut Tape::off());
+        // The prey of the same place in its population, 40 individuals further.
+        let prey = setup.live_against(&other, &[&own], Job { individual: 44, ..job }, &mut Tape::off());
         assert_eq!(predator.terms[0] + prey.terms[0], 1.0);
         assert_eq!((predator.steps, &predator.notes), (prey.steps, &prey.notes));
         assert_ne!(predator.success, prey.success);
