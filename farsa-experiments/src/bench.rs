@@ -368,9 +368,11 @@ mod tests {
     #[test]
     fn what_is_counted_is_what_was_lived() {
         for threads in [1, 3] {
-            let found = benched(&Toy { most: 10 }, threads, 0.05);
+            // On a machine with other work a round may take longer than expected.
+            let patience = [0.05, 1.0, 60.0].map(|seconds| move || benched(&Toy { most: 10 }, threads, seconds));
+            let found = patience.iter().map(|bench| bench()).find(|found| found.rounds > 0).unwrap();
             let rounds = u64::from(found.rounds);
-            assert!(rounds >= 1 && found.seconds >= 0.05, "{found:?}");
+            assert!(found.seconds >= 0.05, "{found:?}");
             // Another thread may have begun the other trials of the one that fails.
             assert!((58 * rounds..=60 * rounds).contains(&found.lives), "{found:?}");
             assert_eq!(found.steps, 7 * 57 * rounds);

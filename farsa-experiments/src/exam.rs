@@ -126,7 +126,8 @@ pub(crate) fn test(
     let individuals = if best.len() > 1 { best.iter().map(|best| best.individual).collect() } else { Vec::new() };
 
     let terms = pool.setup().terms();
-    let table = Table::new(&terms, &results);
+    let names = pool.setup().population_names();
+    let table = Table::new(&terms, names.get(1..best.len()).unwrap_or(&[]), &results);
     let bytes = table.write(&directory.test())?;
     let record = Record { generation, individual, trials, seed, table_crc: crc32(&bytes) };
     let text = serde_json::to_string_pretty(&record).map_err(|error| Error::Other(error.to_string()))?;

@@ -33,8 +33,8 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// The table of some trials.
-    pub(crate) fn new(terms: &[String], trials: &[Tried]) -> Self {
+    /// The table of some trials, with columns for all populations but the first, of these names.
+    pub(crate) fn new(terms: &[String], others: &[String], trials: &[Tried]) -> Self {
         let mut head: Vec<String> = HEAD.map(str::to_owned).into();
         let terms = own_columns(terms);
         head.extend(terms.iter().cloned());
@@ -46,9 +46,8 @@ impl Table {
             .map_or_else(Vec::new, |notes| notes.iter().map(|(name, _)| *name).collect());
         head.extend(names.iter().map(|&name| name.to_owned()));
         // Ones and zeros, so that the mean of a success is its share.
-        let others = trials.first().map_or(0, |tried| tried.others.len());
         head.extend(
-            (1..=others).flat_map(|other| ["fitness", "success"].map(|what| format!("{what} of population {other}"))),
+            others.iter().flat_map(|name| ["fitness", "success"].map(|what| format!("{what} of population {name}"))),
         );
         let lines = trials.iter().enumerate().map(|(index, Tried { trial, outcome, fitness, others })| {
             let mut line = vec![
@@ -274,7 +273,7 @@ mod tests {
             tried(2, Outcome::failed(), f64::NAN),
             tried(0, outcome("lift", 8.0, true), 7.0),
         ];
-        Table::new(&["a".into(), "b".into()], &trials)
+        Table::new(&["a".into(), "b".into()], &[], &trials)
     }
 
     #[test]
@@ -282,11 +281,11 @@ mod tests {
         let outcome = Outcome { terms: vec![2.0], steps: 6, notes: vec![("at", 1.0.into())], ..Outcome::default() };
         let tried =
             |others: &[(f64, bool)]| Tried { trial: 0, outcome: outcome.clone(), fitness: 2.0, others: others.into() };
-        let table =
-            Table::new(&["a".into()], &[tried(&[(3.0, true), (0.5, false)]), tried(&[(1.0, false), (0.5, false)])]);
+        let trials = [tried(&[(3.0, true), (0.5, false)]), tried(&[(1.0, false), (0.5, false)])];
+        let table = Table::new(&["a".into()], &["prey".into(), "2".into()], &trials);
         assert_eq!(
             table.lines[0][5..].join(","),
-            "at,fitness of population 1,success of population 1,fitness of population 2,success of population 2"
+            "at,fitness of population prey,success of population prey,fitness of population 2,success of population 2"
         );
         assert_eq!(table.lines[1].join(","), "0,0,6,false,2.0,1.0,3.0,1,0.5,0");
         let notes = table.findings(&["a".into()]).notes;

@@ -163,7 +163,7 @@ pub(crate) fn evolution([generations, population, parents]: [i64; 3], mutation_r
         Setting::whole("evolution.parents", parents, 1..=1_000_000)
             .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
         Setting::number("evolution.mutation_rate", mutation_rate, 0.0..=1.0).doc(
-            "Probability that mutation hits a bit, which is then drawn anew; foragers did better with less of it, those that gather with more (docs/results/swarm.md).",
+            "Probability that mutation hits a bit, which is then drawn anew; that of the runs in docs/results/swarm.md, not compared over many runs.",
         ),
     ]
 }

@@ -86,7 +86,8 @@ pub(crate) fn ray_to_disc(from: [f32; 2], direction: [f32; 2], radius: f32) -> O
     let across = from[0] * direction[1] - from[1] * direction[0];
     let outside = from[0] * from[0] + from[1] * from[1] - radius * radius;
     let under = (radius - across) * (radius + across);
-    if outside < 0.0 || along > 0.0 || under < 0.0 {
+    // What is not a number meets nothing.
+    if !(outside >= 0.0 && along <= 0.0 && under >= 0.0) {
         return None;
     }
     Some((-along - Scalar::sqrt(under)).max(0.0))
