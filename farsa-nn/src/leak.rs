@@ -4,6 +4,7 @@ use core::fmt;
 use core::str::FromStr;
 
 use crate::Error;
+use crate::name::same_letters;
 
 /// How a hidden neuron with leak `d` [0..1] forms its activation `H(t)` from its response `y(t) = sigma(net(t))`.
 ///
@@ -52,10 +53,6 @@ impl FromStr for Leak {
     /// # Errors
     /// [`Error::UnknownLeak`] when no reading has this name.
     fn from_str(name: &str) -> Result<Self, Error> {
-        let letters = |name: &str, other: &str| {
-            let plain = |b: &u8| *b != b'-';
-            name.bytes().filter(plain).map(|b| b.to_ascii_lowercase()).eq(other.bytes().filter(plain))
-        };
-        Self::ALL.into_iter().find(|leak| letters(name, leak.name())).ok_or(Error::UnknownLeak)
+        Self::ALL.into_iter().find(|leak| same_letters(name, leak.name())).ok_or(Error::UnknownLeak)
     }
 }

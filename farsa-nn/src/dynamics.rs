@@ -1,0 +1,173 @@
+//! One step of a continuous-time network, over the lanes of a [`Scalar`].
+//!
+//! Lanes are neurons, which depend on each other only through the outputs of the step before: as in the kernel of layers,
+//! the width of the vectors does not show in the bits.
+
+use core::f64::consts::LN_2;
+
+use farsa_num::fearless_simd::{Level, Simd, f32x8};
+use farsa_num::{Real, Scalar, exp, tanh};
+
+use crate::kernel::Layer;
+use crate::{Activation, Integrator};
+
+/// What a step reads and writes; all but the weights and inputs are `[neurons]`.
+pub(crate) struct Dynamics<'a, R = f32> {
+    pub(crate) integrator: Integrator,
+    pub(crate) activation: Activation,
+    /// The states.
+    pub(crate) y: &'a mut [R],
+    /// The outputs: those of `y` before and after a step.
+    pub(crate) o: &'a mut [R],
+    /// What [`rate`] makes of the time constants.
+    pub(crate) rates: &'a [R],
+    pub(crate) biases: &'a [R],
+    pub(crate) gains: &'a [R],
+    /// The external inputs; empty for none.
+    pub(crate) external: &'a [R],
+    /// Inputs and their weights, source-major; empty for none.
+    pub(crate) inputs: (&'a [R], &'a [R]),
+    /// Weights between the neurons, source-major.
+    pub(crate) weights: &'a [R],
+    /// Workspace: what the neurons are driven to.
+    pub(crate) net: &'a mut [R],
+    /// Workspace of Runge-Kutta: the weighted sum of the slopes so far; empty for other integrators.
+    pub(crate) sum: &'a mut [R],
+    /// Workspace of Runge-Kutta: the states at which the next slope is taken; empty for other integrators.
+    pub(crate) point: &'a mut [R],
+}
+
+/// What an integrator needs of a time constant and a time step.
+///
+/// The exponential one goes from `a` by a fraction of the way to `b`. Both ends will do, and the nearer one is exact: the
+/// fraction `1 - exp(-dt/tau)` of the way from the state if it is below a half, else, with a minus sign to tell, the
+/// fraction `exp(-dt/tau)` of the way back from what drives it.
+pub(crate) fn rate(integrator: Integrator, time_step: f64, time_constant: f64) -> f64 {
+    let x = time_step / time_constant;
+    match integrator {
+        Integrator::Euler | Integrator::RungeKutta4 => x,
+        // The difference of 1 and the exponential would lose its digits at small x.
+        Integrator::ExponentialEuler if x < LN_2 => tanh(0.5 * x) * (1.0 + exp(-x)),
+        // Not zero, which has no sign to compare.
+        Integrator::ExponentialEuler => -exp(-x).max(1e-30),
+    }
+}
+
+impl Dynamics<'_> {
+    /// Steps with the instructions of this level.
+    #[inline(never)]
+    pub(crate) fn step(&mut self, level: Level) {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        match (level.as_avx2(), level.as_sse2()) {
+            (Some(simd), _) => self.in_vectors(simd),
+            (_, Some(simd)) => self.in_vectors(simd),
+            _ => self.one_by_one(),
+        }
+        #[cfg(target_arch = "aarch64")]
+        match level.as_neon() {
+            Some(simd) => self.in_vectors(simd),
+            None => self.one_by_one(),
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+        {
+            let _ = level;
+            self.one_by_one();
+        }
+    }
+
+    /// Eight neurons in a vector, with the instructions of the token; fewer one by one.
+    #[cfg_attr(
+        not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
+        expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
+    )]
+    #[inline(always)]
+    fn in_vectors<V: Simd>(&mut self, simd: V) {
+        if self.y.len() < f32x8::<V>::LANES {
+            return self.one_by_one();
+        }
+        simd.vectorize(
+            #[inline(always)]
+            || self.over::<f32x8<V>>(simd),
+        );
+    }
+}
+
+impl<R: Real> Dynamics<'_, R> {
+    /// Steps neuron by neuron.
+    #[inline(never)]
+    pub(crate) fn one_by_one(&mut self) {
+        self.over::<R>(());
+    }
+
+    /// Brings the outputs up to date with states that somebody set.
+    #[inline(never)]
+    pub(crate) fn refresh(&mut self) {
+        for i in 0..self.y.len() {
+            self.respond(i, self.y[i]);
+        }
+    }
+
+    #[inline(always)]
+    fn over<S: Scalar<Real = R>>(&mut self, simd: S::Simd) {
+        let neurons = self.y.len();
+        let whole = neurons - neurons % S::LANES;
+        let stages = if self.integrator == Integrator::RungeKutta4 { 4 } else { 1 };
+        for stage in 0..stages {
+            let sources = [self.inputs, (&*self.o, self.weights)];
+            let layer = Layer { targets: neurons, slope: R::of(1.0), biases: self.external, sources };
+            layer.all_sums::<S>(simd, self.net);
+            let mut i = 0;
+            while i < whole {
+                self.advance::<S>(simd, stage, i);
+                i += S::LANES;
+            }
+            for i in whole..neurons {
+                self.advance::<R>((), stage, i);
+            }
+        }
+    }
+
+    /// One stage of the neurons from `i` on, as many as there are lanes.
+    #[inline(always)]
+    fn advance<S: Scalar<Real = R>>(&mut self, simd: S::Simd, stage: usize, i: usize) {
+        let (y, net) = (S::load(simd, &self.y[i..]), S::load(simd, &self.net[i..]));
+        let rate = S::load(simd, &self.rates[i..]);
+        let next = match self.integrator {
+            Integrator::Euler => y + rate * (net - y),
+            Integrator::ExponentialEuler => {
+                let back = rate.lt(rate.constant(0.0));
+                let (from, to) = (S::select(back, net, y), S::select(back, y, net));
+                from + rate.abs() * (to - from)
+            }
+            Integrator::RungeKutta4 => {
+                let at = if stage == 0 { y } else { S::load(simd, &self.point[i..]) };
+                let slope = rate * (net - at);
+                let sum = match stage {
+                    0 => slope,
+                    1 | 2 => S::load(simd, &self.sum[i..]) + (slope + slope),
+                    _ => S::load(simd, &self.sum[i..]) + slope,
+                };
+                let next = match stage {
+                    0 | 1 => y + slope * slope.constant(0.5),
+                    2 => y + slope,
+                    _ => y + sum * sum.constant(1.0 / 6.0),
+                };
+                sum.store(&mut self.sum[i..]);
+                next.store(&mut self.point[i..]);
+                next
+            }
+        };
+        if self.integrator != Integrator::RungeKutta4 || stage == 3 {
+            next.store(&mut self.y[i..]);
+        }
+        self.respond(i, next);
+    }
+
+    /// The outputs of the neurons from `i` on in these states; of a NaN 0.
+    #[inline(always)]
+    fn respond<S: Scalar<Real = R>>(&mut self, i: usize, y: S) {
+        let (bias, gain) = (S::load(y.simd(), &self.biases[i..]), S::load(y.simd(), &self.gains[i..]));
+        let o = self.activation.over(gain * (y + bias));
+        S::select(o.le(o), o, o.constant(0.0)).store(&mut self.o[i..]);
+    }
+}
