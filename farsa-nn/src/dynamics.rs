@@ -171,3 +171,63 @@ impl<R: Real> Dynamics<'_, R> {
         S::select(o.le(o), o, o.constant(0.0)).store(&mut self.o[i..]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::vec::Vec;
+
+    use super::*;
+
+    /// The states of a smooth net of three neurons in double precision after each of four units of time.
+    fn states(integrator: Integrator, steps_per_unit: usize) -> Vec<f64> {
+        let weights = [0.75, -1.0, 0.25, 1.0, 0.5, -0.5, -0.25, 0.75, 0.125];
+        let (biases, gains, external) = ([-0.5, 0.25, 0.0], [1.0, 1.5, 0.75], [0.5, -0.25, 1.0]);
+        let rates = [1.0, 2.0, 3.0].map(|tau| rate(integrator, 1.0 / steps_per_unit as f64, tau));
+        let (mut y, mut o) = ([1.0, -1.0, 0.5], [0.0; 3]);
+        let (mut net, mut sum, mut point) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        let mut dynamics = Dynamics {
+            integrator,
+            activation: Activation::Logistic,
+            y: &mut y,
+            o: &mut o,
+            rates: &rates,
+            biases: &biases,
+            gains: &gains,
+            external: &external,
+            inputs: (&[], &[]),
+            weights: &weights,
+            net: &mut net,
+            sum: &mut sum,
+            point: &mut point,
+        };
+        dynamics.refresh();
+        let mut states = Vec::new();
+        for _ in 0..4 {
+            (0..steps_per_unit).for_each(|_| dynamics.one_by_one());
+            states.extend_from_slice(dynamics.y);
+        }
+        states
+    }
+
+    // In double precision, because in single precision rounding hides the fourth order.
+    #[test]
+    fn each_integrator_has_its_order() {
+        let truth = states(Integrator::RungeKutta4, 4096);
+        for (integrator, order, tolerance) in [
+            (Integrator::Euler, 1.0, 0.1),
+            (Integrator::ExponentialEuler, 1.0, 0.1),
+            (Integrator::RungeKutta4, 4.0, 0.3),
+        ] {
+            let error = |steps_per_unit| -> f64 {
+                let y = states(integrator, steps_per_unit);
+                y.iter().zip(&truth).map(|(y, truth)| (y - truth) * (y - truth)).sum::<f64>().sqrt()
+            };
+            // From half of the smallest time constant to an eighth.
+            let found = farsa_num::ln(error(2) / error(8)) / (2.0 * LN_2);
+            std::println!("{integrator}: order {found:.3}");
+            assert!((found - order).abs() <= tolerance, "{integrator}: order {found}");
+        }
+    }
+}
