@@ -21,7 +21,7 @@ pub enum Activation {
     Tanh,
     /// `x` itself.
     Linear,
-    /// 1 above zero, else 0.
+    /// 1 from zero on, else 0.
     Step,
     /// `x` above zero, else 0.
     Rectified,
@@ -47,6 +47,7 @@ impl Activation {
     /// ```
     /// use farsa_nn::Activation;
     ///
+    /// assert_eq!(Activation::Step.of(0.0), 1.0);
     /// assert_eq!(Activation::ALL.map(|f| f.of(-2.0)), [0.11920292, -0.9640276, -2.0, 0.0, 0.0]);
     /// ```
     pub fn of(self, x: f32) -> f32 {
@@ -61,7 +62,7 @@ impl Activation {
             Self::Logistic => logistic(x),
             Self::Tanh => tanh(x),
             Self::Linear => x,
-            Self::Step => S::select(x.gt(zero), x.constant(1.0), zero),
+            Self::Step => S::select(x.ge(zero), x.constant(1.0), zero),
             Self::Rectified => x.max(zero),
         }
     }

@@ -3,8 +3,8 @@
 use farsa_num::fearless_simd::Level;
 
 use crate::dynamics::{Dynamics, rate};
-use crate::kernel::level;
-use crate::{Controller, CtrnnLayout, CtrnnParameter, Error, Integrator};
+use crate::kernel::{self, level};
+use crate::{Controller, CtrnnLayout, CtrnnParameter, Error, Integrator, Lesion, Neurons};
 
 /// A continuous-time recurrent neural network, over parameters and state that are the caller's.
 ///
@@ -145,7 +145,7 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ctrnn<P, S> {
         for (to, tau) in rates.zip(time_constants) {
             *to = rate(integrator, f64::from(*time_step), f64::from(*tau)) as f32;
         }
-        if let Some(mut dynamics) = dynamics(layout, parameters.as_ref(), state.as_mut(), &[]) {
+        if let Some(mut dynamics) = dynamics(layout, parameters.as_ref(), state.as_mut(), &[], &[]) {
             dynamics.refresh();
         }
     }
@@ -206,18 +206,35 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Ctrnn<P, S> {
     }
 
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        self.step_without(&[], x, y);
+    }
+}
+
+/// Neurons have their numbers in the layout; one that is held has its output held, its state goes on.
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for Ctrnn<P, S> {
+    fn neurons(&self) -> usize {
+        self.layout.neurons()
+    }
+
+    fn step_without(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
         let Self { layout, parameters, state, level, .. } = self;
         debug_assert_eq!(x.len(), layout.inputs(), "sensor values and the layout's inputs");
         debug_assert_eq!(y.len(), layout.outputs(), "motor values and the layout's outputs");
-        let Some(mut dynamics) = dynamics(layout, parameters.as_ref(), state.as_mut(), x) else { return };
-        dynamics.step(*level);
+        let Some(mut dynamics) = dynamics(layout, parameters.as_ref(), state.as_mut(), lesions, x) else { return };
+        kernel::step(&mut dynamics, *level);
         let outputs = dynamics.o.get(layout.output_neurons()).unwrap_or(&[]);
         y.iter_mut().zip(outputs).for_each(|(y, o)| *y = *o);
     }
 }
 
 /// Cuts parameters and state as a step wants them and takes these inputs; `None` where one of them is too short.
-fn dynamics<'a>(layout: &CtrnnLayout, parameters: &'a [f32], state: &'a mut [f32], x: &[f32]) -> Option<Dynamics<'a>> {
+fn dynamics<'a>(
+    layout: &CtrnnLayout,
+    parameters: &'a [f32],
+    state: &'a mut [f32],
+    lesions: &'a [Lesion],
+    x: &[f32],
+) -> Option<Dynamics<'a>> {
     let (neurons, inputs) = (layout.neurons(), layout.inputs());
     let parts = layout.split(parameters);
     let (y, state) = state.split_at_mut_checked(neurons)?;
@@ -251,6 +268,7 @@ fn dynamics<'a>(layout: &CtrnnLayout, parameters: &'a [f32], state: &'a mut [f32
         external,
         inputs,
         weights: parts.weights,
+        lesions,
         net,
         sum,
         point,

@@ -5,11 +5,10 @@
 
 use core::f64::consts::LN_2;
 
-use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Real, Scalar, exp, tanh};
 
-use crate::kernel::Layer;
-use crate::{Activation, Integrator};
+use crate::kernel::{Lanes, Layer};
+use crate::{Activation, Integrator, Lesion};
 
 /// What a step reads and writes; all but the weights and inputs are `[neurons]`.
 pub(crate) struct Dynamics<'a, R = f32> {
@@ -29,6 +28,8 @@ pub(crate) struct Dynamics<'a, R = f32> {
     pub(crate) inputs: (&'a [R], &'a [R]),
     /// Weights between the neurons, source-major.
     pub(crate) weights: &'a [R],
+    /// Neurons whose outputs are held.
+    pub(crate) lesions: &'a [Lesion],
     /// Workspace: what the neurons are driven to.
     pub(crate) net: &'a mut [R],
     /// Workspace of Runge-Kutta: the weighted sum of the slopes so far; empty for other integrators.
@@ -53,52 +54,18 @@ pub(crate) fn rate(integrator: Integrator, time_step: f64, time_constant: f64) -
     }
 }
 
-impl Dynamics<'_> {
-    /// Steps with the instructions of this level.
-    #[inline(never)]
-    pub(crate) fn step(&mut self, level: Level) {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        match (level.as_avx2(), level.as_sse2()) {
-            (Some(simd), _) => self.in_vectors(simd),
-            (_, Some(simd)) => self.in_vectors(simd),
-            _ => self.one_by_one(),
-        }
-        #[cfg(target_arch = "aarch64")]
-        match level.as_neon() {
-            Some(simd) => self.in_vectors(simd),
-            None => self.one_by_one(),
-        }
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
-        {
-            let _ = level;
-            self.one_by_one();
-        }
+impl Lanes for Dynamics<'_> {
+    fn widest(&self) -> usize {
+        self.y.len()
     }
 
-    /// Eight neurons in a vector, with the instructions of the token; fewer one by one.
-    #[cfg_attr(
-        not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
-        expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
-    )]
     #[inline(always)]
-    fn in_vectors<V: Simd>(&mut self, simd: V) {
-        if self.y.len() < f32x8::<V>::LANES {
-            return self.one_by_one();
-        }
-        simd.vectorize(
-            #[inline(always)]
-            || self.over::<f32x8<V>>(simd),
-        );
+    fn over<S: Scalar<Real = f32>>(&mut self, simd: S::Simd) {
+        self.stages::<S>(simd);
     }
 }
 
 impl<R: Real> Dynamics<'_, R> {
-    /// Steps neuron by neuron.
-    #[inline(never)]
-    pub(crate) fn one_by_one(&mut self) {
-        self.over::<R>(());
-    }
-
     /// Brings the outputs up to date with states that somebody set.
     #[inline(never)]
     pub(crate) fn refresh(&mut self) {
@@ -107,8 +74,10 @@ impl<R: Real> Dynamics<'_, R> {
         }
     }
 
+    /// One step.
     #[inline(always)]
-    fn over<S: Scalar<Real = R>>(&mut self, simd: S::Simd) {
+    fn stages<S: Scalar<Real = R>>(&mut self, simd: S::Simd) {
+        self.hold();
         let neurons = self.y.len();
         let whole = neurons - neurons % S::LANES;
         let stages = if self.integrator == Integrator::RungeKutta4 { 4 } else { 1 };
@@ -123,6 +92,15 @@ impl<R: Real> Dynamics<'_, R> {
             }
             for i in whole..neurons {
                 self.advance::<R>((), stage, i);
+            }
+            self.hold();
+        }
+    }
+
+    fn hold(&mut self) {
+        for lesion in self.lesions {
+            if let Some(o) = self.o.get_mut(lesion.neuron) {
+                *o = R::of(f64::from(lesion.activation));
             }
         }
     }
@@ -198,6 +176,7 @@ mod tests {
             external: &external,
             inputs: (&[], &[]),
             weights: &weights,
+            lesions: &[],
             net: &mut net,
             sum: &mut sum,
             point: &mut point,
@@ -205,7 +184,7 @@ mod tests {
         dynamics.refresh();
         let mut states = Vec::new();
         for _ in 0..4 {
-            (0..steps_per_unit).for_each(|_| dynamics.one_by_one());
+            (0..steps_per_unit).for_each(|_| dynamics.stages::<f64>(()));
             states.extend_from_slice(dynamics.y);
         }
         states

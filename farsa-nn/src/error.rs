@@ -62,6 +62,17 @@ pub enum Error {
         /// Number of neurons.
         neurons: usize,
     },
+    /// A block names neurons that the layout does not have.
+    Block {
+        /// The block's place among the blocks.
+        index: usize,
+        /// The first of the neurons.
+        first: usize,
+        /// How many there are.
+        count: usize,
+        /// Number of neurons.
+        neurons: usize,
+    },
     /// No integrator has this name.
     UnknownIntegrator,
     /// No activation function has this name.
@@ -90,6 +101,10 @@ impl fmt::Display for Error {
             Self::Neurons { first, count, neurons } => {
                 write!(f, "{count} inputs or outputs from neuron {first} on where the layout has {neurons} neurons")
             }
+            Self::Block { index, first, count, neurons } => write!(
+                f,
+                "block {index} has {count} neurons from neuron {first} on where the layout has {neurons} neurons"
+            ),
             Self::UnknownIntegrator => {
                 f.write_str("unknown integrator: one of euler, exponential-euler, runge-kutta-4")
             }

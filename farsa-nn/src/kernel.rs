@@ -13,6 +13,57 @@ pub(crate) fn level() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
 }
 
+/// A step over neurons that may lie in lanes.
+pub(crate) trait Lanes {
+    /// Number of neurons that are computed side by side.
+    fn widest(&self) -> usize;
+    /// The step, over this scalar and over single lanes for what is left.
+    fn over<S: Scalar<Real = f32>>(&mut self, simd: S::Simd);
+}
+
+/// Steps with the instructions of this level.
+// Not inlined, so that a program has each step once for each instruction set, as with layers below.
+#[inline(never)]
+pub(crate) fn step(work: &mut impl Lanes, level: Level) {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    match (level.as_avx2(), level.as_sse2()) {
+        (Some(simd), _) => in_vectors(work, simd),
+        (_, Some(simd)) => in_vectors(work, simd),
+        _ => one_by_one(work),
+    }
+    #[cfg(target_arch = "aarch64")]
+    match level.as_neon() {
+        Some(simd) => in_vectors(work, simd),
+        None => one_by_one(work),
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    {
+        let _ = level;
+        one_by_one(work);
+    }
+}
+
+/// Eight neurons in a vector, with the instructions of the token; fewer one by one.
+#[cfg_attr(
+    not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
+    expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
+)]
+#[inline(always)]
+fn in_vectors<V: Simd>(work: &mut impl Lanes, simd: V) {
+    if work.widest() < f32x8::<V>::LANES {
+        return one_by_one(work);
+    }
+    simd.vectorize(
+        #[inline(always)]
+        || work.over::<f32x8<V>>(simd),
+    );
+}
+
+#[inline(never)]
+fn one_by_one(work: &mut impl Lanes) {
+    work.over::<f32>(());
+}
+
 /// A layer of logistic units, `y_i = sigma( beta_i + sum_j w_ji x_j )` with `sigma(x) = 1/(1 + exp(-slope*x))`.
 pub(crate) struct Layer<'a, R = f32> {
     /// Number of targets `i`.
