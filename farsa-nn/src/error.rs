@@ -39,6 +39,44 @@ pub enum Error {
     },
     /// No reading of the leak has this name.
     UnknownLeak,
+    /// A time step is not a finite number above zero.
+    TimeStep {
+        /// Its value [s].
+        value: f32,
+    },
+    /// A time constant is not above zero, or so short that the integrator diverges.
+    TimeConstant {
+        /// Its place among the parameters.
+        index: usize,
+        /// Its value [s].
+        value: f32,
+        /// The smallest with which the integrator is stable [s]; 0 if all above zero are.
+        least: f32,
+    },
+    /// Inputs or outputs lie at neurons that the layout does not have.
+    Neurons {
+        /// The first of them.
+        first: usize,
+        /// How many there are.
+        count: usize,
+        /// Number of neurons.
+        neurons: usize,
+    },
+    /// A block names neurons that the layout does not have.
+    Block {
+        /// The block's place among the blocks.
+        index: usize,
+        /// The first of the neurons.
+        first: usize,
+        /// How many there are.
+        count: usize,
+        /// Number of neurons.
+        neurons: usize,
+    },
+    /// No integrator has this name.
+    UnknownIntegrator,
+    /// No activation function has this name.
+    UnknownActivation,
 }
 
 impl fmt::Display for Error {
@@ -52,6 +90,27 @@ impl fmt::Display for Error {
             Self::LeakRange { index, value } => write!(f, "parameter {index}, a leak, is {value}: outside [0, 1]"),
             Self::Slope { value } => write!(f, "the slope of the logistic function is {value}: not finite"),
             Self::UnknownLeak => f.write_str("unknown leak: one of filter, two-tap, evonet"),
+            Self::TimeStep { value } => write!(f, "the time step is {value}: not a finite number above 0"),
+            Self::TimeConstant { index, value, least } if value > 0.0 => write!(
+                f,
+                "parameter {index}, a time constant, is {value}: below {least}, where the integrator diverges at this time step"
+            ),
+            Self::TimeConstant { index, value, .. } => {
+                write!(f, "parameter {index}, a time constant, is {value}: not above 0")
+            }
+            Self::Neurons { first, count, neurons } => {
+                write!(f, "{count} inputs or outputs from neuron {first} on where the layout has {neurons} neurons")
+            }
+            Self::Block { index, first, count, neurons } => write!(
+                f,
+                "block {index} has {count} neurons from neuron {first} on where the layout has {neurons} neurons"
+            ),
+            Self::UnknownIntegrator => {
+                f.write_str("unknown integrator: one of euler, exponential-euler, runge-kutta-4")
+            }
+            Self::UnknownActivation => {
+                f.write_str("unknown activation: one of logistic, tanh, linear, step, rectified")
+            }
         }
     }
 }

@@ -5,7 +5,7 @@
 //! target adds its sources.
 
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
-use farsa_num::{Scalar, logistic};
+use farsa_num::{Real, Scalar, logistic};
 
 /// The instructions of this processor where `fearless_simd` was built with `std` and can ask, else those that the
 /// program is compiled for.
@@ -13,16 +13,67 @@ pub(crate) fn level() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
 }
 
+/// A step over neurons that may lie in lanes.
+pub(crate) trait Lanes {
+    /// Number of neurons that are computed side by side.
+    fn widest(&self) -> usize;
+    /// The step, over this scalar and over single lanes for what is left.
+    fn over<S: Scalar<Real = f32>>(&mut self, simd: S::Simd);
+}
+
+/// Steps with the instructions of this level.
+// Not inlined, so that a program has each step once for each instruction set, as with layers below.
+#[inline(never)]
+pub(crate) fn step(work: &mut impl Lanes, level: Level) {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    match (level.as_avx2(), level.as_sse2()) {
+        (Some(simd), _) => in_vectors(work, simd),
+        (_, Some(simd)) => in_vectors(work, simd),
+        _ => one_by_one(work),
+    }
+    #[cfg(target_arch = "aarch64")]
+    match level.as_neon() {
+        Some(simd) => in_vectors(work, simd),
+        None => one_by_one(work),
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    {
+        let _ = level;
+        one_by_one(work);
+    }
+}
+
+/// Eight neurons in a vector, with the instructions of the token; fewer one by one.
+#[cfg_attr(
+    not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
+    expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
+)]
+#[inline(always)]
+fn in_vectors<V: Simd>(work: &mut impl Lanes, simd: V) {
+    if work.widest() < f32x8::<V>::LANES {
+        return one_by_one(work);
+    }
+    simd.vectorize(
+        #[inline(always)]
+        || work.over::<f32x8<V>>(simd),
+    );
+}
+
+#[inline(never)]
+fn one_by_one(work: &mut impl Lanes) {
+    work.over::<f32>(());
+}
+
 /// A layer of logistic units, `y_i = sigma( beta_i + sum_j w_ji x_j )` with `sigma(x) = 1/(1 + exp(-slope*x))`.
-pub(crate) struct Layer<'a> {
+pub(crate) struct Layer<'a, R = f32> {
     /// Number of targets `i`.
     pub(crate) targets: usize,
-    pub(crate) slope: f32,
+    pub(crate) slope: R,
     /// Where the sums start `[targets]`; at zero if this is empty.
-    pub(crate) biases: &'a [f32],
+    pub(crate) biases: &'a [R],
     /// Sources and their weights, source-major `[sources x targets]`, the shorter of both; the second pair is added
     /// after the first.
-    pub(crate) sources: [(&'a [f32], &'a [f32]); 2],
+    pub(crate) sources: [(&'a [R], &'a [R]); 2],
 }
 
 impl Layer<'_> {
@@ -73,19 +124,10 @@ impl Layer<'_> {
 
     #[inline(always)]
     fn over<S: Scalar<Real = f32>>(&self, simd: S::Simd, y: &mut [f32]) {
-        let Some(last) = y.len().checked_sub(S::LANES) else { return };
-        // Side by side, because a sum waits longer for its own last addition than for the next weight.
-        let (mut first, mut end) = (0, S::splat(simd, 0.0));
-        while first < y.len() {
-            let vectors = (y.len() - first).div_ceil(S::LANES);
-            (end, first) = match vectors {
-                1 => (self.sum::<S, 1>(simd, first, last, y), first + S::LANES),
-                2 | 3 => (self.sum::<S, 2>(simd, first, last, y), first + 2 * S::LANES),
-                _ => (self.sum::<S, 4>(simd, first, last, y), first + 4 * S::LANES),
-            };
-        }
-        // In a loop of its own, so that this long function is not in each of the three above.
+        let Some(end) = self.sums::<S>(simd, y) else { return };
+        // In a loop of its own, so that this long function is not in each of the three below.
         let slope = S::splat(simd, self.slope);
+        let last = y.len() - S::LANES;
         let mut whole = y.chunks_exact_mut(S::LANES);
         for values in &mut whole {
             logistic(slope * S::load(simd, values)).store(values);
@@ -94,15 +136,45 @@ impl Layer<'_> {
             logistic(slope * end).store(&mut y[last..]);
         }
     }
+}
+
+impl<R: Real> Layer<'_, R> {
+    /// Overwrites `y` [at most `targets`] with the sums, but for a last vector that is not whole, and returns the last vector
+    /// of them; `None` where there are fewer than one vector's.
+    #[inline(always)]
+    fn sums<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) -> Option<S> {
+        let last = y.len().checked_sub(S::LANES)?;
+        // Side by side, because a sum waits longer for its own last addition than for the next weight.
+        let (mut first, mut end) = (0, S::splat(simd, R::of(0.0)));
+        while first < y.len() {
+            let vectors = (y.len() - first).div_ceil(S::LANES);
+            (end, first) = match vectors {
+                1 => (self.sum::<S, 1>(simd, first, last, y), first + S::LANES),
+                2 | 3 => (self.sum::<S, 2>(simd, first, last, y), first + 2 * S::LANES),
+                _ => (self.sum::<S, 4>(simd, first, last, y), first + 4 * S::LANES),
+            };
+        }
+        Some(end)
+    }
+
+    /// Overwrites `y` [at most `targets`] with the sums; does nothing where there are fewer than one vector's.
+    #[inline(always)]
+    pub(crate) fn all_sums<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) {
+        if let Some(end) = self.sums::<S>(simd, y) {
+            // The last vector overlaps the one before it, with the same sums.
+            let last = y.len() - S::LANES;
+            end.store(&mut y[last..]);
+        }
+    }
 
     /// Sums `G` vectors of targets from `first` on and writes them to `y`; returns the last of them.
     ///
     /// A vector that would go beyond the targets ends with them instead, at `last`, and is not written: it overlaps the
     /// one before it.
     #[inline(always)]
-    fn sum<S: Scalar<Real = f32>, const G: usize>(&self, simd: S::Simd, first: usize, last: usize, y: &mut [f32]) -> S {
+    fn sum<S: Scalar<Real = R>, const G: usize>(&self, simd: S::Simd, first: usize, last: usize, y: &mut [R]) -> S {
         let mut at = [last; G];
-        let mut sums = [S::splat(simd, 0.0); G];
+        let mut sums = [S::splat(simd, R::of(0.0)); G];
         for k in 0..G {
             at[k] = last.min(first + k * S::LANES);
             // Never so; but said here, the compiler need not ask in every row below.

@@ -3,7 +3,10 @@
 use core::fmt;
 use core::str::FromStr;
 
+use farsa_num::{exp, ln, tanh};
+
 use crate::Error;
+use crate::name::same_letters;
 
 /// How a hidden neuron with leak `d` [0..1] forms its activation `H(t)` from its response `y(t) = sigma(net(t))`.
 ///
@@ -36,6 +39,63 @@ impl Leak {
             Self::Evonet => "evonet",
         }
     }
+
+    /// The time constant [s] of a neuron with leak `d` [0..1] that is updated every `time_step` [s].
+    ///
+    /// The share `r` of the old activation that a step leaves, `1-d` or `d`, is `exp(-dt/tau)`: under a constant response the
+    /// neuron is where one of `tau da/dt = -a + y` is. 0 where nothing is left, infinite where all is. `None` for
+    /// [`Leak::TwoTap`], which forgets everything after a step, and for a `d` outside [0, 1].
+    ///
+    /// ```
+    /// use farsa_nn::Leak;
+    ///
+    /// // Half of it is left after a step of 10 ms.
+    /// let tau = Leak::Filter.time_constant(0.5, 0.01).unwrap_or_default();
+    /// assert!((tau - 0.0144270).abs() < 1e-7);
+    /// assert_eq!(Leak::Filter.of_time_constant(tau, 0.01), Some(0.5));
+    /// ```
+    pub fn time_constant(self, leak: f32, time_step: f32) -> Option<f32> {
+        let d = f64::from(leak);
+        let left = match self {
+            _ if !(0.0..=1.0).contains(&leak) => return None,
+            Self::Filter => 1.0 - d,
+            Self::Evonet => d,
+            Self::TwoTap => return None,
+        };
+        // Where all is left, -0 over 0 would be no number.
+        Some(if left < 1.0 { (f64::from(time_step) / -ln(left)) as f32 } else { f32::INFINITY })
+    }
+
+    /// The leak [0..1] of a neuron with this time constant [s] that is updated every `time_step` [s]: the inverse of
+    /// [`time_constant`](Self::time_constant).
+    ///
+    /// `None` for [`Leak::TwoTap`] and for a time constant below zero.
+    pub fn of_time_constant(self, time_constant: f32, time_step: f32) -> Option<f32> {
+        if !(time_constant >= 0.0) {
+            return None;
+        }
+        let x = f64::from(time_step) / f64::from(time_constant);
+        match self {
+            // Without the difference of 1 and the exponential, which has no digits at small x.
+            Self::Filter => Some((tanh(0.5 * x) * (1.0 + exp(-x))) as f32),
+            Self::Evonet => Some(exp(-x) as f32),
+            Self::TwoTap => None,
+        }
+    }
+
+    /// Turns responses into activations [both as many as there are leaks]; `previous` are the responses of the step before
+    /// in [`Leak::TwoTap`].
+    pub(crate) fn apply(self, responses: &[f32], leaks: &[f32], activations: &mut [f32], previous: &mut [f32]) {
+        let neurons = activations.iter_mut().zip(responses).zip(leaks);
+        match self {
+            Self::Filter => neurons.for_each(|((h, y), d)| *h = d * y + (1.0 - d) * *h),
+            Self::TwoTap => neurons.zip(previous).for_each(|(((h, y), d), previous)| {
+                *h = d * y + (1.0 - d) * *previous;
+                *previous = *y;
+            }),
+            Self::Evonet => neurons.for_each(|((h, y), d)| *h = d * *h + (1.0 - d) * y),
+        }
+    }
 }
 
 impl fmt::Display for Leak {
@@ -52,10 +112,6 @@ impl FromStr for Leak {
     /// # Errors
     /// [`Error::UnknownLeak`] when no reading has this name.
     fn from_str(name: &str) -> Result<Self, Error> {
-        let letters = |name: &str, other: &str| {
-            let plain = |b: &u8| *b != b'-';
-            name.bytes().filter(plain).map(|b| b.to_ascii_lowercase()).eq(other.bytes().filter(plain))
-        };
-        Self::ALL.into_iter().find(|leak| letters(name, leak.name())).ok_or(Error::UnknownLeak)
+        Self::ALL.into_iter().find(|leak| same_letters(name, leak.name())).ok_or(Error::UnknownLeak)
     }
 }

@@ -1,19 +1,45 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
+mod activation;
+mod architecture;
+mod block;
+mod block_kernel;
+mod block_layout;
+mod block_network;
 mod controller;
+mod ctrnn;
+mod ctrnn_layout;
+mod dynamics;
 mod error;
+mod evonet;
+mod integrator;
 mod kernel;
 mod layout;
 mod leak;
+mod lesion;
+mod name;
 mod network;
 mod perceptron;
 mod perceptron_lanes;
 
+pub use activation::Activation;
+pub use architecture::{Architecture, Plan};
+pub use block::{Block, Group, Span};
+pub use block_layout::{BlockLayout, BlockParameter};
+pub use block_network::BlockNetwork;
 pub use controller::Controller;
+pub use ctrnn::Ctrnn;
+pub use ctrnn_layout::{CtrnnLayout, CtrnnParameter, CtrnnParts};
 pub use error::Error;
+pub use evonet::EvonetRanges;
+pub use integrator::Integrator;
 pub use layout::{Layout, ParameterKind, Parts};
 pub use leak::Leak;
+pub use lesion::{Lesion, Lesioned, Neurons};
 pub use network::Network;
 pub use perceptron::Perceptron;
 pub use perceptron_lanes::PerceptronLanes;

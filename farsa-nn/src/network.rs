@@ -3,7 +3,8 @@
 use farsa_num::fearless_simd::Level;
 
 use crate::kernel::{Layer, head, level};
-use crate::{Controller, Error, Layout, Leak, ParameterKind};
+use crate::lesion::hold;
+use crate::{Controller, Error, Layout, Leak, Lesion, Neurons, ParameterKind};
 
 /// A network of one recurrent hidden layer with leaks, over parameters and state that are the caller's.
 ///
@@ -149,6 +150,18 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
     }
 
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        self.step_without(&[], x, y);
+    }
+}
+
+/// The hidden neurons come first, the outputs after them. A hidden neuron that is held is so before and after the step: what
+/// it sends back to the others is held, too.
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for Network<P, S> {
+    fn neurons(&self) -> usize {
+        self.layout.hidden().saturating_add(self.layout.outputs())
+    }
+
+    fn step_without(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
         let Self { layout, leak, parameters, state, level } = self;
         debug_assert_eq!(x.len(), layout.sensors(), "sensor values and the layout's sensors");
         debug_assert_eq!(y.len(), layout.outputs(), "motor values and the layout's outputs");
@@ -159,22 +172,17 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
         let (hidden, state) = state.split_at_mut(count.min(state.len()));
         let (previous, state) = state.split_at_mut(count.min(state.len()));
         let response = head(state, count);
+        hold(lesions, 0, hidden);
 
         let sources = [(x, parts.sensor_weights), (&*hidden, parts.recurrent_weights)];
         Layer { targets: count, slope, biases: parts.biases, sources }.respond(*level, response);
 
-        let neurons = hidden.iter_mut().zip(response.iter()).zip(parts.leaks);
-        match leak {
-            Leak::Filter => neurons.for_each(|((h, y), d)| *h = d * y + (1.0 - d) * *h),
-            Leak::TwoTap => neurons.zip(previous).for_each(|(((h, y), d), previous)| {
-                *h = d * y + (1.0 - d) * *previous;
-                *previous = *y;
-            }),
-            Leak::Evonet => neurons.for_each(|((h, y), d)| *h = d * *h + (1.0 - d) * y),
-        }
+        leak.apply(response, parts.leaks, hidden, previous);
+        hold(lesions, 0, hidden);
 
         let sources = [(&*hidden, parts.output_weights), (&[], &[])];
         Layer { targets: layout.outputs(), slope, biases: &[], sources }.respond(*level, y);
+        hold(lesions, count, head(y, layout.outputs()));
     }
 }
 

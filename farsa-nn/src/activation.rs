@@ -1,0 +1,87 @@
+//! What a neuron makes of its net input.
+
+use core::fmt;
+use core::str::FromStr;
+
+use farsa_num::{Scalar, logistic, tanh};
+
+use crate::Error;
+use crate::name::same_letters;
+
+/// The function of a neuron; a slope (or gain) multiplies its argument before.
+///
+/// Every one is finite for finite numbers and never falls where its argument rises, but for one unit in the last place of
+/// the logistic function and of tanh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Activation {
+    /// `1/(1 + exp(-x))`, in [0, 1].
+    #[default]
+    Logistic,
+    /// The hyperbolic tangent, in [-1, 1].
+    Tanh,
+    /// `x` itself.
+    Linear,
+    /// 1 from zero on, else 0.
+    Step,
+    /// `x` above zero, else 0.
+    Rectified,
+}
+
+impl Activation {
+    /// Every function, in the order of their declaration.
+    pub const ALL: [Self; 5] = [Self::Logistic, Self::Tanh, Self::Linear, Self::Step, Self::Rectified];
+
+    /// The name in configurations and logs: `logistic`, `tanh`, `linear`, `step` or `rectified`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Logistic => "logistic",
+            Self::Tanh => "tanh",
+            Self::Linear => "linear",
+            Self::Step => "step",
+            Self::Rectified => "rectified",
+        }
+    }
+
+    /// The value at `x`; of a NaN 0 (step, rectified) or NaN.
+    ///
+    /// ```
+    /// use farsa_nn::Activation;
+    ///
+    /// assert_eq!(Activation::Step.of(0.0), 1.0);
+    /// assert_eq!(Activation::ALL.map(|f| f.of(-2.0)), [0.11920292, -0.9640276, -2.0, 0.0, 0.0]);
+    /// ```
+    pub fn of(self, x: f32) -> f32 {
+        self.over(x)
+    }
+
+    /// The same over the lanes of a scalar.
+    #[inline(always)]
+    pub(crate) fn over<S: Scalar>(self, x: S) -> S {
+        let zero = x.constant(0.0);
+        match self {
+            Self::Logistic => logistic(x),
+            Self::Tanh => tanh(x),
+            Self::Linear => x,
+            Self::Step => S::select(x.ge(zero), x.constant(1.0), zero),
+            Self::Rectified => x.max(zero),
+        }
+    }
+}
+
+impl fmt::Display for Activation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Activation {
+    type Err = Error;
+
+    /// The function of this name, in any case.
+    ///
+    /// # Errors
+    /// [`Error::UnknownActivation`] when none has this name.
+    fn from_str(name: &str) -> Result<Self, Error> {
+        Self::ALL.into_iter().find(|one| same_letters(name, one.name())).ok_or(Error::UnknownActivation)
+    }
+}

@@ -1,0 +1,171 @@
+//! The usual architectures as blocks.
+
+use crate::{Activation, Block, BlockLayout, Group, Span};
+
+/// What connects inputs, hidden neurons and outputs: the named architectures, and each of their connections by itself.
+///
+/// Neurons are logistic with slope 1 and biases, without gains and leaks, unless something else is asked for.
+///
+/// ```
+/// use farsa_nn::{Architecture, Layout, Plan};
+///
+/// // The network of the manipulation experiment.
+/// const PLAN: Plan = Architecture::elman(29, 12, 23).with_slope(0.2).with_leaks().without_output_biases().plan();
+/// assert_eq!(PLAN.layout().parameter_count(), Layout::new(29, 12, 23).parameter_count());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Architecture {
+    inputs: usize,
+    hidden: Group,
+    outputs: Group,
+    delay: usize,
+    among_hidden: bool,
+    outputs_to_hidden: bool,
+    among_outputs: bool,
+    inputs_to_outputs: bool,
+    /// Hidden neurons and outputs are one layer.
+    together: bool,
+}
+
+/// The groups and blocks of an [`Architecture`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    inputs: usize,
+    outputs: usize,
+    groups: [Group; 3],
+    blocks: [Block; Plan::MOST],
+    count: usize,
+}
+
+impl Architecture {
+    /// Inputs to hidden neurons to outputs, without memory; inputs to outputs where there are no hidden neurons.
+    pub const fn feed_forward(inputs: usize, hidden: usize, outputs: usize) -> Self {
+        Self {
+            inputs,
+            hidden: Group::new(hidden, Activation::Logistic).with_biases(),
+            outputs: Group::new(outputs, Activation::Logistic).with_biases(),
+            delay: 0,
+            among_hidden: false,
+            outputs_to_hidden: false,
+            among_outputs: false,
+            inputs_to_outputs: hidden == 0,
+            together: false,
+        }
+    }
+
+    /// The same, and hidden neurons hear each other's activations of the step before (`[Elman1990]`).
+    pub const fn elman(inputs: usize, hidden: usize, outputs: usize) -> Self {
+        Self { among_hidden: true, ..Self::feed_forward(inputs, hidden, outputs) }
+    }
+
+    /// The same as feed-forward, and hidden neurons hear the outputs of the step before (`[Jordan1986]`).
+    ///
+    /// Deviation: the source's context also keeps a share of what it was; here it is the outputs alone.
+    pub const fn jordan(inputs: usize, hidden: usize, outputs: usize) -> Self {
+        Self { outputs_to_hidden: true, ..Self::feed_forward(inputs, hidden, outputs) }
+    }
+
+    /// Hidden neurons and outputs hear the inputs and all of them, themselves too, of the step before.
+    pub const fn fully_recurrent(inputs: usize, hidden: usize, outputs: usize) -> Self {
+        Self { together: true, ..Self::feed_forward(inputs, hidden, outputs) }
+    }
+
+    /// The same, and outputs hear the inputs.
+    pub const fn with_inputs_to_outputs(self) -> Self {
+        Self { inputs_to_outputs: true, ..self }
+    }
+
+    /// The same, and outputs hear each other's activations of the step before.
+    pub const fn with_recurrent_outputs(self) -> Self {
+        Self { among_outputs: true, ..self }
+    }
+
+    /// The same with another function of the hidden neurons and of the outputs.
+    pub const fn with_activations(self, hidden: Activation, outputs: Activation) -> Self {
+        Self {
+            hidden: Group { activation: hidden, ..self.hidden },
+            outputs: Group { activation: outputs, ..self.outputs },
+            ..self
+        }
+    }
+
+    /// The same with another slope of hidden neurons and outputs.
+    pub const fn with_slope(self, slope: f32) -> Self {
+        Self { hidden: self.hidden.with_slope(slope), outputs: self.outputs.with_slope(slope), ..self }
+    }
+
+    /// The same with leaks of the hidden neurons.
+    pub const fn with_leaks(self) -> Self {
+        Self { hidden: self.hidden.with_leaks(), ..self }
+    }
+
+    /// The same with leaks of the outputs.
+    pub const fn with_output_leaks(self) -> Self {
+        Self { outputs: self.outputs.with_leaks(), ..self }
+    }
+
+    /// The same with gains of the hidden neurons.
+    pub const fn with_gains(self) -> Self {
+        Self { hidden: self.hidden.with_gains(), ..self }
+    }
+
+    /// The same without biases of the outputs.
+    pub const fn without_output_biases(self) -> Self {
+        Self { outputs: Group { bias: false, ..self.outputs }, ..self }
+    }
+
+    /// The same without biases of the hidden neurons.
+    pub const fn without_hidden_biases(self) -> Self {
+        Self { hidden: Group { bias: false, ..self.hidden }, ..self }
+    }
+
+    /// The same with inputs that arrive so many steps later.
+    pub const fn with_input_delay(self, steps: usize) -> Self {
+        Self { delay: steps, ..self }
+    }
+
+    /// Its groups and blocks, in the order in which the original lists them.
+    pub const fn plan(&self) -> Plan {
+        let inputs = Span::new(0, self.inputs);
+        let hidden = Span::new(inputs.end(), self.hidden.neurons);
+        let outputs = Span::new(hidden.end(), self.outputs.neurons);
+        let all = Span::new(inputs.end(), hidden.count.saturating_add(outputs.count));
+        let groups = [Group::new(self.inputs, Activation::Linear), self.hidden, self.outputs];
+        let empty = Block::Update(Span::new(0, 0));
+        let plan = Plan { inputs: self.inputs, outputs: outputs.count, groups, blocks: [empty; Plan::MOST], count: 0 };
+        let plan = plan.and(true, Block::Update(inputs));
+        if self.together {
+            return plan
+                .and(true, Block::connect(inputs, all).delayed(self.delay))
+                .and(true, Block::connect(all, all))
+                .and(true, Block::Update(all));
+        }
+        let some = hidden.count > 0;
+        plan.and(some, Block::connect(inputs, hidden).delayed(self.delay))
+            .and(some && self.among_hidden, Block::connect(hidden, hidden))
+            .and(some && self.outputs_to_hidden, Block::connect(outputs, hidden))
+            .and(some, Block::Update(hidden))
+            .and(self.inputs_to_outputs, Block::connect(inputs, outputs).delayed(self.delay))
+            .and(some, Block::connect(hidden, outputs))
+            .and(self.among_outputs, Block::connect(outputs, outputs))
+            .and(true, Block::Update(outputs))
+    }
+}
+
+impl Plan {
+    /// The most blocks that an architecture has.
+    const MOST: usize = 9;
+
+    /// The layout over these groups and blocks.
+    pub const fn layout(&self) -> BlockLayout<'_> {
+        BlockLayout::new(self.inputs, self.outputs, &self.groups, self.blocks.split_at(self.count).0)
+    }
+
+    const fn and(mut self, wanted: bool, block: Block) -> Self {
+        if wanted && self.count < Self::MOST {
+            self.blocks[self.count] = block;
+            self.count += 1;
+        }
+        self
+    }
+}

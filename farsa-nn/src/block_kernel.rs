@@ -1,0 +1,167 @@
+//! One step of a block-wise network, over the lanes of a [`Scalar`]. Lanes are targets, as in the kernel of layers.
+
+use farsa_num::{Scalar, logistic};
+
+use crate::kernel::{Lanes, Layer, head};
+use crate::lesion::hold;
+use crate::{Activation, Block, BlockLayout, BlockParameter, Leak, Lesion, Span};
+
+/// What a step reads and writes; all but parameters, inputs and delays are `[neurons]`.
+pub(crate) struct Blocks<'a> {
+    pub(crate) layout: BlockLayout<'a>,
+    pub(crate) leak: Leak,
+    pub(crate) parameters: &'a [f32],
+    pub(crate) lesions: &'a [Lesion],
+    pub(crate) x: &'a [f32],
+    pub(crate) activations: &'a mut [f32],
+    /// The responses of the step before.
+    pub(crate) previous: &'a mut [f32],
+    pub(crate) net: &'a mut [f32],
+    pub(crate) gains: &'a mut [f32],
+    /// What the sources of a connection send.
+    pub(crate) sent: &'a mut [f32],
+    /// Where sums start, and the responses.
+    pub(crate) work: &'a mut [f32],
+    /// Of each delayed connection which of its values is the oldest, and the values on their way.
+    pub(crate) delays: &'a mut [f32],
+}
+
+impl Lanes for Blocks<'_> {
+    fn widest(&self) -> usize {
+        self.net.len()
+    }
+
+    #[inline(always)]
+    fn over<S: Scalar<Real = f32>>(&mut self, simd: S::Simd) {
+        self.begin();
+        let (mut weights, mut delays) = (0, 0);
+        for block in self.layout.blocks() {
+            match *block {
+                Block::Connect { from, to, delay } => {
+                    self.send(from, delay, delays);
+                    self.connect::<S>(simd, from, to, weights);
+                }
+                Block::Update(span) => self.update::<S>(simd, span),
+                Block::Gain(span) => self.set_gains(span, self.gains.get(span.first).copied()),
+                Block::ModulatedGain { neurons, by } => self.set_gains(neurons, self.activations.get(by).copied()),
+            }
+            weights += block.weights();
+            delays += block.memory();
+        }
+    }
+}
+
+impl Blocks<'_> {
+    /// Net inputs begin at the biases, gains at the parameters.
+    fn begin(&mut self) {
+        hold(self.lesions, 0, self.activations);
+        self.net.fill(0.0);
+        self.gains.fill(1.0);
+        let (parameters, layout) = (self.parameters, self.layout);
+        let [biases, gains] = [BlockParameter::Bias, BlockParameter::Gain].map(|kind| part(parameters, &layout, kind));
+        for (group, span, [bias, gain, _]) in layout.places() {
+            if group.bias {
+                copy(biases, bias, self.net, span);
+            }
+            if group.gain {
+                copy(gains, gain, self.gains, span);
+            }
+        }
+    }
+
+    /// What the sources send: their activations times their gains, of now or of so many steps ago.
+    fn send(&mut self, from: Span, delay: usize, delays: usize) {
+        let sources = self.activations.iter().zip(&*self.gains).skip(from.first).take(from.count);
+        let sent = self.sent.iter_mut();
+        if delay == 0 {
+            sent.zip(sources).for_each(|(sent, (activation, gain))| *sent = activation * gain);
+            return;
+        }
+        let Some((oldest, ring)) = self.delays.get_mut(delays..).and_then(<[f32]>::split_first_mut) else { return };
+        let place = (*oldest as usize).min(delay - 1);
+        let values = ring.iter_mut().skip(place * from.count);
+        for ((sent, (activation, gain)), value) in sent.zip(sources).zip(values) {
+            *sent = core::mem::replace(value, activation * gain);
+        }
+        *oldest = ((place + 1) % delay) as f32;
+    }
+
+    #[inline(always)]
+    fn connect<S: Scalar<Real = f32>>(&mut self, simd: S::Simd, from: Span, to: Span, weights: usize) {
+        let sent = head(self.sent, from.count);
+        let (Some(weights), Some(net)) = (self.parameters.get(weights..), self.net.get_mut(to.first..to.end())) else {
+            return;
+        };
+        let start = head(self.work, to.count);
+        start.copy_from_slice(net);
+        let layer = Layer { targets: to.count, slope: 1.0, biases: start, sources: [(sent, weights), (&[], &[])] };
+        if to.count < S::LANES {
+            layer.all_sums::<f32>((), net);
+        } else {
+            layer.all_sums::<S>(simd, net);
+        }
+    }
+
+    #[inline(always)]
+    fn update<S: Scalar<Real = f32>>(&mut self, simd: S::Simd, span: Span) {
+        let leaks = part(self.parameters, &self.layout, BlockParameter::Leak);
+        for (group, all, [_, _, leak]) in self.layout.places() {
+            let first = span.first.max(all.first);
+            let own = first..span.end().min(all.end());
+            let (Some(net), Some(work)) = (self.net.get(own.clone()), self.work.get_mut(own.clone())) else { continue };
+            let inputs = self.x.get(first..).unwrap_or(&[]);
+            respond::<S>(simd, group.activation, group.slope, net, work);
+            // An input neuron responds with its input; a missing one is zero.
+            let neurons = first..self.layout.inputs();
+            for ((response, _), x) in work.iter_mut().zip(neurons).zip(inputs.iter().chain(core::iter::repeat(&0.0))) {
+                *response = *x;
+            }
+            let (Some(activations), Some(previous)) =
+                (self.activations.get_mut(own.clone()), self.previous.get_mut(own.clone()))
+            else {
+                continue;
+            };
+            if group.leak {
+                let leaks = leaks.get(leak + first - all.first..).unwrap_or(&[]);
+                self.leak.apply(work, leaks, activations, previous);
+            } else {
+                activations.copy_from_slice(work);
+            }
+            hold(self.lesions, first, activations);
+        }
+    }
+
+    fn set_gains(&mut self, span: Span, gain: Option<f32>) {
+        if let (Some(gains), Some(gain)) = (self.gains.get_mut(span.first..span.end()), gain) {
+            gains.fill(gain);
+        }
+    }
+}
+
+#[inline(always)]
+fn respond<S: Scalar<Real = f32>>(simd: S::Simd, activation: Activation, slope: f32, net: &[f32], y: &mut [f32]) {
+    match activation {
+        // Apart, because the others need no vectors to be fast.
+        Activation::Logistic => {
+            let (mut nets, mut responses) = (net.chunks_exact(S::LANES), y.chunks_exact_mut(S::LANES));
+            for (net, y) in (&mut nets).zip(&mut responses) {
+                logistic(S::splat(simd, slope) * S::load(simd, net)).store(y);
+            }
+            for (net, y) in nets.remainder().iter().zip(responses.into_remainder()) {
+                *y = logistic(slope * net);
+            }
+        }
+        _ => net.iter().zip(y).for_each(|(net, y)| *y = activation.of(slope * net)),
+    }
+}
+
+/// The parameters of one kind.
+fn part<'a>(parameters: &'a [f32], layout: &BlockLayout<'_>, kind: BlockParameter) -> &'a [f32] {
+    parameters.get(layout.range(kind)).unwrap_or(&[])
+}
+
+/// Copies the values from a place on over a span.
+fn copy(values: &[f32], place: usize, to: &mut [f32], span: Span) {
+    let to = to.iter_mut().skip(span.first).take(span.count);
+    to.zip(values.iter().skip(place)).for_each(|(to, value)| *to = *value);
+}

@@ -1,0 +1,242 @@
+//! The shape of a block-wise network and the order of its parameters.
+
+use core::ops::Range;
+
+use crate::{Block, Error, Group, Span};
+
+/// What one parameter of a [`BlockLayout`] is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum BlockParameter {
+    /// A weight of a connection.
+    Weight,
+    /// A bias of a neuron.
+    Bias,
+    /// A gain of a neuron.
+    Gain,
+    /// A leak of a neuron [0..1].
+    Leak,
+}
+
+impl BlockParameter {
+    /// Every kind, in the order in which they lie in the parameters.
+    pub const ALL: [Self; 4] = [Self::Weight, Self::Bias, Self::Gain, Self::Leak];
+}
+
+/// Groups of neurons, and the blocks that a step of a [`BlockNetwork`](crate::BlockNetwork) works through.
+///
+/// The first neurons are the inputs, the last ones the outputs. The description is borrowed: from constants in flash, or
+/// from what a program put together at run time.
+///
+/// The parameters are one slice; what a group does not have takes no place.
+///
+/// | kind | order |
+/// |---|---|
+/// | [`Weight`](BlockParameter::Weight) | connections in the order of the blocks; of one, `j*targets + i`, source `j` to target `i` |
+/// | [`Bias`](BlockParameter::Bias) | neurons in their order |
+/// | [`Gain`](BlockParameter::Gain) | neurons in their order |
+/// | [`Leak`](BlockParameter::Leak) | neurons in their order |
+///
+/// For a [`Layout`](crate::Layout) written as blocks that is the order of its own parameters. The original's order is
+/// another, [`evonet_order`](BlockLayout::evonet_order). Counts saturate.
+///
+/// ```
+/// use farsa_nn::{Activation, Block, BlockLayout, Group, Span};
+///
+/// // Three inputs; two neurons that hear them, each other two steps later, and themselves; all heard by one output.
+/// const X: Span = Span::new(0, 3);
+/// const H: Span = Span::new(3, 2);
+/// const O: Span = Span::new(5, 1);
+/// const GROUPS: [Group; 3] = [
+///     Group::new(3, Activation::Linear),
+///     Group::new(2, Activation::Tanh).with_biases(),
+///     Group::new(1, Activation::Logistic).with_biases(),
+/// ];
+/// const BLOCKS: [Block; 6] = [
+///     Block::Update(X),
+///     Block::connect(X, H),
+///     Block::connect(H, H).delayed(1),
+///     Block::Update(H),
+///     Block::connect(Span::new(0, 5), O),
+///     Block::Update(O),
+/// ];
+/// const LAYOUT: BlockLayout = BlockLayout::new(3, 1, &GROUPS, &BLOCKS);
+/// assert_eq!(LAYOUT.parameter_count(), 3 * 2 + 2 * 2 + 5 * 1 + 3);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlockLayout<'a> {
+    inputs: usize,
+    outputs: usize,
+    groups: &'a [Group],
+    blocks: &'a [Block],
+}
+
+impl<'a> BlockLayout<'a> {
+    /// A layout whose first neurons are the inputs and whose last ones are the outputs.
+    ///
+    /// [`BlockNetwork::new`](crate::BlockNetwork::new) checks that all are there.
+    pub const fn new(inputs: usize, outputs: usize, groups: &'a [Group], blocks: &'a [Block]) -> Self {
+        Self { inputs, outputs, groups, blocks }
+    }
+
+    /// Number of inputs.
+    pub const fn inputs(&self) -> usize {
+        self.inputs
+    }
+
+    /// Number of outputs.
+    pub const fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// The groups.
+    pub const fn groups(&self) -> &'a [Group] {
+        self.groups
+    }
+
+    /// The blocks.
+    pub const fn blocks(&self) -> &'a [Block] {
+        self.blocks
+    }
+
+    /// Number of neurons, inputs and outputs among them.
+    pub const fn neurons(&self) -> usize {
+        self.count(None)
+    }
+
+    /// Number of parameters.
+    pub const fn parameter_count(&self) -> usize {
+        self.range(BlockParameter::Leak).end
+    }
+
+    /// Length of the state: six values per neuron, and for each delayed connection its sources times its delay and one.
+    ///
+    /// In this order: the activations `[neurons]`, the responses that [`Leak::TwoTap`](crate::Leak::TwoTap) remembers
+    /// `[neurons]`, four workspaces `[neurons]`, and of each delayed block which of its values is the oldest and the values
+    /// on their way `[delay x sources]`.
+    pub const fn state_len(&self) -> usize {
+        let (mut len, mut b) = (self.neurons().saturating_mul(6), 0);
+        while b < self.blocks.len() {
+            len = len.saturating_add(self.blocks[b].memory());
+            b += 1;
+        }
+        len
+    }
+
+    /// Where the parameters of one kind lie.
+    pub const fn range(&self, kind: BlockParameter) -> Range<usize> {
+        let (mut weights, mut b) = (0_usize, 0);
+        while b < self.blocks.len() {
+            weights = weights.saturating_add(self.blocks[b].weights());
+            b += 1;
+        }
+        let biases = weights.saturating_add(self.count(Some(BlockParameter::Bias)));
+        let gains = biases.saturating_add(self.count(Some(BlockParameter::Gain)));
+        let leaks = gains.saturating_add(self.count(Some(BlockParameter::Leak)));
+        match kind {
+            BlockParameter::Weight => 0..weights,
+            BlockParameter::Bias => weights..biases,
+            BlockParameter::Gain => biases..gains,
+            BlockParameter::Leak => gains..leaks,
+        }
+    }
+
+    /// What the parameter at this index is; `None` beyond the last.
+    pub fn kind(&self, index: usize) -> Option<BlockParameter> {
+        BlockParameter::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
+    }
+
+    /// What each parameter is, in their order, for decoding a genome.
+    pub fn kinds(&self) -> impl Iterator<Item = BlockParameter> + use<'a> {
+        let layout = *self;
+        BlockParameter::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
+    }
+
+    /// The indices of the weights from one neuron to another: one for each connection that has both.
+    ///
+    /// To cut a link is to set its weights to zero.
+    pub fn weights(&self, from: usize, to: usize) -> impl Iterator<Item = usize> + use<'a> {
+        self.connections().filter_map(move |(at, sources, targets)| {
+            let both = sources.contains(from) && targets.contains(to);
+            both.then(|| at + (from - sources.first) * targets.count + (to - targets.first))
+        })
+    }
+
+    /// Every connection: its first weight, its sources, its targets.
+    pub(crate) fn connections(&self) -> impl Iterator<Item = (usize, Span, Span)> + use<'a> {
+        let mut next = 0_usize;
+        self.blocks.iter().filter_map(move |block| {
+            let at = next;
+            next = next.saturating_add(block.weights());
+            if let Block::Connect { from, to, .. } = *block { Some((at, from, to)) } else { None }
+        })
+    }
+
+    /// The neurons that have a parameter of this kind, with its index.
+    pub(crate) fn neurons_with(&self, kind: BlockParameter) -> impl Iterator<Item = (usize, usize)> + use<'a> {
+        let mut first = 0_usize;
+        let groups = self.groups.iter().flat_map(move |group| {
+            let neurons = first..first.saturating_add(group.neurons);
+            first = neurons.end;
+            if has(group, kind) { neurons } else { 0..0 }
+        });
+        groups.zip(self.range(kind))
+    }
+
+    /// The groups, each with its neurons and the place of its first bias, gain and leak among those.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (&'a Group, Span, [usize; 3])> + use<'a> {
+        let (mut first, mut places) = (0_usize, [0_usize; 3]);
+        self.groups.iter().map(move |group| {
+            let at = (group, Span::new(first, group.neurons), places);
+            first = at.1.end();
+            for (place, has) in places.iter_mut().zip([group.bias, group.gain, group.leak]) {
+                *place = place.saturating_add(if has { group.neurons } else { 0 });
+            }
+            at
+        })
+    }
+
+    /// Number of neurons, of all or of those that have a parameter of this kind.
+    const fn count(&self, kind: Option<BlockParameter>) -> usize {
+        let (mut count, mut g) = (0_usize, 0);
+        while g < self.groups.len() {
+            let counts = match kind {
+                Some(kind) => has(&self.groups[g], kind),
+                None => true,
+            };
+            if counts {
+                count = count.saturating_add(self.groups[g].neurons);
+            }
+            g += 1;
+        }
+        count
+    }
+
+    /// Whether everything that it names is there.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let neurons = self.neurons();
+        if let Some(group) = self.groups.iter().find(|group| !group.slope.is_finite()) {
+            return Err(Error::Slope { value: group.slope });
+        }
+        let ends = self.inputs.saturating_add(self.outputs);
+        if ends > neurons {
+            return Err(Error::Neurons { first: 0, count: ends, neurons });
+        }
+        for (index, block) in self.blocks.iter().enumerate() {
+            if let Some(span) = block.spans().into_iter().find(|span| span.end() > neurons) {
+                return Err(Error::Block { index, first: span.first, count: span.count, neurons });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether the neurons of a group have a parameter of this kind.
+const fn has(group: &Group, kind: BlockParameter) -> bool {
+    match kind {
+        BlockParameter::Weight => false,
+        BlockParameter::Bias => group.bias,
+        BlockParameter::Gain => group.gain,
+        BlockParameter::Leak => group.leak,
+    }
+}

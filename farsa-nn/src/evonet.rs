@@ -1,0 +1,113 @@
+//! The order in which the original's Evonet keeps its parameters, and what it reads in them.
+
+use crate::{Block, BlockLayout, BlockParameter, Error};
+
+/// The ranges of Evonet's parameters: each is kept as a number `p` in [-weight, weight].
+///
+/// Source: `[FARSA2]`, where they are `weightRange`, `biasRange` and `gainRange`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EvonetRanges {
+    /// The largest weight.
+    pub weight: f32,
+    /// The largest bias.
+    pub bias: f32,
+    /// The largest gain.
+    pub gain: f32,
+}
+
+impl Default for EvonetRanges {
+    /// 5 each, as in the source.
+    fn default() -> Self {
+        Self { weight: 5.0, bias: 5.0, gain: 5.0 }
+    }
+}
+
+impl EvonetRanges {
+    /// The number `p` of a gene [0..255]: `weight - 2*weight*gene/255`, so that 0 is the largest.
+    ///
+    /// ```
+    /// use farsa_nn::EvonetRanges;
+    ///
+    /// assert_eq!([0, 51, 255].map(|gene| EvonetRanges::default().of_gene(gene)), [5.0, 3.0, -5.0]);
+    /// ```
+    pub fn of_gene(self, gene: u8) -> f32 {
+        self.weight - f32::from(gene) / 255.0 * self.weight * 2.0
+    }
+
+    /// The parameter of a number `p`: a weight is `p`, a bias `p/weight*bias`, a gain `|p|/weight*gain`, a leak `|p|/weight`
+    /// clamped to [0, 1].
+    ///
+    /// Deviation: the source clamps the activations that a leak beyond 1 leads to, and not the leak.
+    pub fn decode(self, kind: BlockParameter, p: f32) -> f32 {
+        match kind {
+            BlockParameter::Weight => p,
+            BlockParameter::Bias => p / self.weight * self.bias,
+            BlockParameter::Gain => p.abs() / self.weight * self.gain,
+            BlockParameter::Leak => (p.abs() / self.weight).clamp(0.0, 1.0),
+        }
+    }
+}
+
+impl<'a> BlockLayout<'a> {
+    /// The indices of the parameters in the original's order: gains, biases; then in the order of the blocks the weights of a
+    /// connection target by target, and the leaks of an update.
+    ///
+    /// Each parameter comes once if each leaky neuron is updated once a step.
+    ///
+    /// Source: Evonet of `[FARSA2]`.
+    ///
+    /// ```
+    /// use farsa_nn::{Architecture, Plan};
+    ///
+    /// // Discrimination: six sensors, two outputs. The biases first, then the weights of each output.
+    /// const PLAN: Plan = Architecture::feed_forward(6, 0, 2).plan();
+    /// assert!(PLAN.layout().evonet_order().eq([12, 13, 0, 2, 4, 6, 8, 10, 1, 3, 5, 7, 9, 11]));
+    /// ```
+    pub fn evonet_order(&self) -> impl Iterator<Item = usize> + use<'a> {
+        let layout = *self;
+        let flags = self.range(BlockParameter::Gain).chain(self.range(BlockParameter::Bias));
+        let mut next = 0;
+        let blocks = self.blocks().iter().flat_map(move |block| {
+            let at = next;
+            next += block.weights();
+            let (weights, targets) = match block {
+                Block::Connect { to, .. } => (block.weights(), to.count),
+                _ => (0, 1),
+            };
+            // The k-th is that of target k / sources from source k % sources.
+            let sources = weights.checked_div(targets).unwrap_or(0).max(1);
+            let weights = (0..weights).map(move |k| at + (k % sources) * targets + k / sources);
+            let updated =
+                move |(neuron, _): &(usize, usize)| matches!(block, Block::Update(span) if span.contains(*neuron));
+            let leaks = layout.neurons_with(BlockParameter::Leak).filter(updated).map(|(_, index)| index);
+            weights.chain(leaks)
+        });
+        flags.chain(blocks)
+    }
+
+    /// Writes parameters [[`parameter_count`](Self::parameter_count)] from numbers in the original's order.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`] when there are more or fewer numbers than parameters, or another number of parameters than the
+    /// layout has; the parameters are then partly written.
+    pub fn read_evonet(
+        &self,
+        ranges: EvonetRanges,
+        numbers: impl IntoIterator<Item = f32>,
+        parameters: &mut [f32],
+    ) -> Result<(), Error> {
+        let expected = self.parameter_count();
+        if parameters.len() != expected {
+            return Err(Error::ParameterCount { expected, found: parameters.len() });
+        }
+        let (mut numbers, mut found) = (numbers.into_iter(), 0);
+        for (index, p) in self.evonet_order().zip(&mut numbers) {
+            if let (Some(to), Some(kind)) = (parameters.get_mut(index), self.kind(index)) {
+                *to = ranges.decode(kind, p);
+            }
+            found += 1;
+        }
+        found += numbers.count();
+        if found == expected { Ok(()) } else { Err(Error::ParameterCount { expected, found }) }
+    }
+}

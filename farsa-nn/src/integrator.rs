@@ -1,0 +1,69 @@
+//! How a continuous network is carried from one time to the next.
+
+use core::fmt;
+use core::str::FromStr;
+
+use crate::Error;
+use crate::name::same_letters;
+
+/// How a [`Ctrnn`](crate::Ctrnn) goes from `t` to `t + dt`; external inputs are held over the step.
+///
+/// With `f_i(y) = ( -y_i + net_i(y) ) / tau_i`, where `net_i` is what a neuron is driven to:
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Integrator {
+    /// `y(t+dt) = y + dt f(y)`: first order, unstable where `tau < dt/2`.
+    #[default]
+    Euler,
+    /// `y_i(t+dt) = net_i + (y_i - net_i) exp(-dt/tau_i)`: first order, exact while `net` is constant, stable for every `tau`.
+    ExponentialEuler,
+    /// The classical method of fourth order with four evaluations a step, unstable where `tau < dt/2.785`.
+    RungeKutta4,
+}
+
+impl Integrator {
+    /// Every integrator, in the order of their declaration.
+    pub const ALL: [Self; 3] = [Self::Euler, Self::ExponentialEuler, Self::RungeKutta4];
+
+    /// The name in configurations and logs: `euler`, `exponential-euler` or `runge-kutta-4`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Euler => "euler",
+            Self::ExponentialEuler => "exponential-euler",
+            Self::RungeKutta4 => "runge-kutta-4",
+        }
+    }
+
+    /// The smallest time constant [s] with which a neuron alone does not diverge at this time step [s]; 0 if each will do.
+    ///
+    /// ```
+    /// use farsa_nn::Integrator;
+    ///
+    /// assert_eq!(Integrator::Euler.least_time_constant(0.1), 0.05);
+    /// ```
+    pub fn least_time_constant(self, time_step: f32) -> f32 {
+        match self {
+            Self::Euler => 0.5 * time_step,
+            Self::ExponentialEuler => 0.0,
+            // 1 + z + z^2/2 + z^3/6 + z^4/24 is 1 at z = -2.7853.
+            Self::RungeKutta4 => time_step / 2.785,
+        }
+    }
+}
+
+impl fmt::Display for Integrator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Integrator {
+    type Err = Error;
+
+    /// The integrator of this name, in any case and with or without the hyphens, so that `RungeKutta4` is `runge-kutta-4`.
+    ///
+    /// # Errors
+    /// [`Error::UnknownIntegrator`] when none has this name.
+    fn from_str(name: &str) -> Result<Self, Error> {
+        Self::ALL.into_iter().find(|one| same_letters(name, one.name())).ok_or(Error::UnknownIntegrator)
+    }
+}

@@ -1,0 +1,8 @@
+//! How the names of variants are compared.
+
+/// Whether two names are the same but for case and hyphens.
+pub(crate) fn same_letters(name: &str, other: &str) -> bool {
+    let plain = |b: &u8| *b != b'-';
+    let lower = |b: u8| b.to_ascii_lowercase();
+    name.bytes().filter(plain).map(lower).eq(other.bytes().filter(plain).map(lower))
+}

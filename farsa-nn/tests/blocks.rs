@@ -1,0 +1,392 @@
+//! Networks of blocks against loops written from their equations, against the other networks, and in the original's order.
+
+use farsa_nn::{
+    Activation, Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, Controller, Error, EvonetRanges, Group,
+    Layout, Leak, Lesion, Lesioned, Network, Neurons, ParameterKind, Plan, Span,
+};
+use farsa_num::fearless_simd::Level;
+use farsa_num::{Domain, Stream, levels};
+use proptest::prelude::*;
+
+/// What a neuron is, and its own parameters.
+#[derive(Clone, Copy)]
+struct Neuron {
+    group: Group,
+    bias: f32,
+    gain: f32,
+    leak: f32,
+}
+
+/// The equations, neuron by neuron, with a history instead of rings.
+struct Oracle<'a> {
+    layout: BlockLayout<'a>,
+    leak: Leak,
+    parameters: &'a [f32],
+    neurons: Vec<Neuron>,
+    activations: Vec<f32>,
+    responses: Vec<f32>,
+    /// What each block sent, step by step.
+    sent: Vec<Vec<Vec<f32>>>,
+}
+
+impl<'a> Oracle<'a> {
+    fn new(layout: BlockLayout<'a>, leak: Leak, parameters: &'a [f32]) -> Self {
+        let [mut bias, mut gain, mut decay] = [BlockParameter::Bias, BlockParameter::Gain, BlockParameter::Leak]
+            .map(|kind| parameters[layout.range(kind)].iter().copied());
+        let mut neurons = Vec::new();
+        for group in layout.groups() {
+            for _ in 0..group.neurons {
+                neurons.push(Neuron {
+                    group: *group,
+                    bias: if group.bias { bias.next().expect("a bias") } else { 0.0 },
+                    gain: if group.gain { gain.next().expect("a gain") } else { 1.0 },
+                    leak: if group.leak { decay.next().expect("a leak") } else { f32::NAN },
+                });
+            }
+        }
+        let zeros = vec![0.0; neurons.len()];
+        let sent = vec![Vec::new(); layout.blocks().len()];
+        Self { layout, leak, parameters, neurons, activations: zeros.clone(), responses: zeros, sent }
+    }
+
+    fn step(&mut self, x: &[f32]) -> Vec<f32> {
+        let mut net: Vec<f32> = self.neurons.iter().map(|n| n.bias).collect();
+        let mut gains: Vec<f32> = self.neurons.iter().map(|n| n.gain).collect();
+        let mut weight = 0;
+        for (b, block) in self.layout.blocks().iter().enumerate() {
+            match *block {
+                Block::Connect { from, to, delay } => {
+                    let now = (from.first..from.end()).map(|j| self.activations[j] * gains[j]).collect();
+                    self.sent[b].push(now);
+                    let zeros = vec![0.0; from.count];
+                    let then = self.sent[b].len().checked_sub(1 + delay).map_or(&zeros, |step| &self.sent[b][step]);
+                    for (j, sent) in then.iter().enumerate() {
+                        for i in 0..to.count {
+                            net[to.first + i] += self.parameters[weight + j * to.count + i] * sent;
+                        }
+                    }
+                    weight += from.count * to.count;
+                }
+                Block::Update(span) => {
+                    for i in span.first..span.end() {
+                        let Neuron { group, leak: d, .. } = self.neurons[i];
+                        let y = if i < x.len() { x[i] } else { group.activation.of(group.slope * net[i]) };
+                        let a = self.activations[i];
+                        self.activations[i] = match self.leak {
+                            _ if !group.leak => y,
+                            Leak::Filter => d * y + (1.0 - d) * a,
+                            Leak::TwoTap => d * y + (1.0 - d) * self.responses[i],
+                            Leak::Evonet => d * a + (1.0 - d) * y,
+                        };
+                        self.responses[i] = y;
+                    }
+                }
+                Block::Gain(span) => (span.first..span.end()).for_each(|i| gains[i] = gains[span.first]),
+                Block::ModulatedGain { neurons, by } => {
+                    (neurons.first..neurons.end()).for_each(|i| gains[i] = self.activations[by]);
+                }
+                _ => unreachable!("another block"),
+            }
+        }
+        self.activations[self.neurons.len() - self.layout.outputs()..].to_vec()
+    }
+}
+
+fn bits(values: &[f32]) -> Vec<u32> {
+    values.iter().map(|v| v.to_bits()).collect()
+}
+
+fn drawn(layout: BlockLayout<'_>, seed: u64) -> Vec<f32> {
+    let mut stream = Stream::new(seed, Domain::Network, 0, 0, 0);
+    let draw = |kind| match kind {
+        BlockParameter::Leak => stream.uniform(),
+        BlockParameter::Gain => stream.range(0.0, 2.0),
+        _ => stream.range(-2.0, 2.0),
+    };
+    layout.kinds().map(draw).collect()
+}
+
+fn state(layout: BlockLayout<'_>) -> Vec<f32> {
+    vec![f32::NAN; layout.state_len()]
+}
+
+fn any_group() -> impl Strategy<Value = Group> {
+    let flags = (any::<bool>(), any::<bool>(), any::<bool>());
+    (0..14_usize, prop::sample::select(&Activation::ALL[..]), 0.1_f32..1.5, flags).prop_map(
+        |(neurons, activation, slope, (bias, gain, leak))| Group { neurons, activation, slope, bias, gain, leak },
+    )
+}
+
+fn any_block(neurons: usize) -> impl Strategy<Value = Block> {
+    let span = move || (0..=neurons, 0..=neurons).prop_map(|(a, b)| Span::new(a.min(b), a.max(b) - a.min(b)));
+    prop_oneof![
+        4 => (span(), span(), 0..3_usize).prop_map(|(from, to, delay)| Block::connect(from, to).delayed(delay)),
+        3 => span().prop_map(Block::Update),
+        1 => span().prop_map(Block::Gain),
+        1 => (span(), 0..neurons.max(1)).prop_map(move |(neurons, by)| {
+            if neurons.end() == 0 { Block::Gain(neurons) } else { Block::ModulatedGain { neurons, by } }
+        }),
+    ]
+}
+
+prop_compose! {
+    /// Groups, numbers of inputs and outputs, and blocks.
+    fn any_plan()(groups in prop::collection::vec(any_group(), 1..4))(
+        blocks in prop::collection::vec(any_block(groups.iter().map(|g| g.neurons).sum()), 0..8),
+        ends in (0.0_f64..1.0, 0.0_f64..1.0),
+        groups in Just(groups),
+    ) -> (usize, usize, Vec<Group>, Vec<Block>) {
+        let neurons: usize = groups.iter().map(|g| g.neurons).sum();
+        let inputs = (ends.0 * (neurons + 1) as f64) as usize;
+        let outputs = (ends.1 * (neurons - inputs + 1) as f64) as usize;
+        (inputs, outputs, groups, blocks)
+    }
+}
+
+proptest! {
+    #[test]
+    fn equals_the_oracle_bit_for_bit((inputs, outputs, groups, blocks) in any_plan(), seed in any::<u64>()) {
+        let layout = BlockLayout::new(inputs, outputs, &groups, &blocks);
+        let parameters = drawn(layout, seed);
+        let mut stream = Stream::new(seed, Domain::Sensor, 0, 0, 0);
+        let xs: Vec<Vec<f32>> = (0..6).map(|_| (0..inputs).map(|_| stream.range(-2.0, 2.0)).collect()).collect();
+        for (leak, level) in Leak::ALL.into_iter().flat_map(|leak| levels(Level::new()).map(move |level| (leak, level))) {
+            let network = BlockNetwork::new(layout, leak, &parameters, state(layout));
+            let mut network = network?.with_level(level);
+            let mut oracle = Oracle::new(layout, leak, &parameters);
+            let mut y = vec![f32::NAN; outputs];
+            for x in &xs {
+                network.step(x, &mut y);
+                let expected = oracle.step(x);
+                // Without bounds, numbers may leave the floats; what is no number has no bits to compare.
+                if oracle.activations.iter().any(|a| a.is_nan()) {
+                    break;
+                }
+                prop_assert_eq!(bits(network.activations()), bits(&oracle.activations), "{:?} {:?}", leak, level);
+                prop_assert_eq!(bits(&y), bits(&expected));
+            }
+        }
+    }
+
+    #[test]
+    fn the_network_is_one_of_blocks((n, h, o) in (0..12_usize, 1..40_usize, 0..40_usize), seed in any::<u64>()) {
+        let plan = Architecture::elman(n, h, o).with_slope(Layout::SLOPE).with_leaks().without_output_biases().plan();
+        let (layout, whole) = (plan.layout(), Layout::new(n, h, o));
+        prop_assert_eq!(layout.parameter_count(), whole.parameter_count());
+        prop_assert!(layout.range(BlockParameter::Leak).eq(whole.range(ParameterKind::Leak)));
+        prop_assert!(layout.range(BlockParameter::Bias).eq(whole.range(ParameterKind::Bias)));
+        let parameters = drawn(layout, seed);
+        let mut stream = Stream::new(seed, Domain::Sensor, 0, 0, 0);
+        for leak in Leak::ALL {
+            let mut blocks = BlockNetwork::new(layout, leak, &parameters, state(layout))?;
+            let mut network = Network::new(whole, leak, &parameters, vec![0.0; whole.state_len()])?;
+            let (mut y, mut z) = (vec![0.0; o], vec![0.0; o]);
+            for _ in 0..10 {
+                let x: Vec<f32> = (0..n).map(|_| stream.range(-50.0, 50.0)).collect();
+                blocks.step(&x, &mut y);
+                network.step(&x, &mut z);
+                prop_assert_eq!(bits(&y), bits(&z), "{:?}", leak);
+                prop_assert_eq!(bits(&blocks.activations()[n..n + h]), bits(network.hidden()), "{:?}", leak);
+            }
+        }
+    }
+
+    #[test]
+    fn a_delay_is_the_input_of_before(seed in any::<u64>(), delay in 0..9_usize) {
+        let (plan, late) = (Architecture::elman(3, 10, 2).plan(), Architecture::elman(3, 10, 2).with_input_delay(delay).plan());
+        let (layout, delayed) = (plan.layout(), late.layout());
+        let parameters = drawn(layout, seed);
+        let mut now = BlockNetwork::new(layout, Leak::Filter, &parameters, state(layout))?;
+        let mut then = BlockNetwork::new(delayed, Leak::Filter, &parameters, state(delayed))?;
+        let mut stream = Stream::new(seed, Domain::Sensor, 0, 0, 0);
+        let xs: Vec<[f32; 3]> = (0..30).map(|_| [0.0; 3].map(|_: f32| stream.range(-1.0, 1.0))).collect();
+        let (mut y, mut z) = ([0.0; 2], [0.0; 2]);
+        for t in 0..xs.len() {
+            now.step(t.checked_sub(delay).map_or(&[0.0; 3], |t| &xs[t]), &mut y);
+            then.step(&xs[t], &mut z);
+            prop_assert_eq!(bits(&y), bits(&z), "step {}", t);
+        }
+        // And a reset forgets what was on its way.
+        let first = |network: &mut BlockNetwork<'_, _, _>| {
+            let mut y = [0.0; 2];
+            network.reset();
+            network.step(&[1.0; 3], &mut y);
+            bits(&y)
+        };
+        let mut fresh = BlockNetwork::new(delayed, Leak::Filter, &parameters, state(delayed))?;
+        prop_assert_eq!(first(&mut then), first(&mut fresh));
+    }
+
+    #[test]
+    fn a_silent_neuron_is_one_without_links(seed in any::<u64>(), neuron in 2..12_usize) {
+        let plan = Architecture::elman(2, 10, 4).plan();
+        let layout = plan.layout();
+        let parameters = drawn(layout, seed);
+        let mut cut = parameters.clone();
+        for to in 0..16 {
+            layout.weights(neuron, to).for_each(|index| cut[index] = 0.0);
+        }
+        let lesions = [Lesion::of(neuron)];
+        let mut without = Lesioned::new(BlockNetwork::new(layout, Leak::Filter, &parameters, state(layout))?, &lesions);
+        let mut cut = BlockNetwork::new(layout, Leak::Filter, &cut, state(layout))?;
+        let (mut y, mut z) = ([0.0; 4], [0.0; 4]);
+        for step in 0..20 {
+            let x = [step as f32 / 20.0, 0.5];
+            without.step(&x, &mut y);
+            cut.step(&x, &mut z);
+            prop_assert_eq!(y, z);
+            prop_assert_eq!(without.network().activations()[neuron], 0.0);
+        }
+    }
+}
+
+#[test]
+fn the_named_architectures_have_their_memory() -> Result<(), Error> {
+    // A pulse on the input, and what is left of it in the output afterwards.
+    let echo = |plan: Plan| -> Result<Vec<bool>, Error> {
+        let layout = plan.layout();
+        let parameters = vec![1.0; layout.parameter_count()];
+        let mut pulsed = BlockNetwork::new(layout, Leak::Filter, &parameters, state(layout))?;
+        let mut quiet = pulsed.clone();
+        let (mut y, mut z) = ([0.0], [0.0]);
+        (0..3)
+            .map(|step| {
+                pulsed.step(&[if step == 0 { 1.0 } else { 0.0 }], &mut y);
+                quiet.step(&[0.0], &mut z);
+                Ok(y != z)
+            })
+            .collect()
+    };
+    assert_eq!(echo(Architecture::feed_forward(1, 2, 1).plan())?, [true, false, false]);
+    assert_eq!(echo(Architecture::feed_forward(1, 0, 1).plan())?, [true, false, false]);
+    assert_eq!(echo(Architecture::elman(1, 2, 1).plan())?, [true, true, true]);
+    assert_eq!(echo(Architecture::jordan(1, 2, 1).plan())?, [true, true, true]);
+    assert_eq!(echo(Architecture::fully_recurrent(1, 2, 1).plan())?, [true, true, true]);
+    assert_eq!(echo(Architecture::feed_forward(1, 2, 1).with_recurrent_outputs().plan())?, [true, true, true]);
+    assert_eq!(echo(Architecture::feed_forward(1, 2, 1).with_input_delay(1).plan())?, [false, true, false]);
+    assert_eq!(Architecture::jordan(3, 4, 2).plan().layout().parameter_count(), 3 * 4 + 2 * 4 + 4 * 2 + 6);
+    assert_eq!(Architecture::fully_recurrent(3, 4, 2).plan().layout().parameter_count(), 3 * 6 + 6 * 6 + 6);
+    let both = Architecture::feed_forward(3, 4, 2).with_inputs_to_outputs().plan();
+    assert_eq!(both.layout().parameter_count(), 3 * 4 + 3 * 2 + 4 * 2 + 6);
+    Ok(())
+}
+
+#[test]
+fn gains_by_hand() -> Result<(), Error> {
+    // Two inputs with gains 2 and 3, one linear output with weights 1 and 10.
+    const GROUPS: [Group; 2] = [Group::new(2, Activation::Linear).with_gains(), Group::new(1, Activation::Linear)];
+    const IN: Span = Span::new(0, 2);
+    const OUT: Span = Span::new(2, 1);
+    let output = |gain: Option<Block>| -> Result<f32, Error> {
+        let blocks = [Some(Block::Update(IN)), gain, Some(Block::connect(IN, OUT)), Some(Block::Update(OUT))];
+        let blocks: Vec<Block> = blocks.into_iter().flatten().collect();
+        let layout = BlockLayout::new(2, 1, &GROUPS, &blocks);
+        let mut network = BlockNetwork::new(layout, Leak::Filter, [1.0, 10.0, 2.0, 3.0], state(layout))?;
+        let mut y = [0.0];
+        network.step(&[5.0, 7.0], &mut y);
+        Ok(y[0])
+    };
+    assert_eq!(output(None)?, 5.0 * 2.0 + 70.0 * 3.0);
+    assert_eq!(output(Some(Block::Gain(IN)))?, 5.0 * 2.0 + 70.0 * 2.0);
+    assert_eq!(output(Some(Block::ModulatedGain { neurons: IN, by: 1 }))?, 5.0 * 7.0 + 70.0 * 7.0);
+    Ok(())
+}
+
+#[test]
+fn construction_names_the_mistake() {
+    let groups = [Group::new(1, Activation::Linear), Group::new(2, Activation::Logistic).with_leaks()];
+    let blocks = [Block::connect(Span::new(0, 1), Span::new(1, 2)), Block::Update(Span::new(1, 2))];
+    let build = |layout: BlockLayout<'_>, parameters: &[f32], less: usize| {
+        BlockNetwork::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len().min(99) - less]).err()
+    };
+    let layout = BlockLayout::new(1, 1, &groups, &blocks);
+    assert_eq!(build(layout, &[0.5; 4], 0), None);
+    assert_eq!(build(layout, &[0.5; 3], 0), Some(Error::ParameterCount { expected: 4, found: 3 }));
+    assert_eq!(build(layout, &[0.5; 4], 1), Some(Error::StateLen { expected: 18, found: 17 }));
+    assert_eq!(build(layout, &[0.5, f32::NAN, 0.5, 0.5], 0), Some(Error::NotFinite { index: 1 }));
+    assert_eq!(build(layout, &[0.5, 0.5, 0.5, 1.5], 0), Some(Error::LeakRange { index: 3, value: 1.5 }));
+    let many = BlockLayout::new(2, 2, &groups, &blocks);
+    assert_eq!(build(many, &[0.5; 4], 0), Some(Error::Neurons { first: 0, count: 4, neurons: 3 }));
+    let beyond = [blocks[0], Block::Update(Span::new(2, 2))];
+    let error = build(BlockLayout::new(1, 1, &groups, &beyond), &[0.5; 4], 0);
+    assert_eq!(error, Some(Error::Block { index: 1, first: 2, count: 2, neurons: 3 }));
+    assert_eq!(
+        error.expect("an error").to_string(),
+        "block 1 has 2 neurons from neuron 2 on where the layout has 3 neurons"
+    );
+    let steep = [groups[0].with_slope(f32::NAN), groups[1]];
+    assert!(matches!(build(BlockLayout::new(1, 1, &steep, &blocks), &[0.5; 4], 0), Some(Error::Slope { .. })));
+    let huge = [Block::connect(Span::new(0, 1), Span::new(1, 2)).delayed(usize::MAX)];
+    let layout = BlockLayout::new(1, 1, &groups, &huge);
+    assert_eq!(layout.state_len(), usize::MAX);
+    assert_eq!(build(layout, &[0.5; 4], 0), Some(Error::StateLen { expected: usize::MAX, found: 99 }));
+}
+
+#[test]
+fn a_lesion_holds_what_it_is_told() -> Result<(), Error> {
+    const LAYOUT: Layout = Layout::new(1, 9, 2);
+    let parameters: Vec<f32> = (0..LAYOUT.parameter_count()).map(|i| (i * 37 % 101) as f32 / 101.0).collect();
+    let network = Network::new(LAYOUT, Leak::Filter, &parameters, [0.0; LAYOUT.state_len()])?;
+    assert_eq!(network.neurons(), 11);
+    // The last does not exist.
+    let lesions = [Lesion { neuron: 4, activation: 0.75 }, Lesion { neuron: 10, activation: 0.125 }, Lesion::of(99)];
+    let mut without = Lesioned::new(network.clone(), &lesions);
+    let (mut y, mut z, mut whole) = ([0.0; 2], [0.0; 2], network);
+    for _ in 0..3 {
+        without.step(&[1.0], &mut y);
+        whole.step(&[1.0], &mut z);
+    }
+    assert_eq!((without.network().hidden()[4], y[1]), (0.75, 0.125));
+    assert_ne!(y[0], z[0]);
+    without.set_lesions(&[]);
+    (without.reset(), whole.reset());
+    without.step(&[1.0], &mut y);
+    whole.step(&[1.0], &mut z);
+    assert_eq!((y, without.network().hidden()), (z, whole.hidden()));
+    assert_eq!(without.into_network().hidden().len(), 9);
+    Ok(())
+}
+
+#[test]
+fn the_originals_order_takes_each_parameter_once() {
+    let plans = [
+        Architecture::feed_forward(6, 0, 2).plan(),
+        Architecture::elman(3, 4, 2).with_leaks().with_output_leaks().with_gains().plan(),
+        Architecture::jordan(2, 3, 2).with_inputs_to_outputs().with_recurrent_outputs().plan(),
+        Architecture::fully_recurrent(2, 3, 2).with_leaks().without_hidden_biases().plan(),
+    ];
+    for plan in plans {
+        let layout = plan.layout();
+        let mut order: Vec<usize> = layout.evonet_order().collect();
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..layout.parameter_count()));
+        let mut parameters = vec![0.0; layout.parameter_count()];
+        let count = parameters.len();
+        for found in [count - 1, count + 1] {
+            let numbers = std::iter::repeat_n(1.0, found);
+            let error = layout.read_evonet(EvonetRanges::default(), numbers, &mut parameters);
+            assert_eq!(error, Err(Error::ParameterCount { expected: count, found }));
+        }
+    }
+}
+
+#[test]
+fn leaks_and_time_constants_are_each_others() {
+    for leak in [Leak::Filter, Leak::Evonet] {
+        for d in [1e-6_f32, 0.01, 0.3, 0.5, 0.9, 0.999] {
+            let tau = leak.time_constant(d, 0.01).expect("a time constant");
+            let back = leak.of_time_constant(tau, 0.01).expect("a leak");
+            assert!((back - d).abs() <= 1e-6 * d, "{leak}: {d} comes back as {back}");
+        }
+        assert_eq!(leak.time_constant(1.5, 0.01), None);
+        assert_eq!(leak.time_constant(f32::NAN, 0.01), None);
+        assert_eq!(leak.of_time_constant(-1.0, 0.01), None);
+    }
+    assert_eq!(Leak::Filter.time_constant(0.0, 0.01), Some(f32::INFINITY));
+    assert_eq!(Leak::Filter.time_constant(1.0, 0.01), Some(0.0));
+    assert_eq!(Leak::Evonet.time_constant(1.0, 0.01), Some(f32::INFINITY));
+    assert_eq!(Leak::Filter.of_time_constant(f32::INFINITY, 0.01), Some(0.0));
+    assert_eq!(Leak::Filter.of_time_constant(0.0, 0.01), Some(1.0));
+    assert_eq!(Leak::Evonet.of_time_constant(0.0, 0.01), Some(0.0));
+    assert_eq!((Leak::TwoTap.time_constant(0.5, 0.01), Leak::TwoTap.of_time_constant(1.0, 0.01)), (None, None));
+}
