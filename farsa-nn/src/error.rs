@@ -37,6 +37,33 @@ pub enum Error {
         /// Its value.
         value: f32,
     },
+    /// Integers of a fixed-point network are to have so many fraction bits.
+    FixedBits {
+        /// Which integers: inputs, weights or sums.
+        of: &'static str,
+        /// The number of fraction bits.
+        found: u32,
+        /// The fewest there may be.
+        least: u32,
+        /// The most there may be.
+        most: u32,
+    },
+    /// A weight is too large for a fixed-point network, even without fraction bits.
+    WeightRange {
+        /// Its place among the parameters.
+        index: usize,
+        /// Its value times the slope.
+        value: f64,
+    },
+    /// A sum of a fixed-point network could leave 32 bits.
+    SumRange {
+        /// The target: hidden neurons first, then outputs.
+        target: usize,
+        /// The largest magnitude that the sum can have, in its units.
+        largest: u64,
+        /// The largest that it may have.
+        limit: u64,
+    },
     /// No reading of the leak has this name.
     UnknownLeak,
 }
@@ -51,6 +78,15 @@ impl fmt::Display for Error {
             Self::NotFinite { index } => write!(f, "parameter {index} is not finite"),
             Self::LeakRange { index, value } => write!(f, "parameter {index}, a leak, is {value}: outside [0, 1]"),
             Self::Slope { value } => write!(f, "the slope of the logistic function is {value}: not finite"),
+            Self::FixedBits { of, found, least, most } => {
+                write!(f, "{found} fraction bits of {of}: outside [{least}, {most}]")
+            }
+            Self::WeightRange { index, value } => {
+                write!(f, "parameter {index} times the slope is {value}: outside [-32767, 32767]")
+            }
+            Self::SumRange { target, largest, limit } => {
+                write!(f, "the sum of target {target} can reach {largest} where {limit} is the most")
+            }
             Self::UnknownLeak => f.write_str("unknown leak: one of filter, two-tap, evonet"),
         }
     }

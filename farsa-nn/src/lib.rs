@@ -3,6 +3,9 @@
 
 mod controller;
 mod error;
+mod fixed_logistic;
+mod fixed_network;
+mod fixed_scale;
 mod kernel;
 mod layout;
 mod leak;
@@ -12,6 +15,8 @@ mod perceptron_lanes;
 
 pub use controller::Controller;
 pub use error::Error;
+pub use fixed_network::FixedNetwork;
+pub use fixed_scale::FixedScale;
 pub use layout::{Layout, ParameterKind, Parts};
 pub use leak::Leak;
 pub use network::Network;

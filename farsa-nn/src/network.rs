@@ -178,7 +178,7 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
     }
 }
 
-fn check(layout: &Layout, parameters: &[f32]) -> Result<(), Error> {
+pub(crate) fn check(layout: &Layout, parameters: &[f32]) -> Result<(), Error> {
     let (expected, found) = (layout.parameter_count(), parameters.len());
     if expected != found {
         return Err(Error::ParameterCount { expected, found });
