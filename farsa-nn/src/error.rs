@@ -37,6 +37,17 @@ pub enum Error {
         /// Its value.
         value: f32,
     },
+    /// A demonstration's sensor values and wanted motor values are not those of so many whole ticks.
+    Demonstration {
+        /// Number of sensor values.
+        values: usize,
+        /// Sensors of the layout.
+        sensors: usize,
+        /// Number of wanted motor values.
+        wanted: usize,
+        /// Outputs of the layout.
+        outputs: usize,
+    },
     /// Integers of a fixed-point network are to have so many fraction bits.
     FixedBits {
         /// Which integers: inputs, weights or sums.
@@ -78,6 +89,10 @@ impl fmt::Display for Error {
             Self::NotFinite { index } => write!(f, "parameter {index} is not finite"),
             Self::LeakRange { index, value } => write!(f, "parameter {index}, a leak, is {value}: outside [0, 1]"),
             Self::Slope { value } => write!(f, "the slope of the logistic function is {value}: not finite"),
+            Self::Demonstration { values, sensors, wanted, outputs } => write!(
+                f,
+                "{values} sensor values and {wanted} wanted motor values: not whole ticks of {sensors} and {outputs}"
+            ),
             Self::FixedBits { of, found, least, most } => {
                 write!(f, "{found} fraction bits of {of}: outside [{least}, {most}]")
             }
