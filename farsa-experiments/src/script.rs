@@ -136,6 +136,11 @@ impl Statics {
         (activations, all)
     }
 
+    /// The arm's muscles, J1..J7.
+    pub(crate) fn muscles(&self) -> &[MusclePair<f64>; 7] {
+        &self.muscles
+    }
+
     /// The torques that hold a posture \[rad\] against gravity, J1..J27 \[N m\].
     pub fn gravity_torques(&self, joints: &[f64]) -> Vec<f64> {
         self.tree.gravity_torques(&self.tree.poses(joints), self.gravity)
@@ -203,23 +208,37 @@ impl Plan {
         (posture, smooth((time - ends[1]) / (0.8 * close)))
     }
 
-    /// The 23 outputs at a time \[s\]: inverse statics of the muscles with feedback on J1..J7, positions of the hand.
-    pub fn outputs<W>(&self, world: &W, time: f64) -> [f32; OUTPUTS]
+    /// J1..J27 \[rad\], and the torques \[N m\] that follow the plan at a time \[s\]: against gravity, with feedback on J1..J7.
+    pub(crate) fn torques<W>(&self, world: &W, time: f64) -> (Vec<f64>, Vec<f64>)
     where
         W: Joints<Joint = JointId> + ?Sized,
     {
         let joints = self.statics.tree.joints();
         let positions: Vec<f64> = joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
-        let (wanted, closed) = self.wanted(time);
+        let (wanted, _) = self.wanted(time);
         let mut torques = self.statics.gravity_torques(&positions);
         for i in 0..7 {
             let speed = f64::from(world.speed(joints[i]));
             torques[i] += self.timetable.stiffness[i] * (wanted[i] - positions[i]) - self.timetable.damping[i] * speed;
         }
+        (positions, torques)
+    }
+
+    /// The positions of the nine servo groups at a time \[s\].
+    pub(crate) fn hand(&self, time: f64) -> [f64; 9] {
+        let (_, closed) = self.wanted(time);
+        self.timetable.closed.map(|position| position * closed)
+    }
+
+    /// The 23 outputs at a time \[s\]: inverse statics of the muscles with feedback on J1..J7, positions of the hand.
+    pub fn outputs<W>(&self, world: &W, time: f64) -> [f32; OUTPUTS]
+    where
+        W: Joints<Joint = JointId> + ?Sized,
+    {
+        let (positions, torques) = self.torques(world, time);
         let (activations, _) = self.statics.activations(&positions, &torques);
         let mut y = [0.0; OUTPUTS];
-        let hand = self.timetable.closed.iter().map(|position| position * closed);
-        for (out, value) in y.iter_mut().zip(activations.into_iter().flatten().chain(hand)) {
+        for (out, value) in y.iter_mut().zip(activations.into_iter().flatten().chain(self.hand(time))) {
             *out = value as f32;
         }
         y

@@ -37,6 +37,44 @@ pub enum Error {
         /// Its value.
         value: f32,
     },
+    /// A demonstration's sensor values and wanted motor values are not those of so many whole ticks.
+    Demonstration {
+        /// Number of sensor values.
+        values: usize,
+        /// Sensors of the layout.
+        sensors: usize,
+        /// Number of wanted motor values.
+        wanted: usize,
+        /// Outputs of the layout.
+        outputs: usize,
+    },
+    /// Integers of a fixed-point network are to have so many fraction bits.
+    FixedBits {
+        /// Which integers: inputs, weights or sums.
+        of: &'static str,
+        /// The number of fraction bits.
+        found: u32,
+        /// The fewest there may be.
+        least: u32,
+        /// The most there may be.
+        most: u32,
+    },
+    /// A weight is too large for a fixed-point network, even without fraction bits.
+    WeightRange {
+        /// Its place among the parameters.
+        index: usize,
+        /// Its value times the slope.
+        value: f64,
+    },
+    /// A sum of a fixed-point network could leave 32 bits.
+    SumRange {
+        /// The target: hidden neurons first, then outputs.
+        target: usize,
+        /// The largest magnitude that the sum can have, in its units.
+        largest: u64,
+        /// The largest that it may have.
+        limit: u64,
+    },
     /// No reading of the leak has this name.
     UnknownLeak,
     /// A time step is not a finite number above zero.
@@ -89,6 +127,19 @@ impl fmt::Display for Error {
             Self::NotFinite { index } => write!(f, "parameter {index} is not finite"),
             Self::LeakRange { index, value } => write!(f, "parameter {index}, a leak, is {value}: outside [0, 1]"),
             Self::Slope { value } => write!(f, "the slope of the logistic function is {value}: not finite"),
+            Self::Demonstration { values, sensors, wanted, outputs } => write!(
+                f,
+                "{values} sensor values and {wanted} wanted motor values: not whole ticks of {sensors} and {outputs}"
+            ),
+            Self::FixedBits { of, found, least, most } => {
+                write!(f, "{found} fraction bits of {of}: outside [{least}, {most}]")
+            }
+            Self::WeightRange { index, value } => {
+                write!(f, "parameter {index} times the slope is {value}: outside [-32767, 32767]")
+            }
+            Self::SumRange { target, largest, limit } => {
+                write!(f, "the sum of target {target} can reach {largest} where {limit} is the most")
+            }
             Self::UnknownLeak => f.write_str("unknown leak: one of filter, two-tap, evonet"),
             Self::TimeStep { value } => write!(f, "the time step is {value}: not a finite number above 0"),
             Self::TimeConstant { index, value, least } if value > 0.0 => write!(

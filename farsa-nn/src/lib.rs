@@ -16,13 +16,21 @@ mod ctrnn_layout;
 mod dynamics;
 mod error;
 mod evonet;
+mod fixed_logistic;
+mod fixed_network;
+mod fixed_scale;
+#[cfg(feature = "alloc")]
+mod gradient;
 mod integrator;
 mod kernel;
 mod layout;
 mod leak;
+#[cfg(feature = "alloc")]
+mod learner;
 mod lesion;
 mod name;
 mod network;
+mod optimizer;
 mod perceptron;
 mod perceptron_lanes;
 
@@ -36,10 +44,17 @@ pub use ctrnn::Ctrnn;
 pub use ctrnn_layout::{CtrnnLayout, CtrnnParameter, CtrnnParts};
 pub use error::Error;
 pub use evonet::EvonetRanges;
+pub use fixed_network::FixedNetwork;
+pub use fixed_scale::FixedScale;
+#[cfg(feature = "alloc")]
+pub use gradient::{Demonstration, Gradient, Loss};
 pub use integrator::Integrator;
 pub use layout::{Layout, ParameterKind, Parts};
 pub use leak::Leak;
+#[cfg(feature = "alloc")]
+pub use learner::Learner;
 pub use lesion::{Lesion, Lesioned, Neurons};
 pub use network::Network;
+pub use optimizer::{Adam, Momentum, Optimizer};
 pub use perceptron::Perceptron;
 pub use perceptron_lanes::PerceptronLanes;

@@ -186,7 +186,7 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for Network<P, S> {
     }
 }
 
-fn check(layout: &Layout, parameters: &[f32]) -> Result<(), Error> {
+pub(crate) fn check(layout: &Layout, parameters: &[f32]) -> Result<(), Error> {
     let (expected, found) = (layout.parameter_count(), parameters.len());
     if expected != found {
         return Err(Error::ParameterCount { expected, found });

@@ -1,6 +1,6 @@
 //! The bits of a long run: a change here is value-breaking and has its heading in the changelog.
 
-use farsa_nn::{Controller, Layout, Leak, Network, ParameterKind};
+use farsa_nn::{Controller, FixedNetwork, FixedScale, Layout, Leak, Network, ParameterKind};
 use farsa_num::{Digest, Domain, Stream};
 
 #[test]
@@ -26,5 +26,31 @@ fn a_hundred_thousand_steps() {
     };
     let digests = Leak::ALL.map(run);
     let expected = [0x4AFA_1190_ABF9_D6F8, 0x87DD_6814_4B4A_8D42, 0x07E3_9116_3CBC_C750];
+    assert_eq!(digests, expected, "{digests:#018x?}");
+}
+
+#[test]
+fn a_hundred_thousand_steps_in_fixed_point() {
+    const LAYOUT: Layout = Layout::new(29, 12, 23);
+    let run = |leak| {
+        let mut genes = Stream::new(2010, Domain::InitialGenome, 0, 0, 0);
+        let (mut parameters, mut fixed) = ([0.0; LAYOUT.parameter_count()], [0; LAYOUT.parameter_count()]);
+        for (p, kind) in parameters.iter_mut().zip(LAYOUT.kinds()) {
+            *p = if kind == ParameterKind::Leak { genes.uniform() } else { genes.range(-6.0, 6.0) };
+        }
+        let scale = FixedScale::quantize(&LAYOUT, 9, &parameters, &mut fixed).expect("fits");
+        let mut network = FixedNetwork::new(LAYOUT, leak, scale, fixed, [0; LAYOUT.state_len()]).expect("valid");
+        let mut inputs = Stream::new(2010, Domain::Network, 0, 0, 0);
+        let (mut x, mut y, mut digest) = ([0; 29], [0; 23], Digest::new());
+        for _ in 0..100_000 {
+            x.fill_with(|| (inputs.next_u32() >> 19) as i16 - 4096);
+            network.step_fixed(&x, &mut y);
+            let told = network.hidden().iter().map(|h| *h as u64).chain(y.iter().map(|y| *y as u64));
+            told.for_each(|value| digest.add_u64(value));
+        }
+        digest.finish()
+    };
+    let digests = Leak::ALL.map(run);
+    let expected = [0xA03A_A352_FB5E_3AE7, 0x960F_7D67_C025_0001, 0x3986_2CAB_1601_3E9D];
     assert_eq!(digests, expected, "{digests:#018x?}");
 }

@@ -1,0 +1,204 @@
+//! The leaky recurrent network in integers, for processors without floating-point arithmetic.
+
+use crate::fixed_logistic::{ACTIVATION_BITS, logistic};
+use crate::fixed_scale::LEAK_BITS;
+use crate::{Controller, Error, FixedScale, Layout, Leak, ParameterKind};
+
+/// Fraction bits of activations between steps; the lower half of them keeps a slow neuron moving.
+const STATE_BITS: u32 = 30;
+
+/// A [`Network`](crate::Network) of 16-bit parameters and 32-bit sums: no float, no division, no multiplication wider than
+/// 32 bits in a step.
+///
+/// [`FixedScale::quantize`] makes the parameters of those of a `Network` of the same layout; the slope of the logistic
+/// function is in the weights then, and that of the layout is not asked again. A step rounds each product once,
+///
+/// ```text
+/// net_i = sum_j (w_ji I_j >> s) + sum_k (r_ki H_k >> s') + (beta_i >> s')
+/// ```
+///
+/// and adds integers, so that no order of the sums shows in the bits; construction checks that the largest possible sum
+/// fits. What it does to the motor values is measured in the crate's documentation.
+///
+/// As a [`Controller`] it takes and writes `f32`: sensor values beyond the range of
+/// [`input_bits`](FixedScale::input_bits) take its ends, motor values are multiples of 2^-15 in [0, 1 - 2^-15].
+///
+/// Source: the equations are those of [`Network`](crate::Network), `[Ferrauto2010]` chapter 2. Deviation: the arithmetic.
+#[derive(Clone, Debug)]
+pub struct FixedNetwork<P, S> {
+    layout: Layout,
+    leak: Leak,
+    scale: FixedScale,
+    parameters: P,
+    state: S,
+}
+
+impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
+    /// A network at rest: checks the parameters [[`parameter_count`](Layout::parameter_count)] and zeroes the state
+    /// [[`state_len`](Layout::state_len)].
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`], [`Error::LeakRange`], [`Error::SumRange`] or [`Error::StateLen`]: the first that applies.
+    pub fn new(layout: Layout, leak: Leak, scale: FixedScale, parameters: P, mut state: S) -> Result<Self, Error> {
+        let fixed = parameters.as_ref();
+        if fixed.len() != layout.parameter_count() {
+            return Err(Error::ParameterCount { expected: layout.parameter_count(), found: fixed.len() });
+        }
+        let leaks = layout.range(ParameterKind::Leak);
+        if let Some(at) = fixed[leaks.clone()].iter().position(|d| !(0..=1 << LEAK_BITS).contains(d)) {
+            let index = leaks.start + at;
+            return Err(Error::LeakRange { index, value: f32::from(fixed[index]) / f32::from(1_i16 << LEAK_BITS) });
+        }
+        scale.check_sums(&layout, fixed)?;
+        let (expected, found) = (layout.state_len(), state.as_mut().len());
+        if expected != found {
+            return Err(Error::StateLen { expected, found });
+        }
+        state.as_mut().fill(0);
+        Ok(Self { layout, leak, scale, parameters, state })
+    }
+
+    /// Advances by one tick from the sensor values `x` `[sensors]`, in units of 2^-[`input_bits`](FixedScale::input_bits),
+    /// and overwrites the motor values `y` `[outputs]`, in units of 2^-15, 0..=32767.
+    ///
+    /// All values of `x` are valid. Of slices of the wrong length it uses the shorter.
+    ///
+    /// # Panics
+    /// With debug assertions, when `x` or `y` has another length.
+    pub fn step_fixed(&mut self, x: &[i16], y: &mut [i16]) {
+        debug_assert_eq!(x.len(), self.layout.sensors(), "sensor values and the layout's sensors");
+        debug_assert_eq!(y.len(), self.layout.outputs(), "motor values and the layout's outputs");
+        self.advance(x.iter().copied(), y, |motor| motor);
+    }
+
+    /// A step from sensor values to motor values, each as what `write` makes of it.
+    // Each sensor value is asked for once, so that a float is converted once.
+    #[inline(always)]
+    fn advance<Y>(&mut self, x: impl Iterator<Item = i16>, y: &mut [Y], write: impl Fn(i16) -> Y) {
+        let Self { layout, leak, scale, parameters, state } = self;
+        let fixed = parameters.as_ref();
+        let part = |kind| fixed.get(layout.range(kind)).unwrap_or(&[]);
+        let (count, state) = (layout.hidden(), state.as_mut());
+        let (hidden, state) = state.split_at_mut(count.min(state.len()));
+        let (previous, sums) = state.split_at_mut(count.min(state.len()));
+        // Rows of no weights have nothing to add.
+        let row_len = count.max(1);
+
+        // The bias is the weight of a source that is always 1.
+        let shift = scale.activation_shift();
+        for (sum, bias) in sums.iter_mut().zip(part(ParameterKind::Bias)) {
+            *sum = product(*bias, 1 << ACTIVATION_BITS, shift);
+        }
+        for (h, row) in hidden.iter().zip(part(ParameterKind::RecurrentWeight).chunks_exact(row_len)) {
+            let source = activation(*h);
+            for (sum, w) in sums.iter_mut().zip(row) {
+                *sum += product(*w, source, shift);
+            }
+        }
+        let shift = scale.input_shift();
+        for (x, row) in x.zip(part(ParameterKind::SensorWeight).chunks_exact(row_len)) {
+            for (sum, w) in sums.iter_mut().zip(row) {
+                *sum += product(*w, i32::from(x), shift);
+            }
+        }
+
+        let neurons = hidden.iter_mut().zip(previous).zip(&*sums).zip(part(ParameterKind::Leak));
+        for (((h, previous), sum), d) in neurons {
+            let response = logistic(*sum, scale.sum_bits()) << (STATE_BITS - ACTIVATION_BITS);
+            let d = i32::from(*d);
+            match leak {
+                Leak::Filter => *h += share(d, response - *h),
+                Leak::TwoTap => {
+                    *h = *previous + share(d, response - *previous);
+                    *previous = response;
+                }
+                Leak::Evonet => *h += share((1 << LEAK_BITS) - d, response - *h),
+            }
+        }
+
+        let shift = scale.activation_shift();
+        let weights = part(ParameterKind::OutputWeight);
+        for (target, y) in y.iter_mut().enumerate().take(layout.outputs()) {
+            let column = weights.iter().skip(target).step_by(layout.outputs());
+            let sum = hidden.iter().zip(column).map(|(h, w)| product(*w, activation(*h), shift)).sum();
+            // 1 is no i16 of these units.
+            *y = write(logistic(sum, scale.sum_bits()).min(i32::from(i16::MAX)) as i16);
+        }
+    }
+
+    /// The parameters [[`parameter_count`](Layout::parameter_count)].
+    pub fn parameters(&self) -> &[i16] {
+        self.parameters.as_ref()
+    }
+}
+
+impl<P, S> FixedNetwork<P, S> {
+    /// The layout.
+    pub const fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// The reading of the leak.
+    pub const fn leak(&self) -> Leak {
+        self.leak
+    }
+
+    /// Where the binary points lie.
+    pub const fn scale(&self) -> FixedScale {
+        self.scale
+    }
+
+    /// Gives parameters and state back.
+    pub fn into_parts(self) -> (P, S) {
+        (self.parameters, self.state)
+    }
+
+    /// The activations `H(t)` `[hidden]` in units of 2^-30, 0..=2^30.
+    pub fn hidden(&self) -> &[i32]
+    where
+        S: AsRef<[i32]>,
+    {
+        let state = self.state.as_ref();
+        state.get(..self.layout.hidden()).unwrap_or(state)
+    }
+}
+
+impl<P: AsRef<[i16]>, S: AsMut<[i32]>> Controller for FixedNetwork<P, S> {
+    fn inputs(&self) -> usize {
+        self.layout.sensors()
+    }
+
+    fn outputs(&self) -> usize {
+        self.layout.outputs()
+    }
+
+    fn reset(&mut self) {
+        self.state.as_mut().fill(0);
+    }
+
+    fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        debug_assert_eq!(x.len(), self.layout.sensors(), "sensor values and the layout's sensors");
+        debug_assert_eq!(y.len(), self.layout.outputs(), "motor values and the layout's outputs");
+        let scale = self.scale;
+        self.advance(x.iter().map(|x| scale.input(*x)), y, FixedScale::output);
+    }
+}
+
+/// A weight times a source of at most 2^15, shifted right and rounded down.
+#[inline(always)]
+fn product(weight: i16, source: i32, shift: u32) -> i32 {
+    (i32::from(weight) * source) >> shift
+}
+
+/// An activation as a source of the next layer, to the nearest of its units, 0..=2^15.
+#[inline(always)]
+fn activation(h: i32) -> i32 {
+    (h + (1 << (STATE_BITS - ACTIVATION_BITS - 1))) >> (STATE_BITS - ACTIVATION_BITS)
+}
+
+/// The share `d` / 2^14, 0..=1, of a difference within 2^30, rounded down: in two halves, whose products fit 32 bits.
+#[inline(always)]
+fn share(d: i32, difference: i32) -> i32 {
+    const HALF: u32 = 15;
+    ((d * (difference >> HALF)) << (HALF - LEAK_BITS)) + ((d * (difference & ((1 << HALF) - 1))) >> LEAK_BITS)
+}

@@ -1,0 +1,186 @@
+//! What the integers of a fixed-point network stand for, and how real parameters become such integers.
+
+use farsa_num::Scalar;
+
+use crate::fixed_logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
+use crate::network::check;
+use crate::{Error, Layout, ParameterKind};
+
+/// Fraction bits of leaks: 2^14 stands for 1, which so is exact.
+pub(crate) const LEAK_BITS: u32 = 14;
+
+/// Where the binary points of a [`FixedNetwork`](crate::FixedNetwork) lie: an integer `v` of `b` fraction bits stands for
+/// `v / 2^b`.
+///
+/// | integers | fraction bits |
+/// |---|---|
+/// | sensor values, `i16` | [`input_bits`](Self::input_bits), the caller's choice: 9 covers [-64, 64) in steps of 0.002 |
+/// | weights and biases, `i16`, times the layout's slope | [`weight_bits`](Self::weight_bits) |
+/// | sums, `i32`: arguments of the logistic function | [`sum_bits`](Self::sum_bits) |
+/// | leaks, `i16` | 14 |
+/// | motor values, `i16`; responses | 15; the largest motor value is 32767, where a response may be 32768 |
+/// | activations between steps, `i32` | 30 |
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FixedScale {
+    inputs: u8,
+    weights: u8,
+    sums: u8,
+}
+
+impl FixedScale {
+    /// The fewest fraction bits of a sum, 10: with fewer the logistic function would miss by more than 1e-4.
+    pub const SUM_BITS_MIN: u32 = 10;
+
+    /// A scale that was written down before, with a program's parameters.
+    ///
+    /// # Errors
+    /// [`Error::FixedBits`]: inputs and weights have at most 15 fraction bits; sums have 10 to 20, and no more than a
+    /// product of a weight and an input.
+    pub const fn new(input_bits: u32, weight_bits: u32, sum_bits: u32) -> Result<Self, Error> {
+        if input_bits > 15 {
+            return Err(Error::FixedBits { of: "inputs", found: input_bits, least: 0, most: 15 });
+        }
+        if weight_bits > 15 {
+            return Err(Error::FixedBits { of: "weights", found: weight_bits, least: 0, most: 15 });
+        }
+        let product = input_bits + weight_bits;
+        let most = if product < ARGUMENT_BITS { product } else { ARGUMENT_BITS };
+        if sum_bits < Self::SUM_BITS_MIN || sum_bits > most {
+            return Err(Error::FixedBits { of: "sums", found: sum_bits, least: Self::SUM_BITS_MIN, most });
+        }
+        Ok(Self { inputs: input_bits as u8, weights: weight_bits as u8, sums: sum_bits as u8 })
+    }
+
+    /// Writes the parameters of a [`Network`](crate::Network) [[`parameter_count`](Layout::parameter_count)] as integers
+    /// of a [`FixedNetwork`](crate::FixedNetwork) for sensor values of so many fraction bits, each rounded to the nearest.
+    ///
+    /// Weights and biases get the most fraction bits, up to 15, with which the largest of them times the slope is an
+    /// `i16`; sums the most, up to 20, with which no sensor values whatever can overflow one.
+    ///
+    /// # Errors
+    /// [`Error::Slope`], [`Error::ParameterCount`] (of either slice), [`Error::NotFinite`], [`Error::LeakRange`],
+    /// [`Error::FixedBits`] of the inputs, [`Error::WeightRange`] where a weight times the slope is beyond 32767, and
+    /// [`Error::SumRange`] where sums of 10 fraction bits could overflow. Then `fixed` may be written in part.
+    ///
+    /// ```
+    /// use farsa_nn::{FixedNetwork, FixedScale, Layout, Leak};
+    ///
+    /// const LAYOUT: Layout = Layout::new(1, 1, 1);
+    /// let mut fixed = [0; LAYOUT.parameter_count()];
+    /// let scale = FixedScale::quantize(&LAYOUT, 9, &[6.0, 0.0, -3.0, 0.0, 0.5], &mut fixed)?;
+    /// // 0.2 * 6 = 1.2 is 19661 / 2^14.
+    /// assert_eq!((scale.weight_bits(), fixed), (14, [19661, 0, -9830, 0, 8192]));
+    /// let mut network = FixedNetwork::new(LAYOUT, Leak::Filter, scale, fixed, [0; LAYOUT.state_len()])?;
+    /// let mut y = [0];
+    /// network.step_fixed(&[512], &mut y); // x = 1
+    /// assert_eq!(y, [14504]); // 0.4426
+    /// # Ok::<(), farsa_nn::Error>(())
+    /// ```
+    pub fn quantize(layout: &Layout, input_bits: u32, parameters: &[f32], fixed: &mut [i16]) -> Result<Self, Error> {
+        let slope = layout.slope();
+        if !slope.is_finite() {
+            return Err(Error::Slope { value: slope });
+        }
+        check(layout, parameters)?;
+        if fixed.len() != parameters.len() {
+            return Err(Error::ParameterCount { expected: parameters.len(), found: fixed.len() });
+        }
+        if input_bits > 15 {
+            return Err(Error::FixedBits { of: "inputs", found: input_bits, least: 0, most: 15 });
+        }
+        let leaks = layout.range(ParameterKind::Leak);
+        let (weights, fixed_weights) = (&parameters[..leaks.start], &mut fixed[..leaks.start]);
+        // Exact in double precision.
+        let sloped = |weight: f32| f64::from(weight) * f64::from(slope);
+        let mut weight_bits = 15;
+        for (index, weight) in weights.iter().enumerate() {
+            while rounded(sloped(*weight), weight_bits).abs() > 32767.0 {
+                if weight_bits == 0 {
+                    return Err(Error::WeightRange { index, value: sloped(*weight) });
+                }
+                weight_bits -= 1;
+            }
+        }
+        for (fixed, weight) in fixed_weights.iter_mut().zip(weights) {
+            *fixed = rounded(sloped(*weight), weight_bits) as i16;
+        }
+        for (fixed, leak) in fixed[leaks.clone()].iter_mut().zip(&parameters[leaks]) {
+            *fixed = rounded(f64::from(*leak), LEAK_BITS) as i16;
+        }
+        let most = ARGUMENT_BITS.min(input_bits + weight_bits);
+        let mut sum_bits = most;
+        loop {
+            let scale = Self::new(input_bits, weight_bits, sum_bits)?;
+            match scale.check_sums(layout, fixed) {
+                Err(_) if sum_bits > Self::SUM_BITS_MIN => sum_bits -= 1,
+                result => return result.map(|()| scale),
+            }
+        }
+    }
+
+    /// Fraction bits of the sensor values.
+    pub const fn input_bits(self) -> u32 {
+        self.inputs as u32
+    }
+
+    /// Fraction bits of weights and biases, which are those of the layout times its slope.
+    pub const fn weight_bits(self) -> u32 {
+        self.weights as u32
+    }
+
+    /// Fraction bits of the sums.
+    pub const fn sum_bits(self) -> u32 {
+        self.sums as u32
+    }
+
+    /// The sensor value that stands for `x`, to the nearest; the ends of `i16` beyond them, 0 for NaN.
+    pub fn input(self, x: f32) -> i16 {
+        // Single precision: a processor without floating-point arithmetic may well be asked.
+        let x = x * f32::from(1_u16 << self.input_bits());
+        x.clamp(-32768.0, 32767.0).round_small() as i16
+    }
+
+    /// What a motor value stands for.
+    pub fn output(y: i16) -> f32 {
+        f32::from(y) * (1.0 / 32768.0)
+    }
+
+    /// How far a product of a sensor value and its weight is shifted right before it is added.
+    pub(crate) const fn input_shift(self) -> u32 {
+        self.input_bits() + self.weight_bits() - self.sum_bits()
+    }
+
+    /// The same for an activation.
+    pub(crate) const fn activation_shift(self) -> u32 {
+        ACTIVATION_BITS + self.weight_bits() - self.sum_bits()
+    }
+
+    /// Whether every sum fits an `i32`, whatever the sensor values.
+    pub(crate) fn check_sums(self, layout: &Layout, fixed: &[i16]) -> Result<(), Error> {
+        let part = |kind| fixed.get(layout.range(kind)).unwrap_or(&[]);
+        // The largest sensor value and the largest activation are both 2^15. A shifted product is rounded down, so that a
+        // negative one may be larger by one than it is here.
+        let largest = |weights: &[i16], target: usize, targets: usize, shift: u32| {
+            let products = weights.iter().skip(target).step_by(targets.max(1));
+            products.map(|w| ((u64::from(w.unsigned_abs()) << 15) >> shift) + 1).sum::<u64>()
+        };
+        let (h, o) = (layout.hidden(), layout.outputs());
+        let (input, activation) = (self.input_shift(), self.activation_shift());
+        let hidden = (0..h).map(|i| {
+            largest(part(ParameterKind::SensorWeight), i, h, input)
+                + largest(part(ParameterKind::RecurrentWeight), i, h, activation)
+                + largest(part(ParameterKind::Bias), i, h, activation)
+        });
+        let outputs = (0..o).map(|i| largest(part(ParameterKind::OutputWeight), i, o, activation));
+        let limit = i32::MAX as u64;
+        match hidden.chain(outputs).enumerate().find(|(_, sum)| *sum > limit) {
+            Some((target, largest)) => Err(Error::SumRange { target, largest, limit }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The integer next to `x` in units of 2^-bits, ties to even, for what is then below 2^51; what is larger stays large.
+fn rounded(x: f64, bits: u32) -> f64 {
+    (x * f64::from(1_u32 << bits)).round_small()
+}

@@ -1,0 +1,305 @@
+//! Back-propagation through time of the leaky recurrent network.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::{Real, logistic};
+
+use crate::{Error, Layout, Leak, ParameterKind};
+
+/// What a motor value `O` costs where `T` is wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Loss {
+    /// `(O - T)^2`.
+    #[default]
+    SquaredError,
+    /// `-T ln O - (1-T) ln(1-O)`, less what `O = T` costs; wrong outputs near 0 and 1 learn faster than by squared errors.
+    CrossEntropy,
+}
+
+/// What a network shall do: sensor values and the wanted motor values, tick by tick from the start at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Demonstration<'a> {
+    /// Sensor values `[ticks x sensors]`.
+    pub x: &'a [f32],
+    /// Wanted motor values `[ticks x outputs]`, in [0, 1].
+    pub wanted: &'a [f32],
+}
+
+/// The gradient of what demonstrations cost by the parameters of a [`Network`](crate::Network), summed over them.
+///
+/// The network is run over each demonstration from its start at rest, then the costs are followed back through all its
+/// ticks, to the first. A demonstration of one tick is an example for a network without memory: recurrent weights then have
+/// no effect, and with leaks of 1 ([`Leak::Filter`]) this is plain back-propagation.
+///
+/// `f64` is meant for learning, `f32` costs half the memory. Every sum has a fixed order: the same bits on every machine.
+///
+/// Source: `[Rumelhart1986]` for back-propagation, `[Werbos1990]` through time; the equations are those of
+/// [`Network`](crate::Network), with the leak's own derivative.
+///
+/// ```
+/// use farsa_nn::{Demonstration, Gradient, Layout, Leak, Loss};
+///
+/// const LAYOUT: Layout = Layout::new(1, 1, 1);
+/// let mut gradient = Gradient::<f64>::new(LAYOUT, Leak::Filter, Loss::SquaredError)?;
+/// let parameters = [1.0, 0.0, 0.0, 0.0, 1.0];
+/// // The output is 0.5, its wish 1: more of any weight of the output helps.
+/// let cost = gradient.add(&parameters, Demonstration { x: &[0.0], wanted: &[1.0] })?;
+/// assert_eq!(cost, 0.25);
+/// // 2 * (0.5 - 1) * 0.2 * 0.5 * (1 - 0.5) * H with H = 0.5.
+/// assert!((gradient.sum()[2] + 0.025).abs() < 1e-8);
+/// # Ok::<(), farsa_nn::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Gradient<R> {
+    layout: Layout,
+    leak: Leak,
+    loss: Loss,
+    sum: Vec<R>,
+    cost: R,
+    /// Ticks since the sum was cleared.
+    ticks: usize,
+    /// Of each tick: responses `[hidden]`, activations `[hidden]`, motor values `[outputs]`.
+    trace: Vec<R>,
+    /// What flows back: to the activations and to the responses of a tick `[hidden]` each, and through the logistic
+    /// functions of a layer `[hidden or outputs]`.
+    back: [Vec<R>; 3],
+}
+
+impl<R: Real> Gradient<R> {
+    /// A gradient of nothing yet.
+    ///
+    /// # Errors
+    /// [`Error::Slope`].
+    pub fn new(layout: Layout, leak: Leak, loss: Loss) -> Result<Self, Error> {
+        if !layout.slope().is_finite() {
+            return Err(Error::Slope { value: layout.slope() });
+        }
+        let zeros = |len| vec![R::default(); len];
+        let back = [zeros(layout.hidden()), zeros(layout.hidden()), zeros(layout.hidden().max(layout.outputs()))];
+        let sum = zeros(layout.parameter_count());
+        Ok(Self { layout, leak, loss, sum, cost: R::default(), ticks: 0, trace: Vec::new(), back })
+    }
+
+    /// The layout.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// The reading of the leak.
+    pub fn leak(&self) -> Leak {
+        self.leak
+    }
+
+    /// The sum over the demonstrations since [`clear`](Self::clear) [[`parameter_count`](Layout::parameter_count)].
+    pub fn sum(&self) -> &[R] {
+        &self.sum
+    }
+
+    /// The same, to change it: to take the mean, to keep parameters as they are, to clip.
+    pub fn sum_mut(&mut self) -> &mut [R] {
+        &mut self.sum
+    }
+
+    /// What the demonstrations since [`clear`](Self::clear) cost, per motor value.
+    pub fn mean_cost(&self) -> R {
+        let values = self.ticks.saturating_mul(self.layout.outputs());
+        if values == 0 { R::default() } else { self.cost / R::of(values as f64) }
+    }
+
+    /// Ticks of the demonstrations since [`clear`](Self::clear).
+    pub fn ticks(&self) -> usize {
+        self.ticks
+    }
+
+    /// Forgets all demonstrations.
+    pub fn clear(&mut self) {
+        self.sum.fill(R::default());
+        (self.cost, self.ticks) = (R::default(), 0);
+    }
+
+    /// What a demonstration costs under these parameters [[`parameter_count`](Layout::parameter_count)], a sum over its
+    /// ticks and motor values; nothing is added.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`], [`Error::Demonstration`].
+    pub fn cost(&mut self, parameters: &[R], demonstration: Demonstration<'_>) -> Result<R, Error> {
+        self.check(parameters, demonstration)?;
+        Ok(self.run(parameters, demonstration))
+    }
+
+    /// Adds the gradient of what a demonstration costs under these parameters
+    /// [[`parameter_count`](Layout::parameter_count)] and returns the cost, a sum over its ticks and motor values.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`], [`Error::Demonstration`]; nothing is added then.
+    pub fn add(&mut self, parameters: &[R], demonstration: Demonstration<'_>) -> Result<R, Error> {
+        let ticks = self.check(parameters, demonstration)?;
+        let cost = self.run(parameters, demonstration);
+        self.follow_back(parameters, demonstration);
+        self.cost += cost;
+        self.ticks += ticks;
+        Ok(cost)
+    }
+
+    /// The number of ticks of a demonstration that fits.
+    fn check(&self, parameters: &[R], Demonstration { x, wanted }: Demonstration<'_>) -> Result<usize, Error> {
+        let (expected, found) = (self.layout.parameter_count(), parameters.len());
+        if expected != found {
+            return Err(Error::ParameterCount { expected, found });
+        }
+        let (sensors, outputs) = (self.layout.sensors(), self.layout.outputs());
+        // Either may be none, but not both.
+        let ticks = x.len().checked_div(sensors).or(wanted.len().checked_div(outputs)).unwrap_or(0);
+        if x.len() == ticks * sensors && wanted.len() == ticks * outputs {
+            return Ok(ticks);
+        }
+        Err(Error::Demonstration { values: x.len(), sensors, wanted: wanted.len(), outputs })
+    }
+
+    /// Runs the network, keeps what it did and returns what that costs.
+    fn run(&mut self, parameters: &[R], Demonstration { x, wanted }: Demonstration<'_>) -> R {
+        let Self { layout, leak, loss, trace, .. } = self;
+        let (n, h, o) = (layout.sensors(), layout.hidden(), layout.outputs());
+        let part = |kind| &parameters[layout.range(kind)];
+        let (slope, one) = (R::of(f64::from(layout.slope())), R::of(1.0));
+        let ticks = wanted.len().checked_div(o).or(x.len().checked_div(n)).unwrap_or(0);
+        trace.clear();
+        trace.resize((ticks + 1) * (2 * h + o), R::default());
+        let mut cost = R::default();
+        let (mut before, mut rest) = trace.split_at_mut(2 * h + o);
+        for tick in 0..ticks {
+            let (now, later) = rest.split_at_mut(2 * h + o);
+            let (response, left) = now.split_at_mut(h);
+            let (hidden, motors) = left.split_at_mut(h);
+            let (response_before, hidden_before) = before[..2 * h].split_at(h);
+            response.copy_from_slice(part(ParameterKind::Bias));
+            let x = &x[tick * n..(tick + 1) * n];
+            add_rows(response, x.iter().map(|x| R::of(f64::from(*x))), part(ParameterKind::SensorWeight));
+            add_rows(response, hidden_before.iter().copied(), part(ParameterKind::RecurrentWeight));
+            for i in 0..h {
+                let d = part(ParameterKind::Leak)[i];
+                let y = logistic(slope * response[i]);
+                response[i] = y;
+                hidden[i] = match leak {
+                    Leak::Filter => d * y + (one - d) * hidden_before[i],
+                    Leak::TwoTap => d * y + (one - d) * response_before[i],
+                    Leak::Evonet => d * hidden_before[i] + (one - d) * y,
+                };
+            }
+            add_rows(motors, hidden.iter().copied(), part(ParameterKind::OutputWeight));
+            for (motor, wanted) in motors.iter_mut().zip(&wanted[tick * o..(tick + 1) * o]) {
+                let (net, wanted) = (slope * *motor, R::of(f64::from(*wanted)));
+                *motor = logistic(net);
+                cost += loss.cost(net, *motor, wanted);
+            }
+            (before, rest) = (now, later);
+        }
+        cost
+    }
+
+    /// Follows the costs of the run back to the parameters.
+    fn follow_back(&mut self, parameters: &[R], Demonstration { x, wanted }: Demonstration<'_>) {
+        let Self { layout, leak, loss, sum, trace, back, .. } = self;
+        let (n, h, o) = (layout.sensors(), layout.hidden(), layout.outputs());
+        let part = |kind| &parameters[layout.range(kind)];
+        let (slope, one) = (R::of(f64::from(layout.slope())), R::of(1.0));
+        let [to_hidden, to_response, through] = back;
+        to_hidden.fill(R::default());
+        to_response.fill(R::default());
+        let size = 2 * h + o;
+        let ticks = trace.len().checked_div(size).unwrap_or(0).saturating_sub(1);
+        for tick in (0..ticks).rev() {
+            let (before, now) = trace[tick * size..(tick + 2) * size].split_at(size);
+            let (response, left) = now.split_at(h);
+            let (hidden, motors) = left.split_at(h);
+            let (response_before, hidden_before) = before[..2 * h].split_at(h);
+
+            for ((through, motor), wanted) in through.iter_mut().zip(motors).zip(&wanted[tick * o..]) {
+                *through = slope * loss.slope(*motor, R::of(f64::from(*wanted)));
+            }
+            add_products(&mut sum[layout.range(ParameterKind::OutputWeight)], hidden.iter().copied(), &through[..o]);
+            add_transposed(to_hidden, part(ParameterKind::OutputWeight), &through[..o]);
+
+            let leaks = layout.range(ParameterKind::Leak);
+            for i in 0..h {
+                let (d, y, flow) = (parameters[leaks.start + i], response[i], to_hidden[i]);
+                // How much of the flow reaches the response, the activation before and the response before.
+                let (share, before, stays) = match leak {
+                    Leak::Filter => (d, hidden_before[i], true),
+                    Leak::TwoTap => (d, response_before[i], false),
+                    Leak::Evonet => (one - d, hidden_before[i], true),
+                };
+                let by_leak = if *leak == Leak::Evonet { before - y } else { y - before };
+                sum[leaks.start + i] += flow * by_leak;
+                through[i] = (share * flow + to_response[i]) * slope * y * (one - y);
+                let kept = (one - share) * flow;
+                (to_hidden[i], to_response[i]) = if stays { (kept, R::default()) } else { (R::default(), kept) };
+            }
+            let through = &through[..h];
+            for (sum, through) in sum[layout.range(ParameterKind::Bias)].iter_mut().zip(through) {
+                *sum += *through;
+            }
+            let x = x[tick * n..(tick + 1) * n].iter().map(|x| R::of(f64::from(*x)));
+            add_products(&mut sum[layout.range(ParameterKind::SensorWeight)], x, through);
+            let sources = hidden_before.iter().copied();
+            add_products(&mut sum[layout.range(ParameterKind::RecurrentWeight)], sources, through);
+            add_transposed(to_hidden, part(ParameterKind::RecurrentWeight), through);
+        }
+    }
+}
+
+impl Loss {
+    /// What the motor value costs whose logistic function had the argument `net`.
+    fn cost<R: Real>(self, net: R, motor: R, wanted: R) -> R {
+        match self {
+            Self::SquaredError => (motor - wanted) * (motor - wanted),
+            Self::CrossEntropy => {
+                // -ln O = ln(1 + exp(-net)), and ln(1 - O) = ln O - net.
+                let log = |size: R| farsa_num::ln(R::of(1.0) + farsa_num::exp(-size));
+                let small = if net < R::default() { -net } else { R::default() };
+                let log_motor = small + log(net.abs());
+                let entropy = |p: R| if p > R::default() { p * farsa_num::ln(p) } else { R::default() };
+                let least = entropy(wanted) + entropy(R::of(1.0) - wanted);
+                log_motor + (R::of(1.0) - wanted) * net + least
+            }
+        }
+    }
+
+    /// Its derivative by that argument.
+    fn slope<R: Real>(self, motor: R, wanted: R) -> R {
+        match self {
+            Self::SquaredError => R::of(2.0) * (motor - wanted) * motor * (R::of(1.0) - motor),
+            Self::CrossEntropy => motor - wanted,
+        }
+    }
+}
+
+/// `to_i += sum_j source_j w_ji`, source-major, the sources in their order.
+fn add_rows<R: Real>(to: &mut [R], sources: impl Iterator<Item = R>, weights: &[R]) {
+    for (source, row) in sources.zip(weights.chunks_exact(to.len().max(1))) {
+        for (to, w) in to.iter_mut().zip(row) {
+            *to += source * *w;
+        }
+    }
+}
+
+/// `sum_ji += source_j through_i`.
+fn add_products<R: Real>(sum: &mut [R], sources: impl Iterator<Item = R>, through: &[R]) {
+    for (source, row) in sources.zip(sum.chunks_exact_mut(through.len().max(1))) {
+        for (sum, through) in row.iter_mut().zip(through) {
+            *sum += source * *through;
+        }
+    }
+}
+
+/// `to_j += sum_i w_ji through_i`.
+fn add_transposed<R: Real>(to: &mut [R], weights: &[R], through: &[R]) {
+    for (to, row) in to.iter_mut().zip(weights.chunks_exact(through.len().max(1))) {
+        let mut sum = R::default();
+        for (w, through) in row.iter().zip(through) {
+            sum += *w * *through;
+        }
+        *to += sum;
+    }
+}

@@ -1,0 +1,151 @@
+//! A network that learns from demonstrations.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::Real;
+
+use crate::{Demonstration, Error, Gradient, Layout, Leak, Loss, Optimizer, ParameterKind};
+
+/// Parameters of a [`Network`](crate::Network) that follow the [`Gradient`] of what demonstrations cost.
+///
+/// After each step leaks are brought back into [0, 1], and weights and biases into plus and minus
+/// [`limit`](Self::with_limit): a leak at an end stays there until the gradient points inwards.
+///
+/// ```
+/// use farsa_nn::{Adam, Demonstration, Layout, Leak, Learner, Loss};
+///
+/// // One output that shall be the exclusive or of two inputs: examples of one tick each.
+/// const LAYOUT: Layout = Layout::new(2, 4, 1).with_slope(1.0);
+/// let start = (0..LAYOUT.parameter_count()).map(|i| (i * 29 % 17) as f64 / 4.0 - 2.0);
+/// let start = start.zip(LAYOUT.kinds()).map(|(p, kind)| if kind == farsa_nn::ParameterKind::Leak { 1.0 } else { p });
+/// let mut learner = Learner::new(LAYOUT, Leak::Filter, Loss::CrossEntropy, start.collect(), Adam::new(0.1))?;
+/// let examples = [([0.0, 0.0], [0.0]), ([0.0, 1.0], [1.0]), ([1.0, 0.0], [1.0]), ([1.0, 1.0], [0.0])];
+/// let all = || examples.iter().map(|(x, wanted)| Demonstration { x, wanted });
+/// let first = learner.learn(all())?;
+/// for _ in 0..300 {
+///     learner.learn(all())?;
+/// }
+/// assert!(first > 0.1 && learner.learn(all())? < 0.01);
+/// # Ok::<(), farsa_nn::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Learner<R, O> {
+    gradient: Gradient<R>,
+    optimizer: O,
+    parameters: Vec<R>,
+    memory: Vec<R>,
+    limit: Option<R>,
+    /// The largest length that a gradient may have.
+    longest: Option<R>,
+}
+
+impl<R: Real, O: Optimizer<R>> Learner<R, O> {
+    /// A learner at these parameters [[`parameter_count`](Layout::parameter_count)].
+    ///
+    /// # Errors
+    /// [`Error::Slope`], [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]: the first that applies.
+    pub fn new(layout: Layout, leak: Leak, loss: Loss, parameters: Vec<R>, optimizer: O) -> Result<Self, Error> {
+        let gradient = Gradient::new(layout, leak, loss)?;
+        let single: Vec<f32> = parameters.iter().map(|p| p.to_f64() as f32).collect();
+        crate::network::check(&layout, &single)?;
+        let memory = vec![R::default(); optimizer.memory_len(parameters.len())];
+        Ok(Self { gradient, optimizer, parameters, memory, limit: None, longest: None })
+    }
+
+    /// The same learner with weights and biases kept within plus and minus this.
+    pub fn with_limit(self, limit: R) -> Self {
+        Self { limit: Some(limit), ..self }
+    }
+
+    /// The same learner with gradients shortened to this length where they are longer: the long ones of a recurrent network
+    /// come from where a small change decides much, and say little.
+    pub fn with_longest(self, longest: R) -> Self {
+        Self { longest: Some(longest), ..self }
+    }
+
+    /// One step along the mean gradient of these demonstrations; returns what they cost before it, per motor value.
+    ///
+    /// Without demonstrations there is no step.
+    ///
+    /// # Errors
+    /// [`Error::Demonstration`]; then nothing has changed.
+    pub fn learn<'d>(&mut self, demonstrations: impl IntoIterator<Item = Demonstration<'d>>) -> Result<R, Error> {
+        self.gradient.clear();
+        for demonstration in demonstrations {
+            self.gradient.add(&self.parameters, demonstration)?;
+        }
+        let ticks = self.gradient.ticks();
+        if ticks == 0 {
+            return Ok(R::default());
+        }
+        // The mean over ticks and motor values, as of the cost.
+        let values = R::of((ticks * self.gradient.layout().outputs().max(1)) as f64);
+        let mut squares = R::default();
+        for g in self.gradient.sum_mut() {
+            *g = *g / values;
+            squares += *g * *g;
+        }
+        let length = squares.sqrt();
+        if let Some(longest) = self.longest.filter(|longest| length > *longest) {
+            let factor = longest / length;
+            self.gradient.sum_mut().iter_mut().for_each(|g| *g *= factor);
+        }
+        self.optimizer.step(self.gradient.sum(), &mut self.parameters, &mut self.memory);
+        let leaks = self.gradient.layout().range(ParameterKind::Leak).start;
+        for (index, p) in self.parameters.iter_mut().enumerate() {
+            if index >= leaks {
+                *p = farsa_num::Scalar::clamp(*p, R::default(), R::of(1.0));
+            } else if let Some(limit) = self.limit {
+                *p = farsa_num::Scalar::clamp(*p, -limit, limit);
+            }
+        }
+        Ok(self.gradient.mean_cost())
+    }
+
+    /// What these demonstrations cost per motor value; nothing is learned.
+    ///
+    /// # Errors
+    /// [`Error::Demonstration`].
+    pub fn cost<'d>(&mut self, demonstrations: impl IntoIterator<Item = Demonstration<'d>>) -> Result<R, Error> {
+        let (mut sum, mut values) = (R::default(), 0);
+        for demonstration in demonstrations {
+            sum += self.gradient.cost(&self.parameters, demonstration)?;
+            values += demonstration.wanted.len();
+        }
+        Ok(if values == 0 { sum } else { sum / R::of(values as f64) })
+    }
+
+    /// The optimizer, to change its rate.
+    pub fn optimizer_mut(&mut self) -> &mut O {
+        &mut self.optimizer
+    }
+
+    /// The parameters [[`parameter_count`](Layout::parameter_count)].
+    pub fn parameters(&self) -> &[R] {
+        &self.parameters
+    }
+
+    /// All that learning goes on from: the parameters and the optimizer's memory, one after the other.
+    pub fn words(&self) -> impl Iterator<Item = R> + '_ {
+        self.parameters.iter().chain(&self.memory).copied()
+    }
+
+    /// Goes on from where another learner of the same kind was.
+    ///
+    /// # Errors
+    /// [`Error::StateLen`] for another number of words, [`Error::NotFinite`]; then nothing has changed.
+    pub fn set_words(&mut self, words: &[R]) -> Result<(), Error> {
+        let (count, found) = (self.parameters.len(), words.len());
+        let expected = count + self.memory.len();
+        if expected != found {
+            return Err(Error::StateLen { expected, found });
+        }
+        if let Some(index) = words.iter().position(|word| !word.to_f64().is_finite()) {
+            return Err(Error::NotFinite { index });
+        }
+        self.parameters.copy_from_slice(&words[..count]);
+        self.memory.copy_from_slice(&words[count..]);
+        Ok(())
+    }
+}

@@ -1,0 +1,88 @@
+//! How parameters follow a gradient downhill.
+
+use farsa_num::Real;
+
+/// A rule that changes parameters by a gradient, with a memory that is the caller's.
+///
+/// The rule itself is a few numbers; what it remembers from step to step lies in a slice that starts as zeros, so that a
+/// checkpoint is a copy of two slices.
+///
+/// # For implementors
+/// - The same calls on the same memory give the same bits on every machine: + - * / and square root, in a fixed order.
+/// - Use the shorter length of `gradient` and `parameters`.
+pub trait Optimizer<R: Real> {
+    /// Length of the memory for so many parameters.
+    fn memory_len(&self, parameters: usize) -> usize;
+    /// Changes the parameters by a gradient \[parameters\]; `memory` [[`memory_len`](Self::memory_len)] was zeros before the
+    /// first step.
+    fn step(&self, gradient: &[R], parameters: &mut [R], memory: &mut [R]);
+}
+
+/// Steepest descent with momentum: `v = momentum*v - rate*g`, `p = p + v`.
+///
+/// Source: `[Rumelhart1986]` eq. 9, for single steps; with momentum 0 it is plain descent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Momentum {
+    /// Factor on the gradient.
+    pub rate: f64,
+    /// What stays of a change from step to step, [0, 1).
+    pub momentum: f64,
+}
+
+impl<R: Real> Optimizer<R> for Momentum {
+    fn memory_len(&self, parameters: usize) -> usize {
+        parameters
+    }
+
+    fn step(&self, gradient: &[R], parameters: &mut [R], memory: &mut [R]) {
+        let (rate, momentum) = (R::of(self.rate), R::of(self.momentum));
+        for ((p, g), v) in parameters.iter_mut().zip(gradient).zip(memory) {
+            *v = momentum * *v - rate * *g;
+            *p += *v;
+        }
+    }
+}
+
+/// Adam: every parameter takes steps of about `rate`, whatever the size of its gradient.
+///
+/// Source: `[Kingma2015]` algorithm 1. Deviation: the powers of the decays are kept as `1 - beta^t`, by repeated products, so
+/// that a memory of zeros is the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adam {
+    /// Size of a step.
+    pub rate: f64,
+    /// How much of the mean gradient, and of the mean of its squares, stays from step to step, each in [0, 1).
+    pub decays: [f64; 2],
+    /// Added to the root of the mean square.
+    pub epsilon: f64,
+}
+
+impl Adam {
+    /// Adam with this size of a step and the source's defaults beside it.
+    pub const fn new(rate: f64) -> Self {
+        Self { rate, decays: [0.9, 0.999], epsilon: 1e-8 }
+    }
+}
+
+impl<R: Real> Optimizer<R> for Adam {
+    /// Two means per parameter, and how much of each is there yet.
+    fn memory_len(&self, parameters: usize) -> usize {
+        parameters.saturating_mul(2).saturating_add(2)
+    }
+
+    fn step(&self, gradient: &[R], parameters: &mut [R], memory: &mut [R]) {
+        let one = R::of(1.0);
+        let (rate, epsilon) = (R::of(self.rate), R::of(self.epsilon));
+        let new = self.decays.map(|decay| R::of(1.0 - decay));
+        let Some((begun, means)) = memory.split_first_chunk_mut::<2>() else { return };
+        for (begun, new) in begun.iter_mut().zip(new) {
+            *begun += (one - *begun) * new;
+        }
+        let (first, second) = means.split_at_mut(means.len() / 2);
+        for (((p, g), m), v) in parameters.iter_mut().zip(gradient).zip(first).zip(second) {
+            *m += (*g - *m) * new[0];
+            *v += (*g * *g - *v) * new[1];
+            *p -= rate * (*m / begun[0]) / ((*v / begun[1]).sqrt() + epsilon);
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Gradients against finite differences, the run against the network, optimizers against their formulas, and what is learned.
+#![cfg(feature = "alloc")]
+
+use farsa_nn::{
+    Adam, Controller, Demonstration, Error, Gradient, Layout, Leak, Learner, Loss, Momentum, Network, Optimizer,
+    ParameterKind,
+};
+use farsa_num::{Digest, Domain, Stream};
+use proptest::prelude::*;
+
+const LOSSES: [Loss; 2] = [Loss::SquaredError, Loss::CrossEntropy];
+
+#[derive(Clone, Debug)]
+struct Case {
+    layout: Layout,
+    parameters: Vec<f64>,
+    x: Vec<f32>,
+    wanted: Vec<f32>,
+}
+
+impl Case {
+    fn demonstration(&self) -> Demonstration<'_> {
+        Demonstration { x: &self.x, wanted: &self.wanted }
+    }
+}
+
+prop_compose! {
+    fn any_case()(n in 0..5_usize, h in 0..6_usize, o in 1..5_usize, ticks in 0..9_usize, slope in 0.1_f32..1.5)(
+        parameters in prop::collection::vec(0.0_f64..1.0, Layout::new(n, h, o).parameter_count()),
+        x in prop::collection::vec(-3.0_f32..3.0, n * ticks),
+        wanted in prop::collection::vec(0.0_f32..=1.0, o * ticks),
+        layout in Just(Layout::new(n, h, o).with_slope(slope)),
+    ) -> Case {
+        let parameters = parameters.iter().zip(layout.kinds());
+        let decoded = parameters.map(|(p, kind)| if kind == ParameterKind::Leak { *p } else { 6.0 * p - 3.0 });
+        Case { layout, parameters: decoded.collect(), x, wanted }
+    }
+}
+
+proptest! {
+    #[test]
+    fn equals_finite_differences(case in any_case()) {
+        const STEP: f64 = 1e-5;
+        for (leak, loss) in Leak::ALL.into_iter().flat_map(|leak| LOSSES.map(|loss| (leak, loss))) {
+            let mut gradient = Gradient::<f64>::new(case.layout, leak, loss)?;
+            let cost = gradient.add(&case.parameters, case.demonstration())?;
+            prop_assert!(cost >= -1e-12);
+            prop_assert_eq!(gradient.cost(&case.parameters, case.demonstration())?, cost);
+            let exact = gradient.sum().to_vec();
+            for (index, exact) in exact.iter().enumerate() {
+                let mut cost_at = |by: f64| {
+                    let mut parameters = case.parameters.clone();
+                    parameters[index] += by;
+                    gradient.cost(&parameters, case.demonstration())
+                };
+                let difference = (cost_at(STEP)? - cost_at(-STEP)?) / (2.0 * STEP);
+                let kind = case.layout.kind(index);
+                prop_assert!((difference - exact).abs() < 1e-5, "{} {:?} {:?}: {} is not {}", leak, loss, kind, exact, difference);
+            }
+        }
+    }
+
+    /// The run that is followed back is that of the network, to the bit; single precision is near double.
+    #[test]
+    fn costs_what_the_network_does(case in any_case()) {
+        let single: Vec<f32> = case.parameters.iter().map(|p| *p as f32).collect();
+        for leak in Leak::ALL {
+            let mut network = Network::new(case.layout, leak, &single, vec![0.0; case.layout.state_len()])?;
+            let (n, o) = (case.layout.sensors(), case.layout.outputs());
+            let mut expected = 0.0_f32;
+            let mut y = vec![0.0; o];
+            for (tick, wanted) in case.wanted.chunks(o).enumerate() {
+                network.step(&case.x[n * tick..n * (tick + 1)], &mut y);
+                y.iter().zip(wanted).for_each(|(y, wanted)| expected += (y - wanted) * (y - wanted));
+            }
+            let mut gradient = Gradient::<f32>::new(case.layout, leak, Loss::SquaredError)?;
+            let cost = gradient.add(&single, case.demonstration())?;
+            prop_assert_eq!(cost.to_bits(), expected.to_bits());
+            let mut double = Gradient::<f64>::new(case.layout, leak, Loss::SquaredError)?;
+            double.add(&single.iter().map(|p| f64::from(*p)).collect::<Vec<_>>(), case.demonstration())?;
+            for (a, b) in gradient.sum().iter().zip(double.sum()) {
+                prop_assert!((f64::from(*a) - b).abs() < 1e-4, "{} is not {}", a, b);
+            }
+        }
+    }
+
+    /// Demonstrations add up, and each starts at rest.
+    #[test]
+    fn demonstrations_add_up(case in any_case()) {
+        let mut twice = Gradient::<f64>::new(case.layout, Leak::Filter, Loss::SquaredError)?;
+        let mut once = twice.clone();
+        let cost = once.add(&case.parameters, case.demonstration())?;
+        twice.add(&case.parameters, case.demonstration())?;
+        twice.add(&case.parameters, case.demonstration())?;
+        prop_assert!(once.sum().iter().zip(twice.sum()).all(|(a, b)| (2.0 * a - b).abs() < 1e-12));
+        prop_assert!((twice.mean_cost() - once.mean_cost()).abs() < 1e-12);
+        prop_assert!((once.mean_cost() * case.wanted.len() as f64 - cost).abs() < 1e-12);
+        once.clear();
+        prop_assert!(once.sum().iter().all(|g| *g == 0.0) && once.mean_cost() == 0.0 && once.ticks() == 0);
+    }
+
+    /// Adam and momentum against their sources' formulas with powers.
+    #[test]
+    fn optimizers_follow_their_formulas(gradients in prop::collection::vec(-2.0_f64..2.0, 1..9)) {
+        let adam = Adam { rate: 0.01, decays: [0.8, 0.95], epsilon: 1e-8 };
+        let (mut p, mut memory) = ([1.0], vec![0.0; Optimizer::<f64>::memory_len(&adam, 1)]);
+        let (mut m, mut v, mut expected) = (0.0, 0.0, 1.0);
+        let plain = Momentum { rate: 0.1, momentum: 0.7 };
+        let (mut q, mut velocity) = ([1.0], [0.0]);
+        for (t, g) in gradients.iter().enumerate() {
+            adam.step(&[*g], &mut p, &mut memory);
+            m = 0.8 * m + 0.2 * g;
+            v = 0.95 * v + 0.05 * g * g;
+            let power = |beta: f64| (0..=t).fold(1.0, |power, _| power * beta);
+            expected -= 0.01 * (m / (1.0 - power(0.8))) / ((v / (1.0 - power(0.95))).sqrt() + 1e-8);
+            prop_assert!((p[0] - expected).abs() < 1e-9, "{} is not {}", p[0], expected);
+            plain.step(&[*g], &mut q, &mut velocity);
+        }
+        // Every gradient counts with all powers of the momentum since.
+        let late = |t: usize| (0..gradients.len() - t).fold((0.0, 1.0), |(sum, power), _| (sum + power, power * 0.7)).0;
+        let moved: f64 = gradients.iter().enumerate().map(|(t, g)| 0.1 * g * late(t)).sum();
+        prop_assert!((q[0] - (1.0 - moved)).abs() < 1e-9);
+    }
+}
+
+/// A flag that is shown for one tick and asked for later: only a memory can tell.
+fn flags() -> Vec<(Vec<f32>, Vec<f32>)> {
+    let flag = |shown: f32, ticks: usize| {
+        let x = (0..ticks).flat_map(|tick| [if tick == 0 { shown } else { 0.0 }, 1.0]).collect();
+        (x, vec![shown; ticks])
+    };
+    [(0.0, 12), (1.0, 12), (0.0, 7), (1.0, 7)].map(|(shown, ticks)| flag(shown, ticks)).to_vec()
+}
+
+fn learner<O: Optimizer<f64>>(leak: Leak, optimizer: O) -> Learner<f64, O> {
+    const LAYOUT: Layout = Layout::new(2, 5, 1).with_slope(1.0);
+    let mut draw = Stream::new(5, Domain::InitialGenome, 0, 0, 0);
+    let start =
+        LAYOUT.kinds().map(|kind| if kind == ParameterKind::Leak { 0.5 } else { f64::from(draw.range(-1.0, 1.0)) });
+    Learner::new(LAYOUT, leak, Loss::CrossEntropy, start.collect(), optimizer).expect("valid")
+}
+
+fn learn<O: Optimizer<f64>>(learner: &mut Learner<f64, O>, steps: usize) -> f64 {
+    let flags = flags();
+    let mut cost = f64::NAN;
+    for _ in 0..steps {
+        let all = flags.iter().map(|(x, wanted)| Demonstration { x, wanted });
+        cost = learner.learn(all).expect("whole ticks");
+    }
+    cost
+}
+
+#[test]
+fn a_memory_is_learned_by_every_reading_and_both_optimizers() {
+    for leak in Leak::ALL {
+        let mut adam = learner(leak, Adam::new(0.03)).with_limit(8.0).with_longest(1.0);
+        let (first, last) = (learn(&mut adam, 1), learn(&mut adam, 1500));
+        let mut momentum = learner(leak, Momentum { rate: 0.5, momentum: 0.9 }).with_limit(8.0).with_longest(1.0);
+        let plain = learn(&mut momentum, 1500);
+        println!("{leak:>8}: {first:.3} falls to {last:.5} by Adam, to {plain:.5} by momentum");
+        assert!(first > 0.5 && last < 0.02 && plain < 0.02, "{leak}: {first} {last} {plain}");
+        // The network itself does it, from the rounded parameters.
+        let single: Vec<f32> = adam.parameters().iter().map(|p| *p as f32).collect();
+        let layout = Layout::new(2, 5, 1).with_slope(1.0);
+        assert!(single[..layout.range(ParameterKind::Leak).start].iter().all(|w| w.abs() <= 8.0));
+        let mut network = Network::new(layout, leak, single, vec![0.0; layout.state_len()]).expect("leaks in [0, 1]");
+        for (x, wanted) in flags() {
+            network.reset();
+            let mut y = [0.0];
+            x.chunks(2).for_each(|x| network.step(x, &mut y));
+            assert!((y[0] - wanted[0]).abs() < 0.2, "{leak}: {} for {}", y[0], wanted[0]);
+        }
+    }
+}
+
+#[test]
+fn learning_goes_on_where_it_stopped() -> Result<(), Error> {
+    let mut whole = learner(Leak::Filter, Adam::new(0.03));
+    learn(&mut whole, 60);
+    let mut first = learner(Leak::Filter, Adam::new(0.03));
+    learn(&mut first, 25);
+    let words: Vec<f64> = first.words().collect();
+    let mut second = learner(Leak::Filter, Adam::new(0.03));
+    assert_eq!(second.set_words(&words[1..]), Err(Error::StateLen { expected: words.len(), found: words.len() - 1 }));
+    let mut broken = words.clone();
+    broken[3] = f64::NAN;
+    assert_eq!(second.set_words(&broken), Err(Error::NotFinite { index: 3 }));
+    second.set_words(&words)?;
+    learn(&mut second, 35);
+    assert!(whole.words().eq(second.words()));
+    let mut digest = Digest::new();
+    digest.add_f64s(whole.parameters());
+    assert_eq!(digest.finish(), 0x8A32_D83C_D426_87EB, "{:#018x}", digest.finish());
+    Ok(())
+}
+
+#[test]
+fn demonstrations_of_other_shapes_are_refused() -> Result<(), Error> {
+    let layout = Layout::new(2, 1, 3);
+    let mut gradient = Gradient::<f64>::new(layout, Leak::Filter, Loss::SquaredError)?;
+    let parameters = vec![0.0; layout.parameter_count()];
+    let shape = |values, wanted| Error::Demonstration { values, sensors: 2, wanted, outputs: 3 };
+    for (values, wanted) in [(3, 3), (2, 2), (4, 3), (0, 3), (2, 0)] {
+        let (x, w) = (vec![0.0; values], vec![0.0; wanted]);
+        let refused = gradient.add(&parameters, Demonstration { x: &x, wanted: &w });
+        assert_eq!(refused, Err(shape(values, wanted)));
+    }
+    let none = Demonstration { x: &[], wanted: &[] };
+    assert_eq!(gradient.add(&parameters, none), Ok(0.0));
+    assert_eq!(gradient.add(&parameters[1..], none), Err(Error::ParameterCount { expected: 8, found: 7 }));
+    assert!(Gradient::<f64>::new(layout.with_slope(f32::NAN), Leak::Filter, Loss::SquaredError).is_err());
+    let learner = Learner::new(layout, Leak::Filter, Loss::SquaredError, vec![2.0; 8], Adam::new(0.1));
+    assert_eq!(learner.err(), Some(Error::LeakRange { index: 7, value: 2.0 }));
+    Ok(())
+}
