@@ -1,6 +1,9 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod bytes;
+mod bytes_error;
+mod bytes_frame;
 mod controller;
 mod error;
 mod kernel;
@@ -10,6 +13,8 @@ mod network;
 mod perceptron;
 mod perceptron_lanes;
 
+pub use bytes::{Aligned, NetworkBytes, channel_hash};
+pub use bytes_error::BytesError;
 pub use controller::Controller;
 pub use error::Error;
 pub use layout::{Layout, ParameterKind, Parts};
