@@ -187,16 +187,24 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for Network<P, S> {
 }
 
 pub(crate) fn check(layout: &Layout, parameters: &[f32]) -> Result<(), Error> {
+    check_values(layout, parameters.iter().copied())
+}
+
+/// The same for parameters that are no slice of numbers.
+pub(crate) fn check_values(
+    layout: &Layout,
+    parameters: impl ExactSizeIterator<Item = f32> + Clone,
+) -> Result<(), Error> {
     let (expected, found) = (layout.parameter_count(), parameters.len());
     if expected != found {
         return Err(Error::ParameterCount { expected, found });
     }
-    if let Some(index) = parameters.iter().position(|p| !p.is_finite()) {
+    if let Some(index) = parameters.clone().position(|p| !p.is_finite()) {
         return Err(Error::NotFinite { index });
     }
-    let leaks = layout.range(ParameterKind::Leak).zip(layout.split(parameters).leaks);
-    match leaks.into_iter().find(|(_, leak)| !(0.0..=1.0).contains(*leak)) {
-        Some((index, &value)) => Err(Error::LeakRange { index, value }),
+    let leaks = parameters.enumerate().skip(layout.range(ParameterKind::Leak).start);
+    match leaks.into_iter().find(|(_, leak)| !(0.0..=1.0).contains(leak)) {
+        Some((index, value)) => Err(Error::LeakRange { index, value }),
         None => Ok(()),
     }
 }

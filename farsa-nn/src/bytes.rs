@@ -1,0 +1,218 @@
+//! A trained network as bytes: in flash, in a file, over a wire.
+
+use farsa_num::Digest;
+
+use crate::bytes_frame::{Frame, Kind, SHAPE, frame_len, layout_hash};
+use crate::network::{check, check_values};
+use crate::{BytesError, Error, Layout, Leak};
+
+/// Bytes that lie where numbers may lie, for [`include_bytes!`].
+///
+/// ```
+/// # const LAYOUT: farsa_nn::Layout = farsa_nn::Layout::new(1, 1, 1);
+/// # macro_rules! include_bytes { ($name:literal) => { &[0; farsa_nn::NetworkBytes::byte_count(LAYOUT)] } }
+/// use farsa_nn::{Aligned, NetworkBytes};
+///
+/// // Does not compile when the file has another length.
+/// static CHAMPION: Aligned<[u8; NetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("champion.farsa"));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C, align(8))]
+pub struct Aligned<B>(
+    /// The bytes.
+    pub B,
+);
+
+/// A [`Network`](crate::Network) of somebody's bytes: checked, and used where it lies.
+///
+/// The format is written out in `docs/controller-format.md`: a head with a version, the layout and hashes, the parameters in
+/// the order of the [`Layout`], a CRC-32. All of it is little-endian.
+///
+/// ```
+/// use farsa_nn::{Aligned, Controller, Layout, Leak, Network, NetworkBytes};
+///
+/// const LAYOUT: Layout = Layout::new(2, 1, 1);
+/// # fn main() -> Result<(), farsa_nn::BytesError> {
+/// // A computer writes,
+/// let mut flash = Aligned([0; NetworkBytes::byte_count(LAYOUT)]);
+/// NetworkBytes::write(LAYOUT, Leak::Filter, 0, &[1.0, -1.0, 0.5, 3.0, 0.0, 0.5], &mut flash.0)?;
+/// // a board reads: nothing is copied.
+/// let bytes = NetworkBytes::read(&flash.0)?;
+/// bytes.expect(LAYOUT, Leak::Filter)?;
+/// let mut network = Network::new(LAYOUT, Leak::Filter, bytes.parameters()?, [0.0; LAYOUT.state_len()])?;
+/// let mut y = [0.0];
+/// network.step(&[0.5, 0.2], &mut y);
+/// // Others may come later, as those of another individual.
+/// network.set_parameters(NetworkBytes::read(&flash.0)?.parameters()?)?;
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct NetworkBytes<'a> {
+    layout: Layout,
+    leak: Leak,
+    channels: u64,
+    parameters: &'a [u8],
+}
+
+impl NetworkBytes<'_> {
+    /// Number of bytes of a network of this layout; saturates.
+    pub const fn byte_count(layout: Layout) -> usize {
+        frame_len(layout.parameter_count().saturating_mul(4))
+    }
+
+    /// Fills `out` [[`byte_count`](Self::byte_count)] with a network.
+    ///
+    /// `channels` says what inputs and outputs are, by [`channel_hash`]; 0 says nothing.
+    ///
+    /// # Errors
+    /// [`BytesError::Parameters`] as [`Network::new`](crate::Network::new), [`BytesError::Buffer`]; then nothing is written.
+    pub fn write(
+        layout: Layout,
+        leak: Leak,
+        channels: u64,
+        parameters: &[f32],
+        out: &mut [u8],
+    ) -> Result<(), BytesError> {
+        if !layout.slope().is_finite() {
+            return Err(Error::Slope { value: layout.slope() }.into());
+        }
+        check(&layout, parameters)?;
+        let words = parameters.iter().map(|p| p.to_le_bytes());
+        Frame::write(Kind::Network, &shape_of(layout, leak), channels, words, out)
+    }
+
+    /// The layout hash: of the layout, its slope and the reading of the leak.
+    pub fn layout_hash(layout: Layout, leak: Leak) -> u64 {
+        layout_hash(Kind::Network, &shape_of(layout, leak))
+    }
+}
+
+impl<'a> NetworkBytes<'a> {
+    /// Checks bytes that should be a network, all of them: the format, the checksum, the layout and every parameter.
+    ///
+    /// # Errors
+    /// What is wrong first: [`BytesError::Magic`], [`BytesError::Version`], [`BytesError::Length`],
+    /// [`BytesError::Checksum`], [`BytesError::Kind`], [`BytesError::LayoutHash`], [`BytesError::Shape`],
+    /// [`BytesError::Parameters`].
+    pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
+        let Frame { shape, channels, parameters, .. } = Frame::open(Kind::Network, bytes)?;
+        let [sensors, hidden, outputs, slope, leak, unused @ ..] = shape;
+        let Some(&reading) = Leak::ALL.get(leak as usize) else {
+            return Err(BytesError::Shape { word: 4, found: leak });
+        };
+        if let Some(at) = unused.iter().position(|word| *word != 0) {
+            return Err(BytesError::Shape { word: SHAPE - unused.len() + at, found: unused[at] });
+        }
+        let (slope, bits) = (f32::from_bits(slope), slope);
+        if !slope.is_finite() {
+            return Err(BytesError::Shape { word: 3, found: bits });
+        }
+        let layout = Layout::new(sensors as usize, hidden as usize, outputs as usize).with_slope(slope);
+        let found = bytes.len();
+        if found != Self::byte_count(layout) {
+            return Err(BytesError::Length { expected: Self::byte_count(layout), found });
+        }
+        check_values(&layout, values(parameters))?;
+        Ok(Self { layout, leak: reading, channels, parameters })
+    }
+
+    /// Nothing, if the network is of this layout and this reading of the leak.
+    ///
+    /// # Errors
+    /// [`BytesError::OtherLayout`].
+    pub fn expect(&self, layout: Layout, leak: Leak) -> Result<(), BytesError> {
+        let hash = |layout, leak| NetworkBytes::layout_hash(layout, leak);
+        match (hash(layout, leak), hash(self.layout, self.leak)) {
+            (expected, found) if expected != found => Err(BytesError::OtherLayout { expected, found }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Nothing, if the network is for these channels, by their [`channel_hash`].
+    ///
+    /// # Errors
+    /// [`BytesError::OtherChannels`].
+    pub fn expect_channels(&self, expected: u64) -> Result<(), BytesError> {
+        let found = self.channels;
+        if expected == found { Ok(()) } else { Err(BytesError::OtherChannels { expected, found }) }
+    }
+
+    /// The layout.
+    pub const fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// The reading of the leak.
+    pub const fn leak(&self) -> Leak {
+        self.leak
+    }
+
+    /// The [`channel_hash`] of its inputs and outputs; 0 if nothing is said.
+    pub const fn channels(&self) -> u64 {
+        self.channels
+    }
+
+    /// The parameters [[`parameter_count`](Layout::parameter_count)] where they lie.
+    ///
+    /// # Errors
+    /// [`BytesError::Misaligned`] and [`BytesError::BigEndian`]; [`copy_parameters`](Self::copy_parameters) then does.
+    pub fn parameters(&self) -> Result<&'a [f32], BytesError> {
+        if cfg!(target_endian = "big") {
+            return Err(BytesError::BigEndian);
+        }
+        // Their number was checked, so that alignment is all that can be wrong.
+        bytemuck::try_cast_slice(self.parameters)
+            .map_err(|_| BytesError::Misaligned { remainder: self.parameters.as_ptr().addr() % 4 })
+    }
+
+    /// Copies the parameters into `out` [[`parameter_count`](Layout::parameter_count)].
+    ///
+    /// # Errors
+    /// [`BytesError::Buffer`]; then nothing is copied.
+    pub fn copy_parameters(&self, out: &mut [f32]) -> Result<(), BytesError> {
+        let (expected, found) = (self.layout.parameter_count(), out.len());
+        if expected != found {
+            return Err(BytesError::Buffer { expected, found });
+        }
+        out.iter_mut().zip(values(self.parameters)).for_each(|(to, value)| *to = value);
+        Ok(())
+    }
+}
+
+/// A fingerprint of what inputs and outputs are, by their names in their order.
+///
+/// A controller for another body, or for the same with its sensors in another order, has another.
+///
+/// ```
+/// use farsa_nn::channel_hash;
+///
+/// assert_ne!(channel_hash(["left", "right"], ["wheel"]), channel_hash(["right", "left"], ["wheel"]));
+/// ```
+pub fn channel_hash<N: AsRef<str>>(
+    inputs: impl IntoIterator<Item = N>,
+    outputs: impl IntoIterator<Item = impl AsRef<str>>,
+) -> u64 {
+    let mut digest = Digest::new();
+    // No text holds such bytes: they end a name, and all names of a side.
+    let mut add = |name: &str| {
+        digest.add_bytes(name.as_bytes());
+        digest.add_bytes(&[0xFF]);
+    };
+    inputs.into_iter().for_each(|name| add(name.as_ref()));
+    add("");
+    outputs.into_iter().for_each(|name| add(name.as_ref()));
+    digest.finish()
+}
+
+fn shape_of(layout: Layout, leak: Leak) -> [u32; SHAPE] {
+    // Counts beyond 32 bits saturate: no slice of parameters is so long.
+    let word = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+    let counts = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
+    let [sensors, hidden, outputs] = counts;
+    [sensors, hidden, outputs, layout.slope().to_bits(), leak as u32, 0, 0, 0]
+}
+
+fn values(bytes: &[u8]) -> impl ExactSizeIterator<Item = f32> + Clone + '_ {
+    bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes))
+}

@@ -1,0 +1,134 @@
+//! What the bytes of all kinds of controllers have in common: a head, parameters, a checksum.
+
+use farsa_num::{Digest, crc32};
+
+use crate::BytesError;
+
+/// The first bytes.
+const MAGIC: [u8; 8] = *b"FARSA-NN";
+/// Grows when the meaning of a byte changes.
+const VERSION: u32 = 1;
+/// Numbers of a shape, the same for all kinds; what is not used is 0.
+pub(crate) const SHAPE: usize = 8;
+/// Magic, version, kind, length, length of the parameters, shape, layout hash, channel hash.
+const HEAD: usize = 8 + 4 * 4 + 4 * SHAPE + 8 + 8;
+const CHECKSUM: usize = 4;
+
+/// The kinds of controllers by their numbers in the bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Network = 1,
+}
+
+/// A controller's bytes taken apart, whole and undamaged; what shape and parameters mean is the kind's business.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame<'a> {
+    pub(crate) shape: [u32; SHAPE],
+    pub(crate) channels: u64,
+    pub(crate) parameters: &'a [u8],
+}
+
+/// Number of bytes of a controller with so many bytes of parameters; saturates.
+pub(crate) const fn frame_len(parameters: usize) -> usize {
+    parameters.saturating_add(HEAD + CHECKSUM)
+}
+
+/// The layout hash: of the kind and the shape.
+pub(crate) fn layout_hash(kind: Kind, shape: &[u32; SHAPE]) -> u64 {
+    let mut digest = Digest::new();
+    digest.add_bytes(&(kind as u32).to_le_bytes());
+    for word in shape {
+        digest.add_bytes(&word.to_le_bytes());
+    }
+    digest.finish()
+}
+
+impl<'a> Frame<'a> {
+    /// Takes bytes apart that are a controller of this kind.
+    pub(crate) fn open(kind: Kind, bytes: &'a [u8]) -> Result<Self, BytesError> {
+        let mut reader = Reader { bytes, len: bytes.len() };
+        // Whoever begins differently is none of ours, however short it is.
+        let magic = reader.array()?;
+        if magic != MAGIC {
+            return Err(BytesError::Magic { found: magic });
+        }
+        let version = reader.word()?;
+        if version != VERSION {
+            return Err(BytesError::Version { expected: VERSION, found: version });
+        }
+        let (found_kind, len, parameters_len) = (reader.word()?, reader.word()? as usize, reader.word()? as usize);
+        if len != bytes.len() {
+            return Err(BytesError::Length { expected: len, found: bytes.len() });
+        }
+        let mut shape = [0; SHAPE];
+        for word in &mut shape {
+            *word = reader.word()?;
+        }
+        let (hash, channels) = (u64::from_le_bytes(reader.array()?), u64::from_le_bytes(reader.array()?));
+        let Some((parameters, checksum)) = reader.bytes.split_last_chunk::<CHECKSUM>() else {
+            return Err(BytesError::Length { expected: frame_len(0), found: bytes.len() });
+        };
+        // Nothing of what follows is believed before this.
+        let (checked, _) = bytes.split_at(bytes.len().saturating_sub(CHECKSUM));
+        let (expected, found) = (crc32(checked), u32::from_le_bytes(*checksum));
+        if expected != found {
+            return Err(BytesError::Checksum { expected, found });
+        }
+        if found_kind != kind as u32 {
+            return Err(BytesError::Kind { expected: kind as u32, found: found_kind });
+        }
+        if parameters.len() != parameters_len {
+            return Err(BytesError::Length { expected: frame_len(parameters_len), found: bytes.len() });
+        }
+        let expected = layout_hash(kind, &shape);
+        if hash != expected {
+            return Err(BytesError::LayoutHash { expected, found: hash });
+        }
+        Ok(Self { shape, channels, parameters })
+    }
+
+    /// Fills `out`, which must be as long as [`frame_len`] of the parameters says; `parameters` are words in their order.
+    pub(crate) fn write(
+        kind: Kind,
+        shape: &[u32; SHAPE],
+        channels: u64,
+        parameters: impl ExactSizeIterator<Item = [u8; 4]>,
+        out: &mut [u8],
+    ) -> Result<(), BytesError> {
+        let parameters_len = 4 * parameters.len();
+        let (expected, found) = (frame_len(parameters_len), out.len());
+        // More than the head can say is more than any buffer of it.
+        let Some(len) = u32::try_from(expected).ok().filter(|_| expected == found) else {
+            return Err(BytesError::Buffer { expected, found });
+        };
+        let (content, checksum) = out.split_at_mut(expected - CHECKSUM);
+        let hash = layout_hash(kind, shape).to_le_bytes();
+        let head = [VERSION, kind as u32, len, parameters_len as u32];
+        let words = head.into_iter().chain(*shape).map(u32::to_le_bytes);
+        let bytes = MAGIC.into_iter().chain(words.flatten()).chain(hash).chain(channels.to_le_bytes());
+        for (to, byte) in content.iter_mut().zip(bytes.chain(parameters.flatten())) {
+            *to = byte;
+        }
+        checksum.copy_from_slice(&crc32(content).to_le_bytes());
+        Ok(())
+    }
+}
+
+/// The bytes that are still to be read.
+struct Reader<'a> {
+    bytes: &'a [u8],
+    len: usize,
+}
+
+impl Reader<'_> {
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], BytesError> {
+        let short = BytesError::Length { expected: frame_len(0), found: self.len };
+        let (array, rest) = self.bytes.split_first_chunk::<N>().ok_or(short)?;
+        self.bytes = rest;
+        Ok(*array)
+    }
+
+    fn word(&mut self) -> Result<u32, BytesError> {
+        self.array().map(u32::from_le_bytes)
+    }
+}
