@@ -9,13 +9,18 @@ mod architecture;
 mod block;
 mod block_kernel;
 mod block_layout;
+#[cfg(feature = "alloc")]
+mod block_layout_buf;
 mod block_network;
+mod centre_crossing;
 mod controller;
 mod ctrnn;
 mod ctrnn_layout;
 mod dynamics;
 mod error;
 mod evonet;
+#[cfg(feature = "alloc")]
+mod evonet_text;
 mod integrator;
 mod kernel;
 mod layout;
@@ -25,17 +30,22 @@ mod name;
 mod network;
 mod perceptron;
 mod perceptron_lanes;
+mod symmetry;
 
 pub use activation::Activation;
 pub use architecture::{Architecture, Plan};
 pub use block::{Block, Group, Span};
 pub use block_layout::{BlockLayout, BlockParameter};
+#[cfg(feature = "alloc")]
+pub use block_layout_buf::BlockLayoutBuf;
 pub use block_network::BlockNetwork;
 pub use controller::Controller;
 pub use ctrnn::Ctrnn;
 pub use ctrnn_layout::{CtrnnLayout, CtrnnParameter, CtrnnParts};
 pub use error::Error;
 pub use evonet::EvonetRanges;
+#[cfg(feature = "alloc")]
+pub use evonet_text::Evonet;
 pub use integrator::Integrator;
 pub use layout::{Layout, ParameterKind, Parts};
 pub use leak::Leak;
@@ -43,3 +53,4 @@ pub use lesion::{Lesion, Lesioned, Neurons};
 pub use network::Network;
 pub use perceptron::Perceptron;
 pub use perceptron_lanes::PerceptronLanes;
+pub use symmetry::CtrnnSymmetry;
