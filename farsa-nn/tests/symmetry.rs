@@ -28,7 +28,7 @@ proptest! {
         let layout = CtrnnLayout::new(inputs.min(neurons), neurons, neurons);
         let inputs = layout.inputs();
         let layout = if direct { layout.with_direct_inputs((neurons - inputs) / 2) } else { layout };
-        prop_assume!(!direct || (neurons - inputs) % 2 == 0);
+        prop_assume!(!direct || (neurons - inputs).is_multiple_of(2));
         let images = |count: usize| (0..count).rev().collect::<Vec<usize>>();
         let (of_inputs, of_neurons) = (images(if direct { 0 } else { inputs }), images(neurons));
         let symmetry = CtrnnSymmetry::new(layout, &of_inputs, &of_neurons)?;
