@@ -18,7 +18,7 @@ use core::hint::black_box;
 use farsa::body::{
     Actuated, ActuatorId, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor,
 };
-use farsa::nn::{Controller, Layout, Leak, Network};
+use farsa::nn::{Architecture, BlockLayout, BlockNetwork, Controller, Ctrnn, CtrnnLayout, Layout, Leak, Network, Plan};
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::Spatial;
 
@@ -74,6 +74,26 @@ impl Actuated for Board {
 const LAYOUT: Layout = Layout::new(1, 2, 1);
 static PARAMETERS: [f32; LAYOUT.parameter_count()] = [1.0, -1.0, 0.5, 0.0, 0.0, 0.5, 2.0, -2.0, 0.1, 0.1, 0.5, 0.5];
 
+const PLAN: Plan = Architecture::elman(1, 2, 1).plan();
+const BLOCKS: BlockLayout = PLAN.layout();
+const CONTINUOUS: CtrnnLayout = CtrnnLayout::new(1, 2, 1);
+
+/// The other networks, from constants.
+fn other_networks() -> Result<(), i32> {
+    let mut blocks =
+        BlockNetwork::new(BLOCKS, Leak::Filter, [0.5; BLOCKS.parameter_count()], [0.0; BLOCKS.state_len()])
+            .map_err(|_| 6)?;
+    let mut continuous =
+        Ctrnn::new(CONTINUOUS, 0.1, [1.0; CONTINUOUS.parameter_count()], [0.0; CONTINUOUS.state_len()])
+            .map_err(|_| 7)?;
+    let (mut y, mut z) = ([0.0], [0.0]);
+    for _ in 0..100 {
+        blocks.step(&[1.0], &mut y);
+        continuous.step(&y, &mut z);
+    }
+    if 0.5 < y[0] && y[0] < 1.0 && y[0] < z[0] && z[0] < 1.0 { Ok(()) } else { Err(8) }
+}
+
 /// The four-line loop on a board: 0 if it ran, else the number of what failed.
 fn on_a_board() -> Result<(), i32> {
     let mut sensor = JointPosition::new(JointId(0), -1.0, 1.0).map_err(|_| 1)?;
@@ -103,7 +123,7 @@ fn on_a_board() -> Result<(), i32> {
 // SAFETY: the one `main` of the program, with the C library's signature less the arguments, which C allows.
 #[unsafe(no_mangle)]
 extern "C" fn main() -> i32 {
-    if let Err(what) = on_a_board() {
+    if let Err(what) = on_a_board().and_then(|()| other_networks()) {
         return what;
     }
     #[cfg(feature = "alloc")]

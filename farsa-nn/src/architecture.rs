@@ -14,6 +14,7 @@ use crate::{Activation, Block, BlockLayout, Group, Span};
 /// assert_eq!(PLAN.layout().parameter_count(), Layout::new(29, 12, 23).parameter_count());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a connection that is there or is not")]
 pub struct Architecture {
     inputs: usize,
     hidden: Group,

@@ -111,6 +111,27 @@ pub enum Error {
         /// Number of neurons.
         neurons: usize,
     },
+    /// There are other mirror images than inputs or neurons.
+    MirrorLen {
+        /// Number of inputs or neurons.
+        expected: usize,
+        /// Number of mirror images.
+        found: usize,
+    },
+    /// The mirror image of an input or of a neuron is not there, or has another mirror image.
+    Mirror {
+        /// The number of the input or neuron.
+        index: usize,
+        /// Its mirror image.
+        image: usize,
+    },
+    /// A line of a text is not what it should be.
+    Text {
+        /// Its number; the first is 1.
+        line: usize,
+        /// What should stand there.
+        expected: &'static str,
+    },
     /// No integrator has this name.
     UnknownIntegrator,
     /// No activation function has this name.
@@ -156,6 +177,11 @@ impl fmt::Display for Error {
                 f,
                 "block {index} has {count} neurons from neuron {first} on where the layout has {neurons} neurons"
             ),
+            Self::MirrorLen { expected, found } => write!(f, "{found} mirror images where there are {expected}"),
+            Self::Mirror { index, image } => {
+                write!(f, "the mirror image of {index} is {image}, which is not there or has another mirror image")
+            }
+            Self::Text { line, expected } => write!(f, "line {line}: expected {expected}"),
             Self::UnknownIntegrator => {
                 f.write_str("unknown integrator: one of euler, exponential-euler, runge-kutta-4")
             }

@@ -71,7 +71,7 @@ impl Leak {
     ///
     /// `None` for [`Leak::TwoTap`] and for a time constant below zero.
     pub fn of_time_constant(self, time_constant: f32, time_step: f32) -> Option<f32> {
-        if !(time_constant >= 0.0) {
+        if time_constant.is_nan() || time_constant < 0.0 {
             return None;
         }
         let x = f64::from(time_step) / f64::from(time_constant);

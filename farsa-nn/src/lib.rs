@@ -9,16 +9,21 @@ mod architecture;
 mod block;
 mod block_kernel;
 mod block_layout;
+#[cfg(feature = "alloc")]
+mod block_layout_buf;
 mod block_network;
 mod bytes;
 mod bytes_error;
 mod bytes_frame;
+mod centre_crossing;
 mod controller;
 mod ctrnn;
 mod ctrnn_layout;
 mod dynamics;
 mod error;
 mod evonet;
+#[cfg(feature = "alloc")]
+mod evonet_text;
 mod fixed_logistic;
 mod fixed_network;
 mod fixed_scale;
@@ -36,11 +41,14 @@ mod network;
 mod optimizer;
 mod perceptron;
 mod perceptron_lanes;
+mod symmetry;
 
 pub use activation::Activation;
 pub use architecture::{Architecture, Plan};
 pub use block::{Block, Group, Span};
 pub use block_layout::{BlockLayout, BlockParameter};
+#[cfg(feature = "alloc")]
+pub use block_layout_buf::BlockLayoutBuf;
 pub use block_network::BlockNetwork;
 pub use bytes::{Aligned, NetworkBytes, channel_hash};
 pub use bytes_error::BytesError;
@@ -49,6 +57,8 @@ pub use ctrnn::Ctrnn;
 pub use ctrnn_layout::{CtrnnLayout, CtrnnParameter, CtrnnParts};
 pub use error::Error;
 pub use evonet::EvonetRanges;
+#[cfg(feature = "alloc")]
+pub use evonet_text::Evonet;
 pub use fixed_network::FixedNetwork;
 pub use fixed_scale::FixedScale;
 #[cfg(feature = "alloc")]
@@ -63,3 +73,4 @@ pub use network::Network;
 pub use optimizer::{Adam, Momentum, Optimizer};
 pub use perceptron::Perceptron;
 pub use perceptron_lanes::PerceptronLanes;
+pub use symmetry::CtrnnSymmetry;

@@ -6,8 +6,8 @@ use farsa_nn::Activation;
 fn each(stride: usize, mut visit: impl FnMut(f32)) {
     let most = f32::MAX.to_bits();
     visit(f32::MIN);
-    (0..most + 1).rev().step_by(stride).for_each(|bits| visit(-f32::from_bits(bits)));
-    (0..most + 1).step_by(stride).for_each(|bits| visit(f32::from_bits(bits)));
+    (0..=most).rev().step_by(stride).for_each(|bits| visit(-f32::from_bits(bits)));
+    (0..=most).step_by(stride).for_each(|bits| visit(f32::from_bits(bits)));
     visit(f32::MAX);
 }
 

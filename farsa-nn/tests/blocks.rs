@@ -339,7 +339,8 @@ fn a_lesion_holds_what_it_is_told() -> Result<(), Error> {
     assert_eq!((without.network().hidden()[4], y[1]), (0.75, 0.125));
     assert_ne!(y[0], z[0]);
     without.set_lesions(&[]);
-    (without.reset(), whole.reset());
+    without.reset();
+    whole.reset();
     without.step(&[1.0], &mut y);
     whole.step(&[1.0], &mut z);
     assert_eq!((y, without.network().hidden()), (z, whole.hidden()));

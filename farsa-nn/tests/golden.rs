@@ -1,6 +1,9 @@
 //! The bits of a long run: a change here is value-breaking and has its heading in the changelog.
 
-use farsa_nn::{Controller, FixedNetwork, FixedScale, Layout, Leak, Network, ParameterKind};
+use farsa_nn::{
+    Architecture, BlockNetwork, BlockParameter, Controller, Ctrnn, CtrnnLayout, FixedNetwork, FixedScale, Integrator,
+    Layout, Leak, Network, ParameterKind,
+};
 use farsa_num::{Digest, Domain, Stream};
 
 #[test]
@@ -53,4 +56,50 @@ fn a_hundred_thousand_steps_in_fixed_point() {
     let digests = Leak::ALL.map(run);
     let expected = [0xA03A_A352_FB5E_3AE7, 0x960F_7D67_C025_0001, 0x3986_2CAB_1601_3E9D];
     assert_eq!(digests, expected, "{digests:#018x?}");
+}
+
+#[test]
+fn a_hundred_thousand_steps_of_continuous_networks() {
+    let run = |integrator| {
+        let layout = CtrnnLayout::new(3, 13, 4).with_integrator(integrator);
+        let mut stream = Stream::new(1995, Domain::InitialGenome, 0, 0, 0);
+        let mut parameters = vec![0.0; layout.parameter_count()];
+        layout.draw_centre_crossing(&mut stream, 16.0, [0.1, 2.0], &mut parameters).expect("as many");
+        let mut network = Ctrnn::new(layout, 0.05, parameters, vec![0.0; layout.state_len()]).expect("valid");
+        let mut inputs = Stream::new(1995, Domain::Network, 0, 0, 0);
+        let (mut x, mut y, mut digest) = ([0.0; 3], [0.0; 4], Digest::new());
+        for _ in 0..100_000 {
+            x.fill_with(|| inputs.range(-1.0, 1.0));
+            network.step(&x, &mut y);
+            digest.add_f32s(network.states());
+            digest.add_f32s(&y);
+        }
+        digest.finish()
+    };
+    let digests = Integrator::ALL.map(run);
+    let expected = [0x1469_73AD_2E4A_7CEB, 0x3082_DC8B_DFAD_5315, 0xC7A5_D73B_F27C_3B55];
+    assert_eq!(digests, expected, "{digests:#018x?}");
+}
+
+#[test]
+fn a_hundred_thousand_steps_of_blocks() {
+    let plan =
+        Architecture::jordan(5, 11, 3).with_recurrent_outputs().with_leaks().with_gains().with_input_delay(3).plan();
+    let layout = plan.layout();
+    let mut genes = Stream::new(1986, Domain::InitialGenome, 0, 0, 0);
+    let draw = |kind| match kind {
+        BlockParameter::Leak | BlockParameter::Gain => genes.uniform(),
+        _ => genes.range(-6.0, 6.0),
+    };
+    let parameters: Vec<f32> = layout.kinds().map(draw).collect();
+    let mut network =
+        BlockNetwork::new(layout, Leak::Evonet, parameters, vec![0.0; layout.state_len()]).expect("valid");
+    let mut inputs = Stream::new(1986, Domain::Network, 0, 0, 0);
+    let (mut x, mut y, mut digest) = ([0.0; 5], [0.0; 3], Digest::new());
+    for _ in 0..100_000 {
+        x.fill_with(|| inputs.range(-1.0, 1.0));
+        network.step(&x, &mut y);
+        digest.add_f32s(network.activations());
+    }
+    assert_eq!(digest.finish(), 0x34DA_F7C5_794A_E741, "{:#018x}", digest.finish());
 }

@@ -1,0 +1,80 @@
+//! Layouts of blocks that are put together at run time.
+
+use alloc::vec::Vec;
+
+use crate::{Activation, Block, BlockLayout, Group, Plan, Span};
+
+/// Groups and blocks that a [`BlockLayout`] borrows, on the heap; with feature `alloc`.
+///
+/// ```
+/// use farsa_nn::{BlockLayoutBuf, BlockNetwork, Controller, Leak};
+///
+/// let deep = BlockLayoutBuf::feed_forward(&[29, 20, 12, 23]);
+/// let layout = deep.layout();
+/// let parameters = vec![0.1; layout.parameter_count()];
+/// let mut network = BlockNetwork::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?;
+/// let mut y = [0.0; 23];
+/// network.step(&[0.5; 29], &mut y);
+/// assert!(y[0] > 0.5);
+/// # Ok::<(), farsa_nn::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BlockLayoutBuf {
+    /// Number of inputs.
+    pub inputs: usize,
+    /// Number of outputs.
+    pub outputs: usize,
+    /// The groups.
+    pub groups: Vec<Group>,
+    /// The blocks.
+    pub blocks: Vec<Block>,
+}
+
+impl BlockLayoutBuf {
+    /// Layers of so many neurons each, the inputs first and the outputs last; all but the inputs are logistic with slope 1 and
+    /// biases.
+    pub fn feed_forward(layers: &[usize]) -> Self {
+        let mut layout = Self {
+            inputs: layers.first().copied().unwrap_or(0),
+            outputs: layers.last().copied().unwrap_or(0),
+            ..Self::default()
+        };
+        let mut last = Span::new(0, 0);
+        for (index, &neurons) in layers.iter().enumerate() {
+            let span = Span::new(last.end(), neurons);
+            let group = match index {
+                0 => Group::new(neurons, Activation::Linear),
+                _ => Group::new(neurons, Activation::Logistic).with_biases(),
+            };
+            layout.groups.push(group);
+            if index > 0 {
+                layout.blocks.push(Block::connect(last, span));
+            }
+            layout.blocks.push(Block::Update(span));
+            last = span;
+        }
+        layout
+    }
+
+    /// The layout.
+    pub fn layout(&self) -> BlockLayout<'_> {
+        BlockLayout::new(self.inputs, self.outputs, &self.groups, &self.blocks)
+    }
+}
+
+impl From<BlockLayout<'_>> for BlockLayoutBuf {
+    fn from(layout: BlockLayout<'_>) -> Self {
+        Self {
+            inputs: layout.inputs(),
+            outputs: layout.outputs(),
+            groups: layout.groups().to_vec(),
+            blocks: layout.blocks().to_vec(),
+        }
+    }
+}
+
+impl From<Plan> for BlockLayoutBuf {
+    fn from(plan: Plan) -> Self {
+        plan.layout().into()
+    }
+}

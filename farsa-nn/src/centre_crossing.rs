@@ -1,0 +1,72 @@
+//! Biases with which every neuron of a continuous-time network works where its function is steepest.
+
+use farsa_num::Stream;
+
+use crate::{CtrnnLayout, CtrnnParameter, Error};
+
+impl CtrnnLayout {
+    /// Sets the biases to `theta_i = - sum_j w_ji / 2`: the nullclines of all neurons cross at the centres of their
+    /// functions, where the network is most likely to do something.
+    ///
+    /// For the logistic function; with tanh, whose centre is 0, the biases are 0. Inputs are taken to be at rest.
+    ///
+    /// Source: `[Mathayomchan2002]` eq. 3; no deviation for the logistic function.
+    ///
+    /// ```
+    /// use farsa_nn::CtrnnLayout;
+    ///
+    /// let layout = CtrnnLayout::new(0, 2, 1);
+    /// let mut parameters = [4.0, -2.0, 6.0, 3.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+    /// layout.centre_crossing(&mut parameters)?;
+    /// assert_eq!(layout.split(&parameters).biases, [-5.0, -0.5]);
+    /// # Ok::<(), farsa_nn::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`]; then the parameters are unchanged.
+    pub fn centre_crossing(&self, parameters: &mut [f32]) -> Result<(), Error> {
+        let (expected, found) = (self.parameter_count(), parameters.len());
+        if expected != found {
+            return Err(Error::ParameterCount { expected, found });
+        }
+        let middle = self.activation().of(0.0);
+        let (weights, rest) = parameters.split_at_mut(self.range(CtrnnParameter::Bias).start);
+        let weights = weights.get(self.range(CtrnnParameter::Weight)).unwrap_or(&[]);
+        for (i, bias) in rest.iter_mut().take(self.neurons()).enumerate() {
+            let sum: f32 = weights.iter().skip(i).step_by(self.neurons()).sum();
+            // 0 and not -0 without weights.
+            *bias = 0.0 - sum * middle;
+        }
+        Ok(())
+    }
+
+    /// Draws a centre-crossing network: weights, and those of inputs, in `[-weight, weight)`, gains of 1, time constants in
+    /// `[shortest, longest)`, and the biases of [`centre_crossing`](Self::centre_crossing).
+    ///
+    /// Draws one word for each weight and each time constant, in their order.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`]; then the parameters are unchanged and nothing is drawn.
+    pub fn draw_centre_crossing(
+        &self,
+        stream: &mut Stream,
+        weight: f32,
+        time_constants: [f32; 2],
+        parameters: &mut [f32],
+    ) -> Result<(), Error> {
+        let (expected, found) = (self.parameter_count(), parameters.len());
+        if expected != found {
+            return Err(Error::ParameterCount { expected, found });
+        }
+        let [shortest, longest] = time_constants;
+        for (p, kind) in parameters.iter_mut().zip(self.kinds()) {
+            *p = match kind {
+                CtrnnParameter::InputWeight | CtrnnParameter::Weight => stream.range(-weight, weight),
+                CtrnnParameter::Bias => 0.0,
+                CtrnnParameter::Gain => 1.0,
+                CtrnnParameter::TimeConstant => stream.range(shortest, longest),
+            };
+        }
+        self.centre_crossing(parameters)
+    }
+}

@@ -1,0 +1,189 @@
+//! The text in which the original keeps its networks: `.net` and `.phe`.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::str::FromStr;
+
+use crate::{Activation, Block, BlockLayoutBuf, Error, EvonetRanges, Group, Span};
+
+/// A network of the original FARSA, read from its text; with feature `alloc`.
+///
+/// A `.net` file is these lines:
+///
+/// | lines | what is in them |
+/// |---|---|
+/// | `ARCHITECTURE` | |
+/// | `nneurons N`, `nsensors n`, `nmotors m`, `nblocks B` | the sensors are the first neurons, the motors the last |
+/// | `B` lines of six whole numbers | kind, first and number of the targets, first and number of the sources, unused; kinds are 0 connect, 1 update, 2 gain, 3 gain modulated by the first source |
+/// | a line of titles | |
+/// | `N` lines of six whole numbers | bias (0, 1), type, gain (0, 1), and three for its display; types are 0 logistic or an input as it is, 1 the same with a leak, 2 step, 3 logistic with slope 0.2 |
+/// | `END` | |
+///
+/// A `.phe` file has before its `END` a line `FREE PARAMETERS P` and `P` lines, each of a parameter, of its mutation rate, and
+/// of words that name it; `*` is a parameter that evolution draws, or a rate that it sets. In older files there is no rate, and
+/// such parameters are -99. What stands in a line after its numbers is not read, lines without anything are passed over.
+///
+/// Source: `[FARSA2]`. Deviations: a line that is not as described is an error, where the source reads on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evonet {
+    /// The layout.
+    pub layout: BlockLayoutBuf,
+    /// The parameters in the original's order; `None` for one that evolution draws. Empty in a `.net` file.
+    pub numbers: Vec<Option<f32>>,
+    /// Their mutation rates, as they stand there; `None` for one that evolution sets.
+    pub mutations: Vec<Option<f32>>,
+}
+
+impl Evonet {
+    /// The parameters of the [`layout`](Self::layout) in the order of a [`BlockLayout`](crate::BlockLayout).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] with the place in the original's order for a parameter that evolution draws;
+    /// [`Error::ParameterCount`] in a `.net` file.
+    pub fn parameters(&self, ranges: EvonetRanges) -> Result<Vec<f32>, Error> {
+        if let Some(index) = self.numbers.iter().position(Option::is_none) {
+            return Err(Error::NotFinite { index });
+        }
+        let layout = self.layout.layout();
+        let (expected, found) = (layout.parameter_count(), self.numbers.len());
+        if expected != found {
+            return Err(Error::ParameterCount { expected, found });
+        }
+        let mut parameters = vec![0.0; expected];
+        layout.read_evonet(ranges, self.numbers.iter().flatten().copied(), &mut parameters)?;
+        Ok(parameters)
+    }
+}
+
+impl FromStr for Evonet {
+    type Err = Error;
+
+    /// Reads a `.net` or a `.phe` file.
+    ///
+    /// # Errors
+    /// [`Error::Text`] with the line; [`Error::Neurons`] or [`Error::Block`] for neurons that are not there;
+    /// [`Error::ParameterCount`] when there are other parameters than the network has.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let mut lines = Lines { rest: text, line: 0 };
+        lines.begins("ARCHITECTURE")?;
+        let neurons = lines.number("nneurons", "`nneurons` and a number")?;
+        let inputs = lines.number("nsensors", "`nsensors` and a number")?;
+        let outputs = lines.number("nmotors", "`nmotors` and a number")?;
+        let count = lines.number("nblocks", "`nblocks` and a number")?;
+        let mut layout = BlockLayoutBuf { inputs, outputs, ..BlockLayoutBuf::default() };
+        for _ in 0..count {
+            let block = lines.six("a block: six whole numbers, the first from 0 to 3")?;
+            let [kind, first, targets, from, sources, _] = block;
+            let (to, from) = (Span::new(first, targets), Span::new(from, sources));
+            layout.blocks.push(match kind {
+                0 => Block::connect(from, to),
+                1 => Block::Update(to),
+                2 => Block::Gain(to),
+                3 => Block::ModulatedGain { neurons: to, by: from.first },
+                _ => return Err(lines.wrong("a block: six whole numbers, the first from 0 to 3")),
+            });
+        }
+        lines.begins("neurons bias")?;
+        for neuron in 0..neurons {
+            let expected = "a neuron: six whole numbers, bias and gain 0 or 1, type from 0 to 3";
+            let group = match lines.six(expected)? {
+                [bias @ 0..=1, kind @ 0..=3, gain @ 0..=1, ..] => {
+                    let activation = match kind {
+                        _ if neuron < inputs => Activation::Linear,
+                        2 => Activation::Step,
+                        _ => Activation::Logistic,
+                    };
+                    let slope = if kind == 3 && neuron >= inputs { 0.2 } else { 1.0 };
+                    Group { neurons: 1, activation, slope, bias: bias == 1, gain: gain == 1, leak: kind == 1 }
+                }
+                _ => return Err(lines.wrong(expected)),
+            };
+            match layout.groups.last_mut() {
+                Some(last) if (Group { neurons: 1, ..*last }) == group => last.neurons += 1,
+                _ => layout.groups.push(group),
+            }
+        }
+        let mut network = Self { layout, ..Self::default() };
+        let last = lines.next("`END` or `FREE PARAMETERS` and their number")?;
+        if let Some(found) = last.strip_prefix("FREE PARAMETERS") {
+            let found = found.trim().parse().map_err(|_| lines.wrong("`FREE PARAMETERS` and their number"))?;
+            network.layout.layout().check()?;
+            let expected = network.layout.layout().parameter_count();
+            if expected != found {
+                return Err(Error::ParameterCount { expected, found });
+            }
+            for _ in 0..found {
+                let (number, mutation) = lines.parameter()?;
+                network.numbers.push(number);
+                network.mutations.push(mutation);
+            }
+            lines.begins("END")?;
+        } else if last != "END" {
+            return Err(lines.wrong("`END` or `FREE PARAMETERS` and their number"));
+        }
+        network.layout.layout().check()?;
+        Ok(network)
+    }
+}
+
+/// The lines that have something in them.
+struct Lines<'a> {
+    rest: &'a str,
+    /// The number of the line read last; the first is 1.
+    line: usize,
+}
+
+impl<'a> Lines<'a> {
+    fn wrong(&self, expected: &'static str) -> Error {
+        Error::Text { line: self.line, expected }
+    }
+
+    fn next(&mut self, expected: &'static str) -> Result<&'a str, Error> {
+        while !self.rest.is_empty() {
+            let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
+            self.rest = rest;
+            self.line += 1;
+            if !line.trim().is_empty() {
+                return Ok(line.trim());
+            }
+        }
+        self.line += 1;
+        Err(self.wrong(expected))
+    }
+
+    fn begins(&mut self, word: &'static str) -> Result<(), Error> {
+        if self.next(word)?.starts_with(word) { Ok(()) } else { Err(self.wrong(word)) }
+    }
+
+    fn number(&mut self, name: &str, expected: &'static str) -> Result<usize, Error> {
+        let number = self.next(expected)?.strip_prefix(name).and_then(|rest| rest.trim().parse().ok());
+        number.ok_or_else(|| self.wrong(expected))
+    }
+
+    fn six(&mut self, expected: &'static str) -> Result<[usize; 6], Error> {
+        let mut words = self.next(expected)?.split_whitespace();
+        let mut numbers = [0; 6];
+        for number in &mut numbers {
+            *number = words.next().and_then(|word| word.parse().ok()).ok_or_else(|| self.wrong(expected))?;
+        }
+        Ok(numbers)
+    }
+
+    /// A parameter and its mutation rate.
+    fn parameter(&mut self) -> Result<(Option<f32>, Option<f32>), Error> {
+        const EXPECTED: &str = "a parameter: a number or `*`, and its mutation rate";
+        let mut words = self.next(EXPECTED)?.split_whitespace();
+        let mut word = || match words.next() {
+            Some("*") => Some(None),
+            Some(word) => word.parse().ok().filter(|number: &f32| number.is_finite()).map(Some),
+            None => None,
+        };
+        let number = word().ok_or_else(|| self.wrong(EXPECTED))?;
+        Ok(match word() {
+            Some(mutation) => (number, mutation),
+            // An older file: what is given does not mutate.
+            None if number == Some(-99.0) => (None, None),
+            None => (number, Some(0.0)),
+        })
+    }
+}

@@ -1,0 +1,154 @@
+//! Bilateral symmetry: few genes, of which each fills every parameter that must be the same.
+
+use crate::{CtrnnLayout, CtrnnParameter, Error, Span};
+
+/// Which parameters of a [`Ctrnn`](crate::Ctrnn) are one gene, because the network is its own mirror image, because neurons
+/// are alike, or not at all, because a link does not exist.
+///
+/// A weight from `j` to `i` is that from the mirror image of `j` to the mirror image of `i`; biases, gains and time constants
+/// are those of the mirror image. Genes lie in the order of the first parameters that they fill.
+///
+/// ```
+/// use farsa_nn::{CtrnnLayout, CtrnnSymmetry, Span};
+///
+/// // Beer's agent: seven neurons of rays, all alike; five between; two motors. Each layer is mirrored on itself.
+/// const LAYOUT: CtrnnLayout = CtrnnLayout::new(7, 14, 2).with_direct_inputs(0);
+/// const RAYS: Span = Span::new(0, 7);
+/// const INNER: Span = Span::new(7, 5);
+/// const MOTORS: Span = Span::new(12, 2);
+/// let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &[6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12])?
+///     .with_links(&[(RAYS, INNER), (INNER, INNER), (INNER, MOTORS)])
+///     .with_alike(&[RAYS])
+///     .with_unit_gains();
+/// // With the gain of the rays, which is not the network's, they are the 47 of the source.
+/// assert_eq!(symmetry.gene_count(), 46);
+/// let mut parameters = [0.0; LAYOUT.parameter_count()];
+/// symmetry.expand(&[1.5; 46], &mut parameters)?;
+/// # Ok::<(), farsa_nn::Error>(())
+/// ```
+///
+/// Source: `[Beer1996]`, which gives the number for its agent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CtrnnSymmetry<'a> {
+    layout: CtrnnLayout,
+    inputs: &'a [usize],
+    neurons: &'a [usize],
+    /// `None` for all.
+    links: Option<&'a [(Span, Span)]>,
+    alike: &'a [Span],
+    unit_gains: bool,
+}
+
+/// Where a parameter comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Origin {
+    /// A gene of its own.
+    Gene,
+    /// The parameter at this lower index.
+    Parameter(usize),
+    Constant(f32),
+}
+
+impl<'a> CtrnnSymmetry<'a> {
+    /// A network in which the mirror image of each input `[inputs; empty where inputs are direct]` and of each neuron
+    /// `[neurons]` is given by its number; in the middle that is its own.
+    ///
+    /// # Errors
+    /// [`Error::MirrorLen`] for other lengths, [`Error::Mirror`] for one whose mirror image is not there or has another image.
+    pub fn new(layout: CtrnnLayout, inputs: &'a [usize], neurons: &'a [usize]) -> Result<Self, Error> {
+        let weighted = if layout.direct_inputs().is_some() { 0 } else { layout.inputs() };
+        for (images, expected) in [(inputs, weighted), (neurons, layout.neurons())] {
+            if images.len() != expected {
+                return Err(Error::MirrorLen { expected, found: images.len() });
+            }
+            let strayed = |(index, image): &(usize, &usize)| images.get(**image) != Some(index);
+            if let Some((index, &image)) = images.iter().enumerate().find(strayed) {
+                return Err(Error::Mirror { index, image });
+            }
+        }
+        Ok(Self { layout, inputs, neurons, links: None, alike: &[], unit_gains: false })
+    }
+
+    /// The same with links between these neurons only, each from all of one span to all of another; other weights between
+    /// neurons are zero.
+    pub const fn with_links(self, links: &'a [(Span, Span)]) -> Self {
+        Self { links: Some(links), ..self }
+    }
+
+    /// The same with one bias, one gain and one time constant for all neurons of each of these spans.
+    pub const fn with_alike(self, alike: &'a [Span]) -> Self {
+        Self { alike, ..self }
+    }
+
+    /// The same with gains of 1.
+    pub const fn with_unit_gains(self) -> Self {
+        Self { unit_gains: true, ..self }
+    }
+
+    /// Number of genes.
+    pub fn gene_count(&self) -> usize {
+        self.kinds().count()
+    }
+
+    /// What each gene is, in their order, for decoding a genome.
+    pub fn kinds(&self) -> impl Iterator<Item = CtrnnParameter> + use<'a> {
+        let symmetry = *self;
+        let genes = symmetry.layout.kinds().enumerate();
+        genes.filter(move |(index, kind)| symmetry.origin(*kind, *index) == Origin::Gene).map(|(_, kind)| kind)
+    }
+
+    /// Fills the parameters [[`parameter_count`](CtrnnLayout::parameter_count)] from decoded genes
+    /// [[`gene_count`](Self::gene_count)].
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`] when one of the slices has another length; the parameters are then unchanged.
+    pub fn expand(&self, genes: &[f32], parameters: &mut [f32]) -> Result<(), Error> {
+        for (expected, found) in [(self.gene_count(), genes.len()), (self.layout.parameter_count(), parameters.len())] {
+            if expected != found {
+                return Err(Error::ParameterCount { expected, found });
+            }
+        }
+        let mut genes = genes.iter();
+        for (index, kind) in self.layout.kinds().enumerate() {
+            let value = match self.origin(kind, index) {
+                Origin::Gene => genes.next().copied(),
+                Origin::Parameter(first) => parameters.get(first).copied(),
+                Origin::Constant(value) => Some(value),
+            };
+            if let (Some(to), Some(value)) = (parameters.get_mut(index), value) {
+                *to = value;
+            }
+        }
+        Ok(())
+    }
+
+    fn origin(&self, kind: CtrnnParameter, index: usize) -> Origin {
+        let start = self.layout.range(kind).start;
+        let place = index - start;
+        let image = |images: &[usize], one: usize| images.get(one).copied().unwrap_or(one);
+        let neurons = self.layout.neurons().max(1);
+        let (from, to) = (place / neurons, place % neurons);
+        let mirrored = image(self.neurons, to);
+        let first = match kind {
+            CtrnnParameter::Weight if !self.linked(from, to) => return Origin::Constant(0.0),
+            CtrnnParameter::Gain if self.unit_gains => return Origin::Constant(1.0),
+            CtrnnParameter::Weight => place.min(image(self.neurons, from) * neurons + mirrored),
+            CtrnnParameter::InputWeight => place.min(image(self.inputs, from) * neurons + mirrored),
+            _ => self.first_alike(place).min(self.first_alike(mirrored)),
+        };
+        if first == place { Origin::Gene } else { Origin::Parameter(start + first) }
+    }
+
+    /// Whether the link or its mirror image exists.
+    fn linked(&self, from: usize, to: usize) -> bool {
+        let images = [from, to].map(|one| self.neurons.get(one).copied().unwrap_or(one));
+        self.links.is_none_or(|links| {
+            let has = |a, b| links.iter().any(|(sources, targets)| sources.contains(a) && targets.contains(b));
+            has(from, to) || has(images[0], images[1])
+        })
+    }
+
+    fn first_alike(&self, neuron: usize) -> usize {
+        self.alike.iter().find(|span| span.contains(neuron)).map_or(neuron, |span| span.first)
+    }
+}
