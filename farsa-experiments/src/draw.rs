@@ -87,7 +87,7 @@ pub(crate) fn draw(
     let outcome = relived.live(trial, &mut recording);
     let tick = tick_at(&recording, time)?;
     let camera = camera.unwrap_or(Camera::for_view(recording.stage().view));
-    let mut picture = moment(&recording, tick).ok_or_else(|| {
+    let mut picture = recording.picture(tick).ok_or_else(|| {
         Error::Usage(format!("{}: lives of `{}` have no bodies to draw", directory.path().display(), plan.name()))
     })?;
     let seconds = recording.times()[tick];
@@ -127,7 +127,7 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     }
     let Some((_, trial, recording)) = best else { return Ok(None) };
     let Some(last) = recording.times().len().checked_sub(1) else { return Ok(None) };
-    let Some(mut picture) = moment(&recording, last) else { return Ok(None) };
+    let Some(mut picture) = recording.picture(last) else { return Ok(None) };
     picture.caption = Some(format!("{}: champion, trial {trial}, {:.2} s", plan.name(), recording.times()[last]));
     Ok(Some(picture.svg(Camera::for_view(recording.stage().view), REPORT_SIZE, prefix)))
 }
@@ -148,41 +148,45 @@ fn tick_at(recording: &Recording, time: Option<f64>) -> Result<usize, Error> {
     Ok(if nearer { tick - 1 } else { tick })
 }
 
-/// What is to be seen at a tick; `None` if the recording has no bodies.
-fn moment(recording: &Recording, tick: usize) -> Option<Picture> {
-    let stage = recording.stage();
-    if stage.robot.is_none() && stage.props.is_empty() {
-        return None;
-    }
-    let mut picture = Picture::default();
-    let pose = |body| recording.pose_at(tick, body).map_or_else(Pose::identity, |pose| pose.cast());
-    if let Some(robot) = &stage.robot {
-        picture.add_robot(robot, pose);
-    }
-    let place = |prop: &Prop| prop.placed(&prop.body.map_or_else(Pose::identity, pose));
-    picture.shapes.extend(stage.props.iter().map(place));
-    if stage.view == View::Top {
-        picture.trails = trails(recording, tick);
-        // What stands around belongs into the frame: an arena is seen whole.
-        let walls = picture.shapes.iter().filter(|placed| matches!(placed.form, Form::Box { .. }));
-        let corners = |placed: &Placed| {
-            placed.form.hull().into_iter().map(|(corner, _)| placed.pose.transform(corner)).collect::<Vec<_>>()
+impl Recording {
+    /// What is to be seen at a tick, as `farsa draw` shows it; `None` if there is no such tick, or no bodies.
+    ///
+    /// A view from above also shows the ways that robots went up to then.
+    pub fn picture(&self, tick: usize) -> Option<Picture> {
+        let stage = self.stage();
+        if tick >= self.times().len() || (stage.robot.is_none() && stage.props.is_empty()) {
+            return None;
+        }
+        let mut picture = Picture::default();
+        let pose = |body| self.pose_at(tick, body).map_or_else(Pose::identity, |pose| pose.cast());
+        if let Some(robot) = &stage.robot {
+            picture.add_robot(robot, pose);
+        }
+        let place = |prop: &Prop| prop.placed(&prop.body.map_or_else(Pose::identity, pose));
+        picture.shapes.extend(stage.props.iter().map(place));
+        if stage.view == View::Top {
+            picture.trails = trails(self, tick);
+            // What stands around belongs into the frame: an arena is seen whole.
+            let walls = picture.shapes.iter().filter(|placed| matches!(placed.form, Form::Box { .. }));
+            let corners = |placed: &Placed| {
+                placed.form.hull().into_iter().map(|(corner, _)| placed.pose.transform(corner)).collect::<Vec<_>>()
+            };
+            picture.frame = walls.flat_map(corners).collect();
+        }
+        let f64_of = |position: [f32; 3]| position.map(f64::from);
+        picture.contacts = (self.contacts_at(tick).iter())
+            .map(|contact| Push { point: f64_of(contact.point), force: f64_of(contact.force) })
+            .collect();
+        picture.rays = (self.rays_at(tick).iter())
+            .map(|ray| Beam { from: f64_of(ray.from), to: f64_of(ray.to), hit: ray.met })
+            .collect();
+        let point = |(index, name): (usize, &String)| {
+            let position = self.point_at(tick, index)?;
+            position.iter().all(|x| x.is_finite()).then(|| (name.clone(), f64_of(position)))
         };
-        picture.frame = walls.flat_map(corners).collect();
+        picture.points = stage.points.iter().enumerate().filter_map(point).collect();
+        Some(picture)
     }
-    let f64_of = |position: [f32; 3]| position.map(f64::from);
-    picture.contacts = (recording.contacts_at(tick).iter())
-        .map(|contact| Push { point: f64_of(contact.point), force: f64_of(contact.force) })
-        .collect();
-    picture.rays = (recording.rays_at(tick).iter())
-        .map(|ray| Beam { from: f64_of(ray.from), to: f64_of(ray.to), hit: ray.met })
-        .collect();
-    let point = |(index, name): (usize, &String)| {
-        let position = recording.point_at(tick, index)?;
-        position.iter().all(|x| x.is_finite()).then(|| (name.clone(), f64_of(position)))
-    };
-    picture.points = stage.points.iter().enumerate().filter_map(point).collect();
-    Some(picture)
 }
 
 /// The ways that robots went up to a tick, a little above the ground, each in the colour of its robot's hull.
@@ -245,10 +249,11 @@ mod tests {
 
     #[test]
     fn only_bodies_can_be_drawn() {
-        assert!(moment(&Recording::new(Stage::of_scalars(["x"])), 0).is_none());
+        assert!(Recording::new(Stage::of_scalars(["x"])).picture(0).is_none());
         let recording = recording(2);
         let robot = recording.stage().robot.as_ref().unwrap();
-        assert_eq!(moment(&recording, 1).unwrap().shapes.len(), robot.colliders.len());
+        assert_eq!(recording.picture(1).unwrap().shapes.len(), robot.colliders.len());
+        assert_eq!(recording.picture(2), None, "there are two ticks");
     }
 
     /// A round robot that drove a quarter of a circle between walls, and a post.
@@ -284,7 +289,7 @@ mod tests {
     #[test]
     fn an_arena_shows_its_props_and_the_way_of_its_robot() {
         let recording = arena();
-        let picture = moment(&recording, 20).unwrap();
+        let picture = recording.picture(20).unwrap();
         assert_eq!((picture.shapes.len(), picture.trails.len(), picture.rays.len()), (6, 1, 1));
         assert_eq!(picture.trails[0].0.len(), 21);
         // Twice the eight corners of two walls.

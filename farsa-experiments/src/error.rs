@@ -154,6 +154,28 @@ impl Error {
     }
 }
 
+/// What robots, worlds, sensors, networks and searches cannot be built from, so that `?` suffices in
+/// [`Experiment::prepare`](crate::Experiment::prepare).
+macro_rules! others {
+    ($($error:ty),+ $(,)?) => {
+        $(impl From<$error> for Error {
+            fn from(error: $error) -> Self {
+                Self::Other(error.to_string())
+            }
+        })+
+    };
+}
+
+others!(
+    farsa_body::RobotError,
+    farsa_body::ReadError,
+    farsa_body::ChannelError,
+    farsa_physics::articulated::ModelError,
+    farsa_physics::arena::ArenaError,
+    farsa_nn::Error,
+    farsa_evo::EvoError,
+);
+
 /// The name that takes the fewest changed, added, dropped or swapped letters.
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     valid.into_iter().min_by_key(|candidate| strsim::damerau_levenshtein(name, candidate))
@@ -228,5 +250,14 @@ mod tests {
         let error = Error::unknown("my.toml line 3", "key", "world.stpe", valid);
         assert_eq!(error.to_string(), "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`");
         assert_eq!(error.exit_code(), 2);
+    }
+
+    #[test]
+    fn what_cannot_be_built_says_why() {
+        fn wheels() -> Result<farsa_body::WheelVelocity<u8>, Error> {
+            Ok(farsa_body::WheelVelocity::new([0, 1], -2.0)?)
+        }
+        let error = wheels().unwrap_err();
+        assert_eq!((error.to_string().as_str(), error.exit_code()), ("largest speed is -2", 1));
     }
 }

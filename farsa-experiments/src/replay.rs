@@ -215,7 +215,7 @@ pub(crate) fn page(
 ) -> Result<Replayed, Error> {
     let title = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
     let mut page = Page::new(&title);
-    let mut add = |plan: &Plan<'_>, directory: &Directory| {
+    let mut add = |plan: &Plan<'_>, directory: &Directory| -> Result<Lived, Error> {
         let mut relived = Relived::find(plan, directory, which)?;
         let mut outcomes = Vec::new();
         for trial in relived.trials.clone() {

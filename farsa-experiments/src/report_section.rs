@@ -68,7 +68,7 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, program: &str) -> Result<V
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(char::to_uppercase);
-    let end = if text.ends_with('.') { "" } else { "." };
+    let end = if text.ends_with(['.', '?', '!']) { "" } else { "." };
     first.map_or_else(String::new, |first| format!("{first}{}{end}", letters.as_str()))
 }
 
