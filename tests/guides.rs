@@ -1,6 +1,8 @@
 //! The guides of `docs/guide` are what they say: their programs are those of `examples/guide`, what goes wrong is said so, and
 //! whoever follows them sees what they show.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -130,7 +132,7 @@ fn links_lead_somewhere_and_pictures_are_small() {
         for target in targets.filter(|target| !target.starts_with("http")) {
             let path = root().join("docs/guide").join(target.split('#').next().unwrap_or(target));
             assert!(path.exists(), "{name}.md: {target}");
-            if target.ends_with(".svg") {
+            if path.extension().is_some_and(|extension| extension == "svg") {
                 let size = fs::metadata(&path).expect("a picture").len();
                 assert!(size < 60_000, "{target}: {size} bytes");
             }
@@ -384,7 +386,8 @@ fn follow(name: &str, builder: Builder) {
             }
             "rust" if !block.file.is_empty() => {
                 let text = files.entry(block.file.clone()).or_default();
-                *text += &format!("{}{}", if text.is_empty() { "" } else { "\n" }, block.text);
+                *text += if text.is_empty() { "" } else { "\n" };
+                *text += &block.text;
                 let path = project.join(&block.file);
                 fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
                 fs::write(path, text).expect("a program");
