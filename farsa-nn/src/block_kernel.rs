@@ -138,18 +138,20 @@ impl Blocks<'_> {
     }
 }
 
+/// The responses of as many neurons as there are net inputs.
 #[inline(always)]
 fn respond<S: Scalar<Real = f32>>(simd: S::Simd, activation: Activation, slope: f32, net: &[f32], y: &mut [f32]) {
-    match activation {
+    let last = net.len().min(y.len()).checked_sub(S::LANES);
+    match (activation, last) {
         // Apart, because the others need no vectors to be fast.
-        Activation::Logistic => {
-            let (mut nets, mut responses) = (net.chunks_exact(S::LANES), y.chunks_exact_mut(S::LANES));
-            for (net, y) in (&mut nets).zip(&mut responses) {
-                logistic(S::splat(simd, slope) * S::load(simd, net)).store(y);
+        (Activation::Logistic, Some(last)) => {
+            let mut i = 0;
+            while i < last {
+                logistic(S::splat(simd, slope) * S::load(simd, &net[i..])).store(&mut y[i..]);
+                i += S::LANES;
             }
-            for (net, y) in nets.remainder().iter().zip(responses.into_remainder()) {
-                *y = logistic(slope * net);
-            }
+            // May overlap the one before it, with the same responses.
+            logistic(S::splat(simd, slope) * S::load(simd, &net[last..])).store(&mut y[last..]);
         }
         _ => net.iter().zip(y).for_each(|(net, y)| *y = activation.of(slope * net)),
     }

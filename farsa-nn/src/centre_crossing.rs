@@ -10,7 +10,7 @@ impl CtrnnLayout {
     ///
     /// For the logistic function; with tanh, whose centre is 0, the biases are 0. Inputs are taken to be at rest.
     ///
-    /// Source: `[Mathayomchan2002]` eq. 3; no deviation for the logistic function.
+    /// Source: `[Mathayomchan2002]`; no deviation for the logistic function.
     ///
     /// ```
     /// use farsa_nn::CtrnnLayout;

@@ -117,14 +117,14 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ctrnn<P, S> {
     /// Sets the states `y` `[neurons]`, and the outputs with them.
     ///
     /// # Errors
-    /// [`Error::StateLen`] or [`Error::NotFinite`] with the neuron's number; then the network is unchanged.
+    /// [`Error::StateLen`] or [`Error::StateNotFinite`]; then the network is unchanged.
     pub fn set_states(&mut self, states: &[f32]) -> Result<(), Error> {
         let (expected, found) = (self.layout.neurons(), states.len());
         if expected != found {
             return Err(Error::StateLen { expected, found });
         }
         if let Some(index) = states.iter().position(|y| !y.is_finite()) {
-            return Err(Error::NotFinite { index });
+            return Err(Error::StateNotFinite { index });
         }
         self.state.as_mut().iter_mut().zip(states).for_each(|(own, new)| *own = *new);
         self.prepare();

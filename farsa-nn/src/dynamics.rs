@@ -70,29 +70,31 @@ impl<R: Real> Dynamics<'_, R> {
     #[inline(never)]
     pub(crate) fn refresh(&mut self) {
         for i in 0..self.y.len() {
-            self.respond(i, self.y[i]);
+            self.o[i] = self.respond(i, self.y[i]);
         }
     }
 
-    /// One step.
+    /// One step; does nothing where there are fewer neurons than lanes.
     #[inline(always)]
     fn stages<S: Scalar<Real = R>>(&mut self, simd: S::Simd) {
-        self.hold();
         let neurons = self.y.len();
-        let whole = neurons - neurons % S::LANES;
+        let Some(last) = neurons.checked_sub(S::LANES) else { return };
+        self.hold();
         let stages = if self.integrator == Integrator::RungeKutta4 { 4 } else { 1 };
         for stage in 0..stages {
             let sources = [self.inputs, (&*self.o, self.weights)];
             let layer = Layer { targets: neurons, slope: R::of(1.0), biases: self.external, sources };
             layer.all_sums::<S>(simd, self.net);
+            // What is left over is a vector that overlaps the one before it. It is computed first, of what that one will
+            // overwrite, and stored last, with the same values where both have been.
+            let end = self.advance::<S>(simd, stage, last);
             let mut i = 0;
-            while i < whole {
-                self.advance::<S>(simd, stage, i);
+            while i < last {
+                let next = self.advance::<S>(simd, stage, i);
+                self.keep(stage, i, next);
                 i += S::LANES;
             }
-            for i in whole..neurons {
-                self.advance::<R>((), stage, i);
-            }
+            self.keep(stage, last, end);
             self.hold();
         }
     }
@@ -105,17 +107,17 @@ impl<R: Real> Dynamics<'_, R> {
         }
     }
 
-    /// One stage of the neurons from `i` on, as many as there are lanes.
+    /// One stage of the neurons from `i` on, as many as there are lanes: the states, the sums of slopes, and the outputs.
     #[inline(always)]
-    fn advance<S: Scalar<Real = R>>(&mut self, simd: S::Simd, stage: usize, i: usize) {
+    fn advance<S: Scalar<Real = R>>(&self, simd: S::Simd, stage: usize, i: usize) -> [S; 3] {
         let (y, net) = (S::load(simd, &self.y[i..]), S::load(simd, &self.net[i..]));
         let rate = S::load(simd, &self.rates[i..]);
-        let next = match self.integrator {
-            Integrator::Euler => y + rate * (net - y),
+        let (next, sum) = match self.integrator {
+            Integrator::Euler => (y + rate * (net - y), y),
             Integrator::ExponentialEuler => {
                 let back = rate.lt(rate.constant(0.0));
                 let (from, to) = (S::select(back, net, y), S::select(back, y, net));
-                from + rate.abs() * (to - from)
+                (from + rate.abs() * (to - from), y)
             }
             Integrator::RungeKutta4 => {
                 let at = if stage == 0 { y } else { S::load(simd, &self.point[i..]) };
@@ -130,23 +132,33 @@ impl<R: Real> Dynamics<'_, R> {
                     2 => y + slope,
                     _ => y + sum * sum.constant(1.0 / 6.0),
                 };
-                sum.store(&mut self.sum[i..]);
-                next.store(&mut self.point[i..]);
-                next
+                (next, sum)
             }
         };
-        if self.integrator != Integrator::RungeKutta4 || stage == 3 {
-            next.store(&mut self.y[i..]);
+        [next, sum, self.respond(i, next)]
+    }
+
+    /// Stores what [`advance`](Self::advance) computed.
+    #[inline(always)]
+    fn keep<S: Scalar<Real = R>>(&mut self, stage: usize, i: usize, [next, sum, o]: [S; 3]) {
+        o.store(&mut self.o[i..]);
+        if self.integrator != Integrator::RungeKutta4 {
+            return next.store(&mut self.y[i..]);
         }
-        self.respond(i, next);
+        sum.store(&mut self.sum[i..]);
+        if stage == 3 {
+            next.store(&mut self.y[i..]);
+        } else {
+            next.store(&mut self.point[i..]);
+        }
     }
 
     /// The outputs of the neurons from `i` on in these states; of a NaN 0.
     #[inline(always)]
-    fn respond<S: Scalar<Real = R>>(&mut self, i: usize, y: S) {
+    fn respond<S: Scalar<Real = R>>(&self, i: usize, y: S) -> S {
         let (bias, gain) = (S::load(y.simd(), &self.biases[i..]), S::load(y.simd(), &self.gains[i..]));
         let o = self.activation.over(gain * (y + bias));
-        S::select(o.le(o), o, o.constant(0.0)).store(&mut self.o[i..]);
+        S::select(o.le(o), o, o.constant(0.0))
     }
 }
 

@@ -111,6 +111,16 @@ pub enum Error {
         /// Number of neurons.
         neurons: usize,
     },
+    /// A state is NaN or infinite.
+    StateNotFinite {
+        /// The number of its neuron.
+        index: usize,
+    },
+    /// A parameter has no value, because evolution draws it.
+    NoValue {
+        /// Its place among the parameters of the text.
+        index: usize,
+    },
     /// There are other mirror images than inputs or neurons.
     MirrorLen {
         /// Number of inputs or neurons.
@@ -177,6 +187,8 @@ impl fmt::Display for Error {
                 f,
                 "block {index} has {count} neurons from neuron {first} on where the layout has {neurons} neurons"
             ),
+            Self::StateNotFinite { index } => write!(f, "the state of neuron {index} is not finite"),
+            Self::NoValue { index } => write!(f, "parameter {index} has no value: evolution draws it"),
             Self::MirrorLen { expected, found } => write!(f, "{found} mirror images where there are {expected}"),
             Self::Mirror { index, image } => {
                 write!(f, "the mirror image of {index} is {image}, which is not there or has another mirror image")

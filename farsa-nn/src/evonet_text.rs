@@ -38,11 +38,10 @@ impl Evonet {
     /// The parameters of the [`layout`](Self::layout) in the order of a [`BlockLayout`](crate::BlockLayout).
     ///
     /// # Errors
-    /// [`Error::NotFinite`] with the place in the original's order for a parameter that evolution draws;
-    /// [`Error::ParameterCount`] in a `.net` file.
+    /// [`Error::NoValue`] for a parameter that evolution draws, [`Error::ParameterCount`] for a `.net` file.
     pub fn parameters(&self, ranges: EvonetRanges) -> Result<Vec<f32>, Error> {
         if let Some(index) = self.numbers.iter().position(Option::is_none) {
-            return Err(Error::NotFinite { index });
+            return Err(Error::NoValue { index });
         }
         let layout = self.layout.layout();
         let (expected, found) = (layout.parameter_count(), self.numbers.len());

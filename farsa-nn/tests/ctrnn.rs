@@ -340,7 +340,7 @@ fn refused_parameters_and_states_change_nothing() -> Result<(), Error> {
     assert!(network.set_parameters([-1.0; 4]).is_err());
     assert!(network.copy_parameters(&[1.0; 3]).is_err());
     assert_eq!(network.set_states(&[0.0; 2]), Err(Error::StateLen { expected: 1, found: 2 }));
-    assert_eq!(network.set_states(&[f32::NAN]), Err(Error::NotFinite { index: 0 }));
+    assert_eq!(network.set_states(&[f32::NAN]), Err(Error::StateNotFinite { index: 0 }));
     assert_eq!((network.parameters(), network.states()), (&[1.0; 4][..], &[0.0][..]));
     network.set_states(&[-1.0])?;
     assert_eq!((network.states(), network.neuron_outputs()), (&[-1.0][..], &[0.5][..]));

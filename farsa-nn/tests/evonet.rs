@@ -112,7 +112,7 @@ fn files_without_parameters_and_older_ones() -> Result<(), Error> {
     let evonet: Evonet = older.parse()?;
     assert_eq!((evonet.numbers[0], evonet.mutations[0]), (None, None));
     assert_eq!((evonet.numbers[2], evonet.mutations[2]), (Some(0.5), Some(0.0)));
-    assert_eq!(evonet.parameters(EvonetRanges::default()), Err(Error::NotFinite { index: 0 }));
+    assert_eq!(evonet.parameters(EvonetRanges::default()), Err(Error::NoValue { index: 0 }));
     let free: Evonet = TEXT.replace("2.500000 \t", "* \t").parse()?;
     assert_eq!(free.numbers[0], None);
     Ok(())
