@@ -84,6 +84,14 @@ impl Directory {
     pub(crate) fn log(&self) -> PathBuf {
         self.path.join("fitness.csv")
     }
+    /// What lessons were like, in a run that learns.
+    pub(crate) fn learning(&self) -> PathBuf {
+        self.path.join("learning.csv")
+    }
+    /// The same as a picture.
+    pub(crate) fn learning_plot(&self) -> PathBuf {
+        self.path.join("learning.svg")
+    }
     /// The log as a picture.
     pub(crate) fn plot(&self) -> PathBuf {
         self.path.join("fitness.svg")

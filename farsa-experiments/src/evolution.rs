@@ -56,11 +56,19 @@ pub fn steady_state_settings() -> Vec<Setting> {
     ]
 }
 
+/// The settings of a run that learns.
+pub fn learning_settings() -> Vec<Setting> {
+    vec![Setting::whole(GENERATIONS, 300, 1..=i64::from(u32::MAX) - 1).doc(
+        "Lessons, each after a life that shows what is known so far; the one thing that a resumed run may change.",
+    )]
+}
+
 /// The experiment's table with the settings of evolution that it does not define itself in front.
 pub(crate) fn complete(mut own: Vec<Setting>, search: Search) -> Vec<Setting> {
     let mut table = match search {
         Search::Truncation => settings(),
         Search::SteadyState => steady_state_settings(),
+        Search::Learning => learning_settings(),
     };
     for setting in &mut table {
         if let Some(index) = own.iter().position(|other| other.key() == setting.key()) {

@@ -181,6 +181,27 @@ pub trait Setup: Send {
         }
     }
 
+    /// The words from which learning starts, where the search is [`Search::Learning`]: all that a [`lesson`](Self::lesson)
+    /// depends on besides seed and generation. By default there are none.
+    fn first_words(&self, seed: u64) -> Vec<f64> {
+        let _ = seed;
+        Vec::new()
+    }
+
+    /// Changes the words by one lesson and says what it was like; `None` if these are not words to learn from.
+    ///
+    /// The same words, seed and generation must become the same words, whatever this value did before.
+    fn lesson(&mut self, words: &mut [f64], seed: u64, generation: u32) -> Option<Lesson> {
+        let _ = (words, seed, generation);
+        None
+    }
+
+    /// The genes \[[`genes`](Self::genes)\] of what has been learned in these words.
+    fn learned(&self, words: &[f64]) -> Vec<u16> {
+        let _ = words;
+        Vec::new()
+    }
+
     /// The fitness of an individual from its trials, in the order of trials; `farsa test` asks for single ones too.
     ///
     /// By default the sum of all terms.
@@ -200,6 +221,17 @@ pub struct Task<'g> {
     pub opponents: &'g [&'g [u16]],
     /// Which life.
     pub job: Job,
+}
+
+/// What a lesson was like, [`Setup::lesson`].
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Lesson {
+    /// Root of the mean squared error of motor values before it, on demonstrations that have never been learned from.
+    pub before: f64,
+    /// The same on the same demonstrations after it.
+    pub after: f64,
+    /// Share of the demonstrations that succeeded \[0..1\].
+    pub successes: f64,
 }
 
 /// What came of one trial.

@@ -3,13 +3,14 @@
 use std::process::ExitCode;
 
 use farsa_experiments::{
-    Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PassiveWalker,
-    PredatorPrey, ReachGraspLift, cli,
+    Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, KinestheticGrasp,
+    PassiveWalker, PredatorPrey, ReachGraspLift, cli,
 };
 
 fn main() -> ExitCode {
     cli::main(&[
         &ReachGraspLift,
+        &KinestheticGrasp,
         &Discrimination,
         &DiscriminationCylinders,
         &Braitenberg,

@@ -84,7 +84,7 @@ pub(crate) fn charts(title: &str, lines: &[Line], populations: &[String]) -> Vec
 ///
 /// # Errors
 /// The backend's words, should it refuse.
-fn stack(charts: &[Chart]) -> Result<String, String> {
+pub(crate) fn stack(charts: &[Chart]) -> Result<String, String> {
     let mut svg = String::new();
     pictures(&mut svg, charts).map_err(|error| error.to_string())?;
     Ok(svg)

@@ -59,6 +59,11 @@ impl Pool {
         self.setups[0].as_ref()
     }
 
+    /// The same, to take a lesson.
+    pub(crate) fn setup_mut(&mut self) -> &mut dyn Setup {
+        self.setups[0].as_mut()
+    }
+
     /// Lives `count` tasks, each on the thread that is free first, and returns what came of them in their order.
     ///
     /// `task` makes the task of a number, or says that it need not be lived any more; `done` hears of every number.

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::directory::Directory;
 use crate::error::Error;
+use crate::learning::{Learning, Lessons};
 use crate::log::Mark;
 use crate::plan::{Identity, Plan};
 use crate::sealed::{self, Sealed};
@@ -112,9 +113,11 @@ sealed! {
     CheckpointOf<TruncationGa>: b"farsachk", "checkpoint";
     CheckpointOf<SteadyState>: b"farsachs", "checkpoint of a steady-state search";
     CheckpointOf<Coevolution>: b"farsachc", "checkpoint of a co-evolution";
+    CheckpointOf<Learning>: b"farsachl", "checkpoint of learning";
     AncestryOf<Lineage>: b"farsalin", "lineage";
     AncestryOf<SteadyHistory>: b"farsalis", "lineage of a steady-state search";
     AncestryOf<Lineages>: b"farsalic", "lineage of a co-evolution";
+    AncestryOf<Lessons>: b"farsalil", "record of lessons";
     ChampionOfOne: b"farsachm", "champion";
     ChampionsOfSeveral: b"farsacmc", "set of champions";
     Imported: b"farsagen", "set of genotypes";
@@ -141,6 +144,7 @@ impl Checkpoint {
             Evolution::Truncation(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
             Evolution::SteadyState(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
             Evolution::Several(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
+            Evolution::Learning(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
         }
     }
 
@@ -160,6 +164,10 @@ impl Checkpoint {
             Some(<CheckpointOf<Coevolution> as Sealed>::MAGIC) => {
                 let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
                 Ok(Self { identity, log, evolution: Evolution::Several(evolution) })
+            }
+            Some(<CheckpointOf<Learning> as Sealed>::MAGIC) => {
+                let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
+                Ok(Self { identity, log, evolution: Evolution::Learning(evolution) })
             }
             _ => {
                 let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
@@ -191,6 +199,7 @@ impl Ancestry {
             Descent::Truncation(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
             Descent::SteadyState(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
             Descent::Several(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
+            Descent::Learned(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
             Descent::Imported { genomes, populations: 1 } => sealed::write(path, &Imported { identity, genomes }),
             Descent::Imported { genomes, populations } => {
                 sealed::write(path, &ImportedSeveral { identity, genomes, populations })
@@ -223,6 +232,10 @@ impl Ancestry {
             Some(<AncestryOf<Lineages> as Sealed>::MAGIC) => {
                 let AncestryOf { identity, lineage } = read(&path, plan, directory)?;
                 Self { identity, descent: Descent::Several(lineage) }
+            }
+            Some(<AncestryOf<Lessons> as Sealed>::MAGIC) => {
+                let AncestryOf { identity, lineage } = read(&path, plan, directory)?;
+                Self { identity, descent: Descent::Learned(lineage) }
             }
             _ => {
                 let AncestryOf { identity, lineage } = read(&path, plan, directory)?;

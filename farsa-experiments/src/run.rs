@@ -224,7 +224,7 @@ impl Run<'_> {
         });
         let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("nobody is best"))?;
         self.log.append(&statistics, fitness.len(), &self.evolution.of_each(&judged))?;
-        self.evolution.tell(&fitness).map_err(|error| lost(&error.to_string()))?;
+        self.evolution.tell(&fitness, pool.setup_mut(), seed).map_err(|error| lost(&error.to_string()))?;
         self.hall.add(best.iter().map(|best| best.genes.clone()).collect());
         self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
         if let Some(session) = self.manifest.sessions.last_mut() {
@@ -243,6 +243,12 @@ impl Run<'_> {
         Ancestry { identity: identity.clone(), descent }.write(&directory.lineage())?;
         if let Some(champions) = &self.champions {
             champions.write(&directory.champion())?;
+        }
+        if let Evolution::Learning(learning) = &self.evolution {
+            let lessons = learning.lessons();
+            replace(&directory.learning(), lessons.csv().as_bytes())?;
+            let plot = lessons.plot(&self.title).map_err(|why| Error::damaged(&directory.learning_plot(), why))?;
+            replace(&directory.learning_plot(), plot.as_bytes())?;
         }
         let evolution = self.evolution.clone();
         Checkpoint { identity: identity.clone(), log: mark, evolution }.write(&directory.checkpoint())?;

@@ -8,6 +8,7 @@ use farsa_evo::{
 use crate::error::Error;
 use crate::evolution;
 use crate::experiment::Setup;
+use crate::learning::{Learning, Lessons};
 use crate::plan::Plan;
 
 /// How an experiment searches for good genomes, [`Experiment::search`](crate::Experiment::search).
@@ -23,6 +24,10 @@ pub enum Search {
     /// The log of such a run is about the mean fitness of the parent over its life and the fitness of the mutant: the
     /// best of the two is that of the survivor, which is the champion.
     SteadyState,
+    /// Nothing is selected: a generation is one individual, which takes a lesson after it has lived, [`Setup::lesson`].
+    ///
+    /// The log of such a run has one fitness three times; errors are in `learning.csv`.
+    Learning,
 }
 
 /// A search under way.
@@ -31,6 +36,7 @@ pub(crate) enum Evolution {
     Truncation(TruncationGa),
     SteadyState(SteadyState),
     Several(Coevolution),
+    Learning(Learning),
 }
 
 impl Evolution {
@@ -50,6 +56,10 @@ impl Evolution {
             (Search::SteadyState, _) => {
                 Err(Error::Other(format!("{}: a steady-state search of several populations", plan.experiment.name())))
             }
+            (Search::Learning, 1) => Learning::new(setup, seed).map(Self::Learning).map_err(refused),
+            (Search::Learning, _) => {
+                Err(Error::Other(format!("{}: several populations that learn", plan.experiment.name())))
+            }
             (Search::Truncation, populations) => {
                 let config = evolution::config(&plan.settings, setup.genes(), setup.gene_bits())?;
                 if populations == 1 {
@@ -61,32 +71,35 @@ impl Evolution {
         }
     }
 
-    fn strategy(&self) -> &dyn Strategy {
-        match self {
-            Self::Truncation(ga) => ga,
-            Self::SteadyState(search) => search,
-            Self::Several(all) => all,
-        }
-    }
-
     /// Whether another search is of the same kind with the same configuration.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Truncation(a), Self::Truncation(b)) => a.config() == b.config(),
             (Self::SteadyState(a), Self::SteadyState(b)) => a.config() == b.config(),
             (Self::Several(a), Self::Several(b)) => a.configs().eq(b.configs()),
+            (Self::Learning(a), Self::Learning(b)) => a.is_like(b),
             _ => false,
         }
     }
 
     /// The generation that waits for its fitness.
     pub(crate) fn generation(&self) -> u32 {
-        self.strategy().generation()
+        match self {
+            Self::Truncation(ga) => ga.generation(),
+            Self::SteadyState(search) => search.generation(),
+            Self::Several(all) => all.generation(),
+            Self::Learning(learning) => learning.generation(),
+        }
     }
 
     /// Everyone of the generation that waits for its fitness.
     pub(crate) fn ask(&self) -> &Population {
-        self.strategy().ask()
+        match self {
+            Self::Truncation(ga) => ga.ask(),
+            Self::SteadyState(search) => search.ask(),
+            Self::Several(all) => all.ask(),
+            Self::Learning(learning) => learning.ask(),
+        }
     }
 
     /// Populations that evolve beside each other.
@@ -94,12 +107,13 @@ impl Evolution {
         if let Self::Several(all) = self { all.populations() } else { 1 }
     }
 
-    /// Takes the fitness of the current generation and makes the next.
-    pub(crate) fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+    /// Takes the fitness of the current generation and makes the next, by a lesson of `setup` where it learns.
+    pub(crate) fn tell(&mut self, fitness: &[Fitness], setup: &mut dyn Setup, seed: u64) -> Result<(), EvoError> {
         match self {
             Self::Truncation(ga) => ga.tell(fitness),
             Self::SteadyState(search) => search.tell(fitness),
             Self::Several(all) => all.tell(fitness),
+            Self::Learning(learning) => learning.study(setup, seed),
         }
     }
 
@@ -108,7 +122,7 @@ impl Evolution {
     pub(crate) fn judged(&self, fitness: &[Fitness]) -> Result<Vec<Fitness>, EvoError> {
         match self {
             Self::SteadyState(search) => search.judged(fitness).map(Into::into),
-            Self::Truncation(_) | Self::Several(_) => Ok(fitness.into()),
+            Self::Truncation(_) | Self::Several(_) | Self::Learning(_) => Ok(fitness.into()),
         }
     }
 
@@ -117,7 +131,7 @@ impl Evolution {
         match self {
             // Ties go to the mutant.
             Self::SteadyState(_) => vec![usize::from(judged.get(1) >= judged.first())],
-            Self::Truncation(_) | Self::Several(_) => {
+            Self::Truncation(_) | Self::Several(_) | Self::Learning(_) => {
                 let size = (judged.len() / self.populations()).max(1);
                 let best = |fitness: &[Fitness]| Statistics::of(fitness).map_or(0, |statistics| statistics.best_index);
                 judged.chunks(size).enumerate().map(|(population, own)| population * size + best(own)).collect()
@@ -138,6 +152,7 @@ impl Evolution {
             Self::Truncation(ga) => Descent::Truncation(ga.lineage().clone()),
             Self::SteadyState(search) => Descent::SteadyState(search.history().clone()),
             Self::Several(all) => Descent::Several(all.lineages()),
+            Self::Learning(learning) => Descent::Learned(learning.lessons().clone()),
         }
     }
 }
@@ -148,6 +163,7 @@ pub(crate) enum Descent {
     Truncation(Lineage),
     SteadyState(SteadyHistory),
     Several(Lineages),
+    Learned(Lessons),
     /// Genomes from elsewhere, as the only generation: those of one population after the other, as many of each.
     Imported {
         genomes: Vec<Vec<u16>>,
@@ -162,6 +178,7 @@ impl Descent {
             Self::Truncation(lineage) => lineage.latest(),
             Self::SteadyState(history) => history.latest(),
             Self::Several(lineages) => lineages.latest(),
+            Self::Learned(lessons) => lessons.taken(),
             Self::Imported { .. } => 1,
         }
     }
@@ -171,7 +188,7 @@ impl Descent {
         match self {
             Self::Several(lineages) => lineages.populations(),
             Self::Imported { populations, .. } => (*populations).max(1),
-            Self::Truncation(_) | Self::SteadyState(_) => 1,
+            Self::Truncation(_) | Self::SteadyState(_) | Self::Learned(_) => 1,
         }
     }
 
@@ -181,6 +198,7 @@ impl Descent {
             Self::Truncation(lineage) => lineage.config().population,
             Self::SteadyState(_) => SteadyHistory::INDIVIDUALS,
             Self::Several(lineages) => lineages.size(),
+            Self::Learned(_) => 1,
             Self::Imported { genomes, .. } => genomes.len() / self.populations(),
         }
     }
@@ -194,6 +212,7 @@ impl Descent {
             Self::Several(lineages) => {
                 Some(population * lineages.size() + first(lineages.selected(population, generation))?)
             }
+            Self::Learned(lessons) => (generation < lessons.taken()).then_some(0),
             Self::Imported { .. } => (generation == 0).then_some(population * self.size()),
         }
     }
@@ -204,6 +223,7 @@ impl Descent {
             Self::Truncation(lineage) => lineage.genome_of(generation, individual),
             Self::SteadyState(history) => history.genome_of(generation, individual),
             Self::Several(lineages) => lineages.genome_of(generation, individual),
+            Self::Learned(lessons) => lessons.genome_of(generation, individual),
             Self::Imported { genomes, .. } => {
                 let beyond = EvoError::NoSuchIndividual { individual, population: genomes.len() };
                 genomes.get(individual).cloned().ok_or(beyond)

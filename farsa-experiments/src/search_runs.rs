@@ -11,7 +11,7 @@ use crate::directory::Directory;
 use crate::error::Error;
 use crate::evolution;
 use crate::exam;
-use crate::experiment::{Description, Experiment, Outcome, Setup, Tape};
+use crate::experiment::{Description, Experiment, Lesson, Outcome, Setup, Tape};
 use crate::lanes::Wanted;
 use crate::life::Job;
 use crate::plan::Plan;
@@ -34,6 +34,7 @@ struct Numbers {
 }
 
 const STEADY: Numbers = Numbers { search: Search::SteadyState, populations: 1 };
+const LEARNER: Numbers = Numbers { search: Search::Learning, populations: 1 };
 const CHASE: Numbers = Numbers { search: Search::Truncation, populations: 3 };
 
 impl Experiment for Numbers {
@@ -47,7 +48,7 @@ impl Experiment for Numbers {
         self.search
     }
     fn settings(&self, _: &str) -> Vec<Setting> {
-        if self.search == Search::SteadyState {
+        if self.search != Search::Truncation {
             return vec![Setting::text("numbers.file", "")];
         }
         let size = i64::try_from(SIZE).unwrap();
@@ -93,6 +94,20 @@ impl Setup for Numbers {
     }
     fn description(&self) -> Description {
         Description::default()
+    }
+    /// Words half way from where they are to 100 and 7, and a little beside it.
+    fn first_words(&self, _: u64) -> Vec<f64> {
+        vec![0.0; 2]
+    }
+    fn lesson(&mut self, words: &mut [f64], seed: u64, generation: u32) -> Option<Lesson> {
+        let beside = Stream::new(seed, Domain::Network, 0, 0, generation).uniform_f64();
+        let [first, second] = words else { return None };
+        let before = (100.0 - *first).abs();
+        (*first, *second) = (0.5 * (*first + 100.0) + beside, 0.5 * (*second + 7.0));
+        Some(Lesson { before, after: (100.0 - *first).abs(), successes: 1.0 })
+    }
+    fn learned(&self, words: &[f64]) -> Vec<u16> {
+        words.iter().map(|word| *word as u16).collect()
     }
     fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
         tape.row(0.0, &[f64::from(genes[0])]);
@@ -213,6 +228,41 @@ fn a_steady_state_keeps_the_better_of_two() {
 }
 
 #[test]
+fn a_learner_lives_and_takes_lessons() {
+    const GENERATIONS: i64 = 12;
+    let root = scratch("learner");
+    let directory = twice(&LEARNER, &root, GENERATIONS);
+    let read = |run: &str| fs::read_to_string(root.join(run).join("learning.csv")).unwrap();
+    assert_eq!(read("whole"), read("parts"));
+    let plan = plan(&LEARNER, GENERATIONS);
+    let (Ancestry { descent, .. }, _) = Ancestry::read(&plan, &directory).unwrap();
+    // By hand: the life of a generation is that of the words before its lesson.
+    let (mut setup, mut words) = (LEARNER, LEARNER.first_words(11));
+    let mut curve = String::from("generation,error before,error after,successes\n");
+    for (generation, row) in (0..12_u32).zip(rows(&directory)) {
+        let genes = LEARNER.learned(&words);
+        assert_eq!(descent.genome_of(generation, 0).unwrap(), genes);
+        assert_eq!(descent.champion(0, generation), Some(0));
+        let earned = |trial| Numbers::alone(&genes, Job { seed: 11, generation, individual: 0, trial });
+        let fitness: f64 = (0..TRIALS).map(earned).sum();
+        assert_eq!(row[1..], [fitness, fitness, fitness, 1.0, 0.0]);
+        let Lesson { before, after, .. } = setup.lesson(&mut words, 11, generation).unwrap();
+        curve += &format!("{generation},{before:?},{after:?},1.0\n");
+    }
+    assert_eq!(read("whole"), curve);
+    // What is known after the last lesson waits for its life; the champion is who lived last.
+    assert_eq!(descent.genome_of(12, 0).unwrap(), LEARNER.learned(&words));
+    assert!(descent.genome_of(13, 0).is_err() && descent.genome_of(3, 1).is_err() && descent.champion(0, 12).is_none());
+    let Champions { generation, best, .. } = Champions::read(&plan, &directory).unwrap();
+    assert_eq!((generation, &best[0].genes), (11, &descent.genome_of(11, 0).unwrap()));
+    let (csv, _) = replayed(&plan, &directory, Which { generation: Some(0), ..Which::default() });
+    assert_eq!(csv.lines().nth(1).unwrap(), "0,0,0.0,0.0");
+    let table = exam::test(&plan, &directory, 7, 1, 2, Wanted::ONE, true).unwrap().text();
+    assert!(table.contains("individual 0 of generation 11"), "{table}");
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
 fn populations_meet_each_others_champions() {
     const GENERATIONS: i64 = 9;
     let root = scratch("chase");
@@ -293,9 +343,9 @@ fn populations_meet_each_others_champions() {
 #[test]
 fn lives_of_every_search_can_be_measured() {
     let root = scratch("bench");
-    for (numbers, lives) in [(STEADY, 2 * TRIALS), (CHASE, 30 * TRIALS)] {
+    for (numbers, lives) in [(STEADY, 2 * TRIALS), (LEARNER, TRIALS), (CHASE, 30 * TRIALS)] {
         let plan = plan(&numbers, 2);
-        let directory = create(&plan, &root.join(format!("{}", numbers.populations))).unwrap();
+        let directory = create(&plan, &root.join(format!("{:?}-{}", numbers.search, numbers.populations))).unwrap();
         run(&plan, &directory, 1);
         for sample in [Sample::random(&plan), Sample::of_run(&plan, &directory)] {
             let told = serde_json::to_value(bench(&plan, &sample.unwrap(), pool(&plan, 2), 1e-3).unwrap()).unwrap();
