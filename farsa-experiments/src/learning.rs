@@ -132,10 +132,8 @@ impl Lessons {
             values: self.lessons.iter().map(value).collect(),
             band: Vec::new(),
         };
-        let errors = vec![
-            curve(0, "before the lesson", |lesson| lesson.before),
-            curve(1, "after it", |lesson| lesson.after),
-        ];
+        let errors =
+            vec![curve(0, "before the lesson", |lesson| lesson.before), curve(1, "after it", |lesson| lesson.after)];
         let successes = vec![curve(2, "of the demonstrations", |lesson| lesson.successes)];
         plot::stack(&[
             Chart { title: format!("{title}: error"), curves: errors },
