@@ -117,9 +117,44 @@ impl Layer<'_> {
         );
     }
 
+    /// Without vectors, for processors that have none and for fewer targets than a vector has lanes.
     #[inline(never)]
     fn one_by_one(&self, y: &mut [f32]) {
-        self.over::<f32>((), y);
+        // Sums side by side share a source and the loop around it; as many as there are registers for.
+        let mut first = 0;
+        while first < y.len() {
+            first = match y.len() - first {
+                8.. => self.block::<8>(first, y),
+                // The last of many overlaps those before it: a sum made twice costs less than a loop of its own.
+                5..8 if y.len() >= 8 => self.block::<8>(y.len() - 8, y),
+                4..8 => self.block::<4>(first, y),
+                2..4 if y.len() >= 4 => self.block::<4>(y.len() - 4, y),
+                _ => self.block::<1>(first, y),
+            };
+        }
+        for y in y {
+            *y = logistic(self.slope * *y);
+        }
+    }
+
+    /// Sums `G` targets from `first` on and writes them to `y`; returns the target after them.
+    #[inline(always)]
+    fn block<const G: usize>(&self, first: usize, y: &mut [f32]) -> usize {
+        let from = |values: &'_ [f32]| values.get(first..).and_then(|values| values.first_chunk::<G>()).copied();
+        let mut sums = from(self.biases).unwrap_or([0.0; G]);
+        for (x, weights) in self.sources {
+            // Whole rows, so that nothing is asked within the loop.
+            for (x, row) in x.iter().zip(weights.chunks_exact(self.targets.max(1))) {
+                let Some(row) = row.get(first..).and_then(|row| row.first_chunk::<G>()) else { break };
+                for (sum, weight) in sums.iter_mut().zip(row) {
+                    *sum += weight * x;
+                }
+            }
+        }
+        if let Some(y) = y.get_mut(first..).and_then(|y| y.first_chunk_mut()) {
+            *y = sums;
+        }
+        first + G
     }
 
     #[inline(always)]

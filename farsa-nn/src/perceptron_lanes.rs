@@ -1,6 +1,6 @@
 //! Many single layers side by side, one in each lane: for the lanes of a batch of worlds.
 
-use farsa_num::fearless_simd::{Level, Simd, f32x8, f32x16};
+use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Scalar, logistic};
 
 use crate::kernel::level;
@@ -75,7 +75,7 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         {
             if let (Some(simd), true) = (self.level.as_avx512(), self.lanes >= 16) {
-                return self.vectors::<f32x16<_>>(simd, x, y);
+                return self.vectors::<farsa_num::fearless_simd::f32x16<_>>(simd, x, y);
             }
             if let Some(simd) = self.level.as_avx2() {
                 return self.vectors::<f32x8<_>>(simd, x, y);

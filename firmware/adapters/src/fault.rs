@@ -1,0 +1,30 @@
+//! What can go wrong in a tick.
+
+use core::fmt;
+
+/// Why the motors of a tick are driven to what is safe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// A sensor did not answer.
+    Read,
+    /// A motor did not take its command.
+    Write,
+    /// The tick came later than its period allows.
+    Late {
+        /// How late [us].
+        by: u32,
+    },
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read => f.write_str("a sensor did not answer"),
+            Self::Write => f.write_str("a motor did not take its command"),
+            Self::Late { by } => write!(f, "the tick came {by} us late"),
+        }
+    }
+}
+
+impl core::error::Error for Fault {}

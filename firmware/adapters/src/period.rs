@@ -1,0 +1,30 @@
+//! Whether ticks come in time.
+
+use crate::Fault;
+
+/// The period of the loop, held against a clock that counts microseconds and may wrap.
+#[derive(Clone, Copy, Debug)]
+pub struct Period {
+    length: u32,
+    slack: u32,
+    last: Option<u32>,
+}
+
+impl Period {
+    /// Ticks `length` [us] apart that may be `slack` [us] late.
+    pub const fn new(length: u32, slack: u32) -> Self {
+        Self { length, slack, last: None }
+    }
+
+    /// A tick begins at `now` [us].
+    ///
+    /// # Errors
+    /// [`Fault::Late`]; the next tick is held against this one.
+    pub fn tick(&mut self, now: u32) -> Result<(), Fault> {
+        let past = self.last.replace(now).map_or(0, |last| now.wrapping_sub(last));
+        match past.saturating_sub(self.length) {
+            by if by > self.slack => Err(Fault::Late { by }),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! The champion of the manipulation experiment on a board: its bytes, sensors, motors and self-test.
+//!
+//! Nothing here knows which board it is: `cortex-m`, `riscv` and `wasm` are programs around this crate, and its tests run
+//! the same functions on a computer.
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod arm;
+mod board;
+mod chain;
+mod champion;
+mod robot;
+mod self_test;
+
+pub use arm::ARM;
+pub use board::{Analog, Board, Pulse};
+pub use chain::{Chain, ChainLink};
+pub use champion::{CHANNELS, LAYOUT, LEAK, champion};
+pub use robot::Robot;
+pub use self_test::{noise_into, self_test};

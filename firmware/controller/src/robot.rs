@@ -1,0 +1,69 @@
+//! The loop: read, think, drive.
+
+use farsa_body::{Motor, Sensor};
+use farsa_nn::{BytesError, Controller, Network};
+
+use crate::{Analog, Board, LAYOUT, LEAK, Pulse, champion};
+
+/// The network's inputs at both ends of the converters: joint positions and touch from 0 to 1, then the way from the palm to
+/// the sphere [cm], then the labels of the phases.
+const RANGES: [[f32; 2]; LAYOUT.sensors()] = {
+    let mut ranges = [[0.0, 1.0]; LAYOUT.sensors()];
+    let mut i = 0;
+    while i < 3 {
+        ranges[23 + i] = [-50.0, 50.0];
+        ranges[26 + i] = [0.0, 50.0];
+        i += 1;
+    }
+    ranges
+};
+
+/// The controller with its state: all the memory that a life takes.
+#[derive(Debug)]
+pub struct Robot {
+    sensors: Analog,
+    network: Network<&'static [f32], [f32; LAYOUT.state_len()]>,
+    motors: Pulse,
+    x: [f32; LAYOUT.sensors()],
+    y: [f32; LAYOUT.outputs()],
+}
+
+impl Robot {
+    /// The champion at rest.
+    ///
+    /// # Errors
+    /// What is wrong with the champion's bytes.
+    pub fn new() -> Result<Self, BytesError> {
+        let state = [0.0; LAYOUT.state_len()];
+        Ok(Self {
+            sensors: Analog::new(0, &RANGES),
+            network: Network::new(LAYOUT, LEAK, champion()?, state)?,
+            motors: Pulse::new(0, LAYOUT.outputs()),
+            x: [0.0; LAYOUT.sensors()],
+            y: [0.0; LAYOUT.outputs()],
+        })
+    }
+
+    /// One control step.
+    pub fn tick(&mut self, board: &mut Board) {
+        self.sensors.read(board, &mut self.x);
+        self.network.step(&self.x, &mut self.y);
+        self.motors.drive(&self.y, board);
+    }
+
+    /// The network alone, from these sensor values `[sensors]` to its motor values `[outputs]`.
+    pub fn step(&mut self, x: &[f32; LAYOUT.sensors()]) -> &[f32; LAYOUT.outputs()] {
+        self.network.step(x, &mut self.y);
+        &self.y
+    }
+
+    /// The activations of its hidden neurons `[hidden]`.
+    pub fn hidden(&self) -> &[f32] {
+        self.network.hidden()
+    }
+
+    /// Forgets everything.
+    pub fn reset(&mut self) {
+        self.network.reset();
+    }
+}

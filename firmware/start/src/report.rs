@@ -1,0 +1,76 @@
+//! What a board tells about itself: the lines that `./ci firmware` reads.
+
+use core::hint::black_box;
+
+use controller::{ARM, Board, Robot, noise_into, self_test};
+use farsa_num::{Digest, Domain, Stream};
+
+use crate::{exit, say, say_hex, used};
+
+/// Control steps that are counted.
+const COUNTED: u32 = 1000;
+
+/// Steps of the self-test: `FARSA_STEPS` when the program was built, else 100000.
+const STEPS: u32 = match option_env!("FARSA_STEPS") {
+    Some(steps) => parsed(steps),
+    None => 100_000,
+};
+
+const fn parsed(digits: &str) -> u32 {
+    let (mut number, mut rest) = (0, digits.as_bytes());
+    while let [digit, tail @ ..] = rest {
+        number = 10 * number + (*digit - b'0') as u32;
+        rest = tail;
+    }
+    number
+}
+
+/// Runs the self-test and the loop, prints what came of them and ends.
+///
+/// `instructions` counts those since the program began, as exactly as the processor can.
+pub fn report(instructions: impl Fn() -> u64) -> ! {
+    let Ok(mut robot) = Robot::new() else { exit(false) };
+    let mut board = Board::new();
+    let mut noise = Stream::new(1, Domain::Sensor, 0, 0, 0);
+
+    // The loop without the noise, and the network of it alone.
+    let (mut ticks, mut network, mut driven) = (0, 0, Digest::new());
+    let x = [0.5; controller::LAYOUT.sensors()];
+    for _ in 0..COUNTED {
+        noise_into(&mut board, &mut noise);
+        let begin = instructions();
+        robot.tick(&mut board);
+        let between = instructions();
+        robot.step(&x);
+        network += instructions().wrapping_sub(between);
+        ticks += between.wrapping_sub(begin);
+        board.widths.iter().for_each(|width| driven.add_bytes(&width.to_le_bytes()));
+    }
+    say("instructions-network", (network / u64::from(COUNTED)) as u32);
+    say("instructions-loop", (ticks / u64::from(COUNTED)) as u32);
+    say_hex("driven", driven.finish());
+    say("ram", (size_of::<Robot>() + size_of::<Board>()) as u32);
+    say("steps", STEPS);
+    say_hex("hash", self_test(&mut robot, STEPS));
+    say("stack", used());
+    #[cfg(feature = "planted-panic")]
+    say("never", [1, 2, 3][black_box(7)]);
+    exit(true)
+}
+
+/// Computes what holds the arm in random postures, prints what came of it and ends.
+pub fn report_arm(instructions: impl Fn() -> u64) -> ! {
+    let mut postures = Stream::new(1, Domain::Start, 0, 0, 0);
+    let (mut spent, mut digest) = (0, Digest::new());
+    for _ in 0..COUNTED {
+        let q = core::array::from_fn(|_| postures.range(-1.5, 1.5));
+        let begin = instructions();
+        let torques = ARM.holding_torques(black_box(&q));
+        spent += instructions().wrapping_sub(begin);
+        digest.add_f32s(&torques);
+    }
+    say("instructions-gravity", (spent / u64::from(COUNTED)) as u32);
+    say_hex("torques", digest.finish());
+    say("stack", used());
+    exit(true)
+}
