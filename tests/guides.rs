@@ -198,7 +198,7 @@ mod mistakes {
         says("new-robot", &other.validate().unwrap_err());
         let weightless = MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] };
         let model = Model::<f32>::new(&robot(hinge([0.0, 2.0]), weightless), &Options::default());
-        says("new-robot", &model.err().expect("no world has that"));
+        says("new-robot", &model.expect_err("no world has that"));
         let khepera = MobileRobot::khepera();
         let infrared = InfraredRing { range: 0.0, ..khepera.infrared.clone() };
         says("new-robot", &InfraredRays::of(&MobileRobot { infrared, ..khepera.clone() }, BodyId(0)).unwrap_err());
@@ -432,11 +432,15 @@ fn dots_stand_for_anything() {
 
 #[test]
 fn whoever_follows_them_sees_what_they_show() {
-    GUIDES.into_iter().for_each(|name| follow(name, Builder::Workspace));
+    for name in GUIDES {
+        follow(name, Builder::Workspace);
+    }
 }
 
 #[test]
 #[ignore = "builds the projects of all readers, minutes: ./ci guides"]
 fn their_projects_are_whole() {
-    GUIDES.into_iter().for_each(|name| follow(name, Builder::Reader));
+    for name in GUIDES {
+        follow(name, Builder::Reader);
+    }
 }

@@ -133,7 +133,7 @@ fn with_tonus(muscle: &MusclePair<f64>, q: f64, torque: f64) -> [f64; 2] {
     // What full activations add: the agonist pulls towards the lower limit.
     let (down, up) = (at([1.0, 0.0]) - passive, at([0.0, 1.0]) - passive);
     let strength = down * down + up * up;
-    if !(strength > 0.0) {
+    if strength.is_nan() || strength <= 0.0 {
         return [TONUS; 2];
     }
     let missing = torque - passive;

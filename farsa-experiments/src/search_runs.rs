@@ -1,5 +1,6 @@
 //! Tests of whole runs by every search: what is selected, written, resumed and lived again.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -247,7 +248,7 @@ fn a_learner_lives_and_takes_lessons() {
         let fitness: f64 = (0..TRIALS).map(earned).sum();
         assert_eq!(row[1..], [fitness, fitness, fitness, 1.0, 0.0]);
         let Lesson { before, after, .. } = setup.lesson(&mut words, 11, generation).unwrap();
-        curve += &format!("{generation},{before:?},{after:?},1.0\n");
+        writeln!(curve, "{generation},{before:?},{after:?},1.0").unwrap();
     }
     assert_eq!(read("whole"), curve);
     // What is known after the last lesson waits for its life; the champion is who lived last.
