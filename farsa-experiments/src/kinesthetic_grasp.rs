@@ -26,7 +26,7 @@ use crate::stage::Stage;
 /// four trials, which is its fitness, and then a lesson; `learning.csv` in the run's directory has the errors.
 ///
 /// What is desired is what the script would do where the arm is, and the arm is led in part by the network's own commands, from
-/// not at all in the first demonstration of a lesson to fully in its last one \[Ross2011\]: a network that has only seen where the
+/// not at all in the first demonstration of a lesson to a share in its last one that grows from lesson to lesson \[Ross2011\]: a network that has only seen where the
 /// script goes does not know what to do where its own small errors take it.
 ///
 /// Deviations from `reach-grasp-lift`: slope 1 and weights within 20, because with slope 0.2 and weights within 6 two
@@ -90,6 +90,8 @@ impl Experiment for KinestheticGrasp {
         let Config { reach, lessons } = Config::default();
         let whole = |key: &str, value: u32, range| Setting::whole(key, i64::from(value), range);
         let mut table = vec![
+            Setting::whole("evolution.generations", 100, 1..=i64::from(u32::MAX) - 1)
+                .doc("Lessons, each after a life that shows what is known so far; the one thing that a resumed run may change."),
             whole("lessons.demonstrations", lessons.demonstrations, 1..=10_000)
                 .doc("Times that the arm is led in a lesson, each from another start; the four trials take turns."),
             whole("lessons.passes", lessons.passes, 1..=1000).doc("Times that all of them are gone through."),
@@ -98,7 +100,8 @@ impl Experiment for KinestheticGrasp {
             Setting::number("lessons.half_rate", lessons.half_rate, 1.0..=1e9)
                 .doc("Lessons after which the step has half that size, and a third after twice as many."),
             whole("lessons.own_say", lessons.own_say, 0..=1_000_000).doc(
-                "Lessons until the network leads itself fully in a lesson's last demonstration; 0 if it never does.",
+                "Lessons until the network leads itself fully in a lesson's last demonstration, 0 if it never does; from about 0.75 of \
+                     it on the teacher loses the arm.",
             ),
         ];
         table.append(&mut reach.table());

@@ -38,7 +38,7 @@ pub struct Lessons {
 
 impl Default for Lessons {
     fn default() -> Self {
-        Self { demonstrations: 16, passes: 4, batch: 4, rate: 0.01, half_rate: 100.0, own_say: 50 }
+        Self { demonstrations: 8, passes: 10, batch: 2, rate: 0.012, half_rate: 12.0, own_say: 150 }
     }
 }
 

@@ -136,8 +136,8 @@ impl Lessons {
             vec![curve(0, "before the lesson", |lesson| lesson.before), curve(1, "after it", |lesson| lesson.after)];
         let successes = vec![curve(2, "of the demonstrations", |lesson| lesson.successes)];
         plot::stack(&[
-            Chart { title: format!("{title}: error"), curves: errors },
-            Chart { title: format!("{title}: successes"), curves: successes },
+            Chart { title: format!("{title}: error of motor values"), axis: "error", curves: errors },
+            Chart { title: format!("{title}: successes while led"), axis: "share", curves: successes },
         ])
     }
 }

@@ -38,6 +38,8 @@ const MOST_POINTS: usize = 1500;
 #[derive(Debug, Default)]
 pub(crate) struct Chart {
     pub(crate) title: String,
+    /// What is upwards.
+    pub(crate) axis: &'static str,
     pub(crate) curves: Vec<Curve>,
 }
 
@@ -69,7 +71,7 @@ pub(crate) fn charts(title: &str, lines: &[Line], populations: &[String]) -> Vec
             values: lines.iter().map(|line| row(line)[color]).collect(),
             band: Vec::new(),
         };
-        Chart { title, curves: ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect() }
+        Chart { title, axis: "fitness", curves: ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect() }
     };
     if populations.len() < 2 {
         return vec![chart(title.into(), &|line| line.row)];
@@ -138,7 +140,7 @@ impl Chart {
         chart
             .configure_mesh()
             .x_desc("generation")
-            .y_desc("fitness")
+            .y_desc(self.axis)
             .x_labels(8)
             .y_labels(7)
             .light_line_style(TRANSPARENT)
@@ -290,7 +292,7 @@ mod tests {
             band: vec![[0.5, 1.5], [1.0, 3.0], [f64::NEG_INFINITY; 2]],
             ..Curve::default()
         };
-        let svg = Chart { title: "t".into(), curves: vec![curve] }.draw().unwrap();
+        let svg = Chart { title: "t".into(), axis: "fitness", curves: vec![curve] }.draw().unwrap();
         assert!(svg.contains("<polygon") && svg.contains("&lt;labels&gt; &amp; co"), "{svg}");
     }
 }

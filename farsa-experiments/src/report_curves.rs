@@ -36,7 +36,7 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
     for (population, name) in Group::of_each(groups) {
         for (which, title) in [(0, "Best of the generation"), (1, "Mean of the generation")] {
             let title = if name.is_empty() { title.to_owned() } else { format!("{title}, {name}") };
-            let chart = Chart { title: title.clone(), curves: curves(groups, population, which) };
+            let chart = Chart { title: title.clone(), axis: "fitness", curves: curves(groups, population, which) };
             figures.push(figure(chart.draw(), format!("{title}. {lines}"))?);
         }
     }
