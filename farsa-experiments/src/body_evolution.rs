@@ -1,11 +1,14 @@
 //! The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
 
-use farsa_body::MjcfOptions;
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, Robot,
+};
 use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, ParameterKind};
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
 
+use crate::engine::{ENGINE, Engine};
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::gait::Rules;
@@ -14,7 +17,9 @@ use crate::settings::{Setting, Settings};
 use crate::stage::Stage;
 use crate::walker::{Legs, Walker};
 use crate::walker_life::{Brain, Launch, SENSES, Walk, WalkerLife};
-use crate::walker_settings::{live_to_the_end, mean, mjcf_options, on_contacts, walk};
+#[cfg(feature = "rapier")]
+use crate::walker_settings::rapier_options;
+use crate::walker_settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
 use crate::walker_stage::{drawn, exported, stage};
 
 /// Which bodies walk far? `[McGeer1990]`
@@ -81,6 +86,8 @@ pub struct Config {
     pub hidden: u32,
     /// Largest weight.
     pub weights: f64,
+    /// Whose dynamics.
+    pub engine: Engine,
 }
 
 impl Config {
@@ -97,6 +104,7 @@ impl Config {
             ranges: BODY.map(|part| part.range),
             hidden: 3,
             weights: 8.0,
+            engine: Engine::default(),
         }
     }
 
@@ -142,24 +150,28 @@ impl Config {
         Some((layout, parameters))
     }
 
-    /// A genome's walker in its world.
-    fn walker(&self, genes: &[u16]) -> Option<(World<f32>, WalkerLife)> {
+    /// A genome's walker, and its life.
+    fn life(&self, genes: &[u16]) -> Option<(Robot, WalkerLife)> {
         let (walker, launch) = self.body(genes)?;
         let (robot, parts) = walker.robot();
-        let options = Options {
-            time_step: self.walk.time_step,
-            substeps: self.substeps,
-            gravity: Walker::gravity(self.walk.gravity, self.walk.slope),
-            ..Options::default()
-        };
-        let model = Model::new(&robot, &options).ok()?;
         let brain = if self.powered() {
             let (layout, parameters) = self.parameters(genes)?;
             Some(Brain::new(&walker, &parts, layout, parameters).ok()?)
         } else {
             None
         };
-        Some((World::new(model), WalkerLife::new(walker, parts, self.walk, launch, brain)))
+        Some((robot, WalkerLife::new(walker, parts, self.walk, launch, brain)))
+    }
+
+    /// A walker in our articulated world.
+    fn world(&self, robot: &Robot) -> Option<World<f32>> {
+        let options = Options {
+            time_step: self.walk.time_step,
+            substeps: self.substeps,
+            gravity: Walker::gravity(self.walk.gravity, self.walk.slope),
+            ..Options::default()
+        };
+        Some(World::new(Model::new(robot, &options).ok()?))
     }
 }
 
@@ -189,6 +201,7 @@ impl Experiment for BodyEvolution {
             Setting::whole("evolution.parents", 12, 1..=1_000_000)
                 .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
             Setting::number("evolution.mutation_rate", 0.03, 0.0..=1.0).doc("Probability that mutation hits a bit."),
+            engine(),
             Setting::number("world.slope", walk.slope, -0.2..=0.2).unit("rad").doc("Slope, falling ahead."),
             Setting::number("world.gravity", walk.gravity, 0.1..=100.0).unit("m/s2").doc("Gravity."),
             Setting::number("world.time_step", walk.time_step, 1e-4..=0.02)
@@ -234,8 +247,13 @@ impl Experiment for BodyEvolution {
             substeps: settings.count("world.substeps")? as u32,
             walk: walk(settings, plain.walk)?,
             walker: on_contacts(settings, plain.walker)?,
+            engine: settings.word(ENGINE)?.parse()?,
             ..plain
         };
+        #[cfg(not(feature = "rapier"))]
+        if config.engine == Engine::Rapier {
+            return Err(config.engine.missing());
+        }
         for (range, part) in config.ranges.iter_mut().zip(BODY) {
             let values = settings.numbers(part.key)?;
             let (low, high) = (values[0], values[1]);
@@ -335,31 +353,55 @@ impl Setup for Lives {
 
     /// Success is ten strides, twenty steps, without a fall.
     fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        let Some((mut world, mut life)) = self.config.walker(genes) else { return Outcome::failed() };
-        if let (Some(recorder), Some(brain)) = (tape.recorder(), life.brain()) {
-            recorder.parameters(brain.parameters());
+        let Some((robot, life)) = self.config.life(genes) else { return Outcome::failed() };
+        match self.config.engine {
+            Engine::Articulated => live_in(self.config.world(&robot), life, job, tape),
+            #[cfg(feature = "rapier")]
+            Engine::Rapier => {
+                let options = rapier_options(&self.config.walk, life.gait().walker(), self.config.substeps);
+                live_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, job, tape)
+            }
+            #[cfg(not(feature = "rapier"))]
+            Engine::Rapier => Outcome::failed(),
         }
-        life.start(&mut world, job);
-        let mut outcome = live_to_the_end(&mut life, &mut world, tape);
-        let gait = life.gait();
-        let walker = gait.walker();
-        outcome.notes.push(("work of the motor [J]", Note::from(gait.energies()[0])));
-        outcome.notes.push(("energy gained [J]", Note::from(gait.energies()[1])));
-        let [outer, inner] = walker.legs;
-        outcome.notes.extend([
-            ("outer legs [m]", Note::from(outer.length)),
-            ("inner legs [m]", Note::from(inner.length)),
-            ("hip [kg]", Note::from(walker.hip_mass)),
-            ("shanks [kg]", Note::from(outer.mass)),
-            ("feet [kg]", Note::from(outer.foot_mass)),
-            ("soles [m]", Note::from(outer.foot_radius)),
-            ("hip spacing [m]", Note::from(walker.hip_spacing)),
-        ]);
-        outcome
     }
 
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean(trials)
     }
+}
+
+/// Lives a walker's life in a world; there is none for a body that cannot be.
+fn live_in<W>(world: Option<W>, mut life: WalkerLife, job: Job, tape: &mut Tape<'_>) -> Outcome
+where
+    W: farsa_body::World
+        + Kinematics
+        + Joints
+        + Contacts
+        + Actuated
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
+{
+    let Some(mut world) = world else { return Outcome::failed() };
+    if let (Some(recorder), Some(brain)) = (tape.recorder(), life.brain()) {
+        recorder.parameters(brain.parameters());
+    }
+    life.start(&mut world, job);
+    let mut outcome = live_to_the_end(&mut life, &mut world, tape);
+    let gait = life.gait();
+    let walker = gait.walker();
+    outcome.notes.push(("work of the motor [J]", Note::from(gait.energies()[0])));
+    outcome.notes.push(("energy gained [J]", Note::from(gait.energies()[1])));
+    let [outer, inner] = walker.legs;
+    outcome.notes.extend([
+        ("outer legs [m]", Note::from(outer.length)),
+        ("inner legs [m]", Note::from(inner.length)),
+        ("hip [kg]", Note::from(walker.hip_mass)),
+        ("shanks [kg]", Note::from(outer.mass)),
+        ("feet [kg]", Note::from(outer.foot_mass)),
+        ("soles [m]", Note::from(outer.foot_radius)),
+        ("hip spacing [m]", Note::from(walker.hip_spacing)),
+    ]);
+    outcome
 }

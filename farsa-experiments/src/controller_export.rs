@@ -20,6 +20,8 @@ pub struct ControllerExport {
     pub motors: Vec<MotorExport>,
     /// The laws of the actuators that motors command, in the order of the robot's description.
     pub actuators: Vec<ActuatorExport>,
+    /// The surfaces of all pairs of shapes that may touch, in the order of the robot's description.
+    pub surfaces: Vec<SurfaceExport>,
     /// How a trial is judged, where sensors depend on it.
     pub judge: Option<JudgeExport>,
     /// Control step \[s\].
@@ -66,6 +68,21 @@ pub struct SensorExport {
     pub reads: SensorReading,
 }
 
+/// What lies between a pair of shapes: a spring and a damper.
+///
+/// The normal force at the end of a step is stiffness * depth - damping * the speed at which the shapes part, and none where
+/// that is not positive: a pair touches while its depth is more than 0 and more than damping / stiffness times that speed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct SurfaceExport {
+    /// Names of the two shapes.
+    pub pair: [String; 2],
+    /// Stiffness \[N/m\].
+    pub stiffness: f64,
+    /// Damping \[N s/m\].
+    pub damping: f64,
+}
+
 /// What a sensor channel reads.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "reads", rename_all = "kebab-case")]
@@ -80,7 +97,7 @@ pub enum SensorReading {
         /// Position that reads 1 \[rad\].
         to: f32,
     },
-    /// min(1, n / saturation), n pairs of shapes that touch under a normal force > 0.
+    /// min(1, n / saturation), n pairs of shapes that touch under a normal force > 0; see [`SurfaceExport`].
     Touch {
         /// Names of the pairs' two shapes.
         pairs: Vec<[String; 2]>,

@@ -9,7 +9,7 @@ use crate::settings::Value;
 /// The setting that `--world` is short for.
 pub(crate) const ENGINE: &str = "world.engine";
 
-/// What moves the bodies of `reach-grasp-lift`.
+/// What moves the bodies of an experiment that has a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Engine {
     /// Our articulated world, `farsa_physics::articulated`.

@@ -124,7 +124,7 @@ pub use braitenberg::Braitenberg;
 pub use camera::Camera;
 pub use controller_export::{
     ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport,
-    SensorReading, ServoExport, StartExport,
+    SensorReading, ServoExport, StartExport, SurfaceExport,
 };
 pub use discrimination::{Discrimination, DiscriminationCylinders};
 pub use error::Error;

@@ -1,19 +1,21 @@
 //! The experiment `passive-walker`: two legs walk down a slope by themselves.
 
+pub use crate::engine::Engine;
 pub use crate::gait::{End, Footfall, Gait, Rules};
 pub use crate::walker::{Legs, Posture, Walker, WalkerParts};
 pub use crate::walker_life::{Brain, Launch, Pace, SENSES, Walk, WalkerLife};
 
-use farsa_body::MjcfOptions;
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 
+use crate::engine::ENGINE;
 use crate::error::Error;
 use crate::experiment::{Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::life::{Job, Life as _};
 use crate::settings::{Setting, Settings};
 use crate::stage::Stage;
-use crate::walker_settings::{live_to_the_end, mean, mjcf_options, on_contacts, walk};
+use crate::walker_settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
 use crate::walker_stage::{drawn, exported, stage};
 use crate::walking_model::{ModelGait, SLOPES, WalkingModel};
 
@@ -40,6 +42,8 @@ pub struct Config {
     pub walk: Walk,
     /// The body.
     pub walker: Walker,
+    /// Whose dynamics.
+    pub engine: Engine,
 }
 
 impl Default for Config {
@@ -51,6 +55,7 @@ impl Default for Config {
             substeps: 16,
             walk,
             walker: Walker { stiffness: 1e6, damping_ratio: 5.0, ..Walker::default() },
+            engine: Engine::default(),
         }
     }
 }
@@ -73,6 +78,12 @@ impl Config {
         };
         let model = Model::new(&robot, &options).map_err(|error| Error::Other(format!("passive-walker: {error}")))?;
         Ok((model, parts))
+    }
+
+    /// How rapier is stepped for this walker; its contacts are harder by far than the ground's stiffness says.
+    #[cfg(feature = "rapier")]
+    pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
+        crate::walker_settings::rapier_options(&self.walk, &self.walker, self.substeps)
     }
 
     /// The walking model's gait on this slope.
@@ -104,7 +115,7 @@ impl Experiment for PassiveWalker {
     }
 
     fn settings(&self, _: &str) -> Vec<Setting> {
-        let Config { trials, substeps, walk, walker } = Config::default();
+        let Config { trials, substeps, walk, walker, engine: _ } = Config::default();
         let [low, high] = SLOPES;
         let legs = walker.legs[0];
         let only_one = |key: &str, doc: &str| Setting::whole(key, 1, 1..=1).derived().doc(doc);
@@ -112,6 +123,7 @@ impl Experiment for PassiveWalker {
             only_one("evolution.generations", "Nothing evolves: one generation."),
             only_one("evolution.population", "Nothing evolves: one walker."),
             only_one("evolution.parents", "Nothing evolves: one walker."),
+            engine(),
             Setting::number("world.slope", walk.slope, low..=high)
                 .unit("rad")
                 .given()
@@ -169,33 +181,69 @@ impl Experiment for PassiveWalker {
                 hip_range: number("walker.hip_range")?,
                 ..on_contacts(settings, plain.walker)?
             },
+            engine: settings.word(ENGINE)?.parse()?,
         };
-        Ok(Box::new(Lives::new(config)?))
+        match config.engine {
+            Engine::Articulated => Ok(Box::new(Lives::new(config)?)),
+            #[cfg(feature = "rapier")]
+            Engine::Rapier => Ok(Box::new(Lives::in_rapier(config)?)),
+            #[cfg(not(feature = "rapier"))]
+            Engine::Rapier => Err(config.engine.missing()),
+        }
     }
 }
 
 /// A walker on its slope.
-pub struct Lives {
+pub struct Lives<W = World<f64>> {
     config: Config,
-    world: World<f64>,
+    world: W,
     life: WalkerLife,
     gait: ModelGait,
 }
 
 impl Lives {
-    /// Lives under a configuration.
+    /// Lives under a configuration, in our articulated world.
     ///
     /// # Errors
     /// [`Error::Setting`] for a slope without gait, [`Error::Other`] for a body that cannot be.
     pub fn new(config: Config) -> Result<Self, Error> {
-        let gait = config.gait()?;
         let (model, parts) = config.model()?;
-        let life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&gait), None);
-        Ok(Self { config, world: World::new(model), life, gait })
+        Self::assemble(config, World::new(model), parts)
     }
 }
 
-impl Setup for Lives {
+#[cfg(feature = "rapier")]
+impl Lives<farsa_physics::rapier::World> {
+    /// Lives under a configuration, in rapier.
+    ///
+    /// # Errors
+    /// As [`Lives::new`].
+    pub fn in_rapier(config: Config) -> Result<Self, Error> {
+        let (robot, parts) = config.walker.robot();
+        let world = farsa_physics::rapier::World::new(&robot, &config.rapier_options());
+        Self::assemble(config, world.map_err(|error| Error::Other(format!("passive-walker: {error}")))?, parts)
+    }
+}
+
+impl<W> Lives<W> {
+    fn assemble(config: Config, world: W, parts: WalkerParts) -> Result<Self, Error> {
+        let gait = config.gait()?;
+        let life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&gait), None);
+        Ok(Self { config, world, life, gait })
+    }
+}
+
+impl<W> Setup for Lives<W>
+where
+    W: farsa_body::World
+        + Kinematics
+        + Joints
+        + Contacts
+        + Actuated
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+        + Send,
+{
     fn genes(&self) -> usize {
         1
     }

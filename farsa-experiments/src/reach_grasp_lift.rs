@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Law,
-    MjcfOptions, MusclePair, PairId, Recorder, Tabletop,
+    MjcfOptions, MusclePair, PairId, Recorder, Tabletop, Twist,
 };
 use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, Leak, Network, ParameterKind};
@@ -109,8 +109,9 @@ where
     }
 }
 
-/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces.
-const SCALARS: usize = 1 + 4 + 6 + 3 + 7 + 27 + 21 + 17;
+/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces, 27 + 6
+/// speeds of joints and sphere.
+const SCALARS: usize = 1 + 4 + 6 + 3 + 7 + 27 + 21 + 17 + 27 + 6;
 
 /// Fills the first places of a slice and returns the others.
 fn put<const N: usize>(places: &mut [f64], values: [f64; N]) -> &mut [f64] {
@@ -225,6 +226,9 @@ impl<W> Lives<W> {
             rest = put(rest, [agonist, antagonist, torque].map(f64::from));
         }
         let rest = put(rest, forces);
+        let rest = put(rest, ArmAndHand::joints().map(|joint| f64::from(world.speed(joint))));
+        let Twist { linear, angular } = world.velocity(Tabletop::SPHERE);
+        let rest = put(put(rest, linear.map(f64::from)), angular.map(f64::from));
         debug_assert!(rest.is_empty(), "{} scalars are missing", rest.len());
         recorder.scalars(&scalars);
         // Rounded to the nanosecond: 201 steps of 0.01 s print as 2.01.
@@ -289,6 +293,8 @@ where
         let judged = ["ds [cm]", "graspQ [cm]", "fOpen", "pRot", "height [cm]", "contacts"];
         let placed = ["palm.x [m]", "palm.y [m]", "palm.z [m]", "sphere.x [m]", "sphere.y [m]", "sphere.z [m]"];
         let turned = ["sphere.qx", "sphere.qy", "sphere.qz", "sphere.qw"];
+        let moved = ["sphere.vx [m/s]", "sphere.vy [m/s]", "sphere.vz [m/s]"].into_iter();
+        let moved = moved.chain(["sphere.wx [rad/s]", "sphere.wy [rad/s]", "sphere.wz [rad/s]"]);
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
         let joints = scene.robot.segments.iter().take(27).enumerate().map(|(i, segment)| {
             let [low, high] = segment.joint.range;
@@ -303,6 +309,8 @@ where
             .chain(joints)
             .chain(muscles.map(|name| in_group("actuator")(&name)))
             .chain(forces)
+            .chain((1..=27).map(|n| in_group("speed")(&format!("J{n} [rad/s]"))))
+            .chain(moved.map(in_group("speed")))
             .collect();
         let mut stage = Stage::of_robot(&scene.robot)
             .with_sensors(self.life.senses().names())

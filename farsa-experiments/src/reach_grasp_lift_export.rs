@@ -1,10 +1,10 @@
 //! The controller of `reach-grasp-lift` and its starts for other programs.
 
-use farsa_body::{ActuatorId, ArmAndHand, BodyId, Finger, JointId, PairId, Tabletop};
+use farsa_body::{ActuatorId, ArmAndHand, BodyId, Finger, JointId, Pair, PairId, Tabletop};
 
 use crate::controller_export::{
     ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport,
-    SensorReading, ServoExport, StartExport,
+    SensorReading, ServoExport, StartExport, SurfaceExport,
 };
 use crate::life::Job;
 use crate::phase::Phase;
@@ -30,6 +30,7 @@ impl Scene {
             sensors: sensors.map(|(name, reads)| SensorExport { name, reads }).collect(),
             motors: motors.map(|(name, drives)| MotorExport { name, drives }).collect(),
             actuators: actuators.collect(),
+            surfaces: self.surfaces(),
             judge: Some(self.judge_by_name()),
             time_step: self.config.time_step,
             steps: self.config.steps,
@@ -79,6 +80,15 @@ impl Scene {
             MotorDrive::Servos { servos: servos.collect() }
         });
         muscles.chain(groups).collect()
+    }
+
+    fn surfaces(&self) -> Vec<SurfaceExport> {
+        let surface = |number: usize, pair: &Pair| SurfaceExport {
+            pair: self.pair_name(PairId(number as u16)),
+            stiffness: pair.surface.stiffness,
+            damping: pair.surface.damping,
+        };
+        self.robot.pairs.iter().enumerate().map(|(number, pair)| surface(number, pair)).collect()
     }
 
     fn judge_by_name(&self) -> JudgeExport {

@@ -4,10 +4,11 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, World,
 };
 
+use crate::engine::{ENGINE, Engine};
 use crate::error::Error;
 use crate::experiment::{Note, Outcome, Tape};
 use crate::gait::End;
-use crate::settings::Settings;
+use crate::settings::{Setting, Settings};
 use crate::walker::Walker;
 use crate::walker_life::{Walk, WalkerLife};
 use crate::walker_stage::tell;
@@ -22,6 +23,34 @@ pub(crate) fn walk(settings: &Settings, plain: Walk) -> Result<Walk, Error> {
         noise: settings.number("start.noise")?,
         ..plain
     })
+}
+
+/// The setting of the world.
+pub(crate) fn engine() -> Setting {
+    Setting::word(ENGINE, Engine::default().name(), &Engine::NAMES)
+        .doc("Whose dynamics: ours, or rapier's, where a foot is as soft as rapier makes of a frequency and a damping ratio.")
+}
+
+/// How many times as high as the whole walker's on the ground's stiffness the frequency of a contact must be in rapier.
+///
+/// rapier counts it for the mass that a foot alone resists a blow with, a fraction of the walker's on a leaning light leg; below
+/// about 16 walkers fall.
+#[cfg(feature = "rapier")]
+const HARDER: f64 = 64.0;
+
+/// How rapier is stepped for a walk.
+#[cfg(feature = "rapier")]
+pub(crate) fn rapier_options(walk: &Walk, walker: &Walker, substeps: u32) -> farsa_physics::rapier::Options {
+    farsa_physics::rapier::Options {
+        time_step: walk.time_step,
+        substeps,
+        sweeps: 20,
+        gravity: Walker::gravity(walk.gravity, walk.slope),
+        length_unit: 0.1 * walker.legs[0].length,
+        contact_frequency: HARDER * farsa_num::Scalar::sqrt(walker.stiffness / walker.mass()) / core::f64::consts::TAU,
+        contact_damping: walker.damping_ratio,
+        ..farsa_physics::rapier::Options::default()
+    }
 }
 
 /// The walker with the contacts that settings ask for.

@@ -271,3 +271,17 @@ fn an_evolved_body_walks_ten_strides() {
     (other[1], other[8]) = (0, 65535);
     assert!(trials("passive", &other).iter().all(|outcome| !outcome.success));
 }
+
+#[cfg(feature = "rapier")]
+#[test]
+fn the_walker_walks_in_rapier() {
+    let changes = [
+        ("world.engine", Value::Word("rapier".into())),
+        ("world.substeps", Value::Whole(4)),
+        ("start.noise", Value::Number(0.0)),
+    ];
+    let mut setup = prepared(&PassiveWalker, "", &changes).unwrap();
+    let outcome = setup.live(&[0], Job::default(), &mut Tape::off());
+    // 24 steps in 30 s, as in our world.
+    assert!(outcome.success && outcome.terms[0] > 8.0, "{outcome:?}");
+}

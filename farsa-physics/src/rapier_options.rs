@@ -15,6 +15,8 @@ pub struct Options {
     pub substeps: u32,
     /// Iterations of the solver per step of rapier, which divide it further: how often positions and joints advance.
     pub iterations: u32,
+    /// Sweeps of the solver over contacts and stops in each iteration: a foot that leans on a light leg needs some.
+    pub sweeps: u32,
     /// Gravity [m/s2].
     pub gravity: [f64; 3],
     /// Size of what is simulated, next to which rapier's tolerances are chosen [m].
@@ -31,6 +33,7 @@ impl Default for Options {
             time_step: 0.01,
             substeps: 4,
             iterations: 1,
+            sweeps: 1,
             gravity: [0.0, 0.0, -9.81],
             length_unit: 0.1,
             contact_frequency: 120.0,
@@ -45,6 +48,7 @@ impl Options {
             ("time_step", self.time_step, 1e-6, 1.0),
             ("substeps", f64::from(self.substeps), 1.0, 1e6),
             ("iterations", f64::from(self.iterations), 1.0, 1e4),
+            ("sweeps", f64::from(self.sweeps), 1.0, 1e4),
             ("gravity x", self.gravity[0], -1e4, 1e4),
             ("gravity y", self.gravity[1], -1e4, 1e4),
             ("gravity z", self.gravity[2], -1e4, 1e4),
@@ -66,6 +70,7 @@ impl Options {
         let parameters = &mut physics.integration_parameters;
         parameters.dt = (self.time_step / f64::from(self.substeps)) as f32;
         parameters.num_solver_iterations = self.iterations as usize;
+        parameters.num_internal_pgs_iterations = self.sweeps as usize;
         parameters.length_unit = self.length_unit as f32;
         parameters.contact_softness = softness;
         parameters.static_contact_softness = softness;

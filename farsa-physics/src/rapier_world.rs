@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use farsa_body::{BodyId, JointId, JointKind, Pose, Robot, Twist};
-use rapier3d::dynamics::{Multibody, MultibodyJoint, RigidBodyHandle};
+use rapier3d::dynamics::{Multibody, MultibodyJoint, RigidBody, RigidBodyHandle};
 use rapier3d::geometry::ColliderHandle;
 use rapier3d::math::{Rotation, Vector};
 use rapier3d::pipeline::PhysicsWorld;
@@ -260,17 +260,42 @@ impl World {
             return;
         }
         let physics = &mut self.physics;
+        let mut speeds = Vec::new();
         for carrier in &self.plan.carriers {
             let Some((multibody, 0 | 1, _)) = carrier.link else { continue };
             if let Some(multibody) = physics.multibody_joints.get_multibody_mut(multibody) {
                 multibody.forward_kinematics(&physics.bodies, true);
+                // Colliders follow a body only if it is told by itself where it is.
+                for link in multibody.links() {
+                    if let Some(body) = physics.bodies.get_mut(link.rigid_body_handle()) {
+                        body.set_position(*link.local_to_world(), false);
+                    }
+                }
                 multibody.update_rigid_bodies(&mut physics.bodies, true);
+                speeds.extend_from_slice(multibody.generalized_velocity().as_slice());
             }
         }
-        // A step of no time does only that.
+        let free = |carrier: &&Carrier| carrier.link.is_none();
+        let twist = |body: &RigidBody| [body.linvel(), body.angvel()];
+        let twists = self.plan.carriers.iter().filter(free).map(|carrier| twist(&physics.bodies[carrier.body]));
+        let twists: Vec<_> = twists.collect();
+        // A step of no time does only that, but for blows on what is put against something: these are the next step's.
         let dt = core::mem::replace(&mut physics.integration_parameters.dt, 0.0);
         physics.step_with_events(&self.plan.rules, &());
         physics.integration_parameters.dt = dt;
+        let mut speeds = speeds.into_iter();
+        for carrier in &self.plan.carriers {
+            let Some((multibody, 0 | 1, _)) = carrier.link else { continue };
+            if let Some(multibody) = physics.multibody_joints.get_multibody_mut(multibody) {
+                multibody.generalized_velocity_mut().iter_mut().zip(&mut speeds).for_each(|(to, speed)| *to = speed);
+            }
+        }
+        for (carrier, [linear, angular]) in self.plan.carriers.iter().filter(free).zip(twists) {
+            if let Some(body) = physics.bodies.get_mut(carrier.body) {
+                body.set_linvel(linear, false);
+                body.set_angvel(angular, false);
+            }
+        }
         self.examine();
     }
 }

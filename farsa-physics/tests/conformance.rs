@@ -1,12 +1,14 @@
 //! The articulated world keeps what `farsa_body::testing` says that every world promises.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod channels;
 mod common;
 
-use common::{CLOSED, POSES, Wrist, hand_and_sphere, model, pose_hand, put_in_the_palm, scene};
+use channels::channels_conform;
+use common::{CLOSED, POSES, Wrist, hand_and_sphere, model, pose_hand, put_in_the_palm, scene, start, stream};
 use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
-use farsa_body::{ArmAndHand, Arrange, JointId, Law};
-use farsa_physics::articulated::{Options, World};
+use farsa_body::{ArmAndHand, Arrange, JointId, Law, World as _};
+use farsa_physics::articulated::{Model, Options, Precision, World};
 
 #[test]
 fn the_whole_scene_conforms() {
@@ -49,4 +51,22 @@ fn it_conforms_in_double_precision_but_for_its_snapshot() {
     let robot = scene();
     let model = model::<f64>(&robot, Options::default());
     assert_eq!(check_arrange(|| World::new(model.clone()), &Probe::of(&robot)), Ok(()));
+}
+
+/// The arm at its first start, a while after the sphere was put on the table.
+fn resting<R: Precision>(model: &Model<R>) -> World<R> {
+    let mut world = World::new(model.clone());
+    start(&scene(), &mut world, &mut stream(1, 0), 0);
+    for _ in 0..10 {
+        world.step();
+    }
+    world
+}
+
+#[test]
+fn sensors_and_motors_conform_in_both_precisions() {
+    let robot = scene();
+    let (single, double) = (model::<f32>(&robot, Options::default()), model::<f64>(&robot, Options::default()));
+    channels_conform(&robot, || resting(&single));
+    channels_conform(&robot, || resting(&double));
 }

@@ -2,10 +2,12 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 #![cfg(feature = "lanes")]
 
+mod channels;
 mod common;
 
 use std::cell::RefCell;
 
+use channels::channels_conform;
 use common::{Babble, commands, drive, first_point, model, points_of, scene, start};
 use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
 use farsa_body::{
@@ -281,6 +283,12 @@ fn a_lane_conforms() {
     assert_eq!(check_world(make, &probe), Ok(()));
     assert_eq!(check_rays(&make(), &probe.bodies, &[[0.1, -0.3, 0.3], [0.3, 0.0, 0.1]], 1.0), Ok(()));
     assert_eq!(check_arrange(|| Alone::new(&model, 7), &probe), Ok(()));
+    let resting = || {
+        let mut world = make();
+        (0..10).for_each(|_| world.step());
+        world
+    };
+    channels_conform(&robot, resting);
 }
 
 #[test]

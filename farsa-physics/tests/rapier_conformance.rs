@@ -2,11 +2,13 @@
 #![cfg(feature = "rapier")]
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod channels;
 mod common;
 
+use channels::channels_conform;
 use common::{CLOSED, POSES, WRIST, Wrist, hand_and_sphere, scene};
 use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
-use farsa_body::{ArmAndHand, Arrange, JointId, Law, Pose, Tabletop, Twist};
+use farsa_body::{ArmAndHand, Arrange, JointId, Law, Pose, Tabletop, Twist, World as _};
 use farsa_physics::rapier::{Options, World};
 
 #[test]
@@ -47,4 +49,19 @@ fn a_hand_around_a_sphere_conforms() {
         world
     };
     assert_eq!(check_world(make, &Probe { steps: 96, ..Probe::of(&robot) }), Ok(()));
+}
+
+/// What a motor does shows here in the bytes of a snapshot, packed into whole numbers: that commands are finite does not.
+#[test]
+fn sensors_and_motors_conform() {
+    let robot = scene();
+    let mut resting = World::new(&robot, &Options::default()).unwrap();
+    for (j, degrees) in POSES[0].into_iter().enumerate() {
+        resting.place_joint(JointId(j as u16), degrees.to_radians() as f32, 0.0);
+    }
+    resting.arranged();
+    for _ in 0..10 {
+        resting.step();
+    }
+    channels_conform(&robot, || resting.clone());
 }
