@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use farsa_experiments::{
-    Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PassiveWalker,
-    PredatorPrey, ReachGraspLift, cli,
+    Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, MinimalCognition,
+    PassiveWalker, PredatorPrey, ReachGraspLift, cli,
 };
 
 fn main() -> ExitCode {
@@ -13,6 +13,7 @@ fn main() -> ExitCode {
         &Discrimination,
         &DiscriminationCylinders,
         &Braitenberg,
+        &MinimalCognition,
         &Foraging,
         &Aggregation,
         &PredatorPrey,
