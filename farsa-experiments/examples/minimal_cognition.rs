@@ -41,10 +41,10 @@ fn way(life: &mut AgentLife, object: Object, offset: f64) -> Vec<[f64; 2]> {
 fn panel(svg: &mut String, life: &mut AgentLife, object: Object, color: &str, x: f64) -> std::fmt::Result {
     let Config { start_height, end_height, offset, clip, .. } = *life.config();
     let y = |height: f64| 40.0 + start_height - height;
-    writeln!(svg, r##"<text x="{x}" y="24" text-anchor="middle" font-size="13">{}</text>"##, object.name())?;
+    writeln!(svg, r#"<text x="{x}" y="24" text-anchor="middle" font-size="13">{}</text>"#, object.name())?;
     for (at, stroke) in [(0.0, "#999"), (-clip, "#ddd"), (clip, "#ddd")] {
         let (x, top, bottom) = (x + at, y(start_height), y(end_height));
-        writeln!(svg, r##"<line x1="{x}" x2="{x}" y1="{top}" y2="{bottom}" stroke="{stroke}"/>"##)?;
+        writeln!(svg, r#"<line x1="{x}" x2="{x}" y1="{top}" y2="{bottom}" stroke="{stroke}"/>"#)?;
     }
     for i in 0..24 {
         let places = way(life, object, offset * (2.0 * f64::from(i) / 23.0 - 1.0));
