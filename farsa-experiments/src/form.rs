@@ -87,7 +87,7 @@ fn ball(origin: Vector, direction: Vector, centre: Vector, radius: f64) -> Optio
 }
 
 /// The distances between which a ray is within `half` of 0 on one axis; empty if first > last.
-fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
+pub(crate) fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
     if direction == 0.0 {
         let inside = origin.abs() <= half;
         return if inside { [f64::NEG_INFINITY, f64::INFINITY] } else { [f64::INFINITY, f64::NEG_INFINITY] };

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use farsa_experiments::{
     Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, KinestheticGrasp,
-    PassiveWalker, PredatorPrey, ReachGraspLift, cli,
+    MinimalCognition, PassiveWalker, PredatorPrey, ReachGraspLift, cli,
 };
 
 fn main() -> ExitCode {
@@ -14,6 +14,7 @@ fn main() -> ExitCode {
         &Discrimination,
         &DiscriminationCylinders,
         &Braitenberg,
+        &MinimalCognition,
         &Foraging,
         &Aggregation,
         &PredatorPrey,

@@ -1,0 +1,86 @@
+//! The ways of an agent of `minimal-cognition` under circles and diamonds, and its scores:
+//! `cargo run --release -p farsa-experiments --example minimal_cognition -- GENOTYPE.gen OUT.svg`.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use farsa_experiments::minimal_cognition::{AgentLife, Config, Object, Wiring};
+use farsa_experiments::{Job, read_genotypes};
+
+/// The part of the line that is drawn, to both sides of the object.
+const SIDE: f64 = 100.0;
+
+/// The same trials as `farsa test --trials N --seed 1`: mean scores under circles and under diamonds.
+fn scores(life: &mut AgentLife, trials: u32) -> [f64; 2] {
+    let kinds = life.config().trials;
+    let mut sums = [0.0; 2];
+    for trial in 0..trials {
+        life.start(Job { seed: 1 | 1 << 63, generation: trial / kinds, individual: 0, trial: trial % kinds });
+        while !life.ended() {
+            life.step();
+        }
+        sums[usize::from(life.object().name() == "diamond")] += life.score();
+    }
+    sums.map(|sum| 2.0 * sum / f64::from(trials))
+}
+
+/// Where the agent is beside the object at every height of it.
+fn way(life: &mut AgentLife, object: Object, offset: f64) -> Vec<[f64; 2]> {
+    life.place(object, offset);
+    let mut way = vec![[-offset, life.height()]];
+    while !life.ended() {
+        life.step();
+        let [object, agent] = life.places();
+        way.push([agent - object, life.height()]);
+    }
+    way
+}
+
+/// A panel of ways, its middle at `x`.
+fn panel(svg: &mut String, life: &mut AgentLife, object: Object, color: &str, x: f64) -> std::fmt::Result {
+    let Config { start_height, end_height, offset, clip, .. } = *life.config();
+    let y = |height: f64| 40.0 + start_height - height;
+    writeln!(svg, r#"<text x="{x}" y="24" text-anchor="middle" font-size="13">{}</text>"#, object.name())?;
+    for (at, stroke) in [(0.0, "#999"), (-clip, "#ddd"), (clip, "#ddd")] {
+        let (x, top, bottom) = (x + at, y(start_height), y(end_height));
+        writeln!(svg, r#"<line x1="{x}" x2="{x}" y1="{top}" y2="{bottom}" stroke="{stroke}"/>"#)?;
+    }
+    for i in 0..24 {
+        let places = way(life, object, offset * (2.0 * f64::from(i) / 23.0 - 1.0));
+        let points = places.iter().step_by(8).chain(places.last());
+        let points: Vec<String> =
+            points.map(|[at, height]| format!("{:.1},{:.1}", x + at.clamp(-SIDE, SIDE), y(*height))).collect();
+        writeln!(
+            svg,
+            r#"<polyline points="{}" fill="none" stroke="{color}" stroke-opacity="0.6"/>"#,
+            points.join(" ")
+        )?;
+    }
+    for (at, text) in [(-clip, format!("-{clip}")), (0.0, "0".into()), (clip, clip.to_string())] {
+        let (x, y) = (x + at, y(end_height) + 15.0);
+        writeln!(svg, r##"<text x="{x}" y="{y}" text-anchor="middle" font-size="10" fill="#555">{text}</text>"##)?;
+    }
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [genotype, out] = &arguments[..] else { return Err("usage: minimal_cognition GENOTYPE.gen OUT.svg".into()) };
+    let config = Config::default();
+    let mut wiring = Wiring::new(&config)?;
+    let genes = read_genotypes(Path::new(genotype), wiring.genes(), 16)?.pop().ok_or("no genotype")?;
+    let mut life = AgentLife::new(config, wiring.decode(&genes).ok_or("other genes")?)?;
+    let [circles, diamonds] = scores(&mut life, 10_000);
+    println!("circles {circles:.4}, diamonds {diamonds:.4}, all {:.4}", 0.5 * (circles + diamonds));
+
+    let mut svg = String::from(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 480 330" font-family="sans-serif" fill="black">"#,
+    );
+    svg.push_str("\n<rect width=\"480\" height=\"330\" fill=\"white\"/>\n");
+    panel(&mut svg, &mut life, Object::circle(config.diameter), "#009e73", 125.0)?;
+    panel(&mut svg, &mut life, Object::diamond(config.side), "#d55e00", 355.0)?;
+    svg.push_str("</svg>\n");
+    std::fs::write(out, svg)?;
+    Ok(())
+}

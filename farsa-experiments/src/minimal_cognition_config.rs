@@ -1,0 +1,188 @@
+//! The values of `minimal-cognition`, as settings.
+
+use core::f64::consts::FRAC_PI_6;
+
+use crate::error::Error;
+use crate::settings::{Setting, Settings};
+
+/// What an agent under falling objects is; the defaults are those of \[Beer2003\] where the settings say so.
+///
+/// Lengths and times have no units in the source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// Width of the line.
+    pub width: f64,
+    /// Step of the Euler method, of the network and of all that moves.
+    pub time_step: f64,
+    /// Trials of an evaluation, circles and diamonds by turns.
+    pub trials: u32,
+    /// Diameter of the agent.
+    pub body: f64,
+    /// Angle between the outermost rays \[rad\].
+    pub fan: f64,
+    /// Length of the rays, from the agent's outline.
+    pub ray_length: f64,
+    /// The input of a ray that is cut at its origin.
+    pub input_gain: f64,
+    /// Velocity for a difference of 1 between the motor neurons.
+    pub velocity_gain: f64,
+    /// Diameter of the circles.
+    pub diameter: f64,
+    /// Side of the diamonds.
+    pub side: f64,
+    /// Speed of the objects.
+    pub speed: f64,
+    /// Height of an object's centre above the agent's at the start.
+    pub start_height: f64,
+    /// That height at which a trial ends.
+    pub end_height: f64,
+    /// Objects start at most this far to a side of the agent.
+    pub offset: f64,
+    /// Distances beyond this count as this.
+    pub clip: f64,
+    /// Weights are decoded to plus and minus this.
+    pub weight_range: f64,
+    /// Biases are decoded to plus and minus this.
+    pub bias_range: f64,
+    /// Least and greatest time constant.
+    pub time_constants: [f64; 2],
+    /// Least and greatest gain of the sensory neurons.
+    pub gains: [f64; 2],
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            width: 400.0,
+            time_step: 0.1,
+            trials: 24,
+            body: 30.0,
+            fan: FRAC_PI_6,
+            ray_length: 220.0,
+            input_gain: 10.0,
+            velocity_gain: 5.0,
+            diameter: 30.0,
+            side: 30.0,
+            speed: 3.0,
+            start_height: 275.0,
+            end_height: 30.0,
+            offset: 50.0,
+            clip: 45.0,
+            weight_range: 16.0,
+            bias_range: 16.0,
+            time_constants: [1.0, 10.0],
+            gains: [1.0, 5.0],
+        }
+    }
+}
+
+impl Config {
+    /// Steps of a trial: as many as an object needs to the height at which it ends.
+    pub fn steps(&self) -> u32 {
+        let steps = (self.start_height - self.end_height) / (self.speed * self.time_step);
+        steps.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
+    }
+
+    /// The settings with these values as defaults.
+    pub fn table(&self) -> Vec<Setting> {
+        let length = |key: &str, value: f64| Setting::number(key, value, 1.0..=10_000.0);
+        vec![
+            Setting::whole("evolution.generations", 200, 1..=i64::from(u32::MAX) - 1)
+                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+            Setting::whole("evolution.population", 100, 1..=1_000_000)
+                .doc("Individuals of a generation, a multiple of the parents."),
+            Setting::whole("evolution.parents", 20, 1..=1_000_000)
+                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+            Setting::number("evolution.mutation_rate", 0.015, 0.0..=1.0).doc("Probability that mutation hits a bit."),
+            length("world.width", self.width).given().doc("Width of the line that the agent moves on; it stops at the ends."),
+            Setting::number("world.time_step", self.time_step, 0.001..=1.0)
+                .given()
+                .doc("Step of the Euler method, for the network and for all that moves."),
+            Setting::whole("trial.count", i64::from(self.trials), 2..=100_000)
+                .given()
+                .doc("Trials of an evaluation: a circle, a diamond, and so on."),
+            length("agent.diameter", self.body).given().doc("Diameter of the agent."),
+            Setting::number("agent.ray_fan", self.fan, 0.0..=3.0)
+                .unit("rad")
+                .given()
+                .doc("Angle between the outermost of the seven rays, which leave the agent's outline upwards."),
+            length("agent.ray_length", self.ray_length).given().doc("Length of the rays."),
+            Setting::number("agent.input_gain", self.input_gain, 0.0..=1000.0)
+                .doc("Input of a ray that is cut at its origin; it falls linearly to 0 at the ray's end."),
+            Setting::number("agent.velocity_gain", self.velocity_gain, 0.0..=1000.0)
+                .given()
+                .doc("Velocity for a difference of 1 between the outputs of the motor neurons."),
+            length("object.diameter", self.diameter).given().doc("Diameter of the circles, which are to be caught."),
+            length("object.side", self.side).given().doc("Side of the diamonds, squares on their tips, which are to be avoided."),
+            Setting::number("object.speed", self.speed, 0.01..=1000.0).given().doc("Speed at which objects fall."),
+            length("object.start_height", self.start_height)
+                .given()
+                .doc("Height of an object's centre above the agent's at the start."),
+            Setting::number("object.end_height", self.end_height, 0.0..=10_000.0).doc(
+                "That height at which the trial ends: a circle straight above then touches the agent and nothing passes \
+                 through it.",
+            ),
+            length("object.offset", self.offset).given().doc(
+                "Objects start at most this far to a side of the agent. The distance is uniform in one of trial.count / 2 equal \
+                 parts for each shape, the side random; all individuals of a generation meet the same.",
+            ),
+            length("fitness.clip", self.clip)
+                .given()
+                .doc("A trial earns d under a diamond, 1 - d under a circle: d is the distance at its end in parts of this, at most 1."),
+            Setting::number("net.weight_range", self.weight_range, 0.1..=1000.0)
+                .doc("Weights are decoded to plus and minus this."),
+            Setting::number("net.bias_range", self.bias_range, 0.1..=1000.0)
+                .doc("Biases are decoded to plus and minus this."),
+            Setting::numbers("net.time_constants", &self.time_constants, 0.001..=1000.0)
+                .doc("Least and greatest time constant; with 30 as the greatest evolution was slower."),
+            Setting::numbers("net.gains", &self.gains, 0.01..=1000.0)
+                .doc("Least and greatest gain of the sensory neurons; that of the others is 1."),
+        ]
+    }
+
+    /// The values of checked settings.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for what does not go together.
+    pub fn read(settings: &Settings) -> Result<Self, Error> {
+        let number = |key: &str| settings.number(key);
+        let ends = |key: &str| {
+            let found = settings.numbers(key)?;
+            if found[0] > found[1] {
+                return Err(Error::setting(key, format!("{found:?}: the first must not be greater")));
+            }
+            Ok([found[0], found[1]])
+        };
+        let config = Self {
+            width: number("world.width")?,
+            time_step: number("world.time_step")?,
+            trials: settings.count("trial.count")? as u32,
+            body: number("agent.diameter")?,
+            fan: number("agent.ray_fan")?,
+            ray_length: number("agent.ray_length")?,
+            input_gain: number("agent.input_gain")?,
+            velocity_gain: number("agent.velocity_gain")?,
+            diameter: number("object.diameter")?,
+            side: number("object.side")?,
+            speed: number("object.speed")?,
+            start_height: number("object.start_height")?,
+            end_height: number("object.end_height")?,
+            offset: number("object.offset")?,
+            clip: number("fitness.clip")?,
+            weight_range: number("net.weight_range")?,
+            bias_range: number("net.bias_range")?,
+            time_constants: ends("net.time_constants")?,
+            gains: ends("net.gains")?,
+        };
+        if config.end_height >= config.start_height {
+            let why = format!("{}: must be less than the start's, {}", config.end_height, config.start_height);
+            return Err(Error::setting("object.end_height", why));
+        }
+        let least = 0.5 * config.time_step;
+        if config.time_constants[0] < least {
+            let why = format!("{}: at least half a time step, {least}", config.time_constants[0]);
+            return Err(Error::setting("net.time_constants", why));
+        }
+        Ok(config)
+    }
+}

@@ -1,0 +1,146 @@
+//! What falls in `minimal-cognition`, and where a ray meets it.
+
+use crate::form::slab;
+
+/// A falling object, about its centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Object {
+    /// To be caught.
+    Circle {
+        /// Radius.
+        radius: f64,
+    },
+    /// A square on its tip, to be avoided: all points with |x| + |y| <= `half`.
+    Diamond {
+        /// Half the diagonal.
+        half: f64,
+    },
+}
+
+impl Object {
+    /// A circle of this diameter.
+    pub fn circle(diameter: f64) -> Self {
+        Self::Circle { radius: 0.5 * diameter }
+    }
+
+    /// A diamond of this side.
+    pub fn diamond(side: f64) -> Self {
+        Self::Diamond { half: side * core::f64::consts::FRAC_1_SQRT_2 }
+    }
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Circle { .. } => "circle",
+            Self::Diamond { .. } => "diamond",
+        }
+    }
+
+    /// Where a ray from `from`, seen from the object's centre, along the unit vector `direction` first meets the object: its
+    /// distance, 0 from within; `None` if it misses.
+    pub fn meet(self, from: [f64; 2], direction: [f64; 2]) -> Option<f64> {
+        let ([x, y], [u, v]) = (from, direction);
+        let [first, last] = match self {
+            Self::Circle { radius } => {
+                let middle = -(x * u + y * v);
+                // From the nearest point: its square is exact where the textbook's discriminant cancels.
+                let (x, y) = (x + middle * u, y + middle * v);
+                let left = radius * radius - (x * x + y * y);
+                if left < 0.0 {
+                    return None;
+                }
+                let half = left.sqrt();
+                [middle - half, middle + half]
+            }
+            // Along the diagonals x + y and y - x it is a square.
+            Self::Diamond { half } => {
+                let [a, b] = [slab(y + x, v + u, half), slab(y - x, v - u, half)];
+                [a[0].max(b[0]), a[1].min(b[1])]
+            }
+        };
+        (first <= last && last >= 0.0).then(|| first.max(0.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_num::sin_cos;
+    use proptest::prelude::*;
+
+    fn within(object: Object, [x, y]: [f64; 2]) -> bool {
+        match object {
+            Object::Circle { radius } => x * x + y * y <= radius * radius,
+            Object::Diamond { half } => x.abs() + y.abs() <= half,
+        }
+    }
+
+    /// Goes along the ray in small steps and halves the one that enters; rays that graze by less than a step are missed.
+    fn marched(object: Object, from: [f64; 2], direction: [f64; 2]) -> Option<f64> {
+        const STEP: f64 = 0.02;
+        let at = |distance: f64| [0, 1].map(|k| from[k] + distance * direction[k]);
+        let entered = (0..20_000).find(|step| within(object, at(f64::from(*step) * STEP)))?;
+        let (mut outside, mut inside) = (f64::from(entered - 1) * STEP, f64::from(entered) * STEP);
+        if entered == 0 {
+            return Some(0.0);
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (outside + inside);
+            *(if within(object, at(middle)) { &mut inside } else { &mut outside }) = middle;
+        }
+        Some(inside)
+    }
+
+    fn objects() -> impl Strategy<Value = Object> {
+        let size = 10.0..40.0;
+        prop_oneof![size.clone().prop_map(Object::circle), size.prop_map(Object::diamond)]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(200))]
+
+        #[test]
+        fn rays_meet_what_a_walk_along_them_meets(
+            object in objects(), x in -60.0..60.0_f64, y in -260.0..30.0_f64, angle in -0.6..0.6_f64,
+        ) {
+            let (sine, cosine) = sin_cos(angle);
+            let (from, direction) = ([x, y], [sine, cosine]);
+            let (met, expected) = (object.meet(from, direction), marched(object, from, direction));
+            match (met, expected) {
+                (Some(met), Some(expected)) => prop_assert!((met - expected).abs() < 1e-9, "{met} {expected}"),
+                // What the walk stepped over: the way through it is short.
+                (Some(met), None) => {
+                    let beyond = met + 0.021;
+                    prop_assert!(!within(object, [x + beyond * sine, y + beyond * cosine]));
+                }
+                (None, Some(expected)) => prop_assert!(false, "missed at {expected}"),
+                (None, None) => {}
+            }
+        }
+
+        #[test]
+        fn a_mirrored_ray_is_as_long_to_the_bit(
+            object in objects(), x in -60.0..60.0_f64, y in -260.0..30.0_f64, angle in -0.6..0.6_f64,
+        ) {
+            let (sine, cosine) = sin_cos(angle);
+            prop_assert_eq!(object.meet([x, y], [sine, cosine]), object.meet([-x, y], [-sine, cosine]));
+        }
+    }
+
+    #[test]
+    fn known_rays() {
+        let (circle, diamond) = (Object::circle(30.0), Object::diamond(30.0));
+        let up = [0.0, 1.0];
+        assert_eq!(circle.meet([0.0, -100.0], up), Some(85.0));
+        assert_eq!(circle.meet([9.0, -100.0], up), Some(88.0));
+        let half = 30.0 / 2.0_f64.sqrt();
+        assert!((diamond.meet([0.0, -100.0], up).unwrap() - (100.0 - half)).abs() < 1e-12);
+        assert!((diamond.meet([10.0, -100.0], up).unwrap() - (110.0 - half)).abs() < 1e-12);
+        for object in [circle, diamond] {
+            assert_eq!(object.meet([22.0, -100.0], up), None, "beside");
+            assert_eq!(object.meet([0.0, 100.0], up), None, "behind");
+            assert_eq!(object.meet([1.0, 2.0], up), Some(0.0), "within");
+        }
+        assert_eq!([circle, diamond].map(Object::name), ["circle", "diamond"]);
+    }
+}
