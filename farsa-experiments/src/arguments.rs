@@ -11,7 +11,7 @@ use crate::arguments_genotypes::{EvaluateArgs, ImportArgs};
 use crate::camera::Camera;
 use crate::error::Error;
 use crate::experiment::Experiment;
-use crate::export::{DataFormat, ModelFormat};
+use crate::export::{ControllerFormat, DataFormat, ModelFormat};
 use crate::lanes::{SIMD, Wanted};
 use crate::model::RobotArgs;
 use crate::plan::{self, LARGEST_SEED, Plan};
@@ -403,7 +403,7 @@ pub(crate) struct ExportControllerArgs {
     pub(crate) directory: PathBuf,
     /// Of which kind the file is
     #[arg(long, value_enum)]
-    pub(crate) format: DataFormat,
+    pub(crate) format: ControllerFormat,
     /// A new file [default: the standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,

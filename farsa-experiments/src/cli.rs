@@ -118,10 +118,10 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
             summary(json, found.text(), &|| pretty(&found))
         }
         Command::Export(ExportArgs { what }) => {
-            let (text, out) = exported(what, experiments)?;
+            let (content, out) = exported(what, experiments)?;
             match out {
-                None => say(&text),
-                Some(path) => create_results(&[(path, text)]),
+                None => say(&content),
+                Some(path) => create_results(&[(path, content)]),
             }
         }
         Command::Robot(args) => {
@@ -150,19 +150,19 @@ fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Exp
 }
 
 /// What is to be exported, and where to.
-fn exported(what: ExportWhat, experiments: &[&dyn Experiment]) -> Result<(String, Option<PathBuf>), Error> {
+fn exported(what: ExportWhat, experiments: &[&dyn Experiment]) -> Result<(Vec<u8>, Option<PathBuf>), Error> {
     match what {
         ExportWhat::Robot(ExportRobotArgs { experiment, variant, format, out }) => {
             let plan = variant.plan(plan::find(experiments, &experiment, "")?)?;
-            Ok((export::robot(&plan, format)?, out))
+            Ok((export::robot(&plan, format)?.into_bytes(), out))
         }
-        ExportWhat::Controller(ExportControllerArgs { directory, format: DataFormat::Json, out }) => {
+        ExportWhat::Controller(ExportControllerArgs { directory, format, out }) => {
             let (directory, plan) = existing(&directory, experiments)?;
-            Ok((export::controller(&plan, &directory)?, out))
+            Ok((export::controller(&plan, &directory, format)?, out))
         }
         ExportWhat::Starts(ExportStartsArgs { directory, trials, seed, format: DataFormat::Json, out }) => {
             let (_, plan) = existing(&directory, experiments)?;
-            Ok((export::starts(&plan, trials as usize, seed)?, out))
+            Ok((export::starts(&plan, trials as usize, seed)?.into_bytes(), out))
         }
     }
 }
@@ -194,9 +194,9 @@ fn replay(args: &ReplayArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Re
     Ok(())
 }
 
-fn say(text: &str) -> Result<(), Error> {
+fn say(text: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), Error> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(Error::io("write", "the output".as_ref()))
+    out.write_all(text.as_ref()).and_then(|()| out.flush()).map_err(Error::io("write", "the output".as_ref()))
 }
 
 /// A run that exists, with the plan in its configuration.

@@ -199,15 +199,15 @@ pub(crate) fn create_result(path: &Path) -> Result<File, Error> {
 ///
 /// # Errors
 /// As [`create_result`]; no file is then left behind.
-pub(crate) fn create_results(results: &[(PathBuf, String)]) -> Result<(), Error> {
+pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<(), Error> {
     let mut made: Vec<&Path> = Vec::new();
-    let written = results.iter().try_for_each(|(path, text)| {
+    let written = results.iter().try_for_each(|(path, content)| {
         let there = path.exists();
         let mut file = create_result(path)?;
         if !there {
             made.push(path);
         }
-        file.write_all(text.as_bytes()).map_err(Error::io("write", path))
+        file.write_all(content.as_ref()).map_err(Error::io("write", path))
     });
     if written.is_err() {
         for path in made {

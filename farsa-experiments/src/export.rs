@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use serde::Serialize;
 
 use crate::controller_export::{ControllerExport, StartExport};
+use crate::controller_formats;
 use crate::directory::Directory;
 use crate::error::Error;
 use crate::exam;
@@ -20,7 +21,20 @@ pub(crate) enum ModelFormat {
     Urdf,
 }
 
-/// The formats of controllers and starts.
+/// The formats of controllers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ControllerFormat {
+    /// Names and numbers, of the body too
+    Json,
+    /// The network for a board's flash: checked and used where it lies
+    Bytes,
+    /// The network as constants of a Rust program
+    Rust,
+    /// The network as tables for Python
+    Safetensors,
+}
+
+/// The formats of starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum DataFormat {
     /// Names and numbers
@@ -56,6 +70,15 @@ struct Whose<'a> {
     controller: ControllerExport,
 }
 
+impl Whose<'_> {
+    fn text(&self) -> String {
+        let Self { experiment, condition, seed, generation, individual, .. } = self;
+        format!(
+            "The champion of `{experiment}`, {condition}, seed {seed}: generation {generation}, individual {individual}"
+        )
+    }
+}
+
 /// How the trials of a test start.
 #[derive(Serialize)]
 struct Trials<'a> {
@@ -67,11 +90,11 @@ struct Trials<'a> {
     starts: Vec<StartExport>,
 }
 
-/// The champion's controller of a run.
+/// The champion's controller of a run, as the content of a file.
 ///
 /// # Errors
 /// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
-pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory) -> Result<String, Error> {
+pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
     let path = directory.champion();
     if !path.is_file() {
         return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
@@ -90,7 +113,16 @@ pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory) -> Result<Strin
     let controller = controller.ok_or_else(|| Error::Usage(format!("{name}: its controllers cannot be exported")))?;
     let (seed, condition) = (plan.seed, plan.condition.as_str());
     let individual = *individual;
-    pretty(&Whose { format: 1, experiment: name, condition, seed, generation, individual, controller })
+    let whose = Whose { format: 1, experiment: name, condition, seed, generation, individual, controller };
+    match format {
+        ControllerFormat::Json => pretty(&whose).map(String::into_bytes),
+        ControllerFormat::Bytes => controller_formats::bytes(&whose.controller),
+        ControllerFormat::Rust => controller_formats::rust(&whose.controller, &whose.text()).map(String::into_bytes),
+        ControllerFormat::Safetensors => {
+            let about = serde_json::to_value(&whose).map_err(|error| Error::Other(error.to_string()))?;
+            controller_formats::safetensors(&whose.controller, about)
+        }
+    }
 }
 
 /// How the trials of `farsa test` start.

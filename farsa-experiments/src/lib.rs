@@ -17,6 +17,7 @@ mod braitenberg_life;
 mod camera;
 pub mod cli;
 mod controller_export;
+mod controller_formats;
 mod directory;
 pub mod discrimination;
 mod discrimination_config;

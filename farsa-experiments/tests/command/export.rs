@@ -1,6 +1,10 @@
 //! `farsa export`: robots, controllers and starts for other simulators.
 
 use std::fs;
+use std::path::Path;
+
+use farsa_nn::{Layout, Leak, NetworkBytes, channel_hash};
+use safetensors::SafeTensors;
 
 use crate::tool::{farsa, ok, own, say, scratch};
 
@@ -64,6 +68,7 @@ fn a_champion_is_written_with_its_channels_and_starts() {
     assert!(told["actuators"][0]["law"]["muscle-pair"]["tension"].is_number());
     ok(farsa(), &here, "export controller r --format json --out c.json");
     assert_eq!(fs::read_to_string(here.join("c.json")).expect("the file"), printed);
+    the_same_in_other_formats(&here, &told);
 
     let starts = |seed: u32| {
         let printed = ok(farsa(), &here, &format!("export starts r --trials 9 --seed {seed} --format json"));
@@ -73,4 +78,54 @@ fn a_champion_is_written_with_its_channels_and_starts() {
     assert_eq!((count(&first), count(&first[0]["joints"]), first == starts(1)), (9, 27, true));
     // The same place of the table, displaced anew.
     assert!(first[0] != first[4] && first[0] != other[0] && first[0]["bodies"][0][0] == "sphere");
+}
+
+/// Bytes, Rust and tables hold what the JSON of the same run tells.
+fn the_same_in_other_formats(here: &Path, told: &serde_json::Value) {
+    let written = |format: &str| {
+        ok(farsa(), here, &format!("export controller r --format {format} --out c.{format}"));
+        fs::read(here.join(format!("c.{format}"))).expect("the file")
+    };
+    let kinds = ["sensor_weights", "recurrent_weights", "output_weights", "biases", "leaks"];
+    let values = |kind: &str| serde_json::from_value::<Vec<f32>>(told["network"][kind].clone()).expect("numbers");
+    let names = |of: &str| {
+        let channels = told[of].as_array().into_iter().flatten();
+        channels.map(|channel| channel["name"].as_str().unwrap_or("").to_owned()).collect::<Vec<_>>()
+    };
+
+    let bytes = written("bytes");
+    let read = NetworkBytes::read(&bytes).expect("a network");
+    let mut parameters = vec![0.0; read.layout().parameter_count()];
+    read.copy_parameters(&mut parameters).expect("the length");
+    assert_eq!(parameters, kinds.map(values).concat());
+    assert_eq!((read.layout(), read.leak()), (Layout::new(29, 12, 23), Leak::Filter));
+    assert_eq!(read.channels(), channel_hash(names("sensors"), names("motors")));
+
+    let rust = String::from_utf8(written("rust")).expect("text");
+    for part in [
+        "Layout::new(29, 12, 23).with_slope(0.2);".to_owned(),
+        "LEAK: Leak = Leak::Filter;".to_owned(),
+        format!("CHANNELS: u64 = {:#018x};", read.channels()),
+        format!("{:?}, {:?},", parameters[0], parameters[1]),
+        "\"touch thumb\",".to_owned(),
+    ] {
+        assert!(rust.contains(&part), "no {part} in {rust}");
+    }
+    let (_, list) =
+        rust.split_once("PARAMETERS").and_then(|(_, rest)| rest.split_once("&[\n")).expect("the parameters");
+    let listed = list.split(',').filter_map(|number| number.trim().parse::<f32>().ok());
+    assert!(listed.eq(parameters.iter().copied()));
+
+    let tables = written("safetensors");
+    let (_, head) = SafeTensors::read_metadata(&tables).expect("tables");
+    let about = head.metadata().as_ref().and_then(|texts| texts.get("farsa")).expect("what it is");
+    let about: serde_json::Value = serde_json::from_str(about).expect("JSON");
+    assert_eq!((&about["seed"], &about["network"]["leak"]), (&told["seed"], &"filter".into()));
+    assert_eq!(about["network"]["leaks"], serde_json::Value::Null);
+    let tables = SafeTensors::deserialize(&tables).expect("tables");
+    for (kind, shape) in kinds.into_iter().zip([&[29, 12][..], &[12, 12], &[12, 23], &[12], &[12]]) {
+        let table = tables.tensor(kind).expect("the table");
+        let numbers = table.data().chunks_exact(4).map(|bytes| f32::from_le_bytes(bytes.try_into().expect("4")));
+        assert_eq!((table.shape(), numbers.collect::<Vec<_>>()), (shape, values(kind)), "{kind}");
+    }
 }
