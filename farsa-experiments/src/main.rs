@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use farsa_experiments::{
     Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PassiveWalker,
-    PredatorPrey, ReachGraspLift, cli,
+    PredatorPrey, PushBox, ReachGraspLift, cli,
 };
 
 fn main() -> ExitCode {
@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         &Foraging,
         &Aggregation,
         &PredatorPrey,
+        &PushBox,
         &PassiveWalker,
         &BodyEvolution,
     ])
