@@ -194,8 +194,8 @@ impl Threads {
 /// In which world.
 #[derive(Args)]
 pub(crate) struct WorldArgs {
-    /// The world to live in, where the experiment has a choice (world.engine): articulated, or rapier if built with it
-    /// [default: the run's own]
+    /// The world to live in, where the experiment has a choice (world.engine): articulated or arena, or rapier if built with
+    /// it [default: the run's own]
     #[arg(long = "world", value_name = "NAME")]
     pub(crate) name: Option<String>,
 }

@@ -3,11 +3,14 @@
 pub use crate::discrimination_config::{Config, EYES};
 pub use crate::discrimination_cylinders::DiscriminationCylinders;
 pub use crate::discrimination_life::{CYLINDERS, CylinderLife, Trial};
+pub use crate::engine::PlanarEngine;
 pub use crate::infrared::{Infrared, InfraredModel};
 
 use std::path::PathBuf;
 
-use farsa_body::{Kinematics as _, Pose, Recorder, World as _};
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Planar, Pose, Rays, Recorder,
+};
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
 
@@ -54,7 +57,18 @@ impl Experiment for Discrimination {
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
-        Ok(Box::new(Lives::new(Config::of_condition(condition).read(settings)?)?))
+        in_its_world(Config::of_condition(condition).read(settings)?)
+    }
+}
+
+/// Lives in the world that a configuration names.
+pub(crate) fn in_its_world(config: Config) -> Result<Box<dyn Setup>, Error> {
+    match config.engine {
+        PlanarEngine::Arena => Ok(Box::new(Lives::new(config)?)),
+        #[cfg(feature = "rapier")]
+        PlanarEngine::Rapier => Ok(Box::new(Lives::in_rapier(config)?)),
+        #[cfg(not(feature = "rapier"))]
+        PlanarEngine::Rapier => Err(crate::engine::missing(config.engine.name())),
     }
 }
 
@@ -65,20 +79,41 @@ const GENE_BITS: u32 = 8;
 type Layer = Perceptron<Vec<f32>>;
 
 /// The arena with the robot's life in it: everything that a thread needs to live lives.
-pub struct Lives {
-    world: World,
+pub struct Lives<W = World> {
+    world: W,
     life: CylinderLife<Layer>,
 }
 
 impl Lives {
-    /// Lives under a configuration.
+    /// Lives under a configuration, in the kinematic arena.
     ///
     /// # Errors
     /// [`Error::Other`] for values that make no world, and [`Error::Setting`] for an arena without room for all.
     pub fn new(config: Config) -> Result<Self, Error> {
+        let world = config.world()?;
+        Self::assemble(config, world)
+    }
+}
+
+#[cfg(feature = "rapier")]
+impl Lives<farsa_physics::rapier::ArenaWorld> {
+    /// Lives under a configuration, in rapier.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for values that make no world, and [`Error::Setting`] for an arena without room for all.
+    pub fn in_rapier(config: Config) -> Result<Self, Error> {
+        let world = config.rapier_world()?;
+        Self::assemble(config, world)
+    }
+}
+
+impl<W> Lives<W>
+where
+    W: Planar + Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
+{
+    fn assemble(config: Config, mut world: W) -> Result<Self, Error> {
         let inputs = config.inputs();
         let layer = layer(inputs, vec![0.0; Perceptron::parameter_count(inputs, 2)])?;
-        let mut world = config.world()?;
         let mut life = CylinderLife::new(config, layer)?;
         // Seeds of this kind are neither a run's nor a test's.
         for trial in 0..8 {
@@ -149,7 +184,19 @@ fn decode(genes: &[u16], inputs: usize, range: f64) -> Vec<f32> {
     weights.chain([genes[0], genes[1]]).map(value).collect()
 }
 
-impl Setup for Lives {
+impl<W> Setup for Lives<W>
+where
+    W: farsa_body::World
+        + Planar
+        + Rays
+        + Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+        + Send,
+{
     fn genes(&self) -> usize {
         Perceptron::parameter_count(self.life.config().inputs(), 2)
     }

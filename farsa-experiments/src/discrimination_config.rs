@@ -3,6 +3,7 @@
 use farsa_body::MobileRobot;
 use farsa_physics::arena::{Arena, Cylinder, World};
 
+use crate::engine::{ENGINE, PlanarEngine};
 use crate::error::Error;
 use crate::infrared::InfraredModel;
 use crate::settings::{Setting, Settings};
@@ -22,6 +23,8 @@ const E_PUCK: &str = "e-puck";
 pub struct Config {
     /// The robot.
     pub robot: MobileRobot,
+    /// What moves it.
+    pub engine: PlanarEngine,
     /// Width and depth of the arena between its walls.
     pub size: [f64; 2],
     /// Control step \[s\].
@@ -56,6 +59,7 @@ impl Default for Config {
     fn default() -> Self {
         Self {
             robot: MobileRobot::khepera(),
+            engine: PlanarEngine::Arena,
             size: [0.4, 0.4],
             time_step: 0.05,
             trials: 25,
@@ -131,6 +135,10 @@ impl Config {
         let weights = Setting::number("net.weight_range", self.weight_range, 0.0..=1000.0);
         let weights = if khepera { weights.given() } else { weights };
         let mut table = vec![
+            Setting::word(ENGINE, self.engine.name(), &PlanarEngine::NAMES).doc(
+                "What moves the robot: wheels that do exactly what they are told, or rapier, where it has mass and its motors have \
+                 a largest torque.",
+            ),
             given(Setting::numbers("world.size", &self.size, 0.1..=100.0))
                 .unit("m")
                 .doc("Width and depth of the arena between its walls."),
@@ -191,6 +199,7 @@ impl Config {
         let size = settings.numbers("world.size")?;
         let radii = settings.numbers("object.radii")?.to_vec();
         Ok(Self {
+            engine: settings.word(ENGINE)?.parse()?,
             size: [size[0], size[1]],
             time_step: length("world.time_step")?,
             trials: settings.count("trial.count")? as u32,
@@ -225,13 +234,24 @@ impl Config {
         arena
     }
 
-    /// A world of that arena.
+    /// A kinematic world of that arena, whatever the engine.
     ///
     /// # Errors
     /// [`Error::Other`] for values that make no world.
     pub fn world(&self) -> Result<World, Error> {
         let parked = Arena { size: None, ..self.arena() };
         World::new(&parked).map_err(|error| Error::Other(error.to_string()))
+    }
+
+    /// A world of that arena in rapier, whatever the engine.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for values that make no world.
+    #[cfg(feature = "rapier")]
+    pub fn rapier_world(&self) -> Result<farsa_physics::rapier::ArenaWorld, Error> {
+        use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld};
+        let parked = ArenaScene::new(Arena { size: None, ..self.arena() });
+        ArenaWorld::new(&parked, &ArenaOptions::default()).map_err(|error| Error::Other(error.to_string()))
     }
 
     /// Channels that the network reads.

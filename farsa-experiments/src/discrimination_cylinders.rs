@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::discrimination::Lives;
+use crate::discrimination::in_its_world;
 use crate::discrimination_config::Config;
 use crate::error::Error;
 use crate::experiment::{Experiment, Setup};
@@ -53,6 +53,6 @@ impl Experiment for DiscriminationCylinders {
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
-        Ok(Box::new(Lives::new(Config::two_cylinders(condition != NO_WHEELS).read(settings)?)?))
+        in_its_world(Config::two_cylinders(condition != NO_WHEELS).read(settings)?)
     }
 }

@@ -83,6 +83,14 @@ mod predator_prey_config;
 mod predator_prey_life;
 mod progress;
 mod prop;
+pub mod push_box;
+#[cfg(feature = "rapier")]
+mod push_box_by_hand;
+mod push_box_config;
+#[cfg(feature = "rapier")]
+mod push_box_life;
+#[cfg(feature = "rapier")]
+mod push_box_setup;
 pub mod reach_grasp_lift;
 mod reach_grasp_lift_config;
 mod reach_grasp_lift_export;
@@ -149,6 +157,7 @@ pub use passive_walker::PassiveWalker;
 pub use picture::{Beam, Color, OKABE_ITO, Picture, Placed, Push, Role};
 pub use predator_prey::PredatorPrey;
 pub use prop::Prop;
+pub use push_box::PushBox;
 pub use reach_grasp_lift::ReachGraspLift;
 pub use recording::{CastRay, Recording, Touching};
 pub use search::Search;

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use farsa_experiments::{
     Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, KinestheticGrasp,
-    MinimalCognition, PassiveWalker, PredatorPrey, ReachGraspLift, cli,
+    MinimalCognition, PassiveWalker, PredatorPrey, PushBox, ReachGraspLift, cli,
 };
 
 fn main() -> ExitCode {
@@ -18,6 +18,7 @@ fn main() -> ExitCode {
         &Foraging,
         &Aggregation,
         &PredatorPrey,
+        &PushBox,
         &PassiveWalker,
         &BodyEvolution,
     ])

@@ -232,6 +232,51 @@ fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
     assert!(Discrimination.prepare("e-puck", &settings).is_ok());
 }
 
+/// In rapier the same starts and the same rules; only how the robot moves differs.
+#[cfg(feature = "rapier")]
+#[test]
+fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
+    for (condition, config) in [("khepera", Config::default()), ("e-puck", Config::e_puck())] {
+        let config = Config { steps: 60, ..config };
+        let (mut ours, mut theirs) = (config.world().unwrap(), config.rapier_world().unwrap());
+        let mut life = CylinderLife::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
+        let mut collided = 0;
+        for trial in 0..12 {
+            let job = Job { seed: 5, trial, ..Job::default() };
+            let mut ends = Vec::new();
+            life.arrange(&mut ours, job).unwrap();
+            life.arrange(&mut theirs, job).unwrap();
+            for body in [life.parts().body, life.cylinders()[0]] {
+                let (a, b) = (ours.pose(body), theirs.pose(body));
+                assert!(
+                    (0..3).all(|k| (a.position[k] - b.position[k]).abs() < 1e-6),
+                    "{condition} {trial}: {a:?} {b:?}"
+                );
+                assert!((a.heading() - b.heading()).abs() < 1e-5, "{condition} {trial}");
+            }
+            live(&mut life, &mut ours, job);
+            ends.push(*life.trial());
+            live(&mut life, &mut theirs, job);
+            ends.push(*life.trial());
+            // Straight on until it runs into something: a step later at most, for it must get up to speed.
+            let [a, b] = [&ends[0], &ends[1]];
+            assert!(a.collided == b.collided && a.steps.abs_diff(b.steps) <= 2, "{condition} {trial}: {a:?} {b:?}");
+            assert!((a.distance[0] - b.distance[0]).abs() < 0.01, "{condition} {trial}: {a:?} {b:?}");
+            collided += u32::from(b.collided);
+        }
+        assert!(collided > 6, "{condition}: {collided}");
+        let settings = settings(&Discrimination, condition, &[("world.engine", Value::Word("rapier".into()))]);
+        let mut setup = Discrimination.prepare(condition, &settings).unwrap();
+        let genes: Vec<u16> = (0..setup.genes()).map(|i| (i * 97 % 256) as u16).collect();
+        let job = Job { seed: 9, generation: 3, individual: 1, trial: 4 };
+        let plain = setup.live(&genes, job, &mut Tape::off());
+        setup.live(&genes, Job { trial: 7, ..job }, &mut Tape::off());
+        let mut recording = farsa_experiments::Recording::new(setup.stage());
+        assert_eq!(setup.live(&genes, job, &mut Tape::to(&mut recording)), plain);
+        assert!(plain.is_finite() && recording.times().len() == plain.steps as usize);
+    }
+}
+
 #[test]
 fn what_cannot_be_is_refused_by_name() {
     let refused = |experiment: &dyn Experiment, condition, values: &[(&str, Value)]| {

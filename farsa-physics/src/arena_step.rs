@@ -127,6 +127,14 @@ pub(crate) fn act<S: Scalar<Real = f32>>(
     for k in PUSHED..=SOON {
         store(work, WORK_WORDS * robot + k, zero);
     }
+    show::<S>(simd, model, words, robot);
+}
+
+/// Shows a robot's LEDs and signal as they were commanded.
+#[inline(always)]
+pub(crate) fn show<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], robot: usize) {
+    let kind = model.kind(robot);
+    let (first, word) = (model.command(robot, 0), model.robot_word(robot, 0));
     let mut next = 2;
     if kind.robot.leds {
         for k in 0..3 {

@@ -55,6 +55,16 @@ mod model;
 #[cfg(feature = "alloc")]
 mod model_builder;
 #[cfg(feature = "rapier")]
+mod rapier_arena_model;
+#[cfg(feature = "rapier")]
+mod rapier_arena_options;
+#[cfg(feature = "rapier")]
+mod rapier_arena_ports;
+#[cfg(feature = "rapier")]
+mod rapier_arena_scene;
+#[cfg(feature = "rapier")]
+mod rapier_arena_world;
+#[cfg(feature = "rapier")]
 mod rapier_contact;
 #[cfg(feature = "rapier")]
 mod rapier_error;
@@ -159,6 +169,9 @@ pub mod arena {
 /// ```
 #[cfg(feature = "rapier")]
 pub mod rapier {
+    pub use crate::rapier_arena_options::ArenaOptions;
+    pub use crate::rapier_arena_scene::{ArenaScene, Block, Chassis};
+    pub use crate::rapier_arena_world::ArenaWorld;
     pub use crate::rapier_error::RapierError;
     pub use crate::rapier_options::Options;
     pub use crate::rapier_scene::{Form, Scene, Thing};

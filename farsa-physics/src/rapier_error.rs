@@ -5,6 +5,7 @@ use core::fmt;
 
 use farsa_body::RobotError;
 
+use crate::arena_error::ArenaError;
 use crate::model::ModelError;
 
 /// Why a world of rapier cannot be built.
@@ -70,11 +71,51 @@ pub enum RapierError {
         /// Why.
         why: String,
     },
+    /// The arena is none.
+    Arena(ArenaError),
+    /// There are not as many chassis as robots.
+    Chassis {
+        /// Number of robots.
+        robots: usize,
+        /// Number of chassis.
+        chassis: usize,
+    },
+    /// A robot with an attachment device, of which this world has none.
+    Attachment {
+        /// The robot's number.
+        robot: usize,
+    },
+    /// A number of a robot as a rigid body, or of a block, is out of its range.
+    Part {
+        /// `robot` or `block`.
+        part: &'static str,
+        /// Its number.
+        number: usize,
+        /// Which number of it.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// The lowest and highest value.
+        range: [f64; 2],
+    },
+    /// A block overlaps something where it starts, which would push it away.
+    BlockOverlap {
+        /// The block's number.
+        block: usize,
+        /// How deep it lies in it [m].
+        depth: f64,
+    },
 }
 
 impl From<ModelError> for RapierError {
     fn from(e: ModelError) -> Self {
         Self::Model(e)
+    }
+}
+
+impl From<ArenaError> for RapierError {
+    fn from(e: ArenaError) -> Self {
+        Self::Arena(e)
     }
 }
 
@@ -106,6 +147,16 @@ impl fmt::Display for RapierError {
                 )
             }
             Self::Unusable { name, why } => write!(f, "thing {name}: {why}"),
+            Self::Arena(e) => e.fmt(f),
+            Self::Chassis { robots, chassis } => write!(f, "{chassis} chassis for {robots} robots: one for each"),
+            Self::Attachment { robot } => {
+                write!(f, "robot {robot} has an attachment device, which holds nothing in rapier: take it off (`None`)")
+            }
+            Self::Part { part, number, field, value, range: [low, high] } => {
+                let nearest = if *value > *high { high } else { low };
+                write!(f, "{field} of {part} {number} is {value}, not from {low} to {high}; the nearest is {nearest}")
+            }
+            Self::BlockOverlap { block, depth } => write!(f, "block {block} starts {depth:.6} m deep in something"),
         }
     }
 }

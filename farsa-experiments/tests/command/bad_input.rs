@@ -34,12 +34,27 @@ fn worlds() {
         ok(farsa(), &here, "test r --trials 4 --world rapier");
         assert!(here.join("r/test.csv").is_file());
         ok(farsa(), &here, "replay r --trial 0 --world articulated --out life.csv");
+        ok(farsa(), &here, "run discrimination --generations 1 --set trial.count=1 --set trial.steps=5 --out d");
+        ok(farsa(), &here, "test d --trials 4 --world rapier");
+        assert!(here.join("d/test-rapier.csv").is_file() && !here.join("d/test.csv").exists());
+        ok(farsa(), &here, "replay d --trial 0 --world rapier --out wheels.csv");
+        let short = "--generations 1 --population 4 --set trial.count=1 --set trial.steps=5";
+        ok(farsa(), &here, &format!("run push-box {short} --world rapier --out p"));
+        ok(farsa(), &here, "test p --trials 2");
+        ok(farsa(), &here, "draw p --trial 0 --out box.svg");
+        ok(farsa(), &here, "report p --md report.md");
     } else {
         let how = ["world `rapier`", "--features rapier"];
         refused(farsa(), &here, &format!("{run} --world rapier"), 2, &how);
         ok(farsa(), &here, &format!("{run} --set trial.steps=5 --world articulated --out r"));
         refused(farsa(), &here, "test r --trials 4 --world rapier", 2, &how);
         refused(farsa(), &here, "replay r --trial 0 --world rapier", 2, &how);
+        for experiment in ["discrimination --world rapier", "discrimination-cylinders --world rapier", "push-box"] {
+            refused(farsa(), &here, &format!("run {experiment} --generations 1 --out n"), 2, &how);
+        }
+        let list = ok(farsa(), &here, "list");
+        let line = list.lines().find(|line| line.contains("push-box")).expect("push-box is listed");
+        assert!(line.contains("--features rapier"), "{line}");
     }
 }
 

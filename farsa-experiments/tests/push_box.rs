@@ -1,0 +1,106 @@
+//! `push-box`: starts, boxes that are pushed and not launched, and what a pusher by hand and chance are worth.
+#![cfg(feature = "rapier")]
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use farsa_body::Kinematics as _;
+use farsa_experiments::push_box::{HomingPusher, PushConfig, PushLife, PushTrial};
+use farsa_experiments::{Experiment as _, Job, PushBox, Settings, Value, live};
+use farsa_nn::{Controller, Perceptron};
+use farsa_num::{Domain, Stream};
+
+/// Lives trials of a seed that is no run's and tells what came of them.
+fn trials<C: Controller>(config: &PushConfig, count: u32, mut controller: impl FnMut(u32) -> C) -> Vec<PushTrial> {
+    let mut world = config.world().unwrap();
+    let mut life = PushLife::new(config.clone(), controller(0)).unwrap();
+    let one = |trial| {
+        life.set_controller(controller(trial));
+        live(&mut life, &mut world, Job { seed: 1 | 1 << 63, trial, ..Job::default() });
+        *life.trial()
+    };
+    (0..count).map(one).collect()
+}
+
+/// A layer whose parameters are drawn uniformly from what genes can say.
+fn random(config: &PushConfig, trial: u32) -> Perceptron<Vec<f32>> {
+    let mut stream = Stream::new(7, Domain::InitialGenome, trial, 0, 0);
+    let range = config.weight_range as f32;
+    let count = Perceptron::parameter_count(config.inputs(), 2);
+    Perceptron::new(config.inputs(), 2, 1.0, (0..count).map(|_| stream.range(-range, range)).collect()).unwrap()
+}
+
+/// Mean and half of the 95 % interval.
+fn mean(values: &[f64]) -> [f64; 2] {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
+    [mean, 1.96 * farsa_num::Scalar::sqrt(square / (n - 1.0) / n)]
+}
+
+#[test]
+fn trials_start_where_the_rules_allow() {
+    let config = PushConfig::default();
+    let mut world = config.world().unwrap();
+    let mut life = PushLife::new(config.clone(), HomingPusher::new(&config)).unwrap();
+    let (mut nearest, mut farthest) = (f64::INFINITY, 0.0_f64);
+    for trial in 0..200 {
+        life.arrange(&mut world, Job { seed: 3, trial, ..Job::default() });
+        let [robot, cube] = [life.parts().body, life.cube()].map(|body| world.pose(body).position.map(f64::from));
+        assert_eq!(cube[..2], [0.0; 2]);
+        let away = robot[0].hypot(robot[1]) - config.robot.radius - config.around();
+        (nearest, farthest) = (nearest.min(away), farthest.max(away));
+    }
+    let [low, high] = config.apart;
+    assert!(nearest > low - 1e-6 && farthest < high + 1e-6, "{nearest} {farthest}");
+    assert!(nearest < low + 0.01 && farthest > high - 0.01, "{nearest} {farthest}");
+    let job = Job { seed: 3, trial: 5, ..Job::default() };
+    let mut at = |job| {
+        life.arrange(&mut world, job);
+        world.pose(life.parts().body).position
+    };
+    let here = at(job);
+    assert_eq!(at(Job { individual: 4, ..job }), here);
+    for other in [Job { seed: 4, ..job }, Job { trial: 6, ..job }, Job { generation: 1, ..job }] {
+        assert_ne!(at(other), here);
+    }
+}
+
+/// The table of docs/results/push-box.md for more trials: `FARSA_TRIALS=400`.
+#[test]
+fn a_pusher_by_hand_is_better_than_chance_and_no_box_is_launched() {
+    let count = std::env::var("FARSA_TRIALS").ok().and_then(|count| count.parse().ok()).unwrap_or(24);
+    let config = PushConfig::default();
+    let by_hand = trials(&config, count, |_| HomingPusher::new(&config));
+    let chance = trials(&config, count, |trial| random(&config, trial));
+    let mut means = Vec::new();
+    for (name, trials) in [("by hand", &by_hand), ("at random", &chance)] {
+        let moved: Vec<f64> = trials.iter().map(|trial| trial.moved).collect();
+        let far = trials.iter().filter(|trial| trial.moved >= config.far).count();
+        let fastest = trials.iter().fold(0.0_f64, |most, trial| most.max(trial.fastest));
+        let [middle, off] = mean(&moved);
+        println!(
+            "{name}: {middle:.3} +- {off:.3} m, {far} of {count} as far as {} m, box at most {fastest:.3} m/s",
+            config.far
+        );
+        means.push(middle);
+        for trial in trials {
+            assert!(!trial.failed && trial.steps == config.steps);
+            // The box's middle may be faster than where it is pushed, as it turns.
+            assert!(trial.fastest < 1.25 * config.speed(), "{trial:?}");
+            let time = f64::from(trial.steps) * config.time_step;
+            assert!(trial.moved <= trial.way + 1e-6 && trial.way <= config.speed() * time, "{trial:?}");
+            assert!(trial.moved < 1e-3 || trial.touched > 0, "moved by nobody: {trial:?}");
+        }
+    }
+    assert!(means[0] > 2.0 * means[1], "{means:?}");
+}
+
+#[test]
+fn settings_that_do_not_go_together_are_refused() {
+    let mut settings = Settings::new(PushBox.settings("")).unwrap();
+    settings.set("", "start.farthest", Value::Number(0.001)).unwrap();
+    let error = PushBox.prepare("", &settings).err().unwrap().to_string();
+    assert_eq!(error, "`start.farthest`: is 0.001, below start.nearest, 0.01");
+    let layer = Perceptron::new(7, 2, 1.0, vec![0.0; 16]).unwrap();
+    let error = PushLife::new(PushConfig::default(), layer).err().unwrap().to_string();
+    assert_eq!(error, "push-box: a controller of 7 inputs and 2 outputs where 8 and 2 are wanted");
+}
