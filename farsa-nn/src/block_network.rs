@@ -77,6 +77,22 @@ impl<'a, P: AsRef<[f32]>, S: AsMut<[f32]>> BlockNetwork<'a, P, S> {
         Ok(core::mem::replace(&mut self.parameters, parameters))
     }
 
+    /// Copies other parameters [[`parameter_count`](BlockLayout::parameter_count)] over the network's own; the state stays
+    /// as it is.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]; then the network is unchanged.
+    pub fn copy_parameters(&mut self, parameters: &[f32]) -> Result<(), Error>
+    where
+        P: AsMut<[f32]>,
+    {
+        check(&self.layout, parameters)?;
+        for (own, new) in self.parameters.as_mut().iter_mut().zip(parameters) {
+            *own = *new;
+        }
+        Ok(())
+    }
+
     /// The parameters [[`parameter_count`](BlockLayout::parameter_count)].
     pub fn parameters(&self) -> &[f32] {
         self.parameters.as_ref()

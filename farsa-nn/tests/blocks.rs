@@ -323,6 +323,29 @@ fn construction_names_the_mistake() {
 }
 
 #[test]
+fn other_parameters_leave_no_trace() -> Result<(), Error> {
+    let plan = Architecture::elman(2, 9, 3).with_leaks().plan();
+    let layout = plan.layout();
+    let (first, second) = (drawn(layout, 1), drawn(layout, 2));
+    let run = |network: &mut dyn Controller| {
+        let mut y = [0.0; 3];
+        network.reset();
+        (0..5).for_each(|step| network.step(&[step as f32, 1.0], &mut y));
+        bits(&y)
+    };
+    let expected = run(&mut BlockNetwork::new(layout, Leak::Filter, &second[..], state(layout))?);
+    let mut borrows = BlockNetwork::new(layout, Leak::Filter, &first[..], state(layout))?;
+    let mut owns = BlockNetwork::new(layout, Leak::Filter, first.clone(), state(layout))?;
+    assert_ne!(run(&mut borrows), expected);
+    assert_eq!(borrows.set_parameters(&second)?, &first[..]);
+    assert!(owns.copy_parameters(&second[1..]).is_err());
+    assert_eq!(owns.parameters(), first);
+    owns.copy_parameters(&second)?;
+    assert_eq!((run(&mut borrows), run(&mut owns)), (expected.clone(), expected));
+    Ok(())
+}
+
+#[test]
 fn a_lesion_holds_what_it_is_told() -> Result<(), Error> {
     const LAYOUT: Layout = Layout::new(1, 9, 2);
     let parameters: Vec<f32> = (0..LAYOUT.parameter_count()).map(|i| (i * 37 % 101) as f32 / 101.0).collect();

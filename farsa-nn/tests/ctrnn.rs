@@ -1,6 +1,6 @@
 //! The continuous-time network against loops written from its equations, cases known in closed form, and properties.
 
-use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Error, Integrator};
+use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Error, Integrator, Lesion, Lesioned};
 use farsa_num::fearless_simd::Level;
 use farsa_num::{Domain, Stream, levels};
 use proptest::prelude::*;
@@ -242,6 +242,27 @@ proptest! {
             prop_assert!((f64::from(found) - exact).abs() <= 2.0 * ulp, "{found} is not {exact}");
         }
     }
+}
+
+#[test]
+fn a_silent_neuron_is_one_that_nobody_hears() -> Result<(), Error> {
+    for integrator in Integrator::ALL {
+        let layout = CtrnnLayout::new(1, 11, 11).with_integrator(integrator);
+        let parameters = drawn(layout, 5);
+        let mut deaf = parameters.clone();
+        deaf[11 + 3 * 11..11 + 4 * 11].fill(0.0);
+        let lesions = [Lesion::of(3)];
+        let mut without = Lesioned::new(Ctrnn::new(layout, 0.1, &parameters, state(layout))?, &lesions);
+        let mut deaf = Ctrnn::new(layout, 0.1, &deaf, state(layout))?;
+        let (mut y, mut z) = ([0.0; 11], [0.0; 11]);
+        for step in 0..50 {
+            without.step(&[step as f32 / 50.0], &mut y);
+            deaf.step(&[step as f32 / 50.0], &mut z);
+            assert_eq!(without.network().states(), deaf.states(), "{integrator}");
+            assert_eq!((y[3], &y[4..]), (0.0, &z[4..]), "{integrator}");
+        }
+    }
+    Ok(())
 }
 
 /// An exponential of the test's own: a series on small arguments, squared back.
