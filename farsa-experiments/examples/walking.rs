@@ -35,6 +35,7 @@ fn pace(slope: f64, foot_mass: f64, stiffness: f64, [angle, rate, swing]: [f64; 
             damping_ratio: DAMPING,
             ..Walker::default()
         },
+        ..Config::default()
     };
     let (model, parts) = config.model::<f64>().map_err(|_| "no such body")?;
     let mut world = World::new(model);

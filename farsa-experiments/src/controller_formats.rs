@@ -123,6 +123,6 @@ impl<I: Iterator<Item: fmt::Debug> + Clone> fmt::Display for List<I> {
                 f.write_str("\n")?;
             }
         }
-        if self.0.clone().count() % 8 == 0 { Ok(()) } else { f.write_str("\n") }
+        if self.0.clone().count().is_multiple_of(8) { Ok(()) } else { f.write_str("\n") }
     }
 }

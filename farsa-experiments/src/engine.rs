@@ -111,7 +111,7 @@ pub(crate) fn visit(plan: &mut Plan<'_>, world: Option<&str>) -> Result<bool, Er
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Braitenberg, Discrimination, ReachGraspLift};
+    use crate::{Braitenberg, ReachGraspLift};
 
     #[test]
     fn worlds_have_names() {
@@ -151,7 +151,7 @@ mod tests {
     #[cfg(not(feature = "rapier"))]
     #[test]
     fn a_program_without_rapier_says_how_to_get_it() {
-        for experiment in [&ReachGraspLift as &dyn crate::Experiment, &Discrimination] {
+        for experiment in [&ReachGraspLift as &dyn crate::Experiment, &crate::Discrimination] {
             let mut plan = Plan::new(experiment, None, "").unwrap();
             choose(&mut plan, Some("rapier")).unwrap();
             let error = plan.setup().err().unwrap();

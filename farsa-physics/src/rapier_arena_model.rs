@@ -227,10 +227,8 @@ fn check_blocks(physics: &PhysicsWorld, plan: &ArenaPlan) -> Result<(), RapierEr
 /// Builds everything; the arena has been looked at.
 pub(crate) fn build(scene: &ArenaScene, options: &ArenaOptions) -> Result<(ArenaPlan, PhysicsWorld), RapierError> {
     let arena = &scene.arena;
-    let sweeps = options.sweeps as usize;
     let options = options.options(arena.time_step)?;
     let mut physics = options.world();
-    physics.integration_parameters.num_internal_pgs_iterations = sweeps;
     // Two wheels of one axle can push against each other sideways at no cost. Impulses that start where the last ones ended
     // gather there, one tangent after the other, until at headings near 45 degrees the grip is used up and the robot stands.
     physics.integration_parameters.warmstart_coefficient = 0.0;

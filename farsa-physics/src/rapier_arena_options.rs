@@ -44,16 +44,13 @@ impl ArenaOptions {
         if !(range[0]..=range[1]).contains(&self.longest_step) {
             return Err(RapierError::Option { name: "longest_step", value: self.longest_step, range });
         }
-        let (sweeps, most) = (f64::from(self.sweeps), 1e4);
-        if !(1.0..=most).contains(&sweeps) {
-            return Err(RapierError::Option { name: "sweeps", value: sweeps, range: [1.0, most] });
-        }
         // As few as hold it, and none more for what is only rounding.
         let substeps = 1 + (time_step / self.longest_step * (1.0 - 1e-9)) as u32;
         let options = Options {
             time_step,
             substeps,
             iterations: self.iterations,
+            sweeps: self.sweeps,
             gravity: [0.0, 0.0, -self.gravity],
             length_unit: self.length_unit,
             contact_frequency: self.contact_frequency,
