@@ -197,7 +197,7 @@ fn genotypes_of_several_populations_are_evaluated_against_each_other() {
     assert!(said.starts_with("r: 1 of predator and of prey, "), "{said}");
     ok(farsa(), &here, "test r --trials 12 --seed 3");
     let csv = fs::read_to_string(here.join("r/test.csv")).expect("the test");
-    for (column, name) in [("fitness", "predator"), ("fitness of population 1", "prey")] {
+    for (column, name) in [("fitness", "predator"), ("fitness of population prey", "prey")] {
         let column = csv.lines().next().and_then(|head| head.split(',').position(|c| c == column)).expect("a column");
         let values = csv.lines().skip(1).filter_map(|line| line.split(',').nth(column)?.parse::<f64>().ok());
         assert_eq!(value(&text, &format!("{name}_mean_fitness")), values.sum::<f64>() / 12.0, "{name}");
