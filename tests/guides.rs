@@ -362,8 +362,8 @@ fn run(name: &str, commands: &str, folder: &Path, place: &Path, builder: Builder
 /// Follows a guide in an empty folder: writes its files, runs its commands, compares what they say and draw.
 fn follow(name: &str, builder: Builder) {
     let kind = if builder == Builder::Reader { "reader" } else { "workspace" };
-    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("guides").join(kind).join(name);
-    let _ = fs::remove_dir_all(&place);
+    // Outside the target directory, which most often is within the workspace: there `cargo new` would enter the project into it.
+    let place = std::env::temp_dir().join(format!("farsa-guide-{kind}-{}", std::process::id())).join(name);
     fs::create_dir_all(&place).expect("an empty folder");
     // The reader has FARSA beside the project.
     let here = |text: &str| text.replace("../farsa", &root().display().to_string());
@@ -419,6 +419,7 @@ fn follow(name: &str, builder: Builder) {
         let shown = fs::read(root().join("docs/pictures").join(format!("guide-{picture}"))).expect("the picture shown");
         assert!(drawn == shown, "{name}: docs/pictures/guide-{picture} is not what the guide draws");
     }
+    fs::remove_dir_all(&place).expect("no more needed");
 }
 
 #[test]
