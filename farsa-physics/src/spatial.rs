@@ -105,18 +105,19 @@ impl<S: Scalar> Spatial<S> {
         let z = S::splat(simd, farsa_num::Real::of(0.0));
         Self { angular: [z; 3], linear: [z; 3] }
     }
+    /// Each component times `k`.
     #[inline(always)]
-    pub(crate) fn scale(self, k: S) -> Self {
+    pub fn scale(self, k: S) -> Self {
         Self { angular: scale(self.angular, k), linear: scale(self.linear, k) }
     }
-    /// Scalar product of a motion and a force.
+    /// Scalar product of a motion and a force: the power [W].
     #[inline(always)]
-    pub(crate) fn dot(self, other: Self) -> S {
+    pub fn dot(self, other: Self) -> S {
         dot(self.angular, other.angular) + dot(self.linear, other.linear)
     }
     /// Rate of change of a motion that is carried along by this one [Featherstone2008] eq. 2.31.
     #[inline(always)]
-    pub(crate) fn cross_motion(self, m: Self) -> Self {
+    pub fn cross_motion(self, m: Self) -> Self {
         Self {
             angular: cross(self.angular, m.angular),
             linear: add(cross(self.angular, m.linear), cross(self.linear, m.angular)),
@@ -124,20 +125,20 @@ impl<S: Scalar> Spatial<S> {
     }
     /// Rate of change of a force that is carried along by this motion [Featherstone2008] eq. 2.32.
     #[inline(always)]
-    pub(crate) fn cross_force(self, f: Self) -> Self {
+    pub fn cross_force(self, f: Self) -> Self {
         Self {
             angular: add(cross(self.angular, f.angular), cross(self.linear, f.linear)),
             linear: cross(self.angular, f.linear),
         }
     }
-    /// Velocity of the body's point at `r` from the reference point.
+    /// Velocity [m/s] of the body's point at `r` [m] from the reference point.
     #[inline(always)]
-    pub(crate) fn at(self, r: Vector<S>) -> Vector<S> {
+    pub fn at(self, r: [S; 3]) -> [S; 3] {
         add(self.linear, cross(self.angular, r))
     }
-    /// The force `f` at the point `r` from the reference point.
+    /// The force `f` [N] at the point `r` [m] from the reference point.
     #[inline(always)]
-    pub(crate) fn force_at(r: Vector<S>, f: Vector<S>) -> Self {
+    pub fn force_at(r: [S; 3], f: [S; 3]) -> Self {
         Self { angular: cross(r, f), linear: f }
     }
 }

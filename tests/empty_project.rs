@@ -1,0 +1,74 @@
+//! Each library crate serves a project that has nothing else, by its path, in ten lines, with its features and without.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// The crate, whether with its default features, the program, what it says.
+const PROJECTS: [[&str; 4]; 10] = [
+    ["num", "with", "num.rs", "[0.254, 0.538, 0.769]"],
+    ["num", "without", "num.rs", "[0.254, 0.538, 0.769]"],
+    ["nn", "with", "nn.rs", "[0.521]"],
+    ["nn", "without", "nn.rs", "[0.521]"],
+    ["evo", "with", "evo.rs", "Some([64861, 65225, 65404, 65382, 65440, 65506, 65032, 65167])"],
+    ["evo", "without", "evo.rs", "Some([64861, 65225, 65404, 65382, 65440, 65506, 65032, 65167])"],
+    ["body", "with", "body.rs", "3.064 N m hold the shoulder"],
+    ["body", "without", "body_without_features.rs", "-2.567 N m"],
+    ["physics", "with", "physics.rs", "[0.551, 0.500, 0.000]"],
+    ["physics", "without", "physics_without_features.rs", "[0.0, 0.6, 0.0] m/s, 3.000 W"],
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn program(file: &str) -> String {
+    fs::read_to_string(root().join("tests/empty_project").join(file)).unwrap()
+}
+
+#[test]
+fn ten_lines_are_enough() {
+    for [_, _, file, _] in PROJECTS {
+        let text = program(file);
+        let lines = text.lines().filter(|line| !line.trim().is_empty()).count();
+        assert!(lines <= 10, "{file} has {lines}");
+        let widest = text.lines().map(str::len).max().unwrap();
+        assert!(widest <= 130, "{file}: {widest} columns");
+    }
+}
+
+#[test]
+#[ignore = "builds ten projects, a minute: ./ci guides"]
+fn whoever_has_nothing_else_can_use_it() {
+    // Outside the target directory, which most often is within the workspace: there cargo would look for a member of it.
+    let place = std::env::temp_dir().join(format!("farsa-empty-{}", std::process::id()));
+    for [name, features, file, says] in PROJECTS {
+        let project = place.join(format!("{name}-{features}"));
+        fs::create_dir_all(project.join("src")).unwrap();
+        // What physics needs to be told is in farsa-body.
+        let crates: &[&str] = if [name, features] == ["physics", "with"] { &["physics", "body"] } else { &[name] };
+        let mut manifest = String::from("[package]\nname = \"mine\"\nedition = \"2024\"\n\n[dependencies]\n");
+        for name in crates {
+            let path = root().join(format!("farsa-{name}"));
+            manifest += &format!("farsa-{name} = {{ path = {path:?}, default-features = {} }}\n", features == "with");
+        }
+        fs::write(project.join("Cargo.toml"), manifest).unwrap();
+        fs::write(project.join("src/main.rs"), program(file)).unwrap();
+        // Pins what is on this machine already.
+        fs::copy(root().join("Cargo.lock"), project.join("Cargo.lock")).unwrap();
+        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("empty-projects");
+        let output = Command::new(env!("CARGO"))
+            .args(["run", "--quiet", "--offline"])
+            .current_dir(&project)
+            .env("CARGO_TARGET_DIR", target)
+            .stdin(Stdio::null())
+            .output()
+            .unwrap();
+        let (said, went_wrong) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success(), "farsa-{name} {features} its features: {went_wrong}");
+        assert_eq!(said.trim_end(), says, "farsa-{name} {features} its features");
+    }
+    fs::remove_dir_all(&place).unwrap();
+}
