@@ -67,13 +67,22 @@ impl Learning {
     }
 
     /// Takes the lesson of the generation.
-    pub(crate) fn study(&mut self, setup: &mut dyn Setup, seed: u64) -> Result<(), EvoError> {
-        let mut words = self.words.clone();
-        let lesson = setup.lesson(&mut words, seed, self.generation());
-        let lesson = lesson.ok_or(EvoError::NoSuchGeneration { generation: self.generation(), latest: 0 })?;
-        self.lessons.genomes.push(setup.learned(&words));
+    ///
+    /// # Errors
+    /// Words that tell of a lesson that could not be given; nothing is learned then.
+    pub(crate) fn study(&mut self, setup: &mut dyn Setup, seed: u64) -> Result<(), String> {
+        let (mut words, number) = (self.words.clone(), self.generation());
+        let Some(lesson) = setup.lesson(&mut words, seed, number) else {
+            return Err(format!("lesson {number}: {} words are none that anything is learned from", words.len()));
+        };
+        let genes = setup.learned(&words);
+        if genes.len() != self.population.genome_len() {
+            let (found, expected) = (genes.len(), self.population.genome_len());
+            return Err(format!("lesson {number}: what was learned has {found} genes instead of {expected}"));
+        }
+        self.population.iter_mut().for_each(|genome| genome.copy_from_slice(&genes));
+        self.lessons.genomes.push(genes);
         self.lessons.lessons.push(lesson);
-        self.population = self.lessons.latest()?;
         self.words = words;
         Ok(())
     }
@@ -139,5 +148,59 @@ impl Lessons {
             Chart { title: format!("{title}: error of motor values"), axis: "error", curves: errors },
             Chart { title: format!("{title}: successes while led"), axis: "share", curves: successes },
         ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::{Description, Outcome, Tape};
+    use crate::life::Job;
+    use crate::stage::Stage;
+
+    /// Learns from two words, one gene more with each lesson.
+    struct Forgetful;
+
+    impl Setup for Forgetful {
+        fn genes(&self) -> usize {
+            1
+        }
+        fn trials(&self) -> usize {
+            1
+        }
+        fn stage(&self) -> Stage {
+            Stage::of_scalars(["gene"])
+        }
+        fn description(&self) -> Description {
+            Description::default()
+        }
+        fn live(&mut self, _: &[u16], _: Job, _: &mut Tape<'_>) -> Outcome {
+            Outcome::default()
+        }
+        fn fitness(&self, _: &[Outcome]) -> f64 {
+            0.0
+        }
+        fn first_words(&self, seed: u64) -> Vec<f64> {
+            vec![0.0; seed as usize]
+        }
+        fn lesson(&mut self, words: &mut [f64], _: u64, _: u32) -> Option<Lesson> {
+            let [first, _] = words else { return None };
+            *first += 1.0;
+            Some(Lesson { before: 1.0, after: 0.5, successes: 0.0 })
+        }
+        fn learned(&self, words: &[f64]) -> Vec<u16> {
+            vec![0; 1 + words.first().map_or(0, |word| *word as usize)]
+        }
+    }
+
+    #[test]
+    fn a_lesson_that_cannot_be_given_says_so_and_changes_nothing() {
+        for (seed, says) in [(3, "3 words are none that"), (2, "has 2 genes instead of 1")] {
+            let mut learning = Learning::new(&Forgetful, seed).unwrap();
+            let before = (learning.words.clone(), learning.lessons.clone());
+            let error = learning.study(&mut Forgetful, seed).unwrap_err();
+            assert!(error.starts_with("lesson 0: ") && error.contains(says), "{error}");
+            assert_eq!((learning.words, learning.lessons), before);
+        }
     }
 }

@@ -9,12 +9,8 @@ pub use crate::script::{Plan, ScriptLife, Statics, Timetable};
 
 use std::sync::Arc;
 
-use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Law,
-    MjcfOptions, MusclePair, PairId, Recorder, Tabletop, Twist,
-};
-use farsa_evo::{GeneRange, decode};
-use farsa_nn::{Layout, Leak, Network, ParameterKind};
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
+use farsa_nn::Network;
 use farsa_physics::articulated::{Batch, Model, World};
 
 use crate::controller_export::{ControllerExport, NetworkExport, StartExport};
@@ -23,8 +19,10 @@ use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Se
 use crate::lanes::Lanes;
 use crate::life::{Job, Life};
 use crate::live_in_lanes::live_in_lanes;
+use crate::reach_grasp_lift_decoder::Decoder;
+use crate::reach_grasp_lift_stage::{NetworkLife, Teller};
 use crate::settings::{Setting, Settings};
-use crate::stage::{Channel, Stage};
+use crate::stage::Stage;
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
@@ -75,16 +73,10 @@ pub struct Lives<W = World<f32>> {
     model: Option<Model<f32>>,
     life: NetworkLife,
     decoder: Decoder,
-    /// The arm's muscles, to tell their lengths and torques.
-    muscles: Vec<MusclePair<f32>>,
-    /// The bodies that have a shape, but for the palm and the sphere.
-    other_bodies: Vec<BodyId>,
+    teller: Teller,
     /// For lives side by side.
     together: Option<Together>,
 }
-
-/// The controller's life in a trial.
-type NetworkLife = ReachLife<Network<Vec<f32>, Vec<f32>>>;
 
 /// Worlds in lanes, and the life in each with the number of its task.
 struct Together {
@@ -107,26 +99,6 @@ where
     fn tick(&mut self, world: &mut W) -> Option<f64> {
         self.life.tick(world)
     }
-}
-
-/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces, 27 + 6
-/// speeds of joints and sphere.
-const SCALARS: usize = 1 + 4 + 6 + 3 + 7 + 27 + 21 + 17 + 27 + 6;
-
-/// Fills the first places of a slice and returns the others.
-fn put<const N: usize>(places: &mut [f64], values: [f64; N]) -> &mut [f64] {
-    match places.split_first_chunk_mut::<N>() {
-        Some((to, rest)) => {
-            *to = values;
-            rest
-        }
-        None => &mut [],
-    }
-}
-
-/// The pairs of the sphere with the phalanges, the palm and the table.
-fn on_sphere(scene: &Scene) -> impl Iterator<Item = PairId> {
-    scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table])
 }
 
 fn wrong(error: &dyn std::fmt::Display) -> Error {
@@ -171,68 +143,9 @@ impl<W> Lives<W> {
         let network = Network::new(layout, config.leak, zeros, state).map_err(|error| wrong(&error))?;
         let scene = Scene::new(config)?;
         let (world, model) = world(&scene)?;
-        let laws = scene.robot.actuators.iter().map(|actuator| actuator.law.cast::<f32>());
-        let muscles = laws.map_while(|law| if let Law::MusclePair(pair) = law { Some(pair) } else { None }).collect();
-        let told = [Tabletop::SPHERE, ArmAndHand::PALM];
-        let other_bodies = scene.robot.shaped_bodies().filter(|body| !told.contains(body)).collect();
+        let teller = Teller::new(&scene);
         let life = ReachLife::new(Arc::new(scene), network)?;
-        Ok(Self { world, model, life, decoder, muscles, other_bodies, together: None })
-    }
-
-    /// Tells what was sensed, computed and done before the step that has just been judged, and what it led to.
-    fn tell(&self, recorder: &mut dyn Recorder)
-    where
-        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId>,
-    {
-        let Self { world, life, muscles, .. } = self;
-        let (judge, scene) = (life.judge(), life.judge().scene());
-        let (trial, seen, earned) = (judge.trial(), judge.seen(), judge.earned());
-        recorder.sensors(life.sensed());
-        recorder.neurons(life.controller().hidden());
-        recorder.outputs(life.done());
-        let (sphere, palm) = (world.pose(Tabletop::SPHERE), world.pose(ArmAndHand::PALM));
-        recorder.pose(Tabletop::SPHERE, sphere);
-        recorder.pose(ArmAndHand::PALM, palm);
-        self.other_bodies.iter().for_each(|body| recorder.pose(*body, world.pose(*body)));
-        recorder.point(0, [sphere.position[0], sphere.position[1], sphere.position[2] + 0.05]);
-        recorder.point(1, seen.palm.map(|x| x as f32));
-        recorder.point(2, seen.grasp_centre.map(|x| x as f32));
-        let mut forces = [0.0; 17];
-        for pair in (0..world.pairs()).map(|pair| PairId(pair as u16)).filter(|pair| world.touches(*pair)) {
-            let contact = world.pair_contact(pair);
-            recorder.contact(pair, &contact);
-            if let Some(at) = on_sphere(scene).position(|other| other == pair) {
-                forces[at] = f64::from(contact.normal_force);
-            }
-        }
-
-        let Ledger { reach, grasp, lift, .. } = trial.ledger;
-        let mut scalars = [0.0; SCALARS];
-        let rest = scalars.as_mut_slice();
-        let rest = put(rest, [trial.phase.index() as f64]);
-        let rest = put(rest, [earned.reach, earned.grasp, earned.lift, reach + grasp + lift]);
-        let rest = put(rest, [seen.reach_distance, seen.grasp_distance, seen.openness, seen.palm_down, seen.height]);
-        let rest = put(rest, [f64::from(seen.contacts)]);
-        let rest = put(rest, palm.position.map(f64::from));
-        let rest = put(rest, sphere.position.map(f64::from));
-        let rest = put(rest, sphere.rotation.map(f64::from));
-        let positions = ArmAndHand::joints().map(|joint| world.position(joint));
-        let mut rest = put(rest, positions.map(f64::from));
-        let driven = ArmAndHand::joints().into_iter().zip(positions).zip(life.done().chunks_exact(2));
-        for (muscle, ((joint, q), done)) in muscles.iter().zip(driven) {
-            let qdot = world.speed(joint);
-            let torque = muscle.effort(q, qdot, [done[0], done[1]]).torque;
-            let [agonist, antagonist] = muscle.lengths(q);
-            rest = put(rest, [agonist, antagonist, torque].map(f64::from));
-        }
-        let rest = put(rest, forces);
-        let rest = put(rest, ArmAndHand::joints().map(|joint| f64::from(world.speed(joint))));
-        let Twist { linear, angular } = world.velocity(Tabletop::SPHERE);
-        let rest = put(put(rest, linear.map(f64::from)), angular.map(f64::from));
-        debug_assert!(rest.is_empty(), "{} scalars are missing", rest.len());
-        recorder.scalars(&scalars);
-        // Rounded to the nanosecond: 201 steps of 0.01 s print as 2.01.
-        recorder.tick((f64::from(trial.steps) * scene.config.time_step * 1e9).round() / 1e9);
+        Ok(Self { world, model, life, decoder, teller, together: None })
     }
 
     fn outcome(judge: &Judge) -> Outcome {
@@ -282,46 +195,7 @@ where
     }
 
     fn stage(&self) -> Stage {
-        let scene = self.life.judge().scene();
-        let forces = on_sphere(scene).map(|pair| {
-            let colliders = scene.robot.pairs[pair.index()].colliders.map(|c| scene.robot.colliders[c].name.as_str());
-            let other = if colliders[0] == "sphere" { colliders[1] } else { colliders[0] };
-            Channel::new(&format!("force on sphere.{other} [N]")).group("force")
-        });
-        let phases = Phase::ALL.map(Phase::name);
-        let fitness = ["reward.reach", "reward.grasp", "reward.lift", "reward so far"];
-        let judged = ["ds [cm]", "graspQ [cm]", "fOpen", "pRot", "height [cm]", "contacts"];
-        let placed = ["palm.x [m]", "palm.y [m]", "palm.z [m]", "sphere.x [m]", "sphere.y [m]", "sphere.z [m]"];
-        let turned = ["sphere.qx", "sphere.qy", "sphere.qz", "sphere.qw"];
-        let moved = ["sphere.vx [m/s]", "sphere.vy [m/s]", "sphere.vz [m/s]"].into_iter();
-        let moved = moved.chain(["sphere.wx [rad/s]", "sphere.wy [rad/s]", "sphere.wz [rad/s]"]);
-        let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
-        let joints = scene.robot.segments.iter().take(27).enumerate().map(|(i, segment)| {
-            let [low, high] = segment.joint.range;
-            Channel::new(&format!("J{} [rad]", i + 1)).group("joint").range(low, high)
-        });
-        let muscles = (1..=7).flat_map(|n| {
-            [format!("J{n} agonist length"), format!("J{n} antagonist length"), format!("J{n} torque [N m]")]
-        });
-        let scalars = core::iter::once(Channel::new("phase").group("phase").words(&phases))
-            .chain(fitness.into_iter().chain(judged).map(in_group("fitness")))
-            .chain(placed.into_iter().chain(turned).map(in_group("place")))
-            .chain(joints)
-            .chain(muscles.map(|name| in_group("actuator")(&name)))
-            .chain(forces)
-            .chain((1..=27).map(|n| in_group("speed")(&format!("J{n} [rad/s]"))))
-            .chain(moved.map(in_group("speed")))
-            .collect();
-        let mut stage = Stage::of_robot(&scene.robot)
-            .with_sensors(self.life.senses().names())
-            .with_outputs(self.life.motors().names())
-            .with_network(&scene.config.layout());
-        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
-        Stage {
-            scalars,
-            points: ["palm's target", "palm's centre", "centre of the grasp"].map(String::from).into(),
-            ..stage
-        }
+        Teller::stage(&self.life)
     }
 
     fn mjcf_options(&self) -> MjcfOptions {
@@ -402,7 +276,7 @@ where
             self.world.step();
             let end = self.life.judge_mut().judge(&self.world);
             if let Some(recorder) = tape.recorder() {
-                self.tell(recorder);
+                self.teller.tell(&self.world, &self.life, recorder);
             }
             if end.is_some() {
                 return Self::outcome(self.life.judge());
@@ -455,79 +329,13 @@ where
     }
 }
 
-/// From genes to the network's parameters.
-struct Decoder {
-    layout: Layout,
-    ranges: Vec<GeneRange>,
-    /// Leaks are |p| / range of what is decoded like a weight, as in the original program.
-    evonet: Option<f32>,
-    parameters: Vec<f32>,
-}
-
-impl Decoder {
-    fn new(layout: Layout, leak: Leak, range: f32) -> Result<Self, Error> {
-        let evonet = (leak == Leak::Evonet).then_some(range);
-        let leaks = if evonet.is_some() { (-range, range) } else { (0.0, 1.0) };
-        let mut ranges = Vec::new();
-        for kind in ParameterKind::ALL {
-            let (low, high) = if kind == ParameterKind::Leak { leaks } else { (-range, range) };
-            let genes = GeneRange::new(layout.range(kind).len(), low, high);
-            ranges.push(genes.map_err(|error| Error::setting("network.range", error))?);
-        }
-        Ok(Self { layout, ranges, evonet, parameters: vec![0.0; layout.parameter_count()] })
-    }
-
-    /// Gives a life its parameters; false for a genome of another length or a range of weights that f32 cannot hold.
-    fn decode_into(&mut self, genes: &[u16], life: &mut NetworkLife) -> bool {
-        let decoded = self.decode(genes) && life.controller_mut().copy_parameters(&self.parameters).is_ok();
-        debug_assert!(decoded, "{} genes for {} parameters", genes.len(), self.parameters.len());
-        decoded
-    }
-
-    fn decode(&mut self, genes: &[u16]) -> bool {
-        let decoded = decode(genes, &self.ranges, &mut self.parameters).is_ok();
-        if let Some(range) = self.evonet {
-            for leak in &mut self.parameters[self.layout.range(ParameterKind::Leak)] {
-                let share = leak.abs() / range;
-                // A range of 0 gives NaN: no memory, as for p = 0.
-                *leak = if share < 1.0 {
-                    share
-                } else if share >= 1.0 {
-                    1.0
-                } else {
-                    0.0
-                };
-            }
-        }
-        decoded
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::recording::Recording;
+    use farsa_body::{ArmAndHand, Tabletop};
 
-    #[test]
-    fn genes_become_parameters_of_their_kinds() {
-        let layout = Config::default().layout();
-        let mut decoder = Decoder::new(layout, Leak::Filter, 6.0).unwrap();
-        assert!(!decoder.decode(&[0; 791]));
-        let mut genes = vec![u16::MAX; 792];
-        genes[791] = 0;
-        assert!(decoder.decode(&genes));
-        let parts = layout.split(&decoder.parameters);
-        assert!(parts.sensor_weights.iter().chain(parts.biases).all(|p| *p == 6.0));
-        assert_eq!(parts.leaks[..11], [1.0; 11]);
-        assert_eq!(parts.leaks[11], 0.0);
-        let mut decoder = Decoder::new(layout, Leak::Evonet, 6.0).unwrap();
-        genes[790] = 1 << 15;
-        assert!(decoder.decode(&genes));
-        let leaks = layout.split(&decoder.parameters).leaks;
-        assert_eq!((leaks[0], leaks[11]), (1.0, 1.0));
-        assert!(leaks[10] < 1e-4);
-        assert!(Decoder::new(layout, Leak::Filter, f32::NAN).is_err());
-    }
+    use super::*;
+    use crate::reach_grasp_lift_stage::SCALARS;
+    use crate::recording::Recording;
 
     #[test]
     fn both_conditions_have_the_sizes_of_the_source() {

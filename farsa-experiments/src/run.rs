@@ -224,7 +224,7 @@ impl Run<'_> {
         });
         let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("nobody is best"))?;
         self.log.append(&statistics, fitness.len(), &self.evolution.of_each(&judged))?;
-        self.evolution.tell(&fitness, pool.setup_mut(), seed).map_err(|error| lost(&error.to_string()))?;
+        self.evolution.tell(&fitness, pool.setup_mut(), seed).map_err(|error| lost(&error))?;
         self.hall.add(best.iter().map(|best| best.genes.clone()).collect());
         self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
         if let Some(session) = self.manifest.sessions.last_mut() {

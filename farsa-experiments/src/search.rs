@@ -108,13 +108,17 @@ impl Evolution {
     }
 
     /// Takes the fitness of the current generation and makes the next, by a lesson of `setup` where it learns.
-    pub(crate) fn tell(&mut self, fitness: &[Fitness], setup: &mut dyn Setup, seed: u64) -> Result<(), EvoError> {
-        match self {
+    ///
+    /// # Errors
+    /// The search's words, should it refuse.
+    pub(crate) fn tell(&mut self, fitness: &[Fitness], setup: &mut dyn Setup, seed: u64) -> Result<(), String> {
+        let told = match self {
             Self::Truncation(ga) => ga.tell(fitness),
             Self::SteadyState(search) => search.tell(fitness),
             Self::Several(all) => all.tell(fitness),
-            Self::Learning(learning) => learning.study(setup, seed),
-        }
+            Self::Learning(learning) => return learning.study(setup, seed),
+        };
+        told.map_err(|error| error.to_string())
     }
 
     /// The fitness that individuals are ranked by, if this is what they earned: for the parent of a steady-state search
