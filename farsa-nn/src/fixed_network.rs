@@ -2,7 +2,11 @@
 
 use crate::fixed_logistic::{ACTIVATION_BITS, logistic};
 use crate::fixed_scale::LEAK_BITS;
+use crate::kernel::head;
 use crate::{Controller, Error, FixedScale, Layout, Leak, ParameterKind};
+
+/// Outputs whose sums are added side by side.
+const BLOCK: usize = 8;
 
 /// Fraction bits of activations between steps; the lower half of them keeps a slow neuron moving.
 const STATE_BITS: u32 = 30;
@@ -135,13 +139,26 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
             }
         }
 
+        // The sums have done their work.
+        let sources = sums;
+        for (source, h) in sources.iter_mut().zip(&*hidden) {
+            *source = activation(*h);
+        }
         let shift = scale.activation_shift();
-        let weights = part(ParameterKind::OutputWeight);
-        for (target, y) in y.iter_mut().enumerate().take(layout.outputs()) {
-            let column = weights.iter().skip(target).step_by(layout.outputs());
-            let sum = hidden.iter().zip(column).map(|(h, w)| product(*w, activation(*h), shift)).sum();
-            // 1 is no i16 of these units.
-            *y = write(logistic(sum, scale.sum_bits()).min(i32::from(i16::MAX)) as i16);
+        let outputs = layout.outputs();
+        let rows = part(ParameterKind::OutputWeight).chunks_exact(outputs.max(1));
+        // Source by source, as above, where the state has no room for the sums of all outputs.
+        for (block, y) in head(y, outputs).chunks_mut(BLOCK).enumerate() {
+            let mut sums = [0; BLOCK];
+            for (source, row) in sources.iter().zip(rows.clone()) {
+                for (sum, w) in sums.iter_mut().zip(row.get(block * BLOCK..).unwrap_or(&[])) {
+                    *sum += product(*w, *source, shift);
+                }
+            }
+            for (y, sum) in y.iter_mut().zip(sums) {
+                // 1 is no i16 of these units.
+                *y = write(logistic(sum, scale.sum_bits()).min(i32::from(i16::MAX)) as i16);
+            }
         }
     }
 
