@@ -99,6 +99,29 @@ fn the_bytes_of_each_kind_do_not_change() {
     );
 }
 
+/// What becomes of using parameters where they lie, so far beyond a multiple of eight, on this processor.
+fn placement(offset: usize, alignment: usize) -> Result<(), BytesError> {
+    match offset % alignment {
+        _ if cfg!(target_endian = "big") => Err(BytesError::BigEndian),
+        0 => Ok(()),
+        remainder => Err(BytesError::Misaligned { remainder, alignment }),
+    }
+}
+
+/// Parameters where they lie, or their copy on a processor that cannot use them there.
+fn placed_or<'a, T>(placed: Result<&'a [T], BytesError>, bytes: &[u8], copy: &'a [T]) -> &'a [T] {
+    match placed {
+        Ok(placed) => {
+            assert_eq!(placed.as_ptr().addr(), bytes.as_ptr().addr() + HEAD, "nothing is copied");
+            placed
+        }
+        Err(error) => {
+            assert_eq!(Err(error), placement(0, 1), "aligned");
+            copy
+        }
+    }
+}
+
 /// Bytes at every remainder of eight, which reach up to eight bytes beyond the end.
 fn at_every_place<const LEN: usize>(bytes: &[u8], mut look: impl FnMut(usize, &[u8])) {
     let mut shifted = Aligned([0; LEN]);
