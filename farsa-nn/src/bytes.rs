@@ -2,7 +2,7 @@
 
 use farsa_num::Digest;
 
-use crate::bytes_frame::{Frame, Kind, SHAPE, frame_len, layout_hash};
+use crate::bytes_frame::{Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, word};
 use crate::network::{check, check_values};
 use crate::{BytesError, Error, Layout, Leak};
 
@@ -122,11 +122,7 @@ impl<'a> NetworkBytes<'a> {
     /// # Errors
     /// [`BytesError::OtherLayout`].
     pub fn expect(&self, layout: Layout, leak: Leak) -> Result<(), BytesError> {
-        let hash = |layout, leak| NetworkBytes::layout_hash(layout, leak);
-        match (hash(layout, leak), hash(self.layout, self.leak)) {
-            (expected, found) if expected != found => Err(BytesError::OtherLayout { expected, found }),
-            _ => Ok(()),
-        }
+        same_layout(NetworkBytes::layout_hash(layout, leak), NetworkBytes::layout_hash(self.layout, self.leak))
     }
 
     /// Nothing, if the network is for these channels, by their [`channel_hash`].
@@ -134,8 +130,7 @@ impl<'a> NetworkBytes<'a> {
     /// # Errors
     /// [`BytesError::OtherChannels`].
     pub fn expect_channels(&self, expected: u64) -> Result<(), BytesError> {
-        let found = self.channels;
-        if expected == found { Ok(()) } else { Err(BytesError::OtherChannels { expected, found }) }
+        same_channels(expected, self.channels)
     }
 
     /// The layout.
@@ -158,12 +153,7 @@ impl<'a> NetworkBytes<'a> {
     /// # Errors
     /// [`BytesError::Misaligned`] and [`BytesError::BigEndian`]; [`copy_parameters`](Self::copy_parameters) then does.
     pub fn parameters(&self) -> Result<&'a [f32], BytesError> {
-        if cfg!(target_endian = "big") {
-            return Err(BytesError::BigEndian);
-        }
-        // Their number was checked, so that alignment is all that can be wrong.
-        bytemuck::try_cast_slice(self.parameters)
-            .map_err(|_| BytesError::Misaligned { remainder: self.parameters.as_ptr().addr() % 4 })
+        placed(self.parameters)
     }
 
     /// Copies the parameters into `out` [[`parameter_count`](Layout::parameter_count)].
@@ -171,12 +161,7 @@ impl<'a> NetworkBytes<'a> {
     /// # Errors
     /// [`BytesError::Buffer`]; then nothing is copied.
     pub fn copy_parameters(&self, out: &mut [f32]) -> Result<(), BytesError> {
-        let (expected, found) = (self.layout.parameter_count(), out.len());
-        if expected != found {
-            return Err(BytesError::Buffer { expected, found });
-        }
-        out.iter_mut().zip(values(self.parameters)).for_each(|(to, value)| *to = value);
-        Ok(())
+        copy(values(self.parameters), out)
     }
 }
 
@@ -206,13 +191,11 @@ pub fn channel_hash<N: AsRef<str>>(
 }
 
 fn shape_of(layout: Layout, leak: Leak) -> [u32; SHAPE] {
-    // Counts beyond 32 bits saturate: no slice of parameters is so long.
-    let word = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
-    let counts = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
-    let [sensors, hidden, outputs] = counts;
+    let [sensors, hidden, outputs] = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
     [sensors, hidden, outputs, layout.slope().to_bits(), leak as u32, 0, 0, 0]
 }
 
-fn values(bytes: &[u8]) -> impl ExactSizeIterator<Item = f32> + Clone + '_ {
-    bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes))
+/// Parameters that are `f32` as numbers, wherever they lie.
+pub(crate) fn values(parameters: &[u8]) -> impl ExactSizeIterator<Item = f32> + Clone + '_ {
+    parameters.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes))
 }

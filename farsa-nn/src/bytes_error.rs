@@ -69,10 +69,12 @@ pub enum BytesError {
         /// Hash of theirs.
         found: u64,
     },
-    /// The bytes do not begin at a multiple of four, so that their numbers cannot be used where they lie.
+    /// The bytes do not begin where their numbers may lie, so that these cannot be used there.
     Misaligned {
         /// Remainder of their address.
         remainder: usize,
+        /// What the address should be a multiple of.
+        alignment: usize,
     },
     /// The processor is big-endian, so that their numbers cannot be used where they lie.
     BigEndian,
@@ -113,10 +115,10 @@ impl fmt::Display for BytesError {
             Self::OtherChannels { expected, found } => {
                 write!(f, "a controller for channels {found:016x} where {expected:016x} is asked for")
             }
-            Self::Misaligned { remainder } => {
+            Self::Misaligned { remainder, alignment } => {
                 write!(
                     f,
-                    "the bytes lie {remainder} beyond a multiple of 4: wrap them in Aligned, or copy the parameters"
+                    "the bytes lie {remainder} beyond a multiple of {alignment}: wrap them in Aligned, or copy the parameters"
                 )
             }
             Self::BigEndian => f.write_str("the processor is big-endian: copy the parameters"),

@@ -1,5 +1,6 @@
 //! What the bytes of all kinds of controllers have in common: a head, parameters, a checksum.
 
+use bytemuck::AnyBitPattern;
 use farsa_num::{Digest, crc32};
 
 use crate::BytesError;
@@ -18,6 +19,8 @@ const CHECKSUM: usize = 4;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Network = 1,
+    FixedNetwork = 2,
+    Ctrnn = 3,
 }
 
 /// A controller's bytes taken apart, whole and undamaged; what shape and parameters mean is the kind's business.
@@ -31,6 +34,42 @@ pub(crate) struct Frame<'a> {
 /// Number of bytes of a controller with so many bytes of parameters; saturates.
 pub(crate) const fn frame_len(parameters: usize) -> usize {
     parameters.saturating_add(HEAD + CHECKSUM)
+}
+
+/// A count as a number of a shape. Those beyond 32 bits saturate: no slice of parameters is so long.
+pub(crate) fn word(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+/// Nothing, if the layout hashes are the same.
+pub(crate) fn same_layout(expected: u64, found: u64) -> Result<(), BytesError> {
+    if expected == found { Ok(()) } else { Err(BytesError::OtherLayout { expected, found }) }
+}
+
+/// Nothing, if the channel hashes are the same.
+pub(crate) fn same_channels(expected: u64, found: u64) -> Result<(), BytesError> {
+    if expected == found { Ok(()) } else { Err(BytesError::OtherChannels { expected, found }) }
+}
+
+/// Parameters where they lie, as numbers.
+pub(crate) fn placed<T: AnyBitPattern>(parameters: &[u8]) -> Result<&[T], BytesError> {
+    if cfg!(target_endian = "big") {
+        return Err(BytesError::BigEndian);
+    }
+    let alignment = align_of::<T>();
+    // Their number was checked, so that alignment is all that can be wrong.
+    bytemuck::try_cast_slice(parameters)
+        .map_err(|_| BytesError::Misaligned { remainder: parameters.as_ptr().addr() % alignment, alignment })
+}
+
+/// Copies numbers into `out`, which must be as long.
+pub(crate) fn copy<T>(values: impl ExactSizeIterator<Item = T>, out: &mut [T]) -> Result<(), BytesError> {
+    let (expected, found) = (values.len(), out.len());
+    if expected != found {
+        return Err(BytesError::Buffer { expected, found });
+    }
+    out.iter_mut().zip(values).for_each(|(to, value)| *to = value);
+    Ok(())
 }
 
 /// The layout hash: of the kind and the shape.
@@ -87,15 +126,15 @@ impl<'a> Frame<'a> {
         Ok(Self { shape, channels, parameters })
     }
 
-    /// Fills `out`, which must be as long as [`frame_len`] of the parameters says; `parameters` are words in their order.
-    pub(crate) fn write(
+    /// Fills `out`, which must be as long as [`frame_len`] of the parameters says; `parameters` are numbers in their order.
+    pub(crate) fn write<const N: usize>(
         kind: Kind,
         shape: &[u32; SHAPE],
         channels: u64,
-        parameters: impl ExactSizeIterator<Item = [u8; 4]>,
+        parameters: impl ExactSizeIterator<Item = [u8; N]>,
         out: &mut [u8],
     ) -> Result<(), BytesError> {
-        let parameters_len = 4 * parameters.len();
+        let parameters_len = N * parameters.len();
         let (expected, found) = (frame_len(parameters_len), out.len());
         // More than the head can say is more than any buffer of it.
         let Some(len) = u32::try_from(expected).ok().filter(|_| expected == found) else {

@@ -66,15 +66,7 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ctrnn<P, S> {
     /// [`Error::TimeStep`], [`Error::Neurons`], [`Error::ParameterCount`], [`Error::NotFinite`], [`Error::TimeConstant`] or
     /// [`Error::StateLen`]: the first that applies, and of the parameters the first that is wrong.
     pub fn new(layout: CtrnnLayout, time_step: f32, parameters: P, mut state: S) -> Result<Self, Error> {
-        if !(time_step.is_finite() && time_step > 0.0) {
-            return Err(Error::TimeStep { value: time_step });
-        }
-        let neurons = layout.neurons();
-        for range in [Some(layout.output_neurons()), layout.direct_inputs()].into_iter().flatten() {
-            if range.end > neurons {
-                return Err(Error::Neurons { first: range.start, count: range.len(), neurons });
-            }
-        }
+        check_layout(&layout, time_step)?;
         check(&layout, time_step, parameters.as_ref())?;
         let (expected, found) = (layout.state_len(), state.as_mut().len());
         if expected != found {
@@ -275,18 +267,40 @@ fn dynamics<'a>(
     })
 }
 
-fn check(layout: &CtrnnLayout, time_step: f32, parameters: &[f32]) -> Result<(), Error> {
+pub(crate) fn check_layout(layout: &CtrnnLayout, time_step: f32) -> Result<(), Error> {
+    if !(time_step.is_finite() && time_step > 0.0) {
+        return Err(Error::TimeStep { value: time_step });
+    }
+    let neurons = layout.neurons();
+    for range in [Some(layout.output_neurons()), layout.direct_inputs()].into_iter().flatten() {
+        if range.end > neurons {
+            return Err(Error::Neurons { first: range.start, count: range.len(), neurons });
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn check(layout: &CtrnnLayout, time_step: f32, parameters: &[f32]) -> Result<(), Error> {
+    check_values(layout, time_step, parameters.iter().copied())
+}
+
+/// The same for parameters that are no slice of numbers.
+pub(crate) fn check_values(
+    layout: &CtrnnLayout,
+    time_step: f32,
+    parameters: impl ExactSizeIterator<Item = f32> + Clone,
+) -> Result<(), Error> {
     let (expected, found) = (layout.parameter_count(), parameters.len());
     if expected != found {
         return Err(Error::ParameterCount { expected, found });
     }
-    if let Some(index) = parameters.iter().position(|p| !p.is_finite()) {
+    if let Some(index) = parameters.clone().position(|p| !p.is_finite()) {
         return Err(Error::NotFinite { index });
     }
     let least = layout.integrator().least_time_constant(time_step);
-    let time_constants = layout.range(CtrnnParameter::TimeConstant).zip(layout.split(parameters).time_constants);
-    match time_constants.into_iter().find(|(_, tau)| !(**tau > 0.0 && **tau >= least)) {
-        Some((index, &value)) => Err(Error::TimeConstant { index, value, least }),
+    let time_constants = parameters.enumerate().skip(layout.range(CtrnnParameter::TimeConstant).start);
+    match time_constants.into_iter().find(|(_, tau)| !(*tau > 0.0 && *tau >= least)) {
+        Some((index, value)) => Err(Error::TimeConstant { index, value, least }),
         None => Ok(()),
     }
 }

@@ -2,7 +2,11 @@
 
 use crate::fixed_logistic::{ACTIVATION_BITS, logistic};
 use crate::fixed_scale::LEAK_BITS;
+use crate::kernel::head;
 use crate::{Controller, Error, FixedScale, Layout, Leak, ParameterKind};
+
+/// Outputs whose sums are added side by side.
+const BLOCK: usize = 8;
 
 /// Fraction bits of activations between steps; the lower half of them keeps a slow neuron moving.
 const STATE_BITS: u32 = 30;
@@ -40,22 +44,41 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
     /// # Errors
     /// [`Error::ParameterCount`], [`Error::LeakRange`], [`Error::SumRange`] or [`Error::StateLen`]: the first that applies.
     pub fn new(layout: Layout, leak: Leak, scale: FixedScale, parameters: P, mut state: S) -> Result<Self, Error> {
-        let fixed = parameters.as_ref();
-        if fixed.len() != layout.parameter_count() {
-            return Err(Error::ParameterCount { expected: layout.parameter_count(), found: fixed.len() });
-        }
-        let leaks = layout.range(ParameterKind::Leak);
-        if let Some(at) = fixed[leaks.clone()].iter().position(|d| !(0..=1 << LEAK_BITS).contains(d)) {
-            let index = leaks.start + at;
-            return Err(Error::LeakRange { index, value: f32::from(fixed[index]) / f32::from(1_i16 << LEAK_BITS) });
-        }
-        scale.check_sums(&layout, fixed)?;
+        check(&layout, scale, parameters.as_ref(), |fixed| fixed)?;
         let (expected, found) = (layout.state_len(), state.as_mut().len());
         if expected != found {
             return Err(Error::StateLen { expected, found });
         }
         state.as_mut().fill(0);
         Ok(Self { layout, leak, scale, parameters, state })
+    }
+
+    /// Points the network at other parameters [[`parameter_count`](Layout::parameter_count)] of this scale and returns the old
+    /// ones; the state, whose units are the same in every scale, stays as it is.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`], [`Error::LeakRange`] or [`Error::SumRange`]; then the network is unchanged.
+    pub fn set_parameters(&mut self, scale: FixedScale, parameters: P) -> Result<P, Error> {
+        check(&self.layout, scale, parameters.as_ref(), |fixed| fixed)?;
+        self.scale = scale;
+        Ok(core::mem::replace(&mut self.parameters, parameters))
+    }
+
+    /// Copies other parameters [[`parameter_count`](Layout::parameter_count)] of this scale over the network's own; the state
+    /// stays as it is.
+    ///
+    /// # Errors
+    /// [`Error::ParameterCount`], [`Error::LeakRange`] or [`Error::SumRange`]; then the network is unchanged.
+    pub fn copy_parameters(&mut self, scale: FixedScale, parameters: &[i16]) -> Result<(), Error>
+    where
+        P: AsMut<[i16]>,
+    {
+        check(&self.layout, scale, parameters, |fixed| fixed)?;
+        self.scale = scale;
+        for (own, new) in self.parameters.as_mut().iter_mut().zip(parameters) {
+            *own = *new;
+        }
+        Ok(())
     }
 
     /// Advances by one tick from the sensor values `x` `[sensors]`, in units of 2^-[`input_bits`](FixedScale::input_bits),
@@ -116,13 +139,26 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
             }
         }
 
+        // The sums have done their work.
+        let sources = sums;
+        for (source, h) in sources.iter_mut().zip(&*hidden) {
+            *source = activation(*h);
+        }
         let shift = scale.activation_shift();
-        let weights = part(ParameterKind::OutputWeight);
-        for (target, y) in y.iter_mut().enumerate().take(layout.outputs()) {
-            let column = weights.iter().skip(target).step_by(layout.outputs());
-            let sum = hidden.iter().zip(column).map(|(h, w)| product(*w, activation(*h), shift)).sum();
-            // 1 is no i16 of these units.
-            *y = write(logistic(sum, scale.sum_bits()).min(i32::from(i16::MAX)) as i16);
+        let outputs = layout.outputs();
+        let rows = part(ParameterKind::OutputWeight).chunks_exact(outputs.max(1));
+        // Source by source, as above, where the state has no room for the sums of all outputs.
+        for (block, y) in head(y, outputs).chunks_mut(BLOCK).enumerate() {
+            let mut sums = [0; BLOCK];
+            for (source, row) in sources.iter().zip(rows.clone()) {
+                for (sum, w) in sums.iter_mut().zip(row.get(block * BLOCK..).unwrap_or(&[])) {
+                    *sum += product(*w, *source, shift);
+                }
+            }
+            for (y, sum) in y.iter_mut().zip(sums) {
+                // 1 is no i16 of these units.
+                *y = write(logistic(sum, scale.sum_bits()).min(i32::from(i16::MAX)) as i16);
+            }
         }
     }
 
@@ -201,4 +237,22 @@ fn activation(h: i32) -> i32 {
 fn share(d: i32, difference: i32) -> i32 {
     const HALF: u32 = 15;
     ((d * (difference >> HALF)) << (HALF - LEAK_BITS)) + ((d * (difference & ((1 << HALF) - 1))) >> LEAK_BITS)
+}
+
+/// What construction asks of parameters, wherever they lie; `value` makes a number of what lies there.
+pub(crate) fn check<T: Copy>(
+    layout: &Layout,
+    scale: FixedScale,
+    fixed: &[T],
+    value: impl Fn(T) -> i16,
+) -> Result<(), Error> {
+    let (expected, found) = (layout.parameter_count(), fixed.len());
+    if expected != found {
+        return Err(Error::ParameterCount { expected, found });
+    }
+    let leaks = fixed.iter().enumerate().skip(layout.range(ParameterKind::Leak).start).map(|(i, d)| (i, value(*d)));
+    if let Some((index, d)) = leaks.into_iter().find(|(_, d)| !(0..=1 << LEAK_BITS).contains(d)) {
+        return Err(Error::LeakRange { index, value: f32::from(d) / f32::from(1_i16 << LEAK_BITS) });
+    }
+    scale.check_sums(layout, fixed, value)
 }

@@ -111,7 +111,7 @@ impl FixedScale {
         let mut sum_bits = most;
         loop {
             let scale = Self::new(input_bits, weight_bits, sum_bits)?;
-            match scale.check_sums(layout, fixed) {
+            match scale.check_sums(layout, fixed, |fixed| fixed) {
                 Err(_) if sum_bits > Self::SUM_BITS_MIN => sum_bits -= 1,
                 result => return result.map(|()| scale),
             }
@@ -155,14 +155,19 @@ impl FixedScale {
         ACTIVATION_BITS + self.weight_bits() - self.sum_bits()
     }
 
-    /// Whether every sum fits an `i32`, whatever the sensor values.
-    pub(crate) fn check_sums(self, layout: &Layout, fixed: &[i16]) -> Result<(), Error> {
+    /// Whether every sum fits an `i32`, whatever the sensor values; `value` makes a number of what lies in `fixed`.
+    pub(crate) fn check_sums<T: Copy>(
+        self,
+        layout: &Layout,
+        fixed: &[T],
+        value: impl Fn(T) -> i16,
+    ) -> Result<(), Error> {
         let part = |kind| fixed.get(layout.range(kind)).unwrap_or(&[]);
         // The largest sensor value and the largest activation are both 2^15. A shifted product is rounded down, so that a
         // negative one may be larger by one than it is here.
-        let largest = |weights: &[i16], target: usize, targets: usize, shift: u32| {
+        let largest = |weights: &[T], target: usize, targets: usize, shift: u32| {
             let products = weights.iter().skip(target).step_by(targets.max(1));
-            products.map(|w| ((u64::from(w.unsigned_abs()) << 15) >> shift) + 1).sum::<u64>()
+            products.map(|w| ((u64::from(value(*w).unsigned_abs()) << 15) >> shift) + 1).sum::<u64>()
         };
         let (h, o) = (layout.hidden(), layout.outputs());
         let (input, activation) = (self.input_shift(), self.activation_shift());

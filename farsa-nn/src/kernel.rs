@@ -241,7 +241,7 @@ impl<R: Real> Layer<'_, R> {
 
 /// The first `len` values, or all where there are fewer.
 #[inline]
-pub(crate) fn head(values: &mut [f32], len: usize) -> &mut [f32] {
+pub(crate) fn head<T>(values: &mut [T], len: usize) -> &mut [T] {
     let len = len.min(values.len());
     values.split_at_mut(len).0
 }

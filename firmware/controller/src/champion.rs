@@ -1,6 +1,6 @@
 //! The trained network, in flash.
 
-use farsa_nn::{Aligned, BytesError, Layout, Leak, NetworkBytes};
+use farsa_nn::{Aligned, BytesError, FixedNetworkBytes, FixedScale, Layout, Leak, NetworkBytes};
 
 /// 29 sensors, 12 hidden neurons, 23 motors.
 pub const LAYOUT: Layout = Layout::new(29, 12, 23);
@@ -11,8 +11,15 @@ pub const LEAK: Leak = Leak::Filter;
 /// Hash of the names of sensors and motors, as `farsa export controller --format rust` prints it.
 pub const CHANNELS: u64 = 0xFD6D_D3B7_8495_FA71;
 
+/// Fraction bits of the sensor values of the network in integers.
+pub const INPUT_BITS: u32 = 9;
+
 // A file of another length does not compile.
 static CHAMPION: Aligned<[u8; NetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("../champion.farsa"));
+
+// The build script quantises it.
+static FIXED: Aligned<[u8; FixedNetworkBytes::byte_count(LAYOUT)]> =
+    Aligned(*include_bytes!(concat!(env!("OUT_DIR"), "/champion-fixed.farsa")));
 
 /// The champion's parameters where they lie, after all checks.
 ///
@@ -23,4 +30,20 @@ pub fn champion() -> Result<&'static [f32], BytesError> {
     bytes.expect(LAYOUT, LEAK)?;
     bytes.expect_channels(CHANNELS)?;
     bytes.parameters()
+}
+
+/// The champion's bytes in integers.
+pub fn fixed_champion() -> &'static [u8] {
+    &FIXED.0
+}
+
+/// The scale and the parameters of a network in integers where they lie, after all checks.
+///
+/// # Errors
+/// What is wrong with the bytes.
+pub(crate) fn read_fixed(bytes: &'static [u8]) -> Result<(FixedScale, &'static [i16]), BytesError> {
+    let bytes = FixedNetworkBytes::read(bytes)?;
+    bytes.expect(LAYOUT, LEAK, INPUT_BITS)?;
+    bytes.expect_channels(CHANNELS)?;
+    Ok((bytes.scale(), bytes.parameters()?))
 }

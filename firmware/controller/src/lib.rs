@@ -1,4 +1,4 @@
-//! The champion of the manipulation experiment on a board: its bytes, sensors, motors and self-test.
+//! The champion of the manipulation experiment on a board, in floats and in integers: its bytes, sensors, motors and self-test.
 //!
 //! Nothing here knows which board it is: `cortex-m`, `riscv` and `wasm` are programs around this crate, and its tests run
 //! the same functions on a computer.
@@ -9,12 +9,16 @@ mod arm;
 mod board;
 mod chain;
 mod champion;
+mod control;
+mod fixed_robot;
 mod robot;
 mod self_test;
 
 pub use arm::ARM;
 pub use board::{Analog, Board, Pulse};
 pub use chain::{Chain, ChainLink};
-pub use champion::{CHANNELS, LAYOUT, LEAK, champion};
+pub use champion::{CHANNELS, INPUT_BITS, LAYOUT, LEAK, champion, fixed_champion};
+pub use control::Control;
+pub use fixed_robot::FixedRobot;
 pub use robot::Robot;
 pub use self_test::{noise_into, self_test};

@@ -2,12 +2,13 @@
 
 use farsa_body::{Motor, Sensor};
 use farsa_nn::{BytesError, Controller, Network};
+use farsa_num::{Digest, Stream};
 
-use crate::{Analog, Board, LAYOUT, LEAK, Pulse, champion};
+use crate::{Analog, Board, Control, LAYOUT, LEAK, Pulse, champion};
 
 /// The network's inputs at both ends of the converters: joint positions and touch from 0 to 1, then the way from the palm to
 /// the sphere [cm], then the labels of the phases.
-const RANGES: [[f32; 2]; LAYOUT.sensors()] = {
+pub(crate) const RANGES: [[f32; 2]; LAYOUT.sensors()] = {
     let mut ranges = [[0.0, 1.0]; LAYOUT.sensors()];
     let mut i = 0;
     while i < 3 {
@@ -44,26 +45,38 @@ impl Robot {
         })
     }
 
-    /// One control step.
-    pub fn tick(&mut self, board: &mut Board) {
+    /// The sensor values of the last tick `[sensors]`.
+    pub fn sensed(&self) -> &[f32; LAYOUT.sensors()] {
+        &self.x
+    }
+}
+
+impl Control for Robot {
+    type Value = f32;
+
+    const HALF: f32 = 0.5;
+
+    fn tick(&mut self, board: &mut Board) {
         self.sensors.read(board, &mut self.x);
         self.network.step(&self.x, &mut self.y);
         self.motors.drive(&self.y, board);
     }
 
-    /// The network alone, from these sensor values `[sensors]` to its motor values `[outputs]`.
-    pub fn step(&mut self, x: &[f32; LAYOUT.sensors()]) -> &[f32; LAYOUT.outputs()] {
+    fn step(&mut self, x: &[f32; LAYOUT.sensors()]) -> &[f32; LAYOUT.outputs()] {
         self.network.step(x, &mut self.y);
         &self.y
     }
 
-    /// The activations of its hidden neurons `[hidden]`.
-    pub fn hidden(&self) -> &[f32] {
-        self.network.hidden()
+    fn random(inputs: &mut Stream) -> f32 {
+        inputs.range(-10.0, 10.0)
     }
 
-    /// Forgets everything.
-    pub fn reset(&mut self) {
+    fn add_to(&self, digest: &mut Digest) {
+        digest.add_f32s(&self.y);
+        digest.add_f32s(self.network.hidden());
+    }
+
+    fn reset(&mut self) {
         self.network.reset();
     }
 }

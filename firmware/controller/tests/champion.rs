@@ -1,7 +1,7 @@
 //! What boards must come to, computed here.
 
 use farsa_num::{Digest, Domain, Stream};
-use firmware_controller::{ARM, Board, LAYOUT, Pulse, Robot, noise_into, self_test};
+use firmware_controller::{ARM, Board, Control, LAYOUT, Pulse, Robot, noise_into, self_test};
 
 /// `./ci firmware` and `./ci wasm` hold every target to these lines.
 #[test]

@@ -8,8 +8,8 @@ use cortex_m::Peripherals;
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 
-/// Instructions of a tick of SysTick in QEMU with `-icount shift=0`, one a nanosecond: the clocks are of 25 MHz and 16 MHz.
-const PER_TICK: f32 = if cfg!(target_abi = "eabihf") { 40.0 } else { 62.5 };
+/// Instructions of two ticks of SysTick in QEMU with `-icount shift=0`, one a nanosecond: the clocks are of 25 MHz and 16 MHz.
+const PER_TWO_TICKS: u64 = if cfg!(target_abi = "eabihf") { 80 } else { 125 };
 const RELOAD: u32 = 0x00FF_FFFF;
 
 /// Counts instructions, to a tick.
@@ -36,6 +36,6 @@ impl Counter {
         // It counts downwards.
         self.ticks.set(self.ticks.get() + u64::from(self.last.get().wrapping_sub(now) & RELOAD));
         self.last.set(now);
-        (self.ticks.get() as f32 * PER_TICK) as u64
+        self.ticks.get() * PER_TWO_TICKS / 2
     }
 }

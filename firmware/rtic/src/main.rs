@@ -17,7 +17,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 #[rtic::app(device = lm3s6965, dispatchers = [UART0])]
 mod app {
     use adapters::{Guard, Period};
-    use controller::{Board, LAYOUT, Robot};
+    use controller::{Board, Control, LAYOUT, Robot};
     use rtic_monotonics::systick::prelude::*;
 
     use super::Clock;

@@ -2,7 +2,8 @@
 
 use core::hint::black_box;
 
-use controller::{ARM, Board, Robot, noise_into, self_test};
+use controller::{ARM, Board, Control, FixedRobot, LAYOUT, Robot, noise_into, self_test};
+use farsa_nn::BytesError;
 use farsa_num::{Digest, Domain, Stream};
 
 use crate::{exit, say, say_hex, used};
@@ -25,17 +26,31 @@ const fn parsed(digits: &str) -> u32 {
     number
 }
 
-/// Runs the self-test and the loop, prints what came of them and ends.
+/// Runs the self-test and the loop of the champion, prints what came of them and ends.
 ///
 /// `instructions` counts those since the program began, as exactly as the processor can.
 pub fn report(instructions: impl Fn() -> u64) -> ! {
-    let Ok(mut robot) = Robot::new() else { exit(false) };
+    tell(Robot::new, ["driven", "hash"], instructions)
+}
+
+/// The same of the champion in integers.
+pub fn report_fixed(instructions: impl Fn() -> u64) -> ! {
+    tell(FixedRobot::new, ["driven-fixed", "hash-fixed"], instructions)
+}
+
+// It makes the robot itself: one that is handed over lies on the stack twice.
+fn tell<R: Control>(
+    robot: impl FnOnce() -> Result<R, BytesError>,
+    [driven_name, hash_name]: [&str; 2],
+    instructions: impl Fn() -> u64,
+) -> ! {
+    let Ok(mut robot) = robot() else { exit(false) };
     let mut board = Board::new();
     let mut noise = Stream::new(1, Domain::Sensor, 0, 0, 0);
 
     // The loop without the noise, and the network of it alone.
     let (mut ticks, mut network, mut driven) = (0, 0, Digest::new());
-    let x = [0.5; controller::LAYOUT.sensors()];
+    let x = [R::HALF; LAYOUT.sensors()];
     for _ in 0..COUNTED {
         noise_into(&mut board, &mut noise);
         let begin = instructions();
@@ -48,10 +63,10 @@ pub fn report(instructions: impl Fn() -> u64) -> ! {
     }
     say("instructions-network", (network / u64::from(COUNTED)) as u32);
     say("instructions-loop", (ticks / u64::from(COUNTED)) as u32);
-    say_hex("driven", driven.finish());
-    say("ram", (size_of::<Robot>() + size_of::<Board>()) as u32);
+    say_hex(driven_name, driven.finish());
+    say("ram", (size_of::<R>() + size_of::<Board>()) as u32);
     say("steps", STEPS);
-    say_hex("hash", self_test(&mut robot, STEPS));
+    say_hex(hash_name, self_test(&mut robot, STEPS));
     say("stack", used());
     #[cfg(feature = "planted-panic")]
     say("never", [1, 2, 3][black_box(7)]);

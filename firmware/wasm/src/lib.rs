@@ -1,7 +1,7 @@
 //! The champion as WebAssembly: the same controller, the same hash. `run.mjs` runs it.
 #![no_std]
 
-use controller::{Robot, self_test};
+use controller::{FixedRobot, Robot, self_test};
 
 // SAFETY: never called: nothing defines it. A module in which a panic is left imports it, and does not start.
 unsafe extern "C" {
@@ -19,4 +19,11 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 #[unsafe(no_mangle)]
 pub extern "C" fn hash(steps: u32) -> u64 {
     Robot::new().map_or(0, |mut robot| self_test(&mut robot, steps))
+}
+
+/// The same of the champion in integers.
+// SAFETY: as above.
+#[unsafe(no_mangle)]
+pub extern "C" fn hash_fixed(steps: u32) -> u64 {
+    FixedRobot::new().map_or(0, |mut robot| self_test(&mut robot, steps))
 }

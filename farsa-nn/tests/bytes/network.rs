@@ -1,4 +1,4 @@
-//! Networks as bytes: what is written is read, nothing else is.
+//! Leaky networks.
 
 use farsa_nn::{
     Aligned, BytesError, Controller, Error, Layout, Leak, Network, NetworkBytes, ParameterKind, channel_hash,
@@ -6,9 +6,10 @@ use farsa_nn::{
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
 
+use crate::{HEAD, after_a_head, all_damage_is_refused, at_every_place, placed_or, placement, with_hash};
+
 const LAYOUT: Layout = Layout::new(29, 12, 23);
 const LEN: usize = NetworkBytes::byte_count(LAYOUT);
-const HEAD: usize = 72;
 
 fn parameters(layout: Layout, seed: u64) -> Vec<f32> {
     let mut stream = Stream::new(seed, Domain::InitialGenome, 0, 0, 0);
@@ -16,24 +17,14 @@ fn parameters(layout: Layout, seed: u64) -> Vec<f32> {
     layout.kinds().map(value).collect()
 }
 
-fn champion() -> Aligned<[u8; LEN]> {
+pub(crate) fn champion() -> Aligned<[u8; LEN]> {
     let mut bytes = Aligned([0; LEN]);
     NetworkBytes::write(LAYOUT, Leak::Evonet, 7, &parameters(LAYOUT, 1), &mut bytes.0).expect("valid");
     bytes
 }
 
-/// Writes the checksum anew, so that what is wrong is not damage.
-fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
-    let end = bytes.len() - 4;
-    let checksum = crc32(&bytes[..end]);
-    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
-    bytes
-}
-
 fn with(place: usize, new: &[u8]) -> Vec<u8> {
-    let mut bytes = champion().0.to_vec();
-    bytes[place..place + new.len()].copy_from_slice(new);
-    sealed(bytes)
+    crate::with(&champion().0, place, new)
 }
 
 fn refused(bytes: &[u8]) -> BytesError {
@@ -59,9 +50,10 @@ fn a_network_over_bytes_is_the_network() {
     let read = NetworkBytes::read(&bytes.0).expect("a network");
     assert_eq!((read.layout(), read.leak(), read.channels()), (LAYOUT, Leak::Evonet, 7));
     read.expect(LAYOUT, Leak::Evonet).expect("the layout");
-    let placed = read.parameters().expect("aligned");
+    let mut copy = [0.0; LAYOUT.parameter_count()];
+    read.copy_parameters(&mut copy).expect("the length");
+    let placed = placed_or(read.parameters(), &bytes.0, &copy);
     assert_eq!(placed, parameters(LAYOUT, 1));
-    assert_eq!(placed.as_ptr().addr(), bytes.0.as_ptr().addr() + HEAD, "nothing is copied");
 
     let state = || [0.0; LAYOUT.state_len()];
     let mut own = Network::new(LAYOUT, Leak::Evonet, parameters(LAYOUT, 1), state()).expect("valid");
@@ -78,25 +70,7 @@ fn a_network_over_bytes_is_the_network() {
 
 #[test]
 fn every_flipped_bit_and_every_truncation_is_refused() {
-    let bytes = champion().0;
-    for at in 0..8 * LEN {
-        let mut damaged = bytes;
-        damaged[at / 8] ^= 1 << (at % 8);
-        let error = refused(&damaged);
-        let expected = match at / 8 {
-            0..8 => matches!(error, BytesError::Magic { .. }),
-            8..12 => matches!(error, BytesError::Version { .. }),
-            16..20 => matches!(error, BytesError::Length { .. }),
-            _ => matches!(error, BytesError::Checksum { .. }),
-        };
-        assert!(expected, "bit {at}: {error}");
-    }
-    for len in 0..LEN {
-        let error = refused(&bytes[..len]);
-        assert!(matches!(error, BytesError::Length { found, .. } if found == len), "{len} bytes: {error}");
-    }
-    let longer = [&bytes[..], &[0]].concat();
-    assert_eq!(refused(&longer), BytesError::Length { expected: LEN, found: LEN + 1 });
+    all_damage_is_refused(&champion().0, refused);
 }
 
 #[test]
@@ -106,14 +80,7 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     assert_eq!(refused(&with(12, &[9])), BytesError::Kind { expected: 1, found: 9 });
     assert!(matches!(refused(&with(24, &[30])), BytesError::LayoutHash { .. }));
     // Whoever forges the hash as well is met by what the numbers mean.
-    let hashed = |at: usize, word: u32| {
-        let mut bytes = with(at, &word.to_le_bytes());
-        let mut digest = farsa_num::Digest::new();
-        digest.add_bytes(&bytes[12..16]);
-        digest.add_bytes(&bytes[24..56]);
-        bytes[56..64].copy_from_slice(&digest.finish().to_le_bytes());
-        refused(&sealed(bytes))
-    };
+    let hashed = |at: usize, word: u32| refused(&with_hash(&champion().0, at, word));
     assert_eq!(hashed(24, 30), BytesError::Length { expected: LEN + 4 * 12, found: LEN });
     assert!(matches!(hashed(28, u32::MAX), BytesError::Length { found: LEN, .. }));
     assert_eq!(hashed(36, f32::NAN.to_bits()), BytesError::Shape { word: 3, found: f32::NAN.to_bits() });
@@ -150,19 +117,15 @@ fn another_controller_is_told_apart() {
 
 #[test]
 fn where_bytes_lie_is_checked_and_parameters_are_copied_from_anywhere() {
-    let mut shifted = Aligned([0; LEN + 8]);
-    for offset in 0..8 {
-        shifted.0[offset..][..LEN].copy_from_slice(&champion().0);
-        let read = NetworkBytes::read(&shifted.0[offset..][..LEN]).expect("a network");
-        match read.parameters() {
-            Ok(placed) => assert!(offset % 4 == 0 && placed == parameters(LAYOUT, 1)),
-            Err(error) => assert_eq!(error, BytesError::Misaligned { remainder: offset % 4 }),
-        }
+    at_every_place::<{ LEN + 8 }>(&champion().0, |offset, bytes| {
+        let read = NetworkBytes::read(bytes).expect("a network");
+        let placed = read.parameters().map(|placed| assert_eq!(placed, parameters(LAYOUT, 1)));
+        assert_eq!(placed, placement(offset, 4));
         let mut copy = [0.0; LAYOUT.parameter_count()];
         read.copy_parameters(&mut copy).expect("the length");
         assert_eq!(copy[..], parameters(LAYOUT, 1));
         assert_eq!(read.copy_parameters(&mut copy[1..]), Err(BytesError::Buffer { expected: 792, found: 791 }));
-    }
+    });
 }
 
 #[test]
@@ -197,16 +160,8 @@ proptest! {
     }
 
     #[test]
-    fn no_bytes_whatever_are_a_panic(mut bytes: Vec<u8>, seal: bool) {
+    fn no_bytes_whatever_are_a_panic(bytes: Vec<u8>, seal: bool) {
         let _ = NetworkBytes::read(&bytes);
-        let mut whole = champion().0[..HEAD].to_vec();
-        whole.append(&mut bytes);
-        if seal {
-            let len = whole.len() as u32 + 4;
-            whole[16..20].copy_from_slice(&len.to_le_bytes());
-            whole.extend([0; 4]);
-            whole = sealed(whole);
-        }
-        prop_assert!(NetworkBytes::read(&whole).is_err());
+        prop_assert!(NetworkBytes::read(&after_a_head(&champion().0, &bytes, seal)).is_err());
     }
 }

@@ -1,0 +1,132 @@
+//! Controllers as bytes: what is written is read, nothing else is.
+
+mod ctrnn;
+mod fixed_network;
+mod network;
+
+use farsa_nn::{Aligned, BytesError, CtrnnBytes, FixedNetworkBytes, NetworkBytes};
+use farsa_num::{Digest, crc32};
+
+/// Where the parameters begin.
+const HEAD: usize = 72;
+
+/// Writes the checksum anew, so that what is wrong is not damage.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let end = bytes.len() - 4;
+    let checksum = crc32(&bytes[..end]);
+    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+    bytes
+}
+
+/// The bytes with other ones at a place, and the checksum of these.
+fn with(bytes: &[u8], place: usize, new: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    bytes[place..place + new.len()].copy_from_slice(new);
+    sealed(bytes)
+}
+
+/// The same by somebody who forges the layout hash as well.
+fn with_hash(bytes: &[u8], place: usize, word: u32) -> Vec<u8> {
+    let mut bytes = with(bytes, place, &word.to_le_bytes());
+    let mut digest = Digest::new();
+    digest.add_bytes(&bytes[12..16]);
+    digest.add_bytes(&bytes[24..56]);
+    bytes[56..64].copy_from_slice(&digest.finish().to_le_bytes());
+    sealed(bytes)
+}
+
+fn digest(bytes: &[u8]) -> u64 {
+    let mut digest = Digest::new();
+    digest.add_bytes(bytes);
+    digest.finish()
+}
+
+/// No flipped bit, no truncation and no byte more of a controller passes this reader.
+fn all_damage_is_refused(bytes: &[u8], refused: impl Fn(&[u8]) -> BytesError) {
+    let mut damaged = bytes.to_vec();
+    for at in 0..8 * bytes.len() {
+        damaged[at / 8] ^= 1 << (at % 8);
+        let error = refused(&damaged);
+        let expected = match at / 8 {
+            0..8 => matches!(error, BytesError::Magic { .. }),
+            8..12 => matches!(error, BytesError::Version { .. }),
+            16..20 => matches!(error, BytesError::Length { .. }),
+            _ => matches!(error, BytesError::Checksum { .. }),
+        };
+        assert!(expected, "bit {at}: {error}");
+        damaged[at / 8] ^= 1 << (at % 8);
+    }
+    for len in 0..bytes.len() {
+        let error = refused(&bytes[..len]);
+        assert!(matches!(error, BytesError::Length { found, .. } if found == len), "{len} bytes: {error}");
+    }
+    let longer = [bytes, &[0]].concat();
+    assert_eq!(refused(&longer), BytesError::Length { expected: bytes.len(), found: bytes.len() + 1 });
+}
+
+/// A head that is right before any bytes, which may be sealed.
+fn after_a_head(head: &[u8], rest: &[u8], seal: bool) -> Vec<u8> {
+    let mut whole = [&head[..HEAD], rest].concat();
+    if seal {
+        let len = whole.len() as u32 + 4;
+        whole[16..20].copy_from_slice(&len.to_le_bytes());
+        whole.extend([0; 4]);
+        whole = sealed(whole);
+    }
+    whole
+}
+
+#[test]
+fn each_kind_is_read_as_itself_alone() {
+    let kinds: [&[u8]; 3] = [&network::champion().0, &fixed_network::champion().0, &ctrnn::agent().0];
+    for (at, bytes) in kinds.into_iter().enumerate() {
+        let found = at as u32 + 1;
+        let errors =
+            [NetworkBytes::read(bytes).err(), FixedNetworkBytes::read(bytes).err(), CtrnnBytes::read(bytes).err()];
+        for (expected, error) in (1..).zip(errors) {
+            assert_eq!(error, (expected != found).then_some(BytesError::Kind { expected, found }));
+        }
+    }
+}
+
+/// What was written once is written so for good, on every machine: there are boards that hold it.
+#[test]
+fn the_bytes_of_each_kind_do_not_change() {
+    let kinds: [&[u8]; 3] = [&network::champion().0, &fixed_network::champion().0, &ctrnn::agent().0];
+    assert_eq!(
+        kinds.map(digest).map(|hash| format!("{hash:016x}")),
+        ["7a917e2c3a070d00", "9f6fbfbd8ded40f7", "7211fd8b188cb3d5"]
+    );
+}
+
+/// What becomes of using parameters where they lie, so far beyond a multiple of eight, on this processor.
+fn placement(offset: usize, alignment: usize) -> Result<(), BytesError> {
+    match offset % alignment {
+        _ if cfg!(target_endian = "big") => Err(BytesError::BigEndian),
+        0 => Ok(()),
+        remainder => Err(BytesError::Misaligned { remainder, alignment }),
+    }
+}
+
+/// Parameters where they lie, or their copy on a processor that cannot use them there.
+fn placed_or<'a, T>(placed: Result<&'a [T], BytesError>, bytes: &[u8], copy: &'a [T]) -> &'a [T] {
+    match placed {
+        Ok(placed) => {
+            assert_eq!(placed.as_ptr().addr(), bytes.as_ptr().addr() + HEAD, "nothing is copied");
+            placed
+        }
+        Err(error) => {
+            assert_eq!(Err(error), placement(0, 1), "aligned");
+            copy
+        }
+    }
+}
+
+/// Bytes at every remainder of eight, which reach up to eight bytes beyond the end.
+fn at_every_place<const LEN: usize>(bytes: &[u8], mut look: impl FnMut(usize, &[u8])) {
+    let mut shifted = Aligned([0; LEN]);
+    for offset in 0..8 {
+        shifted.0[offset..][..bytes.len()].copy_from_slice(bytes);
+        look(offset, &shifted.0[offset..][..bytes.len()]);
+    }
+}
