@@ -14,7 +14,7 @@ use crate::settings::{Setting, Settings};
 ///
 /// An e-puck on an endless plane has eight infrared sensors, read by rays, and a layer of two logistic units, which drive
 /// its wheels. It starts beside a box, often without sensing it, and earns the distance in metres that the box has come
-/// after 30 s, on the mean over the trials. It lives in rapier alone, as a rigid body on driven wheels
+/// after 20 s, on the mean over the trials. It lives in rapier alone, as a rigid body on driven wheels
 /// (`farsa_physics::rapier::ArenaWorld`): the crate must be built with the feature `rapier`. All values are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PushBox;

@@ -40,7 +40,7 @@ impl Default for PushConfig {
             robot: MobileRobot::e_puck(),
             time_step: 0.1,
             trials: 8,
-            steps: 300,
+            steps: 200,
             size: [0.12, 0.12, 0.05],
             mass: 0.1,
             friction: 0.4,

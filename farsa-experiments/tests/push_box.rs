@@ -15,6 +15,10 @@ fn trials<C: Controller>(config: &PushConfig, count: u32, mut controller: impl F
     let one = |trial| {
         life.set_controller(controller(trial));
         live(&mut life, &mut world, Job { seed: 1 | 1 << 63, trial, ..Job::default() });
+        for body in [life.parts().body, life.cube()] {
+            let pose = world.pose(body);
+            assert!(pose.position[2].abs() < 2e-3 && pose.rotate([0.0, 0.0, 1.0])[2] > 0.99, "trial {trial}: {pose:?}");
+        }
         *life.trial()
     };
     (0..count).map(one).collect()

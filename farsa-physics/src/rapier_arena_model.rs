@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use farsa_body::{BodyId, MobileRobot, Pose};
-use rapier3d::dynamics::{MotorModel, MultibodyIndex, RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::{MultibodyIndex, RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{Collider, ColliderBuilder, ColliderHandle, Group, InteractionGroups, SharedShape};
 use rapier3d::math::{Pose as Frame, Rotation, Vector};
 use rapier3d::parry::mass_properties::MassProperties;
@@ -19,8 +19,8 @@ use crate::rapier_model::vector;
 
 /// What a wheel turns about.
 pub(crate) const AXLE: JointAxis = JointAxis::AngX;
-/// How hard a motor holds its speed: within its torque, it follows at once.
-pub(crate) const STIFFNESS: f32 = 1e6;
+/// What a wheel lacks of its commanded speed when its motor gives all its torque, in parts of the greatest speed.
+const LAG: f64 = 0.01;
 /// The ground.
 const GROUND: Group = Group::GROUP_1;
 /// Hulls, blocks and everything that stands on the ground.
@@ -44,6 +44,10 @@ pub(crate) struct Vehicle {
     pub(crate) wheels: [(usize, usize); 2],
     /// How high the centre of mass and the axle are: the body's origin there [m].
     pub(crate) axle: f32,
+    /// The largest torque of each motor [N m].
+    pub(crate) torque: f32,
+    /// Its torque per speed that its wheel lacks [N m s/rad].
+    pub(crate) gain: f32,
 }
 
 /// A block in rapier; the body's origin is its middle.
@@ -166,12 +170,7 @@ fn add_vehicle(physics: &mut PhysicsWorld, robot: &MobileRobot, chassis: &Chassi
         let wheel = physics.insert_body(wheel);
         let tread = collider(SharedShape::ball(axle as f32), chassis.grip, FEET, GROUND);
         physics.insert_collider(tread, Some(wheel));
-        let joint = RevoluteJointBuilder::new(Vector::Y)
-            .local_anchor1(side)
-            .motor_model(MotorModel::AccelerationBased)
-            .motor_velocity(0.0, STIFFNESS)
-            .motor_max_force(chassis.torque as f32);
-        physics.insert_multibody_joint(body, wheel, joint);
+        physics.insert_multibody_joint(body, wheel, RevoluteJointBuilder::new(Vector::Y).local_anchor1(side));
         wheel
     });
     let multibody = physics.multibody_joints.rigid_body_link(body)?.multibody;
@@ -186,7 +185,9 @@ fn add_vehicle(physics: &mut PhysicsWorld, robot: &MobileRobot, chassis: &Chassi
         *link = (id, found.links().take(id).map(|link| link.joint().ndofs()).sum());
         found.armature_mut()[link.1] = chassis.rotor_inertia as f32;
     }
-    Some(Vehicle { body, hull, multibody, wheels: links, axle: axle as f32 })
+    let gain = chassis.torque / (LAG * robot.max_wheel_speed);
+    let [axle, torque, gain] = [axle, chassis.torque, gain].map(|x| x as f32);
+    Some(Vehicle { body, hull, multibody, wheels: links, axle, torque, gain })
 }
 
 fn add_block(physics: &mut PhysicsWorld, block: &Block) -> Parcel {
@@ -229,9 +230,6 @@ pub(crate) fn build(scene: &ArenaScene, options: &ArenaOptions) -> Result<(Arena
     let arena = &scene.arena;
     let options = options.options(arena.time_step)?;
     let mut physics = options.world();
-    // Two wheels of one axle can push against each other sideways at no cost. Impulses that start where the last ones ended
-    // gather there, one tangent after the other, until at headings near 45 degrees the grip is used up and the robot stands.
-    physics.integration_parameters.warmstart_coefficient = 0.0;
     let ground = collider(SharedShape::halfspace(Vector::Z), f64::from(ROUGH), GROUND, SOLID | FEET);
     let ground = physics.insert_collider(ground, None);
     for wall in &arena.walls {

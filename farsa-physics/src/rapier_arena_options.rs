@@ -8,9 +8,9 @@ use crate::rapier_options::Options;
 pub struct ArenaOptions {
     /// The longest step of rapier [s]: a control step is divided into as few equal ones as are no longer.
     pub longest_step: f64,
-    /// Iterations of the solver per step of rapier, which divide it further.
+    /// Iterations of the solver per step of rapier, which divide it further; motors' laws are evaluated once per step.
     pub iterations: u32,
-    /// Sweeps over motors and contacts per iteration: with few, motors and the friction of wheels disagree.
+    /// Sweeps of the solver over contacts in each iteration.
     pub sweeps: u32,
     /// Gravity, downwards [m/s2].
     pub gravity: f64,
@@ -26,8 +26,8 @@ impl Default for ArenaOptions {
     fn default() -> Self {
         let Options { length_unit, contact_frequency, contact_damping, .. } = Options::default();
         Self {
-            longest_step: 0.01,
-            iterations: 4,
+            longest_step: 0.005,
+            iterations: 1,
             sweeps: 4,
             gravity: 9.81,
             length_unit,

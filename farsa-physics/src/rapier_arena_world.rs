@@ -15,19 +15,21 @@ use crate::arena_crowd::Crowd;
 use crate::arena_model::{Model, POSE_WORDS, Slab, VELOCITY, WHEELS, pose_words};
 use crate::arena_step::{show, turned, wheel_speed};
 use crate::arena_view::View;
-use crate::rapier_arena_model::{AXLE, ArenaPlan, STIFFNESS, Vehicle, build, standing, upright};
+use crate::rapier_arena_model::{AXLE, ArenaPlan, Vehicle, build, standing, upright};
 use crate::rapier_arena_options::ArenaOptions;
 use crate::rapier_arena_scene::ArenaScene;
 use crate::rapier_contact::{pair_contact, touches};
 use crate::rapier_error::RapierError;
 use crate::rapier_model::Touching;
 use crate::rapier_snapshot::copy;
+use crate::rapier_world::LEAST_STIFFNESS;
 
 /// A planar world whose robots are rigid bodies on wheels, in rapier; the ports of [`crate::arena::World`], and blocks.
 ///
 /// - *Robots*: a hull (upright cylinder) on two wheels and two skids without friction, one of which is on the ground. Wheels
-///   touch the ground in one point each; their motors hold the commanded speeds as far as their torque goes, a NaN stands
-///   still. So robots accelerate, slip and stall. The centre of mass is between the wheels.
+///   touch the ground in one point each. So robots accelerate, slip and stall. The centre of mass is between the wheels.
+/// - *Motors* turn a wheel with a torque in proportion to what it lacks of the commanded speed, all of it where that is a
+///   hundredth of the greatest speed or more; for a NaN they stand still.
 /// - *Wheels* tell the mean speed of the last control step, as encoders do, and positions within +-16 turns.
 /// - *Walls, convex obstacles and cylinders* do not move. Of two surfaces that rub the smoother one decides; walls and ground
 ///   are rougher than anything.
@@ -171,13 +173,16 @@ impl ArenaWorld {
         if self.moved {
             self.settle();
         }
-        self.command();
+        for robot in 0..self.plan.vehicles.len() {
+            show::<f32>((), &self.model, &mut self.words, robot);
+        }
         self.count();
         self.met.fill((None, PairContact::default()));
         for _ in 0..self.plan.substeps {
             if self.lost {
                 break;
             }
+            self.drive();
             self.physics.step_with_events(&(), &());
             self.examine();
             self.feel();
@@ -186,19 +191,28 @@ impl ArenaWorld {
         self.observe();
     }
 
-    /// Tells the motors what the wheels were commanded, and shows LEDs and signals.
-    fn command(&mut self) {
+    /// Gives rapier the motors' law: a torque in proportion to the speed that a wheel lacks, up to the largest.
+    ///
+    /// As a damping it is part of the multibody's mass. A motor of rapier is a constraint, which at each wheel works against that
+    /// of friction: with few sweeps wheels slip in proportion to what they push, and impulses that start where the last ones ended
+    /// make the wheels of one axle push against each other until the grip is used up.
+    fn drive(&mut self) {
         for (robot, vehicle) in self.plan.vehicles.iter().enumerate() {
             let most = self.model.kind(robot).max_wheel_speed;
-            show::<f32>((), &self.model, &mut self.words, robot);
             let Some(multibody) = self.physics.multibody_joints.get_multibody_mut_internal(vehicle.multibody) else {
                 continue;
             };
-            for (side, (link, _)) in vehicle.wheels.iter().enumerate() {
-                let speed = wheel_speed(self.words[self.model.command(robot, side)], most);
-                if let Some(link) = multibody.link_mut(*link) {
-                    link.joint.data.set_motor_velocity(AXLE, speed, STIFFNESS);
-                }
+            for (side, (link, dof)) in vehicle.wheels.into_iter().enumerate() {
+                let commanded = wheel_speed(self.words[self.model.command(robot, side)], most);
+                let lacking = commanded - multibody.generalized_velocity()[dof];
+                // A gain that lets the largest torque fade as the wheel comes up to speed, so that it does not overshoot.
+                let gain = vehicle.gain.min(vehicle.torque / lacking.abs());
+                let Some(found) = multibody.link_mut(link) else { continue };
+                let rest = found.joint.coords()[AXLE as usize] + gain * commanded / LEAST_STIFFNESS;
+                // rapier would replace an acceleration that is none by zero and go on.
+                self.lost |= !(rest.is_finite() && lacking.is_finite());
+                found.joint.set_spring(AXLE as usize, LEAST_STIFFNESS, rest);
+                multibody.damping_mut()[dof] = gain;
             }
         }
     }
@@ -383,10 +397,11 @@ impl ArenaWorld {
                     multibody.update_rigid_bodies(&mut physics.bodies, true);
                 }
             }
-            // A step of no time does only that.
-            let dt = core::mem::replace(&mut physics.integration_parameters.dt, 0.0);
+            // A step of no time, without the impulses of the last one, does only that.
+            let usual = physics.integration_parameters;
+            (physics.integration_parameters.dt, physics.integration_parameters.warmstart_coefficient) = (0.0, 0.0);
             physics.step_with_events(&(), &());
-            physics.integration_parameters.dt = dt;
+            physics.integration_parameters = usual;
             self.examine();
         }
         self.observe();

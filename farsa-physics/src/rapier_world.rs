@@ -18,7 +18,7 @@ use crate::rapier_scene::Scene;
 use crate::rapier_snapshot::copy;
 
 /// Stiffness of a joint's spring that only brings a torque in, next to nothing for any joint [N m/rad or N/m].
-const LEAST_STIFFNESS: f32 = 1e-6;
+pub(crate) const LEAST_STIFFNESS: f32 = 1e-6;
 
 /// One world of rapier, from the same description as [`crate::articulated::World`] and with the same ports.
 ///
