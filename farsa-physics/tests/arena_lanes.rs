@@ -2,14 +2,19 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 #![cfg(feature = "lanes")]
 
-use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
+mod arena_channels;
+
+use arena_channels::{every_motor, every_sensor};
+use farsa_body::testing::{Probe, check_arrange, check_motor, check_planar, check_rays, check_sensor, check_world};
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, MobileRobot,
-    PairContact, PairId, Planar, Pose, Rays, Snapshot, Twist, World as _,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileRobot,
+    Near, PairContact, PairId, Planar, Pose, Rays, Sight, Snapshot, Twist, World as _,
 };
 use farsa_num::fearless_simd::Level;
 use farsa_num::{Digest, Domain, Stream};
-use farsa_physics::arena::{Arena, ArenaError, Batch, CollisionRule, Convex, Cylinder, FreePlace, Lane, Wall, World};
+use farsa_physics::arena::{
+    Area, Arena, ArenaError, Batch, CollisionRule, Convex, Cylinder, FreePlace, Lane, Wall, World,
+};
 
 /// Control steps of every lane; ten times as many with `FARSA_LONG=1`.
 fn steps() -> usize {
@@ -301,6 +306,28 @@ impl Rays for InLane {
         self.with(|lane| lane.cast(origin, direction, range))
     }
 }
+impl Planar for InLane {
+    fn near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(Near<BodyId>)) {
+        // Who is told may ask the lane again.
+        let mut told = Vec::new();
+        self.with(|lane| lane.near(from, range, &mut |near| told.push(near)));
+        told.into_iter().for_each(tell);
+    }
+    fn look(&self, from: [f32; 2], direction: [f32; 2], range: f32, but: Option<BodyId>) -> Option<Sight<BodyId>> {
+        self.with(|lane| lane.look(from, direction, range, but))
+    }
+    fn ground(&self, at: [f32; 2]) -> [f32; 3] {
+        self.with(|lane| lane.ground(at))
+    }
+    fn lamps(&self, tell: &mut dyn FnMut(Lamp<BodyId>)) {
+        let mut told = Vec::new();
+        self.with(|lane| lane.lamps(&mut |lamp| told.push(lamp)));
+        told.into_iter().for_each(tell);
+    }
+    fn attached(&self, robot: BodyId) -> Option<BodyId> {
+        self.with(|lane| lane.attached(robot))
+    }
+}
 impl Snapshot for InLane {
     fn snapshot_len(&self) -> usize {
         self.with(|lane| lane.snapshot_len())
@@ -343,4 +370,77 @@ fn a_lane_conforms() {
     assert_eq!(check_world(make, &probe), Ok(()));
     assert_eq!(check_arrange(make, &probe), Ok(()));
     assert_eq!(check_rays(&make(), &probe.bodies, &[[0.1, 0.4, 0.05]], 1.0), Ok(()));
+}
+
+/// Something for every sensor: colours, a lamp, and a neighbour to hold, right ahead of the robot that senses.
+fn lively() -> Arena {
+    let mut arena = obstructed(CollisionRule::Undone);
+    let reach = 2.0 * arena.robots[1].robot.radius + 0.005;
+    arena.robots[2].at = [arena.robots[1].at[0] + reach, arena.robots[1].at[1]];
+    arena.add_cylinder(Cylinder { lamp: 2.0, color: [1.0, 0.0, 0.0], ..Cylinder::new([0.55, 0.1], 0.02) });
+    arena.add_area(Area::circle([0.2, 0.2], 0.15, [0.2, 0.5, 0.9]));
+    arena
+}
+
+/// Commands of a step to a lane and to the world alone: wheels at random, LEDs and signals, devices that hold and let go.
+fn stir(
+    worlds: [&mut dyn Actuated<Body = BodyId, Joint = JointId, Actuator = ActuatorId>; 2],
+    arena: &Arena,
+    t: usize,
+) {
+    let mut stream = Stream::new(t as u64, Domain::Motor, 0, 0, 0);
+    let mut commands = Vec::new();
+    for (robot, placed) in arena.robots.iter().enumerate() {
+        let parts = arena.parts(robot);
+        let most = placed.robot.max_wheel_speed as f32;
+        commands.extend(parts.motors.map(|motor| (motor, stream.range(-0.2 * most, most))));
+        commands.extend(parts.leds.into_iter().flatten().chain(parts.signal).map(|x| (x, stream.uniform())));
+        commands.extend(parts.attachment.map(|device| (device, if t % 30 < 15 { 1.0 } else { 0.0 })));
+    }
+    for world in worlds {
+        commands.iter().for_each(|(actuator, value)| world.command(*actuator, [*value, 0.0]));
+    }
+}
+
+/// Steps in which sensors are looked at.
+const STIRS: usize = 60;
+
+#[test]
+fn sensors_and_motors_conform_in_a_lane() {
+    let arena = lively();
+    let (robot, parts) = (&arena.robots[1].robot, arena.parts(1));
+    for level in Batch::levels(Level::new()) {
+        for lanes in [8, 16] {
+            let make = || InLane(std::cell::RefCell::new(Batch::new(&arena, lanes, level).unwrap()));
+            let (mut lane, mut alone) = (make(), World::new(&arena).unwrap());
+            let mut here = every_sensor::<InLane>(robot, &parts);
+            let mut there = every_sensor::<World>(robot, &parts);
+            let mut awake = vec![false; here.len()];
+            for t in 0..STIRS {
+                stir([&mut lane, &mut alone], &arena, t);
+                alone.step();
+                lane.step();
+                for (((name, _, here), (_, _, there)), awake) in here.iter_mut().zip(&mut there).zip(&mut awake) {
+                    let what = format!("{name}, {lanes} lanes of {level:?}, step {t}");
+                    let [mut a, mut b] = [(); 2].map(|()| vec![f32::NAN; here.channels()]);
+                    here.read(&lane, &mut a);
+                    there.read(&alone, &mut b);
+                    assert!(a.iter().zip(&b).all(|(a, b)| a.to_bits() == b.to_bits()), "{what}: {a:?} {b:?}");
+                    *awake |= a.iter().any(|x| *x != 0.0);
+                    if t % 10 == 9 {
+                        assert_eq!(check_sensor(here.as_mut(), &lane), Ok(()), "{what}");
+                    }
+                }
+            }
+            assert_eq!(awake, vec![true; here.len()], "{lanes} lanes of {level:?}");
+            let bodies: Vec<BodyId> = (0..5).map(BodyId).collect();
+            for range in [0.2, 2.0] {
+                let places = [[0.1, 0.4], [0.45, 0.45], [0.3, 0.1], [0.6, 0.5]];
+                assert_eq!(check_planar(&lane, &bodies, &places, range), Ok(()), "{lanes} lanes of {level:?}");
+            }
+            for (i, motor) in every_motor::<InLane>(robot, &parts).iter_mut().enumerate() {
+                assert_eq!(check_motor(motor.as_mut(), make), Ok(()), "motor {i}, {lanes} lanes of {level:?}");
+            }
+        }
+    }
 }

@@ -1,13 +1,11 @@
 //! Sensors read the same in the arena as in the naive world of the plane, which is its second implementation.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod arena_channels;
+
+use arena_channels::{every_motor, every_sensor};
 use farsa_body::testing::{PlaneWorld, check_motor, check_planar, check_sensor};
-use farsa_body::{
-    Actuated, AttachmentMotor, AttachmentSensor, Beam, BodyId, ColorBand, GroundColor, InfraredAnalytic, InfraredRays,
-    InfraredTable, InfraredTables, Joints, Kinematics, LaserDistance, Leds, LightSensors, LinearCamera, MobileParts,
-    MobileRobot, Motor, Planar, Rays, SampledInfrared, Sensor, SignalMotor, SignalSensor, SpeedAndTurn, Traction,
-    WheelSpeed, WheelVelocity,
-};
+use farsa_body::{Actuated, BodyId, InfraredAnalytic, MobileRobot, Sensor};
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Area, Arena, Cylinder, Search, Wall, World};
 
@@ -79,52 +77,6 @@ fn scene(robot: &MobileRobot, search: Search, seed: u64) -> (World, PlaneWorld) 
     (world, plane)
 }
 
-fn table() -> InfraredTables {
-    let table = |offset: usize| {
-        let mut lines = vec!["8 36 20 5 2".to_string()];
-        for distance in 0..20 {
-            lines.push(format!("TURN {distance}"));
-            for angle in 0..36 {
-                let row: Vec<String> =
-                    (0..8).map(|s| (offset + (19 - distance) * 3 + (angle + s) % 7).to_string()).collect();
-                lines.push(row.join(" "));
-            }
-        }
-        lines.push("END".into());
-        InfraredTable::parse(&lines.join("\n")).unwrap()
-    };
-    InfraredTables::new(table(0), vec![(0.0125, table(100)), (0.027, table(200))]).unwrap()
-}
-
-fn sensors<W>(robot: &MobileRobot, parts: &MobileParts) -> Vec<(&'static str, f32, Box<dyn Sensor<W>>)>
-where
-    W: Planar<Body = BodyId>
-        + Rays<Body = BodyId>
-        + Kinematics<Body = BodyId>
-        + Joints<Joint = farsa_body::JointId>
-        + 'static,
-{
-    let b = parts.body;
-    let bands = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.5; 3]].map(|color| ColorBand::around(color, 0.3));
-    let radius = robot.radius;
-    let fan: Vec<Beam> = (0..16).map(|i| Beam::in_cone(radius, 0.0, 1.5, i, 16)).collect();
-    let places: Vec<[f32; 2]> = robot.ground.iter().map(|place| place.map(|x| x as f32)).collect();
-    let largest = robot.max_wheel_speed as f32;
-    vec![
-        ("rays", 1e-3, Box::new(InfraredRays::of(robot, b).unwrap())),
-        ("analytic", 1e-3, Box::new(InfraredAnalytic::of(robot, b).unwrap())),
-        ("sampled", 1e-6, Box::new(SampledInfrared::new(b, radius as f32, table()).unwrap())),
-        ("laser", 1e-3, Box::new(LaserDistance::new(b, fan, 0.01, 2.0).unwrap())),
-        ("light", 1e-3, Box::new(LightSensors::of(robot, b, 0.2).unwrap())),
-        ("camera", 1e-6, Box::new(LinearCamera::of_view(b, 6.2, 6, 20, bands, 2.0).unwrap())),
-        ("ground", 1e-6, Box::new(GroundColor::new(b, places).unwrap().rgb())),
-        ("signal", 1e-6, Box::new(SignalSensor::<4>::new(b, 0.6).unwrap())),
-        ("wheels", 1e-6, Box::new(WheelSpeed::new(parts.wheels, largest).unwrap())),
-        ("traction", 1e-6, Box::new(Traction::new(b, parts.wheels, robot.wheel_radius as f32, 0.2).unwrap())),
-        ("attachment", 1e-6, Box::new(AttachmentSensor::new(b))),
-    ]
-}
-
 #[test]
 fn sensors_read_the_same_in_both_worlds() {
     for robot in [MobileRobot::khepera(), MobileRobot::e_puck(), MobileRobot::marxbot()] {
@@ -134,7 +86,8 @@ fn sensors_read_the_same_in_both_worlds() {
             for seed in 0..100 {
                 let (arena, plane) = scene(&robot, search, seed);
                 let parts = arena.parts(0);
-                let pairs = sensors::<World>(&robot, &parts).into_iter().zip(sensors::<PlaneWorld>(&robot, &parts));
+                let pairs =
+                    every_sensor::<World>(&robot, &parts).into_iter().zip(every_sensor::<PlaneWorld>(&robot, &parts));
                 for (index, ((name, close, mut here), (_, _, mut there))) in pairs.enumerate() {
                     assert_eq!(check_sensor(here.as_mut(), &arena), Ok(()), "{name}");
                     let (mut a, mut b) = (vec![0.0; here.channels()], vec![0.0; there.channels()]);
@@ -186,14 +139,7 @@ fn motors_keep_their_promises() {
         World::new(&arena).unwrap()
     };
     let parts = make().parts(0);
-    let mut motors: Vec<Box<dyn Motor<World>>> = vec![
-        Box::new(WheelVelocity::new(parts.motors, 10.0).unwrap()),
-        Box::new(SpeedAndTurn::new(parts.motors, 10.0).unwrap()),
-        Box::new(Leds::new(parts.leds.unwrap())),
-        Box::new(SignalMotor::new(parts.signal.unwrap())),
-        Box::new(AttachmentMotor::new(parts.attachment.unwrap())),
-    ];
-    for (i, motor) in motors.iter_mut().enumerate() {
+    for (i, motor) in every_motor::<World>(&robot, &parts).iter_mut().enumerate() {
         assert_eq!(check_motor(motor.as_mut(), make), Ok(()), "motor {i}");
     }
 }
