@@ -358,7 +358,7 @@ impl Setup for Lives {
             Engine::Articulated => live_in(self.config.world(&robot), life, job, tape),
             #[cfg(feature = "rapier")]
             Engine::Rapier => {
-                let options = rapier_options(&self.config.walk, life.gait().walker(), self.config.substeps);
+                let options = rapier_options(&self.config.walk, life.gait().walker(), self.config.substeps, 40);
                 live_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, job, tape)
             }
             #[cfg(not(feature = "rapier"))]

@@ -83,7 +83,7 @@ impl Config {
     /// How rapier is stepped for this walker; its contacts are harder by far than the ground's stiffness says.
     #[cfg(feature = "rapier")]
     pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
-        crate::walker_settings::rapier_options(&self.walk, &self.walker, self.substeps)
+        crate::walker_settings::rapier_options(&self.walk, &self.walker, self.substeps, 200)
     }
 
     /// The walking model's gait on this slope.

@@ -1,7 +1,11 @@
 //! Walkers: their energy, what counts as a step, the walking model's gait in a rigid body, and evolved bodies.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+#[cfg(feature = "rapier")]
+use farsa_body::Contacts as _;
 use farsa_body::{Arrange as _, Joints as _, World as _};
+#[cfg(feature = "rapier")]
+use farsa_experiments::passive_walker::Pace;
 use farsa_experiments::passive_walker::{
     Config, End, Gait, Launch, Legs, Posture, Rules, Walk, Walker, WalkerLife, WalkerParts,
 };
@@ -272,16 +276,51 @@ fn an_evolved_body_walks_ten_strides() {
     assert!(trials("passive", &other).iter().all(|outcome| !outcome.success));
 }
 
+/// In rapier: how long neither foot was on the ground in the first footfall's tenth of a second \[s\], and the pace after some steps.
+#[cfg(feature = "rapier")]
+fn walk_in_rapier(speed_sweeps: u32, steps: u32) -> (f64, Option<Pace>) {
+    let plain = Config::default();
+    let config = Config { substeps: 1, walk: Walk { time_step: 5e-4, noise: 0.0, ..plain.walk }, ..plain };
+    let (robot, parts) = config.walker.robot();
+    let options = farsa_physics::rapier::Options { speed_sweeps, ..config.rapier_options() };
+    let mut world = farsa_physics::rapier::World::new(&robot, &options).unwrap();
+    let launch = config.launch(&config.gait().unwrap());
+    let mut life = WalkerLife::new(config.walker, parts, Walk { steps: u32::MAX, ..config.walk }, launch, None);
+    life.start(&mut world, Job::default());
+    let (mut flown, mut since) = (0.0, 0);
+    while since < 200 || life.gait().steps() < steps {
+        world.step();
+        if life.judge(&mut world).is_some() {
+            break;
+        }
+        since += u32::from(life.gait().steps() > 0);
+        if since > 0 && since < 200 && parts.soles.iter().all(|sole| !world.touches(*sole)) {
+            flown += config.walk.time_step;
+        }
+    }
+    (flown, life.pace())
+}
+
+/// One sweep for speeds, each step's begun with the last step's impulses, make a spring of a leg's normal force and friction.
 #[cfg(feature = "rapier")]
 #[test]
-fn the_walker_walks_in_rapier() {
-    let changes = [
-        ("world.engine", Value::Word("rapier".into())),
-        ("world.substeps", Value::Whole(4)),
-        ("start.noise", Value::Number(0.0)),
-    ];
-    let mut setup = prepared(&PassiveWalker, "", &changes).unwrap();
-    let outcome = setup.live(&[0], Job::default(), &mut Tape::off());
-    // 24 steps in 30 s, as in our world.
-    assert!(outcome.success && outcome.terms[0] > 8.0, "{outcome:?}");
+fn a_footfall_in_rapier_is_a_blow_and_no_spring() {
+    let enough = Config::default().rapier_options().speed_sweeps;
+    let [few, enough] = [1, enough].map(|sweeps| walk_in_rapier(sweeps, 1).0);
+    assert!(few > 0.02 && enough == 0.0, "off the ground for {few} s, {enough} s");
+}
+
+#[cfg(feature = "rapier")]
+#[test]
+fn the_walker_walks_in_rapier_as_the_model() {
+    let config = Config::default();
+    let (_, pace) = walk_in_rapier(config.rapier_options().speed_sweeps, 12);
+    let (pace, model) = (pace.unwrap(), config.gait().unwrap());
+    let unit = (config.walker.legs[0].length / config.walk.gravity).sqrt();
+    for (found, known) in
+        [(pace.angle, model.angle), (pace.rate * unit, model.rate), (pace.period / unit, model.period)]
+    {
+        println!("{found} where the model has {known}");
+        assert!((found / known - 1.0).abs() < 0.03, "{found} where the model has {known}");
+    }
 }

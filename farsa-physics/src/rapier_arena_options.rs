@@ -51,6 +51,7 @@ impl ArenaOptions {
             substeps,
             iterations: self.iterations,
             sweeps: self.sweeps,
+            speed_sweeps: 1,
             gravity: [0.0, 0.0, -self.gravity],
             length_unit: self.length_unit,
             contact_frequency: self.contact_frequency,

@@ -15,8 +15,11 @@ pub struct Options {
     pub substeps: u32,
     /// Iterations of the solver per step of rapier, which divide it further: how often positions and joints advance.
     pub iterations: u32,
-    /// Sweeps of the solver over contacts and stops in each iteration: a foot that leans on a light leg needs some.
+    /// Sweeps of the solver over contacts and stops in each iteration, with a push against overlap: from these follow places.
     pub sweeps: u32,
+    /// Sweeps after those, without that push: from these follow speeds. Friction acts in them alone if there is one, else in all. A leg that
+    /// leans on a light foot needs many.
+    pub speed_sweeps: u32,
     /// Gravity [m/s2].
     pub gravity: [f64; 3],
     /// Size of what is simulated, next to which rapier's tolerances are chosen [m].
@@ -34,6 +37,7 @@ impl Default for Options {
             substeps: 4,
             iterations: 1,
             sweeps: 1,
+            speed_sweeps: 1,
             gravity: [0.0, 0.0, -9.81],
             length_unit: 0.1,
             contact_frequency: 120.0,
@@ -49,6 +53,7 @@ impl Options {
             ("substeps", f64::from(self.substeps), 1.0, 1e6),
             ("iterations", f64::from(self.iterations), 1.0, 1e4),
             ("sweeps", f64::from(self.sweeps), 1.0, 1e4),
+            ("speed_sweeps", f64::from(self.speed_sweeps), 1.0, 1e4),
             ("gravity x", self.gravity[0], -1e4, 1e4),
             ("gravity y", self.gravity[1], -1e4, 1e4),
             ("gravity z", self.gravity[2], -1e4, 1e4),
@@ -71,6 +76,10 @@ impl Options {
         parameters.dt = (self.time_step / f64::from(self.substeps)) as f32;
         parameters.num_solver_iterations = self.iterations as usize;
         parameters.num_internal_pgs_iterations = self.sweeps as usize;
+        // One sweep each step, begun with the last step's impulses, is a spring where normal force and friction act on each
+        // other: a leg on a light foot bounces.
+        parameters.num_internal_stabilization_iterations = self.speed_sweeps as usize;
+        parameters.friction_in_bias_pass = self.speed_sweeps > 1;
         parameters.length_unit = self.length_unit as f32;
         parameters.contact_softness = softness;
         parameters.static_contact_softness = softness;
