@@ -96,6 +96,8 @@ fn what_cannot_be_built_is_refused() {
         ("time_step", Options { time_step: f64::NAN, ..Options::default() }),
         ("substeps", Options { substeps: 0, ..Options::default() }),
         ("iterations", Options { iterations: 0, ..Options::default() }),
+        ("sweeps", Options { sweeps: 0, ..Options::default() }),
+        ("speed_sweeps", Options { speed_sweeps: 0, ..Options::default() }),
         ("gravity y", Options { gravity: [0.0, f64::INFINITY, 0.0], ..Options::default() }),
         ("length_unit", Options { length_unit: -1.0, ..Options::default() }),
         ("contact_frequency", Options { contact_frequency: 0.0, ..Options::default() }),
