@@ -134,7 +134,7 @@ fn the_same_in_other_formats(here: &Path, told: &serde_json::Value) {
 #[test]
 fn a_continuous_time_network_is_written_as_bytes_alone() {
     let here = scratch("export-ctrnn");
-    ok(farsa(), &here, "run minimal-cognition --generations 1 --population 4 --quiet --out r");
+    ok(farsa(), &here, "run minimal-cognition --generations 1 --population 20 --quiet --out r");
     ok(farsa(), &here, "export controller r --format bytes --out c.bytes");
     let bytes = fs::read(here.join("c.bytes")).expect("the file");
     let read = CtrnnBytes::read(&bytes).expect("a continuous-time network");
