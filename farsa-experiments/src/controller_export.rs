@@ -1,7 +1,7 @@
 //! A controller, its body's channels and its starts as plain data, for `farsa export`.
 
 use farsa_body::{Axes, Law};
-use farsa_nn::{Layout, Leak, Parts};
+use farsa_nn::{CtrnnLayout, Layout, Leak, Parts};
 use serde::Serialize;
 
 /// A controller with all that another program needs to let it live in another world: numbers, and names of the model that
@@ -55,6 +55,22 @@ pub struct NetworkExport {
     pub biases: Vec<f32>,
     /// Leaks of the hidden neurons.
     pub leaks: Vec<f32>,
+}
+
+/// A continuous-time network, [`farsa_nn::Ctrnn`], with what its channels are called: all that its bytes hold.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CtrnnExport {
+    /// The layout.
+    pub layout: CtrnnLayout,
+    /// Time step \[s\].
+    pub time_step: f32,
+    /// The parameters in the order of the layout.
+    pub parameters: Vec<f32>,
+    /// What the inputs are called.
+    pub sensors: Vec<String>,
+    /// What the outputs are called.
+    pub motors: Vec<String>,
 }
 
 /// A sensor channel.

@@ -2,11 +2,11 @@
 
 use std::fmt::{self, Write as _};
 
-use farsa_nn::{Layout, Leak, NetworkBytes, channel_hash};
+use farsa_nn::{CtrnnBytes, Layout, Leak, NetworkBytes, channel_hash};
 use safetensors::tensor::{Dtype, TensorView};
 use serde_json::Value;
 
-use crate::controller_export::{ControllerExport, NetworkExport};
+use crate::controller_export::{ControllerExport, CtrnnExport, NetworkExport};
 use crate::error::Error;
 
 /// The bytes that [`NetworkBytes`] reads.
@@ -14,6 +14,15 @@ pub(crate) fn bytes(controller: &ControllerExport) -> Result<Vec<u8>, Error> {
     let (layout, leak, parameters) = network(&controller.network)?;
     let mut bytes = vec![0; NetworkBytes::byte_count(layout)];
     NetworkBytes::write(layout, leak, channels(controller), &parameters, &mut bytes).map_err(other)?;
+    Ok(bytes)
+}
+
+/// The bytes that [`CtrnnBytes`] reads.
+pub(crate) fn ctrnn_bytes(network: &CtrnnExport) -> Result<Vec<u8>, Error> {
+    let CtrnnExport { layout, time_step, parameters, sensors, motors } = network;
+    let mut bytes = vec![0; CtrnnBytes::byte_count(*layout)];
+    let channels = channel_hash(sensors, motors);
+    CtrnnBytes::write(*layout, *time_step, channels, parameters, &mut bytes).map_err(other)?;
     Ok(bytes)
 }
 

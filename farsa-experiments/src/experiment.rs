@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use farsa_body::{MjcfOptions, Recorder};
 
-use crate::controller_export::{ControllerExport, StartExport};
+use crate::controller_export::{ControllerExport, CtrnnExport, StartExport};
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::life::Job;
@@ -127,6 +127,13 @@ pub trait Setup: Send {
 
     /// The controller of these genes with its channels, for `farsa export controller`; by default there is none to export.
     fn controller(&self, genes: &[u16]) -> Option<ControllerExport> {
+        let _ = genes;
+        None
+    }
+
+    /// The continuous-time network of these genes, for `farsa export controller --format bytes` where there is no
+    /// [`controller`](Self::controller); by default there is none.
+    fn ctrnn(&self, genes: &[u16]) -> Option<CtrnnExport> {
         let _ = genes;
         None
     }

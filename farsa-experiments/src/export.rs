@@ -109,8 +109,13 @@ pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: Control
     if genes.len() != setup.genes() {
         return Err(Error::damaged(&path, "its genome is not one of the experiment"));
     }
-    let controller = setup.controller(genes);
-    let controller = controller.ok_or_else(|| Error::Usage(format!("{name}: its controllers cannot be exported")))?;
+    let controller = match (setup.controller(genes), setup.ctrnn(genes)) {
+        (Some(controller), _) => controller,
+        // Its body is none that the other formats could tell.
+        (None, Some(network)) if format == ControllerFormat::Bytes => return controller_formats::ctrnn_bytes(&network),
+        (None, Some(_)) => return Err(Error::Usage(format!("{name}: its controllers are exported as bytes only"))),
+        (None, None) => return Err(Error::Usage(format!("{name}: its controllers cannot be exported"))),
+    };
     let (seed, condition) = (plan.seed, plan.condition.as_str());
     let individual = *individual;
     let whose = Whose { format: 1, experiment: name, condition, seed, generation, individual, controller };

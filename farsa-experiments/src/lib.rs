@@ -139,8 +139,8 @@ pub use body_evolution::BodyEvolution;
 pub use braitenberg::Braitenberg;
 pub use camera::Camera;
 pub use controller_export::{
-    ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport,
-    SensorReading, ServoExport, StartExport, SurfaceExport,
+    ActuatorExport, ControllerExport, CtrnnExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,
+    SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
 };
 pub use discrimination::{Discrimination, DiscriminationCylinders};
 pub use error::Error;

@@ -10,6 +10,7 @@ use core::f64::consts::FRAC_PI_4;
 use farsa_body::{BodyId, Pose, Recorder};
 use farsa_nn::{CtrnnParameter, CtrnnParts};
 
+use crate::controller_export::CtrnnExport;
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::form::Form;
@@ -190,6 +191,18 @@ impl Setup for Lives {
             view: View::Top,
             ..stage
         }
+    }
+
+    fn ctrnn(&self, genes: &[u16]) -> Option<CtrnnExport> {
+        let (stage, network) = (self.stage(), self.life.network());
+        let names = |channels: Vec<Channel>| channels.into_iter().map(|channel| channel.name).collect();
+        Some(CtrnnExport {
+            layout: network.layout(),
+            time_step: network.time_step(),
+            parameters: self.wiring.clone().decode(genes)?,
+            sensors: names(stage.sensors),
+            motors: names(stage.outputs),
+        })
     }
 
     fn description(&self) -> Description {

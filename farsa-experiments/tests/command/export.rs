@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use farsa_nn::{Layout, Leak, NetworkBytes, channel_hash};
+use farsa_experiments::minimal_cognition::LAYOUT as AGENT;
+use farsa_nn::{CtrnnBytes, Layout, Leak, NetworkBytes, channel_hash};
 use safetensors::SafeTensors;
 
 use crate::tool::{farsa, ok, own, say, scratch};
@@ -128,4 +129,22 @@ fn the_same_in_other_formats(here: &Path, told: &serde_json::Value) {
         let numbers = table.data().chunks_exact(4).map(|bytes| f32::from_le_bytes(bytes.try_into().expect("4")));
         assert_eq!((table.shape(), numbers.collect::<Vec<_>>()), (shape, values(kind)), "{kind}");
     }
+}
+
+#[test]
+fn a_continuous_time_network_is_written_as_bytes_alone() {
+    let here = scratch("export-ctrnn");
+    ok(farsa(), &here, "run minimal-cognition --generations 1 --population 20 --quiet --out r");
+    ok(farsa(), &here, "export controller r --format bytes --out c.bytes");
+    let bytes = fs::read(here.join("c.bytes")).expect("the file");
+    let read = CtrnnBytes::read(&bytes).expect("a continuous-time network");
+    let rays: Vec<String> = (1..=7).map(|ray| format!("ray {ray}")).collect();
+    assert_eq!((read.layout(), read.channels()), (AGENT, channel_hash(rays, ["right", "left"])));
+    let mut parameters = vec![0.0; AGENT.parameter_count()];
+    read.copy_parameters(&mut parameters).expect("the length");
+    let parts = AGENT.split(&parameters);
+    // The same on both sides, and no champion of nothing.
+    assert!(parts.time_constants[7] == parts.time_constants[11] && parts.weights.iter().any(|w| *w != 0.0));
+    let said = say(farsa(), &here, "export controller r --format json");
+    assert!(said.code == Some(2) && said.err.contains("minimal-cognition: its controllers are exported as bytes only"));
 }
