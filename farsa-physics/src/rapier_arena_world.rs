@@ -179,10 +179,12 @@ impl ArenaWorld {
         self.count();
         self.met.fill((None, PairContact::default()));
         for _ in 0..self.plan.substeps {
+            if !self.lost {
+                self.drive();
+            }
             if self.lost {
                 break;
             }
-            self.drive();
             self.physics.step_with_events(&(), &());
             self.examine();
             self.feel();
@@ -193,9 +195,9 @@ impl ArenaWorld {
 
     /// Gives rapier the motors' law: a torque in proportion to the speed that a wheel lacks, up to the largest.
     ///
-    /// As a damping it is part of the multibody's mass. A motor of rapier is a constraint, which at each wheel works against that
-    /// of friction: with few sweeps wheels slip in proportion to what they push, and impulses that start where the last ones ended
-    /// make the wheels of one axle push against each other until the grip is used up.
+    /// As a damping it is part of the multibody's mass. A motor of rapier is a constraint, which at each wheel works against
+    /// that of friction: with few sweeps wheels slip in proportion to what they push, and impulses that start where the last
+    /// ones ended make the wheels of one axle push against each other until the grip is used up.
     fn drive(&mut self) {
         for (robot, vehicle) in self.plan.vehicles.iter().enumerate() {
             let most = self.model.kind(robot).max_wheel_speed;

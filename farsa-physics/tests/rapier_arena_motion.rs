@@ -278,9 +278,9 @@ fn a_heavy_block_stays_where_it_is() {
         let force = -world.pair_contact(PairId(0)).force[0];
         let weight = (chassis.mass * 9.81) as f32;
         println!("pushes with {force} N of a weight of {weight} N");
-        // Wheels that slip push with their grip, 0.8 of what is on them. That may be less than the weight, for a push at the height h
-        // puts h / (0.7 radius) of itself onto the rear skid, which has none, and more, for the block's friction, 0.3 of the push,
-        // keeps the hull from rising.
+        // Wheels that slip push with their grip, 0.8 of what is on them. That may be less than the weight, for a push at the
+        // height h puts h / (0.7 radius) of itself onto the rear skid, which has none, and more, for the block's friction, 0.3
+        // of the push, keeps the hull from rising.
         let low = 0.8 / (1.0 + 0.8 * 0.05 / (0.7 * robot.radius as f32));
         let range = if strong { [low, 0.8 / (1.0 - 0.8 * 0.3)] } else { [0.495, 0.505] };
         assert!((range[0]..range[1]).contains(&(force / weight)), "{force} N of {weight} N: not in {range:?}");
