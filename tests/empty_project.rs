@@ -49,11 +49,13 @@ fn whoever_has_nothing_else_can_use_it() {
         fs::create_dir_all(project.join("src")).unwrap();
         // What physics needs to be told is in farsa-body.
         let crates: &[&str] = if [name, features] == ["physics", "with"] { &["physics", "body"] } else { &[name] };
-        let mut manifest = String::from("[package]\nname = \"mine\"\nedition = \"2024\"\n\n[dependencies]\n");
-        for name in crates {
+        let dependency = |name: &&str| {
             let path = root().join(format!("farsa-{name}"));
-            manifest += &format!("farsa-{name} = {{ path = {path:?}, default-features = {} }}\n", features == "with");
-        }
+            format!("farsa-{name} = {{ path = {path:?}, default-features = {} }}", features == "with")
+        };
+        let dependencies: Vec<String> = crates.iter().map(dependency).collect();
+        let manifest = "[package]\nname = \"mine\"\nedition = \"2024\"\n\n[dependencies]\n".to_string();
+        let manifest = manifest + &dependencies.join("\n") + "\n";
         fs::write(project.join("Cargo.toml"), manifest).unwrap();
         fs::write(project.join("src/main.rs"), program(file)).unwrap();
         // Pins what is on this machine already.

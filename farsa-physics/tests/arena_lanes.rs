@@ -398,7 +398,9 @@ fn stir(
         commands.extend(parts.attachment.map(|device| (device, if t % 30 < 15 { 1.0 } else { 0.0 })));
     }
     for world in worlds {
-        commands.iter().for_each(|(actuator, value)| world.command(*actuator, [*value, 0.0]));
+        for (actuator, value) in &commands {
+            world.command(*actuator, [*value, 0.0]);
+        }
     }
 }
 
