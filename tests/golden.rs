@@ -6,7 +6,7 @@
 mod the_loop;
 
 /// Of the first 300 states.
-const DIGEST: u64 = 0xbdfa_4908_e6b2_1f9d;
+const DIGEST: u64 = 0x4237_c9cb_1840_cca7;
 
 #[test]
 fn the_whole_loop_keeps_its_bits() {

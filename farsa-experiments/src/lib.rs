@@ -169,4 +169,4 @@ pub use walking_model::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
 /// Grows by one whenever the same configuration, seed and genes come to other lives through a change in the crates that
 /// experiments are built of; see [`Experiment::values_version`] for changes in an experiment itself.
-pub const VALUES_VERSION: u32 = 2;
+pub const VALUES_VERSION: u32 = 3;

@@ -24,6 +24,11 @@ impl Experiment for PushBox {
         "push-box"
     }
 
+    // 2: wheels keep their speed under load, and a trial takes 20 s.
+    fn values_version(&self) -> u32 {
+        2
+    }
+
     fn summary(&self) -> &'static str {
         if cfg!(feature = "rapier") {
             "an e-puck pushes a box as far as it can, by its infrared sensors alone, in rapier"

@@ -97,10 +97,13 @@ proptest! {
     fn a_symmetric_start_is_a_straight_line(which in 0_usize..4, distance in 0.1_f32..0.5, away: bool) {
         let heading = if away { 0.0 } else { PI };
         let (way, life) = drive(Vehicle::ALL[which], [distance, 0.0, heading], 400);
-        // Who turns away from the lamp makes more of every rounding: 1 mm beside the line after 0.6 m was seen.
+        // Love that looks away turns from the lamp, which makes more of every rounding: of 1500 distances the worst ended
+        // 3 mm and 7 mrad beside the line. All others kept to it but for 1e-5 rad.
+        let unstable = away && Vehicle::ALL[which] == Vehicle::Love;
+        let (aside, turn) = if unstable { (1e-2, 0.03) } else { (1e-5, 1e-4) };
         for [x, y, turned] in way {
-            prop_assert!(y.abs() < 1e-2, "{x} {y}");
-            prop_assert!((turned.abs() - heading).abs() < 0.05, "{turned}");
+            prop_assert!(y.abs() < aside, "{x} {y}");
+            prop_assert!((turned.abs() - heading).abs() < turn, "{turned}");
         }
         let [start, end] = life.distances();
         prop_assert!(if away { end >= start } else { end <= start }, "{start} {end}");

@@ -10,8 +10,7 @@ use crate::name::same_letters;
 
 /// The function of a neuron; a slope (or gain) multiplies its argument before.
 ///
-/// Every one is finite for finite numbers and never falls where its argument rises, but for one unit in the last place of
-/// the logistic function and of tanh.
+/// Every one is finite for finite numbers and never falls where its argument rises.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Activation {
     /// `1/(1 + exp(-x))`, in [0, 1].

@@ -14,13 +14,7 @@ pub fn exp<S: Scalar>(x: S) -> S {
     let double = S::Real::DIGITS > 24;
     // Above this the last product overflows by itself. A NaN passes: the comparison is false.
     let high = x.constant(if double { 710.0 } else { 89.0 });
-    exp_below(S::select(x.gt(high), high, x))
-}
-
-/// The same for what is not beyond the largest number's logarithm.
-#[inline(always)]
-fn exp_below<S: Scalar>(x: S) -> S {
-    let double = S::Real::DIGITS > 24;
+    let x = S::select(x.gt(high), high, x);
     // Below this the last product underflows by itself. A NaN passes.
     let low = x.constant(if double { -746.0 } else { -105.0 });
     let x = S::select(x.lt(low), low, x);
