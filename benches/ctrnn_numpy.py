@@ -12,7 +12,7 @@ import numpy as np
 
 TIME_STEP = np.float32(0.01)
 
-for neurons in (14, 64, 1000):
+for neurons in (14, 64, 256, 1000):
     generator = np.random.default_rng(1)
     draw = lambda *shape: generator.uniform(-1, 1, shape).astype(np.float32)
     # From neuron j to i at [i, j], so that a row is a target.

@@ -84,7 +84,7 @@ impl Naive {
 /// Fully recurrent continuous networks, an external input for each neuron.
 fn continuous(c: &mut Criterion) {
     let mut group = c.benchmark_group("ctrnn");
-    for neurons in [14, 64, 1000] {
+    for neurons in [14, 64, 256, 1000] {
         let layout = CtrnnLayout::new(neurons, neurons, neurons).with_direct_inputs(0);
         let mut stream = Stream::new(1, Domain::InitialGenome, 0, 0, 0);
         let draw = |kind| match kind {

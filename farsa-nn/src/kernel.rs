@@ -7,6 +7,8 @@
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Real, Scalar, logistic};
 
+use crate::wide_layer::WIDE;
+
 /// The instructions of this processor where `fearless_simd` was built with `std` and can ask, else those that the
 /// program is compiled for.
 pub(crate) fn level() -> Level {
@@ -179,6 +181,11 @@ impl<R: Real> Layer<'_, R> {
     #[inline(always)]
     fn sums<S: Scalar<Real = R>>(&self, simd: S::Simd, y: &mut [R]) -> Option<S> {
         let last = y.len().checked_sub(S::LANES)?;
+        // With one lane never, so that a processor without vectors has not both ways in its program.
+        if S::LANES > 1 && y.len() >= WIDE {
+            self.wide_sums::<S>(simd, y);
+            return Some(S::load(simd, &y[last..]));
+        }
         // Side by side, because a sum waits longer for its own last addition than for the next weight.
         let (mut first, mut end) = (0, S::splat(simd, R::of(0.0)));
         while first < y.len() {

@@ -44,6 +44,7 @@ mod optimizer;
 mod perceptron;
 mod perceptron_lanes;
 mod symmetry;
+mod wide_layer;
 
 pub use activation::Activation;
 pub use architecture::{Architecture, Plan};
