@@ -1,4 +1,4 @@
-//! The ways of an agent of `minimal-cognition` under circles and diamonds, and its scores:
+//! The ways of an agent of `minimal-cognition` under circles and diamonds, its scores, and how far left and right differ:
 //! `cargo run --release -p farsa-experiments --example minimal_cognition -- GENOTYPE.gen OUT.svg`.
 
 use std::error::Error;
@@ -37,6 +37,21 @@ fn way(life: &mut AgentLife, object: Object, offset: f64) -> Vec<[f64; 2]> {
     way
 }
 
+/// How far the way of a trial and that from the other side differ at most, for 100 starts under each object, rising.
+fn left_from_right(life: &mut AgentLife) -> Vec<f64> {
+    let Config { diameter, side, offset, .. } = *life.config();
+    let mut apart = Vec::new();
+    for object in [Object::circle(diameter), Object::diamond(side)] {
+        for i in 0..100 {
+            let start = offset * (f64::from(i) + 0.5) / 100.0;
+            let [right, left] = [start, -start].map(|start| way(life, object, start));
+            apart.push(right.iter().zip(&left).map(|([a, _], [b, _])| (a + b).abs()).fold(0.0, f64::max));
+        }
+    }
+    apart.sort_by(f64::total_cmp);
+    apart
+}
+
 /// A panel of ways, its middle at `x`.
 fn panel(svg: &mut String, life: &mut AgentLife, object: Object, color: &str, x: f64) -> std::fmt::Result {
     let Config { start_height, end_height, offset, clip, .. } = *life.config();
@@ -68,11 +83,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [genotype, out] = &arguments[..] else { return Err("usage: minimal_cognition GENOTYPE.gen OUT.svg".into()) };
     let config = Config::default();
-    let mut wiring = Wiring::new(&config)?;
+    let wiring = Wiring::new(&config)?;
     let genes = read_genotypes(Path::new(genotype), wiring.genes(), 16)?.pop().ok_or("no genotype")?;
     let mut life = AgentLife::new(config, wiring.decode(&genes).ok_or("other genes")?)?;
     let [circles, diamonds] = scores(&mut life, 10_000);
     println!("circles {circles:.4}, diamonds {diamonds:.4}, all {:.4}", 0.5 * (circles + diamonds));
+    let apart = left_from_right(&mut life);
+    let (mirrored, most) = (apart.partition_point(|apart| *apart < 0.01), apart.last().copied().unwrap_or_default());
+    println!("left and right: {mirrored} of {} pairs of ways within 0.01, the others within {most:.3}", apart.len());
 
     let mut svg = String::from(
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 480 330" font-family="sans-serif" fill="black">"#,

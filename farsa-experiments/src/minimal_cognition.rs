@@ -8,7 +8,7 @@ pub use crate::minimal_cognition_object::Object;
 use core::f64::consts::FRAC_PI_4;
 
 use farsa_body::{BodyId, Pose, Recorder};
-use farsa_nn::{CtrnnParameter, CtrnnParts};
+use farsa_nn::{CtrnnParameter, CtrnnParts, Span};
 
 use crate::controller_export::CtrnnExport;
 use crate::error::Error;
@@ -45,6 +45,11 @@ impl Experiment for MinimalCognition {
         "an agent with a continuous-time network catches circles and avoids diamonds that fall"
     }
 
+    /// 2: genes stand in the order of [`farsa_nn::CtrnnSymmetry`].
+    fn values_version(&self) -> u32 {
+        2
+    }
+
     fn settings(&self, _: &str) -> Vec<Setting> {
         Config::default().table()
     }
@@ -76,7 +81,7 @@ impl Lives {
     /// # Errors
     /// [`Error::Other`] for values that make no network.
     pub fn new(config: Config) -> Result<Self, Error> {
-        let mut wiring = Wiring::new(&config).map_err(|error| Error::Other(format!("minimal-cognition: {error}")))?;
+        let wiring = Wiring::new(&config).map_err(|error| Error::Other(format!("minimal-cognition: {error}")))?;
         let parameters = wiring.decode(&vec![0; wiring.genes()]).unwrap_or_default();
         Ok(Self { wiring, life: AgentLife::new(config, parameters)? })
     }
@@ -87,7 +92,7 @@ impl Lives {
         let Config { body, time_step, input_gain, ray_length, .. } = *life.config();
         let ([object, agent], height) = (life.places(), life.height());
         recorder.sensors(life.sensed());
-        recorder.neurons(&life.network().neuron_outputs()[..MOTOR_ONES.start]);
+        recorder.neurons(&life.network().neuron_outputs()[..MOTOR_ONES.first]);
         recorder.outputs(life.done());
         let at = |place: [f64; 3]| place.map(|x| x as f32);
         recorder.pose(AGENT, Pose::at(at([agent, 0.0, 0.0])));
@@ -111,8 +116,9 @@ impl Lives {
 /// constants.
 fn told(parameters: &[f32]) -> Vec<f32> {
     let CtrnnParts { weights, biases, gains, time_constants, .. } = LAYOUT.split(parameters);
-    let linked = LINKED.into_iter().flat_map(|[sources, targets]| {
-        sources.flat_map(move |from| targets.clone().map(move |to| weights[from * NEURONS + to]))
+    let linked = LINKED.into_iter().flat_map(|(sources, targets)| {
+        let row = move |from| (targets.first..targets.end()).map(move |to| weights[from * NEURONS + to]);
+        (sources.first..sources.end()).flat_map(row)
     });
     linked.chain([biases, gains, time_constants].into_iter().flatten().copied()).collect()
 }
@@ -161,14 +167,10 @@ impl Setup for Lives {
         let node = |neuron: usize| RAYS + neuron;
         let mut first = 0;
         let mut links = Vec::new();
-        for [sources, targets] in LINKED {
-            let weights = sources.len() * targets.len();
-            links.push(Links {
-                from: [node(sources.start), node(sources.end)],
-                to: [node(targets.start), node(targets.end)],
-                first,
-            });
-            first += weights;
+        for (sources, targets) in LINKED {
+            let nodes = |span: Span| [node(span.first), node(span.end())];
+            links.push(Links { from: nodes(sources), to: nodes(targets), first });
+            first += sources.count * targets.count;
         }
         let of_neurons = ["bias", "gain", "time constant"].into_iter().enumerate().map(|(i, name)| NodeParameters {
             name: name.into(),
@@ -199,7 +201,7 @@ impl Setup for Lives {
         Some(CtrnnExport {
             layout: network.layout(),
             time_step: network.time_step(),
-            parameters: self.wiring.clone().decode(genes)?,
+            parameters: self.wiring.decode(genes)?,
             sensors: names(stage.sensors),
             motors: names(stage.outputs),
         })

@@ -1,10 +1,9 @@
 //! The network of `minimal-cognition`: layers of sensory, inner and motor neurons that are the same left and right.
 
-use core::ops::Range;
+use farsa_evo::{GeneRange, decode};
+use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Span};
 
-use farsa_evo::{EvoError, GeneRange, decode};
-use farsa_nn::{CtrnnLayout, CtrnnParameter};
-
+use crate::error::Error;
 use crate::minimal_cognition_config::Config;
 
 /// Rays, and sensory neurons, from left to right.
@@ -19,18 +18,14 @@ pub const NEURONS: usize = RAYS + INNER + MOTORS;
 /// The layout: each ray is the external input of a sensory neuron.
 pub const LAYOUT: CtrnnLayout = CtrnnLayout::new(RAYS, NEURONS, MOTORS).with_direct_inputs(0);
 
-pub(crate) const SENSORY: Range<usize> = 0..RAYS;
-pub(crate) const INNER_ONES: Range<usize> = RAYS..RAYS + INNER;
-pub(crate) const MOTOR_ONES: Range<usize> = RAYS + INNER..NEURONS;
+const SENSORY: Span = Span::new(0, RAYS);
+const INNER_ONES: Span = Span::new(RAYS, INNER);
+pub(crate) const MOTOR_ONES: Span = Span::new(RAYS + INNER, MOTORS);
 /// The layers that are linked, each neuron of the one to each of the other.
-pub(crate) const LINKED: [[Range<usize>; 2]; 3] =
-    [[SENSORY, INNER_ONES], [INNER_ONES, INNER_ONES], [INNER_ONES, MOTOR_ONES]];
-
+pub(crate) const LINKED: [(Span, Span); 3] =
+    [(SENSORY, INNER_ONES), (INNER_ONES, INNER_ONES), (INNER_ONES, MOTOR_ONES)];
 /// The neuron on the other side: layers are turned about their middle.
-fn mirror(neuron: usize) -> usize {
-    let layer = [SENSORY, INNER_ONES, MOTOR_ONES].into_iter().find(|layer| layer.contains(&neuron));
-    layer.map_or(neuron, |layer| layer.start + layer.end - 1 - neuron)
-}
+const MIRROR: [usize; NEURONS] = [6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12];
 
 /// Which gene each parameter of the network is decoded from.
 ///
@@ -43,81 +38,48 @@ fn mirror(neuron: usize) -> usize {
 /// | weights inner to inner | 25 | all but the middle neuron to itself | 12 + 1 |
 /// | weights inner to motor | 10 | all | 5 |
 /// | biases | 14 | 1 of the sensory, 3 of the inner, 1 of the motor neurons | 5 |
-/// | time constants | 14 | the same | 5 |
 /// | gain of the sensory neurons | 7 | 1 | 1 |
+/// | time constants | 14 | as the biases | 5 |
 ///
-/// All other weights are 0, all other gains 1. Genes stand in the order of the table, weights source by source.
+/// All other weights are 0, all other gains 1. Genes stand in the order of the first parameters that they fill, as
+/// [`CtrnnSymmetry`] has them: an inner neuron's weights to the motor neurons follow those to the inner ones.
 #[derive(Clone, Debug)]
 pub struct Wiring {
-    /// The gene of each parameter, or the value that it always has.
-    parameters: Vec<Result<usize, f32>>,
-    /// What the genes stand for.
+    symmetry: CtrnnSymmetry<'static>,
+    /// What each gene stands for.
     ranges: Vec<GeneRange>,
-    /// The decoded genes.
-    values: Vec<f32>,
 }
 
 impl Wiring {
     /// The wiring, its genes decoded to the ranges of a configuration.
     ///
     /// # Errors
-    /// [`EvoError::Range`] for a range that is none.
-    pub fn new(config: &Config) -> Result<Self, EvoError> {
-        let mut parameters = vec![Err(0.0); LAYOUT.parameter_count()];
-        parameters[LAYOUT.range(CtrnnParameter::Gain)].fill(Err(1.0));
-        let mut genes = 0;
-        let mut share = |own: usize, other: usize| {
-            let gene = parameters[other].unwrap_or_else(|_| {
-                genes += 1;
-                genes - 1
-            });
-            parameters[own] = Ok(gene);
-            gene + 1
-        };
-        let first = |kind| LAYOUT.range(kind).start;
-        let weight = |from: usize, to: usize| first(CtrnnParameter::Weight) + from * NEURONS + to;
-        let mut last = 0;
-        for [sources, targets] in LINKED {
-            for (from, to) in sources.flat_map(|from| targets.clone().map(move |to| (from, to))) {
-                last = last.max(share(weight(from, to), weight(mirror(from), mirror(to))));
-            }
-        }
-        let weights = last;
-        for kind in [CtrnnParameter::Bias, CtrnnParameter::TimeConstant] {
-            for neuron in 0..NEURONS {
-                let other = if SENSORY.contains(&neuron) { SENSORY.start } else { mirror(neuron) };
-                last = share(first(kind) + neuron, first(kind) + other).max(last);
-            }
-        }
-        for neuron in SENSORY {
-            last = share(first(CtrnnParameter::Gain) + neuron, first(CtrnnParameter::Gain)).max(last);
-        }
-        let each = (last - weights - 1) / 2;
-        let range = |count, [low, high]: [f64; 2]| GeneRange::new(count, low as f32, high as f32);
+    /// [`Error::Other`] for a range that is none.
+    pub fn new(config: &Config) -> Result<Self, Error> {
+        let symmetry =
+            CtrnnSymmetry::new(LAYOUT, &[], &MIRROR)?.with_links(&LINKED).with_alike(&[SENSORY]).with_gains(&[SENSORY]);
         let both = |range: f64| [-range, range];
-        let ranges = vec![
-            range(weights, both(config.weight_range))?,
-            range(each, both(config.bias_range))?,
-            range(each, config.time_constants)?,
-            range(1, config.gains)?,
-        ];
-        Ok(Self { parameters, ranges, values: vec![0.0; last] })
+        let range = |kind| match kind {
+            CtrnnParameter::Bias => both(config.bias_range),
+            CtrnnParameter::Gain => config.gains,
+            CtrnnParameter::TimeConstant => config.time_constants,
+            _ => both(config.weight_range),
+        };
+        let ranges = symmetry.kinds().map(range).map(|[low, high]| GeneRange::new(1, low as f32, high as f32));
+        Ok(Self { symmetry, ranges: ranges.collect::<Result<_, _>>()? })
     }
 
     /// Number of genes: 47.
     pub fn genes(&self) -> usize {
-        self.values.len()
+        self.ranges.len()
     }
 
     /// The parameters that these genes stand for, in the order of [`LAYOUT`]; `None` for another number of genes.
-    pub fn decode(&mut self, genes: &[u16]) -> Option<Vec<f32>> {
-        decode(genes, &self.ranges, &mut self.values).ok()?;
-        Some(
-            self.parameters
-                .iter()
-                .map(|parameter| parameter.map_or_else(|own| own, |gene| self.values[gene]))
-                .collect(),
-        )
+    pub fn decode(&self, genes: &[u16]) -> Option<Vec<f32>> {
+        let (mut values, mut parameters) = (vec![0.0; self.genes()], vec![0.0; LAYOUT.parameter_count()]);
+        decode(genes, &self.ranges, &mut values).ok()?;
+        self.symmetry.expand(&values, &mut parameters).ok()?;
+        Some(parameters)
     }
 }
 
@@ -131,7 +93,7 @@ mod tests {
 
     #[test]
     fn there_are_the_sources_47_genes_and_each_has_its_parameters() {
-        let mut wiring = Wiring::new(&Config::default()).unwrap();
+        let wiring = Wiring::new(&Config::default()).unwrap();
         assert_eq!(wiring.genes(), 47);
         assert!(wiring.decode(&[0; 46]).is_none());
         let plain = decoded(&[20_000; 47]);
@@ -144,14 +106,14 @@ mod tests {
             })
             .collect();
         let mut expected = vec![2; 17];
-        expected.extend([1]);
-        expected.extend([2; 12]);
-        expected.extend([1]);
-        expected.extend([2; 5]);
-        for _ in 0..2 {
-            expected.extend([7, 2, 2, 1, 2]);
-        }
+        expected.push(1);
+        // Two inner neurons to five and to the two motors; the middle one to two pairs, to itself and to the motors.
+        expected.extend([2; 2 * (5 + 2) + 2]);
+        expected.extend([1, 2]);
+        let biases = [7, 2, 2, 1, 2];
+        expected.extend(biases);
         expected.push(7);
+        expected.extend(biases);
         assert_eq!(followers, expected);
         assert_eq!(followers.iter().sum::<usize>(), 35 + 25 + 10 + 14 + 14 + 7);
     }
@@ -168,7 +130,7 @@ mod tests {
             assert!(parts.gains[..RAYS].iter().all(|gain| f64::from(*gain) == gains[end]));
             assert_eq!(parts.gains[RAYS..], [1.0; INNER + MOTORS]);
             for (from, to) in (0..NEURONS).flat_map(|from| (0..NEURONS).map(move |to| (from, to))) {
-                let linked = LINKED.iter().any(|[sources, targets]| sources.contains(&from) && targets.contains(&to));
+                let linked = LINKED.iter().any(|(sources, targets)| sources.contains(from) && targets.contains(to));
                 let expected = if linked { sign * weight_range } else { 0.0 };
                 assert_eq!(f64::from(parts.weights[from * NEURONS + to]), expected, "{from} to {to}");
             }
@@ -181,13 +143,13 @@ mod tests {
         let parameters = decoded(&genes);
         let parts = LAYOUT.split(&parameters);
         for one in 0..NEURONS {
-            let other = mirror(one);
-            assert_eq!(mirror(other), one);
+            let other = MIRROR[one];
+            assert_eq!(MIRROR[other], one);
             for values in [parts.biases, parts.gains, parts.time_constants] {
                 assert_eq!(values[one], values[other]);
             }
             for to in 0..NEURONS {
-                assert_eq!(parts.weights[one * NEURONS + to], parts.weights[other * NEURONS + mirror(to)]);
+                assert_eq!(parts.weights[one * NEURONS + to], parts.weights[other * NEURONS + MIRROR[to]]);
             }
         }
     }

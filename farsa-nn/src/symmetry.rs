@@ -19,11 +19,11 @@ use crate::{CtrnnLayout, CtrnnParameter, Error, Span};
 /// let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &[6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12])?
 ///     .with_links(&[(RAYS, INNER), (INNER, INNER), (INNER, MOTORS)])
 ///     .with_alike(&[RAYS])
-///     .with_unit_gains();
-/// // With the gain of the rays, which is not the network's, they are the 47 of the source.
-/// assert_eq!(symmetry.gene_count(), 46);
+///     .with_gains(&[RAYS]);
+/// assert_eq!(symmetry.gene_count(), 47);
 /// let mut parameters = [0.0; LAYOUT.parameter_count()];
-/// symmetry.expand(&[1.5; 46], &mut parameters)?;
+/// symmetry.expand(&[1.5; 47], &mut parameters)?;
+/// assert_eq!(LAYOUT.split(&parameters).gains[6..8], [1.5, 1.0]);
 /// # Ok::<(), farsa_nn::Error>(())
 /// ```
 ///
@@ -36,7 +36,8 @@ pub struct CtrnnSymmetry<'a> {
     /// `None` for all.
     links: Option<&'a [(Span, Span)]>,
     alike: &'a [Span],
-    unit_gains: bool,
+    /// `None` for all.
+    gains: Option<&'a [Span]>,
 }
 
 /// Where a parameter comes from.
@@ -66,7 +67,7 @@ impl<'a> CtrnnSymmetry<'a> {
                 return Err(Error::Mirror { index, image });
             }
         }
-        Ok(Self { layout, inputs, neurons, links: None, alike: &[], unit_gains: false })
+        Ok(Self { layout, inputs, neurons, links: None, alike: &[], gains: None })
     }
 
     /// The same with links between these neurons only, each from all of one span to all of another; other weights between
@@ -75,14 +76,16 @@ impl<'a> CtrnnSymmetry<'a> {
         Self { links: Some(links), ..self }
     }
 
-    /// The same with one bias, one gain and one time constant for all neurons of each of these spans.
+    /// The same with one bias, one gain and one time constant for all neurons of each of these spans, whose mirror images are
+    /// themselves or each other.
     pub const fn with_alike(self, alike: &'a [Span]) -> Self {
         Self { alike, ..self }
     }
 
-    /// The same with gains of 1.
-    pub const fn with_unit_gains(self) -> Self {
-        Self { unit_gains: true, ..self }
+    /// The same with genes for the gains of the neurons of these spans and of their mirror images only; other gains are 1. Of
+    /// alike neurons the first counts.
+    pub const fn with_gains(self, gains: &'a [Span]) -> Self {
+        Self { gains: Some(gains), ..self }
     }
 
     /// Number of genes.
@@ -125,30 +128,42 @@ impl<'a> CtrnnSymmetry<'a> {
     fn origin(&self, kind: CtrnnParameter, index: usize) -> Origin {
         let start = self.layout.range(kind).start;
         let place = index - start;
-        let image = |images: &[usize], one: usize| images.get(one).copied().unwrap_or(one);
         let neurons = self.layout.neurons().max(1);
         let (from, to) = (place / neurons, place % neurons);
         let mirrored = image(self.neurons, to);
         let first = match kind {
             CtrnnParameter::Weight if !self.linked(from, to) => return Origin::Constant(0.0),
-            CtrnnParameter::Gain if self.unit_gains => return Origin::Constant(1.0),
             CtrnnParameter::Weight => place.min(image(self.neurons, from) * neurons + mirrored),
             CtrnnParameter::InputWeight => place.min(image(self.inputs, from) * neurons + mirrored),
             _ => self.first_alike(place).min(self.first_alike(mirrored)),
         };
+        if kind == CtrnnParameter::Gain && !self.has_gain(first) {
+            return Origin::Constant(1.0);
+        }
         if first == place { Origin::Gene } else { Origin::Parameter(start + first) }
     }
 
     /// Whether the link or its mirror image exists.
     fn linked(&self, from: usize, to: usize) -> bool {
-        let images = [from, to].map(|one| self.neurons.get(one).copied().unwrap_or(one));
+        let images = [from, to].map(|one| image(self.neurons, one));
         self.links.is_none_or(|links| {
             let has = |a, b| links.iter().any(|(sources, targets)| sources.contains(a) && targets.contains(b));
             has(from, to) || has(images[0], images[1])
         })
     }
 
+    /// Whether the gain of the neuron or of its mirror image is a gene.
+    fn has_gain(&self, neuron: usize) -> bool {
+        let mirrored = image(self.neurons, neuron);
+        self.gains.is_none_or(|spans| spans.iter().any(|span| span.contains(neuron) || span.contains(mirrored)))
+    }
+
     fn first_alike(&self, neuron: usize) -> usize {
         self.alike.iter().find(|span| span.contains(neuron)).map_or(neuron, |span| span.first)
     }
+}
+
+/// The mirror image of an input or a neuron.
+fn image(images: &[usize], one: usize) -> usize {
+    images.get(one).copied().unwrap_or(one)
 }

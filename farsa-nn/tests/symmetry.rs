@@ -90,7 +90,7 @@ proptest! {
 fn links_that_do_not_exist_are_zero() -> Result<(), Error> {
     let layout = CtrnnLayout::new(0, 4, 1);
     let links = [(Span::new(0, 1), Span::new(2, 2))];
-    let symmetry = CtrnnSymmetry::new(layout, &[], &[1, 0, 3, 2])?.with_links(&links).with_unit_gains();
+    let symmetry = CtrnnSymmetry::new(layout, &[], &[1, 0, 3, 2])?.with_links(&links).with_gains(&[]);
     // Neuron 0 to 2 and 3, and by symmetry 1 to 3 and 2; a bias and a time constant of each pair.
     assert_eq!(symmetry.gene_count(), 2 + 2 + 2);
     let mut parameters = vec![f32::NAN; layout.parameter_count()];
@@ -99,6 +99,31 @@ fn links_that_do_not_exist_are_zero() -> Result<(), Error> {
     assert_eq!(parts.weights, [[0.0, 0.0, 7.0, 8.0], [0.0, 0.0, 8.0, 7.0], [0.0; 4], [0.0; 4]].concat());
     assert_eq!((parts.biases, parts.gains), (&[1.0, 1.0, 2.0, 2.0][..], &[1.0; 4][..]));
     assert_eq!(parts.time_constants, [3.0, 3.0, 4.0, 4.0]);
+    Ok(())
+}
+
+#[test]
+fn gains_without_genes_are_one() -> Result<(), Error> {
+    let layout = CtrnnLayout::new(5, 5, 1).with_direct_inputs(0);
+    let (links, alike, images) = ([], [Span::new(2, 3)], [1, 0, 4, 3, 2]);
+    let symmetry = CtrnnSymmetry::new(layout, &[], &images)?.with_links(&links).with_alike(&alike);
+    // A bias, a gain and a time constant of the pair and of those that are alike.
+    let all = [[1.0, 1.0, 2.0, 2.0, 2.0], [3.0, 3.0, 4.0, 4.0, 4.0], [5.0, 5.0, 6.0, 6.0, 6.0]];
+    let (none, pair, three) = ([1.0; 5], [3.0, 3.0, 1.0, 1.0, 1.0], [1.0, 1.0, 3.0, 3.0, 3.0]);
+    // The second of a pair stands for both, the first of those that are alike for all.
+    let cases: [(&[Span], [f32; 5]); 4] =
+        [(&[Span::new(0, 5)], all[1]), (&[Span::new(1, 1)], pair), (&[Span::new(2, 1)], three), (&[], none)];
+    for (spans, gains) in cases {
+        let symmetry = symmetry.with_gains(spans);
+        let mut own = gains.to_vec();
+        own.dedup();
+        own.retain(|gain| *gain != 1.0);
+        let mut parameters = vec![f32::NAN; layout.parameter_count()];
+        symmetry.expand(&[&[1.0, 2.0], &own[..], &[5.0, 6.0]].concat(), &mut parameters)?;
+        let parts = layout.split(&parameters);
+        assert_eq!([parts.biases, parts.gains, parts.time_constants], [&all[0], &gains[..], &all[2]], "{spans:?}");
+        assert_eq!(symmetry.kinds().filter(|kind| *kind == CtrnnParameter::Gain).count(), own.len());
+    }
     Ok(())
 }
 
