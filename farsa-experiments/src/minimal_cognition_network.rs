@@ -56,8 +56,10 @@ impl Wiring {
     /// # Errors
     /// [`Error::Other`] for a range that is none.
     pub fn new(config: &Config) -> Result<Self, Error> {
-        let symmetry =
-            CtrnnSymmetry::new(LAYOUT, &[], &MIRROR)?.with_links(&LINKED).with_alike(&[SENSORY]).with_gains(&[SENSORY]);
+        let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &MIRROR)?
+            .with_links(&LINKED)?
+            .with_alike(&[SENSORY])?
+            .with_gains(&[SENSORY])?;
         let both = |range: f64| [-range, range];
         let range = |kind| match kind {
             CtrnnParameter::Bias => both(config.bias_range),

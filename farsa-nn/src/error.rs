@@ -91,7 +91,7 @@ pub enum Error {
         /// The smallest with which the integrator is stable [s]; 0 if all above zero are.
         least: f32,
     },
-    /// Inputs or outputs lie at neurons that the layout does not have.
+    /// Neurons are named that the layout does not have.
     Neurons {
         /// The first of them.
         first: usize,
@@ -134,6 +134,13 @@ pub enum Error {
         index: usize,
         /// Its mirror image.
         image: usize,
+    },
+    /// Neurons are to be alike that are so with others already, or whose mirror images are not alike.
+    Alike {
+        /// The first of them.
+        first: usize,
+        /// How many there are.
+        count: usize,
     },
     /// A line of a text is not what it should be.
     Text {
@@ -181,7 +188,7 @@ impl fmt::Display for Error {
                 write!(f, "parameter {index}, a time constant, is {value}: not above 0")
             }
             Self::Neurons { first, count, neurons } => {
-                write!(f, "{count} inputs or outputs from neuron {first} on where the layout has {neurons} neurons")
+                write!(f, "{count} neurons from neuron {first} on where the layout has {neurons}")
             }
             Self::Block { index, first, count, neurons } => write!(
                 f,
@@ -193,6 +200,10 @@ impl fmt::Display for Error {
             Self::Mirror { index, image } => {
                 write!(f, "the mirror image of {index} is {image}, which is not there or has another mirror image")
             }
+            Self::Alike { first, count } => write!(
+                f,
+                "{count} alike neurons from neuron {first} on: some are alike with others, or their mirror images are not alike"
+            ),
             Self::Text { line, expected } => write!(f, "line {line}: expected {expected}"),
             Self::UnknownIntegrator => {
                 f.write_str("unknown integrator: one of euler, exponential-euler, runge-kutta-4")

@@ -17,9 +17,9 @@ use crate::{CtrnnLayout, CtrnnParameter, Error, Span};
 /// const INNER: Span = Span::new(7, 5);
 /// const MOTORS: Span = Span::new(12, 2);
 /// let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &[6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12])?
-///     .with_links(&[(RAYS, INNER), (INNER, INNER), (INNER, MOTORS)])
-///     .with_alike(&[RAYS])
-///     .with_gains(&[RAYS]);
+///     .with_links(&[(RAYS, INNER), (INNER, INNER), (INNER, MOTORS)])?
+///     .with_alike(&[RAYS])?
+///     .with_gains(&[RAYS])?;
 /// assert_eq!(symmetry.gene_count(), 47);
 /// let mut parameters = [0.0; LAYOUT.parameter_count()];
 /// symmetry.expand(&[1.5; 47], &mut parameters)?;
@@ -70,22 +70,48 @@ impl<'a> CtrnnSymmetry<'a> {
         Ok(Self { layout, inputs, neurons, links: None, alike: &[], gains: None })
     }
 
-    /// The same with links between these neurons only, each from all of one span to all of another; other weights between
-    /// neurons are zero.
-    pub const fn with_links(self, links: &'a [(Span, Span)]) -> Self {
-        Self { links: Some(links), ..self }
+    /// The same with links between these neurons only, each from all of one span to all of another, and their mirror images;
+    /// other weights between neurons are zero.
+    ///
+    /// # Errors
+    /// [`Error::Neurons`] for a span of neurons that the layout does not have.
+    pub fn with_links(self, links: &'a [(Span, Span)]) -> Result<Self, Error> {
+        links.iter().try_for_each(|(sources, targets)| self.check(*sources).and(self.check(*targets)))?;
+        Ok(Self { links: Some(links), ..self })
     }
 
-    /// The same with one bias, one gain and one time constant for all neurons of each of these spans, whose mirror images are
-    /// themselves or each other.
-    pub const fn with_alike(self, alike: &'a [Span]) -> Self {
-        Self { alike, ..self }
+    /// The same with one bias, one gain and one time constant for all neurons of each of these spans.
+    ///
+    /// # Errors
+    /// [`Error::Neurons`] for a span of neurons that the layout does not have, [`Error::Alike`] for one that shares neurons with
+    /// another, or whose mirror images are not all the neurons of one of the spans.
+    pub fn with_alike(self, alike: &'a [Span]) -> Result<Self, Error> {
+        for (index, span) in alike.iter().enumerate() {
+            self.check(*span)?;
+            let shares = |other: &Span| span.first.max(other.first) < span.end().min(other.end());
+            let of = |neuron| alike.iter().find(|other| other.contains(image(self.neurons, neuron)));
+            let mirrored = of(span.first).is_some_and(|other| other.count == span.count)
+                && (span.first..span.end()).all(|neuron| of(neuron) == of(span.first));
+            if alike[..index].iter().any(shares) || span.count > 0 && !mirrored {
+                return Err(Error::Alike { first: span.first, count: span.count });
+            }
+        }
+        Ok(Self { alike, ..self })
     }
 
     /// The same with genes for the gains of the neurons of these spans and of their mirror images only; other gains are 1. Of
     /// alike neurons the first counts.
-    pub const fn with_gains(self, gains: &'a [Span]) -> Self {
-        Self { gains: Some(gains), ..self }
+    ///
+    /// # Errors
+    /// [`Error::Neurons`] for a span of neurons that the layout does not have.
+    pub fn with_gains(self, gains: &'a [Span]) -> Result<Self, Error> {
+        gains.iter().try_for_each(|span| self.check(*span))?;
+        Ok(Self { gains: Some(gains), ..self })
+    }
+
+    fn check(&self, span: Span) -> Result<(), Error> {
+        let (Span { first, count }, neurons) = (span, self.layout.neurons());
+        if span.end() > neurons { Err(Error::Neurons { first, count, neurons }) } else { Ok(()) }
     }
 
     /// Number of genes.

@@ -144,7 +144,7 @@ fn what_is_wrong_has_a_line() {
         ("END", "", "line 49: expected END"),
         ("PARAMETERS 24", "PARAMETERS 25", "25 parameters where the layout has 24"),
         ("0 3 2 0 3 0", "0 3 9 0 3 0", "block 2 has 9 neurons from neuron 3 on where the layout has 7 neurons"),
-        ("nmotors 2", "nmotors 5", "8 inputs or outputs from neuron 0 on where the layout has 7 neurons"),
+        ("nmotors 2", "nmotors 5", "8 neurons from neuron 0 on where the layout has 7"),
         (
             "nneurons 7",
             "nneurons 8",

@@ -90,7 +90,7 @@ proptest! {
 fn links_that_do_not_exist_are_zero() -> Result<(), Error> {
     let layout = CtrnnLayout::new(0, 4, 1);
     let links = [(Span::new(0, 1), Span::new(2, 2))];
-    let symmetry = CtrnnSymmetry::new(layout, &[], &[1, 0, 3, 2])?.with_links(&links).with_gains(&[]);
+    let symmetry = CtrnnSymmetry::new(layout, &[], &[1, 0, 3, 2])?.with_links(&links)?.with_gains(&[])?;
     // Neuron 0 to 2 and 3, and by symmetry 1 to 3 and 2; a bias and a time constant of each pair.
     assert_eq!(symmetry.gene_count(), 2 + 2 + 2);
     let mut parameters = vec![f32::NAN; layout.parameter_count()];
@@ -106,7 +106,7 @@ fn links_that_do_not_exist_are_zero() -> Result<(), Error> {
 fn gains_without_genes_are_one() -> Result<(), Error> {
     let layout = CtrnnLayout::new(5, 5, 1).with_direct_inputs(0);
     let (links, alike, images) = ([], [Span::new(2, 3)], [1, 0, 4, 3, 2]);
-    let symmetry = CtrnnSymmetry::new(layout, &[], &images)?.with_links(&links).with_alike(&alike);
+    let symmetry = CtrnnSymmetry::new(layout, &[], &images)?.with_links(&links)?.with_alike(&alike)?;
     // A bias, a gain and a time constant of the pair and of those that are alike.
     let all = [[1.0, 1.0, 2.0, 2.0, 2.0], [3.0, 3.0, 4.0, 4.0, 4.0], [5.0, 5.0, 6.0, 6.0, 6.0]];
     let (none, pair, three) = ([1.0; 5], [3.0, 3.0, 1.0, 1.0, 1.0], [1.0, 1.0, 3.0, 3.0, 3.0]);
@@ -114,7 +114,7 @@ fn gains_without_genes_are_one() -> Result<(), Error> {
     let cases: [(&[Span], [f32; 5]); 4] =
         [(&[Span::new(0, 5)], all[1]), (&[Span::new(1, 1)], pair), (&[Span::new(2, 1)], three), (&[], none)];
     for (spans, gains) in cases {
-        let symmetry = symmetry.with_gains(spans);
+        let symmetry = symmetry.with_gains(spans)?;
         let mut own = gains.to_vec();
         own.dedup();
         own.retain(|gain| *gain != 1.0);
@@ -141,6 +141,28 @@ fn mistakes_have_names() -> Result<(), Error> {
     assert_eq!(CtrnnSymmetry::new(layout, &[1, 0], &[1, 0]), Err(Error::MirrorLen { expected: 3, found: 2 }));
     assert_eq!(CtrnnSymmetry::new(layout, &[1, 0], &[1, 2, 0]), Err(Error::Mirror { index: 0, image: 1 }));
     assert_eq!(CtrnnSymmetry::new(layout, &[1, 2], &[0, 1, 2]), Err(Error::Mirror { index: 0, image: 1 }));
+    let (three, four) = (Span::new(0, 3), Span::new(1, 3));
+    let beyond = Err(Error::Neurons { first: 1, count: 3, neurons: 3 });
+    assert_eq!(symmetry.with_links(&[(three, three), (three, four)]), beyond);
+    assert_eq!(symmetry.with_links(&[(four, three)]), beyond);
+    assert_eq!(symmetry.with_alike(&[three, four]), beyond);
+    assert_eq!(symmetry.with_gains(&[four]), beyond);
+    assert!(symmetry.with_gains(&[Span::new(3, usize::MAX)]).is_err());
+    // The ends are mirrored to each other, the middle to itself.
+    let not = |first, count| Err(Error::Alike { first, count });
+    let cases: [(&[[usize; 2]], _); 7] = [
+        (&[[0, 2]], not(0, 2)),
+        (&[[0, 2], [2, 1]], not(0, 2)),
+        (&[[0, 1]], not(0, 1)),
+        (&[[0, 3], [1, 1]], not(1, 1)),
+        (&[[0, 1], [2, 1]], Ok(count)),
+        (&[[1, 1], [1, 0]], Ok(count)),
+        (&[[0, 3]], Ok(count - 3)),
+    ];
+    for (spans, expected) in cases {
+        let alike: Vec<Span> = spans.iter().map(|[first, count]| Span::new(*first, *count)).collect();
+        assert_eq!(symmetry.with_alike(&alike).map(|symmetry| symmetry.gene_count()), expected, "{spans:?}");
+    }
     assert!(layout.centre_crossing(&mut parameters[1..]).is_err());
     assert!(parameters.iter().all(|p| *p == 9.0));
     let tanh = layout.with_activation(Activation::Tanh);
