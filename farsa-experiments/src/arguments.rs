@@ -392,6 +392,8 @@ pub(crate) enum ExportWhat {
     Robot(ExportRobotArgs),
     /// Write the controller of a run's champion, with what it senses and drives
     Controller(ExportControllerArgs),
+    /// Write the genes of a run's champion as a .gen file, for `import` and `evaluate`
+    Genotype(ExportGenotypeArgs),
     /// Write how the trials of `test` start
     Starts(ExportStartsArgs),
 }
@@ -404,6 +406,19 @@ pub(crate) struct ExportControllerArgs {
     /// Of which kind the file is
     #[arg(long, value_enum)]
     pub(crate) format: ControllerFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportGenotypeArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Of which population, where there are several
+    #[arg(long, value_name = "NAME")]
+    pub(crate) population: Option<String>,
     /// A new file [default: the standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,

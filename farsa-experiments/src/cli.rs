@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::FromArgMatches as _;
 
 use crate::arguments::{
-    BenchArgs, Cli, Command, CompletionsArgs, ExportArgs, ExportControllerArgs, ExportRobotArgs, ExportStartsArgs,
-    ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs,
+    ExportStartsArgs, ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
 use crate::bench::{self, Bench, Sample};
 use crate::directory::{Directory, create_result, create_results};
@@ -159,6 +159,10 @@ fn exported(what: ExportWhat, experiments: &[&dyn Experiment]) -> Result<(Vec<u8
         ExportWhat::Controller(ExportControllerArgs { directory, format, out }) => {
             let (directory, plan) = existing(&directory, experiments)?;
             Ok((export::controller(&plan, &directory, format)?, out))
+        }
+        ExportWhat::Genotype(ExportGenotypeArgs { directory, population, out }) => {
+            let (directory, plan) = existing(&directory, experiments)?;
+            Ok((export::genotype(&plan, &directory, population.as_deref())?.into_bytes(), out))
         }
         ExportWhat::Starts(ExportStartsArgs { directory, trials, seed, format: DataFormat::Json, out }) => {
             let (_, plan) = existing(&directory, experiments)?;

@@ -1,4 +1,4 @@
-//! `farsa export`: robots, controllers and starts as files for other simulators.
+//! `farsa export`: robots, controllers, genotypes and starts as files for other programs.
 
 use clap::ValueEnum;
 use serde::Serialize;
@@ -8,8 +8,10 @@ use crate::controller_formats;
 use crate::directory::Directory;
 use crate::error::Error;
 use crate::exam;
+use crate::genotypes;
 use crate::info::pretty;
 use crate::plan::Plan;
+use crate::populations::Populations;
 use crate::records::{Best, Champions};
 
 /// The formats of model files.
@@ -90,25 +92,49 @@ struct Trials<'a> {
     starts: Vec<StartExport>,
 }
 
-/// The champion's controller of a run, as the content of a file.
-///
-/// # Errors
-/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
-pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
+/// The champions of a run's last generation, one of each population; and which generation that is.
+fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<(u32, Vec<Best>), Error> {
     let path = directory.champion();
     if !path.is_file() {
         return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
     }
     let Champions { identity, generation, best } = Champions::read(plan, directory)?;
     identity.same_values(&plan.identity()?, &path)?;
+    let genes = plan.setup()?.genes();
+    if best.iter().any(|best| best.genes.len() != genes) {
+        return Err(Error::damaged(&path, "its genome is not one of the experiment"));
+    }
+    Ok((generation, best))
+}
+
+/// The champion's genes as a `.gen` file; of several populations that of the one named.
+///
+/// # Errors
+/// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
+pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
+    let (generation, best) = champions(plan, directory)?;
+    let (experiment, names) = (plan.experiment.name(), plan.setup()?.population_names());
+    let population = Populations { experiment, names: &names }.one("--population", population)?;
+    let Some(Best { individual, genes, .. }) = best.get(population) else {
+        return Err(Error::damaged(&directory.champion(), "it has champions of other populations"));
+    };
+    let (seed, condition) = (plan.seed, plan.condition.as_str());
+    let variant = if condition.is_empty() { String::new() } else { format!(" {condition}") };
+    let name = format!("{experiment}{variant}, seed {seed}, generation {generation}, individual {individual}");
+    Ok(genotypes::written(&name, genes))
+}
+
+/// The champion's controller of a run, as the content of a file.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
+pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
+    let (generation, best) = champions(plan, directory)?;
     let setup = plan.setup()?;
     let name = plan.experiment.name();
     let [Best { individual, genes, .. }] = best.as_slice() else {
         return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));
     };
-    if genes.len() != setup.genes() {
-        return Err(Error::damaged(&path, "its genome is not one of the experiment"));
-    }
     let controller = match (setup.controller(genes), setup.ctrnn(genes)) {
         (Some(controller), _) => controller,
         // Its body is none that the other formats could tell.

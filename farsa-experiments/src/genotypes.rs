@@ -150,6 +150,15 @@ pub fn read_genotypes(path: &Path, genes: usize, gene_bits: u32) -> Result<Vec<V
     Shape::new(genes, gene_bits).read(path)
 }
 
+/// A genotype as a `.gen` file, which [`read_genotypes`] and the original read; its name is one line.
+pub(crate) fn written(name: &str, genes: &[u16]) -> String {
+    let mut text = format!("**NET : {name}\nDYNAMICAL NN\n");
+    for gene in genes {
+        text += &format!("{gene}\n");
+    }
+    text + "END\n"
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -101,6 +101,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
                 format!("export robot {experiment} --format urdf"),
                 format!("export controller {run} --format json --out controller.json"),
                 format!("export controller {run} --format bytes --out champion.farsa"),
+                format!("export genotype {run} --out champion.gen"),
                 format!("export starts {run} --trials 100 --seed 1 --format json --out starts.json"),
             ],
         ),

@@ -23,9 +23,7 @@ impl Populations<'_> {
             return Ok((None, text));
         };
         let found = self.names.iter().position(|known| known == name);
-        let names = self.names.iter().map(String::as_str);
-        let found = found.ok_or_else(|| Error::unknown(option, "population", name, names))?;
-        Ok((Some(found), rest))
+        Ok((Some(found.ok_or_else(|| self.unknown(option, name))?), rest))
     }
 
     /// The same of a file's name; one that is not Unicode names no population.
@@ -35,6 +33,26 @@ impl Populations<'_> {
     pub(crate) fn file(&self, option: &str, path: &Path) -> Result<Given<PathBuf>, Error> {
         let Some(text) = path.to_str() else { return Ok((None, path.into())) };
         self.split(option, text).map(|(population, rest)| (population, rest.into()))
+    }
+
+    /// The population of this name, or the only one.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest population; [`Error::Usage`] for none of several.
+    pub(crate) fn one(&self, option: &str, name: Option<&str>) -> Result<usize, Error> {
+        let Self { experiment, names } = self;
+        match name {
+            Some(name) => names.iter().position(|known| known == name).ok_or_else(|| self.unknown(option, name)),
+            None if names.len() > 1 => {
+                let (count, all) = (names.len(), names.join(" and "));
+                Err(Error::Usage(format!("{option}: {experiment} has {count} populations, {all}: name one")))
+            }
+            None => Ok(0),
+        }
+    }
+
+    fn unknown(&self, option: &str, name: &str) -> Error {
+        Error::unknown(option, "population", name, self.names.iter().map(String::as_str))
     }
 
     /// What is given for each population: by its name, or one for each in their order.

@@ -205,6 +205,46 @@ fn genotypes_of_several_populations_are_evaluated_against_each_other() {
 }
 
 #[test]
+fn exported_genotypes_are_imported_and_do_the_same() {
+    let here = scratch("export-genotype");
+    ok(own(), &here, "run cart --generations 2 --seed 3 --quiet --out r");
+    let printed = ok(own(), &here, "export genotype r");
+    let lines: Vec<&str> = printed.lines().collect();
+    assert!(
+        lines[0].starts_with("**NET : cart") && lines[0].contains(", seed 3, generation 1, individual "),
+        "{printed}"
+    );
+    assert_eq!((lines.len(), lines[1], lines[4]), (5, "DYNAMICAL NN", "END"));
+    assert_eq!(ok(own(), &here, "export genotype r --out a.gen"), "");
+    assert_eq!(fs::read_to_string(here.join("a.gen")).expect("the file"), printed);
+    assert!(say(own(), &here, "export genotype r --out a.gen").err.contains("a.gen: there is one already"));
+    assert!(say(own(), &here, "export genotype nowhere").err.contains("nowhere"));
+    ok(own(), &here, "import a.gen --experiment cart --out i");
+    assert_eq!(ok(own(), &here, "export genotype i").lines().skip(1).collect::<Vec<_>>(), lines[1..]);
+    let tested = |run: &str| {
+        ok(own(), &here, &format!("test {run} --trials 6"));
+        fs::read_to_string(here.join(run).join("test.csv")).expect("the test")
+    };
+    assert_eq!(tested("r"), tested("i"));
+
+    // Of several populations the one that is named.
+    hunters(&here);
+    ok(farsa(), &here, &format!("import a.gen b.gen --experiment predator-prey {SHORT} --out h"));
+    for (population, file) in [("predator", "a.gen"), ("prey", "b.gen")] {
+        let genes = ok(farsa(), &here, &format!("export genotype h --population {population}"));
+        let given = fs::read_to_string(here.join(file)).expect("the file");
+        assert!(genes.lines().skip(2).eq(given.lines().filter(|line| !line.starts_with(['*', 'D']))), "{population}");
+    }
+    for (rest, words) in [
+        ("", "--population: predator-prey has 2 populations, predator and prey: name one"),
+        (" --population pray", "--population: unknown population `pray`; the nearest is `prey`"),
+    ] {
+        let said = say(farsa(), &here, &format!("export genotype h{rest}"));
+        assert!(said.code == Some(2) && said.err.contains(words), "{said:?}");
+    }
+}
+
+#[test]
 fn imported_populations_meet_in_replays() {
     let here = scratch("import-several");
     hunters(&here);
