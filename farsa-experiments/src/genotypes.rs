@@ -152,11 +152,8 @@ pub fn read_genotypes(path: &Path, genes: usize, gene_bits: u32) -> Result<Vec<V
 
 /// A genotype as a `.gen` file, which [`read_genotypes`] and the original read; its name is one line.
 pub(crate) fn written(name: &str, genes: &[u16]) -> String {
-    let mut text = format!("**NET : {name}\nDYNAMICAL NN\n");
-    for gene in genes {
-        text += &format!("{gene}\n");
-    }
-    text + "END\n"
+    let genes: Vec<String> = genes.iter().map(u16::to_string).collect();
+    format!("**NET : {name}\nDYNAMICAL NN\n{}\nEND\n", genes.join("\n"))
 }
 
 #[cfg(test)]
