@@ -261,9 +261,8 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
             // Straight on until it runs into something: a step later at most, for it must get up to speed.
             let [a, b] = [&ends[0], &ends[1]];
             assert!(a.collided == b.collided && a.steps.abs_diff(b.steps) <= 2, "{condition} {trial}: {a:?} {b:?}");
-            eprintln!("GAP {condition} {trial} {}", (a.distance[0] - b.distance[0]).abs());
-            // The kinematic world undoes a step that collides, which is up to 13 mm long.
-            assert!((a.distance[0] - b.distance[0]).abs() < 0.02, "{condition} {trial}: {a:?} {b:?}");
+            // The kinematic world undoes a step that collides, which is up to 14.4 mm long; 13.0 was seen.
+            assert!((a.distance[0] - b.distance[0]).abs() < 0.0145, "{condition} {trial}: {a:?} {b:?}");
             collided += u32::from(b.collided);
         }
         assert!(collided > 6, "{condition}: {collided}");
