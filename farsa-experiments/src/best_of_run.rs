@@ -35,13 +35,8 @@ impl BestOfRun {
     pub fn read(directory: &Path, experiments: &[&dyn Experiment]) -> Result<Self, Error> {
         let directory = Directory::open(directory)?;
         let plan = Plan::of_file(experiments, &ConfigFile::read(&directory.config())?)?;
-        let path = directory.champion();
-        if !path.is_file() {
-            return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
-        }
-        let Champions { identity, generation, best } = Champions::read(&plan, &directory)?;
-        identity.same_values(&plan.identity()?, &path)?;
         let setup = plan.setup()?;
+        let Champions { generation, best, .. } = Champions::of(&plan, &directory, setup.as_ref())?;
         Ok(Self {
             experiment: plan.experiment.name().into(),
             condition: plan.condition,

@@ -92,28 +92,14 @@ struct Trials<'a> {
     starts: Vec<StartExport>,
 }
 
-/// The champions of a run's last generation, one of each population; and which generation that is.
-fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<(u32, Vec<Best>), Error> {
-    let path = directory.champion();
-    if !path.is_file() {
-        return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
-    }
-    let Champions { identity, generation, best } = Champions::read(plan, directory)?;
-    identity.same_values(&plan.identity()?, &path)?;
-    let genes = plan.setup()?.genes();
-    if best.iter().any(|best| best.genes.len() != genes) {
-        return Err(Error::damaged(&path, "its genome is not one of the experiment"));
-    }
-    Ok((generation, best))
-}
-
 /// The champion's genes as a `.gen` file; of several populations that of the one named.
 ///
 /// # Errors
 /// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
-    let (generation, best) = champions(plan, directory)?;
-    let (experiment, names) = (plan.experiment.name(), plan.setup()?.population_names());
+    let setup = plan.setup()?;
+    let Champions { generation, best, .. } = Champions::of(plan, directory, setup.as_ref())?;
+    let (experiment, names) = (plan.experiment.name(), setup.population_names());
     let population = Populations { experiment, names: &names }.one("--population", population)?;
     let Some(Best { individual, genes, .. }) = best.get(population) else {
         return Err(Error::damaged(&directory.champion(), "it has champions of other populations"));
@@ -129,8 +115,8 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
 /// # Errors
 /// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
-    let (generation, best) = champions(plan, directory)?;
     let setup = plan.setup()?;
+    let Champions { generation, best, .. } = Champions::of(plan, directory, setup.as_ref())?;
     let name = plan.experiment.name();
     let [Best { individual, genes, .. }] = best.as_slice() else {
         return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));

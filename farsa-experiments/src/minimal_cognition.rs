@@ -45,7 +45,7 @@ impl Experiment for MinimalCognition {
         "an agent with a continuous-time network catches circles and avoids diamonds that fall"
     }
 
-    /// 2: genes stand in the order of [`farsa_nn::CtrnnSymmetry`].
+    // 2: genes stand in the order of `CtrnnSymmetry`.
     fn values_version(&self) -> u32 {
         2
     }

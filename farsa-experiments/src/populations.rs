@@ -22,8 +22,7 @@ impl Populations<'_> {
         let Some((name, rest)) = text.split_once('=').filter(|_| self.names.len() > 1) else {
             return Ok((None, text));
         };
-        let found = self.names.iter().position(|known| known == name);
-        Ok((Some(found.ok_or_else(|| self.unknown(option, name))?), rest))
+        self.one(option, Some(name)).map(|found| (Some(found), rest))
     }
 
     /// The same of a file's name; one that is not Unicode names no population.
@@ -40,19 +39,19 @@ impl Populations<'_> {
     /// # Errors
     /// [`Error::Unknown`] with the nearest population; [`Error::Usage`] for none of several.
     pub(crate) fn one(&self, option: &str, name: Option<&str>) -> Result<usize, Error> {
-        let Self { experiment, names } = self;
         match name {
-            Some(name) => names.iter().position(|known| known == name).ok_or_else(|| self.unknown(option, name)),
-            None if names.len() > 1 => {
-                let (count, all) = (names.len(), names.join(" and "));
-                Err(Error::Usage(format!("{option}: {experiment} has {count} populations, {all}: name one")))
+            Some(name) => {
+                let unknown = || Error::unknown(option, "population", name, self.names.iter().map(String::as_str));
+                self.names.iter().position(|known| known == name).ok_or_else(unknown)
             }
+            None if self.names.len() > 1 => Err(Error::Usage(format!("{option}: {}: name one", self.several()))),
             None => Ok(0),
         }
     }
 
-    fn unknown(&self, option: &str, name: &str) -> Error {
-        Error::unknown(option, "population", name, self.names.iter().map(String::as_str))
+    /// That there are several, and which.
+    fn several(&self) -> String {
+        format!("{} has {} populations, {}", self.experiment, self.names.len(), self.names.join(" and "))
     }
 
     /// What is given for each population: by its name, or one for each in their order.
@@ -60,15 +59,14 @@ impl Populations<'_> {
     /// # Errors
     /// [`Error::Usage`] for a population that is left without, and for names here and none there.
     pub(crate) fn divide<T>(&self, option: &str, given: Vec<Given<T>>) -> Result<Vec<Vec<T>>, Error> {
-        let Self { experiment, names } = self;
+        let names = self.names;
         let count = names.len();
         let named = given.iter().filter(|(population, _)| population.is_some()).count();
         let mut all: Vec<Vec<T>> = names.iter().map(|_| Vec::new()).collect();
-        let several = || format!("{experiment} has {count} populations, {}", names.join(" and "));
         if named != 0 && named != given.len() {
             return Err(Error::Usage(format!(
                 "{option}: {}: name it everywhere or nowhere, as in {}",
-                several(),
+                self.several(),
                 self.example()
             )));
         }
@@ -77,7 +75,7 @@ impl Populations<'_> {
             let example = self.example();
             return Err(Error::Usage(format!(
                 "{option}: {found} given: {}; one for each in this order, or {example}",
-                several()
+                self.several()
             )));
         }
         for (place, (population, value)) in given.into_iter().enumerate() {

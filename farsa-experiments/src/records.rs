@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::directory::Directory;
 use crate::error::Error;
+use crate::experiment::Setup;
 use crate::learning::{Learning, Lessons};
 use crate::log::Mark;
 use crate::plan::{Identity, Plan};
@@ -270,5 +271,24 @@ impl Champions {
         }
         let ChampionOfOne { identity, generation, individual, fitness, genes } = read(&path, plan, directory)?;
         Ok(Self { identity, generation, best: vec![Best { individual, fitness, genes }] })
+    }
+
+    /// The same where a generation is finished, and this program would compute the champions' lives as they were.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read), [`Error::OtherConfiguration`] for other values, [`Error::Damaged`] for genomes that are none
+    /// of the experiment or when there is no champion yet.
+    pub(crate) fn of(plan: &Plan<'_>, directory: &Directory, setup: &dyn Setup) -> Result<Self, Error> {
+        let path = directory.champion();
+        if !path.is_file() {
+            return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
+        }
+        let found = Self::read(plan, directory)?;
+        found.identity.same_values(&plan.identity()?, &path)?;
+        let genes = setup.genes();
+        if found.best.len() != setup.populations() || found.best.iter().any(|best| best.genes.len() != genes) {
+            return Err(Error::damaged(&path, "its genome is not one of the experiment"));
+        }
+        Ok(found)
     }
 }
