@@ -45,8 +45,8 @@ pub fn exp<S: Scalar>(x: S) -> S {
 
 /// The logistic function 1 / (1 + e^-x), to within 2.5 units in the last place.
 ///
-/// In [0, 1] for every number, never falling, NaN for NaN. Below -ln of the largest number, where it would be subnormal, it is
-/// 0.
+/// In [0, 1] for every number, NaN for NaN; in `f32` never falling. Below -ln of the largest number, where it would be
+/// subnormal, it is 0.
 #[inline(always)]
 pub fn logistic<S: Scalar>(x: S) -> S {
     let one = x.constant(1.0);

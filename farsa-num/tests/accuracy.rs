@@ -113,6 +113,18 @@ fn single_precision() {
     });
 }
 
+/// Where e^-x is just above 2^24 or 2^53 the 1 added to it is all rounded away, and its own error counts most.
+#[test]
+fn logistic_where_its_error_is_largest() {
+    let x = -16.635_532_f32;
+    let near = (0..20_000).map(|i| f32::from_bits(x.to_bits() + i));
+    worst("logistic f32 near", 2.5, near, |x| error_f32(logistic(x), near_logistic(f64::from(x), -88.722_84)));
+    let x = -53.0 * core::f64::consts::LN_2;
+    worst("logistic f64 near", 3.5, even(x - 0.01, x, 1_000_000), |x| {
+        error_f64(logistic(x), near_logistic(x, -709.782_712_893_384))
+    });
+}
+
 /// The neighbours of every multiple of pi / 2, where sine or cosine are smallest and the reduction cancels most.
 #[test]
 fn near_multiples_of_a_quarter_turn() {
