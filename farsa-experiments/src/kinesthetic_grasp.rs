@@ -26,8 +26,9 @@ use crate::stage::Stage;
 /// four trials, which is its fitness, and then a lesson; `learning.csv` in the run's directory has the errors.
 ///
 /// What is desired is what the script would do where the arm is, and the arm is led in part by the network's own commands, from
-/// not at all in the first demonstration of a lesson to a share in its last one that grows from lesson to lesson \[Ross2011\]: a network that has only seen where the
-/// script goes does not know what to do where its own small errors take it.
+/// not at all in the first demonstration of a lesson to a share in its last one that grows from lesson to lesson \[Ross2011\]: a
+/// network that has only seen where the script goes does not know what to do where its own small errors take it. What lives
+/// and leads is the mean of the networks after the latest steps of learning \[Polyak1992\].
 ///
 /// Deviations from `reach-grasp-lift`: slope 1 and weights within 20, because with slope 0.2 and weights within 6 two
 /// layers cannot amplify as the script's feedback does; 24 hidden neurons.
@@ -67,6 +68,7 @@ impl Config {
             batch: count("lessons.batch")?,
             rate: settings.number("lessons.rate")?,
             half_rate: settings.number("lessons.half_rate")?,
+            mean: count("lessons.mean")?,
             own_say: count("lessons.own_say")?,
         };
         Ok(Self { reach, lessons })
@@ -76,6 +78,11 @@ impl Config {
 impl Experiment for KinestheticGrasp {
     fn name(&self) -> &'static str {
         "kinesthetic-grasp"
+    }
+
+    // 2: what lives and leads is the mean over the latest steps of learning; more demonstrations, gone through less often.
+    fn values_version(&self) -> u32 {
+        2
     }
 
     fn summary(&self) -> &'static str {
@@ -90,7 +97,7 @@ impl Experiment for KinestheticGrasp {
         let Config { reach, lessons } = Config::default();
         let whole = |key: &str, value: u32, range| Setting::whole(key, i64::from(value), range);
         let mut table = vec![
-            Setting::whole("evolution.generations", 100, 1..=i64::from(u32::MAX) - 1)
+            Setting::whole("evolution.generations", 250, 1..=i64::from(u32::MAX) - 1)
                 .doc("Lessons, each after a life that shows what is known so far; the one thing that a resumed run may change."),
             whole("lessons.demonstrations", lessons.demonstrations, 1..=10_000)
                 .doc("Times that the arm is led in a lesson, each from another start; the four trials take turns."),
@@ -99,10 +106,10 @@ impl Experiment for KinestheticGrasp {
             Setting::number("lessons.rate", lessons.rate, 0.0..=1.0).doc("Size of a step of learning, of Adam."),
             Setting::number("lessons.half_rate", lessons.half_rate, 1.0..=1e9)
                 .doc("Lessons after which the step has half that size, and a third after twice as many."),
-            whole("lessons.own_say", lessons.own_say, 0..=1_000_000).doc(
-                "Lessons until the network leads itself fully in a lesson's last demonstration, 0 if it never does; from about 0.75 of \
-                     it on the teacher loses the arm.",
-            ),
+            whole("lessons.mean", lessons.mean, 1..=1_000_000)
+                .doc("Steps of learning over which the network is averaged before it lives and leads; 1: as the latest one left it."),
+            whole("lessons.own_say", lessons.own_say, 0..=1_000_000)
+                .doc("Lessons until the network leads itself fully in a lesson's last demonstration, 0 if it never does."),
         ];
         table.append(&mut reach.table());
         table

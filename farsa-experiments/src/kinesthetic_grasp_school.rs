@@ -32,13 +32,15 @@ pub struct Lessons {
     pub rate: f64,
     /// Lessons after which that is half, and a third after twice as many.
     pub half_rate: f64,
+    /// Steps of learning over which parameters are averaged for lives; 1 for the latest ones as they are.
+    pub mean: u32,
     /// Lessons until the network has its full say while it is led; 0 if it never has any.
     pub own_say: u32,
 }
 
 impl Default for Lessons {
     fn default() -> Self {
-        Self { demonstrations: 8, passes: 10, batch: 2, rate: 0.012, half_rate: 12.0, own_say: 150 }
+        Self { demonstrations: 16, passes: 5, batch: 2, rate: 0.012, half_rate: 75.0, mean: 800, own_say: 150 }
     }
 }
 
@@ -84,7 +86,7 @@ impl School {
         });
         let pupil =
             Learner::new(self.layout, self.leak, Loss::CrossEntropy, first.collect(), Adam::new(self.lessons.rate));
-        Some(pupil.ok()?.with_limit(self.weight_range).with_longest(LONGEST))
+        Some(pupil.ok()?.with_limit(self.weight_range).with_longest(LONGEST).with_mean(self.lessons.mean))
     }
 
     /// The words that learning starts from; none for a network that cannot be.
@@ -92,13 +94,13 @@ impl School {
         self.pupil(seed).map_or_else(Vec::new, |pupil| pupil.words().collect())
     }
 
-    /// The network's parameters that stand in the words of its pupil.
+    /// The network's parameters that stand last in the words of its pupil: their mean over the latest steps.
     pub(crate) fn parameters(&self, words: &[f64]) -> Vec<f32> {
         let hidden = self.layout.hidden().max(1);
         let of_sensors = self.layout.range(ParameterKind::SensorWeight);
         let unit = |index: usize| if of_sensors.contains(&index) { self.units[index / hidden] } else { 1.0 };
-        let words = words.iter().take(self.layout.parameter_count()).enumerate();
-        words.map(|(index, p)| (p / f64::from(unit(index))) as f32).collect()
+        let mean = &words[words.len().saturating_sub(self.layout.parameter_count())..];
+        mean.iter().enumerate().map(|(index, p)| (p / f64::from(unit(index))) as f32).collect()
     }
 
     /// The genes that come nearest to these parameters.
@@ -168,7 +170,7 @@ impl School {
 fn error(squares: &mut Gradient<f64>, pupil: &Learner<f64, Adam>, records: &[Record]) -> Result<f64, NetworkError> {
     let (mut sum, mut values) = (0.0, 0);
     for record in records {
-        sum += squares.cost(pupil.parameters(), record.demonstration())?;
+        sum += squares.cost(pupil.mean(), record.demonstration())?;
         values += record.wanted.len();
     }
     Ok(Scalar::sqrt(sum / values.max(1) as f64))

@@ -69,6 +69,26 @@ fn genes_are_the_parameters_to_half_a_unit() {
 }
 
 #[test]
+fn who_lives_is_the_mean_over_the_steps() {
+    let after_a_lesson = |mean| {
+        let lessons = Lessons { demonstrations: 2, passes: 6, batch: 2, mean, ..Lessons::default() };
+        let mut lives = Lives::new(Config { lessons, ..Config::default() }).unwrap();
+        let (words, _) = taught(&mut lives, 1);
+        (lives.genes(), lives.learned(&words), words)
+    };
+    // The same is learned from what the script shows, and the one that lives is another.
+    let (count, latest, mut words) = after_a_lesson(1);
+    let (_, mean, others) = after_a_lesson(50);
+    assert_eq!(words[..count], others[..count]);
+    let apart = latest.iter().zip(&mean).filter(|(latest, mean)| latest != mean).count();
+    assert!(apart > count / 2, "{apart} of {count}");
+    // It is the one whose parameters stand last.
+    let tail = words.len() - count;
+    words[tail..].copy_from_slice(&others[others.len() - count..]);
+    assert_eq!(lives(2, 0).learned(&words), mean);
+}
+
+#[test]
 fn the_arm_is_led_in_our_world_alone() {
     let mut settings = Settings::new(KinestheticGrasp.settings("")).unwrap();
     assert_eq!(Config::read(&settings).unwrap(), Config::default());

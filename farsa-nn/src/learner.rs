@@ -38,6 +38,27 @@ pub struct Learner<R, O> {
     limit: Option<R>,
     /// The largest length that a gradient may have.
     longest: Option<R>,
+    mean: Option<Mean<R>>,
+}
+
+/// The mean of parameters over steps.
+#[derive(Clone, Debug)]
+struct Mean<R> {
+    /// What each step's parameters are of it.
+    share: R,
+    /// How much of its steps there is yet, 0 before the first and 1 after many; and the mean itself \[parameters\].
+    words: Vec<R>,
+}
+
+impl<R: Real> Mean<R> {
+    fn add(&mut self, parameters: &[R]) {
+        let Some((begun, mean)) = self.words.split_first_mut() else { return };
+        *begun += (R::of(1.0) - *begun) * self.share;
+        let share = self.share / *begun;
+        for (m, p) in mean.iter_mut().zip(parameters) {
+            *m += (*p - *m) * share;
+        }
+    }
 }
 
 impl<R: Real, O: Optimizer<R>> Learner<R, O> {
@@ -50,7 +71,7 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         let single: Vec<f32> = parameters.iter().map(|p| p.to_f64() as f32).collect();
         crate::network::check(&layout, &single)?;
         let memory = vec![R::default(); optimizer.memory_len(parameters.len())];
-        Ok(Self { gradient, optimizer, parameters, memory, limit: None, longest: None })
+        Ok(Self { gradient, optimizer, parameters, memory, limit: None, longest: None, mean: None })
     }
 
     /// The same learner with weights and biases kept within plus and minus this.
@@ -62,6 +83,16 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
     /// come from where a small change decides much, and say little.
     pub fn with_longest(self, longest: R) -> Self {
         Self { longest: Some(longest), ..self }
+    }
+
+    /// The same learner with a [`mean`](Self::mean) of its parameters over about so many of the latest steps, at least one: it
+    /// lies in the middle of where steps that do not grow smaller go to and fro.
+    ///
+    /// Source: \[Polyak1992\]. Deviation: the plain mean over the first steps only; then a step counts less by a factor of
+    /// `1 - 1/steps` with each that follows.
+    pub fn with_mean(self, steps: u32) -> Self {
+        let words = core::iter::once(R::default()).chain(self.parameters.iter().copied()).collect();
+        Self { mean: Some(Mean { share: R::of(1.0 / f64::from(steps.max(1))), words }), ..self }
     }
 
     /// One step along the mean gradient of these demonstrations; returns what they cost before it, per motor value.
@@ -100,6 +131,9 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
                 *p = farsa_num::Scalar::clamp(*p, -limit, limit);
             }
         }
+        if let Some(mean) = &mut self.mean {
+            mean.add(&self.parameters);
+        }
         Ok(self.gradient.mean_cost())
     }
 
@@ -126,9 +160,17 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         &self.parameters
     }
 
-    /// All that learning goes on from: the parameters and the optimizer's memory, one after the other.
+    /// The mean of the parameters over the latest steps [[`parameter_count`](Layout::parameter_count)], and of a learner
+    /// without [`with_mean`](Self::with_mean) the parameters.
+    pub fn mean(&self) -> &[R] {
+        self.mean.as_ref().and_then(|mean| mean.words.get(1..)).unwrap_or(&self.parameters)
+    }
+
+    /// All that learning goes on from, one after the other: the parameters, the optimizer's memory, and of a learner with a
+    /// mean how much of its steps there is yet and the mean.
     pub fn words(&self) -> impl Iterator<Item = R> + '_ {
-        self.parameters.iter().chain(&self.memory).copied()
+        let mean = self.mean.iter().flat_map(|mean| &mean.words);
+        self.parameters.iter().chain(&self.memory).chain(mean).copied()
     }
 
     /// Goes on from where another learner of the same kind was.
@@ -136,16 +178,21 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
     /// # Errors
     /// [`Error::StateLen`] for another number of words, [`Error::NotFinite`]; then nothing has changed.
     pub fn set_words(&mut self, words: &[R]) -> Result<(), Error> {
-        let (count, found) = (self.parameters.len(), words.len());
-        let expected = count + self.memory.len();
+        let found = words.len();
+        let expected = self.words().count();
         if expected != found {
             return Err(Error::StateLen { expected, found });
         }
         if let Some(index) = words.iter().position(|word| !word.to_f64().is_finite()) {
             return Err(Error::NotFinite { index });
         }
-        self.parameters.copy_from_slice(&words[..count]);
-        self.memory.copy_from_slice(&words[count..]);
+        let (parameters, rest) = words.split_at(self.parameters.len());
+        let (memory, mean) = rest.split_at(self.memory.len());
+        self.parameters.copy_from_slice(parameters);
+        self.memory.copy_from_slice(memory);
+        if let Some(Mean { words, .. }) = &mut self.mean {
+            words.copy_from_slice(mean);
+        }
         Ok(())
     }
 }

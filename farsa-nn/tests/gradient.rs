@@ -194,6 +194,50 @@ fn learning_goes_on_where_it_stopped() -> Result<(), Error> {
     Ok(())
 }
 
+/// Against the sum over all steps, of which the latest counts 1 and each before it a factor of 1 - 1/steps less.
+#[test]
+fn a_mean_is_that_of_the_latest_steps() -> Result<(), Error> {
+    let mut averaged = learner(Leak::Filter, Adam::new(0.03)).with_mean(5);
+    assert_eq!(averaged.mean(), averaged.parameters());
+    let mut steps: Vec<Vec<f64>> = Vec::new();
+    for _ in 0..40 {
+        learn(&mut averaged, 1);
+        steps.push(averaged.parameters().to_vec());
+        for (index, mean) in averaged.mean().iter().enumerate() {
+            let (mut sum, mut weights, mut weight) = (0.0, 0.0, 1.0);
+            for step in steps.iter().rev() {
+                sum += weight * step[index];
+                weights += weight;
+                weight *= 0.8;
+            }
+            assert!((mean - sum / weights).abs() < 1e-12, "{mean} is not {}", sum / weights);
+        }
+    }
+    // It changes nothing of learning, and goes on where it stopped.
+    let mut plain = learner(Leak::Filter, Adam::new(0.03));
+    learn(&mut plain, 40);
+    assert_eq!(plain.parameters(), averaged.parameters());
+    assert_eq!(plain.mean(), plain.parameters());
+    let words: Vec<f64> = averaged.words().collect();
+    assert_eq!(plain.set_words(&words), Err(Error::StateLen { expected: plain.words().count(), found: words.len() }));
+    let mut second = learner(Leak::Filter, Adam::new(0.03)).with_mean(5);
+    second.set_words(&words)?;
+    learn(&mut second, 3);
+    learn(&mut averaged, 3);
+    assert!(second.words().eq(averaged.words()));
+    // A mean over one step is that step, but for rounding; one over many of a few is the plain mean.
+    let mut latest = learner(Leak::Filter, Adam::new(0.03)).with_mean(0);
+    learn(&mut latest, 40);
+    assert!(latest.mean().iter().zip(latest.parameters()).all(|(mean, p)| (mean - p).abs() < 1e-15));
+    let mut all = learner(Leak::Filter, Adam::new(0.03)).with_mean(u32::MAX);
+    learn(&mut all, 40);
+    for (index, mean) in all.mean().iter().enumerate() {
+        let plain = steps.iter().map(|step| step[index]).sum::<f64>() / 40.0;
+        assert!((mean - plain).abs() < 1e-6, "{mean} is not {plain}");
+    }
+    Ok(())
+}
+
 #[test]
 fn demonstrations_of_other_shapes_are_refused() -> Result<(), Error> {
     let layout = Layout::new(2, 1, 3);
