@@ -10,7 +10,7 @@ use farsa::body::{
     Tabletop, World as _,
 };
 use farsa::physics::articulated::{Model, Options, World};
-use farsa_experiments::{Camera, Page, Picture, Recording, Stage};
+use farsa_view::{Camera, Page, Picture, Recording, Stage};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arm = ArmAndHand::default();

@@ -10,7 +10,7 @@ use farsa::body::{
     Shape, Surface, World as _,
 };
 use farsa::physics::articulated::{Model, Options, World};
-use farsa_experiments::{Camera, Page, Recording, Stage};
+use farsa_view::{Camera, Page, Recording, Stage};
 
 const SHOULDER: [f64; 2] = [-1.5, 1.5]; // rad
 const ELBOW: [f64; 2] = [0.0, 2.0];

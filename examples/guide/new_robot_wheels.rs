@@ -8,7 +8,7 @@ use farsa::body::{
     Recorder as _, Sensor as _, WheelVelocity, World as _,
 };
 use farsa::physics::arena::{Arena, Cylinder, World};
-use farsa_experiments::{Camera, Recording, Stage};
+use farsa_view::{Camera, Recording, Stage};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let angles = [1.2, 0.6, 0.0, -0.6, -1.2]; // counter-clockwise from ahead

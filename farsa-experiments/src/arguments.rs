@@ -6,9 +6,9 @@ use std::thread;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
 use clap_complete::Shell;
+use farsa_view::Camera;
 
 use crate::arguments_genotypes::{EvaluateArgs, ImportArgs};
-use crate::camera::Camera;
 use crate::error::Error;
 use crate::experiment::Experiment;
 use crate::export::{ControllerFormat, DataFormat, ModelFormat};

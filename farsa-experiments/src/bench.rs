@@ -314,7 +314,7 @@ mod tests {
     use crate::experiment::{Description, Experiment, Setup, Tape};
     use crate::lanes::Wanted;
     use crate::settings::{Setting, Settings, Value};
-    use crate::stage::Stage;
+    use farsa_view::Stage;
 
     /// Lives of 7 steps of at most 10; those of individual 1 break down in their first trial.
     struct Toy {

@@ -7,6 +7,7 @@ use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, ParameterKind};
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
+use farsa_view::Stage;
 
 use crate::engine::{ENGINE, Engine};
 use crate::error::Error;
@@ -14,7 +15,6 @@ use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Se
 use crate::gait::Rules;
 use crate::life::{Job, Life as _};
 use crate::settings::{Setting, Settings};
-use crate::stage::Stage;
 use crate::walker::{Legs, Walker};
 use crate::walker_life::{Brain, Launch, SENSES, Walk, WalkerLife};
 #[cfg(feature = "rapier")]

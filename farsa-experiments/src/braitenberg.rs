@@ -4,12 +4,12 @@ pub use crate::braitenberg_life::{Config, LIGHTS, Vehicle, VehicleLife, Wiring};
 
 use farsa_body::{Kinematics as _, Recorder, World as _};
 use farsa_physics::arena::World;
+use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::life::{Job, Life as _};
 use crate::settings::{Setting, Settings};
-use crate::stage::{Channel, Links, NodeParameters, Stage};
 
 /// What four ways of wiring two light-driven wheels look like from outside \[Braitenberg1984, vehicles 2a to 3b\].
 ///

@@ -13,6 +13,7 @@ use farsa_body::{
 };
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
+use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 use crate::discrimination_config::ROBOTS;
 use crate::error::Error;
@@ -20,7 +21,6 @@ use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Se
 use crate::life::{Job, Life as _};
 use crate::search::Search;
 use crate::settings::{Setting, Settings};
-use crate::stage::{Channel, Links, NodeParameters, Stage};
 
 /// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2\]
 ///

@@ -176,6 +176,17 @@ others!(
     farsa_evo::EvoError,
 );
 
+impl From<farsa_view::Error> for Error {
+    fn from(error: farsa_view::Error) -> Self {
+        match error {
+            farsa_view::Error::UnknownCamera { name, nearest } => {
+                Self::Unknown { place: String::new(), what: "camera", name, nearest }
+            }
+            other => Self::Other(other.to_string()),
+        }
+    }
+}
+
 /// The name that takes the fewest changed, added, dropped or swapped letters.
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     valid.into_iter().min_by_key(|candidate| strsim::damerau_levenshtein(name, candidate))

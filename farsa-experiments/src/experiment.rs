@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use farsa_body::{MjcfOptions, Recorder};
+use farsa_view::Stage;
 
 use crate::controller_export::{ControllerExport, CtrnnExport, StartExport};
 use crate::error::Error;
@@ -10,7 +11,6 @@ use crate::lanes::Lanes;
 use crate::life::Job;
 use crate::search::Search;
 use crate::settings::{Setting, Settings};
-use crate::stage::Stage;
 
 /// An experiment that the `farsa` command lists, explains, runs, tests and replays.
 ///

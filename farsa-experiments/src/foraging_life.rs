@@ -4,6 +4,7 @@ use farsa_body::{Arrange as _, BodyId, ColorBand, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError, World};
+use farsa_view::Channel;
 
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Note, Outcome};
@@ -11,7 +12,6 @@ use crate::foraging_config::ForagingConfig;
 use crate::foraging_field::Field;
 use crate::life::Job;
 use crate::nest::{COLORS, on_nest};
-use crate::stage::Channel;
 use crate::swarm_config::TeamConfig;
 use crate::swarm_life::{Mission, Moment, TeamLife};
 use crate::swarm_setup::{eye_groups, eye_names};

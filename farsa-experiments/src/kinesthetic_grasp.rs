@@ -5,6 +5,7 @@ pub use crate::kinesthetic_grasp_school::Lessons;
 use std::sync::Arc;
 
 use farsa_body::MjcfOptions;
+use farsa_view::Stage;
 
 use crate::controller_export::{ControllerExport, StartExport};
 use crate::engine::{ENGINE, Engine};
@@ -16,7 +17,6 @@ use crate::life::Job;
 use crate::reach_grasp_lift::{Config as Reach, Lives as ReachLives, Scene};
 use crate::search::Search;
 use crate::settings::{Setting, Settings};
-use crate::stage::Stage;
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
 ///

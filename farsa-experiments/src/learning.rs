@@ -156,7 +156,7 @@ mod tests {
     use super::*;
     use crate::experiment::{Description, Outcome, Tape};
     use crate::life::Job;
-    use crate::stage::Stage;
+    use farsa_view::Stage;
 
     /// Learns from two words, one gene more with each lesson.
     struct Forgetful;

@@ -6,9 +6,9 @@ use std::path::Path;
 use clap::builder::PossibleValuesParser;
 use clap::{Command, CommandFactory as _};
 use clap_complete::Shell;
+use farsa_view::Camera;
 
 use crate::arguments::Cli;
-use crate::camera::Camera;
 use crate::directory::create_results;
 use crate::error::Error;
 use crate::experiment::Experiment;

@@ -9,17 +9,14 @@ use core::f64::consts::FRAC_PI_4;
 
 use farsa_body::{BodyId, Pose, Recorder};
 use farsa_nn::{CtrnnParameter, CtrnnParts, Span};
+use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, Role, Stage, View};
 
 use crate::controller_export::CtrnnExport;
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
-use crate::form::Form;
 use crate::life::Job;
 use crate::minimal_cognition_network::{LINKED, MOTOR_ONES};
-use crate::picture::{Color, OKABE_ITO, Role};
-use crate::prop::Prop;
 use crate::settings::{Setting, Settings};
-use crate::stage::{Channel, Links, NodeParameters, Stage, View};
 
 /// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]
 ///

@@ -1,7 +1,5 @@
 //! What falls in `minimal-cognition`, and where a ray meets it.
 
-use crate::form::slab;
-
 /// A falling object, about its centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Object {
@@ -60,6 +58,16 @@ impl Object {
         };
         (first <= last && last >= 0.0).then(|| first.max(0.0))
     }
+}
+
+/// The distances between which a ray is within `half` of 0 on one axis; empty if first > last.
+fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
+    if direction == 0.0 {
+        let inside = origin.abs() <= half;
+        return if inside { [f64::NEG_INFINITY, f64::INFINITY] } else { [f64::INFINITY, f64::NEG_INFINITY] };
+    }
+    let (a, b) = ((-half - origin) / direction, (half - origin) / direction);
+    [a.min(b), a.max(b)]
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Sensor, record_world};
 use farsa_nn::{Controller as _, Layout};
+use farsa_view::Stage;
 
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Tape};
-use crate::stage::Stage;
 use crate::swarm_team::{NetworkDecoder, TeamNetwork};
 
 /// Sensors, a recurrent network whose parameters are genes, and motors: what a life needs beside its world and its judge.
@@ -165,11 +165,11 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::Recording;
     use farsa_body::testing::PointWorld;
     use farsa_body::{ActuatorId, JointId, JointPosition, JointSpeed, Muscles, TorqueMotor, World as _};
     use farsa_evo::{GeneRange, decode};
     use farsa_nn::{Leak, Network, ParameterKind};
+    use farsa_view::Recording;
 
     type Senses = (JointPosition, JointSpeed);
 

@@ -8,13 +8,13 @@ pub use crate::walker_life::{Brain, Launch, Pace, SENSES, Walk, WalkerLife};
 use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
+use farsa_view::Stage;
 
 use crate::engine::ENGINE;
 use crate::error::Error;
 use crate::experiment::{Description, Experiment, Note, Outcome, Setup, Tape};
 use crate::life::{Job, Life as _};
 use crate::settings::{Setting, Settings};
-use crate::stage::Stage;
 use crate::walker_settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
 use crate::walker_stage::{drawn, exported, stage};
 use crate::walking_model::{ModelGait, SLOPES, WalkingModel};

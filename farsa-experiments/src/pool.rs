@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::experiment::{Description, Tape};
     use crate::life::Job;
-    use crate::stage::Stage;
+    use farsa_view::Stage;
 
     /// Earns its individual's number and panics from the fifth on, if asked to by a gene.
     struct Nothing;

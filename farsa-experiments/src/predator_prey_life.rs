@@ -6,12 +6,12 @@ use farsa_body::{Arrange as _, BodyId, ColorBand, Contacts as _, PairId, Pose, T
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError, World};
+use farsa_view::Channel;
 
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Note, Outcome};
 use crate::life::Job;
 use crate::predator_prey_config::{NAMES, OUTPUTS, PredatorPreyConfig};
-use crate::stage::Channel;
 use crate::swarm_config::TeamConfig;
 use crate::swarm_life::{Mission, Moment, TeamLife};
 use crate::swarm_robot::{BLUE, RED};

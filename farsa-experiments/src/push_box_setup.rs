@@ -3,16 +3,13 @@
 use farsa_body::{Kinematics as _, Pose, Recorder, World as _};
 use farsa_nn::Perceptron;
 use farsa_physics::rapier::ArenaWorld;
+use farsa_view::{Channel, Form, Links, NodeParameters, Prop, Role, Stage, screen_color};
 
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Note, Outcome, Setup, Tape};
-use crate::form::Form;
 use crate::life::{Job, Life as _};
-use crate::picture::Role;
-use crate::prop::{Prop, screen_color};
 use crate::push_box_config::PushConfig;
 use crate::push_box_life::{OUTPUTS, PushLife};
-use crate::stage::{Channel, Links, NodeParameters, Stage};
 
 /// The layer of two logistic units that genes are decoded into.
 type Layer = Perceptron<Vec<f32>>;
@@ -186,7 +183,7 @@ impl Lives {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::Recording;
+    use farsa_view::Recording;
 
     #[test]
     fn genes_are_decoded_over_the_whole_range() {

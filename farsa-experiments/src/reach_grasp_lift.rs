@@ -12,6 +12,7 @@ use std::sync::Arc;
 use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
 use farsa_nn::Network;
 use farsa_physics::articulated::{Batch, Model, World};
+use farsa_view::Stage;
 
 use crate::controller_export::{ControllerExport, NetworkExport, StartExport};
 use crate::error::Error;
@@ -22,7 +23,6 @@ use crate::live_in_lanes::live_in_lanes;
 use crate::reach_grasp_lift_decoder::Decoder;
 use crate::reach_grasp_lift_stage::{NetworkLife, Teller};
 use crate::settings::{Setting, Settings};
-use crate::stage::Stage;
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
@@ -332,10 +332,10 @@ where
 #[cfg(test)]
 mod tests {
     use farsa_body::{ArmAndHand, Tabletop};
+    use farsa_view::Recording;
 
     use super::*;
     use crate::reach_grasp_lift_stage::SCALARS;
-    use crate::recording::Recording;
 
     #[test]
     fn both_conditions_have_the_sizes_of_the_source() {

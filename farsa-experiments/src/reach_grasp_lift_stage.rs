@@ -5,12 +5,12 @@ use farsa_body::{
     Twist,
 };
 use farsa_nn::Network;
+use farsa_view::{Channel, Stage};
 
 use crate::fitness::Ledger;
 use crate::phase::Phase;
 use crate::reach_grasp_lift_life::ReachLife;
 use crate::reach_grasp_lift_scene::Scene;
-use crate::stage::{Channel, Stage};
 
 /// The controller's life in a trial.
 pub(crate) type NetworkLife = ReachLife<Network<Vec<f32>, Vec<f32>>>;

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use farsa_body::Recorder;
 use farsa_evo::Fitness;
+use farsa_view::{Page, Recording, Stage, Table, readable};
 use serde::Serialize;
 
 use crate::directory::{Directory, create_result};
@@ -13,12 +14,8 @@ use crate::error::Error;
 use crate::experiment::{Note, Outcome, Setup, Tape};
 use crate::life::Job;
 use crate::opponents;
-use crate::page::{Page, readable};
 use crate::plan::Plan;
-use crate::recording::Recording;
 use crate::records::Ancestry;
-use crate::stage::Stage;
-use crate::table::Table;
 
 /// Which lives to live again; individuals are counted through all populations.
 #[derive(Debug, Clone, Copy, Default)]

@@ -363,7 +363,7 @@ mod tests {
     use crate::lanes::Wanted;
     use crate::replay::{Which, replay};
     use crate::settings::{Setting, Settings, Value};
-    use crate::stage::Stage;
+    use farsa_view::Stage;
     use std::path::PathBuf;
 
     /// Earns its first gene; panics in one life, if asked to, and fails where the gene is odd.

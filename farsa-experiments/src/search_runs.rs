@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use farsa_num::{Domain, Stream};
+use farsa_view::Stage;
 
 use crate::bench::{Sample, bench};
 use crate::directory::Directory;
@@ -22,7 +23,6 @@ use crate::replay::{Which, replay};
 use crate::run::{create, go_on};
 use crate::search::{Descent, Search};
 use crate::settings::{Setting, Settings, Value};
-use crate::stage::Stage;
 
 const TRIALS: u32 = 3;
 const SIZE: usize = 10;

@@ -3,11 +3,11 @@
 use farsa_body::{ColorBand, Kinematics as _};
 use farsa_nn::Controller;
 use farsa_physics::arena::{Arena, ArenaError, World};
+use farsa_view::Channel;
 
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Outcome};
 use crate::life::{Job, Life};
-use crate::stage::Channel;
 use crate::swarm_config::TeamConfig;
 use crate::swarm_team::Team;
 

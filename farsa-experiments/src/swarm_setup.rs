@@ -2,11 +2,11 @@
 
 use farsa_body::{BodyId, Kinematics as _, Recorder, World as _};
 use farsa_physics::arena::{Arena, World};
+use farsa_view::Stage;
 
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Outcome, Setup, Tape};
 use crate::life::{Job, Life as _};
-use crate::stage::Stage;
 use crate::swarm_config::{EYES, TeamConfig};
 use crate::swarm_life::{Mission, TeamLife};
 use crate::swarm_team::{NetworkDecoder, OUTPUTS, TeamNetwork};

@@ -3,8 +3,8 @@
 use farsa_body::{BodyId, Collider, Kinematics, Pose, Recorder, Robot, Shape, Surface};
 
 use farsa_num::sin_cos;
+use farsa_view::{Channel, Stage};
 
-use crate::stage::{Channel, Stage};
 use crate::walker::{Walker, WalkerParts};
 use crate::walker_life::WalkerLife;
 

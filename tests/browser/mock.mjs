@@ -5,7 +5,7 @@
 import { readFileSync, writeFileSync } from "node:fs";
 import { crc32 } from "node:zlib";
 
-const VIEWER = new URL("../../farsa-experiments/src/viewer/", import.meta.url);
+const VIEWER = new URL("../../farsa-view/src/page/viewer/", import.meta.url);
 // In the order in which the page has them.
 export const SCRIPTS = ["data.js", "scene.js", "strips.js", "network.js", "main.js"];
 export const viewer = (name) => readFileSync(new URL(name, VIEWER), "utf8");

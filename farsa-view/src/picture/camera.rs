@@ -1,9 +1,8 @@
 //! From where a picture is taken.
 
 use crate::error::Error;
-use crate::picture::Picture;
-use crate::stage::View;
-use crate::vector::{Vector, across, add, along, cross, dot, scale, sub, unit};
+use crate::recording::view::View;
+use crate::shape::vector::{Vector, across, add, along, cross, dot, scale, sub, unit};
 
 /// A named direction to look from; the frame is fitted to what there is to see.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,14 +76,14 @@ impl Camera {
     /// The camera with a name.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name if there is none.
+    /// [`Error::UnknownCamera`] with the nearest name if there is none.
     pub fn named(name: &str) -> Result<Self, Error> {
         let known = CAMERAS.into_iter().find(|camera| camera.name == name);
-        known.ok_or_else(|| Error::unknown("", "camera", name, Self::NAMES))
+        known.ok_or_else(|| Error::unknown_camera(name, Self::NAMES))
     }
 
     /// The one that a view of a stage begins with.
-    pub(crate) fn for_view(view: View) -> Self {
+    pub fn for_view(view: View) -> Self {
         match view {
             View::Free => CAMERAS[0],
             View::Top => CAMERAS[3],
@@ -96,10 +95,14 @@ impl Camera {
         self.name
     }
 
-    /// The nearest view in this direction that shows all there is to see in a frame of width and height [pixels].
-    pub(crate) fn fit(&self, picture: &Picture, size: [u32; 2]) -> Window {
+    /// Whether it looks only for things and what handles them.
+    pub(crate) fn is_close(&self) -> bool {
+        self.close
+    }
+
+    /// The nearest view in this direction that shows all of these balls in a frame of width and height [pixels].
+    pub(crate) fn fit(&self, mut balls: Vec<(Vector, f64)>, size: [u32; 2]) -> Window {
         let size = size.map(|x| x.max(1));
-        let mut balls = picture.interest(self.close);
         if balls.is_empty() {
             balls.push(([0.0; 3], 0.5));
         }
@@ -116,7 +119,7 @@ impl Camera {
         };
         let ranges = axes.map(range);
         let centre = (0..3).fold([0.0; 3], |sum, i| along(sum, axes[i], f64::midpoint(ranges[i][0], ranges[i][1])));
-        let distance = |(c, r): &(Vector, f64)| crate::vector::length(sub(*c, centre)) + r;
+        let distance = |(c, r): &(Vector, f64)| crate::shape::vector::length(sub(*c, centre)) + r;
         let radius = balls.iter().map(distance).fold(1e-3, f64::max);
         let [width, height] = size.map(f64::from);
         let shorter = width.min(height) / 2.0;
@@ -190,7 +193,7 @@ impl Window {
             return corners.to_vec();
         }
         // A little farther than what can be projected, so that all that is left can.
-        crate::outline::clip(corners, |point| self.depth(*point) - 2.0 * NEAR, crate::vector::mix)
+        crate::picture::outline::clip(corners, |point| self.depth(*point) - 2.0 * NEAR, crate::shape::vector::mix)
     }
 
     /// The direction from the scene to the light that suits the view: from the upper left, before the scene.
@@ -221,8 +224,9 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::form::{Form, Sight};
-    use crate::picture::{Placed, Role};
+    use crate::picture::moment::Picture;
+    use crate::shape::appearance::{Placed, Role};
+    use crate::shape::form::{Form, Sight};
     use farsa_body::Pose;
     use proptest::prelude::*;
 
@@ -248,7 +252,7 @@ mod tests {
             shapes in prop::collection::vec(placed(), 1..6), which in 0..5usize, width in 50u32..2000, height in 50u32..2000,
         ) {
             let picture = Picture { shapes, ..Picture::default() };
-            let view = CAMERAS[which].fit(&picture, [width, height]);
+            let view = picture.window(CAMERAS[which], [width, height]);
             for placed in &picture.shapes {
                 let sight = if view.parallel {
                     Sight::Along(placed.pose.rotate_back(view.axes[2]))
@@ -271,7 +275,7 @@ mod tests {
                 shapes: vec![Placed::new(Form::Box { half: [1.0; 3] }, Pose::identity(), Role::Thing)],
                 ..Picture::default()
             };
-            let view = CAMERAS[which].fit(&picture, size);
+            let view = picture.window(CAMERAS[which], size);
             let (origin, direction) = view.ray(view.project(point).unwrap());
             let from = sub(point, origin);
             let aside = sub(from, scale(direction, dot(from, direction)));
@@ -288,7 +292,7 @@ mod tests {
         assert_eq!(Camera::default().name(), "three-quarter");
         let error = Camera::named("tree-quarter").unwrap_err();
         assert_eq!(error.to_string(), "unknown camera `tree-quarter`; the nearest is `three-quarter`");
-        let nothing = Camera::default().fit(&Picture::default(), [0, 0]);
+        let nothing = Picture::default().window(Camera::default(), [0, 0]);
         assert!(nothing.project([0.0; 3]).is_some());
     }
 }

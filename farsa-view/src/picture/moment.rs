@@ -2,55 +2,9 @@
 
 use farsa_body::{BodyId, JointKind, Pose, Robot};
 
-use crate::camera::Camera;
-use crate::error::Error;
-use crate::form::Form;
-use crate::picture_png::png;
-use crate::picture_svg::svg;
-use crate::vector::{Vector, length};
-
-/// Red, green and blue as screens take them.
-pub type Color = [u8; 3];
-
-/// What a shape is to the one who looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// A part of a robot.
-    Robot,
-    /// A thing that moves or that the robot deals with.
-    Thing,
-    /// What everything stands on, and walls: never what a camera looks for.
-    Ground,
-    /// A mark on the ground, such as a target area; shows what it lies on through it.
-    Area,
-}
-
-impl Role {
-    /// The word for it in a page.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Robot => "robot",
-            Self::Thing => "thing",
-            Self::Ground => "ground",
-            Self::Area => "area",
-        }
-    }
-}
-
-/// A shape in its place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
-    /// Its form.
-    pub form: Form,
-    /// Its frame in the world.
-    pub pose: Pose<f64>,
-    /// What it is.
-    pub role: Role,
-    /// Its colour; `None` for that of its role.
-    pub color: Option<Color>,
-    /// Whether the camera `close` looks for it; things are always looked for.
-    pub focus: bool,
-}
+use crate::picture::camera::{Camera, Window};
+use crate::shape::appearance::{Color, OKABE_ITO, Placed, Role};
+use crate::shape::vector::{Vector, length};
 
 /// A force on a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +30,7 @@ pub struct Beam {
 ///
 /// ```
 /// use farsa_body::{ArmAndHand, KinematicTree};
-/// use farsa_experiments::{Camera, Picture};
+/// use farsa_view::{Camera, Picture};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let robot = ArmAndHand::default().robot()?;
@@ -107,45 +61,9 @@ pub struct Picture {
     pub caption: Option<String>,
 }
 
-/// The colours of Okabe and Ito, which people with any colour vision tell apart: orange, sky blue, bluish green, yellow,
-/// blue, vermilion, reddish purple.
-pub const OKABE_ITO: [Color; 7] =
-    [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [0, 114, 178], [213, 94, 0], [204, 121, 167]];
-
-const ARM: Color = [146, 161, 178];
 const PALM: Color = [122, 143, 166];
 /// Of one branch of a robot after the other: neighbours differ in lightness.
 const BRANCHES: [Color; 5] = [[132, 184, 182], [104, 150, 190], [160, 190, 214], [104, 150, 190], [160, 190, 214]];
-const GROUND: Color = [219, 222, 226];
-
-impl Placed {
-    /// A shape in its role's colour.
-    pub fn new(form: impl Into<Form>, pose: Pose<f64>, role: Role) -> Self {
-        Self { form: form.into(), pose, role, color: None, focus: role == Role::Thing }
-    }
-
-    /// The same shape in this colour.
-    pub fn with_color(mut self, color: Color) -> Self {
-        self.color = Some(color);
-        self
-    }
-
-    /// The same shape, looked for by the camera `close`.
-    pub fn with_focus(mut self) -> Self {
-        self.focus = true;
-        self
-    }
-
-    /// Its colour.
-    pub fn color(&self) -> Color {
-        self.color.unwrap_or(match self.role {
-            Role::Robot => ARM,
-            Role::Thing => OKABE_ITO[0],
-            Role::Ground => GROUND,
-            Role::Area => OKABE_ITO[2],
-        })
-    }
-}
 
 /// The body that most others hang on directly, two at least, such as a palm.
 fn junction(robot: &Robot) -> Option<usize> {
@@ -195,19 +113,9 @@ impl Picture {
         }
     }
 
-    /// The picture as the bytes of a PNG file of `size` [pixels], traced ray by ray with light and shadow.
-    ///
-    /// # Errors
-    /// [`Error::Other`] for a size that no PNG has.
-    pub fn png(&self, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
-        png(self, camera, size)
-    }
-
-    /// The picture as an SVG document of `size` [pixels].
-    ///
-    /// Every id in it begins with `prefix`, so that several can stand in one page.
-    pub fn svg(&self, camera: Camera, size: [u32; 2], prefix: &str) -> String {
-        svg(self, camera, size, prefix)
+    /// The window through which a camera shows the picture in a frame of width and height [pixels].
+    pub(crate) fn window(&self, camera: Camera, size: [u32; 2]) -> Window {
+        camera.fit(self.interest(camera.is_close()), size)
     }
 
     /// Balls that hold what a camera has to show: everything but the ground, or with `close` what that looks for.

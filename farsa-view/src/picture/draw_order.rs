@@ -1,8 +1,8 @@
 //! In which order shapes cover each other: from the back to the front.
 
-use crate::camera::Window;
-use crate::lit_scene::LitScene;
-use crate::outline::{Place, bounds, holds};
+use crate::picture::camera::Window;
+use crate::picture::lit_scene::LitScene;
+use crate::picture::outline::{Place, bounds, holds};
 
 /// Places looked at along each side of the area that two outlines share.
 const SIDE: usize = 6;
@@ -69,18 +69,19 @@ fn nearer(scene: &LitScene, view: &Window, [a, b]: [usize; 2], place: Place) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Camera;
-    use crate::form::Form;
-    use crate::picture::{Picture, Placed, Role};
-    use crate::vector::Vector;
+    use crate::picture::camera::Camera;
+    use crate::picture::moment::Picture;
+    use crate::shape::appearance::{Placed, Role};
+    use crate::shape::form::Form;
+    use crate::shape::vector::Vector;
     use farsa_body::Pose;
 
     fn order(shapes: &[(Form, Vector)], camera: &str) -> Vec<usize> {
         let shapes = shapes.iter().map(|(form, at)| Placed::new(*form, Pose::at(*at), Role::Thing)).collect();
         let picture = Picture { shapes, ..Picture::default() };
-        let view = Camera::named(camera).unwrap().fit(&picture, [300, 300]);
+        let view = picture.window(Camera::named(camera).unwrap(), [300, 300]);
         let scene = LitScene::new(&picture, &view);
-        let outlines: Vec<_> = scene.solids.iter().map(|solid| crate::picture_svg::outline(solid, &view)).collect();
+        let outlines: Vec<_> = scene.solids.iter().map(|solid| crate::picture::svg::outline(solid, &view)).collect();
         back_to_front(&scene, &view, &outlines)
     }
 

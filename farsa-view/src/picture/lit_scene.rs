@@ -3,10 +3,11 @@
 use farsa_body::Pose;
 use farsa_num::acos;
 
-use crate::camera::Window;
-use crate::form::{Form, Meeting};
-use crate::picture::{Color, Picture, Placed, Role};
-use crate::vector::{Vector, add, along, cross, dot, length, mix, scale, sub, unit};
+use crate::picture::camera::Window;
+use crate::picture::moment::Picture;
+use crate::shape::appearance::{Color, Placed, Role};
+use crate::shape::form::{Form, Meeting};
+use crate::shape::vector::{Vector, add, along, cross, dot, length, mix, scale, sub, unit};
 
 /// How bright light is: screens take about its square root, and so do the sums here, to need nothing but `sqrt`.
 pub(crate) fn linear(color: Color) -> Vector {
@@ -176,7 +177,7 @@ impl Solid {
             sum += match above {
                 [true, true, true, true] => factor(&seen),
                 [false, false, false, false] => 0.0,
-                _ => factor(&crate::outline::clip(&seen, |v| dot(*v, normal), mix)),
+                _ => factor(&crate::picture::outline::clip(&seen, |v| dot(*v, normal), mix)),
             };
         }
         (sum / (2.0 * core::f64::consts::PI)).min(1.0)
@@ -339,13 +340,13 @@ impl LitScene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Camera;
-    use crate::vector::across;
+    use crate::picture::camera::Camera;
+    use crate::shape::vector::across;
     use farsa_num::{Domain, Stream, sin_cos};
 
     fn lit(shapes: Vec<Placed>) -> LitScene {
         let picture = Picture { shapes, ..Picture::default() };
-        LitScene::new(&picture, &Camera::default().fit(&picture, [100, 100]))
+        LitScene::new(&picture, &picture.window(Camera::default(), [100, 100]))
     }
 
     /// The share of a cosine-weighted hemisphere in which rays meet a solid.

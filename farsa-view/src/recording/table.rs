@@ -4,13 +4,13 @@ use std::io::{self, Write};
 
 use farsa_body::Recorder;
 
-use crate::stage::Stage;
+use crate::recording::stage::Stage;
 
 /// A recorder that writes a line per tick: `trial,step,time [s]` and the columns of the stage.
 ///
 /// A value that single precision can hold is written with the digits that single precision needs. Bodies, contacts and
 /// points are not written; whoever wants numbers of them makes them scalars.
-pub(crate) struct Table<W: Write> {
+pub struct Table<W: Write> {
     out: csv::Writer<W>,
     trial: u32,
     step: u32,
@@ -26,7 +26,7 @@ impl<W: Write> Table<W> {
     ///
     /// # Errors
     /// What the writer says.
-    pub(crate) fn new(out: W, stage: &Stage) -> io::Result<Self> {
+    pub fn new(out: W, stage: &Stage) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
         let head = ["trial", "step", "time [s]"].map(String::from).into_iter().chain(stage.columns());
         out.write_record(head).map_err(as_io)?;
@@ -43,7 +43,7 @@ impl<W: Write> Table<W> {
     }
 
     /// Begins a trial.
-    pub(crate) fn begin(&mut self, trial: u32) {
+    pub fn begin(&mut self, trial: u32) {
         (self.trial, self.step) = (trial, 0);
     }
 
@@ -51,7 +51,7 @@ impl<W: Write> Table<W> {
     ///
     /// # Errors
     /// The first that the writer said.
-    pub(crate) fn finish(mut self) -> io::Result<()> {
+    pub fn finish(mut self) -> io::Result<()> {
         self.written.map_err(as_io)?;
         self.out.flush()
     }
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn a_line_per_tick_in_the_order_of_the_head() {
         let mut stage = Stage::of_scalars(["x [m]"]).with_sensors(["a", "b"]).with_outputs(["c"]);
-        stage.neurons = vec![crate::stage::Channel::new("n")];
+        stage.neurons = vec![crate::recording::stage::Channel::new("n")];
         let mut bytes = Vec::new();
         let mut table = Table::new(&mut bytes, &stage).unwrap();
         table.begin(2);

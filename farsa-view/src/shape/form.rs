@@ -3,7 +3,7 @@
 use farsa_body::Shape;
 use farsa_num::sin_cos;
 
-use crate::vector::{Vector, across, add, along, dot, length, scale, sub, unit};
+use crate::shape::vector::{Vector, across, add, along, dot, length, scale, sub, unit};
 
 /// A form in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +87,7 @@ fn ball(origin: Vector, direction: Vector, centre: Vector, radius: f64) -> Optio
 }
 
 /// The distances between which a ray is within `half` of 0 on one axis; empty if first > last.
-pub(crate) fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
+fn slab(origin: f64, direction: f64, half: f64) -> [f64; 2] {
     if direction == 0.0 {
         let inside = origin.abs() <= half;
         return if inside { [f64::NEG_INFINITY, f64::INFINITY] } else { [f64::INFINITY, f64::NEG_INFINITY] };

@@ -8,10 +8,11 @@ use farsa_body::{BodyId, Pose};
 use farsa_num::crc32;
 use serde_json::{Value, json};
 
-use crate::form::Form;
-use crate::recording::Recording;
-use crate::stage::{Channel, View};
-use crate::svg_data::hex;
+use crate::picture::svg_data::hex;
+use crate::recording::memory::Recording;
+use crate::recording::stage::Channel;
+use crate::recording::view::View;
+use crate::shape::form::Form;
 
 const TEMPLATE: &str = include_str!("viewer/page.html");
 const STYLE: &str = include_str!("viewer/viewer.css");
@@ -363,7 +364,7 @@ fn described(channel: &Channel, minimum: f64, scale: f64) -> Value {
 }
 
 /// A number with as many digits as a reader wants.
-pub(crate) fn readable(x: f64) -> String {
+pub fn readable(x: f64) -> String {
     let mut text = String::new();
     let decimals = if x.abs() >= 1000.0 {
         0
@@ -380,7 +381,7 @@ pub(crate) fn readable(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stage::Stage;
+    use crate::recording::stage::Stage;
     use farsa_body::{PairContact, PairId, Pose, Recorder, Tabletop};
 
     /// The data of a page, as a browser reads it.

@@ -2,14 +2,15 @@
 
 use std::thread;
 
-use crate::camera::{Camera, Window};
 use crate::error::Error;
-use crate::form::Sight;
-use crate::lit_scene::{BACKGROUND, LitScene, encoded, linear};
-use crate::marks::{self, Stroke};
-use crate::outline::bounds;
-use crate::picture::{Color, Picture};
-use crate::vector::{Vector, add, mix, scale};
+use crate::picture::camera::{Camera, Window};
+use crate::picture::lit_scene::{BACKGROUND, LitScene, encoded, linear};
+use crate::picture::marks::{self, Stroke};
+use crate::picture::moment::Picture;
+use crate::picture::outline::bounds;
+use crate::shape::appearance::Color;
+use crate::shape::form::Sight;
+use crate::shape::vector::{Vector, add, mix, scale};
 
 /// Edges are drawn with this many rays along each side of a pixel.
 const FINE: usize = 4;
@@ -19,9 +20,9 @@ const EDGE: u8 = 5;
 /// Draws a picture `size` [pixels] wide and high, as the bytes of a PNG file; the same bytes on every machine.
 ///
 /// # Errors
-/// [`Error::Other`] for a size that no PNG can have.
+/// [`Error::Size`] for a size that no PNG can have.
 pub(crate) fn png(picture: &Picture, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
-    let wrong = |error: png::EncodingError| Error::Other(format!("a picture of {} x {}: {error}", size[0], size[1]));
+    let wrong = |error: png::EncodingError| Error::Size { size, why: error.to_string() };
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
     encoder.set_color(png::ColorType::Rgb);
@@ -35,7 +36,7 @@ pub(crate) fn png(picture: &Picture, camera: Camera, size: [u32; 2]) -> Result<V
 /// All pixels, row by row from the upper left corner.
 fn pixels(picture: &Picture, camera: Camera, size: [u32; 2]) -> Vec<Color> {
     let [width, height] = size.map(|x| x as usize);
-    let view = camera.fit(picture, size);
+    let view = picture.window(camera, size);
     let scene = LitScene::new(picture, &view);
     let canvas = Canvas { scene: &scene, view: &view, boxes: boxes(&scene, &view) };
     let mut pixels = vec![[0; 3]; width * height];
@@ -65,7 +66,7 @@ fn pixels(picture: &Picture, camera: Camera, size: [u32; 2]) -> Vec<Color> {
 /// Where each solid can be in the picture, `[low, high]`.
 fn boxes(scene: &LitScene, view: &Window) -> Vec<[[f64; 2]; 2]> {
     let everywhere = [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]];
-    let place = |solid: &crate::lit_scene::Solid| {
+    let place = |solid: &crate::picture::lit_scene::Solid| {
         let sight = if view.parallel {
             Sight::Along(solid.pose.rotate_back(view.axes[2]))
         } else {
@@ -191,8 +192,8 @@ fn paint(pixels: &mut [Color], size: [u32; 2], stroke: &Stroke) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::form::Form;
-    use crate::picture::{OKABE_ITO, Placed, Role};
+    use crate::shape::appearance::{OKABE_ITO, Placed, Role};
+    use crate::shape::form::Form;
     use farsa_body::Pose;
 
     fn ball(position: Vector) -> Placed {
@@ -205,7 +206,7 @@ mod tests {
         let picture = Picture { shapes: vec![ball([0.1, -0.2, 0.03]), ground], ..Picture::default() };
         for name in Camera::NAMES {
             let camera = Camera::named(name).unwrap();
-            let view = camera.fit(&picture, [90, 60]);
+            let view = picture.window(camera, [90, 60]);
             let pixels = pixels(&picture, camera, [90, 60]);
             let [x, y] = view.project([0.1, -0.2, 0.03]).unwrap();
             let color = pixels[y as usize * 90 + x as usize].map(f64::from);
@@ -232,7 +233,7 @@ mod tests {
         for shapes in [[at(0.5, red), at(-0.5, green)], [at(-0.5, green), at(0.5, red)]] {
             let picture = Picture { shapes: shapes.to_vec(), ..Picture::default() };
             let camera = Camera::named("front").unwrap();
-            let [x, y] = camera.fit(&picture, [80, 80]).project([0.6, 0.0, 0.0]).unwrap();
+            let [x, y] = picture.window(camera, [80, 80]).project([0.6, 0.0, 0.0]).unwrap();
             let [r, g, _] = pixels(&picture, camera, [80, 80])[y as usize * 80 + x as usize];
             assert!(r > 100 && g < 30, "{r} {g}");
         }

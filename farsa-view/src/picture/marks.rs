@@ -1,10 +1,11 @@
 //! What a picture shows besides shapes: forces, rays, points and trails, as flat strokes on top of it.
 
-use crate::camera::Window;
-use crate::lit_scene::LitScene;
-use crate::outline::Place;
-use crate::picture::{Color, OKABE_ITO, Picture};
-use crate::vector::{Vector, along, length, mix};
+use crate::picture::camera::Window;
+use crate::picture::lit_scene::LitScene;
+use crate::picture::moment::Picture;
+use crate::picture::outline::Place;
+use crate::shape::appearance::{Color, OKABE_ITO};
+use crate::shape::vector::{Vector, along, length, mix};
 
 /// A line of even width.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,9 +185,10 @@ pub(crate) fn distance(place: Place, a: Place, b: Place) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Camera;
-    use crate::form::Form;
-    use crate::picture::{Beam, Placed, Push, Role};
+    use crate::picture::camera::Camera;
+    use crate::picture::moment::{Beam, Push};
+    use crate::shape::appearance::{Placed, Role};
+    use crate::shape::form::Form;
     use farsa_body::Pose;
 
     #[test]
@@ -204,7 +206,7 @@ mod tests {
             rays: vec![Beam { from: [-1.0, 0.0, 0.0], to: [1.0, 0.0, 0.0], hit: false }],
             ..Picture::default()
         };
-        let view = Camera::named("side").unwrap().fit(&picture, [800, 400]);
+        let view = picture.window(Camera::named("side").unwrap(), [800, 400]);
         let strokes = strokes(&picture, &LitScene::new(&picture, &view), &view);
         let opacities: Vec<f64> = strokes.iter().map(|stroke| stroke.opacity).collect();
         assert_eq!(opacities, [1.0, HIDDEN, 1.0]);
@@ -214,7 +216,7 @@ mod tests {
     fn forces_are_drawn_in_proportion() {
         let push = |x: f64, force: f64| Push { point: [x, 0.0, 0.0], force: [0.0, 0.0, force] };
         let picture = Picture { contacts: vec![push(0.0, 2.0), push(1.0, 6.0)], ..Picture::default() };
-        let view = Camera::named("front").unwrap().fit(&picture, [400, 400]);
+        let view = picture.window(Camera::named("front").unwrap(), [400, 400]);
         let scale = metres_per_newton(&picture, &view).unwrap();
         assert!((6.0 * scale / view.pixel(view.centre) - 400.0 / 7.0).abs() < 1e-9);
         assert_eq!(metres_per_newton(&Picture::default(), &view), None);

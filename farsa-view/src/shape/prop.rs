@@ -2,8 +2,8 @@
 
 use farsa_body::{BodyId, Pose};
 
-use crate::form::Form;
-use crate::picture::{Color, Placed, Role};
+use crate::shape::appearance::{Color, Placed, Role};
+use crate::shape::form::Form;
 
 /// A shape to be seen that no [`Robot`](farsa_body::Robot) holds: a wheeled robot's hull, a wall, an area on the ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +46,6 @@ impl Prop {
 }
 
 /// A colour of light, red, green and blue [0..1], as screens take it.
-pub(crate) fn screen_color(light: [f64; 3]) -> Color {
+pub fn screen_color(light: [f64; 3]) -> Color {
     light.map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8)
 }

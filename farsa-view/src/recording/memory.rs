@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use farsa_body::{BodyId, Contacts, Kinematics, PairContact, PairId, Pose, Recorder, record_world};
 
-use crate::stage::Stage;
+use crate::recording::stage::Stage;
 
 /// Numbers of a pose: position and rotation.
 const POSE: usize = 7;
@@ -39,7 +39,7 @@ pub struct CastRay {
 ///
 /// ```
 /// use farsa_body::{ArmAndHand, JointPosition, JointId, Recorder, Sensor, Tabletop, World as _};
-/// use farsa_experiments::{Page, Recording, Stage};
+/// use farsa_view::{Page, Recording, Stage};
 /// use farsa_physics::articulated::{Model, Options, World};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -253,7 +253,7 @@ impl Recorder for Recording {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stage::Channel;
+    use crate::recording::stage::Channel;
     use farsa_body::ArmAndHand;
 
     #[test]

@@ -4,10 +4,11 @@ use farsa_body::{BodyId, Pose};
 use farsa_num::{Scalar, atan2, sin_cos};
 use farsa_physics::arena::{Area, AreaShape, Arena, Convex, Cylinder, Wall};
 
-use crate::form::Form;
-use crate::picture::{Color, OKABE_ITO, Role};
-use crate::prop::{Prop, screen_color};
-use crate::stage::{Stage, View};
+use crate::recording::stage::Stage;
+use crate::recording::view::View;
+use crate::shape::appearance::{Color, OKABE_ITO, Role};
+use crate::shape::form::Form;
+use crate::shape::prop::{Prop, screen_color};
 
 /// Walls that are given no colour: dark, so that ways along them are seen.
 const WALL: Color = [84, 90, 99];
@@ -112,7 +113,7 @@ impl Stage {
     ///
     /// ```
     /// use farsa_body::MobileRobot;
-    /// use farsa_experiments::Stage;
+    /// use farsa_view::Stage;
     /// use farsa_physics::arena::{Arena, Cylinder};
     ///
     /// let mut arena = Arena::walled(0.4, 0.4);
@@ -165,7 +166,7 @@ mod tests {
     use farsa_body::{Kinematics, MobileRobot, Recorder as _};
     use farsa_physics::arena::World;
 
-    use crate::recording::Recording;
+    use crate::recording::memory::Recording;
 
     #[test]
     fn every_part_of_an_arena_is_seen_in_its_place() {
@@ -233,14 +234,15 @@ mod tests {
             }
         }
         if let Some(path) = std::env::var_os("FARSA_LOOK") {
-            let mut picture = crate::picture::Picture::default();
+            let mut picture = crate::picture::moment::Picture::default();
             picture.shapes.extend(stage.props.iter().map(|prop| {
                 prop.placed(&if prop.body.is_some() { standing([0.1, 0.1], 0.0, 0.9).cast() } else { Pose::identity() })
             }));
             let corners = [[-0.03, -0.03, 0.0], [0.63, 0.53, 0.0]];
             picture.frame = corners.into();
             let path = std::path::Path::new(&path).join("obstacles.svg");
-            std::fs::write(path, picture.svg(crate::camera::Camera::for_view(View::Top), [600, 500], "p")).unwrap();
+            std::fs::write(path, picture.svg(crate::picture::camera::Camera::for_view(View::Top), [600, 500], "p"))
+                .unwrap();
         }
     }
 

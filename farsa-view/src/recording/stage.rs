@@ -3,7 +3,8 @@
 use farsa_body::{BodyId, JointKind, Robot};
 use farsa_nn::{Layout, ParameterKind};
 
-use crate::prop::Prop;
+use crate::recording::view::View;
+use crate::shape::prop::Prop;
 
 /// Something that has one value per tick, as tables and pages name it.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -52,16 +53,6 @@ impl Channel {
     }
 }
 
-/// How a page looks at the bodies at first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum View {
-    /// From a side, to be turned.
-    #[default]
-    Free,
-    /// From above: planar arenas.
-    Top,
-}
-
 /// Weights from every node of one range to every node of another, source-major.
 ///
 /// Nodes are numbered through: sensors, then neurons, then outputs.
@@ -90,7 +81,7 @@ pub struct NodeParameters {
 ///
 /// ```
 /// use farsa_body::ArmAndHand;
-/// use farsa_experiments::Stage;
+/// use farsa_view::Stage;
 ///
 /// let robot = ArmAndHand::default().robot()?;
 /// let stage = Stage::of_robot(&robot).with_sensors(["J1", "J2"]).with_scalars(["time to go [s]"]);

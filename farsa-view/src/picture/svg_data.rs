@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::outline::Place;
-use crate::picture::Color;
+use crate::picture::outline::Place;
+use crate::shape::appearance::Color;
 
 /// The data of a path through these places, in steps of a tenth of a pixel.
 pub(crate) fn path(places: &[Place], closed: bool) -> String {

@@ -2,15 +2,16 @@
 
 use std::fmt::Write as _;
 
-use crate::camera::{Camera, Window};
-use crate::draw_order::back_to_front;
-use crate::form::{Form, Sight};
-use crate::lit_scene::{BACKGROUND, LitScene, Seen, Solid, encoded};
-use crate::marks;
-use crate::outline::{Place, framed, hull};
-use crate::picture::{Color, Picture, Role};
-use crate::svg_data::{digits, escaped, hex, path};
-use crate::vector::{Vector, add, dot, length, scale, sub};
+use crate::picture::camera::{Camera, Window};
+use crate::picture::draw_order::back_to_front;
+use crate::picture::lit_scene::{BACKGROUND, LitScene, Seen, Solid, encoded};
+use crate::picture::marks;
+use crate::picture::moment::Picture;
+use crate::picture::outline::{Place, framed, hull};
+use crate::picture::svg_data::{digits, escaped, hex, path};
+use crate::shape::appearance::{Color, Role};
+use crate::shape::form::{Form, Sight};
+use crate::shape::vector::{Vector, add, dot, length, scale, sub};
 
 /// How far shapes may reach out of the frame before they are cut off [pixels].
 const MARGIN: f64 = 20.0;
@@ -24,7 +25,7 @@ const CONTOUR: &str = "stroke=\"#1b2733\" stroke-opacity=\".4\" stroke-width=\".
 ///
 /// `prefix` begins all its ids, so that several pictures can stand in one document; it takes what an XML name may hold.
 pub(crate) fn svg(picture: &Picture, camera: Camera, size: [u32; 2], prefix: &str) -> String {
-    let view = camera.fit(picture, size);
+    let view = picture.window(camera, size);
     let scene = LitScene::new(picture, &view);
     let mut drawing =
         Drawing { scene: &scene, view: &view, prefix, defs: String::new(), body: String::new(), gridded: false };
@@ -373,7 +374,8 @@ fn crossings(corners: &[Vector], axis: usize, at: f64) -> [Option<Place>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::{Beam, Placed, Push};
+    use crate::picture::moment::{Beam, Push};
+    use crate::shape::appearance::Placed;
     use farsa_body::{ArmAndHand, KinematicTree, Pose, Tabletop};
 
     /// The elements of a document by name with their attributes; panics if it is not well-formed.

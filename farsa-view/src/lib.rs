@@ -1,0 +1,14 @@
+#![doc = include_str!("../README.md")]
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod error;
+mod page;
+mod picture;
+mod recording;
+mod shape;
+
+pub use error::Error;
+pub use page::{Page, readable};
+pub use picture::{Beam, Camera, Picture, Push};
+pub use recording::{CastRay, Channel, Links, NodeParameters, Recording, Stage, Table, Touching, View};
+pub use shape::{Color, Form, OKABE_ITO, Placed, Prop, Role, screen_color};

@@ -1,0 +1,27 @@
+//! Pictures of a moment, drawn without a browser.
+//!
+//! - `moment`: what a picture shows
+//! - `of_recording`: a tick of a recording as a picture
+//! - `camera`: from where it is seen
+//! - `lit_scene`: shapes under a lamp: rays, light, shadows
+//! - `marks`: arrows, rays, points and trails as strokes
+//! - `outline`: polygons in the plane of the picture
+//! - `draw_order`: which outline hides which
+//! - `svg`, `svg_data`: the picture as SVG
+//! - `png`: the picture as PNG, traced ray by ray
+//! - `render`: the two as methods of a picture
+
+pub(crate) mod camera;
+mod draw_order;
+mod lit_scene;
+mod marks;
+pub(crate) mod moment;
+mod of_recording;
+mod outline;
+mod png;
+mod render;
+mod svg;
+pub(crate) mod svg_data;
+
+pub use camera::Camera;
+pub use moment::{Beam, Picture, Push};

@@ -1,0 +1,168 @@
+//! A tick of a recording as a picture.
+
+use farsa_body::{BodyId, Pose};
+
+use crate::picture::moment::{Beam, Picture, Push};
+use crate::recording::memory::Recording;
+use crate::recording::view::View;
+use crate::shape::appearance::{Color, OKABE_ITO, Placed, Role};
+use crate::shape::form::Form;
+use crate::shape::prop::Prop;
+use crate::shape::vector::{Vector, length, sub};
+
+/// How high above the ground trails are drawn [m].
+const TRAIL: f64 = 1e-3;
+/// The colours of trails, by number: those that are seen best on the ground come first.
+const TRAILS: [usize; 6] = [4, 5, 2, 6, 0, 1];
+
+impl Recording {
+    /// What is to be seen at a tick, as `farsa draw` shows it; `None` if there is no such tick, or no bodies.
+    ///
+    /// A view from above also shows the ways that robots went up to then.
+    pub fn picture(&self, tick: usize) -> Option<Picture> {
+        let stage = self.stage();
+        if tick >= self.times().len() || (stage.robot.is_none() && stage.props.is_empty()) {
+            return None;
+        }
+        let mut picture = Picture::default();
+        let pose = |body| self.pose_at(tick, body).map_or_else(Pose::identity, |pose| pose.cast());
+        if let Some(robot) = &stage.robot {
+            picture.add_robot(robot, pose);
+        }
+        let place = |prop: &Prop| prop.placed(&prop.body.map_or_else(Pose::identity, pose));
+        picture.shapes.extend(stage.props.iter().map(place));
+        if stage.view == View::Top {
+            picture.trails = trails(self, tick);
+            // What stands around belongs into the frame: an arena is seen whole.
+            let walls = picture.shapes.iter().filter(|placed| matches!(placed.form, Form::Box { .. }));
+            let corners = |placed: &Placed| {
+                placed.form.hull().into_iter().map(|(corner, _)| placed.pose.transform(corner)).collect::<Vec<_>>()
+            };
+            picture.frame = walls.flat_map(corners).collect();
+        }
+        let f64_of = |position: [f32; 3]| position.map(f64::from);
+        picture.contacts = (self.contacts_at(tick).iter())
+            .map(|contact| Push { point: f64_of(contact.point), force: f64_of(contact.force) })
+            .collect();
+        picture.rays = (self.rays_at(tick).iter())
+            .map(|ray| Beam { from: f64_of(ray.from), to: f64_of(ray.to), hit: ray.met })
+            .collect();
+        let point = |(index, name): (usize, &String)| {
+            let position = self.point_at(tick, index)?;
+            position.iter().all(|x| x.is_finite()).then(|| (name.clone(), f64_of(position)))
+        };
+        picture.points = stage.points.iter().enumerate().filter_map(point).collect();
+        Some(picture)
+    }
+}
+
+/// The ways that robots went up to a tick, a little above the ground, each in the colour of its robot's hull.
+fn trails(recording: &Recording, tick: usize) -> Vec<(Vec<Vector>, Color)> {
+    let stage = recording.stage();
+    let bodies: Vec<BodyId> =
+        stage.props.iter().filter(|prop| prop.role == Role::Robot).filter_map(|prop| prop.body).collect();
+    let mut seen = Vec::new();
+    let mut trails = Vec::new();
+    for body in bodies {
+        if seen.contains(&body) {
+            continue;
+        }
+        seen.push(body);
+        let mut way: Vec<Vector> = Vec::new();
+        for place in
+            (0..=tick).filter_map(|tick| recording.pose_at(tick, body)).map(|pose| pose.position.map(f64::from))
+        {
+            let place = [place[0], place[1], TRAIL];
+            let moved = way.last().is_none_or(|last| length(sub(place, *last)) > 1e-4);
+            if moved && place.iter().all(|x| x.is_finite()) {
+                way.push(place);
+            }
+        }
+        if way.len() > 1 {
+            trails.push((way, OKABE_ITO[TRAILS[(seen.len() - 1) % TRAILS.len()]]));
+        }
+    }
+    trails
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::page::html::Page;
+    use crate::picture::camera::Camera;
+    use crate::recording::stage::Stage;
+    use farsa_body::{ArmAndHand, Recorder};
+
+    fn recording(ticks: u32) -> Recording {
+        let robot = ArmAndHand::default().robot().unwrap();
+        let mut recording = Recording::new(Stage::of_robot(&robot));
+        for tick in 1..=ticks {
+            recording.pose(ArmAndHand::PALM, Pose::at([0.1 * tick as f32, 0.0, 0.0]));
+            recording.tick(0.01 * f64::from(tick));
+        }
+        recording
+    }
+
+    #[test]
+    fn only_bodies_can_be_drawn() {
+        assert!(Recording::new(Stage::of_scalars(["x"])).picture(0).is_none());
+        let recording = recording(2);
+        let robot = recording.stage().robot.as_ref().unwrap();
+        assert_eq!(recording.picture(1).unwrap().shapes.len(), robot.colliders.len());
+        assert_eq!(recording.picture(2), None, "there are two ticks");
+    }
+
+    /// A round robot that drove a quarter of a circle between walls, and a post.
+    fn arena() -> Recording {
+        let on_ground = |x: f64, y: f64, z: f64| Pose::at([x, y, z]);
+        let (robot, post) = (BodyId(0), BodyId(1));
+        let hull = Form::Cylinder { radius: 0.035, half_length: 0.015 };
+        let wall = Form::Box { half: [0.2, 0.005, 0.02] };
+        let stage = Stage {
+            bodies: vec!["robot".into(), "post".into()],
+            props: vec![
+                Prop::new("ground", Form::Rectangle { half: [0.2; 2] }, Pose::identity(), Role::Ground),
+                Prop::new("nest", Form::Disc { radius: 0.05 }, on_ground(0.1, 0.1, 0.0), Role::Area),
+                Prop::new("north", wall, on_ground(0.0, 0.205, 0.02), Role::Ground),
+                Prop::new("south", wall, on_ground(0.0, -0.205, 0.02), Role::Ground),
+                Prop::new("hull", hull, on_ground(0.0, 0.0, 0.015), Role::Robot).on(robot),
+                Prop::new("post", hull, on_ground(0.0, 0.0, 0.015), Role::Thing).on(post).with_color([200, 30, 30]),
+            ],
+            view: View::Top,
+            ..Stage::default()
+        };
+        let mut recording = Recording::new(stage);
+        for tick in 0..=20u8 {
+            let (sine, cosine) = farsa_num::sin_cos(f32::from(tick) * 0.078);
+            recording.pose(robot, Pose::at([0.1 * cosine - 0.1, 0.1 * sine, 0.0]));
+            recording.pose(post, Pose::at([-0.1, -0.05, 0.0]));
+            recording.ray([0.0; 3], [0.05, 0.0, 0.0], tick % 2 == 0);
+            recording.tick(0.05 * f64::from(tick));
+        }
+        recording
+    }
+
+    #[test]
+    fn an_arena_shows_its_props_and_the_way_of_its_robot() {
+        let recording = arena();
+        let picture = recording.picture(20).unwrap();
+        assert_eq!((picture.shapes.len(), picture.trails.len(), picture.rays.len()), (6, 1, 1));
+        assert_eq!(picture.trails[0].0.len(), 21);
+        // Twice the eight corners of two walls.
+        assert_eq!(picture.frame.len(), 8 * 2);
+        let place = picture.shapes[4].pose.position;
+        let (_, cosine) = farsa_num::sin_cos(20.0_f64 * 0.078);
+        assert!((place[0] - (0.1 * cosine - 0.1)).abs() < 1e-6 && place[2] == 0.015, "{place:?}");
+        assert_eq!(picture.shapes[5].color(), [200, 30, 30]);
+        let svg = picture.svg(Camera::for_view(View::Top), [600, 600], "p");
+        assert!(svg.starts_with("<svg") && svg.contains("<title>"), "{svg}");
+        let page = Page::new("arena").with("a", recording).html();
+        for part in ["\"kind\":\"cylinder\"", "\"role\":\"area\"", "\"color\":\"#c81e1e\"", "\"robot\",\"post\""] {
+            assert!(page.contains(part), "{part}");
+        }
+        if let Some(path) = std::env::var_os("FARSA_LOOK") {
+            std::fs::write(std::path::Path::new(&path).join("arena.svg"), svg).unwrap();
+            std::fs::write(std::path::Path::new(&path).join("arena.html"), page).unwrap();
+        }
+    }
+}
