@@ -1,87 +1,11 @@
 //! Which world an experiment is lived in, where there is a choice.
 
-use std::str::FromStr;
-
 use crate::error::Error;
 use crate::plan::Plan;
 use crate::settings::Value;
 
 /// The setting that `--world` is short for.
 pub(crate) const ENGINE: &str = "world.engine";
-
-/// What moves the bodies of an experiment that has a choice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Engine {
-    /// Our articulated world, `farsa_physics::articulated`.
-    #[default]
-    Articulated,
-    /// rapier, `farsa_physics::rapier`; only where the crate was built with the feature of that name.
-    Rapier,
-}
-
-impl Engine {
-    /// The names on the command line.
-    pub(crate) const NAMES: [&'static str; 2] = ["articulated", "rapier"];
-
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-
-    /// Why a program without the feature cannot live in this world.
-    #[cfg(not(feature = "rapier"))]
-    pub(crate) fn missing(self) -> Error {
-        missing(self.name())
-    }
-}
-
-/// Why a program that was built without the feature of a world's name cannot live in it.
-#[cfg(not(feature = "rapier"))]
-pub(crate) fn missing(name: &str) -> Error {
-    Error::Usage(format!(
-        "world `{name}`: this program was built without it; build it with `--features {name}`, for example \
-         `cargo run --release --features farsa-experiments/{name} --bin farsa`"
-    ))
-}
-
-/// What moves the wheeled robots of an experiment that has a choice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum PlanarEngine {
-    /// Our kinematic world, `farsa_physics::arena`: wheels do exactly what they are told.
-    #[default]
-    Arena,
-    /// rapier, `farsa_physics::rapier::ArenaWorld`: rigid bodies on driven wheels; only where the crate was built with the
-    /// feature of that name.
-    Rapier,
-}
-
-impl PlanarEngine {
-    /// The names on the command line.
-    pub(crate) const NAMES: [&'static str; 2] = ["arena", "rapier"];
-
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-}
-
-impl FromStr for PlanarEngine {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self, Error> {
-        let known = [Self::Arena, Self::Rapier].into_iter().find(|engine| engine.name() == name);
-        known.ok_or_else(|| Error::unknown("", "world", name, Self::NAMES))
-    }
-}
-
-impl FromStr for Engine {
-    type Err = Error;
-
-    fn from_str(name: &str) -> Result<Self, Error> {
-        let known = [Self::Articulated, Self::Rapier].into_iter().find(|engine| engine.name() == name);
-        known.ok_or_else(|| Error::unknown("", "world", name, Self::NAMES))
-    }
-}
 
 /// Chooses the world of a plan, if one was asked for.
 ///
@@ -114,20 +38,6 @@ mod tests {
     use crate::{Braitenberg, ReachGraspLift};
 
     #[test]
-    fn worlds_have_names() {
-        for engine in [Engine::Articulated, Engine::Rapier] {
-            assert_eq!(engine.name().parse::<Engine>().unwrap(), engine);
-        }
-        for engine in [PlanarEngine::Arena, PlanarEngine::Rapier] {
-            assert_eq!(engine.name().parse::<PlanarEngine>().unwrap(), engine);
-        }
-        assert_eq!(
-            "rapir".parse::<Engine>().unwrap_err().to_string(),
-            "unknown world `rapir`; the nearest is `rapier`"
-        );
-    }
-
-    #[test]
     fn a_plan_is_moved_to_another_world() {
         let mut plan = Plan::new(&ReachGraspLift, None, "").unwrap();
         let before = plan.identity().unwrap();
@@ -146,16 +56,5 @@ mod tests {
         let mut other = Plan::new(&Braitenberg, None, "").unwrap();
         let error = choose(&mut other, Some("rapier")).unwrap_err().to_string();
         assert_eq!(error, "--world rapier: braitenberg has one world only");
-    }
-
-    #[cfg(not(feature = "rapier"))]
-    #[test]
-    fn a_program_without_rapier_says_how_to_get_it() {
-        for experiment in [&ReachGraspLift as &dyn crate::Experiment, &crate::Discrimination] {
-            let mut plan = Plan::new(experiment, None, "").unwrap();
-            choose(&mut plan, Some("rapier")).unwrap();
-            let error = plan.setup().err().unwrap();
-            assert!(error.to_string().contains("--features rapier") && error.exit_code() == 2, "{error}");
-        }
     }
 }

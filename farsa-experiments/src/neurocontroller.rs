@@ -6,7 +6,7 @@ use farsa_view::Stage;
 
 use crate::error::Error;
 use crate::experiment::{ChannelGroup, Description, Tape};
-use crate::swarm_team::{NetworkDecoder, TeamNetwork};
+use crate::network_decoder::{NetworkDecoder, TeamNetwork};
 
 /// Sensors, a recurrent network whose parameters are genes, and motors: what a life needs beside its world and its judge.
 ///

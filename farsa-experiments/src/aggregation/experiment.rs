@@ -1,0 +1,51 @@
+//! The experiment `aggregation`: a team gathers on nests.
+
+use farsa_nn::Controller;
+use farsa_physics::arena::World;
+
+use crate::aggregation::config::AggregationConfig;
+use crate::aggregation::life::{AggregationLife, AggregationMission};
+use crate::error::Error;
+use crate::experiment::{Experiment, Outcome, Setup};
+use crate::life::Job;
+use crate::settings::{Setting, Settings};
+use crate::team::config::ROBOTS;
+use crate::team::setup::TeamSetup;
+
+/// Can robots that feel a nest only when they are on it gather there, with each other's help? \[FARSA2\]
+///
+/// A team with one genome starts anywhere in an arena; when the time is up, every robot earns 100 if it is on a nest, and up
+/// to 1 for being near the others. The condition is the robot: the `MarXbot`s' arena, steps and rewards are the source's; nests
+/// and all that the settings call chosen are ours, and sensors and motors are those of `foraging` without energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Aggregation;
+
+impl Experiment for Aggregation {
+    fn name(&self) -> &'static str {
+        "aggregation"
+    }
+
+    fn summary(&self) -> &'static str {
+        "a team of robots gathers on nests that each feels only when it is on them"
+    }
+
+    fn conditions(&self) -> &'static [&'static str] {
+        &ROBOTS
+    }
+
+    fn settings(&self, condition: &str) -> Vec<Setting> {
+        AggregationConfig::of_condition(condition).table()
+    }
+
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+        Ok(Box::new(TeamSetup::new(AggregationMission::new(
+            AggregationConfig::of_condition(condition).read(settings)?,
+        ))?))
+    }
+}
+
+/// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
+pub fn aggregate<C: Controller>(life: &mut AggregationLife<C>, world: &mut World, job: Job) -> Outcome {
+    crate::life::live(life, world, job);
+    life.outcome(0)
+}

@@ -1,0 +1,18 @@
+//! The experiments `discrimination` and `discrimination-cylinders`: what a robot finds by its infrared sensors.
+//!
+//! - `config`: the values of `discrimination` and `discrimination-cylinders`, as settings
+//! - `cylinders`: the experiment `discrimination-cylinders`: a large and a small cylinder, told apart by moving
+//! - `experiment`: its name, conditions and settings, and what lives its lives
+//! - `life`: a life of `discrimination` and `discrimination-cylinders`: one trial among cylinders, up to its last step or a collision
+
+mod config;
+mod cylinders;
+mod experiment;
+mod life;
+
+pub use crate::infrared::settings::{Infrared, InfraredModel};
+pub use crate::worlds::PlanarEngine;
+pub use config::{Config, EYES};
+pub use cylinders::DiscriminationCylinders;
+pub use experiment::{Discrimination, Lives};
+pub use life::{CYLINDERS, CylinderLife, Trial};

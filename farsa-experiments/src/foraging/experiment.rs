@@ -1,0 +1,51 @@
+//! The experiment `foraging`: a team carries food to its nest.
+
+use farsa_nn::Controller;
+use farsa_physics::arena::World;
+
+use crate::error::Error;
+use crate::experiment::{Experiment, Outcome, Setup};
+use crate::foraging::config::ForagingConfig;
+use crate::foraging::life::{ForagingLife, ForagingMission};
+use crate::life::Job;
+use crate::settings::{Setting, Settings};
+use crate::team::config::ROBOTS;
+use crate::team::setup::TeamSetup;
+
+/// Can robots that see little and die soon feed a nest together? \[FARSA2\]
+///
+/// A team with one genome leaves the nest, takes the food that it drives over, and must be back before its energy is
+/// used up. The condition is the robot: arenas, nests, energy, steps, sensors, motors and hidden neurons are the source's;
+/// the number of robots, the time step, the camera's view and the network's other traits are ours, as the settings say.
+/// What a robot carries is not limited. Each infrared channel of a `MarXbot` is the largest of three of its 24 sensors; the
+/// source's bias neuron is the network's biases, which only its hidden neurons have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Foraging;
+
+impl Experiment for Foraging {
+    fn name(&self) -> &'static str {
+        "foraging"
+    }
+
+    fn summary(&self) -> &'static str {
+        "a team of robots carries food to its nest and must be back there before its energy is used up"
+    }
+
+    fn conditions(&self) -> &'static [&'static str] {
+        &ROBOTS
+    }
+
+    fn settings(&self, condition: &str) -> Vec<Setting> {
+        ForagingConfig::of_condition(condition).table()
+    }
+
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+        Ok(Box::new(TeamSetup::new(ForagingMission::new(ForagingConfig::of_condition(condition).read(settings)?))?))
+    }
+}
+
+/// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
+pub fn forage<C: Controller>(life: &mut ForagingLife<C>, world: &mut World, job: Job) -> Outcome {
+    crate::life::live(life, world, job);
+    life.outcome(0)
+}

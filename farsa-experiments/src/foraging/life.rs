@@ -1,0 +1,166 @@
+//! A life of `foraging`: robots carry food from a field to their nest, and must come home to live.
+
+use farsa_body::{Arrange as _, BodyId, ColorBand, Pose, Twist};
+use farsa_nn::Controller;
+use farsa_num::{Domain, Stream};
+use farsa_physics::arena::{Arena, ArenaError, World};
+use farsa_view::Channel;
+
+use crate::error::Error;
+use crate::experiment::{ChannelGroup, Note, Outcome};
+use crate::foraging::config::ForagingConfig;
+use crate::foraging::field::Field;
+use crate::life::Job;
+use crate::team::config::TeamConfig;
+use crate::team::life::{Mission, Moment, TeamLife};
+use crate::team::nest::{COLORS, on_nest};
+use crate::team::robots::{OUTPUTS, Team};
+use crate::team::setup::{eye_groups, eye_names};
+
+/// Robots that forage, with a controller each, and the book of their food and energy.
+///
+/// A controller reads 8 infrared channels, the camera's (for each sector red, then blue), whether the ground under the
+/// robot is the nest's, and its energy; it writes what [`Team`] says. The dead stand still in the dark.
+pub type ForagingLife<C> = TeamLife<ForagingMission, C>;
+
+impl<C: Controller> ForagingLife<C> {
+    /// A life of these controllers, one for each robot.
+    ///
+    /// # Errors
+    /// Those of [`Team::new`].
+    pub fn new(config: ForagingConfig, controllers: Vec<C>) -> Result<Self, Error> {
+        Self::on(ForagingMission::new(config), controllers)
+    }
+}
+
+/// A field with food and a nest, and the book of who has what.
+#[derive(Clone, Debug)]
+pub struct ForagingMission {
+    config: ForagingConfig,
+    field: Field,
+    nest: BodyId,
+}
+
+impl ForagingMission {
+    /// A field of a configuration.
+    pub fn new(config: ForagingConfig) -> Self {
+        let TeamConfig { size, robots, .. } = config.team;
+        let field = Field::new(size, config.cells, config.cost, config.nest_radius, robots);
+        Self { field, nest: config.arena().area(0), config }
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &ForagingConfig {
+        &self.config
+    }
+
+    /// The book.
+    pub fn field(&self) -> &Field {
+        &self.field
+    }
+}
+
+impl Mission for ForagingMission {
+    fn robots(&self) -> &TeamConfig {
+        &self.config.team
+    }
+
+    fn arena(&self) -> Arena {
+        self.config.arena()
+    }
+
+    fn shape(&self) -> [usize; 2] {
+        [self.config.inputs(), OUTPUTS]
+    }
+
+    fn colors(&self, _: usize) -> &'static [ColorBand] {
+        &COLORS
+    }
+
+    fn crowded(&self) -> &'static str {
+        "team.robots"
+    }
+
+    /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the job's trial, individual and
+    /// generation.
+    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
+        let Self { config, field, nest } = self;
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+        world.clear();
+        let [low, high] = [config.nest_to_wall, config.team.size - config.nest_to_wall].map(|x| x as f32);
+        let at = [0; 2].map(|_| stream.range(low, high.max(low)));
+        world.place_body(*nest, Pose::planar(at, 0.0), Twist::default());
+        world.arranged();
+        field.begin(at.map(f64::from));
+        team.scatter(world, Some((at, config.start_within as f32)), &mut stream)
+    }
+
+    fn sense(&self, world: &World, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
+        let forager = &self.field.robots()[robot];
+        rest.copy_from_slice(&[on_nest(world, at), forager.energy as f32]);
+        forager.alive
+    }
+
+    fn judge(&mut self, _: &World, moment: Moment<'_>) -> bool {
+        for (robot, at) in moment.places.iter().enumerate() {
+            self.field.step(robot, at.map(f64::from));
+        }
+        // Nothing changes any more when all are dead.
+        self.field.deaths() == moment.places.len()
+    }
+
+    /// Pieces of food that the team carried to the nest.
+    fn earned(&self, _: usize, _: Moment<'_>) -> f64 {
+        f64::from(self.field.collected())
+    }
+
+    fn terms(&self) -> Vec<String> {
+        vec!["food".into()]
+    }
+
+    fn outcome(&self, own: usize, moment: Moment<'_>) -> Outcome {
+        let field = &self.field;
+        let robots = field.robots().len().max(1) as f64;
+        let energy: f64 = field.robots().iter().map(|forager| forager.energy).sum();
+        Outcome {
+            terms: vec![self.earned(own, moment)],
+            steps: moment.steps,
+            success: field.deaths() == 0,
+            notes: vec![
+                ("food collected", Note::from(f64::from(field.collected()))),
+                ("food carried at the end", Note::from(f64::from(field.carried()))),
+                ("food lost with the dead", Note::from(f64::from(field.lost()))),
+                ("deaths", Note::from(field.deaths() as f64)),
+                ("energy at the end", Note::from(energy / robots)),
+            ],
+        }
+    }
+
+    fn input_names(&self) -> Vec<String> {
+        let names = eye_names(self.config.team.sectors, &["red", "blue"]);
+        names.into_iter().chain(["nest", "energy"].map(String::from)).collect()
+    }
+
+    fn inputs(&self) -> Vec<ChannelGroup> {
+        let mut groups = eye_groups(&self.config.team, "red and blue", COLORS.len());
+        groups.push(ChannelGroup::new("ground", 1, "1 in the nest, else 0"));
+        groups.push(ChannelGroup::new("energy", 1, "1 in the nest .. 0 dead"));
+        groups
+    }
+
+    fn channels(&self) -> Vec<Channel> {
+        let of_robot = |number: usize| {
+            let energy = Channel::new(&format!("energy {number}")).group("energy").range(0.0, 1.0);
+            [energy, Channel::new(&format!("carried {number}")).group("food")]
+        };
+        let food = ["collected", "lost", "left"].map(|name| Channel::new(name).group("fitness"));
+        (1..=self.config.team.robots).flat_map(of_robot).chain(food).collect()
+    }
+
+    fn scalars(&self, _: Moment<'_>) -> Vec<f64> {
+        let field = &self.field;
+        let of_robots = field.robots().iter().flat_map(|forager| [forager.energy, f64::from(forager.carried)]);
+        let food = [f64::from(field.collected()), f64::from(field.lost()), field.left() as f64];
+        of_robots.chain(food).collect()
+    }
+}

@@ -1,0 +1,176 @@
+//! Who leads the arm: the scripted grasp, with the network's own commands mixed in.
+
+use std::sync::Arc;
+
+use farsa_body::{Channels as _, Kinematics as _, Motor as _, MusclePair, Sensor as _, Tabletop};
+use farsa_nn::{Controller, Demonstration};
+use farsa_physics::articulated::{Model, World};
+
+use crate::error::Error;
+use crate::life::Job;
+use crate::reach_grasp_lift::life::Judge;
+use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
+use crate::reach_grasp_lift::script::{Plan, Statics, Timetable};
+
+/// The activation that both muscles of a pair have where no torque is wanted.
+const TONUS: f64 = 0.5;
+/// How far a joint of the arm may be from where the script wants it before the script waits \[rad\].
+const PATIENCE: f64 = 0.25;
+/// How far the sphere may roll before it is lifted, beyond which the script knows no way \[m\].
+const ROLLED: f64 = 0.03;
+
+/// Leads the arm through reach, grasp and lift, and tells at every tick what it would do.
+///
+/// The script (IK way-points, inverse statics of the muscles, feedback on the arm's joints) is that of
+/// [`ScriptLife`](crate::reach_grasp_lift::ScriptLife), with two differences. Of the infinitely many pairs of activations
+/// that give a torque it wants the one nearest to 0.5 in both: a smooth function of the torque, in the middle of the
+/// network's logistic outputs, where the script's own has one muscle at rest and a kink. And its clock stands while the arm is
+/// farther than 0.25 rad from where it is wanted, so that a led arm that is held back is led on from where it is.
+pub(crate) struct Teacher {
+    scene: Arc<Scene>,
+    world: World<f32>,
+    statics: Arc<Statics>,
+    judge: Judge,
+    senses: Senses,
+    motors: Motors,
+}
+
+/// What was sensed and wanted while the arm was led.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Record {
+    /// Sensor values `[ticks x sensors]`.
+    pub(crate) x: Vec<f32>,
+    /// Wanted motor values `[ticks x 23]`.
+    pub(crate) wanted: Vec<f32>,
+    /// Whether the trial succeeded, by the experiment's own definition.
+    pub(crate) success: bool,
+}
+
+impl Record {
+    /// What a network can learn from.
+    pub(crate) fn demonstration(&self) -> Demonstration<'_> {
+        Demonstration { x: &self.x, wanted: &self.wanted }
+    }
+}
+
+impl Teacher {
+    /// A teacher in a scene.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a robot that cannot be built.
+    pub(crate) fn new(scene: Arc<Scene>) -> Result<Self, Error> {
+        let model = Model::new(&scene.robot, &scene.config.options());
+        let world = World::new(model.map_err(|error| Error::Other(format!("kinesthetic-grasp: {error}")))?);
+        let (senses, motors, statics) = (scene.senses()?, scene.motors()?, Arc::new(Statics::new(&scene)?));
+        let judge = Judge::new(Arc::clone(&scene));
+        Ok(Self { scene, world, statics, judge, senses, motors })
+    }
+
+    /// Leads the arm through the trial of a job. The motors get the teacher's commands, mixed with `share` \[0..1\] of those
+    /// that the network gives for the same sensor values, which is stepped from rest.
+    ///
+    /// The record ends with the trial, or where the sphere has rolled away by 3 cm; it is empty if the sphere lies out of
+    /// reach.
+    pub(crate) fn lead<C: Controller>(&mut self, job: Job, network: &mut C, share: f32, record: &mut Record) {
+        let Self { scene, world, statics, judge, senses, motors } = self;
+        (record.success, record.x, record.wanted) = (false, Vec::new(), Vec::new());
+        judge.start(world, job);
+        network.reset();
+        senses.reset();
+        motors.reset();
+        let (start, sphere) = scene.start(job);
+        let Ok(plan) = Plan::new(Timetable::default(), Arc::clone(statics), &start, sphere) else { return };
+        let (mut x, mut own, mut y) = (vec![0.0; senses.channels()], [0.0; OUTPUTS], [0.0; OUTPUTS]);
+        let mut time = 0.0;
+        while judge.tick(world).is_none() {
+            senses.set_label(judge.trial().phase);
+            senses.read(world, &mut x);
+            let (positions, torques) = plan.torques(world, time);
+            let wanted = wanted(statics, &plan, &positions, &torques, time);
+            network.step(&x, &mut own);
+            record.x.extend_from_slice(&x);
+            record.wanted.extend_from_slice(&wanted);
+            for ((y, wanted), own) in y.iter_mut().zip(wanted).zip(own) {
+                *y = wanted + share * (own - wanted);
+            }
+            motors.drive(&y, world);
+            farsa_body::World::step(world);
+
+            let (posture, _) = plan.wanted(time);
+            let follows = posture.iter().zip(&positions).all(|(wanted, q)| (wanted - q).abs() < PATIENCE);
+            time += if follows { scene.config.time_step } else { 0.0 };
+            let [x, y, z] = world.pose(Tabletop::SPHERE).position.map(f64::from);
+            let lies = z < scene.config.sphere_radius + 0.01;
+            let rolled = (x - sphere[0]).abs().max((y - sphere[1]).abs()) > ROLLED;
+            if lies && rolled {
+                break;
+            }
+        }
+        record.success = judge.succeeds();
+    }
+}
+
+/// The 23 motor values that the script would give.
+fn wanted(statics: &Statics, plan: &Plan, positions: &[f64], torques: &[f64], time: f64) -> [f32; OUTPUTS] {
+    let mut y = [0.0; OUTPUTS];
+    let (muscles, hand) = y.split_at_mut(14);
+    let pairs = muscles.chunks_exact_mut(2).zip(statics.muscles()).zip(positions.iter().zip(torques));
+    for ((out, muscle), (q, torque)) in pairs {
+        let pair = with_tonus(muscle, *q, *torque).map(|a| a as f32);
+        out.copy_from_slice(&pair);
+    }
+    for (out, position) in hand.iter_mut().zip(plan.hand(time)) {
+        *out = position as f32;
+    }
+    y
+}
+
+/// The activations nearest to [`TONUS`] that give a torque \[N m\] at an angle \[rad\] at rest; where it is more than the pair
+/// has, the nearest that there is.
+fn with_tonus(muscle: &MusclePair<f64>, q: f64, torque: f64) -> [f64; 2] {
+    let at = |activations| muscle.effort(q, 0.0, activations).torque;
+    let passive = at([0.0, 0.0]);
+    // What full activations add: the agonist pulls towards the lower limit.
+    let (down, up) = (at([1.0, 0.0]) - passive, at([0.0, 1.0]) - passive);
+    let strength = down * down + up * up;
+    if strength.is_nan() || strength <= 0.0 {
+        return [TONUS; 2];
+    }
+    let missing = torque - passive;
+    let more = (missing - TONUS * (down + up)) / strength;
+    let agonist = (TONUS + more * down).clamp(0.0, 1.0);
+    let antagonist = if up > 0.0 { ((missing - agonist * down) / up).clamp(0.0, 1.0) } else { TONUS };
+    // Where the second met its limit, the first gives what is left.
+    let agonist = if down < 0.0 { ((missing - antagonist * up) / down).clamp(0.0, 1.0) } else { agonist };
+    [agonist, antagonist]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reach_grasp_lift::config::Config;
+
+    #[test]
+    fn activations_give_the_torque_from_the_middle() {
+        let scene = Scene::new(Config::default()).unwrap();
+        let statics = Statics::new(&scene).unwrap();
+        for (i, muscle) in statics.muscles().iter().enumerate() {
+            let [low, high] = scene.robot.segments[i].joint.range;
+            for part in [0.1, 0.35, 0.5, 0.8] {
+                let q = low + part * (high - low);
+                let torque = |pair| muscle.effort(q, 0.0, pair).torque;
+                let [least, most] = [torque([1.0, 0.0]), torque([0.0, 1.0])];
+                for share in [0.0, 0.1, 0.5, 0.6, 1.0] {
+                    let wanted = least + share * (most - least);
+                    let pair = with_tonus(muscle, q, wanted);
+                    assert!((torque(pair) - wanted).abs() < 1e-9, "J{} at {q}: {pair:?}", i + 1);
+                    assert!(pair.iter().all(|a| (0.0..=1.0).contains(a)));
+                }
+                // Beyond what there is, all that there is; and no torque needs no more than the middle where muscles agree.
+                assert_eq!(with_tonus(muscle, q, 2.0 * most - least), [0.0, 1.0]);
+            }
+            let middle = with_tonus(muscle, 0.5 * (low + high), 0.0);
+            assert!(middle.iter().all(|a| (a - TONUS).abs() < 1e-9), "{middle:?}");
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! The network of `minimal-cognition`: layers of sensory, inner and motor neurons that are the same left and right.
+
+use farsa_evo::{GeneRange, decode};
+use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Span};
+
+use crate::error::Error;
+use crate::minimal_cognition::config::Config;
+
+/// Rays, and sensory neurons, from left to right.
+pub const RAYS: usize = 7;
+/// Inner neurons, from left to right.
+pub const INNER: usize = 5;
+/// Motor neurons: to the right, to the left.
+pub const MOTORS: usize = 2;
+/// All neurons: sensory, then inner, then motor.
+pub const NEURONS: usize = RAYS + INNER + MOTORS;
+
+/// The layout: each ray is the external input of a sensory neuron.
+pub const LAYOUT: CtrnnLayout = CtrnnLayout::new(RAYS, NEURONS, MOTORS).with_direct_inputs(0);
+
+const SENSORY: Span = Span::new(0, RAYS);
+const INNER_ONES: Span = Span::new(RAYS, INNER);
+pub(crate) const MOTOR_ONES: Span = Span::new(RAYS + INNER, MOTORS);
+/// The layers that are linked, each neuron of the one to each of the other.
+pub(crate) const LINKED: [(Span, Span); 3] =
+    [(SENSORY, INNER_ONES), (INNER_ONES, INNER_ONES), (INNER_ONES, MOTOR_ONES)];
+/// The neuron on the other side: layers are turned about their middle.
+const MIRROR: [usize; NEURONS] = [6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12];
+
+/// Which gene each parameter of the network is decoded from.
+///
+/// A parameter and its mirror image share a gene, and the sensory neurons share one bias, time constant and gain. That
+/// makes the 47 parameters of the source:
+///
+/// | what | parameters | in pairs | genes |
+/// |---|---|---|---|
+/// | weights sensory to inner | 35 | all but the middle ray to the middle neuron | 17 + 1 |
+/// | weights inner to inner | 25 | all but the middle neuron to itself | 12 + 1 |
+/// | weights inner to motor | 10 | all | 5 |
+/// | biases | 14 | 1 of the sensory, 3 of the inner, 1 of the motor neurons | 5 |
+/// | gain of the sensory neurons | 7 | 1 | 1 |
+/// | time constants | 14 | as the biases | 5 |
+///
+/// All other weights are 0, all other gains 1. Genes stand in the order of the first parameters that they fill, as
+/// [`CtrnnSymmetry`] has them: an inner neuron's weights to the motor neurons follow those to the inner ones.
+#[derive(Clone, Debug)]
+pub struct Wiring {
+    symmetry: CtrnnSymmetry<'static>,
+    /// What each gene stands for.
+    ranges: Vec<GeneRange>,
+}
+
+impl Wiring {
+    /// The wiring, its genes decoded to the ranges of a configuration.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a range that is none.
+    pub fn new(config: &Config) -> Result<Self, Error> {
+        let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &MIRROR)?
+            .with_links(&LINKED)?
+            .with_alike(&[SENSORY])?
+            .with_gains(&[SENSORY])?;
+        let both = |range: f64| [-range, range];
+        let range = |kind| match kind {
+            CtrnnParameter::Bias => both(config.bias_range),
+            CtrnnParameter::Gain => config.gains,
+            CtrnnParameter::TimeConstant => config.time_constants,
+            _ => both(config.weight_range),
+        };
+        let ranges = symmetry.kinds().map(range).map(|[low, high]| GeneRange::new(1, low as f32, high as f32));
+        Ok(Self { symmetry, ranges: ranges.collect::<Result<_, _>>()? })
+    }
+
+    /// Number of genes: 47.
+    pub fn genes(&self) -> usize {
+        self.ranges.len()
+    }
+
+    /// The parameters that these genes stand for, in the order of [`LAYOUT`]; `None` for another number of genes.
+    pub fn decode(&self, genes: &[u16]) -> Option<Vec<f32>> {
+        let (mut values, mut parameters) = (vec![0.0; self.genes()], vec![0.0; LAYOUT.parameter_count()]);
+        decode(genes, &self.ranges, &mut values).ok()?;
+        self.symmetry.expand(&values, &mut parameters).ok()?;
+        Some(parameters)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decoded(genes: &[u16]) -> Vec<f32> {
+        Wiring::new(&Config::default()).unwrap().decode(genes).unwrap()
+    }
+
+    #[test]
+    fn there_are_the_sources_47_genes_and_each_has_its_parameters() {
+        let wiring = Wiring::new(&Config::default()).unwrap();
+        assert_eq!(wiring.genes(), 47);
+        assert!(wiring.decode(&[0; 46]).is_none());
+        let plain = decoded(&[20_000; 47]);
+        // How many parameters follow each gene: a pair, the middle alone, or the sensory neurons together.
+        let followers: Vec<usize> = (0..47)
+            .map(|gene| {
+                let mut genes = [20_000; 47];
+                genes[gene] = 40_000;
+                decoded(&genes).iter().zip(&plain).filter(|(one, other)| one != other).count()
+            })
+            .collect();
+        let mut expected = vec![2; 17];
+        expected.push(1);
+        // Two inner neurons to five and to the two motors; the middle one to two pairs, to itself and to the motors.
+        expected.extend([2; 2 * (5 + 2) + 2]);
+        expected.extend([1, 2]);
+        let biases = [7, 2, 2, 1, 2];
+        expected.extend(biases);
+        expected.push(7);
+        expected.extend(biases);
+        assert_eq!(followers, expected);
+        assert_eq!(followers.iter().sum::<usize>(), 35 + 25 + 10 + 14 + 14 + 7);
+    }
+
+    #[test]
+    fn parameters_are_in_their_ranges_and_only_layers_are_linked() {
+        let Config { weight_range, bias_range, time_constants, gains, .. } = Config::default();
+        for (gene, end) in [(0, 0), (u16::MAX, 1)] {
+            let parameters = decoded(&[gene; 47]);
+            let parts = LAYOUT.split(&parameters);
+            let sign = [-1.0, 1.0][end];
+            assert!(parts.biases.iter().all(|bias| f64::from(*bias) == sign * bias_range));
+            assert!(parts.time_constants.iter().all(|tau| f64::from(*tau) == time_constants[end]));
+            assert!(parts.gains[..RAYS].iter().all(|gain| f64::from(*gain) == gains[end]));
+            assert_eq!(parts.gains[RAYS..], [1.0; INNER + MOTORS]);
+            for (from, to) in (0..NEURONS).flat_map(|from| (0..NEURONS).map(move |to| (from, to))) {
+                let linked = LINKED.iter().any(|(sources, targets)| sources.contains(from) && targets.contains(to));
+                let expected = if linked { sign * weight_range } else { 0.0 };
+                assert_eq!(f64::from(parts.weights[from * NEURONS + to]), expected, "{from} to {to}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_other_side_is_the_same() {
+        let genes: Vec<u16> = (0..47).map(|gene| gene * 1311).collect();
+        let parameters = decoded(&genes);
+        let parts = LAYOUT.split(&parameters);
+        for one in 0..NEURONS {
+            let other = MIRROR[one];
+            assert_eq!(MIRROR[other], one);
+            for values in [parts.biases, parts.gains, parts.time_constants] {
+                assert_eq!(values[one], values[other]);
+            }
+            for to in 0..NEURONS {
+                assert_eq!(parts.weights[one * NEURONS + to], parts.weights[other * NEURONS + MIRROR[to]]);
+            }
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The experiment `predator-prey`: two populations evolve against each other.
+
+use farsa_nn::Controller;
+use farsa_physics::arena::World;
+
+use crate::error::Error;
+use crate::experiment::{Experiment, Outcome, Setup};
+use crate::life::Job;
+use crate::predator_prey::config::PredatorPreyConfig;
+use crate::predator_prey::life::{PredatorPreyLife, PredatorPreyMission};
+use crate::settings::{Setting, Settings};
+use crate::team::setup::TeamSetup;
+
+/// Do a predator and a prey that evolve against each other become better at both? \[FARSA2\]
+///
+/// Two `MarXbots` of the same abilities in a walled arena. The predators, the first population, earn 1 - t/T for touching
+/// the prey at step t of T, else nothing; the prey, the second, earn the rest of 1. Arena, starts, T and rewards are the
+/// source's; headings, sensors, network and evolution are ours, as the settings say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct PredatorPrey;
+
+impl Experiment for PredatorPrey {
+    fn name(&self) -> &'static str {
+        "predator-prey"
+    }
+
+    fn summary(&self) -> &'static str {
+        "a robot chases another one, and both evolve against each other in two populations"
+    }
+
+    fn settings(&self, _: &str) -> Vec<Setting> {
+        PredatorPreyConfig::default().table()
+    }
+
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+        Ok(Box::new(TeamSetup::new(PredatorPreyMission::new(PredatorPreyConfig::default().read(settings)?))?))
+    }
+}
+
+/// Lives one trial of any two controllers and tells what came of it for the predator, as an outcome of the experiment does.
+pub fn chase<C: Controller>(life: &mut PredatorPreyLife<C>, world: &mut World, job: Job) -> Outcome {
+    crate::life::live(life, world, job);
+    life.outcome(0)
+}

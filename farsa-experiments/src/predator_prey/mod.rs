@@ -1,0 +1,16 @@
+//! The experiment `predator-prey`: two populations evolve against each other.
+//!
+//! - `baseline`: a predator and a prey without evolution, to compare evolved ones with
+//! - `config`: the values of `predator-prey`, as settings
+//! - `experiment`: its name, conditions and settings, and what lives its lives
+//! - `life`: a life of `predator-prey`: one robot chases another
+
+mod baseline;
+mod config;
+mod experiment;
+mod life;
+
+pub use baseline::Chaser;
+pub use config::PredatorPreyConfig;
+pub use experiment::{PredatorPrey, chase};
+pub use life::{PredatorPreyLife, PredatorPreyMission};

@@ -1,0 +1,49 @@
+//! The experiment `push-box`: what only a general world can do.
+
+use crate::error::Error;
+use crate::experiment::{Experiment, Setup};
+use crate::push_box::config::PushConfig;
+use crate::settings::{Setting, Settings};
+
+/// How far can a robot push a box that it only feels with its infrared sensors?
+///
+/// An e-puck on an endless plane has eight infrared sensors, read by rays, and a layer of two logistic units, which drive
+/// its wheels. It starts beside a box, often without sensing it, and earns the distance in metres that the box has come
+/// after 20 s, on the mean over the trials. It lives in rapier alone, as a rigid body on driven wheels
+/// (`farsa_physics::rapier::ArenaWorld`): the crate must be built with the feature `rapier`. All values are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct PushBox;
+
+impl Experiment for PushBox {
+    fn name(&self) -> &'static str {
+        "push-box"
+    }
+
+    // 2: wheels keep their speed under load, and a trial takes 20 s.
+    fn values_version(&self) -> u32 {
+        2
+    }
+
+    fn summary(&self) -> &'static str {
+        if cfg!(feature = "rapier") {
+            "an e-puck pushes a box as far as it can, by its infrared sensors alone, in rapier"
+        } else {
+            "an e-puck pushes a box as far as it can; lives in rapier, so it needs a build with --features rapier"
+        }
+    }
+
+    fn settings(&self, _: &str) -> Vec<Setting> {
+        PushConfig::default().table()
+    }
+
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+        let config = PushConfig::default().read(settings)?;
+        #[cfg(feature = "rapier")]
+        return Ok(Box::new(crate::push_box::setup::Lives::new(config)?));
+        #[cfg(not(feature = "rapier"))]
+        {
+            let _ = config;
+            Err(crate::worlds::missing("rapier"))
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! A life of `push-box`: one trial with a robot and a box on an endless plane.
+
+use core::f32::consts::PI;
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, Joints, Kinematics, MobileParts,
+    Motor as _, PairId, Planar, Pose, Rays, Sensor as _, Twist, WheelVelocity,
+};
+use farsa_nn::Controller;
+use farsa_num::{Domain, Scalar, Stream, sin_cos};
+
+use crate::error::Error;
+use crate::infrared::settings::{Infrared, InfraredModel};
+use crate::life::{Job, Life};
+use crate::push_box::config::PushConfig;
+
+/// Values that a controller gives: left and right wheel.
+pub(crate) const OUTPUTS: usize = 2;
+
+/// The account of a trial.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct PushTrial {
+    /// Steps lived.
+    pub steps: u32,
+    /// Steps in which hull and box touched.
+    pub touched: u32,
+    /// From where the box stood to where it stands now, in the plane \[m\].
+    pub moved: f64,
+    /// Length of the way that it took \[m\].
+    pub way: f64,
+    /// The fastest that it was at the end of a step \[m/s\].
+    pub fastest: f64,
+    /// Whether a number was none.
+    pub failed: bool,
+}
+
+/// The robot beside its box with a controller: sensors, motors, and the judge of the trial.
+#[derive(Clone, Debug)]
+pub struct PushLife<C> {
+    config: PushConfig,
+    parts: MobileParts,
+    cube: BodyId,
+    pair: PairId,
+    infrared: Infrared,
+    wheels: WheelVelocity,
+    controller: C,
+    x: Vec<f32>,
+    y: [f32; OUTPUTS],
+    /// Where the box was at the start and after the last step \[m\].
+    places: [[f32; 2]; 2],
+    trial: PushTrial,
+    begun: bool,
+}
+
+impl<C: Controller> PushLife<C> {
+    /// A life of this controller, of [`PushConfig::inputs`] inputs and two outputs, left and right wheel.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a controller of another shape.
+    pub fn new(config: PushConfig, controller: C) -> Result<Self, Error> {
+        let (inputs, outputs, wanted) = (controller.inputs(), controller.outputs(), config.inputs());
+        if inputs != wanted || outputs != OUTPUTS {
+            return Err(Error::Other(format!(
+                "push-box: a controller of {inputs} inputs and {outputs} outputs where {wanted} and {OUTPUTS} are wanted"
+            )));
+        }
+        let wrong = |error: ChannelError| Error::Other(format!("push-box: {error}"));
+        let (robot, scene) = (&config.robot, config.scene());
+        let parts = scene.arena.parts(0);
+        Ok(Self {
+            parts,
+            cube: scene.block(0),
+            pair: scene.block_pair(0),
+            infrared: Infrared::of(robot, parts.body, wanted, &InfraredModel::Rays).map_err(wrong)?,
+            wheels: WheelVelocity::new(parts.motors, robot.max_wheel_speed as f32).map_err(wrong)?,
+            controller,
+            x: vec![0.0; wanted],
+            y: [0.0; OUTPUTS],
+            places: [[0.0; 2]; 2],
+            trial: PushTrial::default(),
+            begun: false,
+            config,
+        })
+    }
+
+    /// Puts the box into the middle and the robot beside it: the headings of both, the direction in which the robot stands
+    /// and its distance are uniform.
+    ///
+    /// All is drawn from the stream of [`Domain::Start`] of the job's trial and generation: the individuals of a generation
+    /// have the same starts.
+    pub fn arrange<W>(&mut self, world: &mut W, job: Job)
+    where
+        W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
+    {
+        let Self { config, parts, cube, .. } = self;
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, 0, job.generation);
+        world.clear();
+        world.place_body(*cube, Pose::planar([0.0; 2], stream.range(-PI, PI)), Twist::default());
+        let away = stream.range(config.apart[0] as f32, config.apart[1] as f32);
+        let away = away + (config.robot.radius + config.around()) as f32;
+        let (sine, cosine) = sin_cos(stream.range(-PI, PI));
+        let at = [away * cosine, away * sine];
+        world.place_body(parts.body, Pose::planar(at, stream.range(-PI, PI)), Twist::default());
+        world.arranged();
+    }
+
+    /// Opens a new account and arranges the world.
+    pub fn begin<W>(&mut self, world: &mut W, job: Job)
+    where
+        W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
+    {
+        self.arrange(world, job);
+        let [x, y, _] = world.pose(self.cube).position;
+        self.places = [[x, y]; 2];
+        self.trial = PushTrial::default();
+        self.controller.reset();
+        self.begun = false;
+    }
+
+    /// Senses, thinks and acts.
+    #[inline]
+    pub fn act<W>(&mut self, world: &mut W)
+    where
+        W: Planar + Rays + Kinematics + Actuated + Handles<Body = BodyId, Actuator = ActuatorId> + ?Sized,
+    {
+        self.infrared.read(world, &mut self.x);
+        self.controller.step(&self.x, &mut self.y);
+        self.wheels.drive(&self.y, world);
+    }
+
+    /// Judges the step that has passed; `Some` ends the trial with its fitness.
+    pub fn judge<W>(&mut self, world: &W) -> Option<f64>
+    where
+        W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized,
+    {
+        let Self { config, trial, places, .. } = self;
+        trial.steps += 1;
+        let [x, y, _] = world.pose(self.cube).position;
+        let apart = |[u, v]: [f32; 2]| {
+            let [u, v] = [x - u, y - v].map(f64::from);
+            Scalar::sqrt(u * u + v * v)
+        };
+        trial.moved = apart(places[0]);
+        trial.way += apart(places[1]);
+        places[1] = [x, y];
+        let [u, v, _] = world.velocity(self.cube).linear.map(f64::from);
+        trial.fastest = Scalar::max(trial.fastest, Scalar::sqrt(u * u + v * v));
+        trial.touched += u32::from(world.touches(self.pair));
+        trial.failed |= !(trial.way.is_finite() && trial.fastest.is_finite());
+        (trial.failed || trial.steps >= config.steps).then(|| self.fitness())
+    }
+
+    /// What the trial has earned: how far the box has come from where it stood, in metres; NaN for one that failed.
+    pub fn fitness(&self) -> f64 {
+        if self.trial.failed { f64::NAN } else { self.trial.moved }
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &PushConfig {
+        &self.config
+    }
+
+    /// The account of the trial.
+    pub fn trial(&self) -> &PushTrial {
+        &self.trial
+    }
+
+    /// By which numbers the robot's parts are known.
+    pub fn parts(&self) -> &MobileParts {
+        &self.parts
+    }
+
+    /// The box.
+    pub fn cube(&self) -> BodyId {
+        self.cube
+    }
+
+    /// The infrared sensors.
+    pub fn infrared(&self) -> &Infrared {
+        &self.infrared
+    }
+
+    /// Another controller of the same shape.
+    pub fn set_controller(&mut self, controller: C) {
+        debug_assert_eq!((controller.inputs(), controller.outputs()), (self.x.len(), OUTPUTS), "inputs and outputs");
+        self.controller = controller;
+    }
+
+    /// What was sensed last \[8\].
+    pub fn sensed(&self) -> &[f32] {
+        &self.x
+    }
+
+    /// What was done last \[2\].
+    pub fn done(&self) -> &[f32] {
+        &self.y
+    }
+}
+
+impl<W, C> Life<W> for PushLife<C>
+where
+    W: Planar
+        + Rays
+        + Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
+    C: Controller,
+{
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.begin(world, job);
+    }
+
+    fn tick(&mut self, world: &mut W) -> Option<f64> {
+        let end = if self.begun { self.judge(world) } else { None };
+        self.begun = true;
+        if end.is_none() {
+            self.act(world);
+        }
+        end
+    }
+}

@@ -1,0 +1,23 @@
+//! The experiment `push-box`: what only a general world can do.
+//!
+//! - `baseline`: a pusher without evolution, to compare evolved ones with
+//! - `config`: the values of `push-box`, as settings
+//! - `experiment`: its name, conditions and settings, and what lives its lives
+//! - `life`: a life of `push-box`: one trial with a robot and a box on an endless plane
+//! - `setup`: `push-box` ready to be lived
+
+#[cfg(feature = "rapier")]
+mod baseline;
+mod config;
+mod experiment;
+#[cfg(feature = "rapier")]
+mod life;
+#[cfg(feature = "rapier")]
+mod setup;
+
+#[cfg(feature = "rapier")]
+pub use baseline::HomingPusher;
+pub use config::PushConfig;
+pub use experiment::PushBox;
+#[cfg(feature = "rapier")]
+pub use life::{PushLife, PushTrial};

@@ -1,0 +1,314 @@
+//! The controller of `reach-grasp-lift` and its starts for other programs.
+
+use farsa_body::{ActuatorId, ArmAndHand, BodyId, Finger, JointId, Pair, PairId, Tabletop};
+
+use crate::controller_export::{
+    ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport,
+    SensorReading, ServoExport, StartExport, SurfaceExport,
+};
+use crate::life::Job;
+use crate::reach_grasp_lift::phase::Phase;
+use crate::reach_grasp_lift::scene::{Scene, TARGET_SCALE};
+
+impl Scene {
+    /// A network with the channels of this scene, named as they are there.
+    pub(crate) fn controller(
+        &self,
+        network: NetworkExport,
+        sensors: Vec<String>,
+        motors: Vec<String>,
+    ) -> ControllerExport {
+        let actuators = self.robot.actuators.iter().map(|actuator| ActuatorExport {
+            name: actuator.name.clone(),
+            joint: self.joint_name(actuator.joint),
+            law: actuator.law,
+        });
+        let sensors = sensors.into_iter().zip(self.readings());
+        let motors = motors.into_iter().zip(self.drives());
+        ControllerExport {
+            network,
+            sensors: sensors.map(|(name, reads)| SensorExport { name, reads }).collect(),
+            motors: motors.map(|(name, drives)| MotorExport { name, drives }).collect(),
+            actuators: actuators.collect(),
+            surfaces: self.surfaces(),
+            judge: Some(self.judge_by_name()),
+            time_step: self.config.time_step,
+            steps: self.config.steps,
+        }
+    }
+
+    /// [`Scene::start`] by name, as a world takes it.
+    pub(crate) fn start_by_name(&self, job: Job) -> StartExport {
+        let (joints, [x, y]) = self.start(job);
+        let joints = ArmAndHand::joints().into_iter().zip(joints);
+        let at = [x, y, self.config.sphere_radius].map(|x| x as f32);
+        StartExport {
+            joints: joints.map(|(joint, q)| (self.joint_name(joint), q as f32)).collect(),
+            bodies: vec![(self.body_name(Tabletop::SPHERE), at)],
+        }
+    }
+
+    /// What every sensor channel reads, in the order of [`Scene::senses`].
+    fn readings(&self) -> Vec<SensorReading> {
+        let config = &self.config;
+        let joints = self.sensed_joints().into_iter();
+        let joints =
+            joints.map(|(joint, [from, to])| SensorReading::JointPosition { joint: self.joint_name(joint), from, to });
+        let saturation = config.touch_saturation as f32;
+        let patches = self.patches().into_iter();
+        let patches = patches.map(|pairs| SensorReading::Touch { pairs: self.pair_names(&pairs), saturation });
+        let way = (0..3).map(|component| SensorReading::Way {
+            target: self.point(Tabletop::SPHERE, [0.0; 3]),
+            from: self.palm(),
+            axes: config.target_axes,
+            component,
+            scale: TARGET_SCALE,
+        });
+        let amplitude = config.label_amplitude as f32;
+        let phases = Phase::ALL.into_iter().filter(|_| config.labels);
+        let labels = phases.map(|phase| SensorReading::Label { phase: phase.name(), amplitude });
+        joints.chain(patches).chain(way).chain(labels).collect()
+    }
+
+    /// What every motor channel drives, in the order of [`Scene::motors`].
+    fn drives(&self) -> Vec<MotorDrive> {
+        let muscles = (0..7).flat_map(|i| [0, 1].map(|muscle| (ActuatorId(i), muscle)));
+        let muscles = muscles.map(|(pair, muscle)| MotorDrive::Muscle { actuator: self.actuator_name(pair), muscle });
+        let groups = self.arm.servo_groups().into_iter().map(|group| {
+            let servos = group.into_iter();
+            let servos = servos.map(|s| ServoExport { actuator: self.actuator_name(s.servo), from: s.from, to: s.to });
+            MotorDrive::Servos { servos: servos.collect() }
+        });
+        muscles.chain(groups).collect()
+    }
+
+    fn surfaces(&self) -> Vec<SurfaceExport> {
+        let surface = |number: usize, pair: &Pair| SurfaceExport {
+            pair: self.pair_name(PairId(number as u16)),
+            stiffness: pair.surface.stiffness,
+            damping: pair.surface.damping,
+        };
+        self.robot.pairs.iter().enumerate().map(|(number, pair)| surface(number, pair)).collect()
+    }
+
+    fn judge_by_name(&self) -> JudgeExport {
+        let tips = Finger::ALL.map(|finger| self.arm.fingertip(finger));
+        JudgeExport {
+            phases: Phase::ALL.map(Phase::name).to_vec(),
+            target: self.body_name(Tabletop::SPHERE),
+            palm: self.palm(),
+            fingertips: tips.into_iter().map(|(body, at)| self.point(body, at)).collect(),
+            on_fingers: self.pair_names(&self.sphere_on_phalanges),
+            on_table: self.pair_name(self.sphere_on_table),
+            success_height: self.config.judgement.success_height / 100.0,
+            success_steps: self.config.steps_per_second(),
+        }
+    }
+
+    fn palm(&self) -> PointExport {
+        self.point(ArmAndHand::PALM, self.arm.palm_centre)
+    }
+
+    fn point(&self, body: BodyId, at: [f64; 3]) -> PointExport {
+        PointExport { body: self.body_name(body), at }
+    }
+
+    fn body_name(&self, body: BodyId) -> String {
+        self.robot.segments[body.index()].name.clone()
+    }
+
+    fn joint_name(&self, joint: JointId) -> String {
+        self.robot.segments[joint.index()].joint.name.clone()
+    }
+
+    fn actuator_name(&self, actuator: ActuatorId) -> String {
+        self.robot.actuators[actuator.index()].name.clone()
+    }
+
+    fn pair_name(&self, pair: PairId) -> [String; 2] {
+        self.robot.pairs[pair.index()].colliders.map(|collider| self.robot.colliders[collider].name.clone())
+    }
+
+    fn pair_names(&self, pairs: &[PairId]) -> Vec<[String; 2]> {
+        pairs.iter().map(|pair| self.pair_name(*pair)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_body::{Axes, Channels, Contacts, Joints, Kinematics, Law, Motor, Sensor, World as _};
+    use farsa_nn::{Controller, Leak, Network};
+    use farsa_num::{Domain, Stream};
+    use farsa_physics::articulated::{Model, World};
+
+    use crate::reach_grasp_lift::config::Config;
+    use crate::reach_grasp_lift::scene::OUTPUTS;
+
+    fn described(scene: &Scene, parameters: &[f32]) -> ControllerExport {
+        let layout = scene.config.layout();
+        let network = NetworkExport::new(&layout, Leak::Filter, parameters);
+        scene.controller(network, scene.senses().unwrap().names(), scene.motors().unwrap().names())
+    }
+
+    fn at(scene: &Scene, world: &World<f32>, point: &PointExport) -> [f64; 3] {
+        world.pose(scene.robot.body(&point.body).unwrap()).cast::<f64>().transform(point.at)
+    }
+
+    /// What a channel reads by its description alone.
+    fn reading(scene: &Scene, world: &World<f32>, phase: Phase, reads: &SensorReading) -> f64 {
+        match reads {
+            SensorReading::JointPosition { joint, from, to } => {
+                let q = world.position(scene.robot.joint(joint).unwrap());
+                f64::from((q - from) / (to - from))
+            }
+            SensorReading::Touch { pairs, saturation } => {
+                let touches = |pair: &&[String; 2]| world.touches(scene.robot.pair(&pair[0], &pair[1]).unwrap());
+                (pairs.iter().filter(touches).count() as f64 / f64::from(*saturation)).min(1.0)
+            }
+            SensorReading::Way { target, from, axes, component, scale } => {
+                let (to, own) = (at(scene, world, target), at(scene, world, from));
+                let way = [0, 1, 2].map(|k| to[k] - own[k]);
+                let body = world.pose(scene.robot.body(&from.body).unwrap()).cast::<f64>();
+                let way = if *axes == Axes::Body { body.rotate_back(way) } else { way };
+                way[*component] * f64::from(*scale)
+            }
+            SensorReading::Label { phase: named, amplitude } => {
+                if phase.name() == *named {
+                    f64::from(*amplitude)
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+
+    /// The commands of all actuators for outputs, by the description alone.
+    fn commands(scene: &Scene, motors: &[MotorExport], y: &[f32]) -> Vec<[f32; 2]> {
+        let mut commands = vec![[0.0; 2]; scene.robot.actuators.len()];
+        for (motor, y) in motors.iter().zip(y) {
+            match &motor.drives {
+                MotorDrive::Muscle { actuator, muscle } => {
+                    commands[scene.robot.actuator(actuator).unwrap().index()][*muscle] = *y;
+                }
+                MotorDrive::Servos { servos } => {
+                    for s in servos {
+                        commands[scene.robot.actuator(&s.actuator).unwrap().index()][0] = s.from + (s.to - s.from) * y;
+                    }
+                }
+            }
+        }
+        commands
+    }
+
+    /// Remembers what it is commanded.
+    struct Commanded(Vec<[f32; 2]>);
+
+    impl farsa_body::Handles for Commanded {
+        type Body = BodyId;
+        type Joint = JointId;
+        type Actuator = ActuatorId;
+    }
+
+    impl farsa_body::Actuated for Commanded {
+        fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
+            self.0[actuator.index()] = value;
+        }
+    }
+
+    #[test]
+    fn the_description_alone_senses_and_drives_as_the_scene_does() {
+        for config in [Config::default(), Config { target_axes: Axes::World, ..Config::of_condition(false) }] {
+            let scene = Scene::new(config).unwrap();
+            let told = described(&scene, &vec![0.0; scene.config.layout().parameter_count()]);
+            let (mut senses, mut motors) = (scene.senses().unwrap(), scene.motors().unwrap());
+            assert_eq!((told.sensors.len(), told.motors.len()), (senses.channels(), OUTPUTS));
+            let mut world = World::new(Model::<f32>::new(&scene.robot, &scene.config.options()).unwrap());
+            let mut stream = Stream::new(5, Domain::Motor, 0, 0, 0);
+            let (mut x, mut touched) = (vec![0.0; told.sensors.len()], 0);
+            for step in 0..600 {
+                if step % 150 == 0 {
+                    scene.arrange(&mut world, Job { seed: 3, trial: step / 150, ..Job::default() });
+                    let start = scene.start_by_name(Job { seed: 3, trial: step / 150, ..Job::default() });
+                    for (joint, q) in &start.joints {
+                        assert_eq!(world.position(scene.robot.joint(joint).unwrap()), *q);
+                    }
+                    let [(sphere, place)] = start.bodies.as_slice() else { panic!("{start:?}") };
+                    assert_eq!(world.pose(scene.robot.body(sphere).unwrap()).position, *place);
+                }
+                let phase = Phase::ALL[step as usize / 50 % 3];
+                senses.set_label(phase);
+                senses.read(&world, &mut x);
+                for (sensor, x) in told.sensors.iter().zip(&x) {
+                    let read = reading(&scene, &world, phase, &sensor.reads);
+                    // Single precision, in centimetres; the sphere may fall far.
+                    assert!(
+                        (read - f64::from(*x)).abs() < 1e-6 * (10.0 + read.abs()),
+                        "step {step}: {} {x} {read}",
+                        sensor.name
+                    );
+                    touched += u32::from(matches!(sensor.reads, SensorReading::Touch { .. }) && *x > 0.0);
+                }
+                if step % 20 == 0 {
+                    let y: [f32; OUTPUTS] = core::array::from_fn(|_| stream.uniform());
+                    let mut commanded = Commanded(vec![[0.0; 2]; scene.robot.actuators.len()]);
+                    motors.drive(&y, &mut commanded);
+                    assert_eq!(commanded.0, commands(&scene, &told.motors, &y));
+                    motors.drive(&y, &mut world);
+                }
+                world.step();
+            }
+            assert!(touched > 20, "only {touched} touches were compared");
+        }
+    }
+
+    #[test]
+    fn the_described_network_computes_the_same() {
+        let scene = Scene::new(Config::default()).unwrap();
+        let layout = scene.config.layout();
+        let mut stream = Stream::new(7, Domain::Motor, 0, 0, 0);
+        let parameters: Vec<f32> = layout
+            .kinds()
+            .map(|kind| if kind == farsa_nn::ParameterKind::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) })
+            .collect();
+        let told = described(&scene, &parameters).network;
+        let state = vec![0.0; layout.state_len()];
+        let mut network = Network::new(layout, Leak::Filter, parameters, state).unwrap();
+        let sigma = |x: f64| 1.0 / (1.0 + farsa_num::exp(-f64::from(told.slope) * x));
+        let weight = |weights: &[f32], i: usize| f64::from(weights[i]);
+        let (mut hidden, mut y) = (vec![0.0; told.hidden], vec![0.0; told.outputs]);
+        for _ in 0..50 {
+            let x: Vec<f32> = (0..told.inputs).map(|_| stream.range(-2.0, 2.0)).collect();
+            network.step(&x, &mut y);
+            let next = |i: usize| {
+                let mut net = f64::from(told.biases[i]);
+                net += (0..told.inputs)
+                    .map(|j| f64::from(x[j]) * weight(&told.sensor_weights, j * told.hidden + i))
+                    .sum::<f64>();
+                net += (0..told.hidden)
+                    .map(|k| hidden[k] * weight(&told.recurrent_weights, k * told.hidden + i))
+                    .sum::<f64>();
+                let leak = f64::from(told.leaks[i]);
+                leak * sigma(net) + (1.0 - leak) * hidden[i]
+            };
+            hidden = (0..told.hidden).map(next).collect();
+            for (i, y) in y.iter().enumerate() {
+                let net: f64 =
+                    (0..told.hidden).map(|j| hidden[j] * weight(&told.output_weights, j * told.outputs + i)).sum();
+                assert!((sigma(net) - f64::from(*y)).abs() < 1e-5, "output {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn actuators_have_names_and_laws() {
+        let scene = Scene::new(Config::default()).unwrap();
+        let told = described(&scene, &vec![0.0; scene.config.layout().parameter_count()]);
+        assert_eq!(told.actuators.len(), 27);
+        assert!(told.actuators.iter().enumerate().all(|(i, a)| a.joint == format!("J{}", i + 1)));
+        assert!(matches!(told.actuators[6].law, Law::MusclePair(_)) && matches!(told.actuators[7].law, Law::Servo(_)));
+        let judge = told.judge.unwrap();
+        assert_eq!((judge.on_fingers.len(), judge.fingertips.len(), judge.success_steps), (15, 5, 100));
+        assert!(judge.on_table.contains(&"table".into()) && judge.target == "sphere");
+    }
+}

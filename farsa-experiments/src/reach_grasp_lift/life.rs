@@ -1,0 +1,218 @@
+//! A life of `reach-grasp-lift`: one trial, from the start to the last step or the sphere's fall.
+
+use std::sync::Arc;
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Sensor,
+};
+use farsa_nn::Controller;
+
+use crate::error::Error;
+use crate::life::{Job, Life};
+use crate::reach_grasp_lift::fitness::{Ledger, Trial};
+use crate::reach_grasp_lift::phase::Observation;
+use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
+
+/// The judge of one trial: sees every step, keeps the account and says when the trial is over.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    scene: Arc<Scene>,
+    trial: Trial,
+    seen: Observation,
+    earned: Ledger,
+    begun: bool,
+}
+
+impl Judge {
+    /// A judge of trials in this scene.
+    pub fn new(scene: Arc<Scene>) -> Self {
+        let (trial, seen, earned) = (Trial::default(), Observation::default(), Ledger::default());
+        Self { scene, trial, seen, earned, begun: false }
+    }
+
+    /// Sets the world up for a trial and opens a new account.
+    pub fn start<W>(&mut self, world: &mut W, job: Job)
+    where
+        W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        self.scene.arrange(world, job);
+        self.trial = Trial::default();
+        self.begun = false;
+    }
+
+    /// [`Judge::judge`] for [`Life::tick`]: at the first tick of a trial no step has passed that could be judged.
+    pub fn tick<W>(&mut self, world: &W) -> Option<f64>
+    where
+        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        if self.begun {
+            return self.judge(world);
+        }
+        self.begun = true;
+        None
+    }
+
+    /// Judges the step that has passed; `Some` ends the trial with what it would earn alone, NaN if the world broke down.
+    ///
+    /// A trial ends after its last step or when the sphere's centre is below the table's top; what was earned stays.
+    pub fn judge<W>(&mut self, world: &W) -> Option<f64>
+    where
+        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        let config = &self.scene.config;
+        self.seen = self.scene.observe(world);
+        self.earned = self.trial.judge(&self.seen, &config.judgement);
+        if !self.seen.is_finite() {
+            self.trial.ledger = Ledger { reach: f64::NAN, ..Ledger::default() };
+            return Some(f64::NAN);
+        }
+        self.trial.fallen = self.seen.height < 0.0;
+        if self.trial.fallen || self.trial.steps >= config.steps {
+            self.trial.end();
+            return Some(self.trial.ledger.total());
+        }
+        None
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The account of the trial.
+    pub fn trial(&self) -> &Trial {
+        &self.trial
+    }
+
+    /// What was seen of the last step.
+    pub fn seen(&self) -> &Observation {
+        &self.seen
+    }
+
+    /// What the last step earned.
+    pub fn earned(&self) -> &Ledger {
+        &self.earned
+    }
+
+    /// Whether the trial succeeds if it ends now.
+    pub fn succeeds(&self) -> bool {
+        self.trial.succeeds(self.scene.config.steps_per_second())
+    }
+}
+
+/// A trial lived by a controller: the robot senses, the controller steps, the motors act, every control step.
+///
+/// The fitness of this [`Life`] is what its one trial would earn alone; that of an individual takes the sums of the
+/// ledgers of its four trials ([`Ledger::total`]).
+#[derive(Clone, Debug)]
+pub struct ReachLife<C> {
+    judge: Judge,
+    senses: Senses,
+    motors: Motors,
+    controller: C,
+    x: Vec<f32>,
+    y: [f32; OUTPUTS],
+}
+
+impl<C: Controller> ReachLife<C> {
+    /// A life of this controller, whose inputs must be the sensors' channels and whose outputs the motors'.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a controller of another shape or a scene without sensible channels.
+    pub fn new(scene: Arc<Scene>, controller: C) -> Result<Self, Error> {
+        let (senses, motors) = (scene.senses()?, scene.motors()?);
+        let (inputs, outputs) = (controller.inputs(), controller.outputs());
+        if inputs != senses.channels() || outputs != motors.channels() {
+            return Err(Error::Other(format!(
+                "reach-grasp-lift: a controller of {inputs} inputs and {outputs} outputs for {} sensors and {} motors",
+                senses.channels(),
+                motors.channels()
+            )));
+        }
+        let x = vec![0.0; senses.channels()];
+        Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS] })
+    }
+
+    /// Senses, thinks and acts; the label is the phase after the step before.
+    pub fn act<W>(&mut self, world: &mut W)
+    where
+        W: Kinematics
+            + Joints
+            + Actuated
+            + Contacts
+            + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+            + ?Sized,
+    {
+        self.senses.set_label(self.judge.trial().phase);
+        self.senses.read(world, &mut self.x);
+        self.controller.step(&self.x, &mut self.y);
+        self.motors.drive(&self.y, world);
+    }
+
+    /// The judge of the trial.
+    pub fn judge(&self) -> &Judge {
+        &self.judge
+    }
+
+    /// The same, to judge a step of a life that is lived without [`Life::tick`].
+    pub fn judge_mut(&mut self) -> &mut Judge {
+        &mut self.judge
+    }
+
+    /// The sensors.
+    pub fn senses(&self) -> &Senses {
+        &self.senses
+    }
+
+    /// The motors.
+    pub fn motors(&self) -> &Motors {
+        &self.motors
+    }
+
+    /// The controller.
+    pub fn controller(&self) -> &C {
+        &self.controller
+    }
+
+    /// The same, for other parameters.
+    pub fn controller_mut(&mut self) -> &mut C {
+        &mut self.controller
+    }
+
+    /// What was sensed last \[29 or 26\].
+    pub fn sensed(&self) -> &[f32] {
+        &self.x
+    }
+
+    /// What was done last \[23\].
+    pub fn done(&self) -> &[f32] {
+        &self.y
+    }
+}
+
+impl<W, C> Life<W> for ReachLife<C>
+where
+    W: Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+        + ?Sized,
+    C: Controller,
+{
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.judge.start(world, job);
+        self.controller.reset();
+        self.senses.reset();
+        self.motors.reset();
+    }
+
+    fn tick(&mut self, world: &mut W) -> Option<f64> {
+        let end = self.judge.tick(world);
+        if end.is_none() {
+            self.act(world);
+        }
+        end
+    }
+}

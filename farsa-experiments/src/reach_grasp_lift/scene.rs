@@ -1,0 +1,320 @@
+//! The scene of `reach-grasp-lift`: how a trial starts in it, what the robot senses and does, and what the judge sees.
+
+use farsa_body::{
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, ChannelError, Channels, Contacts, Finger, Handles, JointId,
+    JointPosition, Joints, Keyframe, Kinematics, MjcfOptions, Motor, Muscles, PairId, Point, Pose, Robot, RobotError,
+    Sensor, ServoGroup, ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
+};
+use farsa_num::{Domain, Scalar, Stream};
+
+use crate::error::Error;
+use crate::life::Job;
+use crate::reach_grasp_lift::config::{Config, Displacement, TRIALS};
+use crate::reach_grasp_lift::phase::{Observation, Phase};
+
+/// Sensor channels beside the labels.
+const PLAIN_SENSORS: usize = 26;
+/// Units per metre of the sphere's position: centimetres.
+pub(crate) const TARGET_SCALE: f32 = 100.0;
+/// Output channels: an activation for each of the 14 muscles, a position for each of the 9 servo groups.
+pub const OUTPUTS: usize = 23;
+
+/// The joints of the hand that are sensed, one of every linked group.
+const SENSED_HAND_JOINTS: [usize; 10] = [8, 9, 10, 13, 14, 17, 18, 21, 22, 16];
+
+/// Touch sensors of a list of pairs each.
+type TouchPatches = Vec<Touch<Vec<PairId>>>;
+
+/// The robot's description with the names of what matters in it.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Arm, hand, sphere and table.
+    pub robot: Robot,
+    /// The arm and hand in it.
+    pub arm: ArmAndHand,
+    /// Every value of the experiment.
+    pub config: Config,
+    /// The sphere with the fifteen phalanges, from the thumb's to the little finger's.
+    pub sphere_on_phalanges: [PairId; 15],
+    /// The sphere with the palm.
+    pub sphere_on_palm: PairId,
+    /// The sphere with the table.
+    pub sphere_on_table: PairId,
+}
+
+/// The robot's sensors in the order of the network's inputs, 29 or (without labels) 26 channels \[Ferrauto2010, 2.3.3\]:
+///
+/// 17 proprioceptors (J1..J7; J8, J9, J10, J13, J14, J17, J18, J21, J22, J16), 6 tactile (thumb, index, middle, ring,
+/// little finger, palm), 3 for the sphere's centre relative to the palm's \[cm\], 3 labels.
+///
+/// Deviations: the page with the source's list is lost to us; which ten hand joints are sensed and how values are scaled
+/// is chosen. Touch sensors feel with all sides of a phalanx, not the inner one alone.
+#[derive(Clone, Debug)]
+pub struct Senses {
+    parts: (Vec<JointPosition>, TouchPatches, TargetPosition, Option<Signal<3>>),
+    label_amplitude: f32,
+}
+
+/// The robot's motors in the order of the network's outputs, 23 channels \[Ferrauto2010, 2.3.2\]: agonist and antagonist
+/// of J1..J7, then the nine servo groups of [`ArmAndHand::servo_groups`].
+#[derive(Clone, Debug)]
+pub struct Motors {
+    parts: (Vec<Muscles>, Vec<ServoGroup<Vec<ServoRange>>>),
+}
+
+/// A channel that cannot be built from these values, as a mistake in the settings.
+fn wrong_channel(error: ChannelError) -> Error {
+    Error::Other(format!("reach-grasp-lift: {error}"))
+}
+
+fn wrong_robot(error: &RobotError) -> Error {
+    Error::Other(format!("reach-grasp-lift: {error}"))
+}
+
+impl Scene {
+    /// The scene of a configuration.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a configuration whose robot no world can simulate.
+    pub fn new(config: Config) -> Result<Self, Error> {
+        let arm = config.arm();
+        let robot = config.tabletop().scene(&arm).map_err(|error| wrong_robot(&error))?;
+        let pair = |a: &str, b: &str| {
+            robot.pair(a, b).ok_or_else(|| Error::Other(format!("reach-grasp-lift: no pair of {a} and {b}")))
+        };
+        let mut sphere_on_phalanges = [PairId(0); 15];
+        for (finger, pairs) in Finger::ALL.into_iter().zip(sphere_on_phalanges.chunks_mut(3)) {
+            for (collider, to) in ArmAndHand::phalange_colliders(finger).into_iter().zip(pairs) {
+                *to = pair("sphere", &robot.colliders[collider].name)?;
+            }
+        }
+        let (sphere_on_palm, sphere_on_table) = (pair("sphere", "palm")?, pair("sphere", "table")?);
+        Ok(Self { robot, arm, config, sphere_on_phalanges, sphere_on_palm, sphere_on_table })
+    }
+
+    /// The sensors.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for ranges of joints that are empty.
+    pub fn senses(&self) -> Result<Senses, Error> {
+        let joints = self.sensed_joints().into_iter();
+        let joints = joints.map(|(joint, [from, to])| JointPosition::new(joint, from, to).map_err(wrong_channel));
+        let saturation = self.config.touch_saturation as f32;
+        let patches = self.patches().into_iter().map(|pairs| Touch::new(pairs, saturation).map_err(wrong_channel));
+        let (joints, patches) = (joints.collect::<Result<Vec<_>, _>>()?, patches.collect::<Result<TouchPatches, _>>()?);
+        let palm = Point { body: ArmAndHand::PALM, at: self.arm.palm_centre.map(|x| x as f32) };
+        let target = TargetPosition::new(Point::origin(Tabletop::SPHERE), palm, self.config.target_axes, TARGET_SCALE);
+        let label_amplitude = self.config.label_amplitude as f32;
+        let label = self.config.labels.then(|| Signal::one_hot(Phase::Reach.index(), label_amplitude));
+        Ok(Senses { parts: (joints, patches, target.map_err(wrong_channel)?, label), label_amplitude })
+    }
+
+    /// The motors.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for servo positions that are not finite.
+    pub fn motors(&self) -> Result<Motors, Error> {
+        let muscles = (0..7).map(|i| Muscles::new(ActuatorId(i))).collect();
+        let groups: Result<Vec<_>, _> = self.arm.servo_groups().into_iter().map(ServoGroup::new).collect();
+        Ok(Motors { parts: (muscles, groups.map_err(wrong_channel)?) })
+    }
+
+    /// The joints that are sensed, with the positions that read 0 and 1 \[rad\].
+    pub(crate) fn sensed_joints(&self) -> Vec<(JointId, [f32; 2])> {
+        let arm = ArmAndHand::joints().into_iter().zip(self.arm.arm_ranges);
+        let hand = SENSED_HAND_JOINTS.into_iter().map(|number| {
+            // Abduction over its range; opposition and flexion from extended, the upper limit.
+            let [low, high] = match number {
+                8 => self.arm.opposition_range,
+                16 => self.arm.abduction_ranges[1],
+                _ => self.arm.flexion_range,
+            };
+            (JointId(number as u16 - 1), if number == 16 { [low, high] } else { [high, low] })
+        });
+        arm.chain(hand).map(|(joint, range)| (joint, range.map(|x| x as f32))).collect()
+    }
+
+    /// The pairs of the tactile sensors: thumb, index, middle, ring, little finger, palm.
+    pub(crate) fn patches(&self) -> Vec<Vec<PairId>> {
+        let fingers = Finger::ALL.map(|finger| ArmAndHand::phalange_colliders(finger).to_vec());
+        let patches = fingers.into_iter().chain([vec![ArmAndHand::ARM_COLLIDERS[2]]]);
+        patches.map(|own| self.foreign_pairs(&own)).collect()
+    }
+
+    /// The pairs of these colliders with anything that is not of the arm and hand.
+    fn foreign_pairs(&self, own: &[usize]) -> Vec<PairId> {
+        let of_arm =
+            |collider: &usize| self.robot.colliders[*collider].body.is_some_and(|body| body != Tabletop::SPHERE);
+        let pairs = self.robot.pairs.iter().enumerate();
+        pairs
+            .filter(|(_, pair)| pair.colliders.iter().any(|c| own.contains(c)) && !pair.colliders.iter().all(of_arm))
+            .map(|(i, _)| PairId(i as u16))
+            .collect()
+    }
+
+    /// J1..J27 at the start of a trial \[rad\] and the sphere's place on the table \[m\], displacements included.
+    ///
+    /// Every displacement is drawn from the stream of [`Domain::Start`], joints first, then the sphere's x and y; joints
+    /// are clamped into their ranges. Deviations: the source displaces "each joint" by up to 1 degree and the sphere by
+    /// up to 1.5 cm; that both are uniform and that the hand's joints are among them is chosen.
+    pub fn start(&self, job: Job) -> ([f64; 27], [f64; 2]) {
+        let config = &self.config;
+        let trial = job.trial as usize % TRIALS;
+        let individual = match config.displacement {
+            Displacement::PerGeneration => 0,
+            Displacement::PerIndividual => job.individual,
+        };
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, individual, job.generation);
+        let mut displaced = |at: f64, by: f64| at + by * f64::from(stream.range(-1.0, 1.0));
+        let joints = core::array::from_fn(|i| {
+            let pose = if i < 4 { config.arm_poses[4 * trial + i] } else { 0.0 };
+            let [low, high] = self.robot.segments[i].joint.range;
+            displaced(pose, config.joint_displacement).to_radians().clamp(low, high)
+        });
+        let sphere = config.sphere_start(trial).map(|x| displaced(x, config.sphere_displacement / 100.0));
+        (joints, sphere)
+    }
+
+    /// What a MuJoCo model of the scene says beside the robot: the dynamics step, and the starts without displacements.
+    pub fn mjcf_options(&self) -> MjcfOptions {
+        let config = &self.config;
+        let start = |trial: usize| {
+            let [x, y] = config.sphere_start(trial);
+            Keyframe {
+                name: format!("start{}", trial + 1),
+                joints: config.arm_poses[4 * trial..4 * trial + 4].iter().map(|degrees| degrees.to_radians()).collect(),
+                bodies: vec![(Tabletop::SPHERE, Pose::at([x, y, config.sphere_radius]))],
+            }
+        };
+        MjcfOptions {
+            time_step: config.time_step / f64::from(config.substeps),
+            gravity: [0.0, 0.0, -config.gravity],
+            keyframes: (0..TRIALS).map(start).collect(),
+            ..MjcfOptions::default()
+        }
+    }
+
+    /// Sets a world up for the start of a trial.
+    pub fn arrange<W>(&self, world: &mut W, job: Job)
+    where
+        W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        let (joints, [x, y]) = self.start(job);
+        world.clear();
+        for (joint, position) in ArmAndHand::joints().into_iter().zip(joints) {
+            world.place_joint(joint, position as f32, 0.0);
+        }
+        let at = [x, y, self.config.sphere_radius].map(|x| x as f32);
+        world.place_body(Tabletop::SPHERE, Pose::at(at), Twist::default());
+        world.arranged();
+    }
+
+    /// The palm's centre in the world \[m\].
+    pub fn palm_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
+        world.pose(ArmAndHand::PALM).cast::<f64>().transform(self.arm.palm_centre)
+    }
+
+    /// The sphere's centre in the world \[m\].
+    pub fn sphere_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
+        world.pose(Tabletop::SPHERE).position.map(f64::from)
+    }
+
+    /// What the judge sees of a world.
+    pub fn observe<W>(&self, world: &W) -> Observation
+    where
+        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        let palm_pose = world.pose(ArmAndHand::PALM).cast::<f64>();
+        let palm = palm_pose.transform(self.arm.palm_centre);
+        let sphere = self.sphere_centre(world);
+        let mut grasp_centre = palm;
+        for finger in Finger::ALL {
+            let (body, tip) = self.arm.fingertip(finger);
+            let at = world.pose(body).cast::<f64>().transform(tip);
+            for k in 0..3 {
+                grasp_centre[k] += at[k];
+            }
+        }
+        let grasp_centre = grasp_centre.map(|x| x / 6.0);
+        let [low, high] = self.arm.flexion_range;
+        let openness = |joint: &JointId| ((f64::from(world.position(*joint)) - low) / (high - low)).clamp(0.0, 1.0);
+        let touches = |pair: PairId| world.touches(pair);
+        Observation {
+            reach_distance: 100.0 * distance(palm, [sphere[0], sphere[1], sphere[2] + 0.05]),
+            grasp_distance: 100.0 * distance(grasp_centre, sphere),
+            contacts: self.sphere_on_phalanges.iter().filter(|pair| touches(**pair)).count() as u32,
+            openness: ArmAndHand::flexion_joints().iter().map(openness).sum::<f64>() / 15.0,
+            palm_down: -palm_pose.rotate(ArmAndHand::PALM_NORMAL)[2],
+            on_table: touches(self.sphere_on_table),
+            height: 100.0 * sphere[2],
+            palm,
+            grasp_centre,
+        }
+    }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    Scalar::sqrt(x * x + y * y + z * z)
+}
+
+impl Senses {
+    /// Sets the label that the next reading tells; without labels there is none to set.
+    pub fn set_label(&mut self, phase: Phase) {
+        if let Some(label) = &mut self.parts.3 {
+            label.set_one_hot(phase.index(), self.label_amplitude);
+        }
+    }
+
+    /// The channels' names, in their order.
+    pub fn names(&self) -> Vec<String> {
+        let joints = (1..=7).chain(SENSED_HAND_JOINTS).map(|n| format!("J{n}"));
+        let touch = ["thumb", "index", "middle", "ring", "little", "palm"].map(|part| format!("touch {part}"));
+        let target = ["x", "y", "z"].map(|axis| format!("sphere {axis} [cm]"));
+        let labels = Phase::ALL.map(|phase| format!("label {}", phase.name()));
+        let labels = labels.into_iter().filter(|_| self.parts.3.is_some());
+        joints.chain(touch).chain(target).chain(labels).collect()
+    }
+}
+
+impl Channels for Senses {
+    fn channels(&self) -> usize {
+        PLAIN_SENSORS + self.parts.3.channels()
+    }
+    fn reset(&mut self) {
+        self.parts.reset();
+    }
+}
+
+impl<W> Sensor<W> for Senses
+where
+    W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+{
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        self.parts.read(world, out);
+    }
+}
+
+impl Motors {
+    /// The channels' names, in their order.
+    pub fn names(&self) -> Vec<String> {
+        let muscles = (1..=7).flat_map(|n| [format!("J{n} agonist"), format!("J{n} antagonist")]);
+        let groups = ["J8", "J9", "J10 J11", "J13", "J14 J15", "J17", "J18 J19", "J12 J16 J20 J24", "J21-J23 J25-J27"];
+        muscles.chain(groups.map(String::from)).collect()
+    }
+}
+
+impl Channels for Motors {
+    fn channels(&self) -> usize {
+        OUTPUTS
+    }
+    fn reset(&mut self) {
+        self.parts.reset();
+    }
+}
+
+impl<W: Actuated + Handles<Actuator = ActuatorId> + ?Sized> Motor<W> for Motors {
+    fn drive(&mut self, y: &[f32], world: &mut W) {
+        self.parts.drive(y, world);
+    }
+}

@@ -1,0 +1,356 @@
+//! A grasp by script: what the task asks of arm, hand and contacts, shown without evolution.
+
+use std::sync::Arc;
+
+use farsa_body::{
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Goal, Handles, InverseKinematics,
+    InverseKinematicsError, JointId, Joints, KinematicTree, Kinematics, Law, Motor, MusclePair, Orientation, Tabletop,
+};
+
+use crate::error::Error;
+use crate::life::{Job, Life};
+use crate::reach_grasp_lift::life::Judge;
+use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene};
+
+/// Postures with the palm exactly down, its centre 5 cm above the sphere in its four places \[deg\]: where the search for a
+/// posture begins.
+const PALM_DOWN: [[f64; 7]; 4] = [
+    [-92.0, -8.0, 53.0, -102.0, -28.0, -48.0, 11.0],
+    [-82.0, -26.0, 18.0, -66.0, -18.0, -25.0, 6.0],
+    [-43.0, -29.0, 2.0, -46.0, -21.0, -21.0, -6.0],
+    [-61.0, -28.0, 26.0, -90.0, -31.0, -23.0, 0.0],
+];
+
+/// The places that they belong to, X and Y in the world \[m\].
+const PLACES: [[f64; 2]; 4] = [[0.10, -0.18], [0.18, -0.26], [0.26, -0.18], [0.18, -0.10]];
+
+/// What the script does when; chosen by trial in another simulator and in ours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timetable {
+    /// Duration of reaching the way-point, descending, closing and lifting, one after the other \[s\]; the rest is holding.
+    pub durations: [f64; 4],
+    /// Height of the palm's centre above the table at the way-point \[m\].
+    pub way_point: f64,
+    /// Height of the palm's centre above the table that is aimed at for grasping \[m\]: below the sphere's top, so that the
+    /// palm presses gently.
+    pub palm: f64,
+    /// How far the sphere is ahead of the palm's centre, towards the fingertips \[m\].
+    pub ahead: f64,
+    /// How far the palm is lifted \[m\].
+    pub lift: f64,
+    /// The nine servo groups closed around the sphere.
+    pub closed: [f64; 9],
+    /// Feedback on the position of J1..J7 \[N m/rad\].
+    pub stiffness: [f64; 7],
+    /// Feedback on their speed \[N m s/rad\].
+    pub damping: [f64; 7],
+}
+
+impl Default for Timetable {
+    fn default() -> Self {
+        Self {
+            durations: [2.2, 0.8, 0.6, 0.8],
+            way_point: 0.13,
+            palm: 0.037,
+            ahead: 0.015,
+            lift: 0.06,
+            closed: [0.85, 0.35, 0.35, 0.65, 0.70, 0.65, 0.70, 0.0, 0.675],
+            stiffness: [12.0, 40.0, 12.0, 12.0, 6.0, 4.0, 4.0],
+            damping: [1.0, 3.0, 1.0, 1.0, 0.4, 0.2, 0.2],
+        }
+    }
+}
+
+/// The statics of the arm: postures and the activations that hold them.
+#[derive(Clone, Debug)]
+pub struct Statics {
+    tree: KinematicTree,
+    muscles: [MusclePair<f64>; 7],
+    palm_centre: [f64; 3],
+    gravity: [f64; 3],
+}
+
+impl Statics {
+    /// The statics of a scene's arm.
+    ///
+    /// # Errors
+    /// [`Error::Other`] if the arm is not driven by muscles.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let tree = KinematicTree::new(&scene.robot).map_err(|error| Error::Other(error.to_string()))?;
+        let laws: Vec<_> = scene.robot.actuators.iter().map(|actuator| actuator.law).collect();
+        let muscles: Vec<_> =
+            laws.into_iter().map_while(|law| if let Law::MusclePair(pair) = law { Some(pair) } else { None }).collect();
+        let muscles = muscles.try_into().map_err(|other: Vec<_>| {
+            Error::Other(format!("reach-grasp-lift: {} muscle pairs where the arm has seven joints", other.len()))
+        })?;
+        let gravity = [0.0, 0.0, -scene.config.gravity];
+        Ok(Self { tree, muscles, palm_centre: scene.arm.palm_centre, gravity })
+    }
+
+    /// The kinematics of the scene.
+    pub fn tree(&self) -> &KinematicTree {
+        &self.tree
+    }
+
+    /// The posture with the palm down and its centre at a place in the world \[m\], searched from another posture, J1..J27 \[rad\].
+    ///
+    /// # Errors
+    /// [`InverseKinematicsError`] when there is none within the joints' ranges.
+    pub fn palm_down(&self, place: [f64; 3], from: &[f64]) -> Result<Vec<f64>, InverseKinematicsError> {
+        let goal = Goal {
+            body: ArmAndHand::PALM,
+            point: self.palm_centre,
+            position: place,
+            orientation: Orientation::Direction { own: ArmAndHand::PALM_NORMAL, wanted: [0.0, 0.0, -1.0] },
+        };
+        InverseKinematics::default().solve(&self.tree, &goal, from).map(|solution| solution.joints)
+    }
+
+    /// A posture with the palm down and its centre at a height \[m\] above a point of the table, J1..J27 \[rad\].
+    ///
+    /// # Errors
+    /// [`InverseKinematicsError`] when there is none within the joints' ranges.
+    pub fn above(&self, [x, y]: [f64; 2], height: f64) -> Result<Vec<f64>, InverseKinematicsError> {
+        let far = |place: &[f64; 2]| (place[0] - x) * (place[0] - x) + (place[1] - y) * (place[1] - y);
+        let mut nearest = 0;
+        for i in 1..PLACES.len() {
+            if far(&PLACES[i]) < far(&PLACES[nearest]) {
+                nearest = i;
+            }
+        }
+        let mut from = self.tree.zero();
+        for (q, degrees) in from.iter_mut().zip(PALM_DOWN[nearest]) {
+            *q = degrees.to_radians();
+        }
+        self.palm_down([x, y, height], &from)
+    }
+
+    /// Activations of agonist and antagonist of J1..J7 for torques \[N m\] at a posture \[rad\], and whether they reach them.
+    pub fn activations(&self, joints: &[f64], torques: &[f64]) -> ([[f64; 2]; 7], bool) {
+        let mut all = true;
+        let activations = core::array::from_fn(|i| {
+            let (pair, reached) = self.muscles[i].activations(joints[i], torques[i]);
+            all &= reached;
+            pair
+        });
+        (activations, all)
+    }
+
+    /// The arm's muscles, J1..J7.
+    pub(crate) fn muscles(&self) -> &[MusclePair<f64>; 7] {
+        &self.muscles
+    }
+
+    /// The torques that hold a posture \[rad\] against gravity, J1..J27 \[N m\].
+    pub fn gravity_torques(&self, joints: &[f64]) -> Vec<f64> {
+        self.tree.gravity_torques(&self.tree.poses(joints), self.gravity)
+    }
+}
+
+/// The script for one start: postures on the way and when each is reached.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    timetable: Timetable,
+    statics: Arc<Statics>,
+    /// J1..J7 at the start, at the way-point, around the sphere, lifted.
+    postures: [[f64; 7]; 4],
+}
+
+/// From 0 to 1 while `s` does, with speed and acceleration 0 at both ends.
+fn smooth(s: f64) -> f64 {
+    let s = s.clamp(0.0, 1.0);
+    s * s * s * (10.0 + s * (6.0 * s - 15.0))
+}
+
+fn seven(joints: &[f64]) -> [f64; 7] {
+    core::array::from_fn(|i| joints[i])
+}
+
+impl Plan {
+    /// A plan from the start posture \[J1..J27, rad\] for a sphere that lies at a place of the table \[m\].
+    ///
+    /// # Errors
+    /// [`InverseKinematicsError`] when the sphere is out of reach.
+    pub fn new(
+        timetable: Timetable,
+        statics: Arc<Statics>,
+        start: &[f64],
+        sphere: [f64; 2],
+    ) -> Result<Self, InverseKinematicsError> {
+        let over = statics.above(sphere, timetable.palm + 0.05)?;
+        // Where the fingers point.
+        let [x, y, _] = statics.tree.poses(&over)[ArmAndHand::PALM.index()].rotate([1.0, 0.0, 0.0]);
+        let length = farsa_num::Scalar::sqrt(x * x + y * y);
+        let back = timetable.ahead / length;
+        let place = |height: f64| [sphere[0] - back * x, sphere[1] - back * y, height];
+        let way_point = statics.palm_down(place(timetable.way_point), &over)?;
+        let down = statics.palm_down(place(timetable.palm), &way_point)?;
+        let up = statics.palm_down(place(timetable.palm + timetable.lift), &down)?;
+        let postures = [seven(start), seven(&way_point), seven(&down), seven(&up)];
+        Ok(Self { timetable, statics, postures })
+    }
+
+    /// The posture wanted at a time \[s\] and how far the hand shall have closed.
+    pub fn wanted(&self, time: f64) -> ([f64; 7], f64) {
+        let [reach, descend, close, lift] = self.timetable.durations;
+        let ends = [reach, reach + descend, reach + descend + close];
+        let [start, way_point, down, up] = &self.postures;
+        let (from, to, share) = if time < ends[0] {
+            (start, way_point, time / reach)
+        } else if time < ends[2] {
+            (way_point, down, (time - ends[0]) / descend)
+        } else {
+            (down, up, (time - ends[2]) / lift)
+        };
+        let share = smooth(share);
+        let posture = core::array::from_fn(|i| from[i] + (to[i] - from[i]) * share);
+        // Closed a fifth before the lift begins: the servos need the time.
+        (posture, smooth((time - ends[1]) / (0.8 * close)))
+    }
+
+    /// J1..J27 \[rad\], and the torques \[N m\] that follow the plan at a time \[s\]: against gravity, with feedback on J1..J7.
+    pub(crate) fn torques<W>(&self, world: &W, time: f64) -> (Vec<f64>, Vec<f64>)
+    where
+        W: Joints<Joint = JointId> + ?Sized,
+    {
+        let joints = self.statics.tree.joints();
+        let positions: Vec<f64> = joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
+        let (wanted, _) = self.wanted(time);
+        let mut torques = self.statics.gravity_torques(&positions);
+        for i in 0..7 {
+            let speed = f64::from(world.speed(joints[i]));
+            torques[i] += self.timetable.stiffness[i] * (wanted[i] - positions[i]) - self.timetable.damping[i] * speed;
+        }
+        (positions, torques)
+    }
+
+    /// The positions of the nine servo groups at a time \[s\].
+    pub(crate) fn hand(&self, time: f64) -> [f64; 9] {
+        let (_, closed) = self.wanted(time);
+        self.timetable.closed.map(|position| position * closed)
+    }
+
+    /// The 23 outputs at a time \[s\]: inverse statics of the muscles with feedback on J1..J7, positions of the hand.
+    pub fn outputs<W>(&self, world: &W, time: f64) -> [f32; OUTPUTS]
+    where
+        W: Joints<Joint = JointId> + ?Sized,
+    {
+        let (positions, torques) = self.torques(world, time);
+        let (activations, _) = self.statics.activations(&positions, &torques);
+        let mut y = [0.0; OUTPUTS];
+        for (out, value) in y.iter_mut().zip(activations.into_iter().flatten().chain(self.hand(time))) {
+            *out = value as f32;
+        }
+        y
+    }
+}
+
+/// A trial lived by the script: only the experiment's 23 outputs, its starts and its judge.
+#[derive(Clone, Debug)]
+pub struct ScriptLife {
+    judge: Judge,
+    motors: Motors,
+    timetable: Timetable,
+    statics: Arc<Statics>,
+    plan: Option<Plan>,
+    done: [f32; OUTPUTS],
+}
+
+impl ScriptLife {
+    /// Lives by this timetable in a scene.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a scene whose arm is not driven by muscles.
+    pub fn new(scene: Arc<Scene>, timetable: Timetable) -> Result<Self, Error> {
+        let (motors, statics) = (scene.motors()?, Arc::new(Statics::new(&scene)?));
+        let judge = Judge::new(scene);
+        Ok(Self { judge, motors, timetable, statics, plan: None, done: [0.0; OUTPUTS] })
+    }
+
+    /// The judge of the trial.
+    pub fn judge(&self) -> &Judge {
+        &self.judge
+    }
+
+    /// The statics of the arm.
+    pub fn statics(&self) -> &Arc<Statics> {
+        &self.statics
+    }
+
+    /// The plan of the trial; `None` if the sphere was out of reach.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.plan.as_ref()
+    }
+
+    /// What was done last.
+    pub fn done(&self) -> &[f32; OUTPUTS] {
+        &self.done
+    }
+}
+
+impl<W> Life<W> for ScriptLife
+where
+    W: Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+        + ?Sized,
+{
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.judge.start(world, job);
+        let joints = self.statics.tree.joints();
+        let start: Vec<f64> = joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
+        let [x, y, _] = world.pose(Tabletop::SPHERE).position.map(f64::from);
+        self.plan = Plan::new(self.timetable, Arc::clone(&self.statics), &start, [x, y]).ok();
+    }
+
+    fn tick(&mut self, world: &mut W) -> Option<f64> {
+        let end = self.judge.tick(world);
+        if end.is_none() {
+            if let Some(plan) = &self.plan {
+                let time = f64::from(self.judge.trial().steps) * self.judge.scene().config.time_step;
+                self.done = plan.outputs(world, time);
+            }
+            self.motors.drive(&self.done, world);
+        }
+        end
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reach_grasp_lift::config::Config;
+
+    #[test]
+    fn the_movement_is_smooth_from_end_to_end() {
+        assert_eq!([smooth(-1.0), smooth(0.0), smooth(0.5), smooth(1.0), smooth(7.0)], [0.0, 0.0, 0.5, 1.0, 1.0]);
+        let scene = Scene::new(Config::default()).unwrap();
+        let statics = Arc::new(Statics::new(&scene).unwrap());
+        let (start, sphere) = scene.start(Job::default());
+        let plan = Plan::new(Timetable::default(), statics, &start, sphere).unwrap();
+        let mut last = plan.wanted(0.0);
+        assert_eq!(last.0, seven(&start));
+        for step in 1..800 {
+            let now = plan.wanted(f64::from(step) * 0.01);
+            assert!((0..7).all(|i| (now.0[i] - last.0[i]).abs() < 0.03), "a jump at step {step}");
+            assert!(now.1 >= last.1);
+            last = now;
+        }
+        assert_eq!(last.1, 1.0);
+    }
+
+    #[test]
+    fn the_known_postures_are_found() {
+        let scene = Scene::new(Config::default()).unwrap();
+        let statics = Statics::new(&scene).unwrap();
+        for (place, known) in PLACES.into_iter().zip(PALM_DOWN) {
+            let posture = statics.above(place, 0.075).unwrap();
+            for (q, known) in posture.iter().zip(known) {
+                assert!((q.to_degrees() - known).abs() < 4.0, "{} instead of {known} deg", q.to_degrees());
+            }
+        }
+    }
+}

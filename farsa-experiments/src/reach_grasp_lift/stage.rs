@@ -1,0 +1,154 @@
+//! What a life of `reach-grasp-lift` tells a recorder, and the names of it.
+
+use farsa_body::{
+    ArmAndHand, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Law, MusclePair, PairId, Recorder, Tabletop,
+    Twist,
+};
+use farsa_nn::Network;
+use farsa_view::{Channel, Stage};
+
+use crate::reach_grasp_lift::fitness::Ledger;
+use crate::reach_grasp_lift::life::ReachLife;
+use crate::reach_grasp_lift::phase::Phase;
+use crate::reach_grasp_lift::scene::Scene;
+
+/// The controller's life in a trial.
+pub(crate) type NetworkLife = ReachLife<Network<Vec<f32>, Vec<f32>>>;
+
+/// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces, 27 + 6
+/// speeds of joints and sphere.
+pub(crate) const SCALARS: usize = 1 + 4 + 6 + 3 + 7 + 27 + 21 + 17 + 27 + 6;
+
+/// Fills the first places of a slice and returns the others.
+fn put<const N: usize>(places: &mut [f64], values: [f64; N]) -> &mut [f64] {
+    match places.split_first_chunk_mut::<N>() {
+        Some((to, rest)) => {
+            *to = values;
+            rest
+        }
+        None => &mut [],
+    }
+}
+
+/// The pairs of the sphere with the phalanges, the palm and the table.
+fn on_sphere(scene: &Scene) -> impl Iterator<Item = PairId> {
+    scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table])
+}
+
+/// Tells a recorder of lives, and names what it tells.
+pub(crate) struct Teller {
+    /// The arm's muscles, to tell their lengths and torques.
+    muscles: Vec<MusclePair<f32>>,
+    /// The bodies that have a shape, but for the palm and the sphere.
+    other_bodies: Vec<BodyId>,
+}
+
+impl Teller {
+    /// Of lives in this scene.
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let laws = scene.robot.actuators.iter().map(|actuator| actuator.law.cast::<f32>());
+        let muscles = laws.map_while(|law| if let Law::MusclePair(pair) = law { Some(pair) } else { None }).collect();
+        let told = [Tabletop::SPHERE, ArmAndHand::PALM];
+        let other_bodies = scene.robot.shaped_bodies().filter(|body| !told.contains(body)).collect();
+        Self { muscles, other_bodies }
+    }
+
+    /// The names of all that is told of this life.
+    pub(crate) fn stage(life: &NetworkLife) -> Stage {
+        let scene = life.judge().scene();
+        let forces = on_sphere(scene).map(|pair| {
+            let colliders = scene.robot.pairs[pair.index()].colliders.map(|c| scene.robot.colliders[c].name.as_str());
+            let other = if colliders[0] == "sphere" { colliders[1] } else { colliders[0] };
+            Channel::new(&format!("force on sphere.{other} [N]")).group("force")
+        });
+        let phases = Phase::ALL.map(Phase::name);
+        let fitness = ["reward.reach", "reward.grasp", "reward.lift", "reward so far"];
+        let judged = ["ds [cm]", "graspQ [cm]", "fOpen", "pRot", "height [cm]", "contacts"];
+        let placed = ["palm.x [m]", "palm.y [m]", "palm.z [m]", "sphere.x [m]", "sphere.y [m]", "sphere.z [m]"];
+        let turned = ["sphere.qx", "sphere.qy", "sphere.qz", "sphere.qw"];
+        let moved = ["sphere.vx [m/s]", "sphere.vy [m/s]", "sphere.vz [m/s]"].into_iter();
+        let moved = moved.chain(["sphere.wx [rad/s]", "sphere.wy [rad/s]", "sphere.wz [rad/s]"]);
+        let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
+        let joints = scene.robot.segments.iter().take(27).enumerate().map(|(i, segment)| {
+            let [low, high] = segment.joint.range;
+            Channel::new(&format!("J{} [rad]", i + 1)).group("joint").range(low, high)
+        });
+        let muscles = (1..=7).flat_map(|n| {
+            [format!("J{n} agonist length"), format!("J{n} antagonist length"), format!("J{n} torque [N m]")]
+        });
+        let scalars = core::iter::once(Channel::new("phase").group("phase").words(&phases))
+            .chain(fitness.into_iter().chain(judged).map(in_group("fitness")))
+            .chain(placed.into_iter().chain(turned).map(in_group("place")))
+            .chain(joints)
+            .chain(muscles.map(|name| in_group("actuator")(&name)))
+            .chain(forces)
+            .chain((1..=27).map(|n| in_group("speed")(&format!("J{n} [rad/s]"))))
+            .chain(moved.map(in_group("speed")))
+            .collect();
+        let mut stage = Stage::of_robot(&scene.robot)
+            .with_sensors(life.senses().names())
+            .with_outputs(life.motors().names())
+            .with_network(&scene.config.layout());
+        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        Stage {
+            scalars,
+            points: ["palm's target", "palm's centre", "centre of the grasp"].map(String::from).into(),
+            ..stage
+        }
+    }
+
+    /// Tells what was sensed, computed and done before the step that has just been judged, and what it led to.
+    pub(crate) fn tell<W>(&self, world: &W, life: &NetworkLife, recorder: &mut dyn Recorder)
+    where
+        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId>,
+    {
+        let (judge, scene) = (life.judge(), life.judge().scene());
+        let (trial, seen, earned) = (judge.trial(), judge.seen(), judge.earned());
+        recorder.sensors(life.sensed());
+        recorder.neurons(life.controller().hidden());
+        recorder.outputs(life.done());
+        let (sphere, palm) = (world.pose(Tabletop::SPHERE), world.pose(ArmAndHand::PALM));
+        recorder.pose(Tabletop::SPHERE, sphere);
+        recorder.pose(ArmAndHand::PALM, palm);
+        self.other_bodies.iter().for_each(|body| recorder.pose(*body, world.pose(*body)));
+        recorder.point(0, [sphere.position[0], sphere.position[1], sphere.position[2] + 0.05]);
+        recorder.point(1, seen.palm.map(|x| x as f32));
+        recorder.point(2, seen.grasp_centre.map(|x| x as f32));
+        let mut forces = [0.0; 17];
+        for pair in (0..world.pairs()).map(|pair| PairId(pair as u16)).filter(|pair| world.touches(*pair)) {
+            let contact = world.pair_contact(pair);
+            recorder.contact(pair, &contact);
+            if let Some(at) = on_sphere(scene).position(|other| other == pair) {
+                forces[at] = f64::from(contact.normal_force);
+            }
+        }
+
+        let Ledger { reach, grasp, lift, .. } = trial.ledger;
+        let mut scalars = [0.0; SCALARS];
+        let rest = scalars.as_mut_slice();
+        let rest = put(rest, [trial.phase.index() as f64]);
+        let rest = put(rest, [earned.reach, earned.grasp, earned.lift, reach + grasp + lift]);
+        let rest = put(rest, [seen.reach_distance, seen.grasp_distance, seen.openness, seen.palm_down, seen.height]);
+        let rest = put(rest, [f64::from(seen.contacts)]);
+        let rest = put(rest, palm.position.map(f64::from));
+        let rest = put(rest, sphere.position.map(f64::from));
+        let rest = put(rest, sphere.rotation.map(f64::from));
+        let joints = ArmAndHand::joints();
+        let (positions, speeds) = (joints.map(|joint| world.position(joint)), joints.map(|joint| world.speed(joint)));
+        let mut rest = put(rest, positions.map(f64::from));
+        let driven = positions.into_iter().zip(speeds).zip(life.done().chunks_exact(2));
+        for (muscle, ((q, qdot), done)) in self.muscles.iter().zip(driven) {
+            let torque = muscle.effort(q, qdot, [done[0], done[1]]).torque;
+            let [agonist, antagonist] = muscle.lengths(q);
+            rest = put(rest, [agonist, antagonist, torque].map(f64::from));
+        }
+        let rest = put(rest, forces);
+        let rest = put(rest, speeds.map(f64::from));
+        let Twist { linear, angular } = world.velocity(Tabletop::SPHERE);
+        let rest = put(put(rest, linear.map(f64::from)), angular.map(f64::from));
+        debug_assert!(rest.is_empty(), "{} scalars are missing", rest.len());
+        recorder.scalars(&scalars);
+        // Rounded to the nanosecond: 201 steps of 0.01 s print as 2.01.
+        recorder.tick((f64::from(trial.steps) * scene.config.time_step * 1e9).round() / 1e9);
+    }
+}

@@ -1,0 +1,186 @@
+//! What a robot of a team senses of its surroundings.
+
+use farsa_body::{
+    Beam, BodyId, ChannelError, ColorBand, InfraredRays, Kinematics as _, LinearCamera, MobileParts, MobileRobot,
+    Planar as _, Recorder, Sensor as _,
+};
+use farsa_physics::arena::World;
+
+use crate::infrared::sensor_rays::{SensorRays, Told};
+use crate::team::config::{EYES, TeamConfig};
+
+/// What shines red, whatever else shines with it.
+pub(crate) const RED: ColorBand = ColorBand { low: [0.5, 0.0, 0.0], high: [1.0, 0.3, 1.0] };
+/// What shines blue, whatever else shines with it.
+pub(crate) const BLUE: ColorBand = ColorBand { low: [0.0, 0.0, 0.5], high: [1.0, 0.3, 1.0] };
+
+/// Eight infrared channels and a camera of a robot, all read from the world's ports.
+///
+/// A ring of more than eight sensors is read in eight groups of neighbours, each of which tells its largest value.
+#[derive(Clone, Debug)]
+pub struct RobotEyes {
+    body: BodyId,
+    infrared: InfraredRays<Vec<Beam>>,
+    /// Readings of all sensors of the ring.
+    ring: Vec<f32>,
+    /// What is near: the nearest point of a wall with the unit vector to it, or a body's middle and radius.
+    things: Vec<Thing>,
+    /// From the middle of the robot to where its infrared sensors see \[m\].
+    reach: f32,
+    camera: LinearCamera<Vec<Beam>, Vec<ColorBand>>,
+    rays: SensorRays,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Thing {
+    Wall { point: [f32; 2], out: [f32; 2] },
+    Round { centre: [f32; 2], radius: f32 },
+}
+
+impl Thing {
+    /// Whether some of it may lie on a way from one place to another; sometimes also if none does.
+    fn meets(&self, from: [f32; 2], to: [f32; 2]) -> bool {
+        match self {
+            // A wall is convex: all of it lies beyond its nearest point.
+            Self::Wall { point, out } => {
+                let beyond = |at: [f32; 2]| (at[0] - point[0]) * out[0] + (at[1] - point[1]) * out[1] >= -HAIR;
+                beyond(from) || beyond(to)
+            }
+            Self::Round { centre, radius } => {
+                let [u, v] = [to[0] - from[0], to[1] - from[1]];
+                let [x, y] = [centre[0] - from[0], centre[1] - from[1]];
+                let share = ((x * u + y * v) / (u * u + v * v)).clamp(0.0, 1.0);
+                let ([x, y], far) = ([x - share * u, y - share * v], radius + HAIR);
+                x * x + y * y <= far * far
+            }
+        }
+    }
+}
+
+/// For rounding \[m\].
+const HAIR: f32 = 1e-4;
+
+impl RobotEyes {
+    /// The eyes of a robot of the team, with a camera for these colours.
+    ///
+    /// # Errors
+    /// [`ChannelError`] for a robot without eight sensors or a multiple of eight, and for a camera that cannot be.
+    pub fn new(config: &TeamConfig, parts: &MobileParts, colors: &[ColorBand]) -> Result<Self, ChannelError> {
+        let robot = &config.robot;
+        let count = robot.infrared.angles.len();
+        if count == 0 || !count.is_multiple_of(EYES) {
+            return Err(ChannelError::Groups { field: "infrared sensors", count, size: EYES });
+        }
+        // Farther than the arena's diagonal nothing is to be seen.
+        let (range, view) = (1.5 * config.size as f32, config.field_of_view);
+        Ok(Self {
+            body: parts.body,
+            infrared: InfraredRays::of(robot, parts.body)?,
+            ring: vec![0.0; count],
+            things: Vec::with_capacity(64),
+            reach: (robot.radius + robot.infrared.range) as f32,
+            camera: LinearCamera::of_view(parts.body, view, config.sectors, config.rays, colors.to_vec(), range)?,
+            rays: SensorRays::of(robot),
+        })
+    }
+
+    /// Reads the infrared channels and then the camera's \[8 + sectors x colours\].
+    pub fn read(&mut self, world: &World, out: &mut [f32]) {
+        let (near, seen) = out.split_at_mut(EYES);
+        let Self { body, infrared, ring, things, .. } = self;
+        let pose = world.pose(*body);
+        let [x, y, _] = pose.position;
+        things.clear();
+        world.near([x, y], self.reach, &mut |thing| {
+            let [u, v] = [thing.point[0] - x, thing.point[1] - y];
+            let away = thing.distance.max(f32::MIN_POSITIVE);
+            let out = [u / away, v / away];
+            if thing.body.is_none() {
+                things.push(Thing::Wall { point: thing.point, out });
+            } else if thing.body != Some(*body) {
+                let far = thing.distance + thing.radius;
+                things.push(Thing::Round { centre: [x + far * out[0], y + far * out[1]], radius: thing.radius });
+            }
+        });
+        if things.is_empty() {
+            // What the rays would read, too: nothing is within their range.
+            near.fill(0.0);
+            ring.fill(0.0);
+        } else {
+            infrared
+                .read_where(world, ring, |[x, y, _], [u, v, _]| things.iter().any(|thing| thing.meets([x, y], [u, v])));
+            let group = self.ring.len() / EYES;
+            for (first, o) in near.iter_mut().enumerate() {
+                let of_group = (0..group).map(|k| (first * group + k + self.ring.len() - group / 2) % self.ring.len());
+                *o = of_group.fold(0.0, |most, sensor| most.max(self.ring[sensor]));
+            }
+        }
+        self.camera.read(world, seen);
+    }
+
+    /// Tells a recorder a ray for each infrared sensor, of the robot where it read `x` last and in the same world.
+    ///
+    /// One that did not read because its robot does not live tells none.
+    pub(crate) fn tell(&self, world: &World, x: &[f32], told: Told, recorder: &mut dyn Recorder) {
+        let near = x.get(..EYES).unwrap_or_default();
+        let pose = world.pose(self.body);
+        if near.iter().all(|x| x.is_finite()) {
+            self.rays.tell(pose, &self.ring, told, recorder);
+        }
+    }
+}
+
+/// Where the infrared channels of a robot look, counter-clockwise from ahead \[rad\].
+pub(crate) fn eye_angles(robot: &MobileRobot) -> [f64; EYES] {
+    let angles = &robot.infrared.angles;
+    let group = (angles.len() / EYES).max(1);
+    core::array::from_fn(|eye| angles.get(eye * group).copied().unwrap_or(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_body::{Arrange as _, Pose, Twist};
+
+    #[test]
+    fn the_shortcut_reads_what_the_rays_read_and_groups_their_largest() {
+        for condition in crate::team::config::ROBOTS {
+            let config = TeamConfig { robots: 2, ..TeamConfig::of_condition(condition) };
+            let arena = farsa_physics::arena::Arena { size: None, ..config.arena() };
+            let mut world = World::new(&arena).unwrap();
+            let mut eyes = RobotEyes::new(&config, &world.parts(0), &[RED, BLUE]).unwrap();
+            let mut ring = InfraredRays::of(&config.robot, BodyId(0)).unwrap();
+            let (mut all, mut x) = (vec![0.0; config.robot.infrared.angles.len()], vec![0.0; config.seen(2)]);
+            let (mut lit, r) = (0, config.robot.radius as f32);
+            for i in 0..200_u16 {
+                let t = f32::from(i);
+                let at = [r * 1.1 + 0.3 * r * (t % 7.0), 1.0 + 0.1 * (t % 5.0)];
+                let beside = [at[0] + r * (2.05 + 0.2 * (t % 11.0)), at[1]];
+                world.place_body(BodyId(0), Pose::planar(at, t), Twist::default());
+                world.place_body(BodyId(1), Pose::planar(beside, 0.0), Twist::default());
+                world.arranged();
+                eyes.read(&world, &mut x);
+                ring.read(&world, &mut all);
+                let count = all.len();
+                for eye in 0..EYES {
+                    let group = count / EYES;
+                    let neighbours =
+                        if group == 1 { vec![eye] } else { vec![3 * eye, 3 * eye + 1, (3 * eye + count - 1) % count] };
+                    let largest = neighbours.iter().map(|&k| all[k]).fold(0.0, f32::max);
+                    assert_eq!(x[eye], largest, "{condition} {i} {eye}");
+                    lit += u32::from(largest > 0.0);
+                }
+            }
+            assert!(lit > 100, "{condition}: {lit}");
+        }
+    }
+
+    #[test]
+    fn other_rings_are_refused() {
+        let mut config = TeamConfig::of_condition("khepera");
+        config.robot.infrared.angles.pop();
+        let parts = config.arena().parts(0);
+        let error = RobotEyes::new(&config, &parts, &[RED]).unwrap_err();
+        assert_eq!(error, ChannelError::Groups { field: "infrared sensors", count: 7, size: 8 });
+    }
+}

@@ -1,0 +1,17 @@
+//! What experiments with teams of wheeled robots share.
+//!
+//! - `config`: what experiments with many wheeled robots have in common, as settings
+//! - `eyes`: what a robot of a team senses of its surroundings
+//! - `life`: a life of a team: robots with a controller each, and a mission that says what it is about
+//! - `nest`: nests as robots of a team sense them: the ground, and what shines
+//! - `robots`: robots with a controller each: what they sense, think and do
+//! - `setup`: a mission of a team as an experiment lives it: from genes to outcomes
+//! - `steering`: how a robot of a team turns away from what it sees, for controllers without evolution
+
+pub(crate) mod config;
+pub(crate) mod eyes;
+pub(crate) mod life;
+pub(crate) mod nest;
+pub(crate) mod robots;
+pub(crate) mod setup;
+pub(crate) mod steering;

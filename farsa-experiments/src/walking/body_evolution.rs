@@ -1,0 +1,408 @@
+//! The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, Robot,
+};
+use farsa_evo::{GeneRange, decode};
+use farsa_nn::{Layout, ParameterKind};
+use farsa_num::Scalar;
+use farsa_physics::articulated::{Model, Options, World};
+use farsa_view::Stage;
+
+use crate::engine::ENGINE;
+use crate::error::Error;
+use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
+use crate::life::{Job, Life as _};
+use crate::settings::{Setting, Settings};
+use crate::walking::gait::Rules;
+use crate::walking::life::{Brain, Launch, SENSES, Walk, WalkerLife};
+#[cfg(feature = "rapier")]
+use crate::walking::settings::rapier_options;
+use crate::walking::settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
+use crate::walking::stage::{drawn, exported, stage};
+use crate::walking::walker::{Legs, Walker};
+use crate::worlds::Engine;
+
+/// Which bodies walk far? `[McGeer1990]`
+///
+/// Genes make the legs, the masses, the soles, and the push that a walker begins with; the distance that it
+/// walks is its fitness. Under `passive` it walks down a slope without motor and controller; under `powered` on flat ground,
+/// and further genes make a small network that drives a motor at the hip. Distance is counted where feet come to
+/// stand; whoever rolls, slides, hops or finds energy earns nothing by it ([`Rules`]).
+///
+/// Deviations from the source: its walkers are built, not evolved; hip spacing is a gene that cannot matter, because the
+/// pairs of legs keep the walker in a plane: it shows what genes do that nothing selects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct BodyEvolution;
+
+/// What one gene of a body means, and between which values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Part {
+    key: &'static str,
+    unit: &'static str,
+    range: [f64; 2],
+    doc: &'static str,
+}
+
+const fn part(key: &'static str, unit: &'static str, range: [f64; 2], doc: &'static str) -> Part {
+    Part { key, unit, range, doc }
+}
+
+/// The genes of a body in their order.
+const BODY: [Part; 10] = [
+    part("body.leg_length", "m", [0.6, 1.0], "Length of the outer legs: a gene."),
+    part("body.leg_ratio", "", [0.97, 1.03], "Length of the inner legs in outer ones: a gene."),
+    part("body.hip_mass", "kg", [1.0, 20.0], "Mass at the hip: a gene."),
+    part("body.leg_mass", "kg", [0.1, 5.0], "Mass along each pair of legs: a gene."),
+    part("body.foot_mass", "kg", [0.05, 2.0], "Mass at the soles of each pair: a gene."),
+    part("body.foot_radius", "m", [0.01, 0.3], "Radius of the soles: a gene."),
+    part(
+        "body.hip_spacing",
+        "m",
+        [0.1, 0.5],
+        "Distance of the outer feet: a gene, without effect in the plane of motion.",
+    ),
+    part("start.angle", "rad", [0.1, 0.4], "How far the legs stand ahead and behind at the launch: a gene."),
+    part("start.rate", "sqrt(g/l)", [-0.6, -0.1], "Rate of the stance leg at the launch: a gene."),
+    part("start.swing_rate", "sqrt(g/l)", [-0.5, 0.5], "Rate of the swing leg at the launch: a gene."),
+];
+
+/// Genes of a body.
+const BODY_GENES: usize = BODY.len();
+
+/// The values of `body-evolution` beside the genes' ranges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// Trials.
+    pub trials: u32,
+    /// Dynamics steps of a tick.
+    pub substeps: u32,
+    /// The surroundings.
+    pub walk: Walk,
+    /// What is the same in all bodies.
+    pub walker: Walker,
+    /// Lowest and highest value of each kind of gene.
+    pub ranges: [[f64; 2]; 10],
+    /// Hidden neurons of the network, if there is a motor.
+    pub hidden: u32,
+    /// Largest weight.
+    pub weights: f64,
+    /// Whose dynamics.
+    pub engine: Engine,
+}
+
+impl Config {
+    /// The defaults: a passive walker on a slope, or one with a motor on the flat.
+    pub fn new(powered: bool) -> Self {
+        let rules = Rules { settling: 0.05, ..Rules::default() };
+        let slope = if powered { 0.0 } else { 0.03 };
+        let torque = if powered { 10.0 } else { 0.0 };
+        Self {
+            trials: 2,
+            substeps: 3,
+            walk: Walk { slope, gravity: 9.81, time_step: 0.005, steps: 5000, noise: 0.01, rules },
+            walker: Walker { stiffness: 5e4, damping_ratio: 3.0, torque, ..Walker::default() },
+            ranges: BODY.map(|part| part.range),
+            hidden: 3,
+            weights: 8.0,
+            engine: Engine::default(),
+        }
+    }
+
+    fn powered(&self) -> bool {
+        self.walker.torque > 0.0
+    }
+
+    fn layout(&self) -> Option<Layout> {
+        self.powered().then(|| Layout::new(SENSES, self.hidden as usize, 1).with_slope(1.0))
+    }
+
+    /// What the genes of a body stand for, in their order.
+    fn decoded(&self, genes: &[u16]) -> Option<[f64; BODY_GENES]> {
+        let mut ranges = Vec::with_capacity(BODY.len());
+        for [low, high] in self.ranges {
+            ranges.push(GeneRange::new(1, low as f32, high as f32).ok()?);
+        }
+        let mut values = [0.0; BODY_GENES];
+        decode(genes.get(..BODY_GENES)?, &ranges, &mut values).ok()?;
+        Some(values.map(f64::from))
+    }
+
+    /// The body and the launch that genes stand for.
+    fn body(&self, genes: &[u16]) -> Option<(Walker, Launch)> {
+        let [length, ratio, hip, mass, foot_mass, foot_radius, spacing, angle, rate, swing] = self.decoded(genes)?;
+        let legs = [length, length * ratio].map(|length| Legs { length, mass, foot_mass, foot_radius });
+        let per_second = Scalar::sqrt(self.walk.gravity / length);
+        let launch = Launch { angles: [angle, -angle], rates: [rate * per_second, swing * per_second] };
+        Some((Walker { legs, hip_mass: hip, hip_spacing: spacing, ..self.walker }, launch))
+    }
+
+    /// The network's parameters that the genes after the body's stand for.
+    fn parameters(&self, genes: &[u16]) -> Option<(Layout, Vec<f32>)> {
+        let layout = self.layout()?;
+        let mut ranges = Vec::new();
+        for kind in ParameterKind::ALL {
+            let weights = self.weights as f32;
+            let (low, high) = if kind == ParameterKind::Leak { (0.0, 1.0) } else { (-weights, weights) };
+            ranges.push(GeneRange::new(layout.range(kind).len(), low, high).ok()?);
+        }
+        let mut parameters = vec![0.0; layout.parameter_count()];
+        decode(genes.get(BODY_GENES..)?, &ranges, &mut parameters).ok()?;
+        Some((layout, parameters))
+    }
+
+    /// A genome's walker, and its life.
+    fn life(&self, genes: &[u16]) -> Option<(Robot, WalkerLife)> {
+        let (walker, launch) = self.body(genes)?;
+        let (robot, parts) = walker.robot();
+        let brain = if self.powered() {
+            let (layout, parameters) = self.parameters(genes)?;
+            Some(Brain::new(&walker, &parts, layout, parameters).ok()?)
+        } else {
+            None
+        };
+        Some((robot, WalkerLife::new(walker, parts, self.walk, launch, brain)))
+    }
+
+    /// A walker in our articulated world.
+    fn world(&self, robot: &Robot) -> Option<World<f32>> {
+        let options = Options {
+            time_step: self.walk.time_step,
+            substeps: self.substeps,
+            gravity: Walker::gravity(self.walk.gravity, self.walk.slope),
+            ..Options::default()
+        };
+        Some(World::new(Model::new(robot, &options).ok()?))
+    }
+}
+
+const CONDITIONS: [&str; 2] = ["passive", "powered"];
+
+impl Experiment for BodyEvolution {
+    fn name(&self) -> &'static str {
+        "body-evolution"
+    }
+
+    fn summary(&self) -> &'static str {
+        "legs, masses and soles of a walker evolve for the distance it walks, alone or with a small network at its hip"
+    }
+
+    fn conditions(&self) -> &'static [&'static str] {
+        &CONDITIONS
+    }
+
+    fn settings(&self, condition: &str) -> Vec<Setting> {
+        let powered = condition == CONDITIONS[1];
+        let Config { trials, substeps, walk, walker, hidden, weights, .. } = Config::new(powered);
+        let mut table = vec![
+            Setting::whole("evolution.generations", if powered { 60 } else { 30 }, 1..=i64::from(u32::MAX) - 1)
+                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+            Setting::whole("evolution.population", 60, 1..=1_000_000)
+                .doc("Individuals of a generation, a multiple of the parents; with no more than them nothing is ever mutated."),
+            Setting::whole("evolution.parents", 12, 1..=1_000_000)
+                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+            Setting::number("evolution.mutation_rate", 0.03, 0.0..=1.0).doc("Probability that mutation hits a bit."),
+            engine(),
+            Setting::number("world.slope", walk.slope, -0.2..=0.2).unit("rad").doc("Slope, falling ahead."),
+            Setting::number("world.gravity", walk.gravity, 0.1..=100.0).unit("m/s2").doc("Gravity."),
+            Setting::number("world.time_step", walk.time_step, 1e-4..=0.02)
+                .unit("s")
+                .doc("Tick: so often the network thinks, feet are looked at and ground is given and taken."),
+            Setting::whole("world.substeps", i64::from(substeps), 1..=1000).doc("Dynamics steps of a tick."),
+            Setting::whole("trial.count", i64::from(trials), 1..=100_000).doc("Trials, each with a launch of its own."),
+            Setting::whole("trial.steps", i64::from(walk.steps), 1..=10_000_000).doc("Most ticks of a trial."),
+            Setting::number("start.noise", walk.noise, 0.0..=1.0)
+                .doc("By how much the launch's rates differ from the genes' at most, in parts of them."),
+            Setting::number("contact.friction", walker.friction, 0.0..=10.0).doc("Coefficient of friction."),
+            Setting::number("contact.stiffness", walker.stiffness, 1.0..=1e9).unit("N/m").doc("Stiffness of a footfall."),
+            Setting::number("contact.damping_ratio", walker.damping_ratio, 0.0..=1000.0)
+                .doc("Damping ratio of the walker's mass on that stiffness; below about 3 walkers bounce off their footfalls."),
+        ];
+        for part in BODY {
+            let lowest = if part.range[0] > 0.0 { 1e-3 } else { -10.0 };
+            table.push(Setting::numbers(part.key, &part.range, lowest..=100.0).unit(part.unit).doc(part.doc));
+        }
+        if powered {
+            table.push(
+                Setting::number("motor.torque", walker.torque, 1e-3..=1e4)
+                    .unit("N m")
+                    .doc("Largest torque at the hip."),
+            );
+            table.push(
+                Setting::whole("network.hidden", i64::from(hidden), 1..=1000).doc("Hidden neurons, all linked to all."),
+            );
+            table.push(
+                Setting::number("network.range", weights, 0.0..=1000.0)
+                    .doc("Weights and biases lie from minus this to this."),
+            );
+        }
+        table
+    }
+
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+        let powered = condition == CONDITIONS[1];
+        let plain = Config::new(powered);
+        let number = |key: &str| settings.number(key);
+        let mut config = Config {
+            trials: settings.count("trial.count")? as u32,
+            substeps: settings.count("world.substeps")? as u32,
+            walk: walk(settings, plain.walk)?,
+            walker: on_contacts(settings, plain.walker)?,
+            engine: settings.word(ENGINE)?.parse()?,
+            ..plain
+        };
+        #[cfg(not(feature = "rapier"))]
+        if config.engine == Engine::Rapier {
+            return Err(config.engine.missing());
+        }
+        for (range, part) in config.ranges.iter_mut().zip(BODY) {
+            let values = settings.numbers(part.key)?;
+            let (low, high) = (values[0], values[1]);
+            if low > high {
+                return Err(Error::setting(part.key, format!("from {low} to {high}: must rise")));
+            }
+            *range = [low, high];
+        }
+        let [[outer, _], [ratio, _], .., [_, widest], _, _, _, _] = config.ranges;
+        let shortest = outer * ratio.min(1.0);
+        if widest > shortest {
+            let why = format!("up to {widest} m: at most the shortest leg, {shortest} m");
+            return Err(Error::setting("body.foot_radius", why));
+        }
+        if powered {
+            config.walker.torque = number("motor.torque")?;
+            config.hidden = settings.count("network.hidden")? as u32;
+            config.weights = number("network.range")?;
+        }
+        Ok(Box::new(Lives::new(config)))
+    }
+}
+
+/// Walkers, each in a world of its own body.
+pub struct Lives {
+    config: Config,
+}
+
+impl Lives {
+    /// Lives under a configuration.
+    pub fn new(config: Config) -> Self {
+        Self { config }
+    }
+
+    fn body(&self, genes: &[u16]) -> Walker {
+        self.config.body(genes).map_or(self.config.walker, |(walker, _)| walker)
+    }
+
+    fn with_network(&self, stage: Stage) -> Stage {
+        let Some(layout) = self.config.layout() else { return stage };
+        let senses = ["outer legs", "inner legs against outer", "speed of the outer legs", "speed of the inner legs"];
+        let mut stage = stage.with_sensors(senses.into_iter().chain(["outer touch", "inner touch"]));
+        stage = stage.with_outputs(["hip torque"]).with_network(&layout);
+        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        stage
+    }
+}
+
+impl Setup for Lives {
+    fn genes(&self) -> usize {
+        BODY_GENES + self.config.layout().map_or(0, |layout| layout.parameter_count())
+    }
+
+    fn trials(&self) -> usize {
+        self.config.trials as usize
+    }
+
+    fn terms(&self) -> Vec<String> {
+        vec!["distance [m]".into()]
+    }
+
+    /// The stage of the middle of all bodies.
+    fn stage(&self) -> Stage {
+        self.with_network(stage(&exported(&self.body(&[u16::MAX / 2; BODY_GENES]))))
+    }
+
+    fn stage_of(&self, genes: &[u16]) -> Stage {
+        self.with_network(stage(&drawn(&self.body(genes))))
+    }
+
+    fn mjcf_options(&self) -> MjcfOptions {
+        mjcf_options(&self.config.walk)
+    }
+
+    fn description(&self) -> Description {
+        let Walk { steps, time_step, .. } = self.config.walk;
+        let plain = Description { steps: steps as usize, step_seconds: time_step, ..Description::default() };
+        let Some(layout) = self.config.layout() else {
+            return Description { network: "none: gravity and footfalls".into(), ..plain };
+        };
+        Description {
+            sensors: vec![
+                ChannelGroup::new(
+                    "angles",
+                    2,
+                    "outer legs from the ground's normal, inner legs against them, 1 at 0.6 rad",
+                ),
+                ChannelGroup::new("speeds", 2, "the same, 1 at 3 rad/s"),
+                ChannelGroup::new("touches", 2, "outer and inner feet, 0 off the ground .. 1 on it"),
+            ],
+            motors: vec![ChannelGroup::new("hip torque", 1, "on the inner legs, 0 ahead .. 1/2 none .. 1 back")],
+            network: format!("{SENSES}-{}-1, recurrent hidden layer, leak filter", layout.hidden()),
+            parameters: layout.parameter_count(),
+            ..plain
+        }
+    }
+
+    /// Success is ten strides, twenty steps, without a fall.
+    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+        let Some((robot, life)) = self.config.life(genes) else { return Outcome::failed() };
+        match self.config.engine {
+            Engine::Articulated => live_in(self.config.world(&robot), life, job, tape),
+            #[cfg(feature = "rapier")]
+            Engine::Rapier => {
+                let options = rapier_options(&self.config.walk, life.gait().walker(), self.config.substeps, 40);
+                live_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, job, tape)
+            }
+            #[cfg(not(feature = "rapier"))]
+            Engine::Rapier => Outcome::failed(),
+        }
+    }
+
+    /// The mean over the trials.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean(trials)
+    }
+}
+
+/// Lives a walker's life in a world; there is none for a body that cannot be.
+fn live_in<W>(world: Option<W>, mut life: WalkerLife, job: Job, tape: &mut Tape<'_>) -> Outcome
+where
+    W: farsa_body::World
+        + Kinematics
+        + Joints
+        + Contacts
+        + Actuated
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
+{
+    let Some(mut world) = world else { return Outcome::failed() };
+    if let (Some(recorder), Some(brain)) = (tape.recorder(), life.brain()) {
+        recorder.parameters(brain.parameters());
+    }
+    life.start(&mut world, job);
+    let mut outcome = live_to_the_end(&mut life, &mut world, tape);
+    let gait = life.gait();
+    let walker = gait.walker();
+    outcome.notes.push(("work of the motor [J]", Note::from(gait.energies()[0])));
+    outcome.notes.push(("energy gained [J]", Note::from(gait.energies()[1])));
+    let [outer, inner] = walker.legs;
+    outcome.notes.extend([
+        ("outer legs [m]", Note::from(outer.length)),
+        ("inner legs [m]", Note::from(inner.length)),
+        ("hip [kg]", Note::from(walker.hip_mass)),
+        ("shanks [kg]", Note::from(outer.mass)),
+        ("feet [kg]", Note::from(outer.foot_mass)),
+        ("soles [m]", Note::from(outer.foot_radius)),
+        ("hip spacing [m]", Note::from(walker.hip_spacing)),
+    ]);
+    outcome
+}

@@ -1,0 +1,352 @@
+//! What a walker's feet do: which of them stands, when they change places, and how the walk ends.
+
+use farsa_body::{Arrange, Contacts, Handles, JointId, Joints};
+
+use crate::walking::walker::{ASIDE, Posture, Walker, WalkerParts};
+
+/// How a walk ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The hip came too low, or a leg too far over.
+    Fell,
+    /// The standing foot slid.
+    Slid,
+    /// Neither foot was on the ground for too long.
+    Flew,
+    /// There was more energy than gravity and motor had given.
+    Gained,
+    /// A number was none.
+    Broken,
+}
+
+impl End {
+    /// The word for it in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fell => "fell",
+            Self::Slid => "slid",
+            Self::Flew => "flew",
+            Self::Gained => "gained energy",
+            Self::Broken => "broken",
+        }
+    }
+}
+
+/// What a walk may not do; lengths in the longer legs, times in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// A foot counts as ahead, and finds ground, from this distance to the standing one on.
+    pub shortest_step: f64,
+    /// The hip's lowest height, in the shorter legs.
+    pub lowest_hip: f64,
+    /// How far the standing foot may slide within a step.
+    pub longest_slide: f64,
+    /// How long both feet may be off the ground \[s\].
+    pub longest_flight: f64,
+    /// How much energy may appear from nowhere, in weight times leg.
+    pub largest_gain: f64,
+    /// How long a footfall shakes the walker before its rate can be told \[s\].
+    pub settling: f64,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self {
+            shortest_step: 0.05,
+            lowest_hip: 0.7,
+            longest_slide: 0.02,
+            longest_flight: 0.1,
+            largest_gain: 0.01,
+            settling: 0.01,
+        }
+    }
+}
+
+/// One step of a walk: the other foot came to stand.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Footfall {
+    /// When the foot met the ground \[s\], between two ticks.
+    pub time: f64,
+    /// Whose foot: 0 outer, 1 inner.
+    pub foot: usize,
+    /// Where the sole met the ground \[m\].
+    pub place: f64,
+    /// How far its leg leant back from the ground's normal when it met the ground, `theta` of the walking model \[rad\].
+    pub angle: f64,
+    /// How fast it and the leg that then swings turned after the blow, forward of the ground's normal: `theta'` and
+    /// `theta' - phi'` of the walking model at the time of the footfall, by straight lines through the rates one and two
+    /// times [`Rules::settling`] later \[rad/s\]; none before.
+    pub rates: Option<[f64; 2]>,
+}
+
+/// Which foot stands, and what the other is allowed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// It swings and there is no ground under it.
+    Passes,
+    /// It swings above its ground.
+    Falls,
+    /// It stands ahead, while the hind foot is still on the ground.
+    Both,
+}
+
+/// The account of a walk.
+///
+/// A leg that swings has no ground from the moment its foot leaves the ground until that foot is ahead of the standing
+/// one and above the ground again: stiff legs would scuff as they pass. A step counts only when the foot ahead carries
+/// and the hind foot has left the ground, so whoever rolls, slides, hops or stands makes none.
+#[derive(Clone, Debug)]
+pub struct Gait {
+    walker: Walker,
+    parts: WalkerParts,
+    rules: Rules,
+    gravity: [f64; 3],
+    time_step: f64,
+    stance: usize,
+    phase: Phase,
+    ticks: u32,
+    last: Posture,
+    met: Footfall,
+    started: f64,
+    slid: f64,
+    flown: f64,
+    energy: f64,
+    work: f64,
+    steps: u32,
+    footfalls: [Footfall; 2],
+    /// Time since the last footfall and the rates of both legs once it has settled.
+    settled: Option<(f64, [f64; 2])>,
+    end: Option<End>,
+}
+
+impl Gait {
+    /// The account of a walker's walks under a gravity \[m/s2\] in steps of a time \[s\].
+    pub fn new(walker: Walker, parts: WalkerParts, rules: Rules, gravity: [f64; 3], time_step: f64) -> Self {
+        Self {
+            walker,
+            parts,
+            rules,
+            gravity,
+            time_step,
+            stance: 0,
+            phase: Phase::Passes,
+            ticks: 0,
+            last: Posture::default(),
+            met: Footfall::default(),
+            started: 0.0,
+            slid: 0.0,
+            flown: 0.0,
+            energy: 0.0,
+            work: 0.0,
+            steps: 0,
+            footfalls: [Footfall::default(); 2],
+            settled: None,
+            end: None,
+        }
+    }
+
+    /// Puts a world's walker on its stance foot and opens a new account.
+    pub fn start<W>(&mut self, world: &mut W, stance: usize, posture: &Posture)
+    where
+        W: Joints + Arrange + Handles<Joint = JointId> + ?Sized,
+    {
+        world.clear();
+        posture.place(world, &self.parts);
+        let fresh = Self::new(self.walker, self.parts, self.rules, self.gravity, self.time_step);
+        *self = Self { stance, ..fresh };
+        self.ground(world, 1 - stance, false);
+        self.last = Posture::of(world, &self.parts);
+        self.started = self.sole(&self.last, stance)[0];
+        let first = Footfall { foot: stance, place: self.started, ..Footfall::default() };
+        self.footfalls = [first; 2];
+        self.energy = self.walker.energy(&self.last, self.gravity);
+    }
+
+    /// Gives a foot its ground, or takes it away.
+    fn ground<W>(&self, world: &mut W, foot: usize, there: bool)
+    where
+        W: Arrange + Handles<Joint = JointId> + ?Sized,
+    {
+        world.place_joint(self.parts.plates[foot], if there { 0.0 } else { ASIDE as f32 }, 0.0);
+        world.arranged();
+    }
+
+    /// The lowest point of a sole, x and z \[m\].
+    fn sole(&self, posture: &Posture, foot: usize) -> [f64; 2] {
+        let [x, _, low] = self.walker.legs[foot].sole(posture.angles[foot]);
+        [posture.hip[0] + x, posture.hip[1] + low]
+    }
+
+    /// Judges the step that has passed, with the work that the motor did in it \[J\], and gives and takes ground; `Some` is how the
+    /// walk ended.
+    pub fn judge<W>(&mut self, world: &mut W, work: f64) -> Option<End>
+    where
+        W: Joints + Contacts + Arrange + Handles<Joint = JointId> + ?Sized,
+    {
+        self.ticks += 1;
+        self.work += work;
+        let now = Posture::of(world, &self.parts);
+        let touching = self.parts.soles.map(|sole| world.touches(sole));
+        self.end = self.fault(&now, touching);
+        if self.end.is_none() {
+            self.follow(world, &now, touching);
+            self.tell_rate(&now);
+        }
+        self.last = now;
+        self.end
+    }
+
+    fn fault(&mut self, now: &Posture, touching: [bool; 2]) -> Option<End> {
+        let Self { walker, rules, .. } = self;
+        let [a, b] = walker.legs.map(|legs| legs.length);
+        let (longer, shorter) = (a.max(b), a.min(b));
+        let energy = walker.energy(now, self.gravity);
+        if !energy.is_finite() {
+            return Some(End::Broken);
+        }
+        let size = walker.mass() * self.gravity[2].abs() * longer;
+        if energy - self.energy - self.work > rules.largest_gain * size {
+            return Some(End::Gained);
+        }
+        if now.hip[1] < rules.lowest_hip * shorter {
+            return Some(End::Fell);
+        }
+        let stance = self.stance;
+        if touching[stance] && self.phase != Phase::Both {
+            let [_, _, low] = walker.legs[stance].sole(now.angles[stance]);
+            self.slid += (now.velocity[0] + now.rates[stance] * low).abs() * self.time_step;
+        }
+        if self.slid > rules.longest_slide * longer {
+            return Some(End::Slid);
+        }
+        self.flown = if touching[0] || touching[1] { 0.0 } else { self.flown + self.time_step };
+        (self.flown > rules.longest_flight).then_some(End::Flew)
+    }
+
+    /// Follows the feet.
+    fn follow<W>(&mut self, world: &mut W, now: &Posture, touching: [bool; 2])
+    where
+        W: Arrange + Handles<Joint = JointId> + ?Sized,
+    {
+        let (stance, swing) = (self.stance, 1 - self.stance);
+        let [hind, _] = self.sole(now, stance);
+        let [ahead, height] = self.sole(now, swing);
+        let longer = self.walker.legs[0].length.max(self.walker.legs[1].length);
+        let is_ahead = ahead - hind > self.rules.shortest_step * longer;
+        match self.phase {
+            Phase::Passes if is_ahead && height > 0.0 => {
+                self.phase = Phase::Falls;
+                self.ground(world, swing, true);
+            }
+            Phase::Falls if touching[swing] => {
+                // Where between the last tick and this one the sole met the ground.
+                let [_, before] = self.sole(&self.last, swing);
+                let share = if before > 0.0 && height < 0.0 { before / (before - height) } else { 1.0 };
+                let between = |a: f64, b: f64| a + share * (b - a);
+                self.met = Footfall {
+                    time: (f64::from(self.ticks - 1) + share) * self.time_step,
+                    foot: swing,
+                    place: ahead,
+                    angle: -between(self.last.angles[swing], now.angles[swing]),
+                    rates: None,
+                };
+                self.phase = Phase::Both;
+                self.change(world, touching);
+            }
+            Phase::Falls if !is_ahead => {
+                self.phase = Phase::Passes;
+                self.ground(world, swing, false);
+            }
+            Phase::Both => self.change(world, touching),
+            _ => {}
+        }
+    }
+
+    /// Tells the rate after the last footfall once it can be known.
+    fn tell_rate(&mut self, now: &Posture) {
+        let [_, fall] = &mut self.footfalls;
+        if self.steps == 0 || fall.rates.is_some() || self.phase == Phase::Both {
+            return;
+        }
+        let since = f64::from(self.ticks) * self.time_step - fall.time;
+        let rates = [-now.rates[self.stance], -now.rates[1 - self.stance]];
+        match self.settled {
+            None if since >= self.rules.settling => self.settled = Some((since, rates)),
+            Some((first, early)) if since >= 2.0 * self.rules.settling => {
+                let back = |k: usize| early[k] - (rates[k] - early[k]) / (since - first) * first;
+                fall.rates = Some([back(0), back(1)]);
+            }
+            _ => {}
+        }
+    }
+
+    /// In double support: whichever foot leaves the ground swings.
+    fn change<W>(&mut self, world: &mut W, touching: [bool; 2])
+    where
+        W: Arrange + Handles<Joint = JointId> + ?Sized,
+    {
+        let (stance, swing) = (self.stance, 1 - self.stance);
+        if !touching[stance] {
+            // Both may be off for a moment after a hard blow: the foot that struck is the one to stand on.
+            self.footfalls = [self.footfalls[1], self.met];
+            self.settled = None;
+            self.steps += 1;
+            self.stance = swing;
+            self.slid = 0.0;
+            self.phase = Phase::Passes;
+            self.ground(world, stance, false);
+        } else if !touching[swing] {
+            self.phase = Phase::Falls;
+        }
+    }
+
+    /// Steps made.
+    pub fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// From the first place of the stance foot to that of the last footfall \[m\].
+    pub fn distance(&self) -> f64 {
+        self.footfalls[1].place - self.started
+    }
+
+    /// The last two footfalls, the older first.
+    pub fn footfalls(&self) -> [Footfall; 2] {
+        self.footfalls
+    }
+
+    /// The foot that stands: 0 outer, 1 inner.
+    pub fn stance(&self) -> usize {
+        self.stance
+    }
+
+    /// How the walker stood and moved after the last tick.
+    pub fn posture(&self) -> &Posture {
+        &self.last
+    }
+
+    /// Ticks judged.
+    pub fn ticks(&self) -> u32 {
+        self.ticks
+    }
+
+    /// How it ended, if it has.
+    pub fn end(&self) -> Option<End> {
+        self.end
+    }
+
+    /// What the motor has done so far, and by how much the walker's energy has changed \[J\].
+    pub fn energies(&self) -> [f64; 2] {
+        [self.work, self.walker.energy(&self.last, self.gravity) - self.energy]
+    }
+
+    /// The walker.
+    pub fn walker(&self) -> &Walker {
+        &self.walker
+    }
+
+    /// By which numbers its parts are known.
+    pub fn parts(&self) -> &WalkerParts {
+        &self.parts
+    }
+}

@@ -1,0 +1,292 @@
+//! A life of a walker: a launch, then steps until it falls or its time is over; with or without a network at the hip.
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints,
+    Motor as _, PairId, Scaled, Sensor as _, TorqueMotor, Touch,
+};
+use farsa_nn::{Controller, Layout, Leak, Network};
+use farsa_num::{Domain, Scalar, Stream};
+
+use crate::error::Error;
+use crate::life::{Job, Life};
+use crate::walking::gait::{End, Gait, Rules};
+use crate::walking::walker::{Posture, Walker, WalkerParts};
+
+/// What the network of a walker senses: two angles, two speeds, two touches.
+pub const SENSES: usize = 6;
+/// How many of the last steps the pace is the mean of.
+const LAST: usize = 10;
+/// Angle that an angle sensor reads 1 at \[rad\], and speed that a speed sensor reads 1 at \[rad/s\].
+const FULL: [f32; 2] = [0.6, 3.0];
+
+/// How a walk begins: angles ahead of the ground's normal \[rad\] and rates \[rad/s\] of the stance and the swing leg.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Launch {
+    /// Of the stance leg and the swing leg \[rad\].
+    pub angles: [f64; 2],
+    /// Their rates \[rad/s\].
+    pub rates: [f64; 2],
+}
+
+/// The surroundings of a walk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Walk {
+    /// Slope, falling ahead \[rad\].
+    pub slope: f64,
+    /// Gravity \[m/s2\].
+    pub gravity: f64,
+    /// Time of a tick \[s\].
+    pub time_step: f64,
+    /// Most ticks of a walk.
+    pub steps: u32,
+    /// By how much the launch's rates differ from trial to trial at most, in parts of themselves.
+    pub noise: f64,
+    /// What a walk may not do.
+    pub rules: Rules,
+}
+
+/// The mean of the last steps.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Pace {
+    /// How far the leading leg leant back at footfalls \[rad\].
+    pub angle: f64,
+    /// How fast it turned after them \[rad/s\].
+    pub rate: f64,
+    /// How fast the leg turned that began to swing \[rad/s\].
+    pub swing_rate: f64,
+    /// Time of a step \[s\].
+    pub period: f64,
+    /// Length of a step \[m\].
+    pub length: f64,
+}
+
+type Angle = JointPosition<JointId>;
+type Speed = Scaled<JointSpeed<JointId>, Vec<f32>>;
+type Sole = Touch<[PairId; 1]>;
+
+/// A network between a walker's senses and its hip's motor.
+///
+/// It senses how far the outer legs lean and how far the inner legs are turned against them, both speeds, and which feet
+/// touch.
+#[derive(Clone, Debug)]
+pub struct Brain {
+    network: Network<Vec<f32>, Vec<f32>>,
+    senses: ((Angle, Angle), (Speed, Speed), (Sole, Sole)),
+    motor: TorqueMotor,
+    hinge: JointId,
+    largest: f64,
+    x: [f32; SENSES],
+    y: [f32; 1],
+    /// Torque since the last tick, and the hinge's angle then.
+    torque: f64,
+    angle: f64,
+}
+
+impl Brain {
+    /// A network of [`SENSES`] sensors and one output, 1/2 for no torque, with these parameters.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a walker without motor, a layout of another shape, parameters that are none.
+    pub fn new(walker: &Walker, parts: &WalkerParts, layout: Layout, parameters: Vec<f32>) -> Result<Self, Error> {
+        let wrong = |error: ChannelError| Error::Other(format!("walker: {error}"));
+        let Some(motor) = parts.motor else { return Err(Error::Other("walker: no motor at the hip".into())) };
+        if (layout.sensors(), layout.outputs()) != (SENSES, 1) {
+            let shape = format!("{} sensors and {} outputs", layout.sensors(), layout.outputs());
+            return Err(Error::Other(format!("walker: a network of {shape} where {SENSES} and 1 are wanted")));
+        }
+        let network = Network::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()]);
+        let angle = |joint| JointPosition::new(joint, 0.0, FULL[0]).map_err(wrong);
+        let speed = |joint| Scaled::new(JointSpeed::new(joint), 1.0 / FULL[1], 0.0).map_err(wrong);
+        let touch = |pair| Touch::new([pair], 1.0).map_err(wrong);
+        let [outer, inner] = parts.hinges;
+        Ok(Self {
+            network: network.map_err(|error| Error::Other(format!("walker: {error}")))?,
+            senses: (
+                (angle(outer)?, angle(inner)?),
+                (speed(outer)?, speed(inner)?),
+                (touch(parts.soles[0])?, touch(parts.soles[1])?),
+            ),
+            motor: TorqueMotor::new(motor, walker.torque as f32).map_err(wrong)?,
+            hinge: inner,
+            largest: walker.torque,
+            x: [0.0; SENSES],
+            y: [0.5],
+            torque: 0.0,
+            angle: 0.0,
+        })
+    }
+
+    fn reset(&mut self) {
+        self.network.reset();
+        (self.torque, self.y) = (0.0, [0.5]);
+    }
+
+    /// Senses, thinks and commands the torque of the next tick.
+    fn act<W>(&mut self, world: &mut W)
+    where
+        W: Joints + Contacts + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
+    {
+        self.senses.read(world, &mut self.x);
+        self.network.step(&self.x, &mut self.y);
+        self.motor.drive(&self.y, world);
+        self.torque = (2.0 * f64::from(self.y[0]) - 1.0) * self.largest;
+        self.angle = f64::from(world.position(self.hinge));
+    }
+
+    /// What the motor has done since the last tick \[J\].
+    fn work<W: Joints<Joint = JointId> + ?Sized>(&self, world: &W) -> f64 {
+        self.torque * (f64::from(world.position(self.hinge)) - self.angle)
+    }
+
+    /// What was sensed last \[6\].
+    pub fn sensed(&self) -> &[f32] {
+        &self.x
+    }
+
+    /// The hidden neurons' activations.
+    pub fn hidden(&self) -> &[f32] {
+        self.network.hidden()
+    }
+
+    /// What was answered last \[1\].
+    pub fn done(&self) -> &[f32] {
+        &self.y
+    }
+
+    /// The network's parameters.
+    pub fn parameters(&self) -> &[f32] {
+        self.network.parameters()
+    }
+
+    /// The torque that was commanded last \[N m\].
+    pub fn torque(&self) -> f64 {
+        self.torque
+    }
+}
+
+/// A walker's life.
+#[derive(Clone, Debug)]
+pub struct WalkerLife {
+    walk: Walk,
+    launch: Launch,
+    gait: Gait,
+    brain: Option<Brain>,
+    /// The last step whose pace is known, and how many are.
+    told: u32,
+    known: usize,
+    paces: [Pace; LAST],
+    begun: bool,
+}
+
+impl WalkerLife {
+    /// A life of a walker with these parts.
+    pub fn new(walker: Walker, parts: WalkerParts, walk: Walk, launch: Launch, brain: Option<Brain>) -> Self {
+        let gravity = Walker::gravity(walk.gravity, walk.slope);
+        let gait = Gait::new(walker, parts, walk.rules, gravity, walk.time_step);
+        Self { walk, launch, gait, brain, told: 0, known: 0, paces: [Pace::default(); LAST], begun: false }
+    }
+
+    /// Launches the walker: its rates are those of the launch times 1 + noise * u, each with its own u from -1 to 1, the stance leg's
+    /// first, from the stream of [`Domain::Start`] of the job's trial, individual and generation.
+    pub fn begin<W>(&mut self, world: &mut W, job: Job)
+    where
+        W: Joints + Arrange + Handles<Joint = JointId> + ?Sized,
+    {
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+        let rates = self.launch.rates.map(|rate| rate * (1.0 + self.walk.noise * stream.range_f64(-1.0, 1.0)));
+        let posture = Posture::standing(self.gait.walker(), 0, self.launch.angles, rates);
+        self.gait.start(world, 0, &posture);
+        if let Some(brain) = &mut self.brain {
+            brain.reset();
+        }
+        (self.told, self.known, self.begun) = (0, 0, false);
+    }
+
+    /// Thinks and acts, if there is something to think with.
+    pub fn act<W>(&mut self, world: &mut W)
+    where
+        W: Joints + Contacts + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
+    {
+        if let Some(brain) = &mut self.brain {
+            brain.act(world);
+        }
+    }
+
+    /// Judges the tick that has passed; `Some` ends the walk with the distance walked \[m\], NaN for a broken one.
+    pub fn judge<W>(&mut self, world: &mut W) -> Option<f64>
+    where
+        W: Joints + Contacts + Arrange + Handles<Joint = JointId> + ?Sized,
+    {
+        let work = self.brain.as_ref().map_or(0.0, |brain| brain.work(world));
+        let end = self.gait.judge(world, work);
+        let [before, last] = self.gait.footfalls();
+        if let Some([rate, swing_rate]) = last.rates.filter(|_| self.gait.steps() > self.told) {
+            let (period, length) = (last.time - before.time, last.place - before.place);
+            self.paces[self.known % LAST] = Pace { angle: last.angle, rate, swing_rate, period, length };
+            self.told = self.gait.steps();
+            self.known += 1;
+        }
+        let over = end.is_some() || self.gait.ticks() >= self.walk.steps;
+        over.then(|| self.distance())
+    }
+
+    /// From the first stance to the last footfall \[m\]: only feet that came to stand count. NaN for a broken walk, 0 for one with energy
+    /// from nowhere.
+    pub fn distance(&self) -> f64 {
+        match self.gait.end() {
+            Some(End::Broken) => f64::NAN,
+            Some(End::Gained) => 0.0,
+            _ => self.gait.distance(),
+        }
+    }
+
+    /// The mean of the last ten steps; `None` before so many are known.
+    pub fn pace(&self) -> Option<Pace> {
+        let mean = |of: fn(&Pace) -> f64| self.paces.iter().map(of).sum::<f64>() / LAST as f64;
+        (self.known >= LAST).then(|| Pace {
+            angle: mean(|pace| pace.angle),
+            rate: mean(|pace| pace.rate),
+            swing_rate: mean(|pace| pace.swing_rate),
+            period: mean(|pace| pace.period),
+            length: mean(|pace| pace.length),
+        })
+    }
+
+    /// A time in sqrt(leg length / gravity), of the outer legs: what the walking model's unit is \[s\].
+    pub fn unit_of_time(&self) -> f64 {
+        Scalar::sqrt(self.gait.walker().legs[0].length / self.walk.gravity)
+    }
+
+    /// The account of the feet.
+    pub fn gait(&self) -> &Gait {
+        &self.gait
+    }
+
+    /// The network, if there is one.
+    pub fn brain(&self) -> Option<&Brain> {
+        self.brain.as_ref()
+    }
+
+    /// The surroundings.
+    pub fn walk(&self) -> &Walk {
+        &self.walk
+    }
+}
+
+impl<W> Life<W> for WalkerLife
+where
+    W: Joints + Contacts + Actuated + Arrange + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
+{
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.begin(world, job);
+    }
+
+    fn tick(&mut self, world: &mut W) -> Option<f64> {
+        let end = if self.begun { self.judge(world) } else { None };
+        self.begun = true;
+        if end.is_none() {
+            self.act(world);
+        }
+        end
+    }
+}

@@ -1,0 +1,305 @@
+//! The experiment `passive-walker`: two legs walk down a slope by themselves.
+
+pub use crate::walking::gait::{End, Footfall, Gait, Rules};
+pub use crate::walking::life::{Brain, Launch, Pace, SENSES, Walk, WalkerLife};
+pub use crate::walking::walker::{Legs, Posture, Walker, WalkerParts};
+pub use crate::worlds::Engine;
+
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
+use farsa_num::{Real, Scalar};
+use farsa_physics::articulated::{Model, Options, World};
+use farsa_view::Stage;
+
+use crate::engine::ENGINE;
+use crate::error::Error;
+use crate::experiment::{Description, Experiment, Note, Outcome, Setup, Tape};
+use crate::life::{Job, Life as _};
+use crate::settings::{Setting, Settings};
+use crate::walking::settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
+use crate::walking::simplest_model::{ModelGait, SLOPES, WalkingModel};
+use crate::walking::stage::{drawn, exported, stage};
+
+/// How near does a rigid body with light feet come to the simplest walking model? \[Garcia1998\]
+///
+/// A biped of two stiff pairs of legs is launched down a slope as the walking model of that slope walks, a little
+/// disturbed. Nothing evolves: a run is one walker in one generation, and its one gene means nothing; it is there so that
+/// `farsa run`, `test`, `replay`, `draw` and `report` work as for the others. What is called fitness is the distance
+/// walked \[m\]. The world computes in f64.
+///
+/// Deviations from the source: feet have mass and a radius, the ground yields, and a walk is that of a rigid body with
+/// contacts; how the result goes to the source's is in `docs/results/walking.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct PassiveWalker;
+
+/// The values of `passive-walker`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// Trials.
+    pub trials: u32,
+    /// Dynamics steps of a tick.
+    pub substeps: u32,
+    /// The surroundings.
+    pub walk: Walk,
+    /// The body.
+    pub walker: Walker,
+    /// Whose dynamics.
+    pub engine: Engine,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        let rules = Rules { settling: 0.02, ..Rules::default() };
+        let walk = Walk { slope: 0.009, gravity: 9.81, time_step: 0.002, steps: 15_000, noise: 0.01, rules };
+        Self {
+            trials: 5,
+            substeps: 16,
+            walk,
+            walker: Walker { stiffness: 1e6, damping_ratio: 5.0, ..Walker::default() },
+            engine: Engine::default(),
+        }
+    }
+}
+
+impl Config {
+    /// The walker in these surroundings as a world's model, and by which numbers its parts are known.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a body that cannot be.
+    pub fn model<R: Real>(&self) -> Result<(Model<R>, WalkerParts), Error> {
+        let (robot, parts) = self.walker.robot();
+        let options = Options {
+            time_step: self.walk.time_step,
+            substeps: self.substeps,
+            gravity: Walker::gravity(self.walk.gravity, self.walk.slope),
+            sweeps: 20,
+            slip: 1e-6,
+            margin: 1e-6 * self.walker.legs[0].length,
+            ..Options::default()
+        };
+        let model = Model::new(&robot, &options).map_err(|error| Error::Other(format!("passive-walker: {error}")))?;
+        Ok((model, parts))
+    }
+
+    /// How rapier is stepped for this walker; its contacts are harder by far than the ground's stiffness says.
+    #[cfg(feature = "rapier")]
+    pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
+        crate::walking::settings::rapier_options(&self.walk, &self.walker, self.substeps, 200)
+    }
+
+    /// The walking model's gait on this slope.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a slope without one.
+    pub fn gait(&self) -> Result<ModelGait, Error> {
+        let model = WalkingModel::new(self.walk.slope).map_err(|error| Error::setting("world.slope", error))?;
+        let none = || Error::setting("world.slope", "the walking model has no gait on it; 0.009 has one");
+        model.gait().ok_or_else(none)
+    }
+
+    /// The launch that begins a gait, in seconds.
+    pub fn launch(&self, gait: &ModelGait) -> Launch {
+        let per_second = Scalar::sqrt(self.walk.gravity / self.walker.legs[0].length);
+        // The swing leg's own angle is theta - phi.
+        let rates = [gait.rate, gait.rate - gait.swing_rate].map(|rate| rate * per_second);
+        Launch { angles: [gait.angle, -gait.angle], rates }
+    }
+}
+
+impl Experiment for PassiveWalker {
+    fn name(&self) -> &'static str {
+        "passive-walker"
+    }
+
+    fn summary(&self) -> &'static str {
+        "two legs walk down a slope by themselves, beside the simplest walking model; nothing evolves"
+    }
+
+    fn settings(&self, _: &str) -> Vec<Setting> {
+        let Config { trials, substeps, walk, walker, engine: _ } = Config::default();
+        let [low, high] = SLOPES;
+        let legs = walker.legs[0];
+        let only_one = |key: &str, doc: &str| Setting::whole(key, 1, 1..=1).derived().doc(doc);
+        vec![
+            only_one("evolution.generations", "Nothing evolves: one generation."),
+            only_one("evolution.population", "Nothing evolves: one walker."),
+            only_one("evolution.parents", "Nothing evolves: one walker."),
+            engine(),
+            Setting::number("world.slope", walk.slope, low..=high)
+                .unit("rad")
+                .given()
+                .doc("Slope, falling ahead; gaits of the walking model are stable up to about 0.015."),
+            Setting::number("world.gravity", walk.gravity, 0.1..=100.0).unit("m/s2").doc("Gravity."),
+            Setting::number("world.time_step", walk.time_step, 1e-6..=0.01)
+                .unit("s")
+                .doc("Tick: so often feet are looked at and ground is given and taken."),
+            Setting::whole("world.substeps", i64::from(substeps), 1..=1000)
+                .doc("Dynamics steps of a tick; a footfall needs some within its shortest time, stiffness/damping."),
+            Setting::whole("trial.count", i64::from(trials), 1..=100_000).doc("Trials, each with a launch of its own."),
+            Setting::whole("trial.steps", i64::from(walk.steps), 1..=10_000_000).doc("Most ticks of a trial."),
+            Setting::number("start.noise", walk.noise, 0.0..=1.0)
+                .doc("By how much the launch's rates differ from the walking model's at most, in parts of them."),
+            Setting::number("walker.leg_length", legs.length, 0.05..=10.0).unit("m").doc("From hip to sole."),
+            Setting::number("walker.hip_mass", walker.hip_mass, 0.01..=1000.0).unit("kg").doc("Mass at the hip."),
+            Setting::number("walker.leg_mass", legs.mass, 0.0..=100.0).unit("kg").doc("Mass spread along each pair of legs."),
+            Setting::number("walker.foot_mass", legs.foot_mass, 1e-6..=100.0)
+                .unit("kg")
+                .doc("Mass at the soles of each pair; the walking model is the limit of none."),
+            Setting::number("walker.foot_radius", legs.foot_radius, 1e-6..=10.0)
+                .unit("m")
+                .doc("Radius of the soles; the walking model is the limit of points."),
+            Setting::number("walker.hip_range", walker.hip_range, 0.1..=3.0)
+                .unit("rad")
+                .doc("How far the legs turn against each other, to each side: stops."),
+            Setting::number("contact.friction", walker.friction, 0.0..=10.0).doc("Coefficient of friction."),
+            Setting::number("contact.stiffness", walker.stiffness, 1.0..=1e12).unit("N/m").doc("Stiffness of a footfall."),
+            Setting::number("contact.damping_ratio", walker.damping_ratio, 0.0..=1000.0).doc(
+                "Damping ratio of the walker's mass on that stiffness; below about 3 the walker bounces off its footfalls.",
+            ),
+        ]
+    }
+
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+        let plain = Config::default();
+        let number = |key: &str| settings.number(key);
+        let legs = Legs {
+            length: number("walker.leg_length")?,
+            mass: number("walker.leg_mass")?,
+            foot_mass: number("walker.foot_mass")?,
+            foot_radius: number("walker.foot_radius")?,
+        };
+        if legs.foot_radius > legs.length {
+            let why = format!("{} m: at most a leg, {} m", legs.foot_radius, legs.length);
+            return Err(Error::setting("walker.foot_radius", why));
+        }
+        let config = Config {
+            trials: settings.count("trial.count")? as u32,
+            substeps: settings.count("world.substeps")? as u32,
+            walk: walk(settings, plain.walk)?,
+            walker: Walker {
+                legs: [legs; 2],
+                hip_mass: number("walker.hip_mass")?,
+                hip_range: number("walker.hip_range")?,
+                ..on_contacts(settings, plain.walker)?
+            },
+            engine: settings.word(ENGINE)?.parse()?,
+        };
+        match config.engine {
+            Engine::Articulated => Ok(Box::new(Lives::new(config)?)),
+            #[cfg(feature = "rapier")]
+            Engine::Rapier => Ok(Box::new(Lives::in_rapier(config)?)),
+            #[cfg(not(feature = "rapier"))]
+            Engine::Rapier => Err(config.engine.missing()),
+        }
+    }
+}
+
+/// A walker on its slope.
+pub struct Lives<W = World<f64>> {
+    config: Config,
+    world: W,
+    life: WalkerLife,
+    gait: ModelGait,
+}
+
+impl Lives {
+    /// Lives under a configuration, in our articulated world.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a slope without gait, [`Error::Other`] for a body that cannot be.
+    pub fn new(config: Config) -> Result<Self, Error> {
+        let (model, parts) = config.model()?;
+        Self::assemble(config, World::new(model), parts)
+    }
+}
+
+#[cfg(feature = "rapier")]
+impl Lives<farsa_physics::rapier::World> {
+    /// Lives under a configuration, in rapier.
+    ///
+    /// # Errors
+    /// As [`Lives::new`].
+    pub fn in_rapier(config: Config) -> Result<Self, Error> {
+        let (robot, parts) = config.walker.robot();
+        let world = farsa_physics::rapier::World::new(&robot, &config.rapier_options());
+        Self::assemble(config, world.map_err(|error| Error::Other(format!("passive-walker: {error}")))?, parts)
+    }
+}
+
+impl<W> Lives<W> {
+    fn assemble(config: Config, world: W, parts: WalkerParts) -> Result<Self, Error> {
+        let gait = config.gait()?;
+        let life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&gait), None);
+        Ok(Self { config, world, life, gait })
+    }
+}
+
+impl<W> Setup for Lives<W>
+where
+    W: farsa_body::World
+        + Kinematics
+        + Joints
+        + Contacts
+        + Actuated
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+        + Send,
+{
+    fn genes(&self) -> usize {
+        1
+    }
+
+    fn gene_bits(&self) -> u32 {
+        1
+    }
+
+    fn trials(&self) -> usize {
+        self.config.trials as usize
+    }
+
+    fn terms(&self) -> Vec<String> {
+        vec!["distance [m]".into()]
+    }
+
+    fn stage(&self) -> Stage {
+        stage(&exported(&self.config.walker))
+    }
+
+    fn stage_of(&self, _: &[u16]) -> Stage {
+        stage(&drawn(&self.config.walker))
+    }
+
+    fn mjcf_options(&self) -> MjcfOptions {
+        mjcf_options(&self.config.walk)
+    }
+
+    fn description(&self) -> Description {
+        let Walk { steps, time_step, .. } = self.config.walk;
+        Description {
+            network: "none: gravity and footfalls".into(),
+            steps: steps as usize,
+            step_seconds: time_step,
+            ..Description::default()
+        }
+    }
+
+    /// Success is ten strides, twenty steps, without a fall.
+    fn live(&mut self, _: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+        self.life.start(&mut self.world, job);
+        let mut outcome = live_to_the_end(&mut self.life, &mut self.world, tape);
+        // A walk of fewer steps has no pace: 0 of everything, so that the same notes stand in every trial.
+        let pace = self.life.pace().unwrap_or_default();
+        let unit = self.life.unit_of_time();
+        let of_model = |found: f64, known: f64| 100.0 * (found / known - 1.0);
+        outcome.notes.push(("step angle off the model's [%]", Note::from(of_model(pace.angle, self.gait.angle))));
+        outcome.notes.push(("step rate off the model's [%]", Note::from(of_model(pace.rate * unit, self.gait.rate))));
+        outcome
+            .notes
+            .push(("step period off the model's [%]", Note::from(of_model(pace.period / unit, self.gait.period))));
+        outcome
+    }
+
+    /// The mean over the trials.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean(trials)
+    }
+}
