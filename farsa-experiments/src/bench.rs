@@ -10,15 +10,15 @@ use serde::Serialize;
 
 use crate::directory::Directory;
 use crate::error::Error;
-use crate::experiment::Outcome;
+use crate::outcome::Outcome;
 use crate::lanes::Told;
-use crate::life::Job;
+use crate::episode::EpisodeId;
 use crate::manifest::Machine;
 use crate::opponents::{Hall, Meeting};
 use crate::plan::Plan;
 use crate::pool::{Pool, Unfinished};
 use crate::records::Ancestry;
-use crate::run::{Opponents, live_all};
+use crate::run::{Opponents, evaluate_all};
 use crate::search::{Descent, Evolution};
 
 /// Runs of a study.
@@ -28,9 +28,10 @@ const MANY: usize = 64;
 
 /// The genomes that live.
 pub(crate) struct Sample {
-    genomes: Population,
-    /// Whom they live against, in the order of the lives.
-    opponents: Vec<Vec<u16>>,
+    /// The parameters of each individual.
+    parameters: Vec<Vec<f32>>,
+    /// Those of their opponents, in the order of the evaluations.
+    opponents: Vec<Vec<f32>>,
     populations: usize,
     /// Seed and generation that their lives are drawn from; later rounds count on from it.
     seed: u64,
@@ -42,8 +43,8 @@ pub(crate) struct Sample {
 impl Sample {
     /// The first generation of a run of this plan.
     pub(crate) fn random(plan: &Plan<'_>) -> Result<Self, Error> {
-        let evolution = Evolution::new(plan, plan.setup()?.as_ref())?;
-        Self::new(plan, evolution.ask().clone(), &evolution.descent(), 0)
+        let evolution = Evolution::new(plan, plan.evaluator()?.as_mut())?;
+        Self::new(plan, evolution.ask(), &evolution.descent(), 0)
     }
 
     /// The last generation that a run has finished, or its first one.
@@ -53,7 +54,7 @@ impl Sample {
         let (Ancestry { descent, .. }, path) = Ancestry::read(plan, directory)?;
         let generation = descent.finished().saturating_sub(1);
         let damaged = |why: &dyn std::fmt::Display| Error::damaged(&path, why);
-        let genes = plan.setup()?.genes();
+        let genes = plan.evaluator()?.parameters().len();
         let mut genomes =
             Population::new(descent.populations() * descent.size(), genes).map_err(|error| damaged(&error))?;
         for (individual, genome) in genomes.iter_mut().enumerate() {
@@ -63,20 +64,23 @@ impl Sample {
             }
             genome.copy_from_slice(&rebuilt);
         }
-        let sample = Self::new(plan, genomes, &descent, generation)?;
+        let sample = Self::new(plan, &genomes, &descent, generation)?;
         Ok(Self { run: Some(directory.path().display().to_string()), ..sample })
     }
 
     /// Several populations live against the champions that there are, and against each other.
-    fn new(plan: &Plan<'_>, genomes: Population, descent: &Descent, generation: u32) -> Result<Self, Error> {
+    fn new(plan: &Plan<'_>, genomes: &Population, descent: &Descent, generation: u32) -> Result<Self, Error> {
         let lost = |why: &dyn std::fmt::Display| Error::Other(format!("the opponents of {}: {why}", plan.name()));
         let populations = descent.populations();
-        let hall = Hall::before(descent).map_err(|error| lost(&error))?;
-        let (trials, size) = (plan.setup()?.trials(), genomes.len() / populations);
+        let evaluator = plan.evaluator()?;
+        let genotype = plan.genotype(evaluator.as_ref());
+        let parameters = genotype.decode_all(genomes).ok_or_else(|| lost(&"genomes of another length"))?;
+        let hall = Hall::before(descent, &genotype).map_err(|error| lost(&error))?;
+        let (trials, size) = (evaluator.trials(), genomes.len() / populations);
         let meeting = Meeting { generation: descent.finished(), populations, size, trials };
-        let opponents = hall.opponents(meeting, &genomes).ok_or_else(|| lost(&"one is missing"))?;
-        let opponents = opponents.into_iter().map(<[u16]>::to_vec).collect();
-        Ok(Self { genomes, opponents, populations, seed: plan.seed, generation, run: None })
+        let opponents = hall.opponents(meeting, &parameters).ok_or_else(|| lost(&"one is missing"))?;
+        let opponents = opponents.into_iter().map(<[f32]>::to_vec).collect();
+        Ok(Self { parameters, opponents, populations, seed: plan.seed, generation, run: None })
     }
 }
 
@@ -135,15 +139,15 @@ struct Prediction {
 /// # Errors
 /// [`Error::Panicked`], and [`Error::Other`] if nothing was lived.
 pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
-    let Sample { genomes, seed, generation, run, .. } = sample;
-    let opponents: Vec<&[u16]> = sample.opponents.iter().map(Vec::as_slice).collect();
-    let opponents = Opponents { genes: &opponents, each: sample.populations - 1 };
+    let Sample { parameters, seed, generation, run, .. } = sample;
+    let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();
+    let opponents = Opponents { parameters: &opponents, each: sample.populations - 1 };
     let limit = Duration::from_secs_f64(seconds);
     let (lives, steps, stop) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
     let (started, used) = (Instant::now(), processor_seconds());
     let mut rounds = 0;
     while rounds == 0 || started.elapsed() < limit {
-        let job = Job { seed: *seed, generation: generation.saturating_add(rounds), ..Job::default() };
+        let id = EpisodeId { seed: *seed, generation: generation.saturating_add(rounds), ..EpisodeId::default() };
         let done = |outcome: Option<&Outcome>| {
             if let Some(outcome) = outcome {
                 lives.fetch_add(1, Ordering::Relaxed);
@@ -153,10 +157,10 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
                 stop.store(true, Ordering::Relaxed);
             }
         };
-        match live_all(&mut pool, genomes, opponents, job, &stop, done) {
+        match evaluate_all(&mut pool, parameters, opponents, id, &stop, done) {
             Ok(_) => rounds += 1,
             Err(Unfinished::Stopped) => break,
-            Err(Unfinished::Panicked) => return Err(Error::Panicked { generation: job.generation }),
+            Err(Unfinished::Panicked) => return Err(Error::Panicked { generation: id.generation }),
         }
     }
     let elapsed = started.elapsed().as_secs_f64();
@@ -171,14 +175,14 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
     let had = threads.min(cores);
     let steps_per_second = steps as f64 / elapsed;
     let per_core = steps_per_second / had as f64;
-    let study = Study::new(plan, &pool, genomes.len(), steps as f64 / lives as f64)?;
+    let study = Study::new(plan, &pool, parameters.len(), steps as f64 / lives as f64)?;
     let predict = |cores: usize| Prediction { cores, seconds: study.control_steps / (per_core * cores as f64) };
     Ok(Bench {
         experiment: plan.experiment.name().into(),
         condition: plan.condition.clone(),
         run: run.clone(),
         generation: *generation,
-        genomes: genomes.len(),
+        genomes: parameters.len(),
         rounds,
         lives,
         steps,
@@ -199,12 +203,12 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
 impl Study {
     /// The study of a plan; `lived` is the mean number of steps of a life.
     fn new(plan: &Plan<'_>, pool: &Pool, population: usize, lived: f64) -> Result<Self, Error> {
-        let most = pool.setup().description().steps;
+        let most = pool.evaluator().description().steps;
         let study = Self {
             replications: REPLICATIONS,
             generations: plan.generations()?.into(),
             population: population as u64,
-            trials: pool.setup().trials() as u64,
+            trials: pool.evaluator().trials() as u64,
             steps: if most == 0 { lived } else { most as f64 },
             control_steps: 0.0,
         };
@@ -311,9 +315,12 @@ fn ticks(stat: &str) -> Option<u64> {
 mod tests {
     use super::*;
     use crate::evolution;
-    use crate::experiment::{Description, Experiment, Setup, Tape};
+    use crate::evaluator::{Evaluation, Evaluator, Parameter, Task};
+    use crate::experiment::Experiment;
+    use crate::outcome::Description;
     use crate::lanes::Wanted;
     use crate::settings::{Setting, Settings, Value};
+    use farsa_body::Recorder;
     use farsa_view::Stage;
 
     /// Lives of 7 steps of at most 10; those of individual 1 break down in their first trial.
@@ -331,14 +338,14 @@ mod tests {
         fn settings(&self, _: &str) -> Vec<Setting> {
             vec![Setting::whole(evolution::POPULATION, 20, 1..=100)]
         }
-        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Setup>, Error> {
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
             Ok(Box::new(Toy { most: self.most }))
         }
     }
 
-    impl Setup for Toy {
-        fn genes(&self) -> usize {
-            1
+    impl Task for Toy {
+        fn parameters(&self) -> Vec<Parameter> {
+            vec![Parameter::new("none", [0.0, 1.0])]
         }
         fn trials(&self) -> usize {
             3
@@ -349,8 +356,11 @@ mod tests {
         fn description(&self) -> Description {
             Description { steps: self.most, ..Description::default() }
         }
-        fn live(&mut self, _: &[u16], job: Job, _: &mut Tape<'_>) -> Outcome {
-            if job.individual == 1 {
+    }
+
+    impl Evaluator for Toy {
+        fn evaluate(&mut self, evaluation: Evaluation<'_>, _: Option<&mut dyn Recorder>) -> Outcome {
+            if evaluation.id.individual == 1 {
                 return Outcome::failed();
             }
             std::thread::sleep(Duration::from_micros(100));

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use crate::directory::Directory;
 use crate::error::Error;
-use crate::experiment::{Experiment, Setup};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
 use crate::plan::{ConfigFile, Plan};
 use crate::records::Champions;
 use crate::settings::Settings;
@@ -21,10 +22,10 @@ pub struct BestOfRun {
     pub settings: Settings,
     /// The last finished generation, from 0.
     pub generation: u32,
-    /// The genome of the best of each population.
-    pub genomes: Vec<Vec<u16>>,
-    /// The experiment, ready to live lives.
-    pub setup: Box<dyn Setup>,
+    /// The parameters of the best of each population.
+    pub parameters: Vec<Vec<f32>>,
+    /// The experiment, ready to be evaluated.
+    pub evaluator: Box<dyn Evaluator>,
 }
 
 impl BestOfRun {
@@ -35,16 +36,17 @@ impl BestOfRun {
     pub fn read(directory: &Path, experiments: &[&dyn Experiment]) -> Result<Self, Error> {
         let directory = Directory::open(directory)?;
         let plan = Plan::of_file(experiments, &ConfigFile::read(&directory.config())?)?;
-        let setup = plan.setup()?;
-        let Champions { generation, best, .. } = Champions::of(&plan, &directory, setup.as_ref())?;
+        let evaluator = plan.evaluator()?;
+        let genotype = plan.genotype(evaluator.as_ref());
+        let Champions { generation, best, .. } = Champions::of(&plan, &directory, evaluator.as_ref())?;
         Ok(Self {
             experiment: plan.experiment.name().into(),
             condition: plan.condition,
             seed: plan.seed,
             settings: plan.settings,
             generation,
-            genomes: best.into_iter().map(|best| best.genes).collect(),
-            setup,
+            parameters: best.iter().filter_map(|best| genotype.decode(&best.genes)).collect(),
+            evaluator,
         })
     }
 }

@@ -10,7 +10,8 @@ use crate::error::Error;
 use crate::evolution::POPULATION;
 use crate::exam;
 use crate::exam_table::Tried;
-use crate::experiment::{Experiment, Note};
+use crate::experiment::Experiment;
+use crate::outcome::Note;
 use crate::genotypes::Shape;
 use crate::plan::{self, Plan};
 use crate::pool::Unfinished;
@@ -183,13 +184,14 @@ pub(crate) fn plan<'e>(
 pub(crate) fn evaluate(args: &EvaluateArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<Evaluation, Error> {
     let plan = plan(experiments, &args.experiment, &args.variant)?;
     let mut pool = args.workers.pool(&plan)?;
-    let names = pool.setup().population_names();
-    let genes = genes(args, plan.experiment.name(), &names, Shape::of(pool.setup()))?;
-    let genomes: Vec<&[u16]> = genes.iter().map(Vec::as_slice).collect();
+    let names = pool.evaluator().populations();
+    let genes = genes(args, plan.experiment.name(), &names, Shape::of(pool.genotype()))?;
+    let parameters: Option<Vec<Vec<f32>>> = genes.iter().map(|genes| pool.genotype().decode(genes)).collect();
+    let parameters = parameters.unwrap_or_default();
     let size = if names.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
     let trials = args.trials as usize;
     let progress = Progress::new(0, trials as u64, quiet);
-    let tried = exam::lives(&mut pool, &genomes, size, trials, args.seed, &progress);
+    let tried = exam::lives(&mut pool, &parameters, size, trials, args.seed, &progress);
     drop(progress);
     let tried = tried.map_err(|reason| match reason {
         Unfinished::Panicked => Error::Other("a life panicked".into()),

@@ -3,7 +3,6 @@
 use farsa_evo::{EvoError, GaConfig, Mutation, SteadyStateConfig};
 
 use crate::error::Error;
-use crate::experiment::Setup;
 use crate::search::Search;
 use crate::settings::{Setting, Settings};
 
@@ -87,10 +86,10 @@ fn mutation(settings: &Settings) -> Result<Mutation, Error> {
 ///
 /// # Errors
 /// [`Error::Setting`] when the values do not go together, [`Error::Other`] for genomes that cannot be.
-pub(crate) fn steady_state(settings: &Settings, setup: &dyn Setup) -> Result<SteadyStateConfig, Error> {
+pub(crate) fn steady_state(settings: &Settings, genes: usize, gene_bits: u32) -> Result<SteadyStateConfig, Error> {
     let config = SteadyStateConfig {
-        genes: setup.genes(),
-        gene_bits: setup.gene_bits(),
+        genes,
+        gene_bits,
         first_rate: settings.number(FIRST_RATE)?,
         rate_step: settings.number(RATE_STEP)?,
         last_rate: settings.number(LAST_RATE)?,

@@ -11,9 +11,10 @@ use crate::directory::{Directory, replace};
 use crate::error::Error;
 use crate::evolution::POPULATION;
 use crate::exam_table::{Findings, Table, Tried};
-use crate::experiment::{Outcome, Task};
+use crate::evaluator::Evaluation;
+use crate::outcome::Outcome;
 use crate::lanes::Wanted;
-use crate::life::Job;
+use crate::episode::EpisodeId;
 use crate::plan::{LARGEST_SEED, Plan};
 use crate::pool::{Pool, Unfinished};
 use crate::progress::Progress;
@@ -105,16 +106,15 @@ pub(crate) fn test(
     }
     let Champions { identity, generation, best } = Champions::read(plan, directory)?;
     let mut pool = Pool::new(plan, threads, lanes)?;
-    let genes = pool.setup().genes();
-    if best.len() != pool.setup().populations() || best.iter().any(|best| best.genes.len() != genes) {
+    let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| pool.genotype().decode(&best.genes)).collect();
+    let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
+    let Some(parameters) = parameters else {
         return Err(Error::damaged(&path, "its genome is not one of the experiment"));
-    }
+    };
     let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
     let size = if best.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
-    let genomes: Vec<&[u16]> = best.iter().map(|best| best.genes.as_slice()).collect();
-
     let progress = Progress::new(0, trials as u64, quiet);
-    let tried = lives(&mut pool, &genomes, size, trials, seed, &progress);
+    let tried = lives(&mut pool, &parameters, size, trials, seed, &progress);
     drop(progress);
     let results = tried.map_err(|reason| match reason {
         Unfinished::Panicked => Error::Panicked { generation },
@@ -125,8 +125,8 @@ pub(crate) fn test(
     };
     let individuals = if best.len() > 1 { best.iter().map(|best| best.individual).collect() } else { Vec::new() };
 
-    let terms = pool.setup().terms();
-    let names = pool.setup().population_names();
+    let terms = pool.evaluator().terms();
+    let names = pool.evaluator().populations();
     let table = Table::new(&terms, names.get(1..best.len()).unwrap_or(&[]), &results);
     let bytes = table.write(&directory.test())?;
     let record = Record { generation, individual, trials, seed, table_crc: crc32(&bytes) };
@@ -136,40 +136,40 @@ pub(crate) fn test(
     Ok(Exam { directory: path, generation, individual, individuals, seed, findings, warning, table })
 }
 
-/// The life of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
-pub(crate) fn job(trial: usize, kinds: usize, seed: u64) -> Job {
+/// The episode of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
+pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
     let kinds = kinds.max(1);
     let (generation, trial) = ((trial / kinds) as u32, (trial % kinds) as u32);
-    Job { seed: seed | !LARGEST_SEED, generation, individual: 0, trial }
+    EpisodeId { seed: seed | !LARGEST_SEED, generation, individual: 0, trial }
 }
 
-/// Lives fresh trials of some genomes, of one or one of each population of `size` individuals.
+/// Evaluates fresh trials of some parameters, of one individual or one of each population of `size` individuals.
 pub(crate) fn lives(
     pool: &mut Pool,
-    genomes: &[&[u16]],
+    champions: &[Vec<f32>],
     size: usize,
     trials: usize,
     seed: u64,
     progress: &Progress,
 ) -> Result<Vec<Tried>, Unfinished> {
-    let (count, kinds) = (genomes.len().max(1), pool.setup().trials().max(1));
-    let others: Vec<Vec<&[u16]>> = (0..genomes.len())
-        .map(|own| genomes.iter().enumerate().filter(|(other, _)| *other != own).map(|(_, &genes)| genes).collect())
-        .collect();
+    let (count, kinds) = (champions.len().max(1), pool.evaluator().trials().max(1));
+    let others_of = |own: usize| champions.iter().enumerate().filter(move |(other, _)| *other != own);
+    let others: Vec<Vec<&[f32]>> =
+        (0..champions.len()).map(|own| others_of(own).map(|(_, other)| other.as_slice()).collect()).collect();
     let task = |number: usize| {
         let (population, trial) = (number % count, number / count);
-        let job = Job { individual: (population * size) as u32, ..job(trial, kinds, seed) };
-        Some(Task { number, genes: genomes.get(population)?, opponents: others.get(population)?, job })
+        let id = EpisodeId { individual: (population * size) as u32, ..episode(trial, kinds, seed) };
+        Some(Evaluation { number, parameters: champions.get(population)?, opponents: others.get(population)?, id })
     };
     let done = |number: usize, _: Option<&Outcome>| {
         if number.is_multiple_of(count) {
             progress.advance();
         }
     };
-    let outcomes = pool.live(trials * count, &AtomicBool::new(false), task, done)?;
+    let outcomes = pool.evaluate(trials * count, &AtomicBool::new(false), task, done)?;
     let fitness = |outcome: &Outcome| {
         let alone = std::slice::from_ref(outcome);
-        if outcome.is_finite() { pool.setup().fitness(alone) } else { f64::NAN }
+        if outcome.is_finite() { pool.evaluator().fitness(alone) } else { f64::NAN }
     };
     let mut tried: Vec<Tried> = Vec::with_capacity(trials);
     for (number, outcome) in outcomes.into_iter().flatten().enumerate() {

@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 
 use crate::directory::replace;
 use crate::error::Error;
-use crate::experiment::{Note, Outcome};
+use crate::outcome::{Note, Outcome};
 
 /// The columns that every test has; the terms of the fitness, if there are more than one, and the notes follow.
 const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];

@@ -7,6 +7,7 @@ use crate::controller_export::{ControllerExport, StartExport};
 use crate::controller_formats;
 use crate::directory::Directory;
 use crate::error::Error;
+use crate::evaluator::{Evaluator, Exports};
 use crate::exam;
 use crate::genotypes;
 use crate::info::pretty;
@@ -48,14 +49,24 @@ pub(crate) enum DataFormat {
 /// # Errors
 /// [`Error::Usage`] for an experiment without bodies.
 pub(crate) fn robot(plan: &Plan<'_>, format: ModelFormat) -> Result<String, Error> {
-    let setup = plan.setup()?;
+    let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
-    let robot = setup.stage().robot.ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
+    let robot = evaluator.stage().robot.ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
-        ModelFormat::Mjcf => robot.to_mjcf(&setup.mjcf_options()),
+        ModelFormat::Mjcf => robot.to_mjcf(&mjcf_options(evaluator.as_ref())),
         ModelFormat::Urdf => robot.to_urdf(),
     };
     text.map_err(|error| Error::Other(format!("{name}: {error}")))
+}
+
+/// What a MuJoCo model says beside the robot: by default the time between two steps, if the experiment has a clock, and
+/// gravity 9.81 m/s2 downwards.
+fn mjcf_options(evaluator: &dyn Evaluator) -> MjcfOptions {
+    let own = evaluator.exports().and_then(Exports::mjcf_options);
+    own.unwrap_or_else(|| {
+        let (plain, step) = (MjcfOptions::default(), evaluator.description().step_seconds);
+        MjcfOptions { time_step: if step > 0.0 { step } else { plain.time_step }, ..plain }
+    })
 }
 
 /// Whose controller it is.
@@ -97,9 +108,9 @@ struct Trials<'a> {
 /// # Errors
 /// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
-    let setup = plan.setup()?;
-    let Champions { generation, best, .. } = Champions::of(plan, directory, setup.as_ref())?;
-    let (experiment, names) = (plan.experiment.name(), setup.population_names());
+    let evaluator = plan.evaluator()?;
+    let Champions { generation, best, .. } = Champions::of(plan, directory, evaluator.as_ref())?;
+    let (experiment, names) = (plan.experiment.name(), evaluator.populations());
     let population = Populations { experiment, names: &names }.one("--population", population)?;
     let Some(Best { individual, genes, .. }) = best.get(population) else {
         return Err(Error::damaged(&directory.champion(), "it has champions of other populations"));
@@ -115,13 +126,18 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
 /// # Errors
 /// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
-    let setup = plan.setup()?;
-    let Champions { generation, best, .. } = Champions::of(plan, directory, setup.as_ref())?;
+    let evaluator = plan.evaluator()?;
+    let Champions { generation, best, .. } = Champions::of(plan, directory, evaluator.as_ref())?;
     let name = plan.experiment.name();
     let [Best { individual, genes, .. }] = best.as_slice() else {
         return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));
     };
-    let controller = match (setup.controller(genes), setup.ctrnn(genes)) {
+    let damaged = || Error::damaged(&directory.champion(), "its genome is not one of the experiment");
+    let parameters = plan.genotype(evaluator.as_ref()).decode(genes).ok_or_else(damaged)?;
+    let exports = evaluator.exports();
+    let controller = exports.and_then(|exports| exports.controller(&parameters));
+    let ctrnn = exports.and_then(|exports| exports.ctrnn(&parameters));
+    let controller = match (controller, ctrnn) {
         (Some(controller), _) => controller,
         // Its body is none that the other formats could tell.
         (None, Some(network)) if format == ControllerFormat::Bytes => return controller_formats::ctrnn_bytes(&network),
@@ -147,10 +163,10 @@ pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: Control
 /// # Errors
 /// [`Error::Usage`] for an experiment whose starts cannot be told.
 pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String, Error> {
-    let setup = plan.setup()?;
+    let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
-    let starts = (0..trials).map(|trial| setup.start(exam::job(trial, setup.trials(), seed)));
-    let starts: Option<Vec<_>> = starts.collect();
+    let start = |trial| evaluator.exports()?.start(exam::episode(trial, evaluator.trials(), seed));
+    let starts: Option<Vec<_>> = (0..trials).map(start).collect();
     let starts = starts.ok_or_else(|| Error::Usage(format!("{name}: its starts cannot be exported")))?;
     pretty(&Trials { format: 1, experiment: name, condition: &plan.condition, seed, starts })
 }

@@ -1,5 +1,7 @@
 //! From genes to the parameters that they stand for.
 
+use farsa_evo::Population;
+
 use crate::evaluator::Parameter;
 
 /// Genes of some bits, one for each parameter: 0 stands for the parameter's first end, the largest gene for the other,
@@ -29,6 +31,11 @@ impl Genotype {
     /// The largest gene.
     pub fn largest(&self) -> u16 {
         u16::MAX >> (u16::BITS - self.bits)
+    }
+
+    /// The parameters of everyone; `None` for genomes of another length.
+    pub(crate) fn decode_all(&self, genomes: &Population) -> Option<Vec<Vec<f32>>> {
+        genomes.iter().map(|genes| self.decode(genes)).collect()
     }
 
     /// The parameters \[[`genes`](Self::genes)\] that genes stand for; `None` for another number of genes.

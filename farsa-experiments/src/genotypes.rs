@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::error::Error;
-use crate::experiment::Setup;
+use crate::genotype::Genotype;
 
 /// What a genotype of an experiment looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,8 +54,8 @@ impl fmt::Display for GenotypeError {
 
 impl Shape {
     /// The shape of the genotypes of an experiment.
-    pub(crate) fn of(setup: &dyn Setup) -> Self {
-        Self::new(setup.genes(), setup.gene_bits())
+    pub(crate) fn of(genotype: &Genotype) -> Self {
+        Self::new(genotype.genes(), genotype.bits())
     }
 
     fn new(genes: usize, gene_bits: u32) -> Self {

@@ -59,9 +59,9 @@ impl Summary {
 pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Result<Summary, Error> {
     let mut plan = evaluate::plan(experiments, &args.experiment, &args.variant)?;
     plan.seed = args.seed;
-    let setup = plan.setup()?;
-    let names = setup.population_names();
-    let of = genomes(args, plan.experiment.name(), &names, Shape::of(setup.as_ref()))?;
+    let evaluator = plan.evaluator()?;
+    let (names, genotype) = (evaluator.populations(), plan.genotype(evaluator.as_ref()));
+    let of = genomes(args, plan.experiment.name(), &names, Shape::of(&genotype))?;
     let (populations, size) = (names.len(), of.first().map_or(0, Vec::len));
     if populations > 1 {
         // By this an individual's number tells its population.
@@ -84,7 +84,7 @@ pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Resu
         experiment: plan.experiment.name().into(),
         condition: plan.condition.clone(),
         genotypes: size,
-        genes: setup.genes(),
+        genes: genotype.genes(),
         populations: if populations > 1 { names } else { Vec::new() },
         files: files.clone(),
     };

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment};
+use crate::experiment::Experiment;
+use crate::outcome::{ChannelGroup, Description};
 use crate::plan::Plan;
 use crate::settings::{Source, Value};
 
@@ -83,8 +84,8 @@ struct SettingInfo {
 
 impl Info {
     fn of(plan: &Plan<'_>) -> Result<Self, Error> {
-        let setup = plan.setup()?;
-        let Description { sensors, motors, network, parameters, steps, step_seconds } = setup.description();
+        let evaluator = plan.evaluator()?;
+        let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.description();
         let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
         let settings = plan.settings.table().iter().map(|setting| SettingInfo {
             key: setting.key().into(),
@@ -105,12 +106,12 @@ impl Info {
             motors,
             network,
             parameters,
-            genes: setup.genes(),
-            genome_bits: setup.gene_bits() as usize * setup.genes(),
-            trials: setup.trials(),
+            genes: evaluator.parameters().len(),
+            genome_bits: plan.experiment.gene_bits() as usize * evaluator.parameters().len(),
+            trials: evaluator.trials(),
             steps,
             step_seconds,
-            fitness_terms: setup.terms(),
+            fitness_terms: evaluator.terms(),
             settings: settings.collect(),
         })
     }

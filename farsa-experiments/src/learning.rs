@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use farsa_evo::{EvoError, Population};
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::{Lesson, Setup};
+use crate::evaluator::{Learner, Lesson};
 use crate::plot::{self, Chart, Curve};
 
 /// An individual that learns.
@@ -50,9 +50,9 @@ impl TryFrom<Saved> for Learning {
 
 impl Learning {
     /// Before the first lesson.
-    pub(crate) fn new(setup: &dyn Setup, seed: u64) -> Result<Self, EvoError> {
-        let words = setup.first_words(seed);
-        let lessons = Lessons { genomes: vec![setup.learned(&words)], lessons: Vec::new() };
+    pub(crate) fn new(learner: &dyn Learner, seed: u64) -> Result<Self, EvoError> {
+        let words = learner.first_words(seed);
+        let lessons = Lessons { genomes: vec![learner.learned(&words)], lessons: Vec::new() };
         Self::try_from(Saved { words, lessons })
     }
 
@@ -70,12 +70,12 @@ impl Learning {
     ///
     /// # Errors
     /// Words that tell of a lesson that could not be given; nothing is learned then.
-    pub(crate) fn study(&mut self, setup: &mut dyn Setup, seed: u64) -> Result<(), String> {
+    pub(crate) fn study(&mut self, learner: &mut dyn Learner, seed: u64) -> Result<(), String> {
         let (mut words, number) = (self.words.clone(), self.generation());
-        let Some(lesson) = setup.lesson(&mut words, seed, number) else {
+        let Some(lesson) = learner.lesson(&mut words, seed, number) else {
             return Err(format!("lesson {number}: {} words are none that anything is learned from", words.len()));
         };
-        let genes = setup.learned(&words);
+        let genes = learner.learned(&words);
         if genes.len() != self.population.genome_len() {
             let (found, expected) = (genes.len(), self.population.genome_len());
             return Err(format!("lesson {number}: what was learned has {found} genes instead of {expected}"));
@@ -154,32 +154,10 @@ impl Lessons {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::{Description, Outcome, Tape};
-    use crate::life::Job;
-    use farsa_view::Stage;
-
     /// Learns from two words, one gene more with each lesson.
     struct Forgetful;
 
-    impl Setup for Forgetful {
-        fn genes(&self) -> usize {
-            1
-        }
-        fn trials(&self) -> usize {
-            1
-        }
-        fn stage(&self) -> Stage {
-            Stage::of_scalars(["gene"])
-        }
-        fn description(&self) -> Description {
-            Description::default()
-        }
-        fn live(&mut self, _: &[u16], _: Job, _: &mut Tape<'_>) -> Outcome {
-            Outcome::default()
-        }
-        fn fitness(&self, _: &[Outcome]) -> f64 {
-            0.0
-        }
+    impl Learner for Forgetful {
         fn first_words(&self, seed: u64) -> Vec<f64> {
             vec![0.0; seed as usize]
         }

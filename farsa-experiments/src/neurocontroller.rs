@@ -1,32 +1,33 @@
 //! What genes control a robot by: its sensors, a network, and its motors.
 
-use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Sensor, record_world};
+use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Recorder, Sensor, record_world};
 use farsa_nn::{Controller as _, Layout};
 use farsa_view::Stage;
 
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Tape};
-use crate::network_decoder::{NetworkDecoder, TeamNetwork};
+use crate::outcome::{ChannelGroup, Description};
+use crate::evaluator::Parameter;
+use crate::network_parameters::{OwnedNetwork, network_parameters, resting_network};
 
-/// Sensors, a recurrent network whose parameters are genes, and motors: what a life needs beside its world and its judge.
+/// Sensors, a recurrent network, and motors: what an episode needs beside its world and its reward.
 ///
-/// The network has one hidden layer, all linked to all ([`Layout`]), with leaks as filters. Genes are its parameters in their
-/// order: weights and biases, and leaks from 0 to 1. The loop stays the caller's:
+/// The network has one hidden layer, all linked to all ([`Layout`]), with leaks as filters. Its parameters are weights and
+/// biases, and leaks from 0 to 1. The loop stays the caller's:
 ///
 /// ```
 /// use farsa_body::testing::PointWorld;
 /// use farsa_body::{ActuatorId, JointId, JointPosition, TorqueMotor, World as _};
-/// use farsa_experiments::{Neurocontroller, Tape};
+/// use farsa_experiments::Neurocontroller;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let sensors = [0, 1].map(|joint| JointPosition::new(JointId(joint), -1.0, 1.0));
 /// let sensors = sensors.into_iter().collect::<Result<Vec<_>, _>>()?;
 /// let mut control = Neurocontroller::new(sensors, TorqueMotor::new(ActuatorId(0), 1.0)?, 3, 5.0)?;
-/// let genes = vec![40_000; control.genes()]; // from evolution
+/// let parameters = vec![1.0; control.parameters().len()]; // from evolution
 /// let mut world = PointWorld::new(2);
-/// control.begin(&genes, &mut Tape::off())?;
+/// control.load(&parameters);
 /// for _ in 0..100 {
-///     control.act(&mut world); // reads, thinks, drives
+///     control.act(&mut world); // reads, computes, drives
 ///     world.step();
 /// }
 /// # assert!(control.done()[0] > 0.5);
@@ -37,8 +38,9 @@ use crate::network_decoder::{NetworkDecoder, TeamNetwork};
 pub struct Neurocontroller<S, M> {
     sensors: S,
     motors: M,
-    decoder: NetworkDecoder,
-    network: TeamNetwork,
+    layout: Layout,
+    range: f64,
+    network: OwnedNetwork,
     x: Vec<f32>,
     y: Vec<f32>,
     stage: Stage,
@@ -54,37 +56,36 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         if inputs == 0 || outputs == 0 {
             return Err(Error::Other(format!("a network of {inputs} sensors and {outputs} motors")));
         }
-        // Decoded in f32, where a larger range is infinite.
+        // Networks compute in f32, where a larger range is infinite.
         if !(0.0..=f64::from(f32::MAX)).contains(&range) {
             return Err(Error::Other(format!("weights within {range}")));
         }
-        let decoder = NetworkDecoder::new(Layout::new(inputs, hidden, outputs), range)?;
-        let network = decoder.network()?;
+        let layout = Layout::new(inputs, hidden, outputs);
+        let network = resting_network(&layout)?;
         let (x, y) = (vec![0.0; inputs], vec![0.0; outputs]);
-        Ok(Self { sensors, motors, decoder, network, x, y, stage: Stage::default() }.on_stage(Stage::default()))
+        Ok(Self { sensors, motors, layout, range, network, x, y, stage: Stage::default() }.on_stage(Stage::default()))
     }
 
-    /// Number of genes: the network's parameters.
-    pub fn genes(&self) -> usize {
-        self.decoder.layout.parameter_count()
+    /// The network's parameters with their ranges.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        network_parameters(&self.layout, self.range, [0.0, 1.0], "network.range").unwrap_or_default()
     }
 
-    /// Begins a life with these genes: what an earlier one left in sensors, network and motors is forgotten, and the tape is told
-    /// the parameters.
-    ///
-    /// # Errors
-    /// [`Error::Other`] for another number of genes; nothing is begun then.
-    pub fn begin(&mut self, genes: &[u16], tape: &mut Tape<'_>) -> Result<(), Error> {
-        if !self.decoder.decode_into(genes, core::slice::from_mut(&mut self.network)) {
-            return Err(Error::Other(format!("{} genes where {} are wanted", genes.len(), self.genes())));
+    /// Gives the network its parameters and forgets what an earlier episode left in sensors, network and motors; false for
+    /// another number of parameters, which changes nothing.
+    pub fn load(&mut self, parameters: &[f32]) -> bool {
+        if self.network.copy_parameters(parameters).is_err() {
+            return false;
         }
+        self.reset();
+        true
+    }
+
+    /// Forgets what an earlier episode left in sensors, network and motors.
+    pub fn reset(&mut self) {
         self.sensors.reset();
         self.network.reset();
         self.motors.reset();
-        if let Some(recorder) = tape.recorder() {
-            recorder.parameters(self.network.parameters());
-        }
-        Ok(())
     }
 
     /// Senses, thinks and acts; the caller steps the world.
@@ -99,18 +100,21 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         self.motors.drive(&self.y, world);
     }
 
-    /// Tells where the bodies of the stage are, what touches, and what was sensed, thought and done last; the caller ends the tick, with
-    /// [`Tape::row`].
-    pub fn tell<W>(&self, world: &W, tape: &mut Tape<'_>)
+    /// Records where the bodies of the stage are, what touches, and what was sensed, computed and done last; the caller ends
+    /// the tick, with [`Recorder::tick`].
+    pub fn record<W>(&self, world: &W, recorder: &mut dyn Recorder)
     where
         W: Kinematics<Body = BodyId> + Contacts + ?Sized,
     {
-        if let Some(recorder) = tape.recorder() {
-            record_world(world, self.stage.shown(), recorder);
-            recorder.sensors(&self.x);
-            recorder.neurons(self.network.hidden());
-            recorder.outputs(&self.y);
-        }
+        record_world(world, self.stage.shown(), recorder);
+        recorder.sensors(&self.x);
+        recorder.neurons(self.network.hidden());
+        recorder.outputs(&self.y);
+    }
+
+    /// Records the network's parameters, once before the first tick.
+    pub fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(self.network.parameters());
     }
 
     /// The same on a stage, to which the network is added; sensors and outputs that it does not name are numbered from 1.
@@ -120,12 +124,12 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         let (inputs, outputs) = (self.x.len(), self.y.len());
         let stage = if stage.sensors.len() == inputs { stage } else { stage.with_sensors(numbered(inputs)) };
         let stage = if stage.outputs.len() == outputs { stage } else { stage.with_outputs(numbered(outputs)) };
-        let mut stage = stage.with_network(&self.decoder.layout);
+        let mut stage = stage.with_network(&self.layout);
         stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
         Self { stage, ..self }
     }
 
-    /// What [`tell`](Self::tell) and the caller tell, by name.
+    /// What [`record`](Self::record) and the caller record, by name.
     pub fn stage(&self) -> &Stage {
         &self.stage
     }
@@ -138,9 +142,9 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
             motors: vec![ChannelGroup::new("motors", outputs, "outputs of the network, each 0 to 1")],
             network: format!(
                 "{inputs}-{}-{outputs}, recurrent hidden layer, leaks as filters",
-                self.decoder.layout.hidden()
+                self.layout.hidden()
             ),
-            parameters: self.genes(),
+            parameters: self.layout.parameter_count(),
             steps,
             step_seconds,
         }
@@ -171,6 +175,8 @@ mod tests {
     use farsa_nn::{Leak, Network, ParameterKind};
     use farsa_view::Recording;
 
+    use crate::genotype::Genotype;
+
     type Senses = (JointPosition, JointSpeed);
 
     fn control(hidden: usize, range: f64) -> Result<Neurocontroller<Senses, TorqueMotor>, Error> {
@@ -181,7 +187,8 @@ mod tests {
     #[test]
     fn it_is_the_loop_written_out() {
         let mut control = control(4, 3.0).unwrap();
-        let genes: Vec<u16> = (0..control.genes()).map(|gene| (gene * 9973 % 65536) as u16).collect();
+        let genes: Vec<u16> = (0..control.parameters().len()).map(|gene| (gene * 9973 % 65536) as u16).collect();
+        let decoded = Genotype::new(&control.parameters(), 16).decode(&genes).unwrap();
 
         // By hand: every kind of parameter by itself.
         let layout = Layout::new(2, 4, 1);
@@ -203,14 +210,15 @@ mod tests {
             control = control.on_stage(Stage { bodies: vec!["point".into()], ..Stage::of_scalars(["t"]) });
             assert_eq!(control.stage().columns()[1..4], ["sensor.1", "sensor.2", "neuron.1"]);
             let mut recording = Recording::new(control.stage().clone());
-            let mut tape = Tape::to(&mut recording);
-            control.begin(&genes, &mut tape).unwrap();
+            assert!(control.load(&decoded));
+            control.record_parameters(&mut recording);
             let (mut world, mut other) = (PointWorld::new(1), PointWorld::new(1));
             let mut rows = Vec::new();
             for tick in 0..50 {
                 control.act(&mut world);
-                control.tell(&world, &mut tape);
-                tape.row(f64::from(tick), &[0.0]);
+                control.record(&world, &mut recording);
+                recording.scalars(&[0.0]);
+                recording.tick(f64::from(tick));
                 world.step();
                 sensors.read(&other, &mut x);
                 network.step(&x, &mut y);
@@ -230,8 +238,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused() {
-        let short = control(4, 3.0).unwrap().begin(&[0; 3], &mut Tape::off());
-        assert_eq!(short.unwrap_err().to_string(), "3 genes where 36 are wanted");
+        assert_eq!(control(4, 3.0).unwrap().parameters().len(), 36);
+        assert!(!control(4, 3.0).unwrap().load(&[0.0; 3]));
         for (range, text) in [(-1.0, "weights within -1"), (f64::NAN, "weights within NaN")] {
             assert_eq!(control(4, range).unwrap_err().to_string(), text);
         }

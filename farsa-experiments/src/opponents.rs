@@ -1,7 +1,8 @@
 //! Whom an individual of one of several populations meets, in a run and when a life is lived again.
 
-use farsa_evo::{EvoError, Population};
+use farsa_evo::EvoError;
 
+use crate::genotype::Genotype;
 use crate::search::Descent;
 
 /// An individual of another population.
@@ -81,18 +82,22 @@ fn champion(descent: &Descent, population: usize, generation: u32) -> Result<Vec
 /// The champions of every generation; of a single population nobody is kept.
 #[derive(Debug, Default)]
 pub(crate) struct Hall {
-    /// For every generation the champion of each population.
-    champions: Vec<Vec<Vec<u16>>>,
+    /// For every generation the parameters of each population's champion.
+    champions: Vec<Vec<Vec<f32>>>,
 }
 
 impl Hall {
     /// The champions before a generation that is not finished yet.
-    pub(crate) fn before(descent: &Descent) -> Result<Self, EvoError> {
+    pub(crate) fn before(descent: &Descent, genotype: &Genotype) -> Result<Self, EvoError> {
         let (populations, generation) = (descent.populations(), descent.finished());
         let mut hall = Self::default();
         if populations > 1 {
             for generation in 0..generation {
-                let all = (0..populations).map(|population| champion(descent, population, generation));
+                let all = (0..populations).map(|population| {
+                    let genes = champion(descent, population, generation)?;
+                    let (found, expected) = (genes.len(), genotype.genes());
+                    genotype.decode(&genes).ok_or(EvoError::Lengths { genes: found, ranges: expected, out: expected })
+                });
                 hall.add(all.collect::<Result<_, _>>()?);
             }
         }
@@ -100,23 +105,24 @@ impl Hall {
     }
 
     /// Adds the champions of the generation that has just been finished.
-    pub(crate) fn add(&mut self, champions: Vec<Vec<u16>>) {
+    pub(crate) fn add(&mut self, champions: Vec<Vec<f32>>) {
         if champions.len() > 1 {
             self.champions.push(champions);
         }
     }
 
-    /// The genomes that everyone meets, trial after trial, individual after individual; none if there is no opponent.
-    pub(crate) fn opponents<'g>(&'g self, meeting: Meeting, genomes: &'g Population) -> Option<Vec<&'g [u16]>> {
+    /// The parameters of the opponents that everyone meets, trial after trial, individual after individual; none if there is
+    /// no opponent.
+    pub(crate) fn opponents<'g>(&'g self, meeting: Meeting, peers: &'g [Vec<f32>]) -> Option<Vec<&'g [f32]>> {
         let mut all = Vec::new();
         for trial in 0..u32::try_from(meeting.trials).ok()? {
-            for individual in 0..genomes.len() {
+            for individual in 0..peers.len() {
                 for opponent in meeting.opponents(individual, trial) {
                     all.push(match opponent {
                         Opponent::Champion { population, generation } => {
                             self.champions.get(generation as usize)?.get(population)?.as_slice()
                         }
-                        Opponent::Peer(individual) => genomes.get(individual)?,
+                        Opponent::Peer(individual) => peers.get(individual)?.as_slice(),
                     });
                 }
             }
@@ -128,6 +134,7 @@ impl Hall {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluator::Parameter;
     use farsa_evo::{Coevolution, Fitness, GaConfig, Strategy as _};
 
     #[test]
@@ -161,24 +168,28 @@ mod tests {
     fn a_run_meets_whom_its_lineages_remember() {
         const TRIALS: usize = 3;
         let config = GaConfig { population: 6, parents: 2, mutation_rate: 0.2, ..GaConfig::new(3) };
+        let genotype = Genotype::new(&vec![Parameter::new("", [0.0, 65535.0]); 3], 16);
         let mut all = Coevolution::new(&[config; 3], 4).unwrap();
-        let mut hall = Hall::before(&Descent::Several(all.lineages())).unwrap();
+        let mut hall = Hall::before(&Descent::Several(all.lineages()), &genotype).unwrap();
         for generation in 0..7 {
             let descent = Descent::Several(all.lineages());
             let meeting = Meeting { generation, populations: 3, size: 6, trials: TRIALS };
-            let opponents = hall.opponents(meeting, all.ask()).unwrap();
-            let resumed = Hall::before(&descent).unwrap();
-            assert_eq!(resumed.opponents(meeting, all.ask()).unwrap(), opponents);
-            for (number, genes) in opponents.chunks(2).enumerate() {
-                assert_eq!(met(&descent, generation, number % 18, (number / 18) as u32, TRIALS).unwrap(), genes);
+            let peers = genotype.decode_all(all.ask()).unwrap();
+            let opponents = hall.opponents(meeting, &peers).unwrap();
+            let resumed = Hall::before(&descent, &genotype).unwrap();
+            assert_eq!(resumed.opponents(meeting, &peers).unwrap(), opponents);
+            for (number, parameters) in opponents.chunks(2).enumerate() {
+                let genes = met(&descent, generation, number % 18, (number / 18) as u32, TRIALS).unwrap();
+                let met: Vec<Vec<f32>> = genes.iter().map(|genes| genotype.decode(genes).unwrap()).collect();
+                assert_eq!(met, parameters);
             }
             assert_eq!(opponents.len(), TRIALS * 18 * 2);
             let fitness: Vec<_> =
                 (0..18_u32).map(|i| Fitness::nan_as_failed(f64::from((i * 5 + generation) % 7))).collect();
             let champions = crate::search::Evolution::Several(all.clone()).champions(&fitness);
-            let genomes = champions.iter().map(|&best| all.ask().get(best).unwrap().to_vec()).collect();
+            let best = champions.iter().map(|&best| peers[best].clone()).collect();
             all.tell(&fitness).unwrap();
-            hall.add(genomes);
+            hall.add(best);
         }
     }
 }

@@ -12,7 +12,9 @@ use toml::de::{DeTable, DeValue};
 use crate::VALUES_VERSION;
 use crate::error::Error;
 use crate::evolution::{self, GENERATIONS};
-use crate::experiment::{Experiment, Setup};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::genotype::Genotype;
 use crate::search::Search;
 use crate::settings::{Settings, Value};
 
@@ -73,8 +75,13 @@ impl<'e> Plan<'e> {
     }
 
     /// The experiment made ready for one thread.
-    pub(crate) fn setup(&self) -> Result<Box<dyn Setup>, Error> {
+    pub(crate) fn evaluator(&self) -> Result<Box<dyn Evaluator>, Error> {
         self.experiment.prepare(&self.condition, self.elsewhere.as_ref().unwrap_or(&self.settings))
+    }
+
+    /// How genes stand for the parameters that an evaluator of this plan wants.
+    pub(crate) fn genotype(&self, evaluator: &dyn Evaluator) -> Genotype {
+        Genotype::new(&evaluator.parameters(), self.experiment.gene_bits())
     }
 
     /// Generations to evaluate.
@@ -386,7 +393,7 @@ mod tests {
             let map = settings.text("world.map")?;
             Ok(if map.is_empty() { Vec::new() } else { vec![map.into()] })
         }
-        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Setup>, Error> {
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
             Err(Error::Other("never".into()))
         }
     }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::directory::Directory;
 use crate::error::Error;
-use crate::experiment::Setup;
+use crate::evaluator::Evaluator;
 use crate::learning::{Learning, Lessons};
 use crate::log::Mark;
 use crate::plan::{Identity, Plan};
@@ -278,15 +278,15 @@ impl Champions {
     /// # Errors
     /// Those of [`read`](Self::read), [`Error::OtherConfiguration`] for other values, [`Error::Damaged`] for genomes that are none
     /// of the experiment or when there is no champion yet.
-    pub(crate) fn of(plan: &Plan<'_>, directory: &Directory, setup: &dyn Setup) -> Result<Self, Error> {
+    pub(crate) fn of(plan: &Plan<'_>, directory: &Directory, evaluator: &dyn Evaluator) -> Result<Self, Error> {
         let path = directory.champion();
         if !path.is_file() {
             return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
         }
         let found = Self::read(plan, directory)?;
         found.identity.same_values(&plan.identity()?, &path)?;
-        let genes = setup.genes();
-        if found.best.len() != setup.populations() || found.best.iter().any(|best| best.genes.len() != genes) {
+        let genes = evaluator.parameters().len();
+        if found.best.len() != evaluator.populations().len() || found.best.iter().any(|best| best.genes.len() != genes) {
             return Err(Error::damaged(&path, "its genome is not one of the experiment"));
         }
         Ok(found)

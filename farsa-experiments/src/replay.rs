@@ -11,8 +11,9 @@ use serde::Serialize;
 
 use crate::directory::{Directory, create_result};
 use crate::error::Error;
-use crate::experiment::{Note, Outcome, Setup, Tape};
-use crate::life::Job;
+use crate::evaluator::{Bodies, Evaluation, Evaluator};
+use crate::outcome::{Note, Outcome};
+use crate::episode::EpisodeId;
 use crate::opponents;
 use crate::plan::Plan;
 use crate::records::Ancestry;
@@ -30,10 +31,10 @@ pub(crate) struct Which {
 
 /// An individual of a run, with all that it needs to live again.
 pub(crate) struct Relived {
-    pub(crate) setup: Box<dyn Setup>,
-    genes: Vec<u16>,
+    pub(crate) evaluator: Box<dyn Evaluator>,
+    parameters: Vec<f32>,
     /// For every trial that was asked for.
-    opponents: Vec<Vec<Vec<u16>>>,
+    opponents: Vec<Vec<Vec<f32>>>,
     seed: u64,
     pub(crate) generation: u32,
     pub(crate) individual: u32,
@@ -62,11 +63,11 @@ impl Relived {
         let genes = descent
             .genome_of(generation, individual as usize)
             .map_err(|error| Error::Usage(format!("generation {generation}: {error}")))?;
-        let setup = plan.setup()?;
-        if genes.len() != setup.genes() {
-            return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
-        }
-        let trials = 0..setup.trials() as u32;
+        let evaluator = plan.evaluator()?;
+        let genotype = plan.genotype(evaluator.as_ref());
+        let others = || Error::damaged(&path, "its genomes are not those of the experiment");
+        let parameters = genotype.decode(&genes).ok_or_else(others)?;
+        let trials = 0..evaluator.trials() as u32;
         let trials = match which.trial {
             None => trials,
             Some(trial) if trials.contains(&trial) => trial..trial + 1,
@@ -74,29 +75,34 @@ impl Relived {
                 return Err(Error::Usage(format!("trial {trial} of {} (the first is 0)", trials.end)));
             }
         };
-        let met = |trial| opponents::met(&descent, generation, individual as usize, trial, setup.trials());
-        let opponents = trials.clone().map(met);
-        let opponents = opponents.collect::<Result<_, _>>().map_err(|error| Error::damaged(&path, error))?;
-        Ok(Self { setup, genes, opponents, seed: plan.seed, generation, individual, trials })
+        let met = |trial| {
+            let genes = opponents::met(&descent, generation, individual as usize, trial, evaluator.trials());
+            let genes = genes.map_err(|error| Error::damaged(&path, error))?;
+            genes.iter().map(|genes| genotype.decode(genes).ok_or_else(others)).collect()
+        };
+        let opponents = trials.clone().map(met).collect::<Result<_, _>>()?;
+        Ok(Self { evaluator, parameters, opponents, seed: plan.seed, generation, individual, trials })
     }
 
     /// The stage of its lives.
     pub(crate) fn stage(&self) -> Stage {
-        self.setup.stage_of(&self.genes)
+        let with = |bodies: &dyn Bodies| bodies.stage_with(&self.parameters);
+        self.evaluator.bodies().map_or_else(|| self.evaluator.stage(), with)
     }
 
     /// Lives one of the trials that were asked for again.
     pub(crate) fn live(&mut self, trial: u32, recorder: &mut dyn Recorder) -> Outcome {
-        let job = Job { seed: self.seed, generation: self.generation, individual: self.individual, trial };
+        let id = EpisodeId { seed: self.seed, generation: self.generation, individual: self.individual, trial };
         let opponents = self.opponents.get((trial - self.trials.start) as usize).map_or(&[][..], Vec::as_slice);
-        let opponents: Vec<&[u16]> = opponents.iter().map(Vec::as_slice).collect();
-        self.setup.live_against(&self.genes, &opponents, job, &mut Tape::to(recorder))
+        let opponents: Vec<&[f32]> = opponents.iter().map(Vec::as_slice).collect();
+        let evaluation = Evaluation { number: 0, parameters: &self.parameters, opponents: &opponents, id };
+        self.evaluator.evaluate(evaluation, Some(recorder))
     }
 
     /// What the trials that were lived earned, as a fitness.
     pub(crate) fn fitness(&self, outcomes: &[Outcome]) -> f64 {
         let finite = outcomes.iter().all(Outcome::is_finite);
-        let fitness = if finite { Fitness::nan_as_failed(self.setup.fitness(outcomes)) } else { Fitness::WORST };
+        let fitness = if finite { Fitness::nan_as_failed(self.evaluator.fitness(outcomes)) } else { Fitness::WORST };
         fitness.get()
     }
 
@@ -237,7 +243,7 @@ pub(crate) fn page(
 /// What came of a trial, by name.
 fn facts(relived: &Relived, outcome: &Outcome) -> Vec<(String, String)> {
     let fitness = relived.fitness(core::slice::from_ref(outcome));
-    let terms = relived.setup.terms().into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
+    let terms = relived.evaluator.terms().into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
     let notes = outcome.notes.iter().map(|(name, note)| {
         let value = match note {
             Note::Number(x) => readable(*x),

@@ -48,10 +48,11 @@ impl<'e> Run<'e> {
             return Err(Error::damaged(&directory.log(), "no generation is finished yet"));
         }
         let path = directory.test();
-        let setup = plan.setup()?;
-        let populations = if setup.populations() > 1 { setup.population_names() } else { Vec::new() };
+        let evaluator = plan.evaluator()?;
+        let populations = evaluator.populations();
+        let populations = if populations.len() > 1 { populations } else { Vec::new() };
         let test = if path.is_file() {
-            let findings = Table::read(&path)?.findings(&setup.terms());
+            let findings = Table::read(&path)?.findings(&evaluator.terms());
             Some(Tested { findings, record: Record::read(&directory)? })
         } else {
             None

@@ -94,8 +94,8 @@ fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
     table.rows = rows.iter().map(|&row| vec![row.to_owned()]).collect();
     for group in groups {
         let Some(run) = group.runs.first() else { continue };
-        let setup = run.plan.setup()?;
-        let description = setup.description();
+        let evaluator = run.plan.evaluator()?;
+        let description = evaluator.description();
         let list = |numbers: &mut dyn Iterator<Item = String>| {
             let mut numbers: Vec<String> = numbers.collect();
             numbers.dedup();
@@ -109,16 +109,16 @@ fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
                 Ok(all) if all as usize > run.lines.len() => format!("{} of {all}", run.lines.len()),
                 _ => run.lines.len().to_string(),
             })),
-            match (run.value(POPULATION), setup.populations()) {
+            match (run.value(POPULATION), evaluator.populations().len()) {
                 (Some(size), 1) => size.to_string(),
                 (Some(size), populations) => format!("{populations} populations of {size}"),
                 (None, _) => "1 parent and 1 mutant".into(),
             },
-            setup.trials().to_string(),
+            evaluator.trials().to_string(),
             format!("at most {}{clock}", description.steps),
             description.network,
-            format!("{} genes of {} bits", setup.genes(), setup.gene_bits()),
-            setup.terms().join(" + "),
+            format!("{} genes of {} bits", evaluator.parameters().len(), run.plan.experiment.gene_bits()),
+            evaluator.terms().join(" + "),
         ];
         table.head.push(group.label.clone());
         for (row, cell) in table.rows.iter_mut().zip(cells) {

@@ -5,13 +5,14 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Fitness, Population, Statistics};
+use farsa_evo::{Fitness, Statistics};
 use serde::Serialize;
 
 use crate::directory::{Directory, replace};
 use crate::error::Error;
-use crate::experiment::{Outcome, Task};
-use crate::life::Job;
+use crate::evaluator::Evaluation;
+use crate::outcome::Outcome;
+use crate::episode::EpisodeId;
 use crate::log::{self, Log};
 use crate::manifest::{Manifest, Session};
 use crate::opponents::{Hall, Meeting};
@@ -27,7 +28,7 @@ const UNSAVED: Duration = Duration::from_secs(1);
 
 /// Makes the directory of a new run, ready for its first generation.
 pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
-    let evolution = Evolution::new(plan, plan.setup()?.as_ref())?;
+    let evolution = Evolution::new(plan, plan.evaluator()?.as_mut())?;
     let (text, identity) = (plan.to_toml()?, plan.identity()?);
     Directory::create(path, |directory| {
         replace(&directory.config(), text.as_bytes())?;
@@ -116,10 +117,10 @@ pub(crate) fn go_on(
     let path = directory.checkpoint();
     let Checkpoint { identity, log: mark, evolution } = Checkpoint::read(plan, directory)?;
     identity.same_values(&plan.identity()?, &path)?;
-    if !evolution.is_like(&Evolution::new(plan, pool.setup())?) {
+    if !evolution.is_like(&Evolution::new(plan, pool.evaluator_mut())?) {
         return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
     }
-    let hall = Hall::before(&evolution.descent());
+    let hall = Hall::before(&evolution.descent(), pool.genotype());
     let hall = hall.map_err(|error| Error::damaged(&path, error))?;
     let (done, last) = (evolution.generation(), plan.generations()?);
     if last < done {
@@ -138,7 +139,7 @@ pub(crate) fn go_on(
     let mut run = Run {
         directory,
         title: plan.name(),
-        names: pool.setup().population_names(),
+        names: pool.evaluator().populations(),
         identity,
         evolution,
         hall,
@@ -209,23 +210,23 @@ impl Run<'_> {
         let genomes = self.evolution.ask();
         let (seed, populations) = (self.identity.seed, self.evolution.populations());
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
-        let trials = pool.setup().trials();
+        let trials = pool.evaluator().trials();
+        let parameters = pool.genotype().decode_all(genomes).ok_or_else(|| lost("genomes of another length"))?;
         let meeting = Meeting { generation, populations, size: genomes.len() / populations, trials };
-        let opponents = self.hall.opponents(meeting, genomes).ok_or_else(|| lost("an opponent is missing"))?;
-        let job = Job { seed, generation, ..Job::default() };
-        let fitness =
-            evaluate(pool, genomes, Opponents { genes: &opponents, each: populations - 1 }, job, stop, progress)
-                .map_err(Unsuccessful::Unfinished)?;
+        let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
+        let id = EpisodeId { seed, generation, ..EpisodeId::default() };
+        let opponents = Opponents { parameters: &opponents, each: populations - 1 };
+        let fitness = fitness_of_all(pool, &parameters, opponents, id, stop, progress).map_err(Unsuccessful::Unfinished)?;
         let judged = self.evolution.judged(&fitness).map_err(|error| lost(&error.to_string()))?;
-        let statistics = Statistics::of(&judged).ok_or_else(|| lost("nobody lived"))?;
+        let statistics = Statistics::of(&judged).ok_or_else(|| lost("no individual was evaluated"))?;
         let best = self.evolution.champions(&judged).into_iter().map(|best| {
             let (fitness, genes) = (*judged.get(best)?, genomes.get(best)?.to_vec());
             Some(Best { individual: best as u32, fitness, genes })
         });
-        let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("nobody is best"))?;
+        let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
         self.log.append(&statistics, fitness.len(), &self.evolution.of_each(&judged))?;
-        self.evolution.tell(&fitness, pool.setup_mut(), seed).map_err(|error| lost(&error))?;
-        self.hall.add(best.iter().map(|best| best.genes.clone()).collect());
+        self.evolution.tell(&fitness, pool.evaluator_mut(), seed).map_err(|error| lost(&error))?;
+        self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.generations += 1;
@@ -279,70 +280,71 @@ impl Run<'_> {
     }
 }
 
-/// Whom the lives of a generation are lived against, in the order of the lives, so many for each.
+/// The opponents of a generation's evaluations, in their order, so many for each.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Opponents<'g> {
-    pub(crate) genes: &'g [&'g [u16]],
+    pub(crate) parameters: &'g [&'g [f32]],
     pub(crate) each: usize,
 }
 
 impl<'g> Opponents<'g> {
-    /// Those of the life with a number.
-    fn of(&self, number: usize) -> &'g [&'g [u16]] {
-        self.genes.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
+    /// Those of the evaluation with a number.
+    fn of(&self, number: usize) -> &'g [&'g [f32]] {
+        self.parameters.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
     }
 }
 
-/// Lives all trials of all individuals and says what fitness each comes to.
+/// Evaluates all trials of all individuals and says what fitness each comes to.
 ///
 /// A trial that failed makes its individual the worst, whatever comes of the others.
-fn evaluate(
+fn fitness_of_all(
     pool: &mut Pool,
-    genomes: &Population,
+    parameters: &[Vec<f32>],
     opponents: Opponents<'_>,
-    of: Job,
+    of: EpisodeId,
     stop: &AtomicBool,
     progress: &Progress,
 ) -> Result<Vec<Fitness>, Unfinished> {
-    let (count, trials) = (genomes.len(), pool.setup().trials());
+    let (count, trials) = (parameters.len(), pool.evaluator().trials());
     let ended = AtomicUsize::new(0);
     let done = |_: Option<&Outcome>| {
         if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
             progress.advance();
         }
     };
-    let mut lived = live_all(pool, genomes, opponents, of, stop, done)?;
-    let setup = pool.setup();
+    let mut outcomes = evaluate_all(pool, parameters, opponents, of, stop, done)?;
+    let evaluator = pool.evaluator();
     let fitness = (0..count).map(|individual| {
-        let own = lived.iter_mut().skip(individual).step_by(count);
+        let own = outcomes.iter_mut().skip(individual).step_by(count);
         let outcomes: Option<Vec<Outcome>> = own.map(Option::take).collect();
         let finite = outcomes.filter(|outcomes| outcomes.iter().all(Outcome::is_finite));
-        let fitness = finite.map_or(f64::NAN, |outcomes| setup.fitness(&outcomes));
+        let fitness = finite.map_or(f64::NAN, |outcomes| evaluator.fitness(&outcomes));
         if fitness.is_finite() { Fitness::nan_as_failed(fitness) } else { Fitness::WORST }
     });
     Ok(fitness.collect())
 }
 
-/// Lives all trials of all individuals, the first of all before the second of any: trial t of individual i has number
+/// Evaluates all trials of all individuals, the first of all before the second of any: trial t of individual i has number
 /// t x individuals + i. `of.trial` and `of.individual` are set for each; `done` hears of every one that ends.
 ///
-/// Lives side by side cost least when they are alike. What an individual has left after a trial that failed is not lived.
-pub(crate) fn live_all(
+/// Episodes side by side cost least when they are alike. What an individual has left after a trial that failed is left out.
+pub(crate) fn evaluate_all(
     pool: &mut Pool,
-    genomes: &Population,
+    parameters: &[Vec<f32>],
     opponents: Opponents<'_>,
-    of: Job,
+    of: EpisodeId,
     stop: &AtomicBool,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Option<Outcome>>, Unfinished> {
-    let (count, trials) = (genomes.len(), pool.setup().trials());
-    let failed: Vec<AtomicBool> = genomes.iter().map(|_| AtomicBool::new(false)).collect();
+    let (count, trials) = (parameters.len(), pool.evaluator().trials());
+    let failed: Vec<AtomicBool> = parameters.iter().map(|_| AtomicBool::new(false)).collect();
     let task = |number: usize| {
         let (individual, trial) = (number % count, (number / count) as u32);
-        let job = Job { individual: individual as u32, trial, ..of };
+        let id = EpisodeId { individual: individual as u32, trial, ..of };
         let alive = !failed[individual].load(Ordering::Relaxed);
         let opponents = opponents.of(number);
-        genomes.get(individual).filter(|_| alive).map(|genes| Task { number, genes, opponents, job })
+        let own = parameters.get(individual).filter(|_| alive);
+        own.map(|parameters| Evaluation { number, parameters, opponents, id })
     };
     let heard = |number: usize, outcome: Option<&Outcome>| {
         if outcome.is_some_and(|outcome| !outcome.is_finite()) {
@@ -350,7 +352,7 @@ pub(crate) fn live_all(
         }
         done(outcome);
     };
-    pool.live(count * trials, stop, task, heard)
+    pool.evaluate(count * trials, stop, task, heard)
 }
 
 #[cfg(test)]
@@ -359,10 +361,13 @@ mod tests {
     use crate::directory::Directory;
     use crate::evolution;
     use crate::exam;
-    use crate::experiment::{Description, Experiment, Setup, Tape};
+    use crate::evaluator::{Evaluator, Parameter, Task};
+    use crate::experiment::Experiment;
+    use crate::outcome::Description;
     use crate::lanes::Wanted;
     use crate::replay::{Which, replay};
     use crate::settings::{Setting, Settings, Value};
+    use farsa_body::Recorder;
     use farsa_view::Stage;
     use std::path::PathBuf;
 
@@ -386,14 +391,14 @@ mod tests {
         fn settings(&self, _: &str) -> Vec<Setting> {
             vec![Setting::whole(evolution::GENERATIONS, 4, 1..=100), Setting::whole(evolution::POPULATION, 20, 1..=100)]
         }
-        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Setup>, Error> {
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
             Ok(Box::new(*self))
         }
     }
 
-    impl Setup for Toy {
-        fn genes(&self) -> usize {
-            1
+    impl Task for Toy {
+        fn parameters(&self) -> Vec<Parameter> {
+            vec![Parameter::new("gene", [0.0, 65535.0])]
         }
         fn stage(&self) -> Stage {
             Stage::of_scalars(["gene"])
@@ -401,11 +406,18 @@ mod tests {
         fn description(&self) -> Description {
             Description::default()
         }
-        fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-            assert!(!self.panics || (job.generation, job.individual) != (2, 3), "as planned");
-            let gene = f64::from(genes[0]);
-            tape.row(0.0, &[gene]);
-            let fitness = if genes[0] % 2 == 1 { f64::INFINITY } else { gene };
+    }
+
+    impl Evaluator for Toy {
+        fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
+            let id = evaluation.id;
+            assert!(!self.panics || (id.generation, id.individual) != (2, 3), "as planned");
+            let gene = f64::from(evaluation.parameters[0]);
+            if let Some(recorder) = recorder {
+                recorder.scalars(&[gene]);
+                recorder.tick(0.0);
+            }
+            let fitness = if gene % 2.0 == 1.0 { f64::INFINITY } else { gene };
             Outcome { terms: vec![fitness], steps: 1, ..Outcome::default() }
         }
     }

@@ -7,7 +7,7 @@ use farsa_evo::{
 
 use crate::error::Error;
 use crate::evolution;
-use crate::experiment::Setup;
+use crate::evaluator::Evaluator;
 use crate::learning::{Learning, Lessons};
 use crate::plan::Plan;
 
@@ -24,11 +24,14 @@ pub enum Search {
     /// The log of such a run is about the mean fitness of the parent over its life and the fitness of the mutant: the
     /// best of the two is that of the survivor, which is the champion.
     SteadyState,
-    /// Nothing is selected: a generation is one individual, which takes a lesson after it has lived, [`Setup::lesson`].
+    /// Nothing is selected: a generation is one individual, which takes a lesson after it has lived, [`Learner::lesson`](crate::Learner::lesson).
     ///
     /// The log of such a run has one fitness three times; errors are in `learning.csv`.
     Learning,
 }
+
+/// An experiment that learns has no learner.
+const NO_LEARNER: &str = "an experiment that learns without a learner";
 
 /// A search under way.
 #[derive(Debug, Clone)]
@@ -44,24 +47,28 @@ impl Evolution {
     ///
     /// # Errors
     /// [`Error::Setting`] when settings do not go together, [`Error::Other`] for genomes that cannot be.
-    pub(crate) fn new(plan: &Plan<'_>, setup: &dyn Setup) -> Result<Self, Error> {
+    pub(crate) fn new(plan: &Plan<'_>, evaluator: &mut dyn Evaluator) -> Result<Self, Error> {
         let refused = |error: EvoError| Error::Other(format!("{}: {error}", plan.experiment.name()));
-        let (populations, seed) = (setup.populations(), plan.seed);
+        let (populations, seed) = (evaluator.populations().len(), plan.seed);
+        let (genes, bits) = (evaluator.parameters().len(), plan.experiment.gene_bits());
         match (plan.search(), populations) {
             (_, 0) => Err(Error::Other(format!("{}: no population", plan.experiment.name()))),
             (Search::SteadyState, 1) => {
-                let config = evolution::steady_state(&plan.settings, setup)?;
+                let config = evolution::steady_state(&plan.settings, genes, bits)?;
                 SteadyState::new(config, seed).map(Self::SteadyState).map_err(refused)
             }
             (Search::SteadyState, _) => {
                 Err(Error::Other(format!("{}: a steady-state search of several populations", plan.experiment.name())))
             }
-            (Search::Learning, 1) => Learning::new(setup, seed).map(Self::Learning).map_err(refused),
+            (Search::Learning, 1) => {
+                let learner = evaluator.learner().ok_or_else(|| Error::Other(NO_LEARNER.into()))?;
+                Learning::new(learner, seed).map(Self::Learning).map_err(refused)
+            }
             (Search::Learning, _) => {
                 Err(Error::Other(format!("{}: several populations that learn", plan.experiment.name())))
             }
             (Search::Truncation, populations) => {
-                let config = evolution::config(&plan.settings, setup.genes(), setup.gene_bits())?;
+                let config = evolution::config(&plan.settings, genes, bits)?;
                 if populations == 1 {
                     TruncationGa::new(config, seed).map(Self::Truncation).map_err(refused)
                 } else {
@@ -107,16 +114,16 @@ impl Evolution {
         if let Self::Several(all) = self { all.populations() } else { 1 }
     }
 
-    /// Takes the fitness of the current generation and makes the next, by a lesson of `setup` where it learns.
+    /// Takes the fitness of the current generation and makes the next, by a lesson of `evaluator` where it learns.
     ///
     /// # Errors
     /// The search's words, should it refuse.
-    pub(crate) fn tell(&mut self, fitness: &[Fitness], setup: &mut dyn Setup, seed: u64) -> Result<(), String> {
+    pub(crate) fn tell(&mut self, fitness: &[Fitness], evaluator: &mut dyn Evaluator, seed: u64) -> Result<(), String> {
         let told = match self {
             Self::Truncation(ga) => ga.tell(fitness),
             Self::SteadyState(search) => search.tell(fitness),
             Self::Several(all) => all.tell(fitness),
-            Self::Learning(learning) => return learning.study(setup, seed),
+            Self::Learning(learning) => return learning.study(evaluator.learner().ok_or(NO_LEARNER)?, seed),
         };
         told.map_err(|error| error.to_string())
     }

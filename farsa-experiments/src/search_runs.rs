@@ -5,6 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
+use farsa_body::Recorder;
 use farsa_num::{Domain, Stream};
 use farsa_view::Stage;
 
@@ -13,9 +14,11 @@ use crate::directory::Directory;
 use crate::error::Error;
 use crate::evolution;
 use crate::exam;
-use crate::experiment::{Description, Experiment, Lesson, Outcome, Setup, Tape};
+use crate::evaluator::{Evaluation, Evaluator, Learner, Lesson, Parameter, Task};
+use crate::experiment::Experiment;
+use crate::outcome::{Description, Outcome};
 use crate::lanes::Wanted;
-use crate::life::Job;
+use crate::episode::EpisodeId;
 use crate::plan::Plan;
 use crate::pool::Pool;
 use crate::records::{Ancestry, Champions};
@@ -59,33 +62,38 @@ impl Experiment for Numbers {
         let file = settings.text("numbers.file").unwrap_or_default();
         Ok(if file.is_empty() { Vec::new() } else { vec![file.into()] })
     }
-    fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         Ok(Box::new(*self))
+    }
+    fn gene_bits(&self) -> u32 {
+        8
     }
 }
 
 impl Numbers {
-    fn alone(genes: &[u16], job: Job) -> f64 {
-        let noise = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation).uniform_f64();
-        200.0 * noise - f64::from(genes[0].abs_diff(100)) - f64::from(genes[1].abs_diff(7))
+    fn alone(genes: &[f32], id: EpisodeId) -> f64 {
+        let noise = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation).uniform_f64();
+        200.0 * noise - f64::from((genes[0] - 100.0).abs()) - f64::from((genes[1] - 7.0).abs())
     }
 
-    fn against(genes: &[u16], opponents: &[&[u16]], population: usize) -> f64 {
-        let misses = opponents.iter().map(|other| f64::from(genes[0].abs_diff(other[0])));
+    fn against(genes: &[f32], opponents: &[&[f32]], population: usize) -> f64 {
+        let misses = opponents.iter().map(|other| f64::from((genes[0] - other[0]).abs()));
         let sign = if population == 0 { -1.0 } else { 1.0 };
         misses.map(|miss| sign * miss).sum()
     }
 }
 
-impl Setup for Numbers {
-    fn genes(&self) -> usize {
-        2
+/// Parameters are genes as they are.
+fn plain(genes: &[u16]) -> Vec<f32> {
+    genes.iter().copied().map(f32::from).collect()
+}
+
+impl Task for Numbers {
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("first", [0.0, 255.0]), Parameter::new("second", [0.0, 255.0])]
     }
-    fn gene_bits(&self) -> u32 {
-        8
-    }
-    fn populations(&self) -> usize {
-        self.populations
+    fn populations(&self) -> Vec<String> {
+        (0..self.populations).map(|population| population.to_string()).collect()
     }
     fn trials(&self) -> usize {
         TRIALS as usize
@@ -96,7 +104,10 @@ impl Setup for Numbers {
     fn description(&self) -> Description {
         Description::default()
     }
-    /// Words half way from where they are to 100 and 7, and a little beside it.
+}
+
+/// Words half way from where they are to 100 and 7, and a little beside it.
+impl Learner for Numbers {
     fn first_words(&self, _: u64) -> Vec<f64> {
         vec![0.0; 2]
     }
@@ -110,19 +121,24 @@ impl Setup for Numbers {
     fn learned(&self, words: &[f64]) -> Vec<u16> {
         words.iter().map(|word| *word as u16).collect()
     }
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        tape.row(0.0, &[f64::from(genes[0])]);
-        Outcome { terms: vec![Self::alone(genes, job)], steps: 1, ..Outcome::default() }
-    }
-    fn live_against(&mut self, genes: &[u16], opponents: &[&[u16]], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        if self.populations == 1 {
-            assert!(opponents.is_empty());
-            return self.live(genes, job, tape);
-        }
+}
+
+impl Evaluator for Numbers {
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
+        let Evaluation { parameters, opponents, id, .. } = evaluation;
         assert_eq!(opponents.len(), self.populations - 1);
-        tape.row(0.0, &[f64::from(opponents[0][0])]);
-        let fitness = Self::against(genes, opponents, job.population(SIZE));
+        if let Some(recorder) = recorder {
+            recorder.scalars(&[f64::from(opponents.first().unwrap_or(&parameters)[0])]);
+            recorder.tick(0.0);
+        }
+        if self.populations == 1 {
+            return Outcome { terms: vec![Self::alone(parameters, id)], steps: 1, ..Outcome::default() };
+        }
+        let fitness = Self::against(parameters, opponents, id.population(SIZE));
         Outcome { terms: vec![fitness], steps: 1, success: fitness >= 0.0, ..Outcome::default() }
+    }
+    fn learner(&mut self) -> Option<&mut dyn Learner> {
+        Some(self)
     }
 }
 
@@ -191,8 +207,8 @@ fn a_steady_state_keeps_the_better_of_two() {
         let earned = |individual: usize| {
             let genes = descent.genome_of(generation, individual).unwrap();
             assert!(genes.iter().all(|&gene| gene < 256));
-            let trial = |trial| Job { seed: 11, generation, individual: individual as u32, trial };
-            (0..TRIALS).map(|t| Numbers::alone(&genes, trial(t))).sum::<f64>()
+            let trial = |trial| EpisodeId { seed: 11, generation, individual: individual as u32, trial };
+            (0..TRIALS).map(|t| Numbers::alone(&plain(&genes), trial(t))).sum::<f64>()
         };
         life.push(earned(0));
         longest = longest.max(life.len());
@@ -238,16 +254,16 @@ fn a_learner_lives_and_takes_lessons() {
     let plan = plan(&LEARNER, GENERATIONS);
     let (Ancestry { descent, .. }, _) = Ancestry::read(&plan, &directory).unwrap();
     // By hand: the life of a generation is that of the words before its lesson.
-    let (mut setup, mut words) = (LEARNER, LEARNER.first_words(11));
+    let (mut evaluator, mut words) = (LEARNER, LEARNER.first_words(11));
     let mut curve = String::from("generation,error before,error after,successes\n");
     for (generation, row) in (0..12_u32).zip(rows(&directory)) {
         let genes = LEARNER.learned(&words);
         assert_eq!(descent.genome_of(generation, 0).unwrap(), genes);
         assert_eq!(descent.champion(0, generation), Some(0));
-        let earned = |trial| Numbers::alone(&genes, Job { seed: 11, generation, individual: 0, trial });
+        let earned = |trial| Numbers::alone(&plain(&genes), EpisodeId { seed: 11, generation, individual: 0, trial });
         let fitness: f64 = (0..TRIALS).map(earned).sum();
         assert_eq!(row[1..], [fitness, fitness, fitness, 1.0, 0.0]);
-        let Lesson { before, after, .. } = setup.lesson(&mut words, 11, generation).unwrap();
+        let Lesson { before, after, .. } = evaluator.lesson(&mut words, 11, generation).unwrap();
         writeln!(curve, "{generation},{before:?},{after:?},1.0").unwrap();
     }
     assert_eq!(read("whole"), curve);
@@ -282,17 +298,17 @@ fn populations_meet_each_others_champions() {
         let fitness = |individual: usize| {
             let own = individual / SIZE;
             let trial = |trial: u32| {
-                let others: Vec<Vec<u16>> = (0..3)
+                let others: Vec<Vec<f32>> = (0..3)
                     .filter(|other| *other != own)
                     .map(|other| {
-                        rule(generation, trial).map_or_else(
+                        plain(&rule(generation, trial).map_or_else(
                             || genes(generation, other * SIZE + trial as usize),
                             |earlier| genes(earlier, descent.champion(other, earlier).unwrap()),
-                        )
+                        ))
                     })
                     .collect();
-                let others: Vec<&[u16]> = others.iter().map(Vec::as_slice).collect();
-                Numbers::against(&genes(generation, individual), &others, own)
+                let others: Vec<&[f32]> = others.iter().map(Vec::as_slice).collect();
+                Numbers::against(&plain(&genes(generation, individual)), &others, own)
             };
             (0..TRIALS).map(trial).sum::<f64>()
         };

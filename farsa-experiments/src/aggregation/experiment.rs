@@ -6,8 +6,10 @@ use farsa_physics::arena::World;
 use crate::aggregation::config::AggregationConfig;
 use crate::aggregation::life::{AggregationLife, AggregationMission};
 use crate::error::Error;
-use crate::experiment::{Experiment, Outcome, Setup};
-use crate::life::Job;
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::outcome::Outcome;
+use crate::episode::EpisodeId;
 use crate::settings::{Setting, Settings};
 use crate::team::config::ROBOTS;
 use crate::team::setup::TeamSetup;
@@ -45,7 +47,7 @@ impl Experiment for Aggregation {
 }
 
 /// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
-pub fn aggregate<C: Controller>(life: &mut AggregationLife<C>, world: &mut World, job: Job) -> Outcome {
-    crate::life::live(life, world, job);
+pub fn aggregate<C: Controller>(life: &mut AggregationLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    crate::life::live(life, world, id);
     life.outcome(0)
 }

@@ -9,8 +9,8 @@ use farsa_view::Channel;
 use crate::aggregation::config::AggregationConfig;
 use crate::aggregation::measure::{Gathering, mean_distances};
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Note, Outcome};
-use crate::life::Job;
+use crate::outcome::{ChannelGroup, Note, Outcome};
+use crate::episode::EpisodeId;
 use crate::team::config::TeamConfig;
 use crate::team::life::{Mission, Moment, TeamLife};
 use crate::team::nest::{COLORS, on_nest};
@@ -93,12 +93,12 @@ impl Mission for AggregationMission {
         &COLORS
     }
 
-    /// Puts the nests and then the robots somewhere, from the stream of [`Domain::Start`] of the job's trial, individual and
+    /// Puts the nests and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
     /// generation.
-    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
+    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, id: EpisodeId) -> Result<(), ArenaError> {
         const TRIES: u32 = 1000;
         let Self { config, nests, .. } = self;
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         world.clear();
         let [low, high] = [config.nest_to_wall, config.team.size - config.nest_to_wall].map(|x| x as f32);
         let apart = (2.0 * config.nest_to_wall) as f32;

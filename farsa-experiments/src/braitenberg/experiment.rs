@@ -6,8 +6,10 @@ use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 use crate::braitenberg::life::{Config, LIGHTS, Vehicle, VehicleLife};
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
-use crate::life::{Job, Life as _};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::outcome::{ChannelGroup, Description, Note, Outcome};
+use crate::episode::{Episode as _, EpisodeId};
 use crate::settings::{Setting, Settings};
 
 /// What four ways of wiring two light-driven wheels look like from outside \[Braitenberg1984, vehicles 2a to 3b\].
@@ -208,11 +210,11 @@ impl Setup for Lives {
         }
     }
 
-    fn live(&mut self, _: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, _: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
         if let Some(recorder) = tape.recorder() {
             recorder.parameters(&self.life.wiring().parameters);
         }
-        self.life.start(&mut self.world, job);
+        self.life.start(&mut self.world, id);
         loop {
             self.life.act(&mut self.world);
             self.world.step();

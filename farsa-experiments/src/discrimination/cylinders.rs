@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use crate::discrimination::config::Config;
 use crate::discrimination::experiment::in_its_world;
 use crate::error::Error;
-use crate::experiment::{Experiment, Setup};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
 use crate::infrared::settings::InfraredModel;
 use crate::settings::{Setting, Settings};
 

@@ -12,9 +12,11 @@ use farsa_view::{Channel, Links, NodeParameters, Stage};
 use crate::discrimination::config::{Config, EYES, ROBOTS};
 use crate::discrimination::life::CylinderLife;
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::outcome::{ChannelGroup, Description, Note, Outcome};
 use crate::infrared::settings::InfraredModel;
-use crate::life::{Job, Life as _};
+use crate::episode::{Episode as _, EpisodeId};
 use crate::search::Search;
 use crate::settings::{Setting, Settings};
 use crate::worlds::PlanarEngine;
@@ -114,8 +116,8 @@ where
         let mut life = CylinderLife::new(config, layer)?;
         // Seeds of this kind are neither a run's nor a test's.
         for trial in 0..8 {
-            let job = Job { seed: u64::MAX, trial, ..Job::default() };
-            life.arrange(&mut world, job).map_err(|error| Error::setting("world.size", error))?;
+            let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
+            life.arrange(&mut world, id).map_err(|error| Error::setting("world.size", error))?;
         }
         Ok(Self { world, life })
     }
@@ -270,7 +272,7 @@ where
         }
     }
 
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
         let config = self.life.config();
         let (inputs, range) = (config.inputs(), config.weight_range);
         if genes.len() != self.genes() {
@@ -282,7 +284,7 @@ where
         }
         let Ok(layer) = layer(inputs, parameters) else { return Outcome::failed() };
         self.life.set_controller(layer);
-        self.life.start(&mut self.world, job);
+        self.life.start(&mut self.world, id);
         if self.life.trial().failed {
             return Outcome::failed();
         }

@@ -4,10 +4,12 @@ use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::error::Error;
-use crate::experiment::{Experiment, Outcome, Setup};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::outcome::Outcome;
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::life::{ForagingLife, ForagingMission};
-use crate::life::Job;
+use crate::episode::EpisodeId;
 use crate::settings::{Setting, Settings};
 use crate::team::config::ROBOTS;
 use crate::team::setup::TeamSetup;
@@ -45,7 +47,7 @@ impl Experiment for Foraging {
 }
 
 /// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
-pub fn forage<C: Controller>(life: &mut ForagingLife<C>, world: &mut World, job: Job) -> Outcome {
-    crate::life::live(life, world, job);
+pub fn forage<C: Controller>(life: &mut ForagingLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    crate::life::live(life, world, id);
     life.outcome(0)
 }

@@ -7,10 +7,10 @@ use farsa_physics::arena::{Arena, ArenaError, World};
 use farsa_view::Channel;
 
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Note, Outcome};
+use crate::outcome::{ChannelGroup, Note, Outcome};
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::field::Field;
-use crate::life::Job;
+use crate::episode::EpisodeId;
 use crate::team::config::TeamConfig;
 use crate::team::life::{Mission, Moment, TeamLife};
 use crate::team::nest::{COLORS, on_nest};
@@ -81,11 +81,11 @@ impl Mission for ForagingMission {
         "team.robots"
     }
 
-    /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the job's trial, individual and
+    /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
     /// generation.
-    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
+    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, id: EpisodeId) -> Result<(), ArenaError> {
         let Self { config, field, nest } = self;
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         world.clear();
         let [low, high] = [config.nest_to_wall, config.team.size - config.nest_to_wall].map(|x| x as f32);
         let at = [0; 2].map(|_| stream.range(low, high.max(low)));

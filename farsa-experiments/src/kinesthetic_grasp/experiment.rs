@@ -8,10 +8,12 @@ use farsa_view::Stage;
 use crate::controller_export::{ControllerExport, StartExport};
 use crate::engine::ENGINE;
 use crate::error::Error;
-use crate::experiment::{Description, Experiment, Lesson, Outcome, Setup, Tape, Task};
+use crate::evaluator::{Evaluation, Evaluator, Lesson};
+use crate::experiment::Experiment;
+use crate::outcome::{Description, Outcome};
 use crate::kinesthetic_grasp::training::{Lessons, School};
 use crate::lanes::Lanes;
-use crate::life::Job;
+use crate::episode::EpisodeId;
 use crate::reach_grasp_lift::config::Config as Reach;
 use crate::reach_grasp_lift::experiment::Lives as ReachLives;
 use crate::reach_grasp_lift::scene::Scene;
@@ -163,16 +165,16 @@ impl Setup for Lives {
         self.lives.controller(genes)
     }
 
-    fn start(&self, job: Job) -> Option<StartExport> {
-        self.lives.start(job)
+    fn start(&self, id: EpisodeId) -> Option<StartExport> {
+        self.lives.start(id)
     }
 
     fn description(&self) -> Description {
         self.lives.description()
     }
 
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        self.lives.live(genes, job, tape)
+    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
+        self.lives.live(genes, id, tape)
     }
 
     fn use_lanes(&mut self, lanes: Lanes) -> Result<Lanes, Error> {

@@ -8,8 +8,10 @@ use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, R
 
 use crate::controller_export::CtrnnExport;
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
-use crate::life::Job;
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::outcome::{ChannelGroup, Description, Note, Outcome};
+use crate::episode::EpisodeId;
 use crate::minimal_cognition::config::Config;
 use crate::minimal_cognition::life::AgentLife;
 use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTORS, NEURONS, RAYS, Wiring};
@@ -226,7 +228,7 @@ impl Setup for Lives {
     }
 
     /// Success is a circle nearer, or a diamond farther, than half of `fitness.clip`.
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
         let Some(parameters) = self.wiring.decode(genes) else { return Outcome::failed() };
         if self.life.set_parameters(&parameters).is_err() {
             return Outcome::failed();
@@ -234,7 +236,7 @@ impl Setup for Lives {
         if let Some(recorder) = tape.recorder() {
             recorder.parameters(&told(&parameters));
         }
-        self.life.start(job);
+        self.life.start(id);
         while !self.life.ended() {
             self.life.step();
             if let Some(recorder) = tape.recorder() {

@@ -4,8 +4,10 @@ use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::error::Error;
-use crate::experiment::{Experiment, Outcome, Setup};
-use crate::life::Job;
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::outcome::Outcome;
+use crate::episode::EpisodeId;
 use crate::predator_prey::config::PredatorPreyConfig;
 use crate::predator_prey::life::{PredatorPreyLife, PredatorPreyMission};
 use crate::settings::{Setting, Settings};
@@ -38,7 +40,7 @@ impl Experiment for PredatorPrey {
 }
 
 /// Lives one trial of any two controllers and tells what came of it for the predator, as an outcome of the experiment does.
-pub fn chase<C: Controller>(life: &mut PredatorPreyLife<C>, world: &mut World, job: Job) -> Outcome {
-    crate::life::live(life, world, job);
+pub fn chase<C: Controller>(life: &mut PredatorPreyLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    crate::life::live(life, world, id);
     life.outcome(0)
 }

@@ -9,8 +9,8 @@ use farsa_physics::arena::{Arena, ArenaError, World};
 use farsa_view::Channel;
 
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Note, Outcome};
-use crate::life::Job;
+use crate::outcome::{ChannelGroup, Note, Outcome};
+use crate::episode::EpisodeId;
 use crate::predator_prey::config::{NAMES, OUTPUTS, PredatorPreyConfig};
 use crate::team::config::TeamConfig;
 use crate::team::eyes::{BLUE, RED};
@@ -96,12 +96,12 @@ impl Mission for PredatorPreyMission {
     }
 
     /// Puts both on the middle line, a third and two thirds along it, at headings from the stream of [`Domain::Start`] of
-    /// the job's trial, generation, and place within its population.
+    /// the id's trial, generation, and place within its population.
     ///
     /// The same place in both populations has the same headings: the two lives of a test are one.
-    fn arrange<C: Controller>(&mut self, _: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
-        let place = job.individual % (self.config.population as u32).max(1);
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, place, job.generation);
+    fn arrange<C: Controller>(&mut self, _: &Team<C>, world: &mut World, id: EpisodeId) -> Result<(), ArenaError> {
+        let place = id.individual % (self.config.population as u32).max(1);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, place, id.generation);
         self.captured = false;
         world.clear();
         let size = self.config.team.size as f32;

@@ -1,7 +1,8 @@
 //! The experiment `push-box`: what only a general world can do.
 
 use crate::error::Error;
-use crate::experiment::{Experiment, Setup};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
 use crate::push_box::config::PushConfig;
 use crate::settings::{Setting, Settings};
 

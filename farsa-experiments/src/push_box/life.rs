@@ -11,7 +11,7 @@ use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
 use crate::error::Error;
 use crate::infrared::settings::{Infrared, InfraredModel};
-use crate::life::{Job, Life};
+use crate::episode::{Episode, EpisodeId};
 use crate::push_box::config::PushConfig;
 
 /// Values that a controller gives: left and right wheel.
@@ -86,14 +86,14 @@ impl<C: Controller> PushLife<C> {
     /// Puts the box into the middle and the robot beside it: the headings of both, the direction in which the robot stands
     /// and its distance are uniform.
     ///
-    /// All is drawn from the stream of [`Domain::Start`] of the job's trial and generation: the individuals of a generation
+    /// All is drawn from the stream of [`Domain::Start`] of the id's trial and generation: the individuals of a generation
     /// have the same starts.
-    pub fn arrange<W>(&mut self, world: &mut W, job: Job)
+    pub fn arrange<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
         let Self { config, parts, cube, .. } = self;
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, 0, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         world.clear();
         world.place_body(*cube, Pose::planar([0.0; 2], stream.range(-PI, PI)), Twist::default());
         let away = stream.range(config.apart[0] as f32, config.apart[1] as f32);
@@ -105,11 +105,11 @@ impl<C: Controller> PushLife<C> {
     }
 
     /// Opens a new account and arranges the world.
-    pub fn begin<W>(&mut self, world: &mut W, job: Job)
+    pub fn begin<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
-        self.arrange(world, job);
+        self.arrange(world, id);
         let [x, y, _] = world.pose(self.cube).position;
         self.places = [[x, y]; 2];
         self.trial = PushTrial::default();
@@ -209,8 +209,8 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
     C: Controller,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.begin(world, job);
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.begin(world, id);
     }
 
     fn tick(&mut self, world: &mut W) -> Option<f64> {

@@ -6,7 +6,7 @@ use crate::controller_export::{
     ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport,
     SensorReading, ServoExport, StartExport, SurfaceExport,
 };
-use crate::life::Job;
+use crate::episode::EpisodeId;
 use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::scene::{Scene, TARGET_SCALE};
 
@@ -38,8 +38,8 @@ impl Scene {
     }
 
     /// [`Scene::start`] by name, as a world takes it.
-    pub(crate) fn start_by_name(&self, job: Job) -> StartExport {
-        let (joints, [x, y]) = self.start(job);
+    pub(crate) fn start_by_name(&self, id: EpisodeId) -> StartExport {
+        let (joints, [x, y]) = self.start(id);
         let joints = ArmAndHand::joints().into_iter().zip(joints);
         let at = [x, y, self.config.sphere_radius].map(|x| x as f32);
         StartExport {
@@ -228,8 +228,8 @@ mod tests {
             let (mut x, mut touched) = (vec![0.0; told.sensors.len()], 0);
             for step in 0..600 {
                 if step % 150 == 0 {
-                    scene.arrange(&mut world, Job { seed: 3, trial: step / 150, ..Job::default() });
-                    let start = scene.start_by_name(Job { seed: 3, trial: step / 150, ..Job::default() });
+                    scene.arrange(&mut world, EpisodeId { seed: 3, trial: step / 150, ..EpisodeId::default() });
+                    let start = scene.start_by_name(EpisodeId { seed: 3, trial: step / 150, ..EpisodeId::default() });
                     for (joint, q) in &start.joints {
                         assert_eq!(world.position(scene.robot.joint(joint).unwrap()), *q);
                     }

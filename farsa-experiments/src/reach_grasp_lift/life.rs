@@ -8,7 +8,7 @@ use farsa_body::{
 use farsa_nn::Controller;
 
 use crate::error::Error;
-use crate::life::{Job, Life};
+use crate::episode::{Episode, EpisodeId};
 use crate::reach_grasp_lift::fitness::{Ledger, Trial};
 use crate::reach_grasp_lift::phase::Observation;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
@@ -31,11 +31,11 @@ impl Judge {
     }
 
     /// Sets the world up for a trial and opens a new account.
-    pub fn start<W>(&mut self, world: &mut W, job: Job)
+    pub fn start<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
     {
-        self.scene.arrange(world, job);
+        self.scene.arrange(world, id);
         self.trial = Trial::default();
         self.begun = false;
     }
@@ -201,8 +201,8 @@ where
         + ?Sized,
     C: Controller,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.judge.start(world, job);
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.judge.start(world, id);
         self.controller.reset();
         self.senses.reset();
         self.motors.reset();

@@ -11,8 +11,10 @@ use farsa_view::Stage;
 
 use crate::engine::ENGINE;
 use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
-use crate::life::{Job, Life as _};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::outcome::{ChannelGroup, Description, Note, Outcome};
+use crate::episode::{Episode as _, EpisodeId};
 use crate::settings::{Setting, Settings};
 use crate::walking::gait::Rules;
 use crate::walking::life::{Brain, Launch, SENSES, Walk, WalkerLife};
@@ -353,14 +355,14 @@ impl Setup for Lives {
     }
 
     /// Success is ten strides, twenty steps, without a fall.
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
         let Some((robot, life)) = self.config.life(genes) else { return Outcome::failed() };
         match self.config.engine {
-            Engine::Articulated => live_in(self.config.world(&robot), life, job, tape),
+            Engine::Articulated => live_in(self.config.world(&robot), life, id, tape),
             #[cfg(feature = "rapier")]
             Engine::Rapier => {
                 let options = rapier_options(&self.config.walk, life.gait().walker(), self.config.substeps, 40);
-                live_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, job, tape)
+                live_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, id, tape)
             }
             #[cfg(not(feature = "rapier"))]
             Engine::Rapier => Outcome::failed(),
@@ -374,7 +376,7 @@ impl Setup for Lives {
 }
 
 /// Lives a walker's life in a world; there is none for a body that cannot be.
-fn live_in<W>(world: Option<W>, mut life: WalkerLife, job: Job, tape: &mut Tape<'_>) -> Outcome
+fn live_in<W>(world: Option<W>, mut life: WalkerLife, id: EpisodeId, tape: &mut Tape<'_>) -> Outcome
 where
     W: farsa_body::World
         + Kinematics
@@ -388,7 +390,7 @@ where
     if let (Some(recorder), Some(brain)) = (tape.recorder(), life.brain()) {
         recorder.parameters(brain.parameters());
     }
-    life.start(&mut world, job);
+    life.start(&mut world, id);
     let mut outcome = live_to_the_end(&mut life, &mut world, tape);
     let gait = life.gait();
     let walker = gait.walker();

@@ -8,7 +8,7 @@ use farsa_nn::{Controller, Layout, Leak, Network};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::error::Error;
-use crate::life::{Job, Life};
+use crate::episode::{Episode, EpisodeId};
 use crate::walking::gait::{End, Gait, Rules};
 use crate::walking::walker::{Posture, Walker, WalkerParts};
 
@@ -187,12 +187,12 @@ impl WalkerLife {
     }
 
     /// Launches the walker: its rates are those of the launch times 1 + noise * u, each with its own u from -1 to 1, the stance leg's
-    /// first, from the stream of [`Domain::Start`] of the job's trial, individual and generation.
-    pub fn begin<W>(&mut self, world: &mut W, job: Job)
+    /// first, from the stream of [`Domain::Start`] of the id's trial, individual and generation.
+    pub fn begin<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Joints + Arrange + Handles<Joint = JointId> + ?Sized,
     {
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         let rates = self.launch.rates.map(|rate| rate * (1.0 + self.walk.noise * stream.range_f64(-1.0, 1.0)));
         let posture = Posture::standing(self.gait.walker(), 0, self.launch.angles, rates);
         self.gait.start(world, 0, &posture);
@@ -277,8 +277,8 @@ impl<W> Life<W> for WalkerLife
 where
     W: Joints + Contacts + Actuated + Arrange + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.begin(world, job);
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.begin(world, id);
     }
 
     fn tick(&mut self, world: &mut W) -> Option<f64> {

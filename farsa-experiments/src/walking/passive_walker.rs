@@ -12,8 +12,10 @@ use farsa_view::Stage;
 
 use crate::engine::ENGINE;
 use crate::error::Error;
-use crate::experiment::{Description, Experiment, Note, Outcome, Setup, Tape};
-use crate::life::{Job, Life as _};
+use crate::evaluator::Evaluator;
+use crate::experiment::Experiment;
+use crate::outcome::{Description, Note, Outcome};
+use crate::episode::{Episode as _, EpisodeId};
 use crate::settings::{Setting, Settings};
 use crate::walking::settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
 use crate::walking::simplest_model::{ModelGait, SLOPES, WalkingModel};
@@ -283,8 +285,8 @@ where
     }
 
     /// Success is ten strides, twenty steps, without a fall.
-    fn live(&mut self, _: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        self.life.start(&mut self.world, job);
+    fn live(&mut self, _: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
+        self.life.start(&mut self.world, id);
         let mut outcome = live_to_the_end(&mut self.life, &mut self.world, tape);
         // A walk of fewer steps has no pace: 0 of everything, so that the same notes stand in every trial.
         let pace = self.life.pace().unwrap_or_default();

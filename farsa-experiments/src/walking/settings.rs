@@ -6,7 +6,7 @@ use farsa_body::{
 
 use crate::engine::ENGINE;
 use crate::error::Error;
-use crate::experiment::{Note, Outcome, Tape};
+use crate::outcome::{Note, Outcome};
 use crate::settings::{Setting, Settings};
 use crate::walking::gait::End;
 use crate::walking::life::{Walk, WalkerLife};
