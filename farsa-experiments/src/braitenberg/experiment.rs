@@ -2,13 +2,12 @@
 
 use farsa_body::{Kinematics as _, Recorder, World as _};
 use farsa_physics::arena::World;
-use farsa_view::{Channel, Links, NodeParameters, Stage};
 
-use crate::braitenberg::life::{Config, LIGHTS, Vehicle, VehicleLife};
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
-use crate::life::{Job, Life as _};
-use crate::settings::{Setting, Settings};
+use crate::braitenberg::{life::Config, life::LIGHTS, life::Vehicle, life::VehicleLife};
+use farsa_lab::{
+    ChannelGroup, Description, Error, Experiment, Job, Life as _, Note, Outcome, Setting, Settings, Setup, Tape,
+};
+use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 /// What four ways of wiring two light-driven wheels look like from outside \[Braitenberg1984, vehicles 2a to 3b\].
 ///

@@ -6,12 +6,10 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, Beam, BodyId, ChannelError, Contacts, Handles, JointId, Kinematics, LightSensors,
     MobileParts, MobileRobot, Motor as _, PairId, Planar, Pose, Sensor as _, Twist, WheelVelocity,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 use farsa_physics::arena::{Arena, Cylinder};
-
-use crate::error::Error;
-use crate::life::{Job, Life};
 
 /// Light sensors of the robot.
 pub const LIGHTS: usize = 8;

@@ -7,17 +7,15 @@ use farsa_body::{
 };
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
-use farsa_view::{Channel, Links, NodeParameters, Stage};
 
-use crate::discrimination::config::{Config, EYES, ROBOTS};
 use crate::discrimination::life::CylinderLife;
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
+use crate::discrimination::{config::Config, config::EYES, config::ROBOTS};
 use crate::infrared::settings::InfraredModel;
-use crate::life::{Job, Life as _};
-use crate::search::Search;
-use crate::settings::{Setting, Settings};
 use crate::worlds::PlanarEngine;
+use farsa_lab::{
+    ChannelGroup, Description, Error, Experiment, Job, Life as _, Note, Outcome, Search, Setting, Settings, Setup, Tape,
+};
+use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 /// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2\]
 ///

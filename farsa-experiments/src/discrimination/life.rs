@@ -6,14 +6,13 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, Joints, Kinematics, MobileParts,
     Motor as _, PairId, Planar, Pose, Rays, Sensor as _, Twist, WheelSpeed, WheelVelocity,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream};
 use farsa_physics::arena::{ArenaError, FreePlace};
 
-use crate::discrimination::config::{Config, EYES};
-use crate::error::Error;
+use crate::discrimination::{config::Config, config::EYES};
 use crate::infrared::settings::Infrared;
-use crate::life::{Job, Life};
 
 /// Most cylinders of a trial.
 pub const CYLINDERS: usize = 2;

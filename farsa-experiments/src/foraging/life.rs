@@ -4,18 +4,16 @@ use farsa_body::{Arrange as _, BodyId, ColorBand, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError, World};
-use farsa_view::Channel;
 
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Note, Outcome};
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::field::Field;
-use crate::life::Job;
 use crate::team::config::TeamConfig;
-use crate::team::life::{Mission, Moment, TeamLife};
-use crate::team::nest::{COLORS, on_nest};
-use crate::team::robots::{OUTPUTS, Team};
-use crate::team::setup::{eye_groups, eye_names};
+use crate::team::{life::Mission, life::Moment, life::TeamLife};
+use crate::team::{nest::COLORS, nest::on_nest};
+use crate::team::{robots::OUTPUTS, robots::Team};
+use crate::team::{setup::eye_groups, setup::eye_names};
+use farsa_lab::{ChannelGroup, Error, Job, Note, Outcome};
+use farsa_view::Channel;
 
 /// Robots that forage, with a controller each, and the book of their food and energy.
 ///

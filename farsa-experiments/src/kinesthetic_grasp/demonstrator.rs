@@ -3,14 +3,13 @@
 use std::sync::Arc;
 
 use farsa_body::{Channels as _, Kinematics as _, Motor as _, MusclePair, Sensor as _, Tabletop};
+use farsa_lab::{Error, Job};
 use farsa_nn::{Controller, Demonstration};
 use farsa_physics::articulated::{Model, World};
 
-use crate::error::Error;
-use crate::life::Job;
 use crate::reach_grasp_lift::life::Judge;
-use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
-use crate::reach_grasp_lift::script::{Plan, Statics, Timetable};
+use crate::reach_grasp_lift::{scene::Motors, scene::OUTPUTS, scene::Scene, scene::Senses};
+use crate::reach_grasp_lift::{script::Plan, script::Statics, script::Timetable};
 
 /// The activation that both muscles of a pair have where no torque is wanted.
 const TONUS: f64 = 0.5;

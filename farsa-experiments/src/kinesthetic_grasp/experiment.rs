@@ -3,21 +3,17 @@
 use std::sync::Arc;
 
 use farsa_body::MjcfOptions;
-use farsa_view::Stage;
 
-use crate::controller_export::{ControllerExport, StartExport};
-use crate::engine::ENGINE;
-use crate::error::Error;
-use crate::experiment::{Description, Experiment, Lesson, Outcome, Setup, Tape, Task};
-use crate::kinesthetic_grasp::training::{Lessons, School};
-use crate::lanes::Lanes;
-use crate::life::Job;
+use crate::kinesthetic_grasp::{training::Lessons, training::School};
 use crate::reach_grasp_lift::config::Config as Reach;
 use crate::reach_grasp_lift::experiment::Lives as ReachLives;
 use crate::reach_grasp_lift::scene::Scene;
-use crate::search::Search;
-use crate::settings::{Setting, Settings};
 use crate::worlds::Engine;
+use farsa_lab::{
+    ControllerExport, Description, ENGINE, Error, Experiment, Job, Lanes, Lesson, Outcome, Search, Setting, Settings,
+    Setup, StartExport, Tape, Task,
+};
+use farsa_view::Stage;
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
 ///

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
+use farsa_lab::{Error, Job, Lesson};
 use farsa_nn::{Adam, Error as NetworkError, Gradient, Layout, Leak, Learner, Loss, Network, ParameterKind};
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::error::Error;
-use crate::experiment::Lesson;
-use crate::kinesthetic_grasp::demonstrator::{Record, Teacher};
-use crate::life::Job;
+use crate::kinesthetic_grasp::{demonstrator::Record, demonstrator::Teacher};
 use crate::reach_grasp_lift::config::TRIALS;
 use crate::reach_grasp_lift::scene::Scene;
 

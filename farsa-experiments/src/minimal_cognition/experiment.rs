@@ -4,17 +4,18 @@ use core::f64::consts::FRAC_PI_4;
 
 use farsa_body::{BodyId, Pose, Recorder};
 use farsa_nn::{CtrnnParameter, CtrnnParts, Span};
-use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, Role, Stage, View};
 
-use crate::controller_export::CtrnnExport;
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
-use crate::life::Job;
 use crate::minimal_cognition::config::Config;
 use crate::minimal_cognition::life::AgentLife;
-use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTORS, NEURONS, RAYS, Wiring};
 use crate::minimal_cognition::object::Object;
-use crate::settings::{Setting, Settings};
+use crate::minimal_cognition::{
+    network::INNER, network::LAYOUT, network::LINKED, network::MOTOR_ONES, network::MOTORS, network::NEURONS,
+    network::RAYS, network::Wiring,
+};
+use farsa_lab::{
+    ChannelGroup, CtrnnExport, Description, Error, Experiment, Job, Note, Outcome, Setting, Settings, Setup, Tape,
+};
+use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, Role, Stage, View};
 
 /// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]
 ///

@@ -6,17 +6,15 @@ use farsa_body::{Arrange as _, BodyId, ColorBand, Contacts as _, PairId, Pose, T
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError, World};
-use farsa_view::Channel;
 
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Note, Outcome};
-use crate::life::Job;
-use crate::predator_prey::config::{NAMES, OUTPUTS, PredatorPreyConfig};
+use crate::predator_prey::{config::NAMES, config::OUTPUTS, config::PredatorPreyConfig};
 use crate::team::config::TeamConfig;
-use crate::team::eyes::{BLUE, RED};
-use crate::team::life::{Mission, Moment, TeamLife};
-use crate::team::robots::{Team, distance};
-use crate::team::setup::{eye_groups, eye_names};
+use crate::team::{eyes::BLUE, eyes::RED};
+use crate::team::{life::Mission, life::Moment, life::TeamLife};
+use crate::team::{robots::Team, robots::distance};
+use crate::team::{setup::eye_groups, setup::eye_names};
+use farsa_lab::{ChannelGroup, Error, Job, Note, Outcome};
+use farsa_view::Channel;
 
 /// The predator is robot 0, the prey robot 1.
 pub(crate) const PREDATOR: usize = 0;

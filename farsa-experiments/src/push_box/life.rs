@@ -6,12 +6,11 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, Joints, Kinematics, MobileParts,
     Motor as _, PairId, Planar, Pose, Rays, Sensor as _, Twist, WheelVelocity,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
-use crate::error::Error;
-use crate::infrared::settings::{Infrared, InfraredModel};
-use crate::life::{Job, Life};
+use crate::infrared::{settings::Infrared, settings::InfraredModel};
 use crate::push_box::config::PushConfig;
 
 /// Values that a controller gives: left and right wheel.

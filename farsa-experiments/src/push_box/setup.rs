@@ -3,13 +3,11 @@
 use farsa_body::{Kinematics as _, Pose, Recorder, World as _};
 use farsa_nn::Perceptron;
 use farsa_physics::rapier::ArenaWorld;
-use farsa_view::{Channel, Form, Links, NodeParameters, Prop, Role, Stage, screen_color};
 
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Note, Outcome, Setup, Tape};
-use crate::life::{Job, Life as _};
 use crate::push_box::config::PushConfig;
-use crate::push_box::life::{OUTPUTS, PushLife};
+use crate::push_box::{life::OUTPUTS, life::PushLife};
+use farsa_lab::{ChannelGroup, Description, Error, Job, Life as _, Note, Outcome, Setup, Tape};
+use farsa_view::{Channel, Form, Links, NodeParameters, Prop, Role, Stage, screen_color};
 
 /// The layer of two logistic units that genes are decoded into.
 type Layer = Perceptron<Vec<f32>>;

@@ -5,22 +5,19 @@ use std::sync::Arc;
 use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
 use farsa_nn::Network;
 use farsa_physics::articulated::{Batch, Model, World};
-use farsa_view::Stage;
 
-use crate::controller_export::{ControllerExport, NetworkExport, StartExport};
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape, Task};
-use crate::lanes::Lanes;
-use crate::life::{Job, Life};
-use crate::live_in_lanes::live_in_lanes;
-use crate::reach_grasp_lift::config::{Config, TRIALS};
 use crate::reach_grasp_lift::decoder::Decoder;
 use crate::reach_grasp_lift::fitness::Ledger;
-use crate::reach_grasp_lift::life::{Judge, ReachLife};
 use crate::reach_grasp_lift::scene::Scene;
-use crate::reach_grasp_lift::stage::{NetworkLife, Teller};
-use crate::settings::{Setting, Settings};
+use crate::reach_grasp_lift::{config::Config, config::TRIALS};
+use crate::reach_grasp_lift::{life::Judge, life::ReachLife};
+use crate::reach_grasp_lift::{stage::NetworkLife, stage::Teller};
 use crate::worlds::Engine;
+use farsa_lab::{
+    ChannelGroup, ControllerExport, Description, Error, Experiment, Job, Lanes, Life, NetworkExport, Note, Outcome,
+    Setting, Settings, Setup, StartExport, Tape, Task, live_in_lanes,
+};
+use farsa_view::Stage;
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
@@ -386,7 +383,7 @@ mod tests {
         let mut lives = Lives::new(Config::default()).unwrap();
         assert!(lives.decoder.decode(&genes));
         lives.life.controller_mut().copy_parameters(&lives.decoder.parameters).unwrap();
-        let fitness = crate::life::live(&mut lives.life, &mut lives.world, job);
+        let fitness = farsa_lab::live(&mut lives.life, &mut lives.world, job);
         assert_eq!(fitness, setup.fitness(core::slice::from_ref(&plain)));
         // Shared by the generation's individuals, another in the next generation.
         let again = setup.live(&genes, Job { individual: 8, ..job }, &mut Tape::off());

@@ -1,14 +1,13 @@
 //! The controller of `reach-grasp-lift` and its starts for other programs.
 
 use farsa_body::{ActuatorId, ArmAndHand, BodyId, Finger, JointId, Pair, PairId, Tabletop};
-
-use crate::controller_export::{
-    ActuatorExport, ControllerExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport,
-    SensorReading, ServoExport, StartExport, SurfaceExport,
+use farsa_lab::{
+    ActuatorExport, ControllerExport, Job, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,
+    SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
 };
-use crate::life::Job;
+
 use crate::reach_grasp_lift::phase::Phase;
-use crate::reach_grasp_lift::scene::{Scene, TARGET_SCALE};
+use crate::reach_grasp_lift::{scene::Scene, scene::TARGET_SCALE};
 
 impl Scene {
     /// A network with the channels of this scene, named as they are there.
@@ -180,6 +179,7 @@ mod tests {
                     0.0
                 }
             }
+            other => panic!("{other:?} is none of this scene's"),
         }
     }
 
@@ -196,6 +196,7 @@ mod tests {
                         commands[scene.robot.actuator(&s.actuator).unwrap().index()][0] = s.from + (s.to - s.from) * y;
                     }
                 }
+                other => panic!("{other:?} is none of this scene's"),
             }
         }
         commands

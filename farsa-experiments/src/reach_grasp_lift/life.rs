@@ -5,13 +5,12 @@ use std::sync::Arc;
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Sensor,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::Controller;
 
-use crate::error::Error;
-use crate::life::{Job, Life};
-use crate::reach_grasp_lift::fitness::{Ledger, Trial};
 use crate::reach_grasp_lift::phase::Observation;
-use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
+use crate::reach_grasp_lift::{fitness::Ledger, fitness::Trial};
+use crate::reach_grasp_lift::{scene::Motors, scene::OUTPUTS, scene::Scene, scene::Senses};
 
 /// The judge of one trial: sees every step, keeps the account and says when the trial is over.
 #[derive(Clone, Debug)]

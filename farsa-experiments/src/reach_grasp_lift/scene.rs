@@ -5,12 +5,11 @@ use farsa_body::{
     JointPosition, Joints, Keyframe, Kinematics, MjcfOptions, Motor, Muscles, PairId, Point, Pose, Robot, RobotError,
     Sensor, ServoGroup, ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
 };
+use farsa_lab::{Error, Job};
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::error::Error;
-use crate::life::Job;
-use crate::reach_grasp_lift::config::{Config, Displacement, TRIALS};
-use crate::reach_grasp_lift::phase::{Observation, Phase};
+use crate::reach_grasp_lift::{config::Config, config::Displacement, config::TRIALS};
+use crate::reach_grasp_lift::{phase::Observation, phase::Phase};
 
 /// Sensor channels beside the labels.
 const PLAIN_SENSORS: usize = 26;

@@ -6,11 +6,10 @@ use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Goal, Handles, InverseKinematics,
     InverseKinematicsError, JointId, Joints, KinematicTree, Kinematics, Law, Motor, MusclePair, Orientation, Tabletop,
 };
+use farsa_lab::{Error, Job, Life};
 
-use crate::error::Error;
-use crate::life::{Job, Life};
 use crate::reach_grasp_lift::life::Judge;
-use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene};
+use crate::reach_grasp_lift::{scene::Motors, scene::OUTPUTS, scene::Scene};
 
 /// Postures with the palm exactly down, its centre 5 cm above the sphere in its four places \[deg\]: where the search for a
 /// posture begins.

@@ -3,13 +3,11 @@
 use farsa_body::{ColorBand, Kinematics as _};
 use farsa_nn::Controller;
 use farsa_physics::arena::{Arena, ArenaError, World};
-use farsa_view::Channel;
 
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Outcome};
-use crate::life::{Job, Life};
 use crate::team::config::TeamConfig;
 use crate::team::robots::Team;
+use farsa_lab::{ChannelGroup, Error, Job, Life, Outcome};
+use farsa_view::Channel;
 
 /// Where the robots of a team are, and since when.
 #[derive(Clone, Copy, Debug)]

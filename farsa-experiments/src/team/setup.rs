@@ -2,15 +2,12 @@
 
 use farsa_body::{BodyId, Kinematics as _, Recorder, World as _};
 use farsa_physics::arena::{Arena, World};
-use farsa_view::Stage;
 
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Outcome, Setup, Tape};
-use crate::life::{Job, Life as _};
-use crate::network_decoder::{NetworkDecoder, TeamNetwork};
-use crate::team::config::{EYES, TeamConfig};
-use crate::team::life::{Mission, TeamLife};
 use crate::team::robots::OUTPUTS;
+use crate::team::{config::EYES, config::TeamConfig};
+use crate::team::{life::Mission, life::TeamLife};
+use farsa_lab::{ChannelGroup, Description, Error, Job, Life as _, NetworkDecoder, Outcome, Setup, Tape, TeamNetwork};
+use farsa_view::Stage;
 
 /// The arena with its robots, and the decoder of genomes.
 pub(crate) struct TeamSetup<M> {

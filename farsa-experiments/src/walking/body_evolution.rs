@@ -7,21 +7,22 @@ use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, ParameterKind};
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
-use farsa_view::Stage;
 
-use crate::engine::ENGINE;
-use crate::error::Error;
-use crate::experiment::{ChannelGroup, Description, Experiment, Note, Outcome, Setup, Tape};
-use crate::life::{Job, Life as _};
-use crate::settings::{Setting, Settings};
 use crate::walking::gait::Rules;
-use crate::walking::life::{Brain, Launch, SENSES, Walk, WalkerLife};
 #[cfg(feature = "rapier")]
 use crate::walking::settings::rapier_options;
-use crate::walking::settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
-use crate::walking::stage::{drawn, exported, stage};
-use crate::walking::walker::{Legs, Walker};
+use crate::walking::{life::Brain, life::Launch, life::SENSES, life::Walk, life::WalkerLife};
+use crate::walking::{
+    settings::engine, settings::live_to_the_end, settings::mean, settings::mjcf_options, settings::on_contacts,
+    settings::walk,
+};
+use crate::walking::{stage::drawn, stage::exported, stage::stage};
+use crate::walking::{walker::Legs, walker::Walker};
 use crate::worlds::Engine;
+use farsa_lab::{
+    ChannelGroup, Description, ENGINE, Error, Experiment, Job, Life as _, Note, Outcome, Setting, Settings, Setup, Tape,
+};
+use farsa_view::Stage;
 
 /// Which bodies walk far? `[McGeer1990]`
 ///

@@ -4,13 +4,12 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints,
     Motor as _, PairId, Scaled, Sensor as _, TorqueMotor, Touch,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::{Controller, Layout, Leak, Network};
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::error::Error;
-use crate::life::{Job, Life};
-use crate::walking::gait::{End, Gait, Rules};
-use crate::walking::walker::{Posture, Walker, WalkerParts};
+use crate::walking::{gait::End, gait::Gait, gait::Rules};
+use crate::walking::{walker::Posture, walker::Walker, walker::WalkerParts};
 
 /// What the network of a walker senses: two angles, two speeds, two touches.
 pub const SENSES: usize = 6;
