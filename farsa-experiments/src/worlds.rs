@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::error::Error;
+use farsa_lab::Error;
 
 /// What moves the bodies of an experiment that has a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -82,11 +82,7 @@ impl FromStr for Engine {
 mod tests {
     use super::*;
     #[cfg(not(feature = "rapier"))]
-    use crate::engine::ENGINE;
-    #[cfg(not(feature = "rapier"))]
-    use crate::experiment::Experiment;
-    #[cfg(not(feature = "rapier"))]
-    use crate::settings::{Settings, Value};
+    use farsa_lab::{ENGINE, Experiment, Settings, Value};
 
     #[test]
     fn worlds_have_names() {

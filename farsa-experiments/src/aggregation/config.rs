@@ -1,12 +1,11 @@
 //! The values of `aggregation`, as settings.
 
+use farsa_lab::{Error, Setting, Settings};
 use farsa_physics::arena::{Area, Arena, World};
 
-use crate::error::Error;
-use crate::settings::{Setting, Settings};
-use crate::team::config::{TeamConfig, whole};
-use crate::team::nest::{self, COLORS, NEST};
 use crate::team::setup as swarm_setup;
+use crate::team::{config::TeamConfig, config::whole};
+use crate::team::{nest, nest::COLORS, nest::NEST};
 
 /// What the robots aggregate in; the defaults are those of a condition, the robot's name.
 ///

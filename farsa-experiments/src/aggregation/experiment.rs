@@ -1,16 +1,11 @@
 //! The experiment `aggregation`: a team gathers on nests.
 
+use farsa_lab::{Error, Experiment, Job, Outcome, Setting, Settings, Setup};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::aggregation::config::AggregationConfig;
-use crate::aggregation::life::{AggregationLife, AggregationMission};
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
-use crate::outcome::Outcome;
-use crate::episode::EpisodeId;
-use crate::settings::{Setting, Settings};
+use crate::aggregation::{life::AggregationLife, life::AggregationMission};
 use crate::team::config::ROBOTS;
 use crate::team::setup::TeamSetup;
 
@@ -47,7 +42,7 @@ impl Experiment for Aggregation {
 }
 
 /// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
-pub fn aggregate<C: Controller>(life: &mut AggregationLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    crate::life::live(life, world, id);
+pub fn aggregate<C: Controller>(life: &mut AggregationLife<C>, world: &mut World, job: Job) -> Outcome {
+    farsa_lab::live(life, world, job);
     life.outcome(0)
 }

@@ -2,15 +2,12 @@
 
 use farsa_body::{Kinematics as _, Recorder, World as _};
 use farsa_physics::arena::World;
-use farsa_view::{Channel, Links, NodeParameters, Stage};
 
-use crate::braitenberg::life::{Config, LIGHTS, Vehicle, VehicleLife};
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
-use crate::outcome::{ChannelGroup, Description, Note, Outcome};
-use crate::episode::{Episode as _, EpisodeId};
-use crate::settings::{Setting, Settings};
+use crate::braitenberg::{life::Config, life::LIGHTS, life::Vehicle, life::VehicleLife};
+use farsa_lab::{
+    ChannelGroup, Description, Error, Experiment, Job, Life as _, Note, Outcome, Setting, Settings, Setup, Tape,
+};
+use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 /// What four ways of wiring two light-driven wheels look like from outside \[Braitenberg1984, vehicles 2a to 3b\].
 ///
@@ -210,11 +207,11 @@ impl Setup for Lives {
         }
     }
 
-    fn live(&mut self, _: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, _: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
         if let Some(recorder) = tape.recorder() {
             recorder.parameters(&self.life.wiring().parameters);
         }
-        self.life.start(&mut self.world, id);
+        self.life.start(&mut self.world, job);
         loop {
             self.life.act(&mut self.world);
             self.world.step();

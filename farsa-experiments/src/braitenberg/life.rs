@@ -6,12 +6,10 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, Beam, BodyId, ChannelError, Contacts, Handles, JointId, Kinematics, LightSensors,
     MobileParts, MobileRobot, Motor as _, PairId, Planar, Pose, Sensor as _, Twist, WheelVelocity,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 use farsa_physics::arena::{Arena, Cylinder};
-
-use crate::error::Error;
-use crate::episode::{Episode, EpisodeId};
 
 /// Light sensors of the robot.
 pub const LIGHTS: usize = 8;
@@ -321,8 +319,8 @@ where
         + ?Sized,
 {
     /// Distance, direction and heading are uniform, in this order from the stream of [`Domain::Start`].
-    fn start(&mut self, world: &mut W, id: EpisodeId) {
-        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
+    fn start(&mut self, world: &mut W, job: Job) {
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
         let [near, far] = self.config.start.map(|x| x as f32);
         let distance = stream.range(near, far);
         let (direction, heading) = (stream.range(-PI, PI), stream.range(-PI, PI));

@@ -1,12 +1,10 @@
 //! The values of `discrimination` and `discrimination-cylinders`, as settings.
 
 use farsa_body::MobileRobot;
+use farsa_lab::{ENGINE, Error, Setting, Settings};
 use farsa_physics::arena::{Arena, Cylinder, World};
 
-use crate::engine::ENGINE;
-use crate::error::Error;
 use crate::infrared::settings::InfraredModel;
-use crate::settings::{Setting, Settings};
 use crate::worlds::PlanarEngine;
 
 /// The front infrared sensors that the robot uses, of the Khepera's eight.

@@ -2,13 +2,11 @@
 
 use std::path::PathBuf;
 
+use farsa_lab::{Error, Experiment, Setting, Settings, Setup};
+
 use crate::discrimination::config::Config;
 use crate::discrimination::experiment::in_its_world;
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
 use crate::infrared::settings::InfraredModel;
-use crate::settings::{Setting, Settings};
 
 /// Can a robot tell a large cylinder from a small one by how it must move to stay beside it? \[FARSA2; Ferrauto2010, 4.6.5\]
 ///

@@ -7,19 +7,15 @@ use farsa_body::{
 };
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
-use farsa_view::{Channel, Links, NodeParameters, Stage};
 
-use crate::discrimination::config::{Config, EYES, ROBOTS};
 use crate::discrimination::life::CylinderLife;
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
-use crate::outcome::{ChannelGroup, Description, Note, Outcome};
+use crate::discrimination::{config::Config, config::EYES, config::ROBOTS};
 use crate::infrared::settings::InfraredModel;
-use crate::episode::{Episode as _, EpisodeId};
-use crate::search::Search;
-use crate::settings::{Setting, Settings};
 use crate::worlds::PlanarEngine;
+use farsa_lab::{
+    ChannelGroup, Description, Error, Experiment, Job, Life as _, Note, Outcome, Search, Setting, Settings, Setup, Tape,
+};
+use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 /// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2\]
 ///
@@ -116,8 +112,8 @@ where
         let mut life = CylinderLife::new(config, layer)?;
         // Seeds of this kind are neither a run's nor a test's.
         for trial in 0..8 {
-            let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
-            life.arrange(&mut world, id).map_err(|error| Error::setting("world.size", error))?;
+            let job = Job { seed: u64::MAX, trial, ..Job::default() };
+            life.arrange(&mut world, job).map_err(|error| Error::setting("world.size", error))?;
         }
         Ok(Self { world, life })
     }
@@ -272,7 +268,7 @@ where
         }
     }
 
-    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
         let config = self.life.config();
         let (inputs, range) = (config.inputs(), config.weight_range);
         if genes.len() != self.genes() {
@@ -284,7 +280,7 @@ where
         }
         let Ok(layer) = layer(inputs, parameters) else { return Outcome::failed() };
         self.life.set_controller(layer);
-        self.life.start(&mut self.world, id);
+        self.life.start(&mut self.world, job);
         if self.life.trial().failed {
             return Outcome::failed();
         }

@@ -6,14 +6,13 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, Joints, Kinematics, MobileParts,
     Motor as _, PairId, Planar, Pose, Rays, Sensor as _, Twist, WheelSpeed, WheelVelocity,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream};
 use farsa_physics::arena::{ArenaError, FreePlace};
 
-use crate::discrimination::config::{Config, EYES};
-use crate::error::Error;
+use crate::discrimination::{config::Config, config::EYES};
 use crate::infrared::settings::Infrared;
-use crate::episode::{Episode, EpisodeId};
 
 /// Most cylinders of a trial.
 pub const CYLINDERS: usize = 2;
@@ -98,17 +97,17 @@ impl<C: Controller> CylinderLife<C> {
 
     /// Puts the cylinders and then the robot somewhere, each uniformly over where there is room; the heading is uniform.
     ///
-    /// All is drawn from the stream of [`Domain::Start`] of the id's trial, individual and generation: every evaluation
+    /// All is drawn from the stream of [`Domain::Start`] of the job's trial, individual and generation: every evaluation
     /// has places of its own.
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
-    pub fn arrange<W>(&mut self, world: &mut W, id: EpisodeId) -> Result<(), ArenaError>
+    pub fn arrange<W>(&mut self, world: &mut W, job: Job) -> Result<(), ArenaError>
     where
         W: Planar + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
         let Self { config, cylinders, places, .. } = self;
-        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
         let free = |radius: f64, to_wall: f64| {
             let margin = radius + to_wall;
             let low = config.size.map(|x| margin.min(0.5 * x) as f32);
@@ -134,11 +133,11 @@ impl<C: Controller> CylinderLife<C> {
     }
 
     /// Opens a new account and arranges the world; a trial without room is a failed one.
-    pub fn begin<W>(&mut self, world: &mut W, id: EpisodeId)
+    pub fn begin<W>(&mut self, world: &mut W, job: Job)
     where
         W: Planar + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
-        self.trial = Trial { failed: self.arrange(world, id).is_err(), ..Trial::default() };
+        self.trial = Trial { failed: self.arrange(world, job).is_err(), ..Trial::default() };
         self.controller.reset();
         self.begun = false;
     }
@@ -256,8 +255,8 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
     C: Controller,
 {
-    fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.begin(world, id);
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.begin(world, job);
     }
 
     fn tick(&mut self, world: &mut W) -> Option<f64> {

@@ -10,7 +10,7 @@ mod cylinders;
 mod experiment;
 mod life;
 
-pub use crate::infrared::settings::{Infrared, InfraredModel};
+pub use crate::infrared::{settings::Infrared, settings::InfraredModel};
 pub use crate::worlds::PlanarEngine;
 pub use config::{Config, EYES};
 pub use cylinders::DiscriminationCylinders;

@@ -1,16 +1,11 @@
 //! The experiment `foraging`: a team carries food to its nest.
 
+use farsa_lab::{Error, Experiment, Job, Outcome, Setting, Settings, Setup};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
-use crate::outcome::Outcome;
 use crate::foraging::config::ForagingConfig;
-use crate::foraging::life::{ForagingLife, ForagingMission};
-use crate::episode::EpisodeId;
-use crate::settings::{Setting, Settings};
+use crate::foraging::{life::ForagingLife, life::ForagingMission};
 use crate::team::config::ROBOTS;
 use crate::team::setup::TeamSetup;
 
@@ -47,7 +42,7 @@ impl Experiment for Foraging {
 }
 
 /// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
-pub fn forage<C: Controller>(life: &mut ForagingLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    crate::life::live(life, world, id);
+pub fn forage<C: Controller>(life: &mut ForagingLife<C>, world: &mut World, job: Job) -> Outcome {
+    farsa_lab::live(life, world, job);
     life.outcome(0)
 }

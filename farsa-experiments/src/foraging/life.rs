@@ -4,18 +4,16 @@ use farsa_body::{Arrange as _, BodyId, ColorBand, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError, World};
-use farsa_view::Channel;
 
-use crate::error::Error;
-use crate::outcome::{ChannelGroup, Note, Outcome};
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::field::Field;
-use crate::episode::EpisodeId;
 use crate::team::config::TeamConfig;
-use crate::team::life::{Mission, Moment, TeamLife};
-use crate::team::nest::{COLORS, on_nest};
-use crate::team::robots::{OUTPUTS, Team};
-use crate::team::setup::{eye_groups, eye_names};
+use crate::team::{life::Mission, life::Moment, life::TeamLife};
+use crate::team::{nest::COLORS, nest::on_nest};
+use crate::team::{robots::OUTPUTS, robots::Team};
+use crate::team::{setup::eye_groups, setup::eye_names};
+use farsa_lab::{ChannelGroup, Error, Job, Note, Outcome};
+use farsa_view::Channel;
 
 /// Robots that forage, with a controller each, and the book of their food and energy.
 ///
@@ -81,11 +79,11 @@ impl Mission for ForagingMission {
         "team.robots"
     }
 
-    /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
+    /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the job's trial, individual and
     /// generation.
-    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, id: EpisodeId) -> Result<(), ArenaError> {
+    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
         let Self { config, field, nest } = self;
-        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
         world.clear();
         let [low, high] = [config.nest_to_wall, config.team.size - config.nest_to_wall].map(|x| x as f32);
         let at = [0; 2].map(|_| stream.range(low, high.max(low)));

@@ -12,13 +12,13 @@ mod experiment;
 mod field;
 mod life;
 
-pub use crate::network_decoder::TeamNetwork;
 pub use crate::team::config::TeamConfig;
 pub use crate::team::eyes::RobotEyes;
-pub use crate::team::life::{Mission, Moment, TeamLife};
 pub use crate::team::robots::Team;
+pub use crate::team::{life::Mission, life::Moment, life::TeamLife};
 pub use baseline::HomingForager;
 pub use config::ForagingConfig;
 pub use experiment::{Foraging, forage};
+pub use farsa_lab::TeamNetwork;
 pub use field::{Field, Forager};
 pub use life::{ForagingLife, ForagingMission};

@@ -8,10 +8,9 @@ use farsa_body::{
     Beam, BodyId, ChannelError, Channels, Handles, InfraredAnalytic, InfraredRays, InfraredTable, InfraredTables,
     Kinematics, MobileRobot, Planar, Pose, Rays, Recorder, SampledInfrared, Sensor,
 };
+use farsa_lab::{Error, Setting, Settings};
 
-use crate::error::Error;
-use crate::infrared::sensor_rays::{SensorRays, Told};
-use crate::settings::{Setting, Settings};
+use crate::infrared::{sensor_rays::SensorRays, sensor_rays::Told};
 
 const MODEL: &str = "robot.infrared";
 const TABLES: &str = "robot.infrared_tables";

@@ -3,23 +3,17 @@
 use std::sync::Arc;
 
 use farsa_body::MjcfOptions;
-use farsa_view::Stage;
 
-use crate::controller_export::{ControllerExport, StartExport};
-use crate::engine::ENGINE;
-use crate::error::Error;
-use crate::evaluator::{Evaluation, Evaluator, Lesson};
-use crate::experiment::Experiment;
-use crate::outcome::{Description, Outcome};
-use crate::kinesthetic_grasp::training::{Lessons, School};
-use crate::lanes::Lanes;
-use crate::episode::EpisodeId;
+use crate::kinesthetic_grasp::{training::Lessons, training::School};
 use crate::reach_grasp_lift::config::Config as Reach;
 use crate::reach_grasp_lift::experiment::Lives as ReachLives;
 use crate::reach_grasp_lift::scene::Scene;
-use crate::search::Search;
-use crate::settings::{Setting, Settings};
 use crate::worlds::Engine;
+use farsa_lab::{
+    ControllerExport, Description, ENGINE, Error, Experiment, Job, Lanes, Lesson, Outcome, Search, Setting, Settings,
+    Setup, StartExport, Tape, Task,
+};
+use farsa_view::Stage;
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
 ///
@@ -165,16 +159,16 @@ impl Setup for Lives {
         self.lives.controller(genes)
     }
 
-    fn start(&self, id: EpisodeId) -> Option<StartExport> {
-        self.lives.start(id)
+    fn start(&self, job: Job) -> Option<StartExport> {
+        self.lives.start(job)
     }
 
     fn description(&self) -> Description {
         self.lives.description()
     }
 
-    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
-        self.lives.live(genes, id, tape)
+    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+        self.lives.live(genes, job, tape)
     }
 
     fn use_lanes(&mut self, lanes: Lanes) -> Result<Lanes, Error> {

@@ -2,8 +2,7 @@
 
 use core::f64::consts::FRAC_PI_6;
 
-use crate::error::Error;
-use crate::settings::{Setting, Settings};
+use farsa_lab::{Error, Setting, Settings};
 
 /// What an agent under falling objects is; the defaults are those of \[Beer2003\] where the settings say so.
 ///

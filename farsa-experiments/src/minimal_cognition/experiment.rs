@@ -4,19 +4,18 @@ use core::f64::consts::FRAC_PI_4;
 
 use farsa_body::{BodyId, Pose, Recorder};
 use farsa_nn::{CtrnnParameter, CtrnnParts, Span};
-use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, Role, Stage, View};
 
-use crate::controller_export::CtrnnExport;
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
-use crate::outcome::{ChannelGroup, Description, Note, Outcome};
-use crate::episode::EpisodeId;
 use crate::minimal_cognition::config::Config;
 use crate::minimal_cognition::life::AgentLife;
-use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTORS, NEURONS, RAYS, Wiring};
 use crate::minimal_cognition::object::Object;
-use crate::settings::{Setting, Settings};
+use crate::minimal_cognition::{
+    network::INNER, network::LAYOUT, network::LINKED, network::MOTOR_ONES, network::MOTORS, network::NEURONS,
+    network::RAYS, network::Wiring,
+};
+use farsa_lab::{
+    ChannelGroup, CtrnnExport, Description, Error, Experiment, Job, Note, Outcome, Setting, Settings, Setup, Tape,
+};
+use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, Role, Stage, View};
 
 /// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]
 ///
@@ -228,7 +227,7 @@ impl Setup for Lives {
     }
 
     /// Success is a circle nearer, or a diamond farther, than half of `fitness.clip`.
-    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
         let Some(parameters) = self.wiring.decode(genes) else { return Outcome::failed() };
         if self.life.set_parameters(&parameters).is_err() {
             return Outcome::failed();
@@ -236,7 +235,7 @@ impl Setup for Lives {
         if let Some(recorder) = tape.recorder() {
             recorder.parameters(&told(&parameters));
         }
-        self.life.start(id);
+        self.life.start(job);
         while !self.life.ended() {
             self.life.step();
             if let Some(recorder) = tape.recorder() {

@@ -1,9 +1,9 @@
 //! The network of `minimal-cognition`: layers of sensory, inner and motor neurons that are the same left and right.
 
 use farsa_evo::{GeneRange, decode};
+use farsa_lab::Error;
 use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Span};
 
-use crate::error::Error;
 use crate::minimal_cognition::config::Config;
 
 /// Rays, and sensory neurons, from left to right.

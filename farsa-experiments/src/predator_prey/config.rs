@@ -1,12 +1,10 @@
 //! The values of `predator-prey`, as settings.
 
+use farsa_lab::{Error, NetworkDecoder, Setting, Settings, TeamNetwork};
 use farsa_physics::arena::{Arena, CollisionRule, World};
 
-use crate::error::Error;
-use crate::network_decoder::{NetworkDecoder, TeamNetwork};
-use crate::settings::{Setting, Settings};
-use crate::team::config::{TeamConfig, whole};
 use crate::team::setup as swarm_setup;
+use crate::team::{config::TeamConfig, config::whole};
 
 /// Words for the rules of collisions.
 const CIRCLES: &str = "circles";

@@ -1,16 +1,11 @@
 //! The experiment `predator-prey`: two populations evolve against each other.
 
+use farsa_lab::{Error, Experiment, Job, Outcome, Setting, Settings, Setup};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
-use crate::outcome::Outcome;
-use crate::episode::EpisodeId;
 use crate::predator_prey::config::PredatorPreyConfig;
-use crate::predator_prey::life::{PredatorPreyLife, PredatorPreyMission};
-use crate::settings::{Setting, Settings};
+use crate::predator_prey::{life::PredatorPreyLife, life::PredatorPreyMission};
 use crate::team::setup::TeamSetup;
 
 /// Do a predator and a prey that evolve against each other become better at both? \[FARSA2\]
@@ -40,7 +35,7 @@ impl Experiment for PredatorPrey {
 }
 
 /// Lives one trial of any two controllers and tells what came of it for the predator, as an outcome of the experiment does.
-pub fn chase<C: Controller>(life: &mut PredatorPreyLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    crate::life::live(life, world, id);
+pub fn chase<C: Controller>(life: &mut PredatorPreyLife<C>, world: &mut World, job: Job) -> Outcome {
+    farsa_lab::live(life, world, job);
     life.outcome(0)
 }

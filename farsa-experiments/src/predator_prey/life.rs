@@ -6,17 +6,15 @@ use farsa_body::{Arrange as _, BodyId, ColorBand, Contacts as _, PairId, Pose, T
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError, World};
-use farsa_view::Channel;
 
-use crate::error::Error;
-use crate::outcome::{ChannelGroup, Note, Outcome};
-use crate::episode::EpisodeId;
-use crate::predator_prey::config::{NAMES, OUTPUTS, PredatorPreyConfig};
+use crate::predator_prey::{config::NAMES, config::OUTPUTS, config::PredatorPreyConfig};
 use crate::team::config::TeamConfig;
-use crate::team::eyes::{BLUE, RED};
-use crate::team::life::{Mission, Moment, TeamLife};
-use crate::team::robots::{Team, distance};
-use crate::team::setup::{eye_groups, eye_names};
+use crate::team::{eyes::BLUE, eyes::RED};
+use crate::team::{life::Mission, life::Moment, life::TeamLife};
+use crate::team::{robots::Team, robots::distance};
+use crate::team::{setup::eye_groups, setup::eye_names};
+use farsa_lab::{ChannelGroup, Error, Job, Note, Outcome};
+use farsa_view::Channel;
 
 /// The predator is robot 0, the prey robot 1.
 pub(crate) const PREDATOR: usize = 0;
@@ -96,12 +94,12 @@ impl Mission for PredatorPreyMission {
     }
 
     /// Puts both on the middle line, a third and two thirds along it, at headings from the stream of [`Domain::Start`] of
-    /// the id's trial, generation, and place within its population.
+    /// the job's trial, generation, and place within its population.
     ///
     /// The same place in both populations has the same headings: the two lives of a test are one.
-    fn arrange<C: Controller>(&mut self, _: &Team<C>, world: &mut World, id: EpisodeId) -> Result<(), ArenaError> {
-        let place = id.individual % (self.config.population as u32).max(1);
-        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, place, id.generation);
+    fn arrange<C: Controller>(&mut self, _: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
+        let place = job.individual % (self.config.population as u32).max(1);
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, place, job.generation);
         self.captured = false;
         world.clear();
         let size = self.config.team.size as f32;

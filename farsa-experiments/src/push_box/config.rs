@@ -1,11 +1,8 @@
 //! The values of `push-box`, as settings.
 
 use farsa_body::MobileRobot;
+use farsa_lab::{ENGINE, Error, Setting, Settings};
 use farsa_physics::arena::Arena;
-
-use crate::engine::ENGINE;
-use crate::error::Error;
-use crate::settings::{Setting, Settings};
 
 /// What the robot pushes and how; the defaults are those of the experiment, all of them chosen.
 ///

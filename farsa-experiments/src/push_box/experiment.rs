@@ -1,10 +1,8 @@
 //! The experiment `push-box`: what only a general world can do.
 
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
+use farsa_lab::{Error, Experiment, Setting, Settings, Setup};
+
 use crate::push_box::config::PushConfig;
-use crate::settings::{Setting, Settings};
 
 /// How far can a robot push a box that it only feels with its infrared sensors?
 ///

@@ -6,12 +6,11 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, Joints, Kinematics, MobileParts,
     Motor as _, PairId, Planar, Pose, Rays, Sensor as _, Twist, WheelVelocity,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
-use crate::error::Error;
-use crate::infrared::settings::{Infrared, InfraredModel};
-use crate::episode::{Episode, EpisodeId};
+use crate::infrared::{settings::Infrared, settings::InfraredModel};
 use crate::push_box::config::PushConfig;
 
 /// Values that a controller gives: left and right wheel.
@@ -86,14 +85,14 @@ impl<C: Controller> PushLife<C> {
     /// Puts the box into the middle and the robot beside it: the headings of both, the direction in which the robot stands
     /// and its distance are uniform.
     ///
-    /// All is drawn from the stream of [`Domain::Start`] of the id's trial and generation: the individuals of a generation
+    /// All is drawn from the stream of [`Domain::Start`] of the job's trial and generation: the individuals of a generation
     /// have the same starts.
-    pub fn arrange<W>(&mut self, world: &mut W, id: EpisodeId)
+    pub fn arrange<W>(&mut self, world: &mut W, job: Job)
     where
         W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
         let Self { config, parts, cube, .. } = self;
-        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, 0, job.generation);
         world.clear();
         world.place_body(*cube, Pose::planar([0.0; 2], stream.range(-PI, PI)), Twist::default());
         let away = stream.range(config.apart[0] as f32, config.apart[1] as f32);
@@ -105,11 +104,11 @@ impl<C: Controller> PushLife<C> {
     }
 
     /// Opens a new account and arranges the world.
-    pub fn begin<W>(&mut self, world: &mut W, id: EpisodeId)
+    pub fn begin<W>(&mut self, world: &mut W, job: Job)
     where
         W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
-        self.arrange(world, id);
+        self.arrange(world, job);
         let [x, y, _] = world.pose(self.cube).position;
         self.places = [[x, y]; 2];
         self.trial = PushTrial::default();
@@ -209,8 +208,8 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
     C: Controller,
 {
-    fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.begin(world, id);
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.begin(world, job);
     }
 
     fn tick(&mut self, world: &mut W) -> Option<f64> {

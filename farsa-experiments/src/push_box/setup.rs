@@ -3,14 +3,11 @@
 use farsa_body::{Kinematics as _, Pose, Recorder, World as _};
 use farsa_nn::Perceptron;
 use farsa_physics::rapier::ArenaWorld;
-use farsa_view::{Channel, Form, Links, NodeParameters, Prop, Role, Stage, screen_color};
 
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::outcome::{ChannelGroup, Description, Note, Outcome};
-use crate::episode::{Episode as _, EpisodeId};
 use crate::push_box::config::PushConfig;
-use crate::push_box::life::{OUTPUTS, PushLife};
+use crate::push_box::{life::OUTPUTS, life::PushLife};
+use farsa_lab::{ChannelGroup, Description, Error, Job, Life as _, Note, Outcome, Setup, Tape};
+use farsa_view::{Channel, Form, Links, NodeParameters, Prop, Role, Stage, screen_color};
 
 /// The layer of two logistic units that genes are decoded into.
 type Layer = Perceptron<Vec<f32>>;
@@ -128,7 +125,7 @@ impl Setup for Lives {
         }
     }
 
-    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
         let config = self.life.config();
         let (inputs, range) = (config.inputs(), config.weight_range);
         if genes.len() != self.genes() {
@@ -140,7 +137,7 @@ impl Setup for Lives {
         }
         let Ok(layer) = layer(inputs, parameters) else { return Outcome::failed() };
         self.life.set_controller(layer);
-        self.life.start(&mut self.world, id);
+        self.life.start(&mut self.world, job);
         loop {
             self.life.act(&mut self.world);
             let was = tape.recorder().map(|_| self.world.pose(self.life.parts().body));
@@ -196,18 +193,18 @@ mod tests {
     fn a_life_can_be_repeated_and_taped() {
         let mut lives = Lives::new(PushConfig { steps: 40, ..PushConfig::default() }).unwrap();
         let genes: Vec<u16> = (0..18_u32).map(|i| (i * 40503) as u16).collect();
-        let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: 1 };
-        let plain = lives.live(&genes, id, &mut Tape::off());
-        lives.live(&genes, EpisodeId { trial: 3, ..id }, &mut Tape::off());
+        let job = Job { seed: 3, generation: 2, individual: 7, trial: 1 };
+        let plain = lives.live(&genes, job, &mut Tape::off());
+        lives.live(&genes, Job { trial: 3, ..job }, &mut Tape::off());
         let mut recording = Recording::new(lives.stage());
-        assert_eq!(lives.live(&genes, id, &mut Tape::to(&mut recording)), plain);
+        assert_eq!(lives.live(&genes, job, &mut Tape::to(&mut recording)), plain);
         assert!(plain.is_finite() && plain.steps == 40, "{plain:?}");
         assert_eq!(recording.times().len(), 40);
         let columns = lives.stage().columns();
         let moved = columns.iter().position(|column| column == "box moved [m]").unwrap();
         assert_eq!(recording.row(39).nth(moved), Some(plain.terms[0]));
         // Shared by the generation's individuals.
-        assert_eq!(lives.live(&genes, EpisodeId { individual: 8, ..id }, &mut Tape::off()), plain);
-        assert!(!lives.live(&genes[1..], id, &mut Tape::off()).is_finite());
+        assert_eq!(lives.live(&genes, Job { individual: 8, ..job }, &mut Tape::off()), plain);
+        assert!(!lives.live(&genes[1..], job, &mut Tape::off()).is_finite());
     }
 }

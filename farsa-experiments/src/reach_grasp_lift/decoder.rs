@@ -1,9 +1,9 @@
 //! The genotype of `reach-grasp-lift`.
 
 use farsa_evo::{GeneRange, decode};
+use farsa_lab::Error;
 use farsa_nn::{Layout, Leak, ParameterKind};
 
-use crate::error::Error;
 use crate::reach_grasp_lift::stage::NetworkLife;
 
 /// From genes to the network's parameters.

@@ -5,13 +5,12 @@ use std::sync::Arc;
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Sensor,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::Controller;
 
-use crate::error::Error;
-use crate::episode::{Episode, EpisodeId};
-use crate::reach_grasp_lift::fitness::{Ledger, Trial};
 use crate::reach_grasp_lift::phase::Observation;
-use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
+use crate::reach_grasp_lift::{fitness::Ledger, fitness::Trial};
+use crate::reach_grasp_lift::{scene::Motors, scene::OUTPUTS, scene::Scene, scene::Senses};
 
 /// The judge of one trial: sees every step, keeps the account and says when the trial is over.
 #[derive(Clone, Debug)]
@@ -31,11 +30,11 @@ impl Judge {
     }
 
     /// Sets the world up for a trial and opens a new account.
-    pub fn start<W>(&mut self, world: &mut W, id: EpisodeId)
+    pub fn start<W>(&mut self, world: &mut W, job: Job)
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
     {
-        self.scene.arrange(world, id);
+        self.scene.arrange(world, job);
         self.trial = Trial::default();
         self.begun = false;
     }
@@ -201,8 +200,8 @@ where
         + ?Sized,
     C: Controller,
 {
-    fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.judge.start(world, id);
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.judge.start(world, job);
         self.controller.reset();
         self.senses.reset();
         self.motors.reset();

@@ -3,12 +3,10 @@
 use std::ops::RangeInclusive;
 
 use farsa_body::{Axes, MuscleVariant};
+use farsa_lab::{ENGINE, Error, Setting, Settings, Source};
 
-use crate::engine::ENGINE;
-use crate::error::Error;
-use crate::reach_grasp_lift::config::{Config, Displacement, SphereFrame};
 use crate::reach_grasp_lift::fitness::ContactTerm;
-use crate::settings::{Setting, Settings, Source};
+use crate::reach_grasp_lift::{config::Config, config::Displacement, config::SphereFrame};
 use crate::worlds::Engine;
 
 /// How a field of the configuration is read and written.
@@ -406,7 +404,7 @@ impl Config {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::Value;
+    use farsa_lab::Value;
 
     #[test]
     fn settings_of_the_defaults_read_back_as_the_defaults() {

@@ -1,11 +1,9 @@
 //! What experiments with many wheeled robots have in common, as settings.
 
 use farsa_body::MobileRobot;
+use farsa_lab::{Error, Setting, Settings};
 use farsa_nn::Layout;
 use farsa_physics::arena::Arena;
-
-use crate::error::Error;
-use crate::settings::{Setting, Settings};
 
 /// The robots of a team, their world, their eyes and the network that drives each of them.
 ///

@@ -6,8 +6,8 @@ use farsa_body::{
 };
 use farsa_physics::arena::World;
 
-use crate::infrared::sensor_rays::{SensorRays, Told};
-use crate::team::config::{EYES, TeamConfig};
+use crate::infrared::{sensor_rays::SensorRays, sensor_rays::Told};
+use crate::team::{config::EYES, config::TeamConfig};
 
 /// What shines red, whatever else shines with it.
 pub(crate) const RED: ColorBand = ColorBand { low: [0.5, 0.0, 0.0], high: [1.0, 0.3, 1.0] };

@@ -3,13 +3,11 @@
 use farsa_body::{ColorBand, Kinematics as _};
 use farsa_nn::Controller;
 use farsa_physics::arena::{Arena, ArenaError, World};
-use farsa_view::Channel;
 
-use crate::error::Error;
-use crate::outcome::{ChannelGroup, Outcome};
-use crate::episode::{Episode, EpisodeId};
 use crate::team::config::TeamConfig;
 use crate::team::robots::Team;
+use farsa_lab::{ChannelGroup, Error, Job, Life, Outcome};
+use farsa_view::Channel;
 
 /// Where the robots of a team are, and since when.
 #[derive(Clone, Copy, Debug)]
@@ -44,11 +42,11 @@ pub trait Mission: Send {
         usize::MAX
     }
 
-    /// Opens a new account and places everything for a trial, by random numbers of the id's alone.
+    /// Opens a new account and places everything for a trial, by random numbers of the job's alone.
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] where something has no room.
-    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, id: EpisodeId) -> Result<(), ArenaError>;
+    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError>;
 
     /// The setting that is to blame for too little room.
     fn crowded(&self) -> &'static str {
@@ -121,8 +119,8 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
-    pub fn arrange(&mut self, world: &mut World, id: EpisodeId) -> Result<(), ArenaError> {
-        self.mission.arrange(&self.team, world, id)
+    pub fn arrange(&mut self, world: &mut World, job: Job) -> Result<(), ArenaError> {
+        self.mission.arrange(&self.team, world, job)
     }
 
     /// All robots sense, think and act.
@@ -191,8 +189,8 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
 }
 
 impl<M: Mission, C: Controller> Life<World> for TeamLife<M, C> {
-    fn start(&mut self, world: &mut World, id: EpisodeId) {
-        self.failed = self.arrange(world, id).is_err();
+    fn start(&mut self, world: &mut World, job: Job) {
+        self.failed = self.arrange(world, job).is_err();
         self.team.reset();
         (self.steps, self.begun) = (0, false);
     }

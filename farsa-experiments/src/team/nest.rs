@@ -1,10 +1,10 @@
 //! Nests as robots of a team sense them: the ground, and what shines.
 
 use farsa_body::{ColorBand, Planar as _};
+use farsa_lab::Error;
 use farsa_physics::arena::World;
 
-use crate::error::Error;
-use crate::team::eyes::{BLUE, RED};
+use crate::team::{eyes::BLUE, eyes::RED};
 
 /// What the cameras see.
 pub(crate) const COLORS: [ColorBand; 2] = [RED, BLUE];

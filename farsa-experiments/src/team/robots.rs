@@ -6,11 +6,11 @@ use farsa_body::{
     Arrange as _, BodyId, ChannelError, ColorBand, Kinematics as _, Leds, MobileParts, Motor as _, Pose, Recorder,
     SpeedAndTurn, Twist,
 };
+use farsa_lab::Error;
 use farsa_nn::Controller;
 use farsa_num::Stream;
 use farsa_physics::arena::{ArenaError, FreePlace, World};
 
-use crate::error::Error;
 use crate::infrared::sensor_rays::Told;
 use crate::team::config::TeamConfig;
 use crate::team::eyes::RobotEyes;

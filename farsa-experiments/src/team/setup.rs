@@ -2,16 +2,12 @@
 
 use farsa_body::{BodyId, Kinematics as _, Recorder, World as _};
 use farsa_physics::arena::{Arena, World};
-use farsa_view::Stage;
 
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::outcome::{ChannelGroup, Description, Outcome};
-use crate::episode::{Episode as _, EpisodeId};
-use crate::network_decoder::{NetworkDecoder, TeamNetwork};
-use crate::team::config::{EYES, TeamConfig};
-use crate::team::life::{Mission, TeamLife};
 use crate::team::robots::OUTPUTS;
+use crate::team::{config::EYES, config::TeamConfig};
+use crate::team::{life::Mission, life::TeamLife};
+use farsa_lab::{ChannelGroup, Description, Error, Job, Life as _, NetworkDecoder, Outcome, Setup, Tape, TeamNetwork};
+use farsa_view::Stage;
 
 /// The arena with its robots, and the decoder of genomes.
 pub(crate) struct TeamSetup<M> {
@@ -41,8 +37,8 @@ impl<M: Mission> TeamSetup<M> {
         let mut life = TeamLife::on(mission, networks)?;
         // Seeds of this kind are neither a run's nor a test's.
         for trial in 0..8 {
-            let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
-            life.arrange(&mut world, id).map_err(|error| Error::setting(life.mission().crowded(), error))?;
+            let job = Job { seed: u64::MAX, trial, ..Job::default() };
+            life.arrange(&mut world, job).map_err(|error| Error::setting(life.mission().crowded(), error))?;
         }
         Ok(Self { world, life, decoder, bodies })
     }
@@ -121,19 +117,19 @@ impl<M: Mission> Setup for TeamSetup<M> {
         }
     }
 
-    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
-        self.live_against(genes, &[], id, tape)
+    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+        self.live_against(genes, &[], job, tape)
     }
 
-    fn live_against(&mut self, genes: &[u16], opponents: &[&[u16]], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
-        let own = id.population(self.life.mission().population_size()).min(self.populations() - 1);
+    fn live_against(&mut self, genes: &[u16], opponents: &[&[u16]], job: Job, tape: &mut Tape<'_>) -> Outcome {
+        let own = job.population(self.life.mission().population_size()).min(self.populations() - 1);
         if !self.decode(own, genes, opponents) {
             return Outcome::failed();
         }
         if let Some(recorder) = tape.recorder() {
             recorder.parameters(&self.decoder.parameters);
         }
-        self.life.start(&mut self.world, id);
+        self.life.start(&mut self.world, job);
         while !self.life.failed() {
             self.life.act(&mut self.world);
             if let Some(recorder) = tape.recorder() {

@@ -7,23 +7,22 @@ use farsa_evo::{GeneRange, decode};
 use farsa_nn::{Layout, ParameterKind};
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
-use farsa_view::Stage;
 
-use crate::engine::ENGINE;
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
-use crate::outcome::{ChannelGroup, Description, Note, Outcome};
-use crate::episode::{Episode as _, EpisodeId};
-use crate::settings::{Setting, Settings};
 use crate::walking::gait::Rules;
-use crate::walking::life::{Brain, Launch, SENSES, Walk, WalkerLife};
 #[cfg(feature = "rapier")]
 use crate::walking::settings::rapier_options;
-use crate::walking::settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
-use crate::walking::stage::{drawn, exported, stage};
-use crate::walking::walker::{Legs, Walker};
+use crate::walking::{life::Brain, life::Launch, life::SENSES, life::Walk, life::WalkerLife};
+use crate::walking::{
+    settings::engine, settings::live_to_the_end, settings::mean, settings::mjcf_options, settings::on_contacts,
+    settings::walk,
+};
+use crate::walking::{stage::drawn, stage::exported, stage::stage};
+use crate::walking::{walker::Legs, walker::Walker};
 use crate::worlds::Engine;
+use farsa_lab::{
+    ChannelGroup, Description, ENGINE, Error, Experiment, Job, Life as _, Note, Outcome, Setting, Settings, Setup, Tape,
+};
+use farsa_view::Stage;
 
 /// Which bodies walk far? `[McGeer1990]`
 ///
@@ -355,14 +354,14 @@ impl Setup for Lives {
     }
 
     /// Success is ten strides, twenty steps, without a fall.
-    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
         let Some((robot, life)) = self.config.life(genes) else { return Outcome::failed() };
         match self.config.engine {
-            Engine::Articulated => live_in(self.config.world(&robot), life, id, tape),
+            Engine::Articulated => live_in(self.config.world(&robot), life, job, tape),
             #[cfg(feature = "rapier")]
             Engine::Rapier => {
                 let options = rapier_options(&self.config.walk, life.gait().walker(), self.config.substeps, 40);
-                live_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, id, tape)
+                live_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, job, tape)
             }
             #[cfg(not(feature = "rapier"))]
             Engine::Rapier => Outcome::failed(),
@@ -376,7 +375,7 @@ impl Setup for Lives {
 }
 
 /// Lives a walker's life in a world; there is none for a body that cannot be.
-fn live_in<W>(world: Option<W>, mut life: WalkerLife, id: EpisodeId, tape: &mut Tape<'_>) -> Outcome
+fn live_in<W>(world: Option<W>, mut life: WalkerLife, job: Job, tape: &mut Tape<'_>) -> Outcome
 where
     W: farsa_body::World
         + Kinematics
@@ -390,7 +389,7 @@ where
     if let (Some(recorder), Some(brain)) = (tape.recorder(), life.brain()) {
         recorder.parameters(brain.parameters());
     }
-    life.start(&mut world, id);
+    life.start(&mut world, job);
     let mut outcome = live_to_the_end(&mut life, &mut world, tape);
     let gait = life.gait();
     let walker = gait.walker();

@@ -4,13 +4,12 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints,
     Motor as _, PairId, Scaled, Sensor as _, TorqueMotor, Touch,
 };
+use farsa_lab::{Error, Job, Life};
 use farsa_nn::{Controller, Layout, Leak, Network};
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::error::Error;
-use crate::episode::{Episode, EpisodeId};
-use crate::walking::gait::{End, Gait, Rules};
-use crate::walking::walker::{Posture, Walker, WalkerParts};
+use crate::walking::{gait::End, gait::Gait, gait::Rules};
+use crate::walking::{walker::Posture, walker::Walker, walker::WalkerParts};
 
 /// What the network of a walker senses: two angles, two speeds, two touches.
 pub const SENSES: usize = 6;
@@ -187,12 +186,12 @@ impl WalkerLife {
     }
 
     /// Launches the walker: its rates are those of the launch times 1 + noise * u, each with its own u from -1 to 1, the stance leg's
-    /// first, from the stream of [`Domain::Start`] of the id's trial, individual and generation.
-    pub fn begin<W>(&mut self, world: &mut W, id: EpisodeId)
+    /// first, from the stream of [`Domain::Start`] of the job's trial, individual and generation.
+    pub fn begin<W>(&mut self, world: &mut W, job: Job)
     where
         W: Joints + Arrange + Handles<Joint = JointId> + ?Sized,
     {
-        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
+        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
         let rates = self.launch.rates.map(|rate| rate * (1.0 + self.walk.noise * stream.range_f64(-1.0, 1.0)));
         let posture = Posture::standing(self.gait.walker(), 0, self.launch.angles, rates);
         self.gait.start(world, 0, &posture);
@@ -277,8 +276,8 @@ impl<W> Life<W> for WalkerLife
 where
     W: Joints + Contacts + Actuated + Arrange + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
 {
-    fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.begin(world, id);
+    fn start(&mut self, world: &mut W, job: Job) {
+        self.begin(world, job);
     }
 
     fn tick(&mut self, world: &mut W) -> Option<f64> {

@@ -1,25 +1,24 @@
 //! The experiment `passive-walker`: two legs walk down a slope by themselves.
 
-pub use crate::walking::gait::{End, Footfall, Gait, Rules};
-pub use crate::walking::life::{Brain, Launch, Pace, SENSES, Walk, WalkerLife};
-pub use crate::walking::walker::{Legs, Posture, Walker, WalkerParts};
+pub use crate::walking::{gait::End, gait::Footfall, gait::Gait, gait::Rules};
+pub use crate::walking::{life::Brain, life::Launch, life::Pace, life::SENSES, life::Walk, life::WalkerLife};
+pub use crate::walking::{walker::Legs, walker::Posture, walker::Walker, walker::WalkerParts};
 pub use crate::worlds::Engine;
 
 use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
-use farsa_view::Stage;
 
-use crate::engine::ENGINE;
-use crate::error::Error;
-use crate::evaluator::Evaluator;
-use crate::experiment::Experiment;
-use crate::outcome::{Description, Note, Outcome};
-use crate::episode::{Episode as _, EpisodeId};
-use crate::settings::{Setting, Settings};
-use crate::walking::settings::{engine, live_to_the_end, mean, mjcf_options, on_contacts, walk};
-use crate::walking::simplest_model::{ModelGait, SLOPES, WalkingModel};
-use crate::walking::stage::{drawn, exported, stage};
+use crate::walking::{
+    settings::engine, settings::live_to_the_end, settings::mean, settings::mjcf_options, settings::on_contacts,
+    settings::walk,
+};
+use crate::walking::{simplest_model::ModelGait, simplest_model::SLOPES, simplest_model::WalkingModel};
+use crate::walking::{stage::drawn, stage::exported, stage::stage};
+use farsa_lab::{
+    Description, ENGINE, Error, Experiment, Job, Life as _, Note, Outcome, Setting, Settings, Setup, Tape,
+};
+use farsa_view::Stage;
 
 /// How near does a rigid body with light feet come to the simplest walking model? \[Garcia1998\]
 ///
@@ -285,8 +284,8 @@ where
     }
 
     /// Success is ten strides, twenty steps, without a fall.
-    fn live(&mut self, _: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
-        self.life.start(&mut self.world, id);
+    fn live(&mut self, _: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+        self.life.start(&mut self.world, job);
         let mut outcome = live_to_the_end(&mut self.life, &mut self.world, tape);
         // A walk of fewer steps has no pace: 0 of everything, so that the same notes stand in every trial.
         let pace = self.life.pace().unwrap_or_default();

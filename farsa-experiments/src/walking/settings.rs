@@ -3,15 +3,12 @@
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, World,
 };
+use farsa_lab::{ENGINE, Error, Note, Outcome, Setting, Settings, Tape};
 
-use crate::engine::ENGINE;
-use crate::error::Error;
-use crate::outcome::{Note, Outcome};
-use crate::settings::{Setting, Settings};
 use crate::walking::gait::End;
-use crate::walking::life::{Walk, WalkerLife};
 use crate::walking::stage::tell;
 use crate::walking::walker::Walker;
+use crate::walking::{life::Walk, life::WalkerLife};
 use crate::worlds::Engine;
 
 /// The surroundings that settings ask for; the rules are those of `plain`.

@@ -6,7 +6,7 @@ use farsa_num::sin_cos;
 use farsa_view::{Channel, Stage};
 
 use crate::walking::life::WalkerLife;
-use crate::walking::walker::{Walker, WalkerParts};
+use crate::walking::{walker::Walker, walker::WalkerParts};
 
 /// Half the thickness of drawn legs, axle and soles \[m\].
 const THICK: f64 = 0.012;

@@ -1,6 +1,6 @@
 //! An experiment of one's own: a cart learns to stop at the middle of its track.
 
-use farsa_experiments::{ChannelGroup, Description, Experiment, Job, Outcome, Setting, Settings, Setup, Stage, Tape, cli};
+use farsa_lab::{ChannelGroup, Description, Experiment, Job, Outcome, Setting, Settings, Setup, Stage, Tape, cli};
 use farsa_num::{Domain, Stream};
 
 struct Cart;
@@ -25,7 +25,7 @@ impl Experiment for Cart {
             Setting::whole("trial.steps", 500, 1..=1_000_000).doc("Steps of 10 ms."),
         ]
     }
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, farsa_experiments::Error> {
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, farsa_lab::Error> {
         let (friction, steps) = (settings.number("cart.friction")?, settings.count("trial.steps")?);
         Ok(Box::new(Track { friction, steps: steps as u32, switched: settings.word("cart.motor")? == "switched" }))
     }

@@ -1,0 +1,360 @@
+//! The words of the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
+use clap_complete::Shell;
+use farsa_view::Camera;
+
+use crate::evaluation::arguments::{EvaluateArgs, ImportArgs};
+use crate::evaluation::replay::Which;
+use crate::export::files::{ControllerFormat, DataFormat, ModelFormat};
+use crate::export::robot_file::RobotArgs;
+use crate::run::arguments::{VariantArgs, WorkerArgs, WorldArgs};
+use crate::run::plan::LARGEST_SEED;
+
+/// Evolve robots, test the champions, and see any life of a run again.
+#[derive(Parser)]
+#[command(max_term_width = 80)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// No progress and no summary; errors stay
+    #[arg(short, long, global = true, display_order = 900)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// List the experiments
+    List(ListArgs),
+    /// Tell all about an experiment, with every setting and its source
+    Info(InfoArgs),
+    /// Evolve, or go on with a run
+    Run(RunArgs),
+    /// Put a run's champion to the test on fresh starts
+    Test(TestArgs),
+    /// Evaluate anybody's genotype on random trials
+    Evaluate(EvaluateArgs),
+    /// Make genotypes of the original FARSA a run to test and replay
+    Import(ImportArgs),
+    /// Live a life of a run again, exactly
+    Replay(ReplayArgs),
+    /// Draw a moment of a life as a picture
+    Draw(DrawArgs),
+    /// Write a page about one or many runs
+    Report(ReportArgs),
+    /// Write a robot, a controller or starts for other simulators
+    Export(ExportArgs),
+    /// Tell what is read of a robot in a model file, URDF or MJCF
+    Robot(RobotArgs),
+    /// Measure how fast lives are lived here, and foretell a whole study
+    Bench(BenchArgs),
+    /// Write a shell's completions to the standard output
+    Completions(CompletionsArgs),
+    /// Write the manual's pages
+    Man(ManArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct ListArgs {
+    /// Write JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct InfoArgs {
+    /// The experiment
+    pub(crate) experiment: String,
+    /// One of its conditions [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) condition: Option<String>,
+    /// Write JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct RunArgs {
+    /// The experiment
+    #[arg(required_unless_present_any = ["resume", "config"])]
+    pub(crate) experiment: Option<String>,
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
+    /// Where all random numbers come from [default: 1]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: Option<u64>,
+    /// Generations to evaluate (evolution.generations)
+    #[arg(long, value_name = "G")]
+    pub(crate) generations: Option<i64>,
+    /// Individuals of a generation (evolution.population)
+    #[arg(long, value_name = "P")]
+    pub(crate) population: Option<i64>,
+    #[command(flatten)]
+    pub(crate) workers: WorkerArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
+    /// The run's directory [default: runs/EXPERIMENT-CONDITION-SEED]; with --replications what they lie in [default: runs]
+    #[arg(long, value_name = "DIR", conflicts_with = "resume", value_hint = ValueHint::DirPath)]
+    pub(crate) out: Option<PathBuf>,
+    /// So many runs with seeds from --seed on, one after the other; the same command again skips what is finished and
+    /// goes on with what is not
+    #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
+    pub(crate) replications: Option<u32>,
+    /// Take settings from a TOML file; --set goes before it
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) config: Option<PathBuf>,
+    /// Go on with the run in a directory; generations may be added
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) resume: Option<PathBuf>,
+    /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct BenchArgs {
+    /// The experiment [default: the first of the list]
+    pub(crate) experiment: Option<String>,
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
+    /// Live the last generation of this run, under its configuration [default: random genomes]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["experiment", "condition"], value_hint = ValueHint::DirPath)]
+    pub(crate) run: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) workers: WorkerArgs,
+    /// How long to measure, in seconds: whole generations until then, cut short only if it is the first
+    #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
+    pub(crate) seconds: f64,
+    /// Write what was found as JSON, without the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A time to measure for.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.01..=86400.0).contains(seconds));
+    seconds.ok_or_else(|| "not a number of seconds from 0.01 to 86400".into())
+}
+
+#[derive(Args)]
+pub(crate) struct TestArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Fresh trials
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=100_000_000))]
+    pub(crate) trials: u32,
+    /// Where the test's random numbers come from; never those of a run
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) workers: WorkerArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
+    /// Write what was found as JSON, without the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Which lives of a run.
+#[derive(Args)]
+pub(crate) struct LifeArgs {
+    /// The generation, from 0 [default: the last]
+    #[arg(long, value_name = "N")]
+    generation: Option<u32>,
+    /// The individual, from 0 [default: the best of the generation]
+    #[arg(long, value_name = "N")]
+    individual: Option<u32>,
+    /// The trial, from 0 [default: all]
+    #[arg(long, value_name = "N")]
+    trial: Option<u32>,
+}
+
+impl LifeArgs {
+    pub(crate) fn which(&self) -> Which {
+        Which { generation: self.generation, individual: self.individual, trial: self.trial }
+    }
+}
+
+#[derive(Args)]
+pub(crate) struct ReplayArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    #[command(flatten)]
+    pub(crate) life: LifeArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
+    /// A new file for the steps as CSV [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+    /// A new file for a page that shows the life in a browser, whole in itself
+    #[arg(long, value_name = "FILE", conflicts_with = "out", value_hint = ValueHint::FilePath)]
+    pub(crate) html: Option<PathBuf>,
+    /// Another run, whose same life the page shows beside it
+    #[arg(long, value_name = "DIR", requires = "html", value_hint = ValueHint::DirPath)]
+    pub(crate) compare: Option<PathBuf>,
+    /// Write the summary as JSON: where the steps do not go, the standard error without --out or --html
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct DrawArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// The generation, from 0 [default: the last]
+    #[arg(long, value_name = "N")]
+    generation: Option<u32>,
+    /// The individual, from 0 [default: the best of the generation]
+    #[arg(long, value_name = "N")]
+    individual: Option<u32>,
+    /// The trial, from 0 [default: 0]
+    #[arg(long, value_name = "N")]
+    trial: Option<u32>,
+    /// The moment, in seconds of the trial [default: its end]
+    #[arg(long, value_name = "S")]
+    pub(crate) time: Option<f64>,
+    #[arg(long, value_name = "NAME", help = camera_help())]
+    pub(crate) camera: Option<String>,
+    /// Width and height in pixels [default: 1200x800]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<(u32, u32)>,
+    /// A new file, whose name ends in .svg or .png
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: PathBuf,
+    /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl DrawArgs {
+    pub(crate) fn which(&self) -> Which {
+        Which { generation: self.generation, individual: self.individual, trial: self.trial }
+    }
+}
+
+/// The cameras' own names, the default's first.
+fn camera_help() -> String {
+    let [first, others @ ..] = Camera::NAMES;
+    format!("Where to look from: {first} [default], {}", others.join(", "))
+}
+
+/// Two numbers with an x between them.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let pair = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    pair.ok_or_else(|| "not of the form 1200x800".into())
+}
+
+#[derive(Args)]
+pub(crate) struct ReportArgs {
+    /// The runs' directories
+    #[arg(required = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) directories: Vec<PathBuf>,
+    /// A new file for the page, whole in itself
+    #[arg(long, value_name = "FILE", required_unless_present = "md", value_hint = ValueHint::FilePath)]
+    pub(crate) html: Option<PathBuf>,
+    /// A new file for the page as Markdown, with its pictures beside it as NAME-*.svg
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) md: Option<PathBuf>,
+    /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportArgs {
+    #[command(subcommand)]
+    pub(crate) what: ExportWhat,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum ExportWhat {
+    /// Write the robot with everything around it as a model file
+    Robot(ExportRobotArgs),
+    /// Write the controller of a run's champion, with what it senses and drives
+    Controller(ExportControllerArgs),
+    /// Write the genes of a run's champion as a .gen file, for `import` and `evaluate`
+    Genotype(ExportGenotypeArgs),
+    /// Write how the trials of `test` start
+    Starts(ExportStartsArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct ExportControllerArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: ControllerFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportGenotypeArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Of which population, where there are several
+    #[arg(long, value_name = "NAME")]
+    pub(crate) population: Option<String>,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportStartsArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Trials of the test
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) trials: u32,
+    /// The test's seed
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: DataFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct ExportRobotArgs {
+    /// The experiment
+    pub(crate) experiment: String,
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: ModelFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: Shell,
+}
+
+#[derive(Args)]
+pub(crate) struct ManArgs {
+    /// Write a page for every command into a directory [default: the first page to the standard output]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) out: Option<PathBuf>,
+}

@@ -1,0 +1,164 @@
+//! `farsa list` and `farsa info`: what there is and what it is made of.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::experiment::definition::Experiment;
+use crate::experiment::outcome::{ChannelGroup, Description};
+use crate::run::plan::Plan;
+use crate::experiment::settings::{Source, Value};
+
+/// The experiments, one a line, with their conditions.
+pub(crate) fn list(experiments: &[&dyn Experiment]) -> String {
+    let width = experiments.iter().map(|experiment| experiment.name().len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for experiment in experiments {
+        let (name, summary, conditions) = (experiment.name(), experiment.summary(), experiment.conditions().join(", "));
+        let conditions = if conditions.is_empty() { conditions } else { format!(" [{conditions}]") };
+        // Writing into a string cannot fail.
+        let _ = writeln!(text, "{name:width$}  {summary}{conditions}");
+    }
+    text
+}
+
+/// The same as JSON.
+pub(crate) fn list_as_json(experiments: &[&dyn Experiment]) -> Result<String, Error> {
+    let list: Vec<Entry> = experiments
+        .iter()
+        .map(|experiment| Entry {
+            name: experiment.name(),
+            summary: experiment.summary(),
+            conditions: experiment.conditions(),
+        })
+        .collect();
+    pretty(&list)
+}
+
+#[derive(Serialize)]
+struct Entry {
+    name: &'static str,
+    summary: &'static str,
+    conditions: &'static [&'static str],
+}
+
+/// Everything about an experiment under a condition; the JSON form has these names.
+#[derive(Serialize)]
+struct Info {
+    experiment: String,
+    summary: String,
+    condition: String,
+    conditions: Vec<String>,
+    /// Groups of sensors.
+    sensors: Vec<ChannelGroup>,
+    inputs: usize,
+    motors: Vec<ChannelGroup>,
+    outputs: usize,
+    network: String,
+    parameters: usize,
+    genes: usize,
+    genome_bits: usize,
+    trials: usize,
+    /// Most steps of a trial.
+    steps: usize,
+    step_seconds: f64,
+    fitness_terms: Vec<String>,
+    settings: Vec<SettingInfo>,
+}
+
+#[derive(Serialize)]
+struct SettingInfo {
+    key: String,
+    default: serde_json::Value,
+    unit: String,
+    allowed: String,
+    source: Source,
+    doc: String,
+}
+
+impl Info {
+    fn of(plan: &Plan<'_>) -> Result<Self, Error> {
+        let evaluator = plan.evaluator()?;
+        let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.description();
+        let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
+        let settings = plan.settings.table().iter().map(|setting| SettingInfo {
+            key: setting.key().into(),
+            default: json(setting.default_value()),
+            unit: setting.unit_name().into(),
+            allowed: setting.allowed(),
+            source: setting.source(),
+            doc: setting.doc_text().into(),
+        });
+        Ok(Self {
+            experiment: plan.experiment.name().into(),
+            summary: plan.experiment.summary().into(),
+            condition: plan.condition.clone(),
+            conditions: plan.experiment.conditions().iter().map(|&name| name.to_owned()).collect(),
+            inputs: count(&sensors),
+            outputs: count(&motors),
+            sensors,
+            motors,
+            network,
+            parameters,
+            genes: evaluator.parameters().len(),
+            genome_bits: plan.experiment.gene_bits() as usize * evaluator.parameters().len(),
+            trials: evaluator.trials(),
+            steps,
+            step_seconds,
+            fitness_terms: evaluator.terms(),
+            settings: settings.collect(),
+        })
+    }
+}
+
+fn json(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Flag(flag) => (*flag).into(),
+        Value::Whole(n) => (*n).into(),
+        Value::Number(x) => (*x).into(),
+        Value::Word(word) => word.as_str().into(),
+        Value::Numbers(list) => list.clone().into(),
+    }
+}
+
+/// All about an experiment as JSON.
+pub(crate) fn as_json(plan: &Plan<'_>) -> Result<String, Error> {
+    pretty(&Info::of(plan)?)
+}
+
+/// All about an experiment in words.
+pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
+    let info = Info::of(plan)?;
+    let mut text = format!("{}: {}\n", info.experiment, info.summary);
+    // Writing into a string cannot fail.
+    if !info.condition.is_empty() {
+        let _ = writeln!(text, "condition: {} (of {})", info.condition, info.conditions.join(", "));
+    }
+    for (what, count, groups) in [("sensors", info.inputs, &info.sensors), ("motors", info.outputs, &info.motors)] {
+        let _ = writeln!(text, "\n{what}: {count}");
+        let width = groups.iter().map(|group| group.name.chars().count()).max().unwrap_or(0);
+        for ChannelGroup { name, count, meaning } in groups {
+            let _ = writeln!(text, "  {count:4}  {name:width$}  {meaning}");
+        }
+    }
+    let _ = writeln!(text, "\nnetwork: {}", info.network);
+    let _ = writeln!(text, "parameters: {}", info.parameters);
+    let _ = writeln!(text, "genome: {} genes, {} bits", info.genes, info.genome_bits);
+    let seconds = info.step_seconds * info.steps as f64;
+    let clock = if seconds > 0.0 { format!(" ({seconds:?} s)") } else { String::new() };
+    let _ = writeln!(text, "trials: {}, each of at most {} steps{clock}", info.trials, info.steps);
+    let _ = writeln!(text, "fitness: {}", info.fitness_terms.join(", "));
+    let _ = writeln!(text, "\nsettings:");
+    for (setting, SettingInfo { key, unit, allowed, source, doc, .. }) in
+        plan.settings.table().iter().zip(&info.settings)
+    {
+        let value = setting.default_value();
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let _ = writeln!(text, "  {key} = {value}{unit}  [{}; {allowed}]", source.name());
+        if !doc.is_empty() {
+            let _ = writeln!(text, "      {doc}");
+        }
+    }
+    Ok(text)
+}

@@ -1,0 +1,186 @@
+//! What the command says about itself: help with examples, completions, and pages of the manual.
+
+use std::fs;
+use std::path::Path;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Command, CommandFactory as _};
+use clap_complete::Shell;
+use farsa_view::Camera;
+
+use crate::command::arguments::Cli;
+use crate::error::Error;
+use crate::experiment::definition::Experiment;
+use crate::store::directory::create_results;
+
+/// Without headings and spare lines, so that a screen of 24 lines has room for the tour, which follows.
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n{options}\n";
+
+/// The command line under the name of the program, with examples about its own first experiment.
+pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command {
+    let first = experiments.first();
+    let experiment = first.map_or("EXPERIMENT", |experiment| experiment.name());
+    let conditions = first.map_or(&[][..], |experiment| experiment.conditions());
+    let run = match conditions.first() {
+        None => format!("runs/{experiment}-1"),
+        Some(condition) => format!("runs/{experiment}-{condition}-1"),
+    };
+    let other = conditions.get(1).map(|name| format!(" --condition {name}")).unwrap_or_default();
+    let examples = |lines: &[String]| {
+        let lines: Vec<String> = lines.iter().map(|line| format!("  {program} {line}")).collect();
+        format!("{}\n{}", if lines.len() == 1 { "Example:" } else { "Examples:" }, lines.join("\n"))
+    };
+    let tour = [
+        format!("run {experiment} --generations 20"),
+        format!("test {run}"),
+        format!("replay {run} --html life.html"),
+        format!("report {run} --html report.html"),
+    ];
+    let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
+    let mut command = Cli::command()
+        .name(program.to_owned())
+        .bin_name(program.to_owned())
+        .version(version(program))
+        .disable_help_subcommand(true)
+        .help_template(format!("{TEMPLATE}{tour}"))
+        .after_help(tour);
+    for (name, lines) in [
+        ("list", vec!["list".into(), "list --json".into()]),
+        ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),
+        (
+            "run",
+            vec![
+                format!("run {experiment}{other} --seed 2"),
+                format!("run {experiment} --set evolution.mutation_rate=0.02 --out mine"),
+                format!("run --resume {run} --generations 2000"),
+                format!("run --config {run}/config.toml --out again"),
+                format!("run {experiment}{other} --replications 20"),
+            ],
+        ),
+        ("test", vec![format!("test {run} --trials 1000 --seed 2")]),
+        (
+            "evaluate",
+            vec![
+                format!("evaluate {experiment} --genes-file best.gen --trials 2000"),
+                format!("evaluate {experiment} --genes 90,93,0,220 --seed 2 --json"),
+            ],
+        ),
+        (
+            "import",
+            vec![
+                format!("import G500S53.gen --experiment {experiment} --out original"),
+                format!("import *.gen --experiment {experiment} --out originals"),
+            ],
+        ),
+        (
+            "replay",
+            vec![
+                format!("replay {run} --trial 0 --out life.csv"),
+                format!("replay {run} --html life.html"),
+                format!("replay {run} --generation 0 --individual 7 | head"),
+            ],
+        ),
+        (
+            "draw",
+            vec![
+                format!("draw {run} --out end.svg"),
+                format!("draw {run} --trial 2 --time 1.5 --camera {} --out moment.png", Camera::NAMES[1]),
+            ],
+        ),
+        (
+            "report",
+            vec![
+                format!("report {run} --html report.html"),
+                "report runs/* --html report.html --md report.md".to_owned(),
+            ],
+        ),
+        (
+            "export",
+            vec![
+                format!("export robot {experiment} --format mjcf --out {experiment}.xml"),
+                format!("export robot {experiment} --format urdf"),
+                format!("export controller {run} --format json --out controller.json"),
+                format!("export controller {run} --format bytes --out champion.farsa"),
+                format!("export genotype {run} --out champion.gen"),
+                format!("export starts {run} --trials 100 --seed 1 --format json --out starts.json"),
+            ],
+        ),
+        (
+            "robot",
+            vec!["robot panda.urdf --packages share".into(), "robot ant.xml --format urdf --out ant.urdf".into()],
+        ),
+        ("bench", vec![format!("bench {experiment}"), format!("bench --run {run} --threads 1 --lanes 1 --seconds 60")]),
+        ("completions", vec![format!("completions bash > ~/.local/share/bash-completion/completions/{program}")]),
+        ("man", vec!["man | man -l -".into(), "man --out ~/.local/share/man/man1".into()]),
+    ] {
+        command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
+    }
+    command
+}
+
+/// The version of this crate, under whose name a program of somebody else must not give it.
+fn version(program: &str) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    if program == "farsa" { version.into() } else { format!("(FARSA {version})") }
+}
+
+/// A script that lets a shell complete the command, experiments and conditions included.
+pub(crate) fn completions(shell: Shell, program: &str, experiments: &[&dyn Experiment]) -> String {
+    let names: Vec<&'static str> = experiments.iter().map(|experiment| experiment.name()).collect();
+    let mut conditions: Vec<&'static str> = Vec::new();
+    for condition in experiments.iter().flat_map(|experiment| experiment.conditions()) {
+        if !conditions.contains(condition) {
+            conditions.push(condition);
+        }
+    }
+    let mut command = command(program, experiments);
+    // The command itself takes any word, and says which name is the nearest.
+    let known = |words: &[&'static str]| PossibleValuesParser::new(words.to_vec());
+    let taught = |subcommand: Command| {
+        subcommand
+            .mut_arg("experiment", |arg| arg.value_parser(known(&names)))
+            .mut_arg("condition", |arg| arg.value_parser(known(&conditions)))
+    };
+    for subcommand in ["info", "run", "bench", "evaluate", "import"] {
+        command = command.mut_subcommand(subcommand, taught);
+    }
+    command = command.mut_subcommand("export", |export| export.mut_subcommand("robot", taught));
+    command = command.mut_subcommand("draw", |subcommand| {
+        subcommand.mut_arg("camera", |arg| arg.value_parser(PossibleValuesParser::new(Camera::NAMES)))
+    });
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command, program, &mut script);
+    String::from_utf8_lossy(&script).into_owned()
+}
+
+/// The first page of the manual.
+pub(crate) fn page(program: &str, experiments: &[&dyn Experiment]) -> Result<String, Error> {
+    let mut command = command(program, experiments);
+    command.build();
+    render(command)
+}
+
+/// Writes all pages into a directory and returns how many they are.
+///
+/// # Errors
+/// [`Error::Usage`] when one of them is there already, [`Error::Io`].
+pub(crate) fn pages(directory: &Path, program: &str, experiments: &[&dyn Experiment]) -> Result<usize, Error> {
+    let mut command = command(program, experiments);
+    command.build();
+    let subcommands = command.get_subcommands().filter(|subcommand| subcommand.get_name() != "help").cloned();
+    let mut files = Vec::new();
+    for subcommand in std::iter::once(command.clone()).chain(subcommands) {
+        let name = subcommand.get_display_name().unwrap_or(program).to_owned();
+        files.push((directory.join(format!("{name}.1")), render(subcommand)?));
+    }
+    fs::create_dir_all(directory).map_err(Error::io("make", directory))?;
+    create_results(&files)?;
+    Ok(files.len())
+}
+
+fn render(command: Command) -> Result<String, Error> {
+    let mut page = Vec::new();
+    let rendered = clap_mangen::Man::new(command).render(&mut page);
+    rendered.map_err(Error::io("write", "the manual".as_ref()))?;
+    Ok(String::from_utf8_lossy(&page).into_owned())
+}

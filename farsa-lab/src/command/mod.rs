@@ -1,0 +1,11 @@
+//! The command `farsa` for any set of experiments.
+//!
+//! - `arguments`: the words of the command line
+//! - `cli`: the command: `main` for any set of experiments
+//! - `info`: `farsa list` and `farsa info`: what there is and what it is made of
+//! - `manual`: what the command says about itself: help with examples, completions, and pages of the manual
+
+mod arguments;
+pub mod cli;
+mod info;
+mod manual;

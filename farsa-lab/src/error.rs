@@ -1,0 +1,269 @@
+//! Why a command did not do what it was asked, and the exit code that says so.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What went wrong, with the name of the thing it went wrong with.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Error {
+    /// A name that nobody knows.
+    Unknown {
+        /// Where the name stands, such as `my.toml line 3` or `--set`; empty if it is plain from the command line.
+        place: String,
+        /// What it should be the name of.
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// The valid name that looks most like it, if there are any.
+        nearest: Option<String>,
+    },
+    /// A value that a setting cannot have.
+    Setting {
+        /// Where the value stands, such as `my.toml line 3` or `--set`; empty if that is not known.
+        place: String,
+        /// The setting's key.
+        key: String,
+        /// What is wrong with the value.
+        why: String,
+    },
+    /// A command line or a configuration that makes no sense as a whole.
+    Usage(String),
+    /// A run that was asked to go on with another value of a setting.
+    OtherConfiguration {
+        /// The run's directory.
+        directory: PathBuf,
+        /// The setting's key.
+        key: String,
+        /// The value of the run.
+        run: String,
+        /// The value asked for.
+        asked: String,
+    },
+    /// A run that depends on a file whose content is no longer what it was.
+    OtherFile {
+        /// The file.
+        path: PathBuf,
+        /// The run's directory.
+        directory: PathBuf,
+        /// CRC-32 of the file that the run was made with.
+        run: String,
+        /// CRC-32 of the file as it is.
+        found: String,
+    },
+    /// A run whose lives this program would live differently.
+    OtherVersion {
+        /// The file that says so.
+        path: PathBuf,
+        /// Which version differs.
+        what: String,
+        /// The version in the file.
+        file: u32,
+        /// The version of this program.
+        program: u32,
+    },
+    /// A directory that is in use, so that nothing can be written there.
+    Occupied {
+        /// The directory.
+        directory: PathBuf,
+        /// By what, and what to do about it.
+        why: String,
+    },
+    /// A directory that holds no run.
+    NoRun {
+        /// The directory.
+        directory: PathBuf,
+        /// What is missing.
+        why: String,
+    },
+    /// A file of a run that is truncated, altered or none of ours.
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// The operating system refused to read or write.
+    Io {
+        /// What was being done.
+        doing: &'static str,
+        /// The file or directory.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+    /// A life panicked, which is a mistake in the experiment.
+    Panicked {
+        /// The generation.
+        generation: u32,
+    },
+    /// Anything else an experiment has to complain about.
+    Other(String),
+    /// The user pressed Ctrl-C; all finished generations are kept.
+    Interrupted {
+        /// How to go on.
+        resume: String,
+    },
+}
+
+impl Error {
+    /// A value that does not go together with others; for [`Experiment::prepare`](crate::Experiment::prepare).
+    pub fn setting(key: &str, why: impl fmt::Display) -> Self {
+        Self::Setting { place: String::new(), key: key.into(), why: why.to_string() }
+    }
+
+    /// An unknown name, with the nearest of the valid ones.
+    pub fn unknown<'a>(place: &str, what: &'static str, name: &str, valid: impl IntoIterator<Item = &'a str>) -> Self {
+        let nearest = nearest(name, valid).map(str::to_owned);
+        Self::Unknown { place: place.into(), what, name: name.into(), nearest }
+    }
+
+    /// An error of the operating system, as a function for `map_err`.
+    pub fn io(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io { doing, path: path.into(), source }
+    }
+
+    /// A file that cannot be what it should be.
+    pub(crate) fn damaged(path: &Path, why: impl fmt::Display) -> Self {
+        Self::Damaged { path: path.into(), why: why.to_string() }
+    }
+
+    /// The process's exit code: 2 for a wrong command line or configuration, 130 after Ctrl-C, 1 otherwise.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Unknown { .. }
+            | Self::Setting { .. }
+            | Self::Usage(_)
+            | Self::OtherConfiguration { .. }
+            | Self::Occupied { .. }
+            | Self::NoRun { .. } => 2,
+            Self::OtherVersion { .. }
+            | Self::OtherFile { .. }
+            | Self::Damaged { .. }
+            | Self::Io { .. }
+            | Self::Panicked { .. }
+            | Self::Other(_) => 1,
+            Self::Interrupted { .. } => 130,
+        }
+    }
+}
+
+/// What robots, worlds, sensors, networks and searches cannot be built from, so that `?` suffices in
+/// [`Experiment::prepare`](crate::Experiment::prepare).
+macro_rules! others {
+    ($($error:ty),+ $(,)?) => {
+        $(impl From<$error> for Error {
+            fn from(error: $error) -> Self {
+                Self::Other(error.to_string())
+            }
+        })+
+    };
+}
+
+others!(
+    farsa_body::RobotError,
+    farsa_body::ReadError,
+    farsa_body::ChannelError,
+    farsa_physics::articulated::ModelError,
+    farsa_physics::arena::ArenaError,
+    farsa_nn::Error,
+    farsa_evo::EvoError,
+);
+
+impl From<farsa_view::Error> for Error {
+    fn from(error: farsa_view::Error) -> Self {
+        match error {
+            farsa_view::Error::UnknownCamera { name, nearest } => {
+                Self::Unknown { place: String::new(), what: "camera", name, nearest }
+            }
+            other => Self::Other(other.to_string()),
+        }
+    }
+}
+
+/// The name that takes the fewest changed, added, dropped or swapped letters.
+fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    valid.into_iter().min_by_key(|candidate| strsim::damerau_levenshtein(name, candidate))
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let start = |f: &mut fmt::Formatter<'_>, place: &str| {
+            if place.is_empty() { Ok(()) } else { write!(f, "{place}: ") }
+        };
+        match self {
+            Self::Unknown { place, what, name, nearest } => {
+                start(f, place)?;
+                write!(f, "unknown {what} `{name}`")?;
+                match nearest {
+                    Some(nearest) => write!(f, "; the nearest is `{nearest}`"),
+                    None => write!(f, "; there is none"),
+                }
+            }
+            Self::Setting { place, key, why } => {
+                start(f, place)?;
+                write!(f, "`{key}`: {why}")
+            }
+            Self::Usage(why) | Self::Other(why) => f.write_str(why),
+            Self::OtherConfiguration { directory, key, run, asked } => write!(
+                f,
+                "the run in {} has `{key}` = {run}, not {asked}: another configuration is another run",
+                directory.display()
+            ),
+            Self::OtherFile { path, directory, run, found } => write!(
+                f,
+                "{}: is another file than the run in {} was made with (CRC-32 {found}, not {run})",
+                path.display(),
+                directory.display()
+            ),
+            Self::OtherVersion { path, what, file, program } => write!(
+                f,
+                "{}: made with version {file} of {what}, this program has version {program}: \
+                 the same genes would live other lives",
+                path.display()
+            ),
+            Self::Occupied { directory, why } | Self::NoRun { directory, why } => {
+                write!(f, "{}: {why}", directory.display())
+            }
+            Self::Damaged { path, why } => write!(f, "{}: {why}", path.display()),
+            Self::Io { doing, path, source } => write!(f, "cannot {doing} {}: {source}", path.display()),
+            Self::Panicked { generation } => write!(f, "a life of generation {generation} panicked"),
+            Self::Interrupted { resume } => write!(f, "interrupted; go on with `{resume}`"),
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Io { source, .. } => Some(source),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_offered() {
+        let valid = ["evolution.population", "evolution.parents", "world.step"];
+        assert_eq!(nearest("evolution.poplation", valid), Some("evolution.population"));
+        assert_eq!(nearest("step", valid), Some("world.step"));
+        assert_eq!(nearest("step", []), None);
+        let error = Error::unknown("my.toml line 3", "key", "world.stpe", valid);
+        assert_eq!(error.to_string(), "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`");
+        assert_eq!(error.exit_code(), 2);
+    }
+
+    #[test]
+    fn what_cannot_be_built_says_why() {
+        fn wheels() -> Result<farsa_body::WheelVelocity<u8>, Error> {
+            Ok(farsa_body::WheelVelocity::new([0, 1], -2.0)?)
+        }
+        let error = wheels().unwrap_err();
+        assert_eq!((error.to_string().as_str(), error.exit_code()), ("largest speed is -2", 1));
+    }
+}

@@ -1,0 +1,73 @@
+//! The words of the commands about genotypes from elsewhere.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint, value_parser};
+
+use crate::run::arguments::{VariantArgs, WorkerArgs};
+use crate::run::plan::LARGEST_SEED;
+
+/// A setting's key in a comment would want the marks of code, which a terminal shows as they are.
+const IR_TABLES: &str = "Tables of the infrared sensors (robot.infrared_tables)";
+
+/// What the genotypes are genotypes of, beside the experiment.
+#[derive(Args)]
+pub(crate) struct GenotypeVariant {
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
+    #[arg(long, value_name = "DIR", help = IR_TABLES, value_hint = ValueHint::DirPath)]
+    pub(crate) ir_tables: Option<PathBuf>,
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct EvaluateArgs {
+    /// The experiment
+    pub(crate) experiment: String,
+    #[command(flatten)]
+    pub(crate) variant: GenotypeVariant,
+    /// The genes, whole numbers with commas between them; of several populations once for each, in their order or with
+    /// their names
+    #[arg(long, value_name = "[NAME=]G,G,...", allow_hyphen_values = true, required_unless_present = "genes_file")]
+    pub(crate) genes: Vec<String>,
+    /// A file with the genes: a .gen file of the original FARSA, or a list; of several populations as --genes
+    #[arg(long, value_name = "[NAME=]FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) genes_file: Vec<PathBuf>,
+    /// Which of the file's genotypes, from 0 [default: its only one]; of several files once for each
+    #[arg(long, value_name = "N", requires = "genes_file")]
+    pub(crate) genotype: Vec<usize>,
+    /// Random trials
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]
+    pub(crate) trials: u32,
+    /// Where the random numbers come from, as in a test; never those of a run
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) workers: WorkerArgs,
+    /// Write JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct ImportArgs {
+    /// .gen files of the original FARSA; the first genotype becomes the champion. Of several populations one file for each
+    /// in their order, or any number as POPULATION=FILE, as many genotypes for each
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) files: Vec<PathBuf>,
+    /// The experiment that they are genotypes of
+    #[arg(long, value_name = "NAME")]
+    pub(crate) experiment: String,
+    #[command(flatten)]
+    pub(crate) variant: GenotypeVariant,
+    /// Where the random numbers of replayed lives come from
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
+    /// The new directory
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) out: PathBuf,
+    /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,267 @@
+//! `farsa evaluate`: anybody's genotype on random trials.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::search::evolution::POPULATION;
+use crate::evaluation::test;
+use crate::evaluation::test_table::Tried;
+use crate::experiment::definition::Experiment;
+use crate::experiment::outcome::Note;
+use crate::evaluation::genotypes::Shape;
+use crate::run::plan::{self, Plan};
+use crate::run::pool::Unfinished;
+use crate::evaluation::populations::Populations;
+use crate::run::progress::Progress;
+use crate::experiment::settings::Value;
+
+/// The setting that `--ir-tables` is short for.
+const INFRARED_TABLES: &str = "robot.infrared_tables";
+
+/// What an evaluation found.
+#[derive(Debug, Serialize)]
+pub(crate) struct Evaluation {
+    experiment: String,
+    condition: String,
+    trials: usize,
+    seed: u64,
+    /// Lives whose numbers were not finite; they count in nothing else.
+    broken_down: usize,
+    /// Of a single population; none of several, which have a place of their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mean_fitness: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    standard_error: Option<f64>,
+    /// The mean of every note that is a number, under its name.
+    #[serde(flatten)]
+    per_trial: serde_json::Map<String, serde_json::Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    success_rate: Option<f64>,
+    /// What each of several populations earned, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    populations: Vec<Earned>,
+    /// What stands in each line, in the order of the lines.
+    #[serde(skip)]
+    lines: Vec<(String, String)>,
+}
+
+/// What the genotype of a population earned.
+#[derive(Debug, Serialize)]
+struct Earned {
+    population: String,
+    mean_fitness: f64,
+    /// Of the mean fitness; not a number for a single trial.
+    standard_error: f64,
+    success_rate: f64,
+}
+
+impl Earned {
+    /// What population number `own` earned, of trials in which nobody broke down, and of all.
+    fn new(name: &str, own: usize, lived: &[&Tried], all: usize) -> Self {
+        let of = |tried: &Tried| match own.checked_sub(1) {
+            None => Some((tried.fitness, tried.outcome.success)),
+            Some(other) => tried.others.get(other).copied(),
+        };
+        let earned: Vec<(f64, bool)> = lived.iter().filter_map(|tried| of(tried)).collect();
+        let (mean_fitness, standard_error) = mean(&earned.iter().map(|(fitness, _)| *fitness).collect::<Vec<_>>());
+        let successes = earned.iter().filter(|(_, success)| *success).count();
+        let success_rate = successes as f64 / all.max(1) as f64;
+        Self { population: name.into(), mean_fitness, standard_error, success_rate }
+    }
+}
+
+impl Evaluation {
+    /// What `tried` says together; `names` are those of the populations.
+    fn new(plan: &Plan<'_>, seed: u64, names: &[String], tried: &[Tried]) -> Self {
+        let finite = |tried: &&Tried| tried.fitness.is_finite() && tried.others.iter().all(|(x, _)| x.is_finite());
+        let lived: Vec<&Tried> = tried.iter().filter(finite).collect();
+        let broken_down = tried.len() - lived.len();
+        let mut notes: Vec<(String, f64)> = Vec::new();
+        let known = lived.first().map_or(&[][..], |tried| &tried.outcome.notes);
+        for (name, _) in known.iter().filter(|(_, note)| matches!(note, Note::Number(_))) {
+            let values = lived.iter().filter_map(|tried| {
+                let (_, note) = tried.outcome.notes.iter().find(|(other, _)| other == name)?;
+                if let Note::Number(x) = note { Some(*x) } else { None }
+            });
+            notes.push((format!("{}_per_trial", word(name)), mean(&values.collect::<Vec<_>>()).0));
+        }
+        let earned = names.iter().enumerate().map(|(own, name)| Earned::new(name, own, &lived, tried.len()));
+        let earned: Vec<Earned> = earned.collect();
+        let alone = if let [alone] = earned.as_slice() { Some(alone) } else { None };
+        let mut lines: Vec<(String, String)> = Vec::new();
+        let mut add = |name: &str, x: f64| lines.push((name.into(), format!("{x:?}")));
+        for each in &earned {
+            let of = if alone.is_some() { String::new() } else { format!("{}_", word(&each.population)) };
+            add(&format!("{of}mean_fitness"), each.mean_fitness);
+            add(&format!("{of}standard_error"), each.standard_error);
+            if alone.is_some() {
+                for (name, x) in &notes {
+                    add(name, *x);
+                }
+            }
+            add(&format!("{of}success_rate"), each.success_rate);
+        }
+        if alone.is_none() {
+            for (name, x) in &notes {
+                add(name, *x);
+            }
+        }
+        if broken_down > 0 {
+            lines.push(("broken_down".into(), broken_down.to_string()));
+        }
+        Self {
+            experiment: plan.experiment.name().into(),
+            condition: plan.condition.clone(),
+            trials: tried.len(),
+            seed,
+            broken_down,
+            mean_fitness: alone.map(|alone| alone.mean_fitness),
+            standard_error: alone.map(|alone| alone.standard_error),
+            per_trial: notes.into_iter().map(|(name, x)| (name, x.into())).collect(),
+            success_rate: alone.map(|alone| alone.success_rate),
+            populations: if names.len() == 1 { Vec::new() } else { earned },
+            lines,
+        }
+    }
+
+    /// A line for each number, its name first.
+    pub(crate) fn text(&self) -> String {
+        // Writing into a string cannot fail.
+        let mut text = String::new();
+        for (name, x) in &self.lines {
+            let _ = writeln!(text, "{name} {x}");
+        }
+        text
+    }
+}
+
+/// The mean and its standard error.
+fn mean(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+    (mean, (squares / (count - 1.0) / count).sqrt())
+}
+
+/// The name of a note as one word: letters and digits stay, everything between them becomes an underscore.
+fn word(name: &str) -> String {
+    name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
+}
+
+/// The plan that the options of the commands about genotypes ask for.
+///
+/// # Errors
+/// [`Error::Unknown`] and [`Error::Setting`]; [`Error::Usage`] for tables that the experiment has no setting for.
+pub(crate) fn plan<'e>(
+    experiments: &[&'e dyn Experiment],
+    experiment: &str,
+    options: &GenotypeVariant,
+) -> Result<Plan<'e>, Error> {
+    let mut plan = options.variant.plan(plan::find(experiments, experiment, "")?)?;
+    if let Some(directory) = &options.ir_tables {
+        if !plan.settings.table().iter().any(|setting| setting.key() == INFRARED_TABLES) {
+            let condition = &plan.condition;
+            let under = if condition.is_empty() { String::new() } else { format!(" under condition `{condition}`") };
+            let why = format!("--ir-tables: {experiment} has no setting `{INFRARED_TABLES}`{under}");
+            return Err(Error::Usage(why));
+        }
+        let text = directory
+            .to_str()
+            .ok_or_else(|| Error::Usage(format!("--ir-tables: {}: the name is not Unicode", directory.display())))?;
+        plan.settings.set("--ir-tables", INFRARED_TABLES, Value::Word(text.into()))?;
+    }
+    Ok(plan)
+}
+
+/// Lives random trials of the genes on the command line; those of several populations live against each other.
+///
+/// # Errors
+/// [`Error::Usage`] for genes that are none of the experiment's, and for a population without genes or with genes twice.
+pub(crate) fn evaluate(args: &EvaluateArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<Evaluation, Error> {
+    let plan = plan(experiments, &args.experiment, &args.variant)?;
+    let mut pool = args.workers.pool(&plan)?;
+    let names = pool.evaluator().populations();
+    let genes = genes(args, plan.experiment.name(), &names, Shape::of(pool.genotype()))?;
+    let parameters: Option<Vec<Vec<f32>>> = genes.iter().map(|genes| pool.genotype().decode(genes)).collect();
+    let parameters = parameters.unwrap_or_default();
+    let size = if names.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
+    let trials = args.trials as usize;
+    let progress = Progress::new(0, trials as u64, quiet);
+    let tried = exam::lives(&mut pool, &parameters, size, trials, args.seed, &progress);
+    drop(progress);
+    let tried = tried.map_err(|reason| match reason {
+        Unfinished::Panicked => Error::Other("a life panicked".into()),
+        Unfinished::Stopped => Error::Other("stopped".into()),
+    })?;
+    Ok(Evaluation::new(&plan, args.seed, &names, &tried))
+}
+
+/// The genes of each population, from lists and files.
+fn genes(args: &EvaluateArgs, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<u16>>, Error> {
+    const OPTIONS: &str = "--genes, --genes-file";
+    let populations = Populations { experiment, names };
+    if args.genotype.len() > args.genes_file.len() {
+        let (numbers, files) = (args.genotype.len(), args.genes_file.len());
+        return Err(Error::Usage(format!("--genotype: {numbers} numbers for {files} of --genes-file")));
+    }
+    let count = args.genes.len() + args.genes_file.len();
+    if names.len() == 1 && count > 1 {
+        return Err(Error::Usage(format!("{OPTIONS}: {count} genotypes where {experiment} lives with one")));
+    }
+    let mut given = Vec::new();
+    for list in &args.genes {
+        let (population, list) = populations.split("--genes", list)?;
+        let of = population.map_or_else(String::new, |population| format!("{}: ", names[population]));
+        let genes = shape.list(list).map_err(|error| Error::Usage(format!("--genes: {of}{error}")))?;
+        given.push((population, genes));
+    }
+    for (number, path) in args.genes_file.iter().enumerate() {
+        let (population, path) = populations.file("--genes-file", path)?;
+        given.push((population, one(shape.read(&path)?, args.genotype.get(number).copied(), &path)?));
+    }
+    let unnamed = given.iter().any(|(population, _)| population.is_none());
+    if names.len() > 1 && unnamed && !args.genes.is_empty() && !args.genes_file.is_empty() {
+        // They have no order between them.
+        let [first, second, ..] = names else { return Ok(Vec::new()) };
+        let why = format!("name the populations: --genes {first}=... --genes-file {second}=...");
+        return Err(Error::Usage(format!("{OPTIONS}: {experiment} has several populations: {why}")));
+    }
+    let all = populations.divide(OPTIONS, given)?;
+    let one = |(name, mut all): (&String, Vec<Vec<u16>>)| match all.len() {
+        1 => Ok(all.swap_remove(0)),
+        count => Err(Error::Usage(format!("{OPTIONS}: {count} genotypes for population `{name}`"))),
+    };
+    names.iter().zip(all).map(one).collect()
+}
+
+/// The genotype that was asked for, or the only one.
+fn one(mut genotypes: Vec<Vec<u16>>, wanted: Option<usize>, path: &Path) -> Result<Vec<u16>, Error> {
+    let (path, count) = (path.display(), genotypes.len());
+    match wanted {
+        None if count == 1 => Ok(genotypes.swap_remove(0)),
+        None => Err(Error::Usage(format!("{path}: holds {count} genotypes: choose one with --genotype, from 0"))),
+        Some(number) if number < count => Ok(genotypes.swap_remove(number)),
+        Some(number) => Err(Error::Usage(format!("{path}: genotype {number} of {count} (the first is 0)"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_has_an_error() {
+        // 1, 2, 3, 4: variance 5/3, divided by 4.
+        let (m, e) = mean(&[1.0, 2.0, 3.0, 4.0]);
+        assert!(m == 2.5 && (e - (5.0_f64 / 12.0).sqrt()).abs() < 1e-15);
+        assert!(mean(&[7.0]).0 == 7.0 && mean(&[7.0]).1.is_nan() && mean(&[]).0.is_nan());
+    }
+
+    #[test]
+    fn notes_are_one_word() {
+        assert_eq!(["collisions", "at [m]", "time to go [s]"].map(word), ["collisions", "at_m", "time_to_go_s"]);
+    }
+}

@@ -1,0 +1,126 @@
+//! `farsa import`: genotypes of the original FARSA as a directory that can be tested, replayed and drawn.
+
+use farsa_evo::Fitness;
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::evaluation::arguments::ImportArgs;
+use crate::evaluation::evaluate;
+use crate::evaluation::genotypes::Shape;
+use crate::evaluation::populations::Populations;
+use crate::experiment::definition::Experiment;
+use crate::experiment::settings::Value;
+use crate::run::records::{Ancestry, Best, Champions};
+use crate::search::engine::Descent;
+use crate::search::evolution::POPULATION;
+use crate::store::directory::{Directory, replace};
+use crate::store::manifest::Manifest;
+
+/// What was imported.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    directory: String,
+    experiment: String,
+    condition: String,
+    /// Of each population.
+    genotypes: usize,
+    genes: usize,
+    /// Names, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    populations: Vec<String>,
+    files: Vec<String>,
+}
+
+impl Summary {
+    /// The same in a line of words.
+    pub(crate) fn text(&self) -> String {
+        let Self { directory, genotypes, genes, files, populations, .. } = self;
+        if !populations.is_empty() {
+            let (of, files) = (populations.join(" and of "), files.join(", "));
+            return format!(
+                "{directory}: {genotypes} of {of}, of {genes} genes each, from {files}; the first are the champions"
+            );
+        }
+        let (what, champion) = match genotypes {
+            1 => ("genotype", ""),
+            _ => ("genotypes", "; individual 0 is the champion"),
+        };
+        format!("{directory}: {genotypes} {what} of {genes} genes from {}{champion}", files.join(", "))
+    }
+}
+
+/// Makes a directory of the genotypes in some files: the individuals of generation 0, of which the first of each population
+/// is the champion.
+///
+/// # Errors
+/// [`Error::Damaged`] with the line for a file that is none of the original's or of another experiment, [`Error::Usage`] for
+/// populations that are left without or have fewer genotypes than others; nothing is then written. [`Error::Occupied`] when
+/// there is something at the place already.
+pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Result<Summary, Error> {
+    let mut plan = evaluate::plan(experiments, &args.experiment, &args.variant)?;
+    plan.seed = args.seed;
+    let evaluator = plan.evaluator()?;
+    let (names, genotype) = (evaluator.populations(), plan.genotype(evaluator.as_ref()));
+    let of = genomes(args, plan.experiment.name(), &names, Shape::of(&genotype))?;
+    let (populations, size) = (names.len(), of.first().map_or(0, Vec::len));
+    if populations > 1 {
+        // By this an individual's number tells its population.
+        plan.settings.set("FILE", POPULATION, Value::Whole(i64::try_from(size).unwrap_or(i64::MAX)))?;
+        if let Some((_, asked)) = args.variant.variant.set.iter().find(|(key, _)| key == POPULATION)
+            && *asked != *plan.settings.get(POPULATION)?
+        {
+            let why = format!("{size} genotypes of each population where --set wants {asked}");
+            return Err(Error::setting(POPULATION, why));
+        }
+    }
+    let first = |genomes: &Vec<Vec<u16>>| genomes.first().cloned();
+    let best: Option<Vec<Vec<u16>>> = of.iter().map(first).collect();
+    let Some(best) = best else {
+        return Err(Error::Usage("no file to import".into()));
+    };
+    let files: Vec<String> = args.files.iter().map(|path| path.display().to_string()).collect();
+    let summary = Summary {
+        directory: args.out.display().to_string(),
+        experiment: plan.experiment.name().into(),
+        condition: plan.condition.clone(),
+        genotypes: size,
+        genes: genotype.genes(),
+        populations: if populations > 1 { names } else { Vec::new() },
+        files: files.clone(),
+    };
+    let (text, identity) = (plan.to_toml()?, plan.identity()?);
+    Directory::create(&args.out, |directory| {
+        replace(&directory.config(), text.as_bytes())?;
+        Manifest { imported: files, ..Manifest::new(&identity) }.write(&directory.manifest())?;
+        // Nobody has evaluated them yet.
+        let best = best.into_iter().enumerate().map(|(population, genes)| Best {
+            individual: (population * size) as u32,
+            fitness: Fitness::WORST,
+            genes,
+        });
+        Champions { identity: identity.clone(), generation: 0, best: best.collect() }.write(&directory.champion())?;
+        let genomes = of.into_iter().flatten().collect();
+        Ancestry { identity, descent: Descent::Imported { genomes, populations } }.write(&directory.genotypes())
+    })?;
+    Ok(summary)
+}
+
+/// The genotypes of each population, as many of each.
+fn genomes(args: &ImportArgs, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<Vec<u16>>>, Error> {
+    let populations = Populations { experiment, names };
+    let given = args.files.iter().map(|path| populations.file("FILE", path)).collect::<Result<_, _>>()?;
+    let mut all = Vec::new();
+    for files in populations.divide("FILE", given)? {
+        let mut genomes = Vec::new();
+        for path in files {
+            genomes.extend(shape.read(&path)?);
+        }
+        all.push(genomes);
+    }
+    let sizes = || names.iter().zip(&all).map(|(name, genomes)| format!("{} of {name}", genomes.len()));
+    if all.windows(2).any(|pair| pair[0].len() != pair[1].len()) {
+        let sizes = sizes().collect::<Vec<_>>().join(" and ");
+        return Err(Error::Usage(format!("{experiment}: {sizes}: as many genotypes of each population are wanted")));
+    }
+    Ok(all)
+}

@@ -1,0 +1,184 @@
+//! `farsa test`: the champion on starts that it has never met.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::sync::atomic::AtomicBool;
+
+use farsa_num::crc32;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::search::evolution::POPULATION;
+use crate::evaluation::test_table::{Findings, Table, Tried};
+use crate::experiment::evaluator::Evaluation;
+use crate::experiment::outcome::Outcome;
+use crate::experiment::lanes::Wanted;
+use crate::experiment::episode::EpisodeId;
+use crate::run::plan::{LARGEST_SEED, Plan};
+use crate::run::pool::{Pool, Unfinished};
+use crate::run::progress::Progress;
+use crate::run::records::{Best, Champions};
+
+/// `test.json`: which champion `test.csv` is about, and how to make it again.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Record {
+    pub(crate) generation: u32,
+    pub(crate) individual: u32,
+    pub(crate) trials: usize,
+    pub(crate) seed: u64,
+    /// CRC-32 of the table: a process that was killed between the two files leaves another.
+    table_crc: u32,
+}
+
+impl Record {
+    /// The record of the test that a directory holds; none if it was made before there were records.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::Damaged`].
+    pub(crate) fn read(directory: &Directory) -> Result<Option<Self>, Error> {
+        let path = directory.test_record();
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
+        let record: Self = serde_json::from_str(&text).map_err(|error| Error::damaged(&path, error))?;
+        let table = fs::read(directory.test()).map_err(Error::io("read", &directory.test()))?;
+        Ok((crc32(&table) == record.table_crc).then_some(record))
+    }
+}
+
+/// What a test found.
+#[derive(Debug, Serialize)]
+pub(crate) struct Exam {
+    directory: String,
+    generation: u32,
+    individual: u32,
+    /// The champions of all populations, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    individuals: Vec<u32>,
+    seed: u64,
+    #[serde(flatten)]
+    findings: Findings,
+    /// That the champion may behave otherwise than in its run.
+    warning: Option<String>,
+    #[serde(skip)]
+    table: Table,
+}
+
+impl Exam {
+    /// A table for reading, and what it says together.
+    pub(crate) fn text(&self) -> String {
+        let Self { generation, individual, seed, .. } = self;
+        let mut text = self.table.aligned();
+        // Writing into a string cannot fail.
+        let _ = match self.individuals.as_slice() {
+            [] => writeln!(text, "\nindividual {individual} of generation {generation}, test seed {seed}"),
+            all => {
+                let all = all.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+                writeln!(text, "\nindividuals {all} of generation {generation} against each other, test seed {seed}")
+            }
+        };
+        text.push_str(&self.findings.text());
+        if let Some(warning) = &self.warning {
+            let _ = writeln!(text, "warning: {warning}");
+        }
+        text
+    }
+}
+
+/// Lives `trials` fresh trials of the champion and writes `test.csv`.
+///
+/// Trial i of the test is trial i modulo the experiment's number of trials, with random numbers of its own. The champions
+/// of several populations live against each other: each trial is lived once for each of them, with the same numbers.
+pub(crate) fn test(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    trials: usize,
+    seed: u64,
+    threads: usize,
+    lanes: Wanted,
+    quiet: bool,
+) -> Result<Exam, Error> {
+    let path = directory.champion();
+    if !path.is_file() && directory.checkpoint().is_file() {
+        return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
+    }
+    let Champions { identity, generation, best } = Champions::read(plan, directory)?;
+    let mut pool = Pool::new(plan, threads, lanes)?;
+    let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| pool.genotype().decode(&best.genes)).collect();
+    let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
+    let Some(parameters) = parameters else {
+        return Err(Error::damaged(&path, "its genome is not one of the experiment"));
+    };
+    let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
+    let size = if best.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
+    let progress = Progress::new(0, trials as u64, quiet);
+    let tried = lives(&mut pool, &parameters, size, trials, seed, &progress);
+    drop(progress);
+    let results = tried.map_err(|reason| match reason {
+        Unfinished::Panicked => Error::Panicked { generation },
+        Unfinished::Stopped => Error::Other("stopped".into()),
+    })?;
+    let Some(&Best { individual, .. }) = best.first() else {
+        return Err(Error::damaged(&path, "there is nobody in it"));
+    };
+    let individuals = if best.len() > 1 { best.iter().map(|best| best.individual).collect() } else { Vec::new() };
+
+    let terms = pool.evaluator().terms();
+    let names = pool.evaluator().populations();
+    let table = Table::new(&terms, names.get(1..best.len()).unwrap_or(&[]), &results);
+    let bytes = table.write(&directory.test())?;
+    let record = Record { generation, individual, trials, seed, table_crc: crc32(&bytes) };
+    let text = serde_json::to_string_pretty(&record).map_err(|error| Error::Other(error.to_string()))?;
+    replace(&directory.test_record(), format!("{text}\n").as_bytes())?;
+    let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
+    Ok(Exam { directory: path, generation, individual, individuals, seed, findings, warning, table })
+}
+
+/// The episode of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
+pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
+    let kinds = kinds.max(1);
+    let (generation, trial) = ((trial / kinds) as u32, (trial % kinds) as u32);
+    EpisodeId { seed: seed | !LARGEST_SEED, generation, individual: 0, trial }
+}
+
+/// Evaluates fresh trials of some parameters, of one individual or one of each population of `size` individuals.
+pub(crate) fn lives(
+    pool: &mut Pool,
+    champions: &[Vec<f32>],
+    size: usize,
+    trials: usize,
+    seed: u64,
+    progress: &Progress,
+) -> Result<Vec<Tried>, Unfinished> {
+    let (count, kinds) = (champions.len().max(1), pool.evaluator().trials().max(1));
+    let others_of = |own: usize| champions.iter().enumerate().filter(move |(other, _)| *other != own);
+    let others: Vec<Vec<&[f32]>> =
+        (0..champions.len()).map(|own| others_of(own).map(|(_, other)| other.as_slice()).collect()).collect();
+    let task = |number: usize| {
+        let (population, trial) = (number % count, number / count);
+        let id = EpisodeId { individual: (population * size) as u32, ..episode(trial, kinds, seed) };
+        Some(Evaluation { number, parameters: champions.get(population)?, opponents: others.get(population)?, id })
+    };
+    let done = |number: usize, _: Option<&Outcome>| {
+        if number.is_multiple_of(count) {
+            progress.advance();
+        }
+    };
+    let outcomes = pool.evaluate(trials * count, &AtomicBool::new(false), task, done)?;
+    let fitness = |outcome: &Outcome| {
+        let alone = std::slice::from_ref(outcome);
+        if outcome.is_finite() { pool.evaluator().fitness(alone) } else { f64::NAN }
+    };
+    let mut tried: Vec<Tried> = Vec::with_capacity(trials);
+    for (number, outcome) in outcomes.into_iter().flatten().enumerate() {
+        let earned = fitness(&outcome);
+        if let Some(first) = tried.last_mut().filter(|_| !number.is_multiple_of(count)) {
+            first.others.push((earned, outcome.success));
+        } else {
+            let trial = (number / count % kinds) as u32;
+            tried.push(Tried { trial, outcome, fitness: earned, others: Vec::new() });
+        }
+    }
+    Ok(tried)
+}

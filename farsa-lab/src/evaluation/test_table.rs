@@ -1,0 +1,334 @@
+//! `test.csv`: a line per trial of a test, and what they say together.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::{Serialize, Serializer};
+
+use crate::error::Error;
+use crate::experiment::outcome::{Note, Outcome};
+
+/// The columns that every test has; the terms of the fitness, if there are more than one, and the notes follow.
+const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
+
+/// One trial.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Tried {
+    /// Which of the experiment's trials it was.
+    pub(crate) trial: u32,
+    /// What came of it.
+    pub(crate) outcome: Outcome,
+    /// Its fitness; NaN if it broke down.
+    pub(crate) fitness: f64,
+    /// Fitness and success of the opponents in the same trial, which is their life in their populations.
+    pub(crate) others: Vec<(f64, bool)>,
+}
+
+/// The trials of a test as text, the head first; every line is as long as the head.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Table {
+    lines: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// The table of some trials, with columns for all populations but the first, of these names.
+    pub(crate) fn new(terms: &[String], others: &[String], trials: &[Tried]) -> Self {
+        let mut head: Vec<String> = HEAD.map(str::to_owned).into();
+        let terms = own_columns(terms);
+        head.extend(terms.iter().cloned());
+        // A life that broke down has no notes: the names are those of the first that has.
+        let names: Vec<&str> = trials
+            .iter()
+            .map(|tried| &tried.outcome.notes)
+            .find(|notes| !notes.is_empty())
+            .map_or_else(Vec::new, |notes| notes.iter().map(|(name, _)| *name).collect());
+        head.extend(names.iter().map(|&name| name.to_owned()));
+        // Ones and zeros, so that the mean of a success is its share.
+        head.extend(
+            others.iter().flat_map(|name| ["fitness", "success"].map(|what| format!("{what} of population {name}"))),
+        );
+        let lines = trials.iter().enumerate().map(|(index, Tried { trial, outcome, fitness, others })| {
+            let mut line = vec![
+                index.to_string(),
+                trial.to_string(),
+                outcome.steps.to_string(),
+                outcome.success.to_string(),
+                number(*fitness),
+            ];
+            line.extend((0..terms.len()).map(|term| number(outcome.terms.get(term).copied().unwrap_or(f64::NAN))));
+            line.extend(names.iter().map(|&name| match outcome.notes.iter().find(|note| note.0 == name) {
+                Some((_, Note::Number(x))) => number(*x),
+                Some((_, Note::Text(text))) => text.clone(),
+                None => String::new(),
+            }));
+            line.extend(
+                others.iter().flat_map(|(fitness, success)| [number(*fitness), u8::from(*success).to_string()]),
+            );
+            line
+        });
+        Self { lines: std::iter::once(head).chain(lines).collect() }
+    }
+
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::Damaged`] when it is not the table of a test.
+    pub(crate) fn read(path: &Path) -> Result<Self, Error> {
+        let text = std::fs::read_to_string(path).map_err(Error::io("read", path))?;
+        Self::parse(&text).map_err(|why| Error::damaged(path, why))
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
+        let mut lines: Vec<Vec<String>> = Vec::new();
+        for record in reader.records() {
+            // A line of another length than the first is an error here, and the error says which.
+            lines.push(record.map_err(|error| error.to_string())?.iter().map(str::to_owned).collect());
+        }
+        let head = lines.first().map(|line| line.iter().map(String::as_str).collect::<Vec<_>>()).unwrap_or_default();
+        if !head.starts_with(&HEAD) {
+            return Err("is not the table of a test".into());
+        }
+        for (index, line) in lines.iter().skip(1).enumerate() {
+            let [number, trial, steps, success, fitness] = [0, 1, 2, 3, 4].map(|column| line[column].as_str());
+            let good = number.parse() == Ok(index)
+                && trial.parse::<u32>().is_ok()
+                && steps.parse::<u32>().is_ok()
+                && success.parse::<bool>().is_ok()
+                && fitness.parse::<f64>().is_ok();
+            if !good {
+                return Err(format!("line {} is not a trial of a test", index + 2));
+            }
+        }
+        if text.ends_with('\n') && lines.len() > 1 { Ok(Self { lines }) } else { Err("truncated".into()) }
+    }
+
+    /// Writes the file and returns what is in it.
+    pub(crate) fn write(&self, path: &Path) -> Result<Vec<u8>, Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        self.lines
+            .iter()
+            .try_for_each(|line| writer.write_record(line))
+            .map_err(|error| Error::damaged(path, error))?;
+        let bytes = writer.into_inner().map_err(|error| Error::damaged(path, error.to_string()))?;
+        replace(path, &bytes)?;
+        Ok(bytes)
+    }
+
+    /// The table with columns that stand under each other; numbers are cut to two places.
+    pub(crate) fn aligned(&self) -> String {
+        let short = |field: &String| match field.parse::<f64>() {
+            Ok(x) if field.contains('.') => format!("{x:.2}"),
+            _ => field.clone(),
+        };
+        let table: Vec<Vec<String>> = self.lines.iter().map(|line| line.iter().map(short).collect()).collect();
+        let columns = table.first().map_or(0, Vec::len);
+        let width = |column: usize| table.iter().filter_map(|line| Some(line.get(column)?.chars().count())).max();
+        let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+        let mut text = String::new();
+        for line in &table {
+            let fields = line.iter().zip(&widths).map(|(field, &width)| format!("{field:>width$}"));
+            text.push_str(fields.collect::<Vec<_>>().join("  ").trim_end());
+            text.push('\n');
+        }
+        text
+    }
+
+    /// What the trials say together; `terms` are those of the experiment.
+    pub(crate) fn findings(&self, terms: &[String]) -> Findings {
+        let rows = self.lines.get(1..).unwrap_or_default();
+        let field = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
+        let column = |column: usize| rows.iter().map(|row| field(row, column)).collect::<Vec<_>>();
+        let mut by_trial: BTreeMap<u32, Share> = BTreeMap::new();
+        for row in rows {
+            let share = by_trial.entry(field(row, 1).parse().unwrap_or_default()).or_default();
+            share.of += 1;
+            share.successes += usize::from(field(row, 3) == "true");
+        }
+        let head = self.lines.first().map(Vec::as_slice).unwrap_or_default();
+        let notes = head.iter().enumerate().skip(HEAD.len()).filter(|(_, name)| !own_columns(terms).contains(name));
+        Findings {
+            trials: rows.len(),
+            successes: by_trial.values().map(|share| share.successes).sum(),
+            broken_down: column(4).iter().filter(|text| !text.parse::<f64>().is_ok_and(f64::is_finite)).count(),
+            fitness: mean(&column(4)),
+            by_trial,
+            notes: notes.map(|(index, name)| (name.clone(), Finding::of(column(index)))).collect(),
+        }
+    }
+}
+
+/// What the trials of a test say together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Findings {
+    pub(crate) trials: usize,
+    pub(crate) successes: usize,
+    /// Lives whose numbers were not finite.
+    pub(crate) broken_down: usize,
+    /// Mean fitness of the lives that did not break down.
+    pub(crate) fitness: f64,
+    /// By the number of the experiment's trial.
+    pub(crate) by_trial: BTreeMap<u32, Share>,
+    /// By the name of the note, in the order of the table.
+    #[serde(serialize_with = "as_map")]
+    pub(crate) notes: Vec<(String, Finding)>,
+}
+
+/// How many of how many succeeded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub(crate) struct Share {
+    pub(crate) successes: usize,
+    pub(crate) of: usize,
+}
+
+/// What the trials say about a note.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Finding {
+    /// The mean of a quantity, over the trials that have it.
+    Mean(f64),
+    /// How often each word was said.
+    Counts(BTreeMap<String, usize>),
+}
+
+impl Finding {
+    fn of(fields: Vec<String>) -> Self {
+        if fields.iter().all(|field| field.is_empty() || field.parse::<f64>().is_ok()) {
+            return Self::Mean(mean(&fields));
+        }
+        let mut counts = BTreeMap::new();
+        for field in fields.into_iter().filter(|field| !field.is_empty()) {
+            *counts.entry(field).or_default() += 1;
+        }
+        Self::Counts(counts)
+    }
+}
+
+impl Findings {
+    /// The share of successes, the mean fitness, and the notes' counts and means, a line each.
+    pub(crate) fn text(&self) -> String {
+        let share = |n: usize| format!("{n} of {} ({:.1} %)", self.trials, 100.0 * self.part(n));
+        // Writing into a string cannot fail.
+        let mut text = String::new();
+        let _ = writeln!(text, "success: {}", share(self.successes));
+        if self.broken_down > 0 {
+            let _ = writeln!(text, "broken down: {}", share(self.broken_down));
+        }
+        let _ = writeln!(text, "fitness: mean {:.2}", self.fitness);
+        for (name, finding) in &self.notes {
+            let _ = match finding {
+                Finding::Mean(mean) => writeln!(text, "{name}: mean {mean:.2}"),
+                Finding::Counts(counts) => {
+                    let counts: Vec<String> =
+                        counts.iter().map(|(word, &count)| format!("{word} {}", share(count))).collect();
+                    writeln!(text, "{name}: {}", counts.join(", "))
+                }
+            };
+        }
+        text
+    }
+
+    /// A number of trials as a part of all.
+    pub(crate) fn part(&self, trials: usize) -> f64 {
+        trials as f64 / self.trials.max(1) as f64
+    }
+}
+
+/// An experiment with one term has it as its fitness and gives it no column.
+fn own_columns(terms: &[String]) -> &[String] {
+    if terms.len() > 1 { terms } else { &[] }
+}
+
+fn as_map<S: Serializer>(notes: &[(String, Finding)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(notes.iter().map(|(name, finding)| (name, finding)))
+}
+
+fn mean(fields: &[String]) -> f64 {
+    let finite: Vec<f64> =
+        fields.iter().filter_map(|field| field.parse().ok()).filter(|x: &f64| x.is_finite()).collect();
+    finite.iter().sum::<f64>() / finite.len().max(1) as f64
+}
+
+fn number(x: f64) -> String {
+    format!("{x:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let outcome = |phase: &str, height: f64, success| Outcome {
+            terms: vec![1.0, 2.5],
+            steps: 6,
+            success,
+            notes: vec![("phase", phase.into()), ("height", height.into())],
+        };
+        let tried = |trial, outcome, fitness| Tried { trial, outcome, fitness, others: Vec::new() };
+        let trials = [
+            tried(0, outcome("reach", 1.0, false), 3.5),
+            tried(1, outcome("lift", 6.0, true), 3.5),
+            tried(2, Outcome::failed(), f64::NAN),
+            tried(0, outcome("lift", 8.0, true), 7.0),
+        ];
+        Table::new(&["a".into(), "b".into()], &[], &trials)
+    }
+
+    #[test]
+    fn opponents_have_columns_of_their_own() {
+        let outcome = Outcome { terms: vec![2.0], steps: 6, notes: vec![("at", 1.0.into())], ..Outcome::default() };
+        let tried =
+            |others: &[(f64, bool)]| Tried { trial: 0, outcome: outcome.clone(), fitness: 2.0, others: others.into() };
+        let trials = [tried(&[(3.0, true), (0.5, false)]), tried(&[(1.0, false), (0.5, false)])];
+        let table = Table::new(&["a".into()], &["prey".into(), "2".into()], &trials);
+        assert_eq!(
+            table.lines[0][5..].join(","),
+            "at,fitness of population prey,success of population prey,fitness of population 2,success of population 2"
+        );
+        assert_eq!(table.lines[1].join(","), "0,0,6,false,2.0,1.0,3.0,1,0.5,0");
+        let notes = table.findings(&["a".into()]).notes;
+        assert_eq!(
+            notes[1..3].iter().map(|note| note.1.clone()).collect::<Vec<_>>(),
+            [Finding::Mean(2.0), Finding::Mean(0.5)]
+        );
+    }
+
+    #[test]
+    fn a_table_counts_words_and_averages_numbers() {
+        let table = table();
+        assert_eq!(table.lines[0].join(","), "index,trial,steps,success,fitness,a,b,phase,height");
+        assert_eq!(table.lines[1].join(","), "0,0,6,false,3.5,1.0,2.5,reach,1.0");
+        assert_eq!(table.lines[3].join(","), "2,2,0,false,NaN,NaN,NaN,,");
+        let findings = table.findings(&["a".into(), "b".into()]);
+        assert_eq!(
+            findings.text(),
+            "success: 2 of 4 (50.0 %)\nbroken down: 1 of 4 (25.0 %)\nfitness: mean 4.67\n\
+             phase: lift 2 of 4 (50.0 %), reach 1 of 4 (25.0 %)\nheight: mean 5.00\n"
+        );
+        let shares = findings.by_trial.values().map(|share| (share.successes, share.of)).collect::<Vec<_>>();
+        assert_eq!(shares, [(1, 2), (1, 1), (0, 1)]);
+        assert!(table.aligned().lines().all(|line| line.len() <= table.aligned().lines().next().unwrap().len()));
+    }
+
+    #[test]
+    fn it_reads_back_and_damage_is_found() {
+        let head = "index,trial,steps,success,fitness,at\n";
+        let good = Table::parse(&format!("{head}0,0,6,true,1.5,0.25\n1,1,6,false,NaN,\n")).unwrap();
+        let findings = good.findings(&["fitness".into()]);
+        assert_eq!((findings.successes, findings.broken_down, findings.fitness), (1, 1, 1.5));
+        assert_eq!(findings.notes, [("at".to_owned(), Finding::Mean(0.25))]);
+        for (text, why) in [
+            ("", "is not the table of a test"),
+            ("generation,best\n0,1\n", "is not the table of a test"),
+            (head, "truncated"),
+            (&format!("{head}0,0,6,true,1.5,0.2"), "truncated"),
+            (&format!("{head}0,0,6,true,1.5,1\n1,0,6\n"), "3 fields"),
+            (&format!("{head}0,0,6,true,1.5,1\n2,0,6,true,1.5,1\n"), "line 3 "),
+            (&format!("{head}0,0,6,yes,1.5,1\n"), "line 2 "),
+        ] {
+            let found = Table::parse(text).unwrap_err();
+            assert!(found.contains(why), "{text}: {found}");
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! An episode: what happens in a world from the first to the last step of a trial.
+
+use farsa_body::{Recorder, World};
+use serde::{Deserialize, Serialize};
+
+/// Which episode of a run: every random number of an episode is drawn from a stream that these numbers name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct EpisodeId {
+    /// Seed of the run.
+    pub seed: u64,
+    /// Generation, from 0.
+    pub generation: u32,
+    /// Individual within the generation, from 0.
+    pub individual: u32,
+    /// Trial of the individual, from 0.
+    pub trial: u32,
+}
+
+impl EpisodeId {
+    /// The population of the individual, from 0, where each has `size` individuals (`evolution.population`).
+    pub fn population(&self, size: usize) -> usize {
+        self.individual as usize / size.max(1)
+    }
+}
+
+/// One trial in a world of type `W`: a start, then steps until it is over.
+///
+/// An episode steps no world: [`run_episode`] does, alone, and [`run_in_lanes`](crate::run_in_lanes) in a lane of a batch. So
+/// the same episode gives the same bits in both.
+pub trait Episode<W: ?Sized> {
+    /// Sets the world and the episode up; what an earlier episode left behind is forgotten.
+    fn start(&mut self, world: &mut W, id: EpisodeId);
+
+    /// Whether the start could be arranged; if not, the episode ends before its first step with a return of NaN.
+    fn has_started(&self) -> bool {
+        true
+    }
+
+    /// Senses, computes and acts, before the world steps.
+    fn act(&mut self, world: &mut W);
+
+    /// Judges the step that has passed; `Some(return)` ends the episode.
+    ///
+    /// A return of NaN says that the world or the controller gave a number that is not finite. The world is mutable for
+    /// surroundings that change with what happened, such as ground under a swinging foot.
+    fn judge(&mut self, world: &mut W) -> Option<f64>;
+
+    /// Records what the sensors see where they are, after [`act`](Self::act) and before the step: their rays.
+    fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
+        let _ = (world, recorder);
+    }
+
+    /// Records the step that has been judged, and ends the recorder's tick.
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        let _ = (world, recorder);
+    }
+}
+
+/// Runs one episode alone in `world` and returns its return; what it records does not change it.
+pub fn run_episode<W, E>(episode: &mut E, world: &mut W, id: EpisodeId, mut recorder: Option<&mut dyn Recorder>) -> f64
+where
+    W: World + ?Sized,
+    E: Episode<W> + ?Sized,
+{
+    episode.start(world, id);
+    if !episode.has_started() {
+        return f64::NAN;
+    }
+    loop {
+        episode.act(world);
+        if let Some(recorder) = &mut recorder {
+            episode.record_action(world, *recorder);
+        }
+        world.step();
+        let end = episode.judge(world);
+        if let Some(recorder) = &mut recorder {
+            episode.record(world, *recorder);
+        }
+        if let Some(sum) = end {
+            return sum;
+        }
+    }
+}
+
+/// The time after so many steps \[s\], rounded to the nanosecond: 201 steps of 0.1 s are 20.1 s.
+pub fn seconds(steps: u32, time_step: f64) -> f64 {
+    (f64::from(steps) * time_step * 1e9).round() / 1e9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_body::{ActuatorId, BodyId, Handles, JointId};
+
+    struct Clock(u32);
+
+    impl Handles for Clock {
+        type Body = BodyId;
+        type Joint = JointId;
+        type Actuator = ActuatorId;
+    }
+
+    impl World for Clock {
+        fn step(&mut self) {
+            self.0 += 1;
+        }
+        fn time_step(&self) -> f32 {
+            0.01
+        }
+    }
+
+    /// Ends at the sixth step, or cannot start.
+    struct UntilSix {
+        trial: u32,
+        acts: u32,
+    }
+
+    impl Episode<Clock> for UntilSix {
+        fn start(&mut self, world: &mut Clock, id: EpisodeId) {
+            world.0 = 0;
+            (self.trial, self.acts) = (id.trial, 0);
+        }
+        fn has_started(&self) -> bool {
+            self.trial < 9
+        }
+        fn act(&mut self, world: &mut Clock) {
+            assert_eq!(world.0, self.acts);
+            self.acts += 1;
+        }
+        fn judge(&mut self, world: &mut Clock) -> Option<f64> {
+            (world.0 == 6).then(|| f64::from(world.0 + self.trial))
+        }
+        fn record_action(&self, world: &Clock, recorder: &mut dyn Recorder) {
+            assert_eq!(world.0 + 1, self.acts);
+            recorder.scalars(&[f64::from(world.0)]);
+        }
+        fn record(&self, world: &Clock, recorder: &mut dyn Recorder) {
+            recorder.tick(seconds(world.0, 0.1));
+        }
+    }
+
+    #[derive(Default)]
+    struct Log(Vec<f64>, Vec<f64>);
+
+    impl Recorder for Log {
+        fn scalars(&mut self, values: &[f64]) {
+            self.0.extend_from_slice(values);
+        }
+        fn tick(&mut self, time: f64) {
+            self.1.push(time);
+        }
+    }
+
+    #[test]
+    fn an_episode_is_judged_after_every_step_and_starts_afresh() {
+        let (mut world, mut episode) = (Clock(99), UntilSix { trial: 0, acts: 0 });
+        assert_eq!(run_episode(&mut episode, &mut world, EpisodeId::default(), None), 6.0);
+        let mut log = Log::default();
+        let id = EpisodeId { trial: 4, ..EpisodeId::default() };
+        assert_eq!(run_episode(&mut episode, &mut world, id, Some(&mut log)), 10.0);
+        assert_eq!((world.0, episode.acts), (6, 6));
+        assert_eq!(log.0, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(log.1, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
+        let id = EpisodeId { trial: 9, ..EpisodeId::default() };
+        assert!(run_episode(&mut episode, &mut world, id, None).is_nan() && episode.acts == 0);
+    }
+}

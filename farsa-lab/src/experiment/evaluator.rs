@@ -1,0 +1,193 @@
+//! What an experiment is evaluated by: parameters go in, outcomes come out.
+
+use farsa_body::{MjcfOptions, Recorder};
+use farsa_view::Stage;
+
+use crate::experiment::controller_export::{ControllerExport, CtrnnExport, StartExport};
+use crate::experiment::episode::EpisodeId;
+use crate::error::Error;
+use crate::experiment::lanes::Lanes;
+use crate::experiment::outcome::{Description, Outcome};
+
+/// A number that an experiment wants, such as a weight of a network or the length of a leg.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// What it is called.
+    pub name: String,
+    /// Its range, from the end that a gene of 0 stands for to the other; it may fall.
+    pub ends: [f64; 2],
+}
+
+impl Parameter {
+    /// A parameter between two ends.
+    pub fn new(name: impl Into<String>, ends: [f64; 2]) -> Self {
+        Self { name: name.into(), ends }
+    }
+}
+
+/// What there is to know of an experiment under its settings before anything is evaluated.
+///
+/// Beside the three that are required, methods say what is so for some experiments only: several populations, exports,
+/// bodies that are made of parameters.
+pub trait Task: Send {
+    /// The parameters that an evaluation takes, in their order.
+    fn parameters(&self) -> Vec<Parameter>;
+
+    /// What an episode records at every step, by name: [`Stage::of_scalars`] if it is a row of numbers.
+    fn stage(&self) -> Stage;
+
+    /// What the robot senses, does and computes with, for `farsa info`.
+    fn description(&self) -> Description;
+
+    /// Trials of an evaluation.
+    fn trials(&self) -> usize {
+        1
+    }
+
+    /// Names of the terms of the fitness that [`Outcome::terms`] holds, in its order.
+    fn terms(&self) -> Vec<String> {
+        vec!["fitness".into()]
+    }
+
+    /// The fitness of an individual from its trials, in the order of trials; `farsa test` asks for single ones too.
+    ///
+    /// By default the sum of all terms.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        trials.iter().flat_map(|outcome| &outcome.terms).sum()
+    }
+
+    /// What the populations that evolve against each other are called, in their order: one word each. By default there is
+    /// one population, and it is called 0.
+    ///
+    /// The individuals of all are numbered through, one population after the other: see [`EpisodeId::population`]. Each
+    /// has `evolution.population` individuals and all parameters.
+    fn populations(&self) -> Vec<String> {
+        vec!["0".into()]
+    }
+
+    /// What can be exported, if anything can.
+    fn exports(&self) -> Option<&dyn Exports> {
+        None
+    }
+
+    /// How bodies are made of parameters, if they are.
+    fn bodies(&self) -> Option<&dyn Bodies> {
+        None
+    }
+}
+
+/// What `farsa export` writes of an experiment; each by default nothing.
+pub trait Exports {
+    /// What a MuJoCo model of the robot on the [`stage`](Task::stage) says beside the robot.
+    fn mjcf_options(&self) -> Option<MjcfOptions> {
+        None
+    }
+
+    /// The controller with these parameters and its channels.
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let _ = parameters;
+        None
+    }
+
+    /// The continuous-time network with these parameters, for `--format bytes` where there is no
+    /// [`controller`](Self::controller).
+    fn ctrnn(&self, parameters: &[f32]) -> Option<CtrnnExport> {
+        let _ = parameters;
+        None
+    }
+
+    /// How an episode starts.
+    fn start(&self, id: EpisodeId) -> Option<StartExport> {
+        let _ = id;
+        None
+    }
+}
+
+/// Bodies that are made of parameters.
+pub trait Bodies {
+    /// The stage of one evaluation's episodes; its channels are those of [`Task::stage`], whatever the parameters.
+    fn stage_with(&self, parameters: &[f32]) -> Stage;
+}
+
+/// One trial that is to be evaluated.
+#[derive(Debug, Clone, Copy)]
+pub struct Evaluation<'p> {
+    /// Its number among those that are evaluated together.
+    pub number: usize,
+    /// The parameters \[[`Task::parameters`]\].
+    pub parameters: &'p [f32],
+    /// Those of its opponents, one of each other population in the order of the populations; empty where there is only one.
+    ///
+    /// Which population the parameters are of follows from the episode, [`EpisodeId::population`].
+    pub opponents: &'p [&'p [f32]],
+    /// Which episode.
+    pub id: EpisodeId,
+}
+
+/// Evaluates trials of an experiment in one thread: its robot, world and scratch memory.
+///
+/// An outcome depends on the [`Evaluation`] alone, never on what was evaluated before: that is what makes runs repeatable,
+/// resumable and the same on any number of threads. A run's seeds are below 2^63. In `farsa test` the seed has bit 63 set,
+/// so that no number is shared with any run; the individual is then the first of its population and the generation counts
+/// the earlier episodes of the same trial.
+pub trait Evaluator: Task {
+    /// Runs one trial from its start to its end.
+    ///
+    /// What [`stage`](Task::stage) names goes to the recorder at every step if there is one; whether there is must not
+    /// change the outcome. A trial that broke down is [`Outcome::failed`].
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome;
+
+    /// How trials are evaluated side by side, if they can be.
+    fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
+        None
+    }
+
+    /// How a lesson is taken, where the search is [`Search::Learning`](crate::Search::Learning).
+    fn learner(&mut self) -> Option<&mut dyn Learner> {
+        None
+    }
+}
+
+/// Evaluates trials side by side, one in each lane.
+pub trait InLanes {
+    /// Gets ready for so many lanes; for one, nothing is kept.
+    ///
+    /// # Errors
+    /// Whatever keeps the lanes from being built.
+    fn use_lanes(&mut self, lanes: Lanes) -> Result<(), Error>;
+
+    /// Evaluates until `next` has no more; `done` takes the number of each evaluation with its outcome, which is what
+    /// [`Evaluator::evaluate`] would return.
+    ///
+    /// `next` may be asked in any order of `done`: other threads draw from the same evaluations.
+    fn evaluate_all<'p>(
+        &mut self,
+        next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
+        done: &mut dyn FnMut(usize, Outcome),
+    );
+}
+
+/// Learns from demonstrations: its state is a row of words that changes by lessons.
+pub trait Learner {
+    /// The words from which learning starts: all that a [`lesson`](Self::lesson) depends on besides seed and generation.
+    fn first_words(&self, seed: u64) -> Vec<f64>;
+
+    /// Changes the words by one lesson and says what it was like; `None` if these are not words to learn from.
+    ///
+    /// The same words, seed and generation must become the same words, whatever this value did before.
+    fn lesson(&mut self, words: &mut [f64], seed: u64, generation: u32) -> Option<Lesson>;
+
+    /// The genes of 16 bits, one for each parameter, of what has been learned in these words.
+    fn learned(&self, words: &[f64]) -> Vec<u16>;
+}
+
+/// What a lesson was like, [`Learner::lesson`].
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Lesson {
+    /// Root of the mean squared error of motor values before it, on demonstrations that have never been learned from.
+    pub before: f64,
+    /// The same on the same demonstrations after it.
+    pub after: f64,
+    /// Share of the demonstrations that succeeded \[0..1\].
+    pub successes: f64,
+}

@@ -1,0 +1,100 @@
+//! From genes to the parameters that they stand for.
+
+use farsa_evo::Population;
+
+use crate::experiment::evaluator::Parameter;
+
+/// Genes of some bits, one for each parameter: 0 stands for the parameter's first end, the largest gene for the other,
+/// linear between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Genotype {
+    ends: Vec<[f64; 2]>,
+    bits: u32,
+}
+
+impl Genotype {
+    /// A gene of `bits` bits, 1 to 16, for each parameter.
+    pub fn new(parameters: &[Parameter], bits: u32) -> Self {
+        Self { ends: parameters.iter().map(|parameter| parameter.ends).collect(), bits: bits.clamp(1, u16::BITS) }
+    }
+
+    /// Number of genes, which is that of the parameters.
+    pub fn genes(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Bits of a gene.
+    pub fn bits(&self) -> u32 {
+        self.bits
+    }
+
+    /// The largest gene.
+    pub fn largest(&self) -> u16 {
+        u16::MAX >> (u16::BITS - self.bits)
+    }
+
+    /// The parameters of everyone; `None` for genomes of another length.
+    pub(crate) fn decode_all(&self, genomes: &Population) -> Option<Vec<Vec<f32>>> {
+        genomes.iter().map(|genes| self.decode(genes)).collect()
+    }
+
+    /// The parameters \[[`genes`](Self::genes)\] that genes stand for; `None` for another number of genes.
+    ///
+    /// Each is computed in f64, `first + (other - first) * gene / largest`, and rounded to f32 at the end: never outside
+    /// its range, exact at both ends.
+    pub fn decode(&self, genes: &[u16]) -> Option<Vec<f32>> {
+        let largest = self.largest();
+        let value = |(&gene, &[first, other]): (&u16, &[f64; 2])| {
+            if gene >= largest {
+                return other as f32;
+            }
+            let value = (first + (other - first) * f64::from(gene) / f64::from(largest)) as f32;
+            // The sum may round one f32 beyond an end.
+            let (low, high) = (first.min(other) as f32, first.max(other) as f32);
+            if value > high {
+                high
+            } else if value < low {
+                low
+            } else {
+                value
+            }
+        };
+        (genes.len() == self.ends.len()).then(|| genes.iter().zip(&self.ends).map(value).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_evo::{GeneRange, decode};
+
+    fn genotype(ends: &[[f64; 2]], bits: u32) -> Genotype {
+        let parameters: Vec<Parameter> = ends.iter().map(|&ends| Parameter { name: String::new(), ends }).collect();
+        Genotype::new(&parameters, bits)
+    }
+
+    #[test]
+    fn sixteen_bits_are_those_of_the_library() {
+        for [low, high] in [[-6.0, 6.0], [0.0, 1.0], [-0.3, 7.1], [-1e30, 1e-3]] {
+            let [low, high] = [low as f32, high as f32];
+            let range = GeneRange::new(1, low, high).unwrap();
+            let ours = genotype(&[[f64::from(low), f64::from(high)]], 16);
+            for gene in (0..=u16::MAX).step_by(7).chain([1, u16::MAX - 1, u16::MAX]) {
+                let mut theirs = [0.0];
+                decode(&[gene], &[range], &mut theirs).unwrap();
+                assert_eq!(ours.decode(&[gene]).unwrap(), theirs, "{gene} of {low} to {high}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_range_may_fall_and_genes_may_be_short() {
+        let bytes = genotype(&[[5.0, -5.0], [0.0, 1.0]], 8);
+        assert_eq!((bytes.genes(), bytes.bits(), bytes.largest()), (2, 8, 255));
+        assert_eq!(bytes.decode(&[0, 0]).unwrap(), [5.0, 0.0]);
+        assert_eq!(bytes.decode(&[255, 255]).unwrap(), [-5.0, 1.0]);
+        assert_eq!(bytes.decode(&[51, 51]).unwrap(), [3.0, 0.2]);
+        assert_eq!(bytes.decode(&[1]), None);
+        assert_eq!(genotype(&[[-1.0, 2.0]], 1).decode(&[1]).unwrap(), [2.0]);
+    }
+}

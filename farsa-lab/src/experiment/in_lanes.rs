@@ -1,0 +1,97 @@
+//! Many episodes side by side, one in each lane of a batch of worlds.
+
+use farsa_physics::{arena, articulated};
+
+use crate::experiment::episode::{Episode, EpisodeId};
+
+/// Worlds that are stepped together, one in each lane of SIMD vectors.
+pub trait Batch {
+    /// One of the worlds.
+    type Lane<'a>
+    where
+        Self: 'a;
+
+    /// Number of worlds.
+    fn lanes(&self) -> usize;
+
+    /// The world in a lane.
+    fn lane(&mut self, index: usize) -> Self::Lane<'_>;
+
+    /// Steps all worlds.
+    fn step(&mut self);
+}
+
+/// A batch of farsa-physics has these methods of its own.
+macro_rules! batch {
+    ($($module:ident),*) => {$(
+        impl Batch for $module::Batch {
+            type Lane<'a> = $module::Lane<'a>;
+
+            fn lanes(&self) -> usize {
+                self.lanes()
+            }
+
+            fn lane(&mut self, index: usize) -> Self::Lane<'_> {
+                self.lane(index)
+            }
+
+            fn step(&mut self) {
+                self.step();
+            }
+        }
+    )*};
+}
+
+batch!(articulated, arena);
+
+/// Runs episode after episode in the lanes of a batch until there are no more.
+///
+/// Each of `episodes` has a lane of its own. `begin` makes an episode ready for its next start and returns which it is, or
+/// `None` when there is none left; `end` takes the return. A lane is filled again as soon as its episode ends, whatever
+/// the others are at, so every episode is the one that [`run`](crate::run::evolve) runs alone: lanes, batches and the order
+/// change nothing but time.
+pub fn run_in_lanes<B, E>(
+    episodes: &mut [E],
+    batch: &mut B,
+    mut begin: impl FnMut(&mut E) -> Option<EpisodeId>,
+    mut end: impl FnMut(&mut E, f64),
+) where
+    B: Batch + 'static,
+    E: for<'a> Episode<B::Lane<'a>>,
+{
+    debug_assert!(episodes.len() <= batch.lanes(), "{} episodes in {} lanes", episodes.len(), batch.lanes());
+    let lanes = episodes.len().min(batch.lanes());
+    let episodes = &mut episodes[..lanes];
+    let mut running = vec![false; lanes];
+    let mut more = true;
+    loop {
+        for (index, (episode, running)) in episodes.iter_mut().zip(&mut running).enumerate() {
+            let mut lane = batch.lane(index);
+            if *running {
+                if let Some(sum) = episode.judge(&mut lane) {
+                    end(episode, sum);
+                    *running = false;
+                }
+            }
+            while !*running && more {
+                // Once there is none left, nobody asks again.
+                let Some(id) = begin(episode) else {
+                    more = false;
+                    break;
+                };
+                episode.start(&mut lane, id);
+                *running = episode.has_started();
+                if !*running {
+                    end(episode, f64::NAN);
+                }
+            }
+            if *running {
+                episode.act(&mut lane);
+            }
+        }
+        if !running.contains(&true) {
+            return;
+        }
+        batch.step();
+    }
+}

@@ -1,0 +1,208 @@
+//! An evaluator made of a world and an episode.
+
+use farsa_body::{Recorder, World};
+use farsa_view::Stage;
+
+use crate::experiment::episode::{Episode, EpisodeId, run_episode};
+use crate::error::Error;
+use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Parameter, Task};
+use crate::experiment::in_lanes::{Batch, run_in_lanes};
+use crate::experiment::lanes::Lanes;
+use crate::experiment::outcome::{Description, Outcome};
+
+/// A task's episode as it is evaluated: it takes parameters before it starts and tells its outcome after its end.
+pub trait Rollout: Task {
+    /// Gives the controllers, or whatever parameters are for, their values; false if they are none of the task.
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool;
+
+    /// Records the parameters before the first step: those of a network, for the page's picture of it.
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        let _ = recorder;
+    }
+
+    /// The outcome of the episode that has ended.
+    fn outcome(&self) -> Outcome;
+}
+
+/// An episode in each lane of a batch.
+trait SideBySide<R>: Send {
+    fn evaluate_all<'p>(
+        &mut self,
+        next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
+        done: &mut dyn FnMut(usize, Outcome),
+    );
+}
+
+struct InBatch<B, R> {
+    batch: B,
+    episodes: Vec<Numbered<R>>,
+}
+
+/// An episode with the number of its evaluation.
+struct Numbered<R> {
+    rollout: R,
+    number: usize,
+}
+
+impl<W: ?Sized, R: Episode<W>> Episode<W> for Numbered<R> {
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.rollout.start(world, id);
+    }
+    fn has_started(&self) -> bool {
+        self.rollout.has_started()
+    }
+    fn act(&mut self, world: &mut W) {
+        self.rollout.act(world);
+    }
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.rollout.judge(world)
+    }
+}
+
+impl<B, R> SideBySide<R> for InBatch<B, R>
+where
+    B: Batch + Send + 'static,
+    R: Rollout + for<'a> Episode<B::Lane<'a>>,
+{
+    fn evaluate_all<'p>(
+        &mut self,
+        next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
+        done: &mut dyn FnMut(usize, Outcome),
+    ) {
+        // Two closures report outcomes in turn.
+        let done = std::cell::RefCell::new(done);
+        let begin = |Numbered { rollout, number }: &mut Numbered<R>| {
+            loop {
+                let evaluation = next()?;
+                *number = evaluation.number;
+                if rollout.load(&evaluation) {
+                    return Some(evaluation.id);
+                }
+                done.borrow_mut()(evaluation.number, Outcome::failed());
+            }
+        };
+        let end = |ended: &mut Numbered<R>, _: f64| done.borrow_mut()(ended.number, ended.rollout.outcome());
+        run_in_lanes(&mut self.episodes, &mut self.batch, begin, end);
+    }
+}
+
+type Make<R> = Box<dyn Fn(Lanes, &R) -> Result<Box<dyn SideBySide<R>>, Error> + Send>;
+
+/// Evaluates episodes in a world of type `W`, one after the other or, where the world has batches, side by side in lanes.
+pub struct InWorld<W, R> {
+    world: W,
+    rollout: R,
+    make: Option<Make<R>>,
+    lanes: Option<Box<dyn SideBySide<R>>>,
+}
+
+impl<W, R> InWorld<W, R> {
+    /// Evaluates this episode in this world.
+    pub fn new(world: W, rollout: R) -> Self {
+        Self { world, rollout, make: None, lanes: None }
+    }
+
+    /// And side by side in batches that `batch` makes of the world's description.
+    #[must_use]
+    pub fn with_lanes<B>(mut self, batch: impl Fn(Lanes) -> Result<B, Error> + Send + 'static) -> Self
+    where
+        B: Batch + Send + 'static,
+        R: Rollout + Clone + for<'a> Episode<B::Lane<'a>> + 'static,
+    {
+        self.make = Some(Box::new(move |lanes, rollout: &R| {
+            let batch = batch(lanes)?;
+            let episodes = (0..lanes.count()).map(|_| Numbered { rollout: rollout.clone(), number: 0 }).collect();
+            Ok(Box::new(InBatch { batch, episodes }))
+        }));
+        self
+    }
+
+    /// The episode.
+    pub fn rollout(&self) -> &R {
+        &self.rollout
+    }
+
+    /// The episode and the world, to run one by hand.
+    pub fn parts_mut(&mut self) -> (&mut R, &mut W) {
+        (&mut self.rollout, &mut self.world)
+    }
+}
+
+impl<W: Send, R: Rollout> Task for InWorld<W, R> {
+    fn parameters(&self) -> Vec<Parameter> {
+        self.rollout.parameters()
+    }
+    fn stage(&self) -> Stage {
+        self.rollout.stage()
+    }
+    fn description(&self) -> Description {
+        self.rollout.description()
+    }
+    fn trials(&self) -> usize {
+        self.rollout.trials()
+    }
+    fn terms(&self) -> Vec<String> {
+        self.rollout.terms()
+    }
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        self.rollout.fitness(trials)
+    }
+    fn populations(&self) -> Vec<String> {
+        self.rollout.populations()
+    }
+    fn exports(&self) -> Option<&dyn Exports> {
+        self.rollout.exports()
+    }
+    fn bodies(&self) -> Option<&dyn Bodies> {
+        self.rollout.bodies()
+    }
+}
+
+impl<W, R> Evaluator for InWorld<W, R>
+where
+    W: World + Send,
+    R: Rollout + Episode<W>,
+{
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, mut recorder: Option<&mut dyn Recorder>) -> Outcome {
+        if !self.rollout.load(&evaluation) {
+            return Outcome::failed();
+        }
+        if let Some(recorder) = &mut recorder {
+            self.rollout.record_parameters(*recorder);
+        }
+        run_episode(&mut self.rollout, &mut self.world, evaluation.id, recorder);
+        self.rollout.outcome()
+    }
+
+    fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
+        if self.make.is_some() { Some(self) } else { None }
+    }
+}
+
+impl<W, R> InLanes for InWorld<W, R>
+where
+    W: World + Send,
+    R: Rollout + Episode<W>,
+{
+    fn use_lanes(&mut self, lanes: Lanes) -> Result<(), Error> {
+        self.lanes = match &self.make {
+            Some(make) if lanes.count() > 1 => Some(make(lanes, &self.rollout)?),
+            _ => None,
+        };
+        Ok(())
+    }
+
+    fn evaluate_all<'p>(
+        &mut self,
+        next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
+        done: &mut dyn FnMut(usize, Outcome),
+    ) {
+        if let Some(lanes) = &mut self.lanes {
+            lanes.evaluate_all(next, done);
+            return;
+        }
+        while let Some(evaluation) = next() {
+            done(evaluation.number, self.evaluate(evaluation, None));
+        }
+    }
+}

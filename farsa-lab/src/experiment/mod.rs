@@ -1,0 +1,46 @@
+//! What an experiment is and how it is evaluated: the contract, and what helps to keep it.
+//!
+//! - `definition`: what an experiment is to the command: a name, a table of settings, and what evaluates it
+//! - `evaluator`: parameters go in, outcomes come out; what only some experiments can do
+//! - `outcome`: what comes of a trial, and what is told of a robot and its controller
+//! - `episode`: one trial in a world, and the loop that runs it
+//! - `in_lanes`: the loop that runs many episodes side by side, one in each lane of a batch of worlds
+//! - `in_world`: an evaluator made of a world and an episode
+//! - `lanes`: how many episodes a thread runs side by side, and by which instructions
+//! - `genotype`: from genes to the parameters that they stand for
+//! - `network_parameters`: the parameters of a network with a bias and a leak for every neuron
+//! - `neurocontroller`: sensors, a network and motors, for episodes of one's own
+//! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
+//! - `search_kind`: how an experiment searches, in a word
+//! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
+
+pub(crate) mod controller_export;
+pub(crate) mod definition;
+pub(crate) mod episode;
+pub(crate) mod evaluator;
+pub(crate) mod genotype;
+mod in_lanes;
+mod in_world;
+pub(crate) mod lanes;
+mod network_parameters;
+mod neurocontroller;
+pub(crate) mod outcome;
+pub(crate) mod search_kind;
+pub(crate) mod settings;
+
+pub use controller_export::{
+    ActuatorExport, ControllerExport, CtrnnExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,
+    SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
+};
+pub use definition::Experiment;
+pub use episode::{Episode, EpisodeId, run_episode, seconds};
+pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Lesson, Parameter, Task};
+pub use genotype::Genotype;
+pub use in_lanes::{Batch, run_in_lanes};
+pub use in_world::{InWorld, Rollout};
+pub use lanes::Lanes;
+pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
+pub use neurocontroller::Neurocontroller;
+pub use outcome::{ChannelGroup, Description, Note, Outcome};
+pub use search_kind::Search;
+pub use settings::{Setting, Settings, Source, Value};

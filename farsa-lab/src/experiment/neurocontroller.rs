@@ -1,0 +1,249 @@
+//! What genes control a robot by: its sensors, a network, and its motors.
+
+use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Recorder, Sensor, record_world};
+use farsa_nn::{Controller as _, Layout};
+use farsa_view::Stage;
+
+use crate::error::Error;
+use crate::experiment::outcome::{ChannelGroup, Description};
+use crate::experiment::evaluator::Parameter;
+use crate::experiment::network_parameters::{OwnedNetwork, network_parameters, resting_network};
+
+/// Sensors, a recurrent network, and motors: what an episode needs beside its world and its reward.
+///
+/// The network has one hidden layer, all linked to all ([`Layout`]), with leaks as filters. Its parameters are weights and
+/// biases, and leaks from 0 to 1. The loop stays the caller's:
+///
+/// ```
+/// use farsa_body::testing::PointWorld;
+/// use farsa_body::{ActuatorId, JointId, JointPosition, TorqueMotor, World as _};
+/// use farsa_experiments::Neurocontroller;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let sensors = [0, 1].map(|joint| JointPosition::new(JointId(joint), -1.0, 1.0));
+/// let sensors = sensors.into_iter().collect::<Result<Vec<_>, _>>()?;
+/// let mut control = Neurocontroller::new(sensors, TorqueMotor::new(ActuatorId(0), 1.0)?, 3, 5.0)?;
+/// let parameters = vec![1.0; control.parameters().len()]; // from evolution
+/// let mut world = PointWorld::new(2);
+/// control.load(&parameters);
+/// for _ in 0..100 {
+///     control.act(&mut world); // reads, computes, drives
+///     world.step();
+/// }
+/// # assert!(control.done()[0] > 0.5);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Neurocontroller<S, M> {
+    sensors: S,
+    motors: M,
+    layout: Layout,
+    range: f64,
+    network: OwnedNetwork,
+    x: Vec<f32>,
+    y: Vec<f32>,
+    stage: Stage,
+}
+
+impl<S: Channels, M: Channels> Neurocontroller<S, M> {
+    /// A network with so many hidden neurons between sensors and motors, its weights and biases from minus to plus `range`.
+    ///
+    /// # Errors
+    /// [`Error::Other`] if the range is negative or not finite, or there is nothing to sense or to drive.
+    pub fn new(sensors: S, motors: M, hidden: usize, range: f64) -> Result<Self, Error> {
+        let (inputs, outputs) = (sensors.channels(), motors.channels());
+        if inputs == 0 || outputs == 0 {
+            return Err(Error::Other(format!("a network of {inputs} sensors and {outputs} motors")));
+        }
+        // Networks compute in f32, where a larger range is infinite.
+        if !(0.0..=f64::from(f32::MAX)).contains(&range) {
+            return Err(Error::Other(format!("weights within {range}")));
+        }
+        let layout = Layout::new(inputs, hidden, outputs);
+        let network = resting_network(&layout)?;
+        let (x, y) = (vec![0.0; inputs], vec![0.0; outputs]);
+        Ok(Self { sensors, motors, layout, range, network, x, y, stage: Stage::default() }.on_stage(Stage::default()))
+    }
+
+    /// The network's parameters with their ranges.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        network_parameters(&self.layout, self.range, [0.0, 1.0], "network.range").unwrap_or_default()
+    }
+
+    /// Gives the network its parameters and forgets what an earlier episode left in sensors, network and motors; false for
+    /// another number of parameters, which changes nothing.
+    pub fn load(&mut self, parameters: &[f32]) -> bool {
+        if self.network.copy_parameters(parameters).is_err() {
+            return false;
+        }
+        self.reset();
+        true
+    }
+
+    /// Forgets what an earlier episode left in sensors, network and motors.
+    pub fn reset(&mut self) {
+        self.sensors.reset();
+        self.network.reset();
+        self.motors.reset();
+    }
+
+    /// Senses, thinks and acts; the caller steps the world.
+    pub fn act<W>(&mut self, world: &mut W)
+    where
+        W: ?Sized,
+        S: Sensor<W>,
+        M: Motor<W>,
+    {
+        self.sensors.read(world, &mut self.x);
+        self.network.step(&self.x, &mut self.y);
+        self.motors.drive(&self.y, world);
+    }
+
+    /// Records where the bodies of the stage are, what touches, and what was sensed, computed and done last; the caller ends
+    /// the tick, with [`Recorder::tick`].
+    pub fn record<W>(&self, world: &W, recorder: &mut dyn Recorder)
+    where
+        W: Kinematics<Body = BodyId> + Contacts + ?Sized,
+    {
+        record_world(world, self.stage.shown(), recorder);
+        recorder.sensors(&self.x);
+        recorder.neurons(self.network.hidden());
+        recorder.outputs(&self.y);
+    }
+
+    /// Records the network's parameters, once before the first tick.
+    pub fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(self.network.parameters());
+    }
+
+    /// The same on a stage, to which the network is added; sensors and outputs that it does not name are numbered from 1.
+    #[must_use]
+    pub fn on_stage(self, stage: Stage) -> Self {
+        let numbered = |count: usize| (1..=count).map(|number| number.to_string()).collect::<Vec<_>>();
+        let (inputs, outputs) = (self.x.len(), self.y.len());
+        let stage = if stage.sensors.len() == inputs { stage } else { stage.with_sensors(numbered(inputs)) };
+        let stage = if stage.outputs.len() == outputs { stage } else { stage.with_outputs(numbered(outputs)) };
+        let mut stage = stage.with_network(&self.layout);
+        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        Self { stage, ..self }
+    }
+
+    /// What [`record`](Self::record) and the caller record, by name.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// What `farsa info` tells of it, for trials of so many steps of `step_seconds` \[s\].
+    pub fn description(&self, steps: usize, step_seconds: f64) -> Description {
+        let (inputs, outputs) = (self.x.len(), self.y.len());
+        Description {
+            sensors: vec![ChannelGroup::new("sensors", inputs, "inputs of the network")],
+            motors: vec![ChannelGroup::new("motors", outputs, "outputs of the network, each 0 to 1")],
+            network: format!(
+                "{inputs}-{}-{outputs}, recurrent hidden layer, leaks as filters",
+                self.layout.hidden()
+            ),
+            parameters: self.layout.parameter_count(),
+            steps,
+            step_seconds,
+        }
+    }
+
+    /// What was sensed last \[sensors\].
+    pub fn sensed(&self) -> &[f32] {
+        &self.x
+    }
+
+    /// What was done last \[outputs\].
+    pub fn done(&self) -> &[f32] {
+        &self.y
+    }
+
+    /// The sensors, such as to give a life noise of its own.
+    pub fn sensors_mut(&mut self) -> &mut S {
+        &mut self.sensors
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_body::testing::PointWorld;
+    use farsa_body::{ActuatorId, JointId, JointPosition, JointSpeed, Muscles, TorqueMotor, World as _};
+    use farsa_evo::{GeneRange, decode};
+    use farsa_nn::{Leak, Network, ParameterKind};
+    use farsa_view::Recording;
+
+    use crate::experiment::genotype::Genotype;
+
+    type Senses = (JointPosition, JointSpeed);
+
+    fn control(hidden: usize, range: f64) -> Result<Neurocontroller<Senses, TorqueMotor>, Error> {
+        let sensors = (JointPosition::new(JointId(0), -1.0, 1.0)?, JointSpeed::new(JointId(0)));
+        Neurocontroller::new(sensors, TorqueMotor::new(ActuatorId(0), 20.0)?, hidden, range)
+    }
+
+    #[test]
+    fn it_is_the_loop_written_out() {
+        let mut control = control(4, 3.0).unwrap();
+        let genes: Vec<u16> = (0..control.parameters().len()).map(|gene| (gene * 9973 % 65536) as u16).collect();
+        let decoded = Genotype::new(&control.parameters(), 16).decode(&genes).unwrap();
+
+        // By hand: every kind of parameter by itself.
+        let layout = Layout::new(2, 4, 1);
+        let mut parameters = vec![0.0; layout.parameter_count()];
+        for kind in ParameterKind::ALL {
+            let (part, [low, high]) =
+                (layout.range(kind), if kind == ParameterKind::Leak { [0.0, 1.0] } else { [-3.0, 3.0] });
+            decode(&genes[part.clone()], &[GeneRange::new(part.len(), low, high).unwrap()], &mut parameters[part])
+                .unwrap();
+        }
+        let mut network = Network::new(layout, Leak::Filter, &parameters[..], vec![0.0; layout.state_len()]).unwrap();
+        let mut sensors = (JointPosition::new(JointId(0), -1.0, 1.0).unwrap(), JointSpeed::new(JointId(0)));
+        let mut motor = TorqueMotor::new(ActuatorId(0), 20.0).unwrap();
+        let (mut x, mut y) = ([0.0; 2], [0.0; 1]);
+
+        // The second life knows nothing of the first.
+        for _life in 0..2 {
+            network.reset();
+            control = control.on_stage(Stage { bodies: vec!["point".into()], ..Stage::of_scalars(["t"]) });
+            assert_eq!(control.stage().columns()[1..4], ["sensor.1", "sensor.2", "neuron.1"]);
+            let mut recording = Recording::new(control.stage().clone());
+            assert!(control.load(&decoded));
+            control.record_parameters(&mut recording);
+            let (mut world, mut other) = (PointWorld::new(1), PointWorld::new(1));
+            let mut rows = Vec::new();
+            for tick in 0..50 {
+                control.act(&mut world);
+                control.record(&world, &mut recording);
+                recording.scalars(&[0.0]);
+                recording.tick(f64::from(tick));
+                world.step();
+                sensors.read(&other, &mut x);
+                network.step(&x, &mut y);
+                motor.drive(&y, &mut other);
+                other.step();
+                assert_eq!((control.sensed(), control.done()), (&x[..], &y[..]));
+                rows.push([x[0], x[1], y[0]].map(f64::from));
+            }
+            assert_eq!(recording.controller_parameters(), parameters);
+            for (tick, [position, speed, output]) in rows.into_iter().enumerate() {
+                let row: Vec<f64> = recording.row(tick).collect();
+                assert_eq!((row[1], row[2], row[7]), (position, speed, output));
+            }
+        }
+        assert!(x[1] != 0.0, "nothing moved");
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        assert_eq!(control(4, 3.0).unwrap().parameters().len(), 36);
+        assert!(!control(4, 3.0).unwrap().load(&[0.0; 3]));
+        for (range, text) in [(-1.0, "weights within -1"), (f64::NAN, "weights within NaN")] {
+            assert_eq!(control(4, range).unwrap_err().to_string(), text);
+        }
+        let none = Neurocontroller::new(Vec::<JointSpeed>::new(), Muscles::new(ActuatorId(0)), 1, 1.0);
+        assert_eq!(none.unwrap_err().to_string(), "a network of 0 sensors and 2 motors");
+    }
+}

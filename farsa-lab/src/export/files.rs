@@ -1,0 +1,169 @@
+//! `farsa export`: robots, controllers, genotypes and starts as files for other programs.
+
+use clap::ValueEnum;
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::experiment::evaluator::{Evaluator, Exports};
+use crate::evaluation::test;
+use crate::evaluation::genotypes;
+use crate::command::info::pretty;
+use crate::run::plan::Plan;
+use crate::evaluation::populations::Populations;
+use crate::run::records::{Best, Champions};
+
+/// The formats of model files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ModelFormat {
+    /// MuJoCo's own: joints, inertias, contact pairs, actuators, starts
+    Mjcf,
+    /// The robot alone: joints, inertias, shapes
+    Urdf,
+}
+
+/// The formats of controllers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ControllerFormat {
+    /// Names and numbers, of the body too
+    Json,
+    /// The network for a board's flash: checked and used where it lies
+    Bytes,
+    /// The network as constants of a Rust program
+    Rust,
+    /// The network as tables for Python
+    Safetensors,
+}
+
+/// The formats of starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DataFormat {
+    /// Names and numbers
+    Json,
+}
+
+/// The robot of an experiment under a condition and its settings.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment without bodies.
+pub(crate) fn robot(plan: &Plan<'_>, format: ModelFormat) -> Result<String, Error> {
+    let evaluator = plan.evaluator()?;
+    let name = plan.experiment.name();
+    let robot = evaluator.stage().robot.ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
+    let text = match format {
+        ModelFormat::Mjcf => robot.to_mjcf(&mjcf_options(evaluator.as_ref())),
+        ModelFormat::Urdf => robot.to_urdf(),
+    };
+    text.map_err(|error| Error::Other(format!("{name}: {error}")))
+}
+
+/// What a MuJoCo model says beside the robot: by default the time between two steps, if the experiment has a clock, and
+/// gravity 9.81 m/s2 downwards.
+fn mjcf_options(evaluator: &dyn Evaluator) -> MjcfOptions {
+    let own = evaluator.exports().and_then(Exports::mjcf_options);
+    own.unwrap_or_else(|| {
+        let (plain, step) = (MjcfOptions::default(), evaluator.description().step_seconds);
+        MjcfOptions { time_step: if step > 0.0 { step } else { plain.time_step }, ..plain }
+    })
+}
+
+/// Whose controller it is.
+#[derive(Serialize)]
+struct Whose<'a> {
+    /// Grows when the meaning of a field changes.
+    format: u32,
+    experiment: &'a str,
+    condition: &'a str,
+    seed: u64,
+    generation: u32,
+    individual: u32,
+    #[serde(flatten)]
+    controller: ControllerExport,
+}
+
+impl Whose<'_> {
+    fn text(&self) -> String {
+        let Self { experiment, condition, seed, generation, individual, .. } = self;
+        format!(
+            "The champion of `{experiment}`, {condition}, seed {seed}: generation {generation}, individual {individual}"
+        )
+    }
+}
+
+/// How the trials of a test start.
+#[derive(Serialize)]
+struct Trials<'a> {
+    format: u32,
+    experiment: &'a str,
+    condition: &'a str,
+    /// The test's, not the run's.
+    seed: u64,
+    starts: Vec<StartExport>,
+}
+
+/// The champion's genes as a `.gen` file; of several populations that of the one named.
+///
+/// # Errors
+/// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
+pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
+    let evaluator = plan.evaluator()?;
+    let Champions { generation, best, .. } = Champions::of(plan, directory, evaluator.as_ref())?;
+    let (experiment, names) = (plan.experiment.name(), evaluator.populations());
+    let population = Populations { experiment, names: &names }.one("--population", population)?;
+    let Some(Best { individual, genes, .. }) = best.get(population) else {
+        return Err(Error::damaged(&directory.champion(), "it has champions of other populations"));
+    };
+    let (seed, condition) = (plan.seed, plan.condition.as_str());
+    let variant = if condition.is_empty() { String::new() } else { format!(" {condition}") };
+    let name = format!("{experiment}{variant}, seed {seed}, generation {generation}, individual {individual}");
+    Ok(genotypes::written(&name, genes))
+}
+
+/// The champion's controller of a run, as the content of a file.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
+pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
+    let evaluator = plan.evaluator()?;
+    let Champions { generation, best, .. } = Champions::of(plan, directory, evaluator.as_ref())?;
+    let name = plan.experiment.name();
+    let [Best { individual, genes, .. }] = best.as_slice() else {
+        return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));
+    };
+    let damaged = || Error::damaged(&directory.champion(), "its genome is not one of the experiment");
+    let parameters = plan.genotype(evaluator.as_ref()).decode(genes).ok_or_else(damaged)?;
+    let exports = evaluator.exports();
+    let controller = exports.and_then(|exports| exports.controller(&parameters));
+    let ctrnn = exports.and_then(|exports| exports.ctrnn(&parameters));
+    let controller = match (controller, ctrnn) {
+        (Some(controller), _) => controller,
+        // Its body is none that the other formats could tell.
+        (None, Some(network)) if format == ControllerFormat::Bytes => return controller_formats::ctrnn_bytes(&network),
+        (None, Some(_)) => return Err(Error::Usage(format!("{name}: its controllers are exported as bytes only"))),
+        (None, None) => return Err(Error::Usage(format!("{name}: its controllers cannot be exported"))),
+    };
+    let (seed, condition) = (plan.seed, plan.condition.as_str());
+    let individual = *individual;
+    let whose = Whose { format: 1, experiment: name, condition, seed, generation, individual, controller };
+    match format {
+        ControllerFormat::Json => pretty(&whose).map(String::into_bytes),
+        ControllerFormat::Bytes => controller_formats::bytes(&whose.controller),
+        ControllerFormat::Rust => controller_formats::rust(&whose.controller, &whose.text()).map(String::into_bytes),
+        ControllerFormat::Safetensors => {
+            let about = serde_json::to_value(&whose).map_err(|error| Error::Other(error.to_string()))?;
+            controller_formats::safetensors(&whose.controller, about)
+        }
+    }
+}
+
+/// How the trials of `farsa test` start.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment whose starts cannot be told.
+pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String, Error> {
+    let evaluator = plan.evaluator()?;
+    let name = plan.experiment.name();
+    let start = |trial| evaluator.exports()?.start(exam::episode(trial, evaluator.trials(), seed));
+    let starts: Option<Vec<_>> = (0..trials).map(start).collect();
+    let starts = starts.ok_or_else(|| Error::Usage(format!("{name}: its starts cannot be exported")))?;
+    pretty(&Trials { format: 1, experiment: name, condition: &plan.condition, seed, starts })
+}

@@ -1,0 +1,203 @@
+//! `farsa robot`: what is in a model file of a robot.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint};
+use farsa_body::{JointKind, Law, Meshes, MjcfOptions, ReadError, ReadOptions, Reading, Repair, Servo};
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::export::files::ModelFormat;
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+#[expect(clippy::struct_excessive_bools, reason = "the switches of a command")]
+pub(crate) struct RobotArgs {
+    /// A URDF or MJCF file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) file: PathBuf,
+    /// The folder that all files named in it must lie in [default: its own]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) root: Option<PathBuf>,
+    /// A folder with packages, for meshes at package://; may be repeated
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) packages: Vec<PathBuf>,
+    /// Let a URDF's root move freely instead of standing fixed
+    #[arg(long)]
+    pub(crate) floating: bool,
+    /// Leave meshes out
+    #[arg(long)]
+    pub(crate) without_meshes: bool,
+    /// Give what moves without a mass this one [kg]
+    #[arg(long, value_name = "KG", default_value_t = 0.0, value_parser = not_negative)]
+    pub(crate) least_mass: f64,
+    /// Give what moves at least these moments of inertia [kg m2]
+    #[arg(long, value_name = "KGM2", default_value_t = 0.0, value_parser = not_negative)]
+    pub(crate) least_inertia: f64,
+    /// Give impossible moments of inertia their mean
+    #[arg(long)]
+    pub(crate) balance: bool,
+    /// Write the robot back, as a file of this kind
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<ModelFormat>,
+    /// A new file to write it to [default: the standard output]
+    #[arg(long, value_name = "FILE", requires = "format", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+    /// Write JSON
+    #[arg(long, conflicts_with = "format")]
+    pub(crate) json: bool,
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
+    number.ok_or_else(|| "must be a number from 0 on".into())
+}
+
+/// What was read.
+#[derive(Serialize)]
+pub(crate) struct Summary {
+    robot: String,
+    file: String,
+    segments: usize,
+    joints: Vec<JointSummary>,
+    colliders: usize,
+    pairs: usize,
+    mass: f64,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct JointSummary {
+    name: String,
+    kind: &'static str,
+    segment: String,
+    parent: String,
+    /// None if it has no end.
+    range: [Option<f64>; 2],
+    armature: f64,
+    damping: f64,
+    mass: f64,
+    actuators: Vec<String>,
+}
+
+/// Reads the file that the arguments name.
+///
+/// # Errors
+/// [`Error::Other`] with what is wrong with the file, and the argument that could help.
+pub(crate) fn read(args: &RobotArgs) -> Result<Reading, Error> {
+    let options = ReadOptions {
+        root: args.root.clone(),
+        packages: args.packages.clone(),
+        floating: args.floating,
+        meshes: if args.without_meshes { Meshes::Leave } else { Meshes::Fit },
+        repair: Repair { least_mass: args.least_mass, least_inertia: args.least_inertia, balance: args.balance },
+        ..ReadOptions::default()
+    };
+    Reading::of_file(&args.file, &options).map_err(|error| {
+        let hint = match &error {
+            ReadError::Mass { .. } => "; or --least-mass, --least-inertia, --balance",
+            ReadError::Mesh { .. } => "; or --without-meshes",
+            ReadError::Path { why, .. } if why.contains("package") => "; or --packages, --without-meshes",
+            ReadError::Path { .. } => "; or --root, --without-meshes",
+            _ => "",
+        };
+        Error::Other(format!("{error}{hint}"))
+    })
+}
+
+/// The robot as a file of this kind.
+///
+/// # Errors
+/// [`Error::Other`] if it cannot be written.
+pub(crate) fn written(reading: &Reading, format: ModelFormat) -> Result<String, Error> {
+    let text = match format {
+        ModelFormat::Mjcf => reading.robot.to_mjcf(&MjcfOptions::default()),
+        ModelFormat::Urdf => reading.robot.to_urdf(),
+    };
+    text.map_err(|error| Error::Other(error.to_string()))
+}
+
+impl Summary {
+    pub(crate) fn of(args: &RobotArgs, reading: &Reading) -> Self {
+        let robot = &reading.robot;
+        let joints = robot.joints().map(|id| {
+            let segment = &robot.segments[id.index()];
+            let joint = &segment.joint;
+            let turns = joint.kind == JointKind::Revolute;
+            let [effort, angle] = if turns { ["N m", "rad"] } else { ["N", "m"] };
+            let at_most = |limit: f64| {
+                if limit.is_finite() { format!("at most {limit} {effort}") } else { "without limit".into() }
+            };
+            let law = |law: &Law<f64>| match law {
+                Law::Servo(Servo { stiffness, damping, limit }) => {
+                    format!("servo {stiffness} {effort}/{angle}, {damping} {effort} s/{angle}, {}", at_most(*limit))
+                }
+                Law::Torque(torque) => format!("motor {}", at_most(torque.limit)),
+                Law::Held(held) => format!("speed {} {effort} s/{angle}", held.damping),
+                Law::MusclePair(_) => "muscles".into(),
+            };
+            let own = robot.actuators.iter().filter(|actuator| actuator.joint == id);
+            let parent = segment.parent.map_or("the world", |parent| robot.segments[parent.index()].name.as_str());
+            JointSummary {
+                name: joint.name.clone(),
+                kind: if turns { "turns" } else { "slides" },
+                segment: segment.name.clone(),
+                parent: parent.into(),
+                range: joint.range.map(|end| end.is_finite().then_some(end)),
+                armature: joint.armature,
+                damping: joint.damping,
+                mass: segment.mass,
+                actuators: own.map(|actuator| law(&actuator.law)).collect(),
+            }
+        });
+        Self {
+            robot: robot.name.clone(),
+            file: args.file.display().to_string(),
+            segments: robot.segments.len(),
+            joints: joints.collect(),
+            colliders: robot.colliders.len(),
+            pairs: robot.pairs.len(),
+            mass: robot.segments.iter().map(|segment| segment.mass).sum(),
+            notes: reading.notes.iter().map(ToString::to_string).collect(),
+        }
+    }
+
+    pub(crate) fn text(&self) -> String {
+        let Self { robot, file, segments, joints, colliders, pairs, mass, notes } = self;
+        let mut text = format!(
+            "{file}: {robot}\n{segments} segments of {mass:.4} kg, {} joints, {colliders} colliders, {pairs} pairs\n",
+            joints.len()
+        );
+        // Writing into a string cannot fail.
+        let width = |of: fn(&JointSummary) -> &str| joints.iter().map(|j| of(j).chars().count()).max().unwrap_or(0);
+        let (names, carried) = (width(|joint| &joint.name), width(|joint| &joint.segment));
+        for joint in joints {
+            let range = match joint.range {
+                [None, None] => "without end".into(),
+                [low, high] => {
+                    let end = |end: Option<f64>| end.map_or("...".into(), |end| format!("{end:.4}"));
+                    format!("{} to {}", end(low), end(high))
+                }
+            };
+            let actuators = joint.actuators.join("; ");
+            let _ = writeln!(
+                text,
+                "  {:names$}  {:6} {:carried$} on {}: {range}{}{}",
+                joint.name,
+                joint.kind,
+                joint.segment,
+                joint.parent,
+                if actuators.is_empty() { "" } else { ", " },
+                actuators
+            );
+        }
+        if !notes.is_empty() {
+            text.push_str("left out or replaced:\n");
+        }
+        for note in notes {
+            let _ = writeln!(text, "  {note}");
+        }
+        text
+    }
+}

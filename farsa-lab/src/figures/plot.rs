@@ -1,0 +1,298 @@
+//! Curves over generations as SVG: `fitness.svg` of a run and the figures of a report.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use crate::store::log::{Line, Row};
+
+/// Small, so that its letters can be read on a telephone too.
+const WIDTH: i32 = 640;
+const SIZE: (u32, u32) = (WIDTH as u32, 350);
+/// Heights of the title and of a line of names below it.
+const TITLE: i32 = 36;
+const NAMES: i32 = 26;
+const MARGIN: i32 = 18;
+const FONT: (&str, u32) = ("sans-serif", 18);
+
+/// Three colours that a page may exchange for its own: background, letters with axes, and grid.
+pub(crate) const PAPER: &str = "#FFFFFF";
+pub(crate) const INK: &str = "#222222";
+pub(crate) const GRID: &str = "#E4E4E4";
+const INK_COLOR: RGBColor = RGBColor(0x22, 0x22, 0x22);
+const GRID_COLOR: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
+
+/// Colours that the colour-blind tell apart, by Okabe and Ito, the most different first; the yellow is too pale.
+const COLORS: [RGBColor; 6] = [
+    RGBColor(0x00, 0x72, 0xB2),
+    RGBColor(0xD5, 0x5E, 0x00),
+    RGBColor(0x00, 0x9E, 0x73),
+    RGBColor(0xCC, 0x79, 0xA7),
+    RGBColor(0xE6, 0x9F, 0x00),
+    RGBColor(0x56, 0xB4, 0xE9),
+];
+
+/// More points than these are not seen; every k-th is drawn then.
+const MOST_POINTS: usize = 1500;
+
+/// Curves that share a pair of axes.
+#[derive(Debug, Default)]
+pub(crate) struct Chart {
+    pub(crate) title: String,
+    /// What is upwards.
+    pub(crate) axis: &'static str,
+    pub(crate) curves: Vec<Curve>,
+}
+
+/// A value per generation, from generation 0; one that is not finite leaves a gap.
+#[derive(Debug, Default)]
+pub(crate) struct Curve {
+    /// What the legend says; curves without a name are drawn thin and pale, below the others.
+    pub(crate) name: Option<String>,
+    pub(crate) color: usize,
+    pub(crate) values: Vec<f64>,
+    /// Lower and upper end of a band around it, a pair per generation; may be empty.
+    pub(crate) band: Vec<[f64; 2]>,
+}
+
+/// Draws the log of a run: a chart for each population of these names, one below the other.
+///
+/// # Errors
+/// The backend's words, should it refuse.
+pub(crate) fn draw(title: &str, lines: &[Line], populations: &[String]) -> Result<String, String> {
+    stack(&charts(title, lines, populations))
+}
+
+/// The log of a run as a chart, or of several populations as one for each, with its name.
+pub(crate) fn charts(title: &str, lines: &[Line], populations: &[String]) -> Vec<Chart> {
+    let chart = |title: String, row: &dyn Fn(&Line) -> Row| {
+        let curve = |(color, name): (usize, &str)| Curve {
+            name: Some(name.into()),
+            color,
+            values: lines.iter().map(|line| row(line)[color]).collect(),
+            band: Vec::new(),
+        };
+        Chart { title, axis: "fitness", curves: ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect() }
+    };
+    if populations.len() < 2 {
+        return vec![chart(title.into(), &|line| line.row)];
+    }
+    let of_each = populations.iter().enumerate().map(|(population, name)| {
+        chart(format!("{title}: {name}"), &|line| line.each.get(population).copied().unwrap_or([f64::NAN; 3]))
+    });
+    of_each.collect()
+}
+
+/// Draws charts one below the other.
+///
+/// # Errors
+/// The backend's words, should it refuse.
+pub(crate) fn stack(charts: &[Chart]) -> Result<String, String> {
+    let mut svg = String::new();
+    pictures(&mut svg, charts).map_err(|error| error.to_string())?;
+    Ok(svg)
+}
+
+fn pictures<'s>(svg: &'s mut String, charts: &[Chart]) -> Result<(), Box<dyn std::error::Error + 's>> {
+    let size = (SIZE.0, charts.iter().map(Chart::height).sum());
+    let all = SVGBackend::with_string(svg, size).into_drawing_area();
+    all.fill(&WHITE)?;
+    let mut rest = all.clone();
+    for chart in charts {
+        let (area, below) = rest.split_vertically(chart.height());
+        chart.picture(&area)?;
+        rest = below;
+    }
+    all.present()?;
+    Ok(())
+}
+
+impl Chart {
+    /// The picture; text in it is text, so that no font is needed.
+    ///
+    /// # Errors
+    /// The backend's words, should it refuse.
+    pub(crate) fn draw(&self) -> Result<String, String> {
+        stack(core::slice::from_ref(self))
+    }
+
+    /// Height of title and names.
+    fn head(&self) -> u32 {
+        let lines = self.places().last().map_or(0, |place| place.1 + 1);
+        (TITLE + NAMES * lines + 8) as u32
+    }
+
+    fn height(&self) -> u32 {
+        SIZE.1 + self.head()
+    }
+
+    fn picture<'s>(&self, area: &DrawingArea<SVGBackend<'s>, Shift>) -> Result<(), Box<dyn std::error::Error + 's>> {
+        let (head, body) = area.split_vertically(self.head());
+        self.legend(&head)?;
+        let (low, high) = self.limits();
+        let generations = self.curves.iter().map(|curve| curve.values.len()).max().unwrap_or(0);
+        let mut chart = ChartBuilder::on(&body)
+            .margin_left(8)
+            .margin_right(18)
+            .margin_bottom(8)
+            .x_label_area_size(48)
+            .y_label_area_size(74)
+            .build_cartesian_2d(0..generations.saturating_sub(1).max(1), low..high)?;
+        chart
+            .configure_mesh()
+            .x_desc("generation")
+            .y_desc(self.axis)
+            .x_labels(8)
+            .y_labels(7)
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID_COLOR)
+            .axis_style(INK_COLOR)
+            .y_label_formatter(&|y| ((y * 1e6).round() / 1e6 + 0.0).to_string())
+            .label_style(FONT.into_font().color(&INK_COLOR))
+            .draw()?;
+        let (named, nameless): (Vec<_>, Vec<_>) = self.curves.iter().partition(|curve| curve.name.is_some());
+        // The first curve comes last, on top of the others.
+        for curve in named.iter().rev() {
+            let color = COLORS[curve.color % COLORS.len()];
+            for part in parts(&curve.band, |pair| pair.iter().all(|x| x.is_finite())) {
+                let there = part.iter().map(|&(x, [low, _])| (x, low));
+                let back = part.iter().rev().map(|&(x, [_, high])| (x, high));
+                chart.draw_series([Polygon::new(there.chain(back).collect::<Vec<_>>(), color.mix(0.22))])?;
+            }
+        }
+        let thin = nameless.iter().map(|curve| (curve, COLORS[curve.color % COLORS.len()].mix(0.45).stroke_width(1)));
+        let thick = named.iter().rev().map(|curve| (curve, COLORS[curve.color % COLORS.len()].stroke_width(2)));
+        for (curve, style) in thin.chain(thick) {
+            for part in parts(&curve.values, f64::is_finite) {
+                // A line of one point is not seen.
+                let dot =
+                    if part.len() == 1 { part.first().map(|&at| Circle::new(at, 3, style.filled())) } else { None };
+                chart.draw_series(dot)?;
+                chart.draw_series(LineSeries::new(part, style))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Title and names in lines of their own, so that they never lie on a curve.
+    fn legend<'s>(&self, area: &DrawingArea<SVGBackend<'s>, Shift>) -> Result<(), Box<dyn std::error::Error + 's>> {
+        area.draw(&Text::new(self.title.clone(), (MARGIN, 12), ("sans-serif", 20).into_font().color(&INK_COLOR)))?;
+        let named = self.curves.iter().filter_map(|curve| Some((curve.name.as_ref()?, curve.color)));
+        for ((name, color), (x, line)) in named.zip(self.places()) {
+            let y = TITLE + NAMES * line + 14;
+            let stroke = COLORS[color % COLORS.len()].stroke_width(3);
+            area.draw(&PathElement::new([(x, y), (x + 22, y)], stroke))?;
+            area.draw(&Text::new(name.clone(), (x + 28, y - 9), FONT.into_font().color(&INK_COLOR)))?;
+        }
+        Ok(())
+    }
+
+    /// Where the names stand: from the left [pixels], and in which line.
+    fn places(&self) -> Vec<(i32, i32)> {
+        let (mut x, mut line) = (MARGIN, 0);
+        let mut places = Vec::new();
+        for name in self.curves.iter().filter_map(|curve| curve.name.as_ref()) {
+            // Without a font the width of a text is a guess: a little more than half its height a letter.
+            let width = name.chars().fold(28 + 20, |width: i32, _| width.saturating_add(9));
+            if x > MARGIN && x.saturating_add(width) > WIDTH {
+                (x, line) = (MARGIN, line + 1);
+            }
+            places.push((x, line));
+            x = x.saturating_add(width);
+        }
+        places
+    }
+
+    fn limits(&self) -> (f64, f64) {
+        let values = self.curves.iter().flat_map(|curve| curve.values.iter().chain(curve.band.iter().flatten()));
+        let finite = || values.clone().copied().filter(|x| x.is_finite());
+        let (mut low, mut high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        if low > high {
+            (low, high) = (0.0, 1.0);
+        }
+        // A flat curve needs an axis too.
+        let margin = (0.05 * (high - low)).max(1e-9 * high.abs()).max(f64::MIN_POSITIVE.sqrt());
+        (low - margin, high + margin)
+    }
+}
+
+/// Every how many generations a point is drawn.
+fn stride(points: usize) -> usize {
+    points.div_ceil(MOST_POINTS).max(1)
+}
+
+/// The points with their places, thinned out, divided where one cannot be drawn.
+fn parts<T: Copy>(values: &[T], drawable: impl Fn(T) -> bool) -> Vec<Vec<(usize, T)>> {
+    let (stride, last) = (stride(values.len()), values.len().saturating_sub(1));
+    let points: Vec<(usize, T)> =
+        values.iter().copied().enumerate().filter(|(index, _)| index % stride == 0 || *index == last).collect();
+    points.split(|(_, value)| !drawable(*value)).filter(|part| !part.is_empty()).map(<[_]>::to_vec).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_log_can_be_drawn() {
+        let failed = [f64::NEG_INFINITY; 3];
+        for rows in [
+            vec![],
+            vec![[1.0, 0.5, 0.0]],
+            vec![[0.0; 3]; 3],
+            vec![[1e9; 3]; 3],
+            vec![failed, failed],
+            vec![[3.0, 2.0, 1.0], failed, [4.0, 3.0, 2.0]],
+        ] {
+            let lines: Vec<Line> = rows.iter().map(|row| line(*row, &[])).collect();
+            let svg = draw("a title", &lines, &["0".into()]).unwrap();
+            for label in ["a title", "generation", "fitness", "best", "mean", "worst", "</svg>", PAPER, INK, GRID] {
+                assert!(svg.contains(label), "{rows:?}: no {label}");
+            }
+            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{rows:?}");
+        }
+    }
+
+    fn line(row: Row, each: &[Row]) -> Line {
+        Line { row, each: each.into(), evaluations: 20, failed: 0 }
+    }
+
+    #[test]
+    fn each_of_several_populations_has_a_chart_of_its_own() {
+        let lines = [line([9.0, 1.0, 0.0], &[[1.0, 0.5, 0.0], [9.0, 8.0, 7.0]]), line([8.0; 3], &[[2.0; 3], [8.0; 3]])];
+        let names = ["fox", "hare"].map(String::from);
+        let charts = charts("run", &lines, &names);
+        let of =
+            |chart: &Chart| (chart.title.clone(), chart.curves.iter().map(|c| c.values.clone()).collect::<Vec<_>>());
+        assert_eq!(of(&charts[0]), ("run: fox".into(), vec![vec![1.0, 2.0], vec![0.5, 2.0], vec![0.0, 2.0]]));
+        assert_eq!(of(&charts[1]), ("run: hare".into(), vec![vec![9.0, 8.0], vec![8.0, 8.0], vec![7.0, 8.0]]));
+        let both = draw("run", &lines, &names).unwrap();
+        for title in ["run: fox", "run: hare"] {
+            assert_eq!(both.matches(title).count(), 1, "{both}");
+        }
+        let one = draw("run", &lines, &names[..1]).unwrap();
+        let height =
+            |svg: &str| svg.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<u32>().unwrap();
+        assert_eq!(height(&both), 2 * height(&one));
+        assert!(one.contains(">\nrun\n<") && both.matches("generation").count() == 2, "{one}");
+    }
+
+    #[test]
+    fn gaps_divide_and_many_points_are_thinned_out() {
+        let found = parts(&[1.0, f64::NAN, 3.0, 4.0], f64::is_finite);
+        assert_eq!(found, vec![vec![(0, 1.0)], vec![(2, 3.0), (3, 4.0)]]);
+        let found = parts(&vec![0.0; 10 * MOST_POINTS + 3], f64::is_finite).concat();
+        assert!(found.len() <= MOST_POINTS + 1 && found.last().is_some_and(|point| point.0 == 10 * MOST_POINTS + 2));
+    }
+
+    #[test]
+    fn a_band_lies_around_its_curve() {
+        let curve = Curve {
+            name: Some("<labels> & co".into()),
+            values: vec![1.0, 2.0, f64::NEG_INFINITY],
+            band: vec![[0.5, 1.5], [1.0, 3.0], [f64::NEG_INFINITY; 2]],
+            ..Curve::default()
+        };
+        let svg = Chart { title: "t".into(), axis: "fitness", curves: vec![curve] }.draw().unwrap();
+        assert!(svg.contains("<polygon") && svg.contains("&lt;labels&gt; &amp; co"), "{svg}");
+    }
+}

@@ -1,0 +1,30 @@
+#![doc = include_str!("../README.md")]
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod command;
+mod error;
+mod evaluation;
+mod experiment;
+mod export;
+mod figures;
+mod json;
+mod report;
+mod run;
+mod search;
+mod store;
+
+pub use command::cli;
+pub use error::Error;
+pub use evaluation::read_genotypes;
+pub use experiment::{
+    ActuatorExport, Batch, Bodies, ChannelGroup, ControllerExport, CtrnnExport, Description, Episode, EpisodeId,
+    Evaluation, Evaluator, Experiment, Exports, Genotype, InLanes, InWorld, JudgeExport, Lanes, Learner, Lesson,
+    MotorDrive, MotorExport, NetworkExport, Neurocontroller, Note, Outcome, OwnedNetwork, Parameter, PointExport,
+    Rollout, Search, SensorExport, SensorReading, ServoExport, Setting, Settings, Source, StartExport, SurfaceExport,
+    Task, Value, network_parameters, resting_network, run_episode, run_in_lanes, seconds,
+};
+pub use run::{BestOfRun, ENGINE};
+pub use search::evolution;
+pub use store::VALUES_VERSION;
+
+pub use farsa_view::{Channel, Links, NodeParameters, Prop, Recording, Stage, View};

@@ -1,0 +1,221 @@
+//! A run as a report reads it, and runs that differ in their seeds alone.
+
+use std::time::Duration;
+
+use crate::error::Error;
+use crate::evaluation::test::Record;
+use crate::evaluation::test_table::{Findings, Table};
+use crate::experiment::settings::Value;
+use crate::run::plan::Plan;
+use crate::run::records::{Checkpoint, evolved};
+use crate::search::evolution::GENERATIONS;
+use crate::store::directory::Directory;
+use crate::store::log::{self, Line};
+use crate::store::manifest::Manifest;
+
+/// All of a run that a report tells.
+pub(crate) struct Run<'e> {
+    pub(crate) directory: Directory,
+    pub(crate) plan: Plan<'e>,
+    pub(crate) manifest: Manifest,
+    /// Names of the populations, if there are several.
+    pub(crate) populations: Vec<String>,
+    /// The finished generations, at least one.
+    pub(crate) lines: Vec<Line>,
+    pub(crate) test: Option<Tested>,
+}
+
+/// The test of a run's champion.
+pub(crate) struct Tested {
+    pub(crate) findings: Findings,
+    /// None if it was made before there were records.
+    pub(crate) record: Option<Record>,
+}
+
+impl<'e> Run<'e> {
+    /// Reads a run, also one that is under way: its finished generations up to the last checkpoint.
+    ///
+    /// # Errors
+    /// [`Error::Damaged`] when a file is, or no generation is finished; [`Error::OtherConfiguration`] when the
+    /// configuration was changed by hand; [`Error::Io`].
+    pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
+        evolved(&directory)?;
+        let manifest = Manifest::read(&directory.manifest())?;
+        // The checkpoint first: of a run under way the log knows at least as much.
+        let Checkpoint { log: mark, .. } = Checkpoint::read(&plan, &directory)?;
+        let lines = log::read(&directory.log(), mark)?;
+        if lines.is_empty() {
+            return Err(Error::damaged(&directory.log(), "no generation is finished yet"));
+        }
+        let path = directory.test();
+        let evaluator = plan.evaluator()?;
+        let populations = evaluator.populations();
+        let populations = if populations.len() > 1 { populations } else { Vec::new() };
+        let test = if path.is_file() {
+            let findings = Table::read(&path)?.findings(&evaluator.terms());
+            Some(Tested { findings, record: Record::read(&directory)? })
+        } else {
+            None
+        };
+        Ok(Self { directory, plan, manifest, populations, lines, test })
+    }
+
+    /// The directory as the user named it.
+    pub(crate) fn name(&self) -> String {
+        self.directory.path().display().to_string()
+    }
+
+    /// Best (0), mean (1) or worst (2) fitness of a generation, of one of several populations or of all together.
+    pub(crate) fn fitness(&self, population: Option<usize>, generation: usize, which: usize) -> f64 {
+        let row = |line: &Line| match population {
+            None => Some(line.row),
+            Some(population) => line.each.get(population).copied(),
+        };
+        self.lines.get(generation).and_then(row).map_or(f64::NAN, |row| row[which])
+    }
+
+    /// Whose fitness is told: that of each population, or of the only one, which has no name.
+    pub(crate) fn of_each(&self) -> Vec<(Option<usize>, String)> {
+        match self.populations.as_slice() {
+            [] => vec![(None, String::new())],
+            several => several.iter().enumerate().map(|(number, name)| (Some(number), name.clone())).collect(),
+        }
+    }
+
+    /// The last finished generation.
+    pub(crate) fn last(&self) -> usize {
+        self.lines.len().saturating_sub(1)
+    }
+
+    /// The share of the test's trials that succeeded.
+    pub(crate) fn success(&self) -> Option<f64> {
+        self.test.as_ref().map(|Tested { findings, .. }| findings.part(findings.successes))
+    }
+
+    /// How long all sessions took.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.manifest.sessions.iter().map(|session| session.seconds).sum()
+    }
+
+    /// A setting's value as the configuration has it; none if this condition has no such setting.
+    pub(crate) fn value(&self, key: &str) -> Option<&Value> {
+        self.plan.settings.get(key).ok()
+    }
+
+    /// Keys and values of all settings that make a run another one.
+    fn settings(&self) -> impl Iterator<Item = (&str, Option<&Value>)> {
+        let keys = self.plan.settings.table().iter().map(crate::experiment::settings::Setting::key);
+        keys.filter(|&key| key != GENERATIONS).map(|key| (key, self.value(key)))
+    }
+}
+
+/// Runs that differ in nothing but their seeds and their lengths.
+pub(crate) struct Group<'r> {
+    /// The condition, with the settings that tell it from other groups of the same condition.
+    pub(crate) label: String,
+    pub(crate) runs: Vec<&'r Run<'r>>,
+}
+
+impl<'r> Group<'r> {
+    /// Divides the runs of one experiment into groups, in the order of its conditions.
+    pub(crate) fn all(runs: &[&'r Run<'r>]) -> Vec<Self> {
+        let Some(first) = runs.first() else { return Vec::new() };
+        let conditions = first.plan.experiment.conditions();
+        let place = |run: &Run<'_>| conditions.iter().position(|&condition| condition == run.plan.condition);
+        let mut sorted = runs.to_vec();
+        sorted.sort_by_key(|run| (place(run), run.plan.seed));
+        let mut groups: Vec<Self> = Vec::new();
+        for run in sorted {
+            let same = |group: &&mut Self| {
+                group.runs.first().is_some_and(|other| {
+                    other.plan.condition == run.plan.condition && other.settings().eq(run.settings())
+                })
+            };
+            match groups.iter_mut().find(same) {
+                Some(group) => group.runs.push(run),
+                None => groups.push(Self { label: String::new(), runs: vec![run] }),
+            }
+        }
+        let labels: Vec<String> = groups.iter().map(|group| group.name(&groups)).collect();
+        for (group, label) in groups.iter_mut().zip(labels) {
+            group.label = label;
+        }
+        groups
+    }
+
+    /// The condition, with what tells this group from the others of that condition.
+    fn name(&self, groups: &[Self]) -> String {
+        let Some(run) = self.runs.first() else { return String::new() };
+        let plan = &run.plan;
+        let condition = if plan.condition.is_empty() { plan.experiment.name() } else { &plan.condition };
+        let others: Vec<&&Run<'_>> = groups
+            .iter()
+            .filter_map(|group| group.runs.first())
+            .filter(|other| other.plan.condition == plan.condition)
+            .collect();
+        let own = run.settings().filter(|(key, value)| others.iter().any(|other| other.value(key) != *value));
+        // The last part of a key says enough in a name; the table of differences has the whole.
+        let own: Vec<String> =
+            own.filter_map(|(key, value)| Some(format!("{}={}", key.rsplit('.').next()?, value?))).collect();
+        if own.is_empty() { condition.into() } else { format!("{condition}, {}", own.join(", ")) }
+    }
+
+    /// Whose fitness the runs tell: where conditions have different populations, those of the one with the most.
+    pub(crate) fn of_each(groups: &[Self]) -> Vec<(Option<usize>, String)> {
+        let runs = groups.iter().flat_map(|group| &group.runs);
+        runs.map(|run| run.of_each()).max_by_key(Vec::len).unwrap_or_default()
+    }
+
+    /// The last generation that all its runs have.
+    pub(crate) fn common(&self) -> usize {
+        self.runs.iter().map(|run| run.last()).min().unwrap_or(0)
+    }
+}
+
+/// A number for reading: five digits, or as many as the whole part has.
+pub(crate) fn short(x: f64) -> String {
+    if !x.is_finite() {
+        return "–".into();
+    }
+    let (mut decimals, mut size) = (4, x.abs());
+    while size >= 10.0 && decimals > 0 {
+        (size, decimals) = (size / 10.0, decimals - 1);
+    }
+    if x != 0.0 && x.abs() < 1e-3 { format!("{x:.3e}") } else { format!("{x:.decimals$}") }
+}
+
+/// A share for reading.
+pub(crate) fn percent(share: f64) -> String {
+    if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
+}
+
+/// A time for reading.
+pub(crate) fn duration(seconds: f64) -> String {
+    let whole = seconds.clamp(0.0, 1e12);
+    let duration =
+        if whole < 1.0 { Duration::from_millis((1e3 * whole) as u64) } else { Duration::from_secs(whole as u64) };
+    humantime::format_duration(duration).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_true() {
+        let cases = [
+            (0.0, "0.0000"),
+            (1.25, "1.2500"),
+            (-12.345678, "-12.346"),
+            (3464.7337, "3464.7"),
+            (123456.7, "123457"),
+            (0.00012345, "1.234e-4"),
+            (f64::NEG_INFINITY, "–"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(short(x), text);
+        }
+        assert_eq!((percent(0.5), percent(f64::NAN)), ("50.0 %".into(), "–".into()));
+        assert_eq!((duration(442.9), duration(0.25), duration(-1.0)), ("7m 22s".into(), "250ms".into(), "0s".into()));
+    }
+}

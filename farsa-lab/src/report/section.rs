@@ -1,0 +1,372 @@
+//! What a report tells about the runs of one experiment.
+
+use std::time::{Duration, UNIX_EPOCH};
+
+use crate::error::Error;
+use crate::evaluation::draw;
+use crate::evaluation::test_table::Finding;
+use crate::figures::statistics::{Comparison, Quartiles, compare, median};
+use crate::report::curves::{figures, quartiles};
+use crate::report::page::{Block, Figure, Table};
+use crate::report::run::{Group, Run, duration, percent, short};
+use crate::report::settings::{command, complete, differences, shell};
+use crate::search::evolution::POPULATION;
+
+/// The section about an experiment's runs, with a heading unless it is alone on its page; `runs` is not empty.
+pub(crate) fn section(runs: &[&Run<'_>], alone: bool, program: &str) -> Result<Vec<Block>, Error> {
+    let Some(first) = runs.first() else { return Ok(Vec::new()) };
+    let experiment = first.plan.experiment;
+    let groups = Group::all(runs);
+    let runs: Vec<&Run<'_>> = groups.iter().flat_map(|group| group.runs.iter().copied()).collect();
+    let mut blocks = Vec::new();
+    if !alone {
+        blocks.push(Block::Heading(experiment.name().into()));
+    }
+    blocks.push(Block::Text(sentence(experiment.summary())));
+    blocks.extend(twins(&groups));
+    blocks.push(Block::Table(asked(&groups)?));
+    if let Some(table) = differences(&groups) {
+        blocks.push(Block::Subheading("What differs".into()));
+        blocks.push(Block::Table(table));
+    }
+    blocks.push(Block::Subheading("Fitness".into()));
+    blocks.push(Block::Figures(figures(&groups)?));
+    if runs.len() > 1 {
+        blocks.extend(outcome(&groups));
+    }
+    blocks.push(Block::Subheading("Champions on fresh starts".into()));
+    blocks.extend(tests(&groups, program)?);
+    let (mut pictures, mut others) = (Vec::new(), Vec::new());
+    for (place, run) in runs.iter().enumerate() {
+        match champion(run, place) {
+            Ok(picture) => pictures.extend(picture),
+            // This program cannot live that champion's lives; all else in its run can be told.
+            Err(error @ Error::OtherVersion { .. }) => others.push(Block::Text(format!("Not drawn: {error}"))),
+            Err(error) => return Err(error),
+        }
+    }
+    if !pictures.is_empty() || !others.is_empty() {
+        blocks.push(Block::Subheading("What the champions do".into()));
+        blocks.push(Block::Figures(pictures));
+        blocks.extend(others);
+    }
+    blocks.push(Block::Subheading("Runs".into()));
+    blocks.push(Block::Table(table_of_runs(&groups)));
+    blocks.push(Block::Fold("Configuration in full".into(), vec![Block::Table(complete(&groups))]));
+    blocks.push(Block::Fold("Versions, machines and times".into(), vec![Block::Table(sessions(&runs))]));
+    let mut commands = Vec::new();
+    for run in &runs {
+        commands.push(command(run, program)?);
+        commands.push(test_command(run, program)?);
+        commands.push(shell(&[program.into(), "replay".into(), run.name()])?);
+    }
+    blocks.push(Block::Subheading("The same again".into()));
+    blocks.push(Block::Commands(commands));
+    Ok(blocks)
+}
+
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    let end = if text.ends_with(['.', '?', '!']) { "" } else { "." };
+    first.map_or_else(String::new, |first| format!("{first}{}{end}", letters.as_str()))
+}
+
+/// A warning about runs that are the same run.
+fn twins(groups: &[Group<'_>]) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for group in groups {
+        for pair in group.runs.windows(2).filter(|pair| pair[0].plan.seed == pair[1].plan.seed) {
+            blocks.push(Block::Text(format!(
+                "Warning: {} and {} have the same configuration and seed: they are one run counted twice.",
+                pair[0].name(),
+                pair[1].name()
+            )));
+        }
+    }
+    blocks
+}
+
+/// What was to be found out, a column for each group.
+fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
+    let mut table = Table::new(&["condition"]);
+    let rows = ["seeds", "generations", "individuals", "trials", "steps of a trial", "network", "genome", "fitness"];
+    table.rows = rows.iter().map(|&row| vec![row.to_owned()]).collect();
+    for group in groups {
+        let Some(run) = group.runs.first() else { continue };
+        let evaluator = run.plan.evaluator()?;
+        let description = evaluator.description();
+        let list = |numbers: &mut dyn Iterator<Item = String>| {
+            let mut numbers: Vec<String> = numbers.collect();
+            numbers.dedup();
+            numbers.join(", ")
+        };
+        let seconds = description.step_seconds * description.steps as f64;
+        let clock = if seconds > 0.0 { format!(" ({seconds:?} s)") } else { String::new() };
+        let cells = [
+            list(&mut group.runs.iter().map(|run| run.plan.seed.to_string())),
+            list(&mut group.runs.iter().map(|run| match run.plan.generations() {
+                Ok(all) if all as usize > run.lines.len() => format!("{} of {all}", run.lines.len()),
+                _ => run.lines.len().to_string(),
+            })),
+            match (run.value(POPULATION), evaluator.populations().len()) {
+                (Some(size), 1) => size.to_string(),
+                (Some(size), populations) => format!("{populations} populations of {size}"),
+                (None, _) => "1 parent and 1 mutant".into(),
+            },
+            evaluator.trials().to_string(),
+            format!("at most {}{clock}", description.steps),
+            description.network,
+            format!("{} genes of {} bits", evaluator.parameters().len(), run.plan.experiment.gene_bits()),
+            evaluator.terms().join(" + "),
+        ];
+        table.head.push(group.label.clone());
+        for (row, cell) in table.rows.iter_mut().zip(cells) {
+            row.push(cell);
+        }
+    }
+    Ok(table)
+}
+
+/// The name of a column about one of several populations.
+fn whose(what: &str, name: &str) -> String {
+    if name.is_empty() { what.into() } else { format!("{what}, {name}") }
+}
+
+/// A number of a run at a generation, if it has one.
+type Measure<'m> = Box<dyn Fn(&Run<'_>) -> Option<f64> + 'm>;
+
+/// Medians at the last generation that all runs have, and whether the groups differ.
+fn outcome(groups: &[Group<'_>]) -> Vec<Block> {
+    let last = groups.iter().map(Group::common).min().unwrap_or(0);
+    let spread = |found: Option<Quartiles>, show: fn(f64) -> String| match found {
+        Some(Quartiles { lower, median, upper }) => {
+            format!("{} ({} to {})", show(median), show(lower), show(upper))
+        }
+        None => "–".into(),
+    };
+    let populations = Group::of_each(groups);
+    let mut table = Table::new(&["condition", "runs"]);
+    table.head.extend(populations.iter().flat_map(|(_, name)| ["best", "mean"].map(|what| whose(what, name))));
+    table.head.push("success of the champions".into());
+    for group in groups {
+        let tested: Vec<f64> = group.runs.iter().filter_map(|run| run.success()).collect();
+        let of = if tested.is_empty() || tested.len() == group.runs.len() {
+            String::new()
+        } else {
+            format!(", {} tested", tested.len())
+        };
+        let mut row = vec![group.label.clone(), group.runs.len().to_string()];
+        for (population, _) in &populations {
+            row.extend([0, 1].map(|which| spread(quartiles(group, *population, last, which), short)));
+        }
+        row.push(spread(Quartiles::of(&tested), percent) + &of);
+        table.rows.push(row);
+    }
+    let mut blocks = vec![
+        Block::Text(format!(
+            "Median and quartiles over the runs, at generation {last}, the last that all of them have; success as \
+             tested below."
+        )),
+        Block::Table(table),
+    ];
+    let mut table = Table::new(&["first", "second", "of", "U", "P(first larger)", "p"]);
+    for (index, first) in groups.iter().enumerate() {
+        for second in &groups[index + 1..] {
+            let mut measures: Vec<(String, Measure<'_>)> = Vec::new();
+            for (population, name) in &populations {
+                for (which, what) in [(0, "best"), (1, "mean")] {
+                    let measure = move |run: &Run<'_>| Some(run.fitness(*population, last, which));
+                    measures.push((whose(what, name), Box::new(measure)));
+                }
+            }
+            measures.push(("success".into(), Box::new(|run: &Run<'_>| run.success())));
+            for (name, measure) in &measures {
+                // A run that lacks the number would make the comparison one of other runs.
+                let of = |group: &Group<'_>| group.runs.iter().map(|run| measure(run)).collect::<Option<Vec<f64>>>();
+                let found = of(first).zip(of(second)).and_then(|(first, second)| compare(&first, &second));
+                if let Some(Comparison { u, larger, p }) = found {
+                    let words = [&first.label, &second.label, name].map(String::clone);
+                    let numbers = [format!("{u:?}"), format!("{larger:.3}"), format!("{p:.4}")];
+                    table.rows.push(words.into_iter().chain(numbers).collect());
+                }
+            }
+        }
+    }
+    if !table.rows.is_empty() {
+        blocks.push(Block::Text(
+            "Do they differ? Mann-Whitney U test, two-sided, exact, not corrected for the number of comparisons; \
+             P(first larger) is the probability that a run of the first is above one of the second, equals as half."
+                .into(),
+        ));
+        blocks.push(Block::Table(table));
+    }
+    blocks
+}
+
+/// What the tests found, or how to make them.
+fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
+    let mut names: Vec<&str> = Vec::new();
+    for test in groups.iter().flat_map(|group| &group.runs).filter_map(|run| run.test.as_ref()) {
+        for (name, _) in &test.findings.notes {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+    }
+    let mut table = Table::new(&["run", "champion of", "trials", "success", "trial by trial", "fitness"]);
+    table.head.extend(names.iter().map(|&name| name.to_owned()));
+    let mut missing = Vec::new();
+    for group in groups {
+        let mut rows: Vec<Vec<String>> = Vec::new();
+        for run in &group.runs {
+            let Some(test) = &run.test else {
+                missing.push(test_command(run, program)?);
+                continue;
+            };
+            let findings = &test.findings;
+            let champion = match &test.record {
+                None => "not recorded".into(),
+                Some(record) if record.generation as usize == run.last() => format!("generation {}", record.generation),
+                Some(record) => format!("generation {}: an earlier one", record.generation),
+            };
+            let by_trial = findings.by_trial.values();
+            let by_trial: Vec<String> =
+                by_trial.map(|share| percent(share.successes as f64 / share.of.max(1) as f64)).collect();
+            let mut row = vec![
+                run.name(),
+                champion,
+                findings.trials.to_string(),
+                percent(findings.part(findings.successes)),
+                // Too many kinds of trials are no longer read one by one.
+                if by_trial.len() > 8 { format!("{} kinds", by_trial.len()) } else { by_trial.join(", ") },
+                short(findings.fitness),
+            ];
+            for &name in &names {
+                let found = findings.notes.iter().find(|note| note.0 == name);
+                row.push(match found.map(|note| &note.1) {
+                    None => String::new(),
+                    Some(Finding::Mean(mean)) => short(*mean),
+                    Some(Finding::Counts(counts)) => {
+                        let share =
+                            |(word, &count): (&String, &usize)| format!("{word} {}", percent(findings.part(count)));
+                        counts.iter().map(share).collect::<Vec<_>>().join(", ")
+                    }
+                });
+            }
+            rows.push(row);
+        }
+        let middle = (rows.len() > 1).then(|| middle(group, &names));
+        table.rows.append(&mut rows);
+        table.rows.extend(middle);
+    }
+    let mut blocks = Vec::new();
+    if !table.rows.is_empty() {
+        blocks.push(Block::Text(
+            "Success as the experiment defines it, of all trials and of each of the experiment's own; means over the \
+             trials; the last row of a condition is the median of its runs."
+                .into(),
+        ));
+        blocks.push(Block::Table(table));
+    }
+    if !missing.is_empty() {
+        blocks.push(Block::Text("Not tested yet; this does it, and the report can then be made again:".into()));
+        blocks.push(Block::Commands(missing));
+    }
+    Ok(blocks)
+}
+
+/// The medians of what the tests of a group found.
+fn middle(group: &Group<'_>, names: &[&str]) -> Vec<String> {
+    let findings: Vec<_> = group.runs.iter().filter_map(|run| Some(&run.test.as_ref()?.findings)).collect();
+    let shown = |values: Vec<f64>, show: fn(f64) -> String| median(&values).map(show).unwrap_or_default();
+    let mut row = vec![
+        format!("median, {}", group.label),
+        String::new(),
+        String::new(),
+        shown(findings.iter().map(|found| found.part(found.successes)).collect(), percent),
+        String::new(),
+        shown(findings.iter().map(|found| found.fitness).collect(), short),
+    ];
+    for &name in names {
+        let means = findings.iter().filter_map(|found| match found.notes.iter().find(|note| note.0 == name)?.1 {
+            Finding::Mean(mean) => Some(mean),
+            Finding::Counts(_) => None,
+        });
+        row.push(shown(means.collect(), short));
+    }
+    row
+}
+
+fn test_command(run: &Run<'_>, program: &str) -> Result<String, Error> {
+    let mut words = vec![program.to_owned(), "test".into(), run.name()];
+    if let Some(test) = &run.test {
+        words.extend(["--trials".into(), test.findings.trials.to_string()]);
+        words.extend(test.record.iter().flat_map(|record| ["--seed".into(), record.seed.to_string()]));
+    }
+    shell(&words)
+}
+
+fn table_of_runs(groups: &[Group<'_>]) -> Table {
+    const FITNESS: [&str; 3] = ["last best", "last mean", "highest best"];
+    let populations = Group::of_each(groups);
+    let mut table = Table::new(&["run", "condition", "seed", "generations"]);
+    table.head.extend(populations.iter().flat_map(|(_, name)| FITNESS.map(|what| whose(what, name))));
+    table.head.extend(["evaluations", "failed", "time"].map(String::from));
+    for (group, run) in groups.iter().flat_map(|group| group.runs.iter().map(move |run| (group, run))) {
+        let sum = |what: fn(&crate::store::log::Line) -> u64| run.lines.iter().map(what).sum::<u64>().to_string();
+        let mut row = vec![run.name(), group.label.clone(), run.plan.seed.to_string(), run.lines.len().to_string()];
+        for (population, _) in &populations {
+            let best = (0..run.lines.len()).map(|at| run.fitness(*population, at, 0));
+            row.extend([0, 1].map(|which| short(run.fitness(*population, run.last(), which))));
+            row.push(short(best.fold(f64::NEG_INFINITY, f64::max)));
+        }
+        row.extend([sum(|line| line.evaluations), sum(|line| line.failed), duration(run.seconds())]);
+        table.rows.push(row);
+    }
+    table
+}
+
+/// A line for every process that worked at a run.
+fn sessions(runs: &[&Run<'_>]) -> Table {
+    let mut table = Table::new(&[
+        "run",
+        "from",
+        "FARSA",
+        "values",
+        "machine",
+        "threads",
+        "lanes",
+        "generations",
+        "evaluations",
+        "time",
+        "a second",
+    ]);
+    for run in runs {
+        for session in &run.manifest.sessions {
+            let start = UNIX_EPOCH.checked_add(Duration::from_secs(session.started_unix));
+            table.rows.push(vec![
+                run.name(),
+                start.map(|start| humantime::format_rfc3339_seconds(start).to_string()).unwrap_or_default(),
+                session.farsa.clone(),
+                format!("{}, {}", run.manifest.values_version, run.manifest.experiment_version),
+                session.machine.describe(),
+                session.threads.to_string(),
+                format!("{}, {}", session.lanes.lanes, session.lanes.simd),
+                session.generations.to_string(),
+                session.evaluations.to_string(),
+                duration(session.seconds),
+                short(session.evaluations as f64 / session.seconds),
+            ]);
+        }
+    }
+    table
+}
+
+/// A champion's picture with its caption; `place` tells it from the others on the page.
+fn champion(run: &Run<'_>, place: usize) -> Result<Option<Figure>, Error> {
+    let prefix = format!("{}-{place}", run.plan.experiment.name());
+    let picture = draw::champion(&run.plan, &run.directory, &prefix)?;
+    let caption = format!("{}: how its champion's best trial ends.", run.name());
+    Ok(picture.map(|picture| Figure { kind: "champion", picture, caption }))
+}

@@ -1,0 +1,120 @@
+//! `farsa report`: a page about one or many runs.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::report::page::{Block, Page};
+use crate::report::run::Run;
+use crate::report::section::section;
+use crate::report::settings::shell;
+use crate::run::plan::Plan;
+use crate::store::directory::{Directory, create_results};
+
+/// What was written about which runs.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    runs: Vec<RunSummary>,
+    /// The files that were written.
+    files: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct RunSummary {
+    directory: String,
+    experiment: String,
+    condition: String,
+    seed: u64,
+    generations: usize,
+    best: f64,
+    mean: f64,
+    /// The share of successful trials; none if there was no test.
+    success: Option<f64>,
+}
+
+impl Summary {
+    /// The same in a line of words.
+    pub(crate) fn text(&self) -> String {
+        let runs = if self.runs.len() == 1 { "run" } else { "runs" };
+        format!("{} {runs}: {}\n", self.runs.len(), self.files.join(", "))
+    }
+}
+
+/// Writes a page about some runs as HTML, as Markdown with its pictures, or both.
+///
+/// # Errors
+/// [`Error::Usage`] when a file is there already or a run is named twice; those of reading a run. Nothing is then
+/// written.
+pub(crate) fn report(
+    runs: Vec<(Directory, Plan<'_>)>,
+    html: Option<&Path>,
+    md: Option<&Path>,
+    program: &str,
+) -> Result<Summary, Error> {
+    for (index, (directory, _)) in runs.iter().enumerate() {
+        let real = |directory: &Directory| fs::canonicalize(directory.path()).ok();
+        if runs.iter().take(index).any(|(other, _)| real(other) == real(directory)) {
+            return Err(Error::Usage(format!("{}: is named twice", directory.path().display())));
+        }
+    }
+    let runs = runs.into_iter().map(|(directory, plan)| Run::read(directory, plan)).collect::<Result<Vec<_>, _>>()?;
+    let page = page(&runs, html, md, program)?;
+    let mut files: Vec<(PathBuf, String)> = Vec::new();
+    if let Some(path) = html {
+        files.push((path.into(), page.html()));
+    }
+    if let Some(path) = md {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let (text, pictures) = page.markdown(&stem);
+        files.push((path.into(), text));
+        files.extend(pictures.into_iter().map(|(name, picture)| (path.with_file_name(name), picture)));
+    }
+    create_results(&files)?;
+    Ok(Summary {
+        runs: runs.iter().map(summary).collect(),
+        files: files.iter().map(|(path, _)| path.display().to_string()).collect(),
+    })
+}
+
+fn page(runs: &[Run<'_>], html: Option<&Path>, md: Option<&Path>, program: &str) -> Result<Page, Error> {
+    let mut experiments: Vec<&str> = Vec::new();
+    for run in runs {
+        if !experiments.contains(&run.plan.experiment.name()) {
+            experiments.push(run.plan.experiment.name());
+        }
+    }
+    let title = match runs {
+        [run] => run.plan.name(),
+        _ => format!("{}: {} runs", experiments.join(", "), runs.len()),
+    };
+    let mut blocks = Vec::new();
+    for experiment in &experiments {
+        let these: Vec<&Run<'_>> = runs.iter().filter(|run| run.plan.experiment.name() == *experiment).collect();
+        blocks.extend(section(&these, experiments.len() == 1, program)?);
+    }
+    let mut words: Vec<String> = vec![program.into(), "report".into()];
+    words.extend(runs.iter().map(Run::name));
+    for (option, path) in [("--html", html), ("--md", md)] {
+        words.extend(path.into_iter().flat_map(|path| [option.to_owned(), path.display().to_string()]));
+    }
+    blocks.push(Block::Heading("This page".into()));
+    let version = env!("CARGO_PKG_VERSION");
+    blocks.push(Block::Text(format!("Written by FARSA {version}; the same runs make the same page.")));
+    blocks.push(Block::Commands(vec![shell(&words)?]));
+    Ok(Page { title, blocks })
+}
+
+fn summary(run: &Run<'_>) -> RunSummary {
+    RunSummary {
+        directory: run.name(),
+        experiment: run.plan.experiment.name().into(),
+        condition: run.plan.condition.clone(),
+        seed: run.plan.seed,
+        generations: run.lines.len(),
+        best: run.fitness(None, run.last(), 0),
+        mean: run.fitness(None, run.last(), 1),
+        success: run.success(),
+    }
+}

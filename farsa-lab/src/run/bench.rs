@@ -1,0 +1,423 @@
+//! `farsa bench`: how fast lives are lived here, and how long a whole study would take.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use farsa_evo::Population;
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::experiment::outcome::Outcome;
+use crate::experiment::lanes::Told;
+use crate::experiment::episode::EpisodeId;
+use crate::store::manifest::Machine;
+use crate::search::opponents::{Hall, Meeting};
+use crate::run::plan::Plan;
+use crate::run::pool::{Pool, Unfinished};
+use crate::run::records::Ancestry;
+use crate::run::evolve::{Opponents, evaluate_all};
+use crate::search::engine::{Descent, Evolution};
+
+/// Runs of a study.
+const REPLICATIONS: u64 = 20;
+/// Cores of the larger machine that is spoken of.
+const MANY: usize = 64;
+
+/// The genomes that live.
+pub(crate) struct Sample {
+    /// The parameters of each individual.
+    parameters: Vec<Vec<f32>>,
+    /// Those of their opponents, in the order of the evaluations.
+    opponents: Vec<Vec<f32>>,
+    populations: usize,
+    /// Seed and generation that their lives are drawn from; later rounds count on from it.
+    seed: u64,
+    generation: u32,
+    /// The run they are from, if they are not random.
+    run: Option<String>,
+}
+
+impl Sample {
+    /// The first generation of a run of this plan.
+    pub(crate) fn random(plan: &Plan<'_>) -> Result<Self, Error> {
+        let evolution = Evolution::new(plan, plan.evaluator()?.as_mut())?;
+        Self::new(plan, evolution.ask(), &evolution.descent(), 0)
+    }
+
+    /// The last generation that a run has finished, or its first one.
+    ///
+    /// A run of other values serves as well: its genomes are lived, not lived again.
+    pub(crate) fn of_run(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
+        let (Ancestry { descent, .. }, path) = Ancestry::read(plan, directory)?;
+        let generation = descent.finished().saturating_sub(1);
+        let damaged = |why: &dyn std::fmt::Display| Error::damaged(&path, why);
+        let genes = plan.evaluator()?.parameters().len();
+        let mut genomes =
+            Population::new(descent.populations() * descent.size(), genes).map_err(|error| damaged(&error))?;
+        for (individual, genome) in genomes.iter_mut().enumerate() {
+            let rebuilt = descent.genome_of(generation, individual).map_err(|error| damaged(&error))?;
+            if rebuilt.len() != genes {
+                return Err(damaged(&"its genomes are not those of the experiment"));
+            }
+            genome.copy_from_slice(&rebuilt);
+        }
+        let sample = Self::new(plan, &genomes, &descent, generation)?;
+        Ok(Self { run: Some(directory.path().display().to_string()), ..sample })
+    }
+
+    /// Several populations live against the champions that there are, and against each other.
+    fn new(plan: &Plan<'_>, genomes: &Population, descent: &Descent, generation: u32) -> Result<Self, Error> {
+        let lost = |why: &dyn std::fmt::Display| Error::Other(format!("the opponents of {}: {why}", plan.name()));
+        let populations = descent.populations();
+        let evaluator = plan.evaluator()?;
+        let genotype = plan.genotype(evaluator.as_ref());
+        let parameters = genotype.decode_all(genomes).ok_or_else(|| lost(&"genomes of another length"))?;
+        let hall = Hall::before(descent, &genotype).map_err(|error| lost(&error))?;
+        let (trials, size) = (evaluator.trials(), genomes.len() / populations);
+        let meeting = Meeting { generation: descent.finished(), populations, size, trials };
+        let opponents = hall.opponents(meeting, &parameters).ok_or_else(|| lost(&"one is missing"))?;
+        let opponents = opponents.into_iter().map(<[f32]>::to_vec).collect();
+        Ok(Self { parameters, opponents, populations, seed: plan.seed, generation, run: None })
+    }
+}
+
+/// What was measured, and what follows from it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Bench {
+    experiment: String,
+    condition: String,
+    /// The run that the genomes are from; random ones if there is none.
+    run: Option<String>,
+    /// The generation of the genomes.
+    generation: u32,
+    genomes: usize,
+    /// Generations that were lived to their end.
+    rounds: u32,
+    lives: u64,
+    steps: u64,
+    seconds: f64,
+    threads: usize,
+    #[serde(flatten)]
+    lanes: Told,
+    machine: Machine,
+    cores: usize,
+    /// The part of their time that the threads had a core and something to do, where the system tells.
+    busy: Option<f64>,
+    steps_per_second: f64,
+    /// By the cores that the threads can have had.
+    steps_per_second_and_core: f64,
+    study: Study,
+    /// With as many cores as the measurement had.
+    generations_per_hour: f64,
+    predictions: Vec<Prediction>,
+}
+
+/// What a study consists of.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Study {
+    replications: u64,
+    generations: u64,
+    population: u64,
+    trials: u64,
+    /// The most that a trial has, or what lives had here if the experiment does not say.
+    steps: f64,
+    control_steps: f64,
+}
+
+/// How long the study would take.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Prediction {
+    cores: usize,
+    seconds: f64,
+}
+
+/// Lives whole generations, as a run does, until some seconds are over; a first one that takes longer is cut short.
+///
+/// # Errors
+/// [`Error::Panicked`], and [`Error::Other`] if nothing was lived.
+pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
+    let Sample { parameters, seed, generation, run, .. } = sample;
+    let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();
+    let opponents = Opponents { parameters: &opponents, each: sample.populations - 1 };
+    let limit = Duration::from_secs_f64(seconds);
+    let (lives, steps, stop) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
+    let (started, used) = (Instant::now(), processor_seconds());
+    let mut rounds = 0;
+    while rounds == 0 || started.elapsed() < limit {
+        let id = EpisodeId { seed: *seed, generation: generation.saturating_add(rounds), ..EpisodeId::default() };
+        let done = |outcome: Option<&Outcome>| {
+            if let Some(outcome) = outcome {
+                lives.fetch_add(1, Ordering::Relaxed);
+                steps.fetch_add(u64::from(outcome.steps), Ordering::Relaxed);
+            }
+            if rounds == 0 && started.elapsed() >= limit {
+                stop.store(true, Ordering::Relaxed);
+            }
+        };
+        match evaluate_all(&mut pool, parameters, opponents, id, &stop, done) {
+            Ok(_) => rounds += 1,
+            Err(Unfinished::Stopped) => break,
+            Err(Unfinished::Panicked) => return Err(Error::Panicked { generation: id.generation }),
+        }
+    }
+    let elapsed = started.elapsed().as_secs_f64();
+    let used = used.zip(processor_seconds()).map(|(before, after)| after - before);
+
+    let (lives, steps) = (lives.into_inner(), steps.into_inner());
+    if steps == 0 {
+        return Err(Error::Other(format!("{}: none of {lives} lives had a step", plan.experiment.name())));
+    }
+    let machine = Machine::here();
+    let (threads, cores) = (pool.threads(), machine.cores());
+    let had = threads.min(cores);
+    let steps_per_second = steps as f64 / elapsed;
+    let per_core = steps_per_second / had as f64;
+    let study = Study::new(plan, &pool, parameters.len(), steps as f64 / lives as f64)?;
+    let predict = |cores: usize| Prediction { cores, seconds: study.control_steps / (per_core * cores as f64) };
+    Ok(Bench {
+        experiment: plan.experiment.name().into(),
+        condition: plan.condition.clone(),
+        run: run.clone(),
+        generation: *generation,
+        genomes: parameters.len(),
+        rounds,
+        lives,
+        steps,
+        seconds: elapsed,
+        threads,
+        lanes: pool.lanes().told(),
+        machine,
+        cores,
+        busy: used.map(|used| (used / (elapsed * had as f64)).min(1.0)),
+        steps_per_second,
+        steps_per_second_and_core: per_core,
+        generations_per_hour: 3600.0 * steps_per_second / study.steps_of_generation(),
+        predictions: vec![predict(cores), predict(MANY)],
+        study,
+    })
+}
+
+impl Study {
+    /// The study of a plan; `lived` is the mean number of steps of a life.
+    fn new(plan: &Plan<'_>, pool: &Pool, population: usize, lived: f64) -> Result<Self, Error> {
+        let most = pool.evaluator().description().steps;
+        let study = Self {
+            replications: REPLICATIONS,
+            generations: plan.generations()?.into(),
+            population: population as u64,
+            trials: pool.evaluator().trials() as u64,
+            steps: if most == 0 { lived } else { most as f64 },
+            control_steps: 0.0,
+        };
+        let runs = (study.replications * study.generations) as f64;
+        Ok(Self { control_steps: runs * study.steps_of_generation(), ..study })
+    }
+
+    fn steps_of_generation(&self) -> f64 {
+        (self.population * self.trials) as f64 * self.steps
+    }
+}
+
+impl Bench {
+    /// The same as a table for reading.
+    pub(crate) fn text(&self) -> String {
+        let Self { experiment, condition, genomes, generation, rounds, lives, steps, seconds, threads, .. } = self;
+        let mut text = String::new();
+        let genomes = match &self.run {
+            None => format!("{genomes} random genomes"),
+            Some(run) => format!("the {genomes} genomes of generation {generation} of {run}"),
+        };
+        let rounds = match rounds {
+            0 => "a part of a generation".into(),
+            1 => "one generation".into(),
+            rounds => format!("{rounds} generations"),
+        };
+        let lanes = match &self.lanes {
+            Told { lanes: 1, .. } => "one life at a time each".into(),
+            Told { lanes, simd } => format!("{lanes} lanes each, {simd}"),
+        };
+        // Writing into a string cannot fail.
+        let _ = writeln!(text, "{}", [experiment.as_str(), condition].join(" ").trim_end());
+        let _ = writeln!(text, "counted: {rounds} of {genomes}: {lives} lives, {steps} steps, in {seconds:.2} s");
+        let _ = writeln!(text, "threads: {threads}, {lanes}");
+        let _ = writeln!(text, "machine: {}", self.machine.describe());
+        if let Some(busy) = self.busy {
+            let part = 100.0 * busy;
+            let _ = writeln!(text, "processor time: {part:.0} %; the rest went to waiting and to other programs");
+        }
+        let study = &self.study;
+        let steps_of = |steps: f64| if steps.fract() == 0.0 { format!("{steps}") } else { format!("{steps:.1}") };
+        let Study { replications, generations, population, trials, .. } = study;
+        let mut rows = vec![
+            ("control steps per second".to_owned(), significant(self.steps_per_second)),
+            ("control steps per second and core".to_owned(), significant(self.steps_per_second_and_core)),
+            ("microseconds of a core per control step".to_owned(), significant(1e6 / self.steps_per_second_and_core)),
+            ("generations per hour".to_owned(), significant(self.generations_per_hour)),
+        ];
+        let place = |index| if index == 0 { "this machine" } else { "a machine of such cores" };
+        rows.extend(self.predictions.iter().enumerate().map(|(index, Prediction { cores, seconds })| {
+            let cores = if *cores == 1 { "1 core".to_owned() } else { format!("{cores} cores") };
+            (format!("the study on {}, {cores}", place(index)), readable(*seconds))
+        }));
+        let widths = [0, 1].map(|column| {
+            let cells = rows.iter().map(|row| if column == 0 { &row.0 } else { &row.1 });
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        });
+        let _ = writeln!(text);
+        for (what, value) in rows {
+            let _ = writeln!(text, "{what:<0$}  {value:>1$}", widths[0], widths[1]);
+        }
+        let _ = writeln!(
+            text,
+            "\nthe study: {replications} runs x {generations} generations x {population} individuals x {trials} trials \
+             x {} steps\n= {:.3e} control steps; shorter if lives end early, and runs side by side on many cores",
+            steps_of(study.steps),
+            study.control_steps,
+        );
+        text
+    }
+}
+
+/// A positive number to three figures or the whole part of it.
+fn significant(x: f64) -> String {
+    match x {
+        x if x >= 100.0 => format!("{x:.0}"),
+        x if x >= 10.0 => format!("{x:.1}"),
+        x if x >= 1.0 => format!("{x:.2}"),
+        x => format!("{x:.3}"),
+    }
+}
+
+/// A time \[s\] in the unit that suits it.
+fn readable(seconds: f64) -> String {
+    let units = [("days", 86400.0), ("h", 3600.0), ("min", 60.0), ("s", 1.0)];
+    let (unit, size) = units.into_iter().find(|(_, size)| seconds >= 2.0 * size).unwrap_or(units[3]);
+    format!("{} {unit}", significant(seconds / size))
+}
+
+/// Processor time that the process has used so far \[s\], threads that have ended included, where Linux tells.
+fn processor_seconds() -> Option<f64> {
+    // The kernel's interface counts in hundredths of a second whatever its own clock does.
+    ticks(&fs::read_to_string("/proc/self/stat").ok()?).map(|ticks| ticks as f64 / 100.0)
+}
+
+/// Ticks spent in the program and in the system for it; fields 14 and 15 of what Linux tells of a process.
+fn ticks(stat: &str) -> Option<u64> {
+    // The program's name, the second field, may hold anything but is in parentheses.
+    let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(11);
+    Some(fields.next()?.parse::<u64>().ok()? + fields.next()?.parse::<u64>().ok()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::evolution;
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
+    use crate::experiment::definition::Experiment;
+    use crate::experiment::outcome::Description;
+    use crate::experiment::lanes::Wanted;
+    use crate::experiment::settings::{Setting, Settings, Value};
+    use farsa_body::Recorder;
+    use farsa_view::Stage;
+
+    /// Lives of 7 steps of at most 10; those of individual 1 break down in their first trial.
+    struct Toy {
+        most: usize,
+    }
+
+    impl Experiment for Toy {
+        fn name(&self) -> &'static str {
+            "toy"
+        }
+        fn summary(&self) -> &'static str {
+            "lives"
+        }
+        fn settings(&self, _: &str) -> Vec<Setting> {
+            vec![Setting::whole(evolution::POPULATION, 20, 1..=100)]
+        }
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+            Ok(Box::new(Toy { most: self.most }))
+        }
+    }
+
+    impl Task for Toy {
+        fn parameters(&self) -> Vec<Parameter> {
+            vec![Parameter::new("none", [0.0, 1.0])]
+        }
+        fn trials(&self) -> usize {
+            3
+        }
+        fn stage(&self) -> Stage {
+            Stage::default()
+        }
+        fn description(&self) -> Description {
+            Description { steps: self.most, ..Description::default() }
+        }
+    }
+
+    impl Evaluator for Toy {
+        fn evaluate(&mut self, evaluation: Evaluation<'_>, _: Option<&mut dyn Recorder>) -> Outcome {
+            if evaluation.id.individual == 1 {
+                return Outcome::failed();
+            }
+            std::thread::sleep(Duration::from_micros(100));
+            Outcome { terms: vec![1.0], steps: 7, ..Outcome::default() }
+        }
+    }
+
+    fn benched(toy: &Toy, threads: usize, seconds: f64) -> Bench {
+        let mut plan = Plan::new(toy, None, "").unwrap();
+        plan.settings.set("", evolution::GENERATIONS, Value::Whole(50)).unwrap();
+        let pool = Pool::new(&plan, threads, Wanted::ONE).unwrap();
+        bench(&plan, &Sample::random(&plan).unwrap(), pool, seconds).unwrap()
+    }
+
+    #[test]
+    fn what_is_counted_is_what_was_lived() {
+        for threads in [1, 3] {
+            // On a machine with other work a round may take longer than expected.
+            let patience = [0.05, 1.0, 60.0].map(|seconds| move || benched(&Toy { most: 10 }, threads, seconds));
+            let found = patience.iter().map(|bench| bench()).find(|found| found.rounds > 0).unwrap();
+            let rounds = u64::from(found.rounds);
+            assert!(found.seconds >= 0.05, "{found:?}");
+            // Another thread may have begun the other trials of the one that fails.
+            assert!((58 * rounds..=60 * rounds).contains(&found.lives), "{found:?}");
+            assert_eq!(found.steps, 7 * 57 * rounds);
+            let had = threads.min(found.cores) as f64;
+            let rate = found.steps as f64 / found.seconds;
+            assert_eq!((found.steps_per_second, found.steps_per_second_and_core), (rate, rate / had));
+            assert_eq!(found.study.control_steps, 20.0 * 50.0 * 20.0 * 3.0 * 10.0);
+            let hours = 50.0 * 20.0 / found.generations_per_hour * had / found.cores as f64;
+            let predicted = found.predictions[0].seconds / 3600.0;
+            assert!((hours / predicted - 1.0).abs() < 1e-12, "{hours} {predicted}");
+            let ratio = found.predictions[0].seconds / found.predictions[1].seconds;
+            assert!((ratio - 64.0 / found.cores as f64).abs() < 1e-9, "{ratio}");
+            let text = found.text();
+            assert!(text.contains(&format!("{} lives, {} steps", found.lives, found.steps)), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_first_generation_that_takes_too_long_is_cut_short() {
+        let found = benched(&Toy { most: 0 }, 1, 0.001);
+        assert!(found.rounds == 0 && (1..58).contains(&found.lives), "{found:?}");
+        // Without a word of the experiment, lives are as long as they were here.
+        assert_eq!(found.study.steps, found.steps as f64 / found.lives as f64);
+    }
+
+    #[test]
+    fn times_and_rates_are_readable() {
+        let said = [0.5, 61.0, 120.0, 5400.0, 7200.0, 86400.0 * 1.5, 86400.0 * 30.0].map(readable);
+        assert_eq!(said, ["0.500 s", "61.0 s", "2.00 min", "90.0 min", "2.00 h", "36.0 h", "30.0 days"]);
+        assert_eq!([123456.7, 12.34, 1.234].map(significant), ["123457", "12.3", "1.23"]);
+    }
+
+    #[test]
+    fn the_processor_time_is_found_behind_any_name() {
+        let stat = "7 (a) b (c) R 1 7 7 0 -1 4194304 100 0 0 0 123 45 0 0 20 0 1 0 99";
+        assert_eq!(ticks(stat), Some(168));
+        assert_eq!(ticks("7 (a) R 1"), None);
+    }
+}

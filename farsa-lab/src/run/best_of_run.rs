@@ -1,0 +1,51 @@
+//! The best of a run, for comparisons that the command does not make.
+
+use std::path::Path;
+
+use crate::error::Error;
+use crate::experiment::evaluator::Evaluator;
+use crate::experiment::definition::Experiment;
+use crate::run::plan::{ConfigFile, Plan};
+use crate::run::records::Champions;
+use crate::experiment::settings::Settings;
+
+/// What a run has come to: its configuration, and the best of its last finished generation.
+pub struct BestOfRun {
+    /// The experiment's name.
+    pub experiment: String,
+    /// The condition; empty if there are none.
+    pub condition: String,
+    /// The seed.
+    pub seed: u64,
+    /// Every setting.
+    pub settings: Settings,
+    /// The last finished generation, from 0.
+    pub generation: u32,
+    /// The parameters of the best of each population.
+    pub parameters: Vec<Vec<f32>>,
+    /// The experiment, ready to be evaluated.
+    pub evaluator: Box<dyn Evaluator>,
+}
+
+impl BestOfRun {
+    /// Reads it from the directory of a run of one of these experiments.
+    ///
+    /// # Errors
+    /// [`Error`] for a directory without a run, or with one that is damaged, of another experiment or of another version.
+    pub fn read(directory: &Path, experiments: &[&dyn Experiment]) -> Result<Self, Error> {
+        let directory = Directory::open(directory)?;
+        let plan = Plan::of_file(experiments, &ConfigFile::read(&directory.config())?)?;
+        let evaluator = plan.evaluator()?;
+        let genotype = plan.genotype(evaluator.as_ref());
+        let Champions { generation, best, .. } = Champions::of(&plan, &directory, evaluator.as_ref())?;
+        Ok(Self {
+            experiment: plan.experiment.name().into(),
+            condition: plan.condition,
+            seed: plan.seed,
+            settings: plan.settings,
+            generation,
+            parameters: best.iter().filter_map(|best| genotype.decode(&best.genes)).collect(),
+            evaluator,
+        })
+    }
+}

@@ -1,0 +1,500 @@
+//! Evolution from the first or any later generation on, with everything kept that is needed to go on.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use farsa_evo::{Fitness, Statistics};
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::experiment::evaluator::Evaluation;
+use crate::experiment::outcome::Outcome;
+use crate::experiment::episode::EpisodeId;
+use crate::store::log::{self, Log};
+use crate::store::manifest::{Manifest, Session};
+use crate::search::opponents::{Hall, Meeting};
+use crate::run::plan::{Identity, Plan};
+use crate::figures::plot;
+use crate::run::pool::{Pool, Unfinished};
+use crate::run::progress::Progress;
+use crate::run::records::{Ancestry, Best, Champions, Checkpoint, evolved};
+use crate::search::engine::Evolution;
+
+/// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
+const UNSAVED: Duration = Duration::from_secs(1);
+
+/// Makes the directory of a new run, ready for its first generation.
+pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
+    let evolution = Evolution::new(plan, plan.evaluator()?.as_mut())?;
+    let (text, identity) = (plan.to_toml()?, plan.identity()?);
+    Directory::create(path, |directory| {
+        replace(&directory.config(), text.as_bytes())?;
+        Manifest::new(&identity).write(&directory.manifest())?;
+        let populations = evolution.populations();
+        replace(&directory.log(), log::header(populations).as_bytes())?;
+        Ancestry { identity: identity.clone(), descent: evolution.descent() }.write(&directory.lineage())?;
+        Checkpoint { identity, log: Log::start(populations), evolution }.write(&directory.checkpoint())
+    })
+}
+
+/// What came of a run; the champion is that of the last generation.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) directory: String,
+    pub(crate) experiment: String,
+    pub(crate) condition: String,
+    pub(crate) seed: u64,
+    pub(crate) generations: u32,
+    /// Lives lived by this process, not those of earlier sessions.
+    pub(crate) evaluations: u64,
+    pub(crate) seconds: f64,
+    /// None if there was nothing left to do; of several populations the first one's.
+    pub(crate) champion: Option<Winner>,
+    /// Those of all populations, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) champions: Vec<Winner>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Winner {
+    pub(crate) generation: u32,
+    pub(crate) individual: u32,
+    pub(crate) fitness: f64,
+}
+
+impl Winner {
+    /// The best of every population.
+    pub(crate) fn of(champions: &Champions) -> Vec<Self> {
+        let Champions { generation, best, .. } = champions;
+        let winner = |&Best { individual, fitness, .. }: &Best| Self {
+            generation: *generation,
+            individual,
+            fitness: fitness.get(),
+        };
+        best.iter().map(winner).collect()
+    }
+}
+
+impl Summary {
+    /// The same in a line of words.
+    pub(crate) fn text(&self) -> String {
+        let Self { directory, generations, .. } = self;
+        if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
+            let all = self.champions.iter().enumerate().map(|(population, Winner { individual, fitness, .. })| {
+                format!("population {population} individual {individual}, fitness {fitness:?}")
+            });
+            let all = all.collect::<Vec<_>>().join("; ");
+            return format!("{directory}: {generations} generations; champions of generation {generation}: {all}");
+        }
+        match &self.champion {
+            None => format!("{directory}: all {generations} generations are finished already"),
+            Some(Winner { generation, individual, fitness }) => format!(
+                "{directory}: {generations} generations; champion: individual {individual} of generation {generation}, \
+                 fitness {fitness:?}"
+            ),
+        }
+    }
+}
+
+/// Evolves the run in a directory up to its last generation and says what came of it.
+///
+/// # Errors
+/// [`Error::Interrupted`] after `stop` became true; all finished generations are then kept.
+pub(crate) fn go_on(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    mut pool: Pool,
+    stop: &AtomicBool,
+    program: &str,
+    quiet: bool,
+) -> Result<Summary, Error> {
+    evolved(directory)?;
+    // The lock comes before anything is read that another process might be writing.
+    let mut log = Log::open(&directory.log())?;
+    let path = directory.checkpoint();
+    let Checkpoint { identity, log: mark, evolution } = Checkpoint::read(plan, directory)?;
+    identity.same_values(&plan.identity()?, &path)?;
+    if !evolution.is_like(&Evolution::new(plan, pool.evaluator_mut())?) {
+        return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
+    }
+    let hall = Hall::before(&evolution.descent(), pool.genotype());
+    let hall = hall.map_err(|error| Error::damaged(&path, error))?;
+    let (done, last) = (evolution.generation(), plan.generations()?);
+    if last < done {
+        return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
+    }
+    let mut manifest = Manifest::read(&directory.manifest())?;
+    log.rewind(mark)?;
+    let text = plan.to_toml()?;
+    if fs::read_to_string(directory.config()).ok().as_ref() != Some(&text) {
+        replace(&directory.config(), text.as_bytes())?;
+    }
+    manifest.sessions.push(Session::new(pool.threads(), pool.lanes().told(), done));
+
+    let individuals = |generations: u32| u64::from(generations).saturating_mul(evolution.ask().len() as u64);
+    let progress = Progress::new(individuals(done), individuals(last), quiet);
+    let mut run = Run {
+        directory,
+        title: plan.name(),
+        names: pool.evaluator().populations(),
+        identity,
+        evolution,
+        hall,
+        log,
+        manifest,
+        champions: None,
+        started: Instant::now(),
+    };
+    let mut saved = Instant::now();
+    let mut ended = Ok(());
+    while run.evolution.generation() < last {
+        match run.generation(&mut pool, stop, &progress) {
+            Ok(()) => {}
+            Err(Unsuccessful::Error(error)) => return Err(error),
+            Err(Unsuccessful::Unfinished(Unfinished::Panicked)) => {
+                ended = Err(Error::Panicked { generation: run.evolution.generation() });
+                break;
+            }
+            Err(Unsuccessful::Unfinished(Unfinished::Stopped)) => {
+                let resume = format!("{program} run --resume {}", directory.path().display());
+                ended = Err(Error::Interrupted { resume });
+                break;
+            }
+        }
+        if saved.elapsed() >= UNSAVED {
+            run.save()?;
+            saved = Instant::now();
+        }
+    }
+    drop(progress);
+    run.save()?;
+    ended.map(|()| run.summary())
+}
+
+/// A run in progress.
+struct Run<'d> {
+    directory: &'d Directory,
+    title: String,
+    /// Of the populations.
+    names: Vec<String>,
+    identity: Identity,
+    evolution: Evolution,
+    /// Whom several populations still have to meet.
+    hall: Hall,
+    log: Log,
+    manifest: Manifest,
+    /// The best of the last generation, once one is finished in this process.
+    champions: Option<Champions>,
+    started: Instant,
+}
+
+/// Why a generation is not finished.
+enum Unsuccessful {
+    Unfinished(Unfinished),
+    Error(Error),
+}
+
+impl From<Error> for Unsuccessful {
+    fn from(error: Error) -> Self {
+        Self::Error(error)
+    }
+}
+
+impl Run<'_> {
+    /// Lives all lives of a generation and makes the next.
+    fn generation(&mut self, pool: &mut Pool, stop: &AtomicBool, progress: &Progress) -> Result<(), Unsuccessful> {
+        let generation = self.evolution.generation();
+        let genomes = self.evolution.ask();
+        let (seed, populations) = (self.identity.seed, self.evolution.populations());
+        let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
+        let trials = pool.evaluator().trials();
+        let parameters = pool.genotype().decode_all(genomes).ok_or_else(|| lost("genomes of another length"))?;
+        let meeting = Meeting { generation, populations, size: genomes.len() / populations, trials };
+        let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
+        let id = EpisodeId { seed, generation, ..EpisodeId::default() };
+        let opponents = Opponents { parameters: &opponents, each: populations - 1 };
+        let fitness = fitness_of_all(pool, &parameters, opponents, id, stop, progress).map_err(Unsuccessful::Unfinished)?;
+        let judged = self.evolution.judged(&fitness).map_err(|error| lost(&error.to_string()))?;
+        let statistics = Statistics::of(&judged).ok_or_else(|| lost("no individual was evaluated"))?;
+        let best = self.evolution.champions(&judged).into_iter().map(|best| {
+            let (fitness, genes) = (*judged.get(best)?, genomes.get(best)?.to_vec());
+            Some(Best { individual: best as u32, fitness, genes })
+        });
+        let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
+        self.log.append(&statistics, fitness.len(), &self.evolution.of_each(&judged))?;
+        self.evolution.tell(&fitness, pool.evaluator_mut(), seed).map_err(|error| lost(&error))?;
+        self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
+        self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
+        if let Some(session) = self.manifest.sessions.last_mut() {
+            session.generations += 1;
+            session.evaluations += fitness.len() as u64;
+        }
+        progress.generation(generation, &statistics);
+        Ok(())
+    }
+
+    /// Keeps everything; the checkpoint, which speaks of the others, comes after what it speaks of.
+    fn save(&mut self) -> Result<(), Error> {
+        let (directory, identity) = (self.directory, &self.identity);
+        let mark = self.log.sync()?;
+        let descent = self.evolution.descent();
+        Ancestry { identity: identity.clone(), descent }.write(&directory.lineage())?;
+        if let Some(champions) = &self.champions {
+            champions.write(&directory.champion())?;
+        }
+        if let Evolution::Learning(learning) = &self.evolution {
+            let lessons = learning.lessons();
+            replace(&directory.learning(), lessons.csv().as_bytes())?;
+            let plot = lessons.plot(&self.title).map_err(|why| Error::damaged(&directory.learning_plot(), why))?;
+            replace(&directory.learning_plot(), plot.as_bytes())?;
+        }
+        let evolution = self.evolution.clone();
+        Checkpoint { identity: identity.clone(), log: mark, evolution }.write(&directory.checkpoint())?;
+        if let Some(session) = self.manifest.sessions.last_mut() {
+            session.seconds = self.started.elapsed().as_secs_f64();
+        }
+        self.manifest.write(&directory.manifest())?;
+        let plot = plot::draw(&self.title, self.log.lines(), &self.names);
+        let plot = plot.map_err(|why| Error::damaged(&directory.plot(), why))?;
+        replace(&directory.plot(), plot.as_bytes())
+    }
+
+    fn summary(&self) -> Summary {
+        let Identity { experiment, condition, seed, .. } = self.identity.clone();
+        let session = self.manifest.sessions.last();
+        let champions: Vec<Winner> = self.champions.iter().flat_map(Winner::of).collect();
+        Summary {
+            directory: self.directory.path().display().to_string(),
+            experiment,
+            condition,
+            seed,
+            generations: self.evolution.generation(),
+            evaluations: session.map_or(0, |session| session.evaluations),
+            seconds: session.map_or(0.0, |session| session.seconds),
+            champion: champions.first().cloned(),
+            champions: if champions.len() > 1 { champions } else { Vec::new() },
+        }
+    }
+}
+
+/// The opponents of a generation's evaluations, in their order, so many for each.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Opponents<'g> {
+    pub(crate) parameters: &'g [&'g [f32]],
+    pub(crate) each: usize,
+}
+
+impl<'g> Opponents<'g> {
+    /// Those of the evaluation with a number.
+    fn of(&self, number: usize) -> &'g [&'g [f32]] {
+        self.parameters.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
+    }
+}
+
+/// Evaluates all trials of all individuals and says what fitness each comes to.
+///
+/// A trial that failed makes its individual the worst, whatever comes of the others.
+fn fitness_of_all(
+    pool: &mut Pool,
+    parameters: &[Vec<f32>],
+    opponents: Opponents<'_>,
+    of: EpisodeId,
+    stop: &AtomicBool,
+    progress: &Progress,
+) -> Result<Vec<Fitness>, Unfinished> {
+    let (count, trials) = (parameters.len(), pool.evaluator().trials());
+    let ended = AtomicUsize::new(0);
+    let done = |_: Option<&Outcome>| {
+        if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
+            progress.advance();
+        }
+    };
+    let mut outcomes = evaluate_all(pool, parameters, opponents, of, stop, done)?;
+    let evaluator = pool.evaluator();
+    let fitness = (0..count).map(|individual| {
+        let own = outcomes.iter_mut().skip(individual).step_by(count);
+        let outcomes: Option<Vec<Outcome>> = own.map(Option::take).collect();
+        let finite = outcomes.filter(|outcomes| outcomes.iter().all(Outcome::is_finite));
+        let fitness = finite.map_or(f64::NAN, |outcomes| evaluator.fitness(&outcomes));
+        if fitness.is_finite() { Fitness::nan_as_failed(fitness) } else { Fitness::WORST }
+    });
+    Ok(fitness.collect())
+}
+
+/// Evaluates all trials of all individuals, the first of all before the second of any: trial t of individual i has number
+/// t x individuals + i. `of.trial` and `of.individual` are set for each; `done` hears of every one that ends.
+///
+/// Episodes side by side cost least when they are alike. What an individual has left after a trial that failed is left out.
+pub(crate) fn evaluate_all(
+    pool: &mut Pool,
+    parameters: &[Vec<f32>],
+    opponents: Opponents<'_>,
+    of: EpisodeId,
+    stop: &AtomicBool,
+    done: impl Fn(Option<&Outcome>) + Sync,
+) -> Result<Vec<Option<Outcome>>, Unfinished> {
+    let (count, trials) = (parameters.len(), pool.evaluator().trials());
+    let failed: Vec<AtomicBool> = parameters.iter().map(|_| AtomicBool::new(false)).collect();
+    let task = |number: usize| {
+        let (individual, trial) = (number % count, (number / count) as u32);
+        let id = EpisodeId { individual: individual as u32, trial, ..of };
+        let alive = !failed[individual].load(Ordering::Relaxed);
+        let opponents = opponents.of(number);
+        let own = parameters.get(individual).filter(|_| alive);
+        own.map(|parameters| Evaluation { number, parameters, opponents, id })
+    };
+    let heard = |number: usize, outcome: Option<&Outcome>| {
+        if outcome.is_some_and(|outcome| !outcome.is_finite()) {
+            failed[number % count].store(true, Ordering::Relaxed);
+        }
+        done(outcome);
+    };
+    pool.evaluate(count * trials, stop, task, heard)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::directory::Directory;
+    use crate::search::evolution;
+    use crate::evaluation::test;
+    use crate::experiment::evaluator::{Evaluator, Parameter, Task};
+    use crate::experiment::definition::Experiment;
+    use crate::experiment::outcome::Description;
+    use crate::experiment::lanes::Wanted;
+    use crate::evaluation::replay::{Which, replay};
+    use crate::experiment::settings::{Setting, Settings, Value};
+    use farsa_body::Recorder;
+    use farsa_view::Stage;
+    use std::path::PathBuf;
+
+    /// Earns its first gene; panics in one life, if asked to, and fails where the gene is odd.
+    #[derive(Clone, Copy)]
+    struct Toy {
+        version: u32,
+        panics: bool,
+    }
+
+    impl Experiment for Toy {
+        fn name(&self) -> &'static str {
+            "toy"
+        }
+        fn summary(&self) -> &'static str {
+            "earns its first gene"
+        }
+        fn values_version(&self) -> u32 {
+            self.version
+        }
+        fn settings(&self, _: &str) -> Vec<Setting> {
+            vec![Setting::whole(evolution::GENERATIONS, 4, 1..=100), Setting::whole(evolution::POPULATION, 20, 1..=100)]
+        }
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+            Ok(Box::new(*self))
+        }
+    }
+
+    impl Task for Toy {
+        fn parameters(&self) -> Vec<Parameter> {
+            vec![Parameter::new("gene", [0.0, 65535.0])]
+        }
+        fn stage(&self) -> Stage {
+            Stage::of_scalars(["gene"])
+        }
+        fn description(&self) -> Description {
+            Description::default()
+        }
+    }
+
+    impl Evaluator for Toy {
+        fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
+            let id = evaluation.id;
+            assert!(!self.panics || (id.generation, id.individual) != (2, 3), "as planned");
+            let gene = f64::from(evaluation.parameters[0]);
+            if let Some(recorder) = recorder {
+                recorder.scalars(&[gene]);
+                recorder.tick(0.0);
+            }
+            let fitness = if gene % 2.0 == 1.0 { f64::INFINITY } else { gene };
+            Outcome { terms: vec![fitness], steps: 1, ..Outcome::default() }
+        }
+    }
+
+    fn scratch(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("farsa-run-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        path
+    }
+
+    fn pool(plan: &Plan<'_>, threads: usize) -> Pool {
+        Pool::new(plan, threads, Wanted::ONE).unwrap()
+    }
+
+    fn finish(toy: Toy, directory: &Directory) -> Result<Summary, Error> {
+        let plan = Plan::new(&toy, None, "")?;
+        go_on(&plan, directory, pool(&plan, 2), &AtomicBool::new(false), "farsa", true)
+    }
+
+    #[test]
+    fn a_panic_keeps_the_finished_generations() {
+        let root = scratch("panic");
+        let (careless, careful) = (Toy { version: 1, panics: true }, Toy { version: 1, panics: false });
+        let directory = create(&Plan::new(&careless, None, "").unwrap(), &root.join("run")).unwrap();
+        let error = finish(careless, &directory).unwrap_err();
+        assert!(matches!(error, Error::Panicked { generation: 2 }) && error.exit_code() == 1, "{error}");
+        finish(careful, &directory).unwrap();
+        let whole = create(&Plan::new(&careful, None, "").unwrap(), &root.join("whole")).unwrap();
+        finish(careful, &whole).unwrap();
+        let log = fs::read_to_string(whole.log()).unwrap();
+        assert_eq!(fs::read_to_string(directory.log()).unwrap(), log);
+        assert!(!log.contains(",0\n"), "in every generation some fail: {log}");
+        assert!(!log.contains("inf"), "{log}");
+        fs::remove_dir_all(root).unwrap();
+    }
+
+    #[test]
+    fn another_version_neither_resumes_nor_replays() {
+        let root = scratch("version");
+        let (old, new) = (Toy { version: 1, panics: false }, Toy { version: 2, panics: false });
+        let directory = create(&Plan::new(&old, None, "").unwrap(), &root).unwrap();
+        finish(old, &directory).unwrap();
+        let said = |error: Error| {
+            assert_eq!(error.exit_code(), 1);
+            error.to_string()
+        };
+        let words = "made with version 1 of the values of toy, this program has version 2";
+        let resumed = said(finish(new, &directory).unwrap_err());
+        assert!(resumed.contains("checkpoint.bin: ") && resumed.contains(words), "{resumed}");
+        let plan = Plan::new(&new, None, "").unwrap();
+        let replayed = said(replay(&plan, &directory, Which::default(), &mut Vec::new()).unwrap_err());
+        assert!(replayed.contains("lineage.bin: ") && replayed.contains(words), "{replayed}");
+        // The champion's genes are what they are; that it may behave otherwise is worth a warning.
+        let tested = test::test(&plan, &directory, 3, 1, 1, Wanted::ONE, true).unwrap().text();
+        assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
+        fs::remove_dir_all(root).unwrap();
+    }
+
+    #[test]
+    fn a_stop_between_generations_keeps_all() {
+        let root = scratch("stop");
+        let toy = Toy { version: 1, panics: false };
+        let mut plan = Plan::new(&toy, None, "").unwrap();
+        let directory = create(&plan, &root).unwrap();
+        let stopped = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
+        assert_eq!(stopped.exit_code(), 130);
+        assert!(stopped.to_string().contains("`farsa run --resume "), "{stopped}");
+        // Nobody is best yet.
+        assert!(
+            test::test(&plan, &directory, 1, 1, 1, Wanted::ONE, true)
+                .unwrap_err()
+                .to_string()
+                .contains("no generation is finished")
+        );
+        assert!(replay(&plan, &directory, Which::default(), &mut Vec::new()).is_err());
+        plan.settings.set("", evolution::GENERATIONS, Value::Whole(2)).unwrap();
+        go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap();
+        assert_eq!(fs::read_to_string(directory.log()).unwrap().lines().count(), 3);
+        fs::remove_dir_all(root).unwrap();
+    }
+}

@@ -1,0 +1,308 @@
+//! What is to be run: an experiment, a condition, a seed and all settings.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use farsa_num::crc32;
+
+use crate::error::Error;
+use crate::search::evolution::{self, GENERATIONS};
+use crate::experiment::evaluator::Evaluator;
+use crate::experiment::definition::Experiment;
+use crate::experiment::genotype::Genotype;
+use crate::search::engine::Search;
+use crate::experiment::settings::{Settings, Value};
+
+/// The largest seed of a run; bit 63 marks the lives of a test.
+pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
+
+/// A run before its first life.
+pub(crate) struct Plan<'e> {
+    pub(crate) experiment: &'e dyn Experiment,
+    pub(crate) condition: String,
+    pub(crate) seed: u64,
+    pub(crate) settings: Settings,
+    /// The settings with another world, for lives that leave that of the run; none of the identity.
+    pub(crate) elsewhere: Option<Settings>,
+}
+
+impl<'e> Plan<'e> {
+    /// An experiment with its defaults under a condition, the first if none is named.
+    pub(crate) fn new(experiment: &'e dyn Experiment, condition: Option<&str>, place: &str) -> Result<Self, Error> {
+        let conditions = experiment.conditions();
+        let condition = match condition {
+            None => conditions.first().copied().unwrap_or_default(),
+            // A run of an experiment without conditions writes none into its configuration.
+            Some("") if conditions.is_empty() => "",
+            Some(name) => conditions
+                .iter()
+                .find(|&&known| known == name)
+                .ok_or_else(|| Error::unknown(place, "condition", name, conditions.iter().copied()))?,
+        };
+        let settings =
+            Settings::new(evolution::complete(experiment.settings(condition), experiment.search(condition)))?;
+        Ok(Self { experiment, condition: condition.into(), seed: 1, settings, elsewhere: None })
+    }
+
+    /// Takes the seed and the values of a configuration file; experiment and condition are the caller's business.
+    pub(crate) fn apply(&mut self, file: &ConfigFile) -> Result<(), Error> {
+        if let Some(seed) = &file.seed {
+            self.seed = seed.value;
+        }
+        file.values.iter().try_for_each(|(key, entry)| self.settings.set(&entry.place, key, entry.value.clone()))
+    }
+
+    /// What a configuration file says, whole.
+    pub(crate) fn of_file(experiments: &[&'e dyn Experiment], file: &ConfigFile) -> Result<Self, Error> {
+        let Some(name) = &file.experiment else {
+            return Err(Error::Usage(format!("{}: names no experiment", file.name)));
+        };
+        let experiment = find(experiments, &name.value, &name.place)?;
+        let place = file.condition.as_ref().map_or("", |entry| &entry.place);
+        let mut plan = Self::new(experiment, file.condition.as_ref().map(|entry| entry.value.as_str()), place)?;
+        plan.apply(file)?;
+        Ok(plan)
+    }
+
+    /// How the run searches.
+    pub(crate) fn search(&self) -> Search {
+        self.experiment.search(&self.condition)
+    }
+
+    /// The search at its first generation.
+    ///
+    /// # Errors
+    /// Those of [`Evolution::new`].
+    pub(crate) fn evolution(&self, setup: &dyn Setup) -> Result<Evolution, Error> {
+        Evolution::new(self.experiment.name(), self.search(), &self.settings, self.seed, setup)
+    }
+
+    /// The experiment made ready for one thread.
+    pub(crate) fn evaluator(&self) -> Result<Box<dyn Evaluator>, Error> {
+        self.experiment.prepare(&self.condition, self.elsewhere.as_ref().unwrap_or(&self.settings))
+    }
+
+    /// How genes stand for the parameters that an evaluator of this plan wants.
+    pub(crate) fn genotype(&self, evaluator: &dyn Evaluator) -> Genotype {
+        Genotype::new(&evaluator.parameters(), self.experiment.gene_bits())
+    }
+
+    /// Generations to evaluate.
+    pub(crate) fn generations(&self) -> Result<u32, Error> {
+        u32::try_from(self.settings.whole(GENERATIONS)?).map_err(|_| Error::setting(GENERATIONS, "is too large"))
+    }
+
+    /// The name of the run's directory below `runs/`.
+    pub(crate) fn name(&self) -> String {
+        let name = self.experiment.name();
+        match self.condition.as_str() {
+            "" => format!("{name}-{}", self.seed),
+            condition => format!("{name}-{condition}-{}", self.seed),
+        }
+    }
+
+    /// All that the results depend on, the content of files included.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a file that cannot be read, and those of [`Experiment::files`].
+    pub(crate) fn identity(&self) -> Result<Identity, Error> {
+        let settings = self.settings.table().iter().filter(|setting| setting.key() != GENERATIONS);
+        let mut settings: Vec<(String, Value)> = settings
+            .filter_map(|setting| Some((setting.key().to_owned(), self.settings.get(setting.key()).ok()?.clone())))
+            .collect();
+        for path in self.experiment.files(&self.condition, &self.settings)? {
+            let bytes = fs::read(&path).map_err(Error::io("read", &path))?;
+            settings.push((format!("{FILE}{}", path.display()), Value::Word(format!("{:08x}", crc32(&bytes)))));
+        }
+        Ok(Identity {
+            experiment: self.experiment.name().into(),
+            condition: self.condition.clone(),
+            seed: self.seed,
+            values_version: VALUES_VERSION,
+            experiment_version: self.experiment.values_version(),
+            settings,
+        })
+    }
+
+    /// Whether a record, which was read from a file of `directory`, is one of the run that is planned here.
+    ///
+    /// # Errors
+    /// [`Error::OtherConfiguration`], [`Error::OtherFile`], and those of [`identity`](Self::identity).
+    pub(crate) fn same_run(&self, record: &Identity, directory: &Path) -> Result<(), Error> {
+        let mut asked = self.identity()?;
+        // A run from before its experiment had conditions is one of what has become the first of them.
+        if record.condition.is_empty() && self.experiment.conditions().first() == Some(&self.condition.as_str()) {
+            asked.condition.clear();
+        }
+        record.same_run(&asked, directory)
+    }
+
+    /// The complete configuration as TOML, with the documentation, unit and source of every value.
+    pub(crate) fn to_toml(&self) -> Result<String, Error> {
+        let mut text =
+            String::from("# The complete configuration of a run; `run --config` with this file repeats it.\n");
+        // Writing into a string cannot fail.
+        let _ = writeln!(text, "experiment = {:?}", self.experiment.name());
+        if !self.condition.is_empty() {
+            let _ = writeln!(text, "condition = {:?}", self.condition);
+        }
+        let _ = writeln!(text, "seed = {}", self.seed);
+        let table = self.settings.table();
+        let mut sections: Vec<&str> = Vec::new();
+        for section in table.iter().filter_map(|setting| Some(setting.key().rsplit_once('.')?.0)) {
+            if !sections.contains(&section) {
+                sections.push(section);
+            }
+        }
+        for section in sections {
+            let _ = writeln!(text, "\n[{section}]");
+            for setting in table {
+                let Some((_, name)) = setting.key().rsplit_once('.').filter(|split| split.0 == section) else {
+                    continue;
+                };
+                let unit = if setting.unit_name().is_empty() { "" } else { " " };
+                let value = self.settings.get(setting.key())?;
+                let changed = if value == setting.default_value() { "" } else { "not the default, which is " };
+                let (doc, source, allowed) = (setting.doc_text(), setting.source().name(), setting.allowed());
+                let _ = writeln!(text, "# {doc} [{allowed}{unit}{}; {changed}{source}]", setting.unit_name());
+                let _ = writeln!(text, "{name} = {value}");
+            }
+        }
+        Ok(text)
+    }
+}
+
+/// The experiment of a name.
+pub(crate) fn find<'e>(
+    experiments: &[&'e dyn Experiment],
+    name: &str,
+    place: &str,
+) -> Result<&'e dyn Experiment, Error> {
+    let names = experiments.iter().map(|experiment| experiment.name());
+    let found = experiments.iter().copied().find(|experiment| experiment.name() == name);
+    found.ok_or_else(|| Error::unknown(place, "experiment", name, names))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    use crate::experiment::settings::Setting;
+
+    struct Toy;
+
+    impl Experiment for Toy {
+        fn name(&self) -> &'static str {
+            "toy"
+        }
+        fn summary(&self) -> &'static str {
+            "nothing"
+        }
+        fn conditions(&self) -> &'static [&'static str] {
+            &["with", "without"]
+        }
+        fn settings(&self, _: &str) -> Vec<Setting> {
+            vec![
+                Setting::number("world.step", 0.01, 0.001..=0.1).unit("s").doc("Time step."),
+                Setting::numbers("robot.arm.lengths", &[1.0, 2.0], 0.0..=5.0).given(),
+                Setting::word("world.kind", "flat", &["flat", "round"]),
+                Setting::text("world.map", ""),
+            ]
+        }
+        fn files(&self, _: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {
+            let map = settings.text("world.map")?;
+            Ok(if map.is_empty() { Vec::new() } else { vec![map.into()] })
+        }
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+            Err(Error::Other("never".into()))
+        }
+    }
+
+    #[test]
+    fn the_complete_configuration_reads_back() {
+        let mut plan = Plan::new(&Toy, Some("without"), "").unwrap();
+        plan.seed = 7;
+        plan.settings.set("", "world.kind", Value::Word("round".into())).unwrap();
+        plan.settings.set("", "robot.arm.lengths", Value::Numbers(vec![0.1, 1e-9])).unwrap();
+        let text = plan.to_toml().unwrap();
+        assert!(text.contains("# Time step. [0.001 to 0.1 s; chosen]\nstep = 0.01\n"), "{text}");
+        assert!(text.contains("not the default"), "{text}");
+        let file = ConfigFile::parse("config.toml", &text).unwrap();
+        let again = Plan::of_file(&[&Toy], &file).unwrap();
+        assert_eq!(again.identity().unwrap(), plan.identity().unwrap());
+        assert_eq!(again.settings, plan.settings);
+        assert_eq!(again.name(), "toy-without-7");
+    }
+
+    #[test]
+    fn mistakes_are_found_with_their_line() {
+        let error = |text: &str| {
+            let plan = ConfigFile::parse("my.toml", text).and_then(|file| Plan::of_file(&[&Toy], &file));
+            plan.map(|_| ()).unwrap_err().to_string()
+        };
+        let head = "experiment = \"toy\"\n";
+        for (text, message) in [
+            ("[world]\nstpe = 1", "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`"),
+            ("[wrold]\n\nstep = 1", "my.toml line 4: unknown key `wrold.step`; the nearest is `world.step`"),
+            ("world.step = nan", "my.toml line 2: `world.step`: NaN is not a number"),
+            ("world.step = \"a\"", "my.toml line 2: `world.step`: \"a\" is not a number"),
+            ("condition = \"wit\"", "my.toml line 2: unknown condition `wit`; the nearest is `with`"),
+            ("condition = 1", "my.toml line 2: `condition`: is not a name in quotes"),
+            ("seed = -1", "my.toml line 2: `seed`: is not a whole number from 0 to 9223372036854775807"),
+            ("world.step = 1979-05-27", "my.toml line 2: `world.step`: is not a flag, number, word or list of numbers"),
+            ("robot.arm.lengths = [1, \"a\"]", "my.toml line 2: `robot.arm.lengths`: is not a list of numbers"),
+        ] {
+            assert_eq!(error(&format!("{head}{text}")), message);
+        }
+        assert_eq!(error("experiment = \"toi\""), "my.toml line 1: unknown experiment `toi`; the nearest is `toy`");
+        assert_eq!(error(""), "my.toml: names no experiment");
+        assert!(error(&format!("{head}[world\n")).starts_with("my.toml line 2: "));
+        assert!(error(&format!("{head}seed = 1\nseed = 2\n")).starts_with("my.toml line 3: "));
+    }
+
+    #[test]
+    fn another_configuration_is_named() {
+        let (plan, mut other) = (Plan::new(&Toy, None, "").unwrap(), Plan::new(&Toy, None, "").unwrap());
+        other.settings.set("", GENERATIONS, Value::Whole(5)).unwrap();
+        plan.identity().unwrap().same_run(&other.identity().unwrap(), Path::new("d")).unwrap();
+        other.settings.set("", "world.step", Value::Number(0.02)).unwrap();
+        let error = plan.identity().unwrap().same_run(&other.identity().unwrap(), Path::new("d")).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "the run in d has `world.step` = 0.01, not 0.02: another configuration is another run"
+        );
+        // Before there were conditions, it was the first: the other one is not.
+        let old = Identity { condition: String::new(), ..plan.identity().unwrap() };
+        plan.same_run(&old, Path::new("d")).unwrap();
+        let without = Plan::new(&Toy, Some("without"), "").unwrap();
+        let error = without.same_run(&old, Path::new("d")).unwrap_err().to_string();
+        assert!(error.contains("`condition`"), "{error}");
+        let mut newer = plan.identity().unwrap();
+        newer.experiment_version = 2;
+        let error = plan.identity().unwrap().same_values(&newer, Path::new("d/checkpoint.bin")).unwrap_err();
+        assert!(error.to_string().starts_with("d/checkpoint.bin: made with version 1 of the values of toy"), "{error}");
+    }
+
+    #[test]
+    fn a_file_that_changed_or_went_is_named() {
+        let path = std::env::temp_dir().join(format!("farsa plan \"map\" {}", std::process::id()));
+        fs::write(&path, "here be dragons").unwrap();
+        let mut plan = Plan::new(&Toy, None, "").unwrap();
+        let without = plan.identity().unwrap();
+        plan.settings.set("", "world.map", Value::Word(path.display().to_string())).unwrap();
+        let file = ConfigFile::parse("config.toml", &plan.to_toml().unwrap()).unwrap();
+        assert_eq!(Plan::of_file(&[&Toy], &file).unwrap().settings, plan.settings);
+        let run = plan.identity().unwrap();
+        assert_eq!((run.settings.len(), run.files().count()), (without.settings.len() + 1, 1));
+        run.same_run(&plan.identity().unwrap(), Path::new("d")).unwrap();
+        fs::write(&path, "here be none").unwrap();
+        let error = run.same_run(&plan.identity().unwrap(), Path::new("d")).unwrap_err();
+        let (name, said) = (path.display().to_string(), error.to_string());
+        assert!(said.starts_with(&format!("{name}: is another file than the run in d was made with")), "{said}");
+        fs::remove_file(&path).unwrap();
+        let said = plan.identity().unwrap_err().to_string();
+        assert!(said.starts_with(&format!("cannot read {name}: ")), "{said}");
+    }
+}

@@ -1,0 +1,81 @@
+//! Which world an experiment is lived in, where there is a choice.
+
+use crate::error::Error;
+use crate::experiment::settings::Value;
+use crate::run::plan::Plan;
+
+/// The setting that `--world` is short for.
+pub const ENGINE: &str = "world.engine";
+
+/// Chooses the world of a plan, if one was asked for.
+///
+/// # Errors
+/// [`Error::Usage`] for an experiment that has no choice, [`Error::Setting`] for a world that it does not have.
+pub(crate) fn choose(plan: &mut Plan<'_>, world: Option<&str>) -> Result<(), Error> {
+    let Some(world) = world else { return Ok(()) };
+    if plan.settings.get(ENGINE).is_err() {
+        return Err(Error::Usage(format!("--world {world}: {} has one world only", plan.experiment.name())));
+    }
+    plan.settings.set("--world", ENGINE, Value::Word(world.into()))
+}
+
+/// Lets the lives of a run be lived in another world than the run's, and says whether it is another.
+///
+/// # Errors
+/// As [`choose`].
+pub(crate) fn visit(plan: &mut Plan<'_>, world: Option<&str>) -> Result<bool, Error> {
+    let own = plan.settings.clone();
+    choose(plan, world)?;
+    let there = std::mem::replace(&mut plan.settings, own);
+    let other = there != plan.settings;
+    plan.elsewhere = other.then_some(there);
+    Ok(other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::definition::{Experiment, Setup};
+    use crate::experiment::settings::{Setting, Settings};
+
+    /// An experiment with so many worlds to choose from.
+    struct Toy(&'static [&'static str]);
+
+    impl Experiment for Toy {
+        fn name(&self) -> &'static str {
+            "toy"
+        }
+        fn summary(&self) -> &'static str {
+            "nothing"
+        }
+        fn settings(&self, _: &str) -> Vec<Setting> {
+            self.0.first().map(|first| Setting::word(ENGINE, first, self.0)).into_iter().collect()
+        }
+        fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+            Err(Error::Other(settings.word(ENGINE)?.into()))
+        }
+    }
+
+    #[test]
+    fn a_plan_is_moved_to_another_world() {
+        let toy = Toy(&["articulated", "rapier"]);
+        let mut plan = Plan::new(&toy, None, "").unwrap();
+        let before = plan.identity().unwrap();
+        choose(&mut plan, None).unwrap();
+        assert_eq!(plan.identity().unwrap(), before);
+        choose(&mut plan, Some("rapier")).unwrap();
+        assert_ne!(plan.identity().unwrap(), before);
+        assert_eq!(plan.settings.word(ENGINE).unwrap(), "rapier");
+        assert!(!visit(&mut plan, Some("rapier")).unwrap() && plan.elsewhere.is_none());
+        let run = plan.identity().unwrap();
+        assert!(visit(&mut plan, Some("articulated")).unwrap() && plan.evaluator().is_ok());
+        assert_eq!(plan.identity().unwrap(), run, "it is the same run");
+        assert!(!visit(&mut plan, None).unwrap() && plan.elsewhere.is_none());
+        let error = choose(&mut plan, Some("rapir")).unwrap_err();
+        assert!(error.to_string().starts_with("--world: `world.engine`"), "{error}");
+        let none = Toy(&[]);
+        let mut other = Plan::new(&none, None, "").unwrap();
+        let error = choose(&mut other, Some("rapier")).unwrap_err().to_string();
+        assert_eq!(error, "--world rapier: toy has one world only");
+    }
+}

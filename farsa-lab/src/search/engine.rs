@@ -1,0 +1,244 @@
+//! How a run searches: the strategies of farsa-evo behind one face.
+
+use farsa_evo::{
+    Coevolution, EvoError, Fitness, Lineage, Lineages, Population, Statistics, SteadyHistory, SteadyState, Strategy,
+    TruncationGa,
+};
+
+use crate::error::Error;
+use crate::search::evolution;
+use crate::experiment::evaluator::Evaluator;
+use crate::search::learning::{Learning, Lessons};
+use crate::run::plan::Plan;
+
+/// How an experiment searches for good genomes, [`Experiment::search`](crate::Experiment::search).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Search {
+    /// The best of a generation make mutated copies, [`farsa_evo::TruncationGa`]; with several populations within each of
+    /// them, [`farsa_evo::Coevolution`].
+    #[default]
+    Truncation,
+    /// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::SteadyState`].
+    ///
+    /// The log of such a run is about the mean fitness of the parent over its life and the fitness of the mutant: the
+    /// best of the two is that of the survivor, which is the champion.
+    SteadyState,
+    /// Nothing is selected: a generation is one individual, which takes a lesson after it has lived, [`Learner::lesson`](crate::Learner::lesson).
+    ///
+    /// The log of such a run has one fitness three times; errors are in `learning.csv`.
+    Learning,
+}
+
+/// An experiment that learns has no learner.
+const NO_LEARNER: &str = "an experiment that learns without a learner";
+
+/// A search under way.
+#[derive(Debug, Clone)]
+pub(crate) enum Evolution {
+    Truncation(TruncationGa),
+    SteadyState(SteadyState),
+    Several(Coevolution),
+    Learning(Learning),
+}
+
+impl Evolution {
+    /// The search that an experiment of this name asks for, at its first generation.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] when settings do not go together, [`Error::Other`] for genomes that cannot be.
+    pub(crate) fn new(plan: &Plan<'_>, evaluator: &mut dyn Evaluator) -> Result<Self, Error> {
+        let refused = |error: EvoError| Error::Other(format!("{}: {error}", plan.experiment.name()));
+        let (populations, seed) = (evaluator.populations().len(), plan.seed);
+        let (genes, bits) = (evaluator.parameters().len(), plan.experiment.gene_bits());
+        match (plan.search(), populations) {
+            (_, 0) => Err(Error::Other(format!("{}: no population", plan.experiment.name()))),
+            (Search::SteadyState, 1) => {
+                let config = evolution::steady_state(&plan.settings, genes, bits)?;
+                SteadyState::new(config, seed).map(Self::SteadyState).map_err(refused)
+            }
+            (Search::SteadyState, _) => {
+                Err(Error::Other(format!("{}: a steady-state search of several populations", name)))
+            }
+            (Search::Learning, 1) => {
+                let learner = evaluator.learner().ok_or_else(|| Error::Other(NO_LEARNER.into()))?;
+                Learning::new(learner, seed).map(Self::Learning).map_err(refused)
+            }
+            (Search::Learning, _) => {
+                Err(Error::Other(format!("{}: several populations that learn", plan.experiment.name())))
+            }
+            (Search::Truncation, populations) => {
+                let config = evolution::config(&plan.settings, genes, bits)?;
+                if populations == 1 {
+                    TruncationGa::new(config, seed).map(Self::Truncation).map_err(refused)
+                } else {
+                    Coevolution::new(&vec![config; populations], seed).map(Self::Several).map_err(refused)
+                }
+            }
+        }
+    }
+
+    /// Whether another search is of the same kind with the same configuration.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Truncation(a), Self::Truncation(b)) => a.config() == b.config(),
+            (Self::SteadyState(a), Self::SteadyState(b)) => a.config() == b.config(),
+            (Self::Several(a), Self::Several(b)) => a.configs().eq(b.configs()),
+            (Self::Learning(a), Self::Learning(b)) => a.is_like(b),
+            _ => false,
+        }
+    }
+
+    /// The generation that waits for its fitness.
+    pub(crate) fn generation(&self) -> u32 {
+        match self {
+            Self::Truncation(ga) => ga.generation(),
+            Self::SteadyState(search) => search.generation(),
+            Self::Several(all) => all.generation(),
+            Self::Learning(learning) => learning.generation(),
+        }
+    }
+
+    /// Everyone of the generation that waits for its fitness.
+    pub(crate) fn ask(&self) -> &Population {
+        match self {
+            Self::Truncation(ga) => ga.ask(),
+            Self::SteadyState(search) => search.ask(),
+            Self::Several(all) => all.ask(),
+            Self::Learning(learning) => learning.ask(),
+        }
+    }
+
+    /// Populations that evolve beside each other.
+    pub(crate) fn populations(&self) -> usize {
+        if let Self::Several(all) = self { all.populations() } else { 1 }
+    }
+
+    /// Takes the fitness of the current generation and makes the next, by a lesson of `evaluator` where it learns.
+    ///
+    /// # Errors
+    /// The search's words, should it refuse.
+    pub(crate) fn tell(&mut self, fitness: &[Fitness], evaluator: &mut dyn Evaluator, seed: u64) -> Result<(), String> {
+        let told = match self {
+            Self::Truncation(ga) => ga.tell(fitness),
+            Self::SteadyState(search) => search.tell(fitness),
+            Self::Several(all) => all.tell(fitness),
+            Self::Learning(learning) => return learning.study(evaluator.learner().ok_or(NO_LEARNER)?, seed),
+        };
+        told.map_err(|error| error.to_string())
+    }
+
+    /// The fitness that individuals are ranked by, if this is what they earned: for the parent of a steady-state search
+    /// the mean over its life.
+    pub(crate) fn judged(&self, fitness: &[Fitness]) -> Result<Vec<Fitness>, EvoError> {
+        match self {
+            Self::SteadyState(search) => search.judged(fitness).map(Into::into),
+            Self::Truncation(_) | Self::Several(_) | Self::Learning(_) => Ok(fitness.into()),
+        }
+    }
+
+    /// The best individual of each population by the fitness that they are ranked by.
+    pub(crate) fn champions(&self, judged: &[Fitness]) -> Vec<usize> {
+        match self {
+            // Ties go to the mutant.
+            Self::SteadyState(_) => vec![usize::from(judged.get(1) >= judged.first())],
+            Self::Truncation(_) | Self::Several(_) | Self::Learning(_) => {
+                let size = (judged.len() / self.populations()).max(1);
+                let best = |fitness: &[Fitness]| Statistics::of(fitness).map_or(0, |statistics| statistics.best_index);
+                judged.chunks(size).enumerate().map(|(population, own)| population * size + best(own)).collect()
+            }
+        }
+    }
+
+    /// The statistics of each of several populations; none of a single one.
+    pub(crate) fn of_each(&self, judged: &[Fitness]) -> Vec<Statistics> {
+        let size = (judged.len() / self.populations()).max(1);
+        let each = judged.chunks(size).filter(|_| self.populations() > 1);
+        each.filter_map(Statistics::of).collect()
+    }
+
+    /// Who descends from whom so far.
+    pub(crate) fn descent(&self) -> Descent {
+        match self {
+            Self::Truncation(ga) => Descent::Truncation(ga.lineage().clone()),
+            Self::SteadyState(search) => Descent::SteadyState(search.history().clone()),
+            Self::Several(all) => Descent::Several(all.lineages()),
+            Self::Learning(learning) => Descent::Learned(learning.lessons().clone()),
+        }
+    }
+}
+
+/// What the genomes of a run are rebuilt from.
+#[derive(Debug, Clone)]
+pub(crate) enum Descent {
+    Truncation(Lineage),
+    SteadyState(SteadyHistory),
+    Several(Lineages),
+    Learned(Lessons),
+    /// Genomes from elsewhere, as the only generation: those of one population after the other, as many of each.
+    Imported {
+        genomes: Vec<Vec<u16>>,
+        populations: usize,
+    },
+}
+
+impl Descent {
+    /// Number of finished generations.
+    pub(crate) fn finished(&self) -> u32 {
+        match self {
+            Self::Truncation(lineage) => lineage.latest(),
+            Self::SteadyState(history) => history.latest(),
+            Self::Several(lineages) => lineages.latest(),
+            Self::Learned(lessons) => lessons.taken(),
+            Self::Imported { .. } => 1,
+        }
+    }
+
+    /// Populations that evolve beside each other.
+    pub(crate) fn populations(&self) -> usize {
+        match self {
+            Self::Several(lineages) => lineages.populations(),
+            Self::Imported { populations, .. } => (*populations).max(1),
+            Self::Truncation(_) | Self::SteadyState(_) | Self::Learned(_) => 1,
+        }
+    }
+
+    /// Individuals of each population.
+    pub(crate) fn size(&self) -> usize {
+        match self {
+            Self::Truncation(lineage) => lineage.config().population,
+            Self::SteadyState(_) => SteadyHistory::INDIVIDUALS,
+            Self::Several(lineages) => lineages.size(),
+            Self::Learned(_) => 1,
+            Self::Imported { genomes, .. } => genomes.len() / self.populations(),
+        }
+    }
+
+    /// The best individual of a population in a finished generation, counted through all populations.
+    pub(crate) fn champion(&self, population: usize, generation: u32) -> Option<usize> {
+        let first = |selected: Option<&[u32]>| selected.and_then(<[u32]>::first).map(|&individual| individual as usize);
+        match self {
+            Self::Truncation(lineage) => first(lineage.selected(generation)),
+            Self::SteadyState(history) => history.survivor(generation),
+            Self::Several(lineages) => {
+                Some(population * lineages.size() + first(lineages.selected(population, generation))?)
+            }
+            Self::Learned(lessons) => (generation < lessons.taken()).then_some(0),
+            Self::Imported { .. } => (generation == 0).then_some(population * self.size()),
+        }
+    }
+
+    /// The genome of an individual.
+    pub(crate) fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError> {
+        match self {
+            Self::Truncation(lineage) => lineage.genome_of(generation, individual),
+            Self::SteadyState(history) => history.genome_of(generation, individual),
+            Self::Several(lineages) => lineages.genome_of(generation, individual),
+            Self::Learned(lessons) => lessons.genome_of(generation, individual),
+            Self::Imported { genomes, .. } => {
+                let beyond = EvoError::NoSuchIndividual { individual, population: genomes.len() };
+                genomes.get(individual).cloned().ok_or(beyond)
+            }
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Whom an individual of one of several populations meets, in a run and when a life is lived again.
+
+use farsa_evo::EvoError;
+
+use crate::experiment::genotype::Genotype;
+use crate::search::engine::Descent;
+
+/// An individual of another population.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Opponent {
+    /// The best of an earlier generation.
+    Champion { population: usize, generation: u32 },
+    /// One of the same generation, counted through all populations.
+    Peer(usize),
+}
+
+/// Where populations of a generation meet.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Meeting {
+    pub(crate) generation: u32,
+    pub(crate) populations: usize,
+    /// Individuals of each population.
+    pub(crate) size: usize,
+    /// Trials of an individual.
+    pub(crate) trials: usize,
+}
+
+impl Meeting {
+    /// The generation whose champions are met in a trial: in the first half of the trials the latest, as many generations
+    /// back as the number of the trial; in the other half those in the middle of as many equal parts of all before them.
+    ///
+    /// Against the latest alone, populations chase each other in circles and forget what they could do. Source: the hall of
+    /// fame of \[Rosin1997\]; deviation: its champions are spread evenly, not drawn.
+    fn earlier(self, trial: u32) -> Option<u32> {
+        let latest = u32::try_from(self.trials.div_ceil(2)).unwrap_or(u32::MAX);
+        match trial.checked_sub(latest) {
+            None => self.generation.checked_sub(1)?.checked_sub(trial),
+            Some(part) => {
+                let (parts, before) = ((self.trials / 2).max(1) as u64, self.generation.checked_sub(latest)?);
+                let middle = u64::from(before) * (2 * u64::from(part) + 1) / (2 * parts);
+                (before > 0).then(|| u32::try_from(middle).map_or(before - 1, |middle| middle.min(before - 1)))
+            }
+        }
+    }
+
+    /// Whom an individual meets in a trial, one of each other population: champions, and where there were none yet the
+    /// individual of the trial's number.
+    pub(crate) fn opponents(self, individual: usize, trial: u32) -> impl Iterator<Item = Opponent> {
+        let Self { populations, size, .. } = self;
+        let earlier = self.earlier(trial);
+        let others = (0..populations).filter(move |population| *population != individual / size);
+        others.map(move |population| match earlier {
+            Some(generation) => Opponent::Champion { population, generation },
+            None => Opponent::Peer(population * size + trial as usize % size),
+        })
+    }
+}
+
+/// The genomes that an individual met in a trial, rebuilt.
+pub(crate) fn met(
+    descent: &Descent,
+    generation: u32,
+    individual: usize,
+    trial: u32,
+    trials: usize,
+) -> Result<Vec<Vec<u16>>, EvoError> {
+    let meeting = Meeting { generation, populations: descent.populations(), size: descent.size(), trials };
+    let genome = |opponent| match opponent {
+        Opponent::Champion { population, generation } => champion(descent, population, generation),
+        Opponent::Peer(individual) => descent.genome_of(generation, individual),
+    };
+    meeting.opponents(individual, trial).map(genome).collect()
+}
+
+/// The genome of the best of a population in a finished generation.
+fn champion(descent: &Descent, population: usize, generation: u32) -> Result<Vec<u16>, EvoError> {
+    let latest = descent.finished();
+    let best = descent.champion(population, generation).ok_or(EvoError::NoSuchGeneration { generation, latest })?;
+    descent.genome_of(generation, best)
+}
+
+/// The champions of every generation; of a single population nobody is kept.
+#[derive(Debug, Default)]
+pub(crate) struct Hall {
+    /// For every generation the parameters of each population's champion.
+    champions: Vec<Vec<Vec<f32>>>,
+}
+
+impl Hall {
+    /// The champions before a generation that is not finished yet.
+    pub(crate) fn before(descent: &Descent, genotype: &Genotype) -> Result<Self, EvoError> {
+        let (populations, generation) = (descent.populations(), descent.finished());
+        let mut hall = Self::default();
+        if populations > 1 {
+            for generation in 0..generation {
+                let all = (0..populations).map(|population| {
+                    let genes = champion(descent, population, generation)?;
+                    let (found, expected) = (genes.len(), genotype.genes());
+                    genotype.decode(&genes).ok_or(EvoError::Lengths { genes: found, ranges: expected, out: expected })
+                });
+                hall.add(all.collect::<Result<_, _>>()?);
+            }
+        }
+        Ok(hall)
+    }
+
+    /// Adds the champions of the generation that has just been finished.
+    pub(crate) fn add(&mut self, champions: Vec<Vec<f32>>) {
+        if champions.len() > 1 {
+            self.champions.push(champions);
+        }
+    }
+
+    /// The parameters of the opponents that everyone meets, trial after trial, individual after individual; none if there is
+    /// no opponent.
+    pub(crate) fn opponents<'g>(&'g self, meeting: Meeting, peers: &'g [Vec<f32>]) -> Option<Vec<&'g [f32]>> {
+        let mut all = Vec::new();
+        for trial in 0..u32::try_from(meeting.trials).ok()? {
+            for individual in 0..peers.len() {
+                for opponent in meeting.opponents(individual, trial) {
+                    all.push(match opponent {
+                        Opponent::Champion { population, generation } => {
+                            self.champions.get(generation as usize)?.get(population)?.as_slice()
+                        }
+                        Opponent::Peer(individual) => peers.get(individual)?.as_slice(),
+                    });
+                }
+            }
+        }
+        Some(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::evaluator::Parameter;
+    use farsa_evo::{Coevolution, Fitness, GaConfig, Strategy as _};
+
+    #[test]
+    fn earlier_champions_come_first_then_peers() {
+        let meeting = Meeting { generation: 2, populations: 3, size: 4, trials: 8 };
+        let met = |individual, trial| meeting.opponents(individual, trial).collect::<Vec<_>>();
+        let champion = |population, generation| Opponent::Champion { population, generation };
+        assert_eq!(met(0, 0), [champion(1, 1), champion(2, 1)]);
+        assert_eq!(met(7, 1), [champion(0, 0), champion(2, 0)]);
+        assert_eq!(met(8, 2), [Opponent::Peer(2), Opponent::Peer(6)]);
+        assert_eq!(met(3, 5), [Opponent::Peer(5), Opponent::Peer(9)]);
+        assert_eq!(Meeting { populations: 1, ..meeting }.opponents(3, 0).count(), 0);
+    }
+
+    #[test]
+    fn half_of_the_champions_are_the_latest_and_half_of_all_times() {
+        let earlier = |generation, trials| {
+            let meeting = Meeting { generation, populations: 2, size: 4, trials };
+            (0..trials as u32).map(|trial| meeting.earlier(trial)).collect::<Vec<_>>()
+        };
+        assert_eq!(earlier(0, 6), [None; 6]);
+        assert_eq!(earlier(2, 6), [Some(1), Some(0), None, None, None, None]);
+        assert_eq!(earlier(4, 6), [Some(3), Some(2), Some(1), Some(0), Some(0), Some(0)]);
+        assert_eq!(earlier(63, 6), [Some(62), Some(61), Some(60), Some(10), Some(30), Some(50)]);
+        assert_eq!(earlier(10, 1), [Some(9)]);
+        assert_eq!(earlier(12, 3), [Some(11), Some(10), Some(5)]);
+        assert_eq!(earlier(u32::MAX, 2), [Some(u32::MAX - 1), Some((u32::MAX - 1) / 2)]);
+    }
+
+    #[test]
+    fn a_run_meets_whom_its_lineages_remember() {
+        const TRIALS: usize = 3;
+        let config = GaConfig { population: 6, parents: 2, mutation_rate: 0.2, ..GaConfig::new(3) };
+        let genotype = Genotype::new(&vec![Parameter::new("", [0.0, 65535.0]); 3], 16);
+        let mut all = Coevolution::new(&[config; 3], 4).unwrap();
+        let mut hall = Hall::before(&Descent::Several(all.lineages()), &genotype).unwrap();
+        for generation in 0..7 {
+            let descent = Descent::Several(all.lineages());
+            let meeting = Meeting { generation, populations: 3, size: 6, trials: TRIALS };
+            let peers = genotype.decode_all(all.ask()).unwrap();
+            let opponents = hall.opponents(meeting, &peers).unwrap();
+            let resumed = Hall::before(&descent, &genotype).unwrap();
+            assert_eq!(resumed.opponents(meeting, &peers).unwrap(), opponents);
+            for (number, parameters) in opponents.chunks(2).enumerate() {
+                let genes = met(&descent, generation, number % 18, (number / 18) as u32, TRIALS).unwrap();
+                let met: Vec<Vec<f32>> = genes.iter().map(|genes| genotype.decode(genes).unwrap()).collect();
+                assert_eq!(met, parameters);
+            }
+            assert_eq!(opponents.len(), TRIALS * 18 * 2);
+            let fitness: Vec<_> =
+                (0..18_u32).map(|i| Fitness::nan_as_failed(f64::from((i * 5 + generation) % 7))).collect();
+            let champions = crate::search::engine::Evolution::Several(all.clone()).champions(&fitness);
+            let best = champions.iter().map(|&best| peers[best].clone()).collect();
+            all.tell(&fitness).unwrap();
+            hall.add(best);
+        }
+    }
+}

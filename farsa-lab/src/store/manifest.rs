@@ -1,0 +1,160 @@
+//! `manifest.json`: what made a run, when and how fast; nothing in it changes a result.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::Path;
+use std::thread;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::experiment::lanes::Told;
+use crate::store::directory::replace;
+use crate::store::identity::Identity;
+
+/// The whole file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Manifest {
+    /// Version of this file's format.
+    pub(crate) format: u32,
+    pub(crate) experiment: String,
+    pub(crate) condition: String,
+    pub(crate) seed: u64,
+    /// [`crate::VALUES_VERSION`].
+    pub(crate) values_version: u32,
+    /// [`crate::Experiment::values_version`].
+    pub(crate) experiment_version: u32,
+    /// The files that lives depend on, with the CRC-32 of their content.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) files: BTreeMap<String, String>,
+    /// The files that genotypes were imported from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) imported: Vec<String>,
+    /// One for the start and one for every time the run was resumed.
+    pub(crate) sessions: Vec<Session>,
+}
+
+/// What one process did.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Session {
+    pub(crate) farsa: String,
+    pub(crate) machine: Machine,
+    pub(crate) threads: usize,
+    /// Lives side by side in each thread, and by which instructions.
+    #[serde(flatten)]
+    pub(crate) lanes: Told,
+    /// Seconds since 1970 began, UTC.
+    pub(crate) started_unix: u64,
+    pub(crate) seconds: f64,
+    pub(crate) first_generation: u32,
+    /// Generations finished.
+    pub(crate) generations: u32,
+    pub(crate) evaluations: u64,
+}
+
+/// Where it ran.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Machine {
+    os: String,
+    architecture: String,
+    processor: String,
+    logical_processors: usize,
+}
+
+impl Manifest {
+    /// The manifest of a run that has not begun.
+    pub(crate) fn new(identity: &Identity) -> Self {
+        Self {
+            format: 1,
+            experiment: identity.experiment.clone(),
+            condition: identity.condition.clone(),
+            seed: identity.seed,
+            values_version: identity.values_version,
+            experiment_version: identity.experiment_version,
+            files: identity.files().map(|(path, crc)| (path.to_owned(), crc.to_string().replace('"', ""))).collect(),
+            imported: Vec::new(),
+            sessions: Vec::new(),
+        }
+    }
+
+    /// Reads the file.
+    pub(crate) fn read(path: &Path) -> Result<Self, Error> {
+        let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+        serde_json::from_str(&text).map_err(|error| Error::damaged(path, error))
+    }
+
+    /// Writes the file.
+    pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
+        let mut text = serde_json::to_string_pretty(self).map_err(|error| Error::Io {
+            doing: "write",
+            path: path.into(),
+            source: io::Error::other(error),
+        })?;
+        text.push('\n');
+        replace(path, text.as_bytes())
+    }
+}
+
+impl Session {
+    /// A session that begins now.
+    pub(crate) fn new(threads: usize, lanes: Told, first_generation: u32) -> Self {
+        Self {
+            farsa: env!("CARGO_PKG_VERSION").into(),
+            machine: Machine::here(),
+            threads,
+            lanes,
+            started_unix: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
+            seconds: 0.0,
+            first_generation,
+            generations: 0,
+            evaluations: 0,
+        }
+    }
+}
+
+impl Machine {
+    /// Processors that a process may use.
+    pub(crate) fn cores(&self) -> usize {
+        self.logical_processors
+    }
+
+    /// The machine in a few words.
+    pub(crate) fn describe(&self) -> String {
+        let Self { os, architecture, processor, logical_processors } = self;
+        let processor = if processor.is_empty() { "unknown processor" } else { processor };
+        format!("{processor}, {logical_processors} logical processors, {os} {architecture}")
+    }
+
+    /// The machine that this process runs on.
+    pub(crate) fn here() -> Self {
+        // Linux alone tells the processor's name in a file; elsewhere it is left out.
+        let processor = fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
+            let line = text.lines().find(|line| line.starts_with("model name"))?;
+            Some(line.split_once(':')?.1.trim().to_owned())
+        });
+        Self {
+            os: std::env::consts::OS.into(),
+            architecture: std::env::consts::ARCH.into(),
+            processor: processor.unwrap_or_default(),
+            logical_processors: thread::available_parallelism().map_or(1, usize::from),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::lanes::Lanes;
+
+    #[test]
+    fn a_session_from_before_there_were_lanes_had_one() {
+        let session = Session::new(2, Lanes::best().told(), 7);
+        let mut json = serde_json::to_value(&session).unwrap();
+        assert_eq!(serde_json::from_value::<Session>(json.clone()).unwrap(), session);
+        let fields = json.as_object_mut().unwrap();
+        assert!(fields.remove("lanes").is_some() && fields.remove("simd").is_some());
+        assert_eq!(serde_json::from_value::<Session>(json).unwrap().lanes, Lanes::one().told());
+    }
+}

@@ -1,0 +1,155 @@
+//! Files that tell whether they are whole: a kind, a format version, a length, the content and a checksum.
+//!
+//! Layout, little-endian: 8 bytes that name the kind, `u32` format version, `u64` length of the content, the content
+//! (postcard), `u32` CRC-32 of everything before it.
+
+use std::fs;
+use std::io::{self, Read as _};
+use std::path::Path;
+
+use farsa_num::crc32;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::error::Error;
+use crate::store::directory::replace;
+
+/// The version of the layout and of all contents.
+const FORMAT: u32 = 1;
+const HEAD: usize = 8 + 4 + 8;
+const CHECKSUM: usize = 4;
+
+/// What is kept in a file of its own kind.
+pub(crate) trait Sealed: Serialize + DeserializeOwned {
+    /// The first bytes of such a file.
+    const MAGIC: [u8; 8];
+    /// What it is called in an error.
+    const KIND: &'static str;
+}
+
+/// Writes a sealed file in place of what was there; see [`replace`].
+pub(crate) fn write<T: Sealed>(path: &Path, content: &T) -> Result<(), Error> {
+    let content = postcard::to_stdvec(content).map_err(|error| Error::Io {
+        doing: "write",
+        path: path.into(),
+        source: io::Error::other(error),
+    })?;
+    let mut bytes = Vec::with_capacity(HEAD + content.len() + CHECKSUM);
+    bytes.extend(T::MAGIC);
+    bytes.extend(FORMAT.to_le_bytes());
+    bytes.extend((content.len() as u64).to_le_bytes());
+    bytes.extend(content);
+    let checksum = crc32(&bytes);
+    bytes.extend(checksum.to_le_bytes());
+    replace(path, &bytes)
+}
+
+/// The first bytes of a file, which say of what kind it is; none if it is too short.
+pub(crate) fn magic(path: &Path) -> Result<Option<[u8; 8]>, Error> {
+    let mut magic = Vec::new();
+    let file = fs::File::open(path).map_err(Error::io("read", path))?;
+    file.take(8).read_to_end(&mut magic).map_err(Error::io("read", path))?;
+    Ok(magic.try_into().ok())
+}
+
+/// Reads a sealed file.
+///
+/// # Errors
+/// [`Error::Damaged`] when it is not the file that was written, [`Error::Io`].
+pub(crate) fn read<T: Sealed>(path: &Path) -> Result<T, Error> {
+    let bytes = fs::read(path).map_err(Error::io("read", path))?;
+    open(&bytes).map_err(|why| Error::damaged(path, why))
+}
+
+fn open<T: Sealed>(bytes: &[u8]) -> Result<T, String> {
+    let truncated = |expected: u64| format!("truncated: {} bytes of {expected}", bytes.len());
+    let Some((magic, rest)) = bytes.split_first_chunk::<8>() else {
+        return Err(truncated((HEAD + CHECKSUM) as u64));
+    };
+    if *magic != T::MAGIC {
+        return Err(format!("is not a {} of FARSA", T::KIND));
+    }
+    let Some((version, rest)) = rest.split_first_chunk::<4>() else {
+        return Err(truncated((HEAD + CHECKSUM) as u64));
+    };
+    let version = u32::from_le_bytes(*version);
+    if version != FORMAT {
+        return Err(format!("has format version {version}, this program reads version {FORMAT}"));
+    }
+    let Some((length, rest)) = rest.split_first_chunk::<8>() else {
+        return Err(truncated((HEAD + CHECKSUM) as u64));
+    };
+    let expected = u64::from_le_bytes(*length).saturating_add((HEAD + CHECKSUM) as u64);
+    let found = bytes.len() as u64;
+    if found < expected {
+        return Err(truncated(expected));
+    }
+    let Some((content, checksum)) = rest.split_last_chunk::<CHECKSUM>().filter(|_| found == expected) else {
+        return Err(format!("altered: {found} bytes where {expected} were written"));
+    };
+    let computed = crc32(&bytes[..bytes.len() - CHECKSUM]);
+    let written = u32::from_le_bytes(*checksum);
+    if computed != written {
+        return Err(format!("altered: its checksum is {computed:08x}, {written:08x} was written"));
+    }
+    match postcard::take_from_bytes(content) {
+        Ok((value, [])) => Ok(value),
+        Ok((_, rest)) => Err(format!("holds {} bytes more than a {}", rest.len(), T::KIND)),
+        Err(error) => Err(format!("holds no {}: {error}", T::KIND)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+    struct Thing(Vec<u16>);
+
+    impl Sealed for Thing {
+        const MAGIC: [u8; 8] = *b"farsathg";
+        const KIND: &'static str = "thing";
+    }
+
+    fn sealed() -> Vec<u8> {
+        let directory = tempfile();
+        let path = directory.join("thing.bin");
+        write(&path, &Thing(vec![1, 2, 3])).unwrap();
+        assert_eq!(read::<Thing>(&path).unwrap(), Thing(vec![1, 2, 3]));
+        let bytes = fs::read(&path).unwrap();
+        fs::remove_dir_all(directory).unwrap();
+        bytes
+    }
+
+    fn tempfile() -> std::path::PathBuf {
+        let directory =
+            std::env::temp_dir().join(format!("farsa-sealed-{}-{:?}", std::process::id(), std::thread::current().id()));
+        fs::create_dir_all(&directory).unwrap();
+        directory
+    }
+
+    #[test]
+    fn every_truncation_and_every_flipped_bit_is_found() {
+        let bytes = sealed();
+        for length in 0..bytes.len() {
+            let why = open::<Thing>(&bytes[..length]).unwrap_err();
+            assert!(why.starts_with("truncated"), "{length}: {why}");
+        }
+        for bit in 0..bytes.len() * 8 {
+            let mut altered = bytes.clone();
+            altered[bit / 8] ^= 1 << (bit % 8);
+            assert!(open::<Thing>(&altered).is_err(), "bit {bit}");
+        }
+        let longer = [bytes.as_slice(), &[0]].concat();
+        assert_eq!(open::<Thing>(&longer).unwrap_err(), "altered: 29 bytes where 28 were written");
+    }
+
+    #[test]
+    fn other_files_are_told_apart() {
+        let mut bytes = sealed();
+        bytes[8] = 2;
+        assert_eq!(open::<Thing>(&bytes).unwrap_err(), "has format version 2, this program reads version 1");
+        bytes[0] = b'F';
+        assert_eq!(open::<Thing>(&bytes).unwrap_err(), "is not a thing of FARSA");
+    }
+}
