@@ -6,9 +6,12 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
-use crate::experiment::outcome::{ChannelGroup, Description};
+use crate::experiment::outcome::ChannelGroup;
+use crate::experiment::outcome::Description;
+use crate::experiment::settings::Source;
+use crate::experiment::settings::Value;
+use crate::json::pretty;
 use crate::run::plan::Plan;
-use crate::experiment::settings::{Source, Value};
 
 /// The experiments, one a line, with their conditions.
 pub(crate) fn list(experiments: &[&dyn Experiment]) -> String {

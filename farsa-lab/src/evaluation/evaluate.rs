@@ -6,17 +6,20 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::search::evolution::POPULATION;
+use crate::evaluation::arguments::EvaluateArgs;
+use crate::evaluation::arguments::GenotypeVariant;
+use crate::evaluation::genotypes::Shape;
+use crate::evaluation::populations::Populations;
 use crate::evaluation::test;
 use crate::evaluation::test_table::Tried;
 use crate::experiment::definition::Experiment;
 use crate::experiment::outcome::Note;
-use crate::evaluation::genotypes::Shape;
-use crate::run::plan::{self, Plan};
-use crate::run::pool::Unfinished;
-use crate::evaluation::populations::Populations;
-use crate::run::progress::Progress;
 use crate::experiment::settings::Value;
+use crate::run::plan::Plan;
+use crate::run::plan;
+use crate::run::pool::Unfinished;
+use crate::run::progress::Progress;
+use crate::search::evolution::POPULATION;
 
 /// The setting that `--ir-tables` is short for.
 const INFRARED_TABLES: &str = "robot.infrared_tables";
@@ -190,7 +193,7 @@ pub(crate) fn evaluate(args: &EvaluateArgs, quiet: bool, experiments: &[&dyn Exp
     let size = if names.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
     let trials = args.trials as usize;
     let progress = Progress::new(0, trials as u64, quiet);
-    let tried = exam::lives(&mut pool, &parameters, size, trials, args.seed, &progress);
+    let tried = test::lives(&mut pool, &parameters, size, trials, args.seed, &progress);
     drop(progress);
     let tried = tried.map_err(|reason| match reason {
         Unfinished::Panicked => Error::Other("a life panicked".into()),

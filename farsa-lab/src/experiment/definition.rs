@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
-use crate::search::engine::Search;
-use crate::experiment::settings::{Setting, Settings};
+use crate::experiment::search_kind::Search;
+use crate::experiment::settings::Setting;
+use crate::experiment::settings::Settings;
 
 /// An experiment that the `farsa` command lists, explains, runs, tests and replays.
 ///

@@ -1,16 +1,23 @@
 //! `farsa export`: robots, controllers, genotypes and starts as files for other programs.
 
 use clap::ValueEnum;
+use farsa_body::MjcfOptions;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::experiment::evaluator::{Evaluator, Exports};
-use crate::evaluation::test;
 use crate::evaluation::genotypes;
-use crate::command::info::pretty;
-use crate::run::plan::Plan;
 use crate::evaluation::populations::Populations;
-use crate::run::records::{Best, Champions};
+use crate::evaluation::test;
+use crate::experiment::controller_export::ControllerExport;
+use crate::experiment::controller_export::StartExport;
+use crate::experiment::evaluator::Evaluator;
+use crate::experiment::evaluator::Exports;
+use crate::export::controller_formats;
+use crate::json::pretty;
+use crate::run::plan::Plan;
+use crate::run::records::Best;
+use crate::run::records::Champions;
+use crate::store::directory::Directory;
 
 /// The formats of model files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -162,7 +169,7 @@ pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: Control
 pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
-    let start = |trial| evaluator.exports()?.start(exam::episode(trial, evaluator.trials(), seed));
+    let start = |trial| evaluator.exports()?.start(test::episode(trial, evaluator.trials(), seed));
     let starts: Option<Vec<_>> = (0..trials).map(start).collect();
     let starts = starts.ok_or_else(|| Error::Usage(format!("{name}: its starts cannot be exported")))?;
     pretty(&Trials { format: 1, experiment: name, condition: &plan.condition, seed, starts })

@@ -9,16 +9,20 @@ use farsa_evo::Population;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::experiment::outcome::Outcome;
-use crate::experiment::lanes::Told;
 use crate::experiment::episode::EpisodeId;
-use crate::store::manifest::Machine;
-use crate::search::opponents::{Hall, Meeting};
+use crate::experiment::lanes::Told;
+use crate::experiment::outcome::Outcome;
+use crate::run::evolve::Opponents;
+use crate::run::evolve::evaluate_all;
 use crate::run::plan::Plan;
-use crate::run::pool::{Pool, Unfinished};
+use crate::run::pool::Pool;
+use crate::run::pool::Unfinished;
 use crate::run::records::Ancestry;
-use crate::run::evolve::{Opponents, evaluate_all};
-use crate::search::engine::{Descent, Evolution};
+use crate::search::engine::Descent;
+use crate::search::opponents::Hall;
+use crate::search::opponents::Meeting;
+use crate::store::directory::Directory;
+use crate::store::manifest::Machine;
 
 /// Runs of a study.
 const REPLICATIONS: u64 = 20;
@@ -42,7 +46,7 @@ pub(crate) struct Sample {
 impl Sample {
     /// The first generation of a run of this plan.
     pub(crate) fn random(plan: &Plan<'_>) -> Result<Self, Error> {
-        let evolution = Evolution::new(plan, plan.evaluator()?.as_mut())?;
+        let evolution = plan.evolution(plan.evaluator()?.as_mut())?;
         Self::new(plan, evolution.ask(), &evolution.descent(), 0)
     }
 

@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use crate::error::Error;
-use crate::experiment::evaluator::Evaluator;
 use crate::experiment::definition::Experiment;
-use crate::run::plan::{ConfigFile, Plan};
-use crate::run::records::Champions;
+use crate::experiment::evaluator::Evaluator;
 use crate::experiment::settings::Settings;
+use crate::run::config_file::ConfigFile;
+use crate::run::plan::Plan;
+use crate::run::records::Champions;
+use crate::store::directory::Directory;
 
 /// What a run has come to: its configuration, and the best of its last finished generation.
 pub struct BestOfRun {

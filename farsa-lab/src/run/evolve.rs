@@ -9,25 +9,36 @@ use farsa_evo::{Fitness, Statistics};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
 use crate::experiment::outcome::Outcome;
-use crate::experiment::episode::EpisodeId;
-use crate::store::log::{self, Log};
-use crate::store::manifest::{Manifest, Session};
-use crate::search::opponents::{Hall, Meeting};
-use crate::run::plan::{Identity, Plan};
 use crate::figures::plot;
-use crate::run::pool::{Pool, Unfinished};
+use crate::run::plan::Plan;
+use crate::run::pool::Pool;
+use crate::run::pool::Unfinished;
 use crate::run::progress::Progress;
-use crate::run::records::{Ancestry, Best, Champions, Checkpoint, evolved};
+use crate::run::records::Ancestry;
+use crate::run::records::Best;
+use crate::run::records::Champions;
+use crate::run::records::Checkpoint;
+use crate::run::records::evolved;
 use crate::search::engine::Evolution;
+use crate::search::opponents::Hall;
+use crate::search::opponents::Meeting;
+use crate::store::directory::Directory;
+use crate::store::directory::replace;
+use crate::store::identity::Identity;
+use crate::store::log::Log;
+use crate::store::log;
+use crate::store::manifest::Manifest;
+use crate::store::manifest::Session;
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
 
 /// Makes the directory of a new run, ready for its first generation.
 pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
-    let evolution = Evolution::new(plan, plan.evaluator()?.as_mut())?;
+    let evolution = plan.evolution(plan.evaluator()?.as_mut())?;
     let (text, identity) = (plan.to_toml()?, plan.identity()?);
     Directory::create(path, |directory| {
         replace(&directory.config(), text.as_bytes())?;
@@ -116,7 +127,7 @@ pub(crate) fn go_on(
     let path = directory.checkpoint();
     let Checkpoint { identity, log: mark, evolution } = Checkpoint::read(plan, directory)?;
     identity.same_values(&plan.identity()?, &path)?;
-    if !evolution.is_like(&Evolution::new(plan, pool.evaluator_mut())?) {
+    if !evolution.is_like(&plan.evolution(pool.evaluator_mut())?) {
         return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
     }
     let hall = Hall::before(&evolution.descent(), pool.genotype());

@@ -7,12 +7,19 @@ use std::path::Path;
 use farsa_num::crc32;
 
 use crate::error::Error;
-use crate::search::evolution::{self, GENERATIONS};
-use crate::experiment::evaluator::Evaluator;
 use crate::experiment::definition::Experiment;
+use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
-use crate::search::engine::Search;
-use crate::experiment::settings::{Settings, Value};
+use crate::experiment::search_kind::Search;
+use crate::experiment::settings::Settings;
+use crate::experiment::settings::Value;
+use crate::run::config_file::ConfigFile;
+use crate::search::engine::Evolution;
+use crate::search::evolution::GENERATIONS;
+use crate::search::evolution;
+use crate::store::identity::FILE;
+use crate::store::identity::Identity;
+use crate::store::identity::VALUES_VERSION;
 
 /// The largest seed of a run; bit 63 marks the lives of a test.
 pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
@@ -74,8 +81,9 @@ impl<'e> Plan<'e> {
     ///
     /// # Errors
     /// Those of [`Evolution::new`].
-    pub(crate) fn evolution(&self, setup: &dyn Setup) -> Result<Evolution, Error> {
-        Evolution::new(self.experiment.name(), self.search(), &self.settings, self.seed, setup)
+    pub(crate) fn evolution(&self, evaluator: &mut dyn Evaluator) -> Result<Evolution, Error> {
+        let bits = self.experiment.gene_bits();
+        Evolution::new(self.experiment.name(), self.search(), &self.settings, self.seed, bits, evaluator)
     }
 
     /// The experiment made ready for one thread.

@@ -10,11 +10,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
-use crate::search::learning::{Learning, Lessons};
+use crate::run::plan::Plan;
+use crate::search::engine::Descent;
+use crate::search::engine::Evolution;
+use crate::search::learning::Learning;
+use crate::search::learning::Lessons;
+use crate::store::directory::Directory;
+use crate::store::identity::Identity;
 use crate::store::log::Mark;
-use crate::run::plan::{Identity, Plan};
-use crate::store::sealed::{self, Sealed};
-use crate::search::engine::{Descent, Evolution};
+use crate::store::sealed::Sealed;
+use crate::store::sealed;
 
 /// `checkpoint.bin`: all that the next generation depends on.
 #[derive(Debug)]

@@ -35,7 +35,8 @@ pub(crate) fn visit(plan: &mut Plan<'_>, world: Option<&str>) -> Result<bool, Er
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::definition::{Experiment, Setup};
+    use crate::experiment::definition::Experiment;
+    use crate::experiment::evaluator::Evaluator;
     use crate::experiment::settings::{Setting, Settings};
 
     /// An experiment with so many worlds to choose from.
@@ -51,7 +52,7 @@ mod tests {
         fn settings(&self, _: &str) -> Vec<Setting> {
             self.0.first().map(|first| Setting::word(ENGINE, first, self.0)).into_iter().collect()
         }
-        fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+        fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
             Err(Error::Other(settings.word(ENGINE)?.into()))
         }
     }

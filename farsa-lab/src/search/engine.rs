@@ -6,29 +6,12 @@ use farsa_evo::{
 };
 
 use crate::error::Error;
-use crate::search::evolution;
 use crate::experiment::evaluator::Evaluator;
-use crate::search::learning::{Learning, Lessons};
-use crate::run::plan::Plan;
-
-/// How an experiment searches for good genomes, [`Experiment::search`](crate::Experiment::search).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum Search {
-    /// The best of a generation make mutated copies, [`farsa_evo::TruncationGa`]; with several populations within each of
-    /// them, [`farsa_evo::Coevolution`].
-    #[default]
-    Truncation,
-    /// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::SteadyState`].
-    ///
-    /// The log of such a run is about the mean fitness of the parent over its life and the fitness of the mutant: the
-    /// best of the two is that of the survivor, which is the champion.
-    SteadyState,
-    /// Nothing is selected: a generation is one individual, which takes a lesson after it has lived, [`Learner::lesson`](crate::Learner::lesson).
-    ///
-    /// The log of such a run has one fitness three times; errors are in `learning.csv`.
-    Learning,
-}
+use crate::experiment::search_kind::Search;
+use crate::experiment::settings::Settings;
+use crate::search::evolution;
+use crate::search::learning::Learning;
+use crate::search::learning::Lessons;
 
 /// An experiment that learns has no learner.
 const NO_LEARNER: &str = "an experiment that learns without a learner";
@@ -47,14 +30,20 @@ impl Evolution {
     ///
     /// # Errors
     /// [`Error::Setting`] when settings do not go together, [`Error::Other`] for genomes that cannot be.
-    pub(crate) fn new(plan: &Plan<'_>, evaluator: &mut dyn Evaluator) -> Result<Self, Error> {
-        let refused = |error: EvoError| Error::Other(format!("{}: {error}", plan.experiment.name()));
-        let (populations, seed) = (evaluator.populations().len(), plan.seed);
-        let (genes, bits) = (evaluator.parameters().len(), plan.experiment.gene_bits());
-        match (plan.search(), populations) {
-            (_, 0) => Err(Error::Other(format!("{}: no population", plan.experiment.name()))),
+    pub(crate) fn new(
+        name: &str,
+        search: Search,
+        settings: &Settings,
+        seed: u64,
+        gene_bits: u32,
+        evaluator: &mut dyn Evaluator,
+    ) -> Result<Self, Error> {
+        let refused = |error: EvoError| Error::Other(format!("{name}: {error}"));
+        let (populations, genes) = (evaluator.populations().len(), evaluator.parameters().len());
+        match (search, populations) {
+            (_, 0) => Err(Error::Other(format!("{}: no population", name))),
             (Search::SteadyState, 1) => {
-                let config = evolution::steady_state(&plan.settings, genes, bits)?;
+                let config = evolution::steady_state(settings, genes, gene_bits)?;
                 SteadyState::new(config, seed).map(Self::SteadyState).map_err(refused)
             }
             (Search::SteadyState, _) => {
@@ -65,10 +54,10 @@ impl Evolution {
                 Learning::new(learner, seed).map(Self::Learning).map_err(refused)
             }
             (Search::Learning, _) => {
-                Err(Error::Other(format!("{}: several populations that learn", plan.experiment.name())))
+                Err(Error::Other(format!("{}: several populations that learn", name)))
             }
             (Search::Truncation, populations) => {
-                let config = evolution::config(&plan.settings, genes, bits)?;
+                let config = evolution::config(settings, genes, gene_bits)?;
                 if populations == 1 {
                     TruncationGa::new(config, seed).map(Self::Truncation).map_err(refused)
                 } else {

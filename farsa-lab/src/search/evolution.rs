@@ -3,8 +3,9 @@
 use farsa_evo::{EvoError, GaConfig, Mutation, SteadyStateConfig};
 
 use crate::error::Error;
-use crate::search::engine::Search;
-use crate::experiment::settings::{Setting, Settings};
+use crate::experiment::search_kind::Search;
+use crate::experiment::settings::Setting;
+use crate::experiment::settings::Settings;
 
 /// Evaluated generations.
 pub(crate) const GENERATIONS: &str = "evolution.generations";
