@@ -31,7 +31,7 @@ pub use walking::passive_walker::PassiveWalker;
 pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
 pub use farsa_lab::{
-    ActuatorExport, BestOfRun, ChannelGroup, ControllerExport, CtrnnExport, Description, Error, Experiment, Job,
+    ActuatorExport, BestOfRun, ChannelGroup, ControllerExport, CtrnnExport, Description, Error, Experiment, EpisodeId,
     JudgeExport, Lanes, Lesson, Life, MotorDrive, MotorExport, NetworkExport, Neurocontroller, Note, Outcome,
     PointExport, Search, SensorExport, SensorReading, ServoExport, Setting, Settings, Setup, Source, StartExport,
     SurfaceExport, Tape, Task, VALUES_VERSION, Value, cli, evolution, live, live_in_lanes, read_genotypes,

@@ -1,13 +1,13 @@
 //! The experiment `aggregation`: a team gathers on nests.
 
-use farsa_lab::{Error, Experiment, Job, Outcome, Setting, Settings, Setup};
+use farsa_lab::{EpisodeId, Error, Evaluator, Experiment, Outcome, Setting, Settings};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::aggregation::config::AggregationConfig;
 use crate::aggregation::{life::AggregationLife, life::AggregationMission};
 use crate::team::config::ROBOTS;
-use crate::team::setup::TeamSetup;
+use crate::team::task::evaluator;
 
 /// Can robots that feel a nest only when they are on it gather there, with each other's help? \[FARSA2\]
 ///
@@ -34,15 +34,15 @@ impl Experiment for Aggregation {
         AggregationConfig::of_condition(condition).table()
     }
 
-    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
-        Ok(Box::new(TeamSetup::new(AggregationMission::new(
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        Ok(Box::new(evaluator(AggregationMission::new(
             AggregationConfig::of_condition(condition).read(settings)?,
         ))?))
     }
 }
 
 /// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
-pub fn aggregate<C: Controller>(life: &mut AggregationLife<C>, world: &mut World, job: Job) -> Outcome {
-    farsa_lab::live(life, world, job);
+pub fn aggregate<C: Controller>(life: &mut AggregationLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    farsa_lab::run_episode(life, world, id, None);
     life.outcome(0)
 }

@@ -3,16 +3,16 @@
 use farsa_body::{Arrange as _, BodyId, ColorBand, Kinematics as _, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
-use farsa_physics::arena::{Arena, ArenaError, World};
+use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::aggregation::config::AggregationConfig;
 use crate::aggregation::{measure::Gathering, measure::mean_distances};
 use crate::team::config::TeamConfig;
-use crate::team::{life::Mission, life::Moment, life::TeamLife};
+use crate::team::{life::Mission, life::Moment, life::TeamLife, life::TeamWorld};
 use crate::team::{nest::COLORS, nest::on_nest};
 use crate::team::{robots::OUTPUTS, robots::Team, robots::distance};
-use crate::team::{setup::eye_groups, setup::eye_names};
-use farsa_lab::{ChannelGroup, Error, Job, Note, Outcome};
+use crate::team::{task::eye_groups, task::eye_names};
+use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome};
 use farsa_view::Channel;
 
 /// Robots that aggregate, with a controller each.
@@ -91,12 +91,12 @@ impl Mission for AggregationMission {
         &COLORS
     }
 
-    /// Puts the nests and then the robots somewhere, from the stream of [`Domain::Start`] of the job's trial, individual and
+    /// Puts the nests and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
     /// generation.
-    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
+    fn arrange<C: Controller, W: TeamWorld>(&mut self, team: &Team<C>, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
         const TRIES: u32 = 1000;
         let Self { config, nests, .. } = self;
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         world.clear();
         let [low, high] = [config.nest_to_wall, config.team.size - config.nest_to_wall].map(|x| x as f32);
         let apart = (2.0 * config.nest_to_wall) as f32;
@@ -118,12 +118,12 @@ impl Mission for AggregationMission {
         team.scatter(world, None, &mut stream)
     }
 
-    fn sense(&self, world: &World, _: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
+    fn sense<W: TeamWorld>(&self, world: &W, _: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
         rest.copy_from_slice(&[on_nest(world, at)]);
         true
     }
 
-    fn judge(&mut self, world: &World, moment: Moment<'_>) -> bool {
+    fn judge<W: TeamWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool {
         let Self { config, nests, homes } = self;
         let centre = |nest: &BodyId| {
             let [x, y, _] = world.pose(*nest).position;

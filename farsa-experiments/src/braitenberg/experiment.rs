@@ -1,12 +1,10 @@
 //! The experiment `braitenberg`: vehicles wired by hand.
 
-use farsa_body::{Kinematics as _, Recorder, World as _};
-use farsa_physics::arena::World;
+use farsa_body::Recorder;
+use farsa_physics::arena::{Batch, World};
 
 use crate::braitenberg::{life::Config, life::LIGHTS, life::Vehicle, life::VehicleLife};
-use farsa_lab::{
-    ChannelGroup, Description, Error, Experiment, Job, Life as _, Note, Outcome, Setting, Settings, Setup, Tape,
-};
+use farsa_lab::{ChannelGroup, Description, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials};
 use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 /// What four ways of wiring two light-driven wheels look like from outside \[Braitenberg1984, vehicles 2a to 3b\].
@@ -63,7 +61,11 @@ impl Experiment for Braitenberg {
         ]
     }
 
-    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn gene_bits(&self) -> u32 {
+        1
+    }
+
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         let start = settings.numbers("start.distance")?;
         let config = Config {
             vehicle: vehicle(condition),
@@ -77,90 +79,41 @@ impl Experiment for Braitenberg {
             gain: settings.number("wiring.gain")?,
             base: settings.number("wiring.base")?,
         };
-        Ok(Box::new(Lives::new(config)?))
+        Ok(Box::new(evaluator(config)?))
     }
 }
 
-/// A vehicle in its arena.
-pub struct Lives {
-    world: World,
-    life: VehicleLife,
+/// Evaluates a vehicle under a configuration.
+///
+/// # Errors
+/// [`Error::Setting`] for starts within the lamp or beyond the walls, [`Error::Other`] for values that make no world.
+pub fn evaluator(config: Config) -> Result<InWorld<World, VehicleLife>, Error> {
+    let radius = config.robot().radius;
+    let [near, far] = config.start;
+    let most = 0.5 * config.size - radius;
+    if near < radius + config.lamp_radius || far > most || near > far {
+        let least = radius + config.lamp_radius;
+        let why = format!(
+            "from {near} to {far} m: must rise and lie between {least:.3} m, the lamp, and {most:.3} m, the wall"
+        );
+        return Err(Error::setting("start.distance", why));
+    }
+    let arena = config.arena();
+    let world = World::new(&arena).map_err(|error| Error::Other(format!("braitenberg: {error}")))?;
+    let batch = move |lanes: Lanes| {
+        Batch::new(&arena, lanes.count(), lanes.level()).map_err(|error| Error::Other(error.to_string()))
+    };
+    Ok(InWorld::new(world, VehicleLife::new(config)?).with_lanes(batch))
 }
 
-impl Lives {
-    /// Lives under a configuration.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for starts within the lamp or beyond the walls, [`Error::Other`] for values that make no world.
-    pub fn new(config: Config) -> Result<Self, Error> {
-        let radius = config.robot().radius;
-        let [near, far] = config.start;
-        let most = 0.5 * config.size - radius;
-        if near < radius + config.lamp_radius || far > most || near > far {
-            let least = radius + config.lamp_radius;
-            let why = format!(
-                "from {near} to {far} m: must rise and lie between {least:.3} m, the lamp, and {most:.3} m, the wall"
-            );
-            return Err(Error::setting("start.distance", why));
-        }
-        let world = World::new(&config.arena()).map_err(|error| Error::Other(format!("braitenberg: {error}")))?;
-        Ok(Self { world, life: VehicleLife::new(config)? })
-    }
-
-    fn tell(&self, recorder: &mut dyn Recorder) {
-        let Self { world, life } = self;
-        recorder.sensors(life.sensed());
-        recorder.outputs(life.done());
-        // No contacts: their forces are nominal.
-        for body in [life.parts().body, life.lamp()] {
-            recorder.pose(body, world.pose(body));
-        }
-        let pose = world.pose(life.parts().body);
-        let [x, y, _] = pose.position.map(f64::from);
-        recorder.scalars(&[
-            x,
-            y,
-            f64::from(pose.heading()),
-            life.distances()[1],
-            life.bearings()[1],
-            f64::from(life.steps()[1]),
-        ]);
-        recorder.tick((f64::from(life.steps()[0]) * life.config().time_step * 1e9).round() / 1e9);
-    }
-
-    fn outcome(&self) -> Outcome {
-        let life = &self.life;
-        let [start, end] = life.distances();
-        let [steps, collisions] = life.steps();
-        let off = life.bearings().map(|bearing| bearing.abs().to_degrees());
-        // 2b and 3a come near, 2a and 3b leave.
-        let comes = life.config().vehicle.crossed() == life.config().vehicle.excited();
-        Outcome {
-            terms: vec![life.approach()],
-            steps,
-            success: (end < start) == comes,
-            notes: vec![
-                ("distance at the start [m]", Note::from(start)),
-                ("distance at the end [m]", Note::from(end)),
-                ("lamp off ahead at the start [deg]", Note::from(off[0])),
-                ("lamp off ahead at the end [deg]", Note::from(off[1])),
-                ("steps in collision", Note::from(f64::from(collisions))),
-            ],
-        }
-    }
-}
-
-impl Setup for Lives {
-    fn genes(&self) -> usize {
-        1
-    }
-
-    fn gene_bits(&self) -> u32 {
-        1
+impl Task for VehicleLife {
+    /// Nothing evolves: one parameter that nothing depends on.
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("none", [0.0, 1.0])]
     }
 
     fn trials(&self) -> usize {
-        self.life.config().trials as usize
+        self.config().trials as usize
     }
 
     fn terms(&self) -> Vec<String> {
@@ -171,7 +124,7 @@ impl Setup for Lives {
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
         let places =
             ["x [m]", "y [m]", "heading [rad]", "distance of the lamp [m]", "bearing of the lamp [rad]", "collisions"];
-        let mut stage = Stage::of_arena(&self.life.config().arena())
+        let mut stage = Stage::of_arena(&self.config().arena())
             .with_sensors((1..=LIGHTS).map(|number| format!("light {number}")))
             .with_outputs(["left wheel", "right wheel"]);
         stage.outputs.iter_mut().chain(&mut stage.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
@@ -189,7 +142,7 @@ impl Setup for Lives {
     }
 
     fn description(&self) -> Description {
-        let config = self.life.config();
+        let config = self.config();
         let vehicle = config.vehicle;
         let meaning = "where the infrared sensors are, left to right and the two behind, 0 dark .. 1";
         Description {
@@ -201,32 +154,45 @@ impl Setup for Lives {
                 if vehicle.excited() { "drives" } else { "slows" },
                 if vehicle.crossed() { "other" } else { "same" },
             ),
-            parameters: self.life.wiring().parameters.len(),
+            parameters: self.wiring().parameters.len(),
             steps: config.steps as usize,
             step_seconds: config.time_step,
         }
     }
 
-    fn live(&mut self, _: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        if let Some(recorder) = tape.recorder() {
-            recorder.parameters(&self.life.wiring().parameters);
-        }
-        self.life.start(&mut self.world, job);
-        loop {
-            self.life.act(&mut self.world);
-            self.world.step();
-            let end = self.life.judge(&self.world);
-            if let Some(recorder) = tape.recorder() {
-                self.tell(recorder);
-            }
-            if end.is_some() {
-                return self.outcome();
-            }
-        }
-    }
-
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
-        trials.iter().flat_map(|outcome| &outcome.terms).sum::<f64>() / trials.len().max(1) as f64
+        mean_of_trials(trials)
+    }
+}
+
+impl Rollout for VehicleLife {
+    fn load(&mut self, _: &Evaluation<'_>) -> bool {
+        true
+    }
+
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(&self.wiring().parameters);
+    }
+
+    fn outcome(&self) -> Outcome {
+        let life = self;
+        let [start, end] = life.distances();
+        let [steps, collisions] = life.steps();
+        let off = life.bearings().map(|bearing| bearing.abs().to_degrees());
+        // 2b and 3a come near, 2a and 3b leave.
+        let comes = life.config().vehicle.crossed() == life.config().vehicle.excited();
+        Outcome {
+            terms: vec![life.approach()],
+            steps,
+            success: (end < start) == comes,
+            notes: vec![
+                ("distance at the start [m]", Note::from(start)),
+                ("distance at the end [m]", Note::from(end)),
+                ("lamp off ahead at the start [deg]", Note::from(off[0])),
+                ("lamp off ahead at the end [deg]", Note::from(off[1])),
+                ("steps in collision", Note::from(f64::from(collisions))),
+            ],
+        }
     }
 }

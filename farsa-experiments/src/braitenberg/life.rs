@@ -4,9 +4,9 @@ use core::f32::consts::PI;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, Beam, BodyId, ChannelError, Contacts, Handles, JointId, Kinematics, LightSensors,
-    MobileParts, MobileRobot, Motor as _, PairId, Planar, Pose, Sensor as _, Twist, WheelVelocity,
+    MobileParts, MobileRobot, Motor as _, PairId, Planar, Pose, Recorder, Sensor as _, Twist, WheelVelocity,
 };
-use farsa_lab::{Error, Job, Life};
+use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 use farsa_physics::arena::{Arena, Cylinder};
@@ -171,7 +171,6 @@ pub struct VehicleLife {
     x: [f32; LIGHTS],
     y: [f32; 2],
     steps: u32,
-    begun: bool,
     /// From the robot's centre to the lamp's, at the start and now \[m\].
     distances: [f64; 2],
     /// The lamp's bearing from straight ahead, at the start and now \[rad\].
@@ -203,7 +202,6 @@ impl VehicleLife {
             x,
             y,
             steps: 0,
-            begun: false,
             distances,
             bearings,
             collisions: 0,
@@ -221,7 +219,7 @@ impl VehicleLife {
         let at = [middle + distance * cosine, middle + distance * sine];
         world.place_body(self.parts.body, Pose::planar(at, heading), Twist::default());
         world.arranged();
-        (self.steps, self.collisions, self.begun) = (0, 0, false);
+        (self.steps, self.collisions) = (0, 0);
         self.look(world);
         self.distances[0] = self.distances[1];
         self.bearings[0] = self.bearings[1];
@@ -234,27 +232,6 @@ impl VehicleLife {
         let [x, y, _] = pose.rotate_back([middle - pose.position[0], middle - pose.position[1], 0.0]);
         self.distances[1] = Scalar::sqrt(x * x + y * y);
         self.bearings[1] = farsa_num::atan2(y, x);
-    }
-
-    /// Senses and acts.
-    pub fn act<W>(&mut self, world: &mut W)
-    where
-        W: Planar + Kinematics + Actuated + Handles<Body = BodyId, Actuator = ActuatorId> + ?Sized,
-    {
-        self.lights.read(world, &mut self.x);
-        self.wiring.step(&self.x, &mut self.y);
-        self.wheels.drive(&self.y, world);
-    }
-
-    /// Counts the step that has passed; `Some` ends the trial with how much nearer the robot came \[m\].
-    pub fn judge<W>(&mut self, world: &W) -> Option<f64>
-    where
-        W: Kinematics<Body = BodyId> + Contacts + ?Sized,
-    {
-        self.steps += 1;
-        self.collisions += u32::from(world.touches(PairId(0)));
-        self.look(world);
-        (self.steps >= self.config.steps).then(|| self.approach())
     }
 
     /// How much nearer to the lamp the robot is than at the start \[m\].
@@ -319,20 +296,39 @@ where
         + ?Sized,
 {
     /// Distance, direction and heading are uniform, in this order from the stream of [`Domain::Start`].
-    fn start(&mut self, world: &mut W, job: Job) {
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         let [near, far] = self.config.start.map(|x| x as f32);
         let distance = stream.range(near, far);
         let (direction, heading) = (stream.range(-PI, PI), stream.range(-PI, PI));
         self.place(world, distance, direction, heading);
     }
 
-    fn tick(&mut self, world: &mut W) -> Option<f64> {
-        let end = if self.begun { self.judge(world) } else { None };
-        self.begun = true;
-        if end.is_none() {
-            self.act(world);
+    fn act(&mut self, world: &mut W) {
+        self.lights.read(world, &mut self.x);
+        self.wiring.step(&self.x, &mut self.y);
+        self.wheels.drive(&self.y, world);
+    }
+
+    /// Counts the step that has passed; `Some` ends the trial with how much nearer the robot came \[m\].
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.steps += 1;
+        self.collisions += u32::from(world.touches(PairId(0)));
+        self.look(world);
+        (self.steps >= self.config.steps).then(|| self.approach())
+    }
+
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        recorder.sensors(&self.x);
+        recorder.outputs(&self.y);
+        // No contacts: their forces are nominal.
+        for body in [self.parts.body, self.lamp] {
+            recorder.pose(body, world.pose(body));
         }
-        end
+        let pose = world.pose(self.parts.body);
+        let [x, y, _] = pose.position.map(f64::from);
+        let heading = f64::from(pose.heading());
+        recorder.scalars(&[x, y, heading, self.distances[1], self.bearings[1], f64::from(self.collisions)]);
+        recorder.tick(seconds(self.steps, self.config.time_step));
     }
 }

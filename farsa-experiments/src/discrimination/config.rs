@@ -238,8 +238,12 @@ impl Config {
     /// # Errors
     /// [`Error::Other`] for values that make no world.
     pub fn world(&self) -> Result<World, Error> {
-        let parked = Arena { size: None, ..self.arena() };
-        World::new(&parked).map_err(|error| Error::Other(error.to_string()))
+        World::new(&self.parked()).map_err(|error| Error::Other(error.to_string()))
+    }
+
+    /// The arena without bounds for what is parked outside before a trial places it.
+    pub(crate) fn parked(&self) -> Arena {
+        Arena { size: None, ..self.arena() }
     }
 
     /// A world of that arena in rapier, whatever the engine.

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use farsa_lab::{Error, Experiment, Setting, Settings, Setup};
+use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings};
 
 use crate::discrimination::config::Config;
-use crate::discrimination::experiment::in_its_world;
+use crate::discrimination::experiment::{GENE_BITS, in_its_world};
 use crate::infrared::settings::InfraredModel;
 
 /// Can a robot tell a large cylinder from a small one by how it must move to stay beside it? \[FARSA2; Ferrauto2010, 4.6.5\]
@@ -51,7 +51,11 @@ impl Experiment for DiscriminationCylinders {
         InfraredModel::files(settings)
     }
 
-    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn gene_bits(&self) -> u32 {
+        GENE_BITS
+    }
+
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         in_its_world(Config::two_cylinders(condition != NO_WHEELS).read(settings)?)
     }
 }

@@ -2,19 +2,15 @@
 
 use std::path::PathBuf;
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Planar, Pose, Rays, Recorder,
-};
+use farsa_body::{Arrange, BodyId, Handles, JointId, Kinematics, Planar, Recorder};
 use farsa_nn::Perceptron;
-use farsa_physics::arena::World;
+use farsa_physics::arena::{Batch, World};
 
 use crate::discrimination::life::CylinderLife;
 use crate::discrimination::{config::Config, config::EYES, config::ROBOTS};
 use crate::infrared::settings::InfraredModel;
 use crate::worlds::PlanarEngine;
-use farsa_lab::{
-    ChannelGroup, Description, Error, Experiment, Job, Life as _, Note, Outcome, Search, Setting, Settings, Setup, Tape,
-};
+use farsa_lab::{ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome, Parameter, Rollout, Search, Setting, Settings, Task, mean_of_trials};
 use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 /// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2\]
@@ -51,119 +47,72 @@ impl Experiment for Discrimination {
         InfraredModel::files(settings)
     }
 
-    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn gene_bits(&self) -> u32 {
+        GENE_BITS
+    }
+
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         in_its_world(Config::of_condition(condition).read(settings)?)
     }
 }
 
-/// Lives in the world that a configuration names.
-pub(crate) fn in_its_world(config: Config) -> Result<Box<dyn Setup>, Error> {
+/// Evaluates in the world that a configuration names.
+pub(crate) fn in_its_world(config: Config) -> Result<Box<dyn Evaluator>, Error> {
     match config.engine {
-        PlanarEngine::Arena => Ok(Box::new(Lives::new(config)?)),
+        PlanarEngine::Arena => Ok(Box::new(evaluator(config)?)),
         #[cfg(feature = "rapier")]
-        PlanarEngine::Rapier => Ok(Box::new(Lives::in_rapier(config)?)),
+        PlanarEngine::Rapier => Ok(Box::new(evaluator_in_rapier(config)?)),
         #[cfg(not(feature = "rapier"))]
         PlanarEngine::Rapier => Err(crate::worlds::missing(config.engine.name())),
     }
 }
 
 /// Bits of a gene.
-const GENE_BITS: u32 = 8;
+pub(crate) const GENE_BITS: u32 = 8;
 
-/// The layer of two logistic units that genes are decoded into.
-type Layer = Perceptron<Vec<f32>>;
+/// The layer of two logistic units that parameters are for.
+pub type Layer = Perceptron<Vec<f32>>;
 
-/// The arena with the robot's life in it: everything that a thread needs to live lives.
-pub struct Lives<W = World> {
-    world: W,
-    life: CylinderLife<Layer>,
+/// Evaluates under a configuration, in the kinematic arena.
+///
+/// # Errors
+/// [`Error::Other`] for values that make no world, and [`Error::Setting`] for an arena without room for all.
+pub fn evaluator(config: Config) -> Result<InWorld<World, CylinderLife<Layer>>, Error> {
+    let (mut world, parked) = (config.world()?, config.parked());
+    let life = life(config, &mut world)?;
+    let batch = move |lanes: Lanes| {
+        Batch::new(&parked, lanes.count(), lanes.level()).map_err(|error| Error::Other(error.to_string()))
+    };
+    Ok(InWorld::new(world, life).with_lanes(batch))
 }
 
-impl Lives {
-    /// Lives under a configuration, in the kinematic arena.
-    ///
-    /// # Errors
-    /// [`Error::Other`] for values that make no world, and [`Error::Setting`] for an arena without room for all.
-    pub fn new(config: Config) -> Result<Self, Error> {
-        let world = config.world()?;
-        Self::assemble(config, world)
-    }
-}
-
+/// Evaluates under a configuration, in rapier.
+///
+/// # Errors
+/// As [`evaluator`].
 #[cfg(feature = "rapier")]
-impl Lives<farsa_physics::rapier::ArenaWorld> {
-    /// Lives under a configuration, in rapier.
-    ///
-    /// # Errors
-    /// [`Error::Other`] for values that make no world, and [`Error::Setting`] for an arena without room for all.
-    pub fn in_rapier(config: Config) -> Result<Self, Error> {
-        let world = config.rapier_world()?;
-        Self::assemble(config, world)
-    }
+pub fn evaluator_in_rapier(
+    config: Config,
+) -> Result<InWorld<farsa_physics::rapier::ArenaWorld, CylinderLife<Layer>>, Error> {
+    let mut world = config.rapier_world()?;
+    let life = life(config, &mut world)?;
+    Ok(InWorld::new(world, life))
 }
 
-impl<W> Lives<W>
+/// The episode of a configuration, for whose objects the world has room.
+fn life<W>(config: Config, world: &mut W) -> Result<CylinderLife<Layer>, Error>
 where
     W: Planar + Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
 {
-    fn assemble(config: Config, mut world: W) -> Result<Self, Error> {
-        let inputs = config.inputs();
-        let layer = layer(inputs, vec![0.0; Perceptron::parameter_count(inputs, 2)])?;
-        let mut life = CylinderLife::new(config, layer)?;
-        // Seeds of this kind are neither a run's nor a test's.
-        for trial in 0..8 {
-            let job = Job { seed: u64::MAX, trial, ..Job::default() };
-            life.arrange(&mut world, job).map_err(|error| Error::setting("world.size", error))?;
-        }
-        Ok(Self { world, life })
+    let inputs = config.inputs();
+    let layer = layer(inputs, vec![0.0; Perceptron::parameter_count(inputs, 2)])?;
+    let mut life = CylinderLife::new(config, layer)?;
+    // Seeds of this kind are neither a run's nor a test's.
+    for trial in 0..8 {
+        let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
+        life.arrange(world, id).map_err(|error| Error::setting("world.size", error))?;
     }
-
-    /// Tells what was sensed, computed and done before the step that has just been judged, and what it led to.
-    fn tell(&self, was: Pose, recorder: &mut dyn Recorder) {
-        let Self { world, life } = self;
-        let (trial, parts) = (life.trial(), life.parts());
-        recorder.sensors(life.sensed());
-        recorder.outputs(life.done());
-        life.infrared().tell(was, life.sensed(), recorder);
-        // No contacts: their forces are nominal.
-        let bodies = core::iter::once(parts.body).chain(life.cylinders().iter().copied());
-        bodies.for_each(|body| recorder.pose(body, world.pose(body)));
-        let pose = world.pose(parts.body);
-        let [x, y, _] = pose.position.map(f64::from);
-        let mut scalars = vec![x, y, f64::from(pose.heading())];
-        let count = life.cylinders().len();
-        scalars.extend(&trial.distance[..count]);
-        let largest = life.config().robot.max_wheel_speed;
-        scalars.extend(life.done().iter().map(|y| (2.0 * f64::from(*y) - 1.0) * largest));
-        scalars.push(life.fitness());
-        recorder.scalars(&scalars);
-        // Rounded to the nanosecond: 201 steps of 0.05 s print as 10.05.
-        recorder.tick((f64::from(trial.steps) * life.config().time_step * 1e9).round() / 1e9);
-    }
-
-    fn outcome(&self) -> Outcome {
-        let (trial, config) = (self.life.trial(), self.life.config());
-        if trial.failed {
-            return Outcome::failed();
-        }
-        let share = |i: usize| f64::from(trial.near[i]) / f64::from(config.steps);
-        let mean = |i: usize| if trial.near[i] > 0 { trial.spun[i] / f64::from(trial.near[i]) } else { 0.0 };
-        let mut notes = vec![
-            ("collisions", Note::from(if trial.collided { 1.0 } else { 0.0 })),
-            ("end", Note::from(if trial.collided { "collision" } else { "time" })),
-        ];
-        let mut terms = vec![share(0)];
-        if config.radii.len() == 1 {
-            notes.push(("steps near", Note::from(f64::from(trial.near[0]))));
-        } else {
-            terms.push(-config.cost * share(1));
-            notes.push(("share of time near the first", Note::from(share(0))));
-            notes.push(("share of time near the other", Note::from(share(1))));
-            notes.push(("wheels' difference near the first [rad/s]", Note::from(mean(0))));
-            notes.push(("wheels' difference near the other [rad/s]", Note::from(mean(1))));
-        }
-        Outcome { terms, steps: trial.steps, success: !trial.collided && trial.distance[0] < config.near, notes }
-    }
+    Ok(life)
 }
 
 /// Two logistic units over these parameters.
@@ -171,47 +120,37 @@ fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error> {
     Perceptron::new(inputs, 2, 1.0, parameters).map_err(|error| Error::Other(format!("discrimination: {error}")))
 }
 
-/// The parameters that genes stand for: w = range - gene/255 * 2 range; the two biases come first, then the weights target
-/// by target, where a layer has the weights source by source and then the biases.
-fn decode(genes: &[u16], inputs: usize, range: f64) -> Vec<f32> {
-    let value = |gene: u16| (range - f64::from(gene) / 255.0 * 2.0 * range) as f32;
-    let weights = (0..inputs).flat_map(|input| [0, 1].map(|output| genes[2 + output * inputs + input]));
-    weights.chain([genes[0], genes[1]]).map(value).collect()
+/// The layer's parameters in its own order, from the order in which the original has them: the two biases come first, then
+/// the weights target by target, where a layer has the weights source by source and then the biases.
+fn in_order_of_layer(parameters: &[f32], inputs: usize) -> Vec<f32> {
+    let weights = (0..inputs).flat_map(|input| [0, 1].map(|output| parameters[2 + output * inputs + input]));
+    weights.chain([parameters[0], parameters[1]]).collect()
 }
 
-impl<W> Setup for Lives<W>
-where
-    W: farsa_body::World
-        + Planar
-        + Rays
-        + Kinematics
-        + Joints
-        + Actuated
-        + Contacts
-        + Arrange
-        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
-        + Send,
-{
-    fn genes(&self) -> usize {
-        Perceptron::parameter_count(self.life.config().inputs(), 2)
-    }
-
-    fn gene_bits(&self) -> u32 {
-        GENE_BITS
+impl Task for CylinderLife<Layer> {
+    /// As the original wrote them, w = range - gene/255 * 2 range.
+    fn parameters(&self) -> Vec<Parameter> {
+        let (inputs, range) = (self.config().inputs(), self.config().weight_range);
+        let wheels = ["left", "right"];
+        let biases = wheels.map(|wheel| format!("bias of the {wheel} wheel"));
+        let weights = wheels.into_iter().flat_map(|wheel| {
+            (1..=inputs).map(move |input| format!("weight of sensor {input} on the {wheel} wheel"))
+        });
+        biases.into_iter().chain(weights).map(|name| Parameter::new(name, [range, -range])).collect()
     }
 
     fn trials(&self) -> usize {
-        self.life.config().trials as usize
+        self.config().trials as usize
     }
 
     fn terms(&self) -> Vec<String> {
-        let several = self.life.cylinders().len() > 1;
+        let several = self.cylinders().len() > 1;
         let terms = if several { &["near the first", "near the other"][..] } else { &["near"] };
         terms.iter().map(|&term| term.into()).collect()
     }
 
     fn stage(&self) -> Stage {
-        let config = self.life.config();
+        let config = self.config();
         let inputs = config.inputs();
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
         let distances: &[&str] = match config.radii.len() {
@@ -243,7 +182,7 @@ where
     }
 
     fn description(&self) -> Description {
-        let config = self.life.config();
+        let config = self.config();
         let model = config.infrared.name();
         let speed = config.robot.max_wheel_speed * config.robot.wheel_radius;
         let mut sensors = vec![ChannelGroup::new(
@@ -262,59 +201,71 @@ where
                 &format!("left and right, 0 backwards .. 1/2 at rest .. 1 ahead, {:.0} mm/s", 1e3 * speed),
             )],
             network: format!("{}-2, one layer of logistic units without memory", config.inputs()),
-            parameters: self.genes(),
+            parameters: Perceptron::parameter_count(config.inputs(), 2),
             steps: config.steps as usize,
             step_seconds: config.time_step,
         }
     }
 
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        let config = self.life.config();
-        let (inputs, range) = (config.inputs(), config.weight_range);
-        if genes.len() != self.genes() {
-            return Outcome::failed();
-        }
-        let parameters = decode(genes, inputs, range);
-        if let Some(recorder) = tape.recorder() {
-            recorder.parameters(&parameters);
-        }
-        let Ok(layer) = layer(inputs, parameters) else { return Outcome::failed() };
-        self.life.set_controller(layer);
-        self.life.start(&mut self.world, job);
-        if self.life.trial().failed {
-            return Outcome::failed();
-        }
-        loop {
-            self.life.act(&mut self.world);
-            let was = tape.recorder().map(|_| self.world.pose(self.life.parts().body));
-            self.world.step();
-            let end = self.life.judge(&self.world);
-            if let (Some(recorder), Some(was)) = (tape.recorder(), was) {
-                self.tell(was, recorder);
-            }
-            if end.is_some() {
-                return self.outcome();
-            }
-        }
-    }
-
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
-        let sum: f64 = trials.iter().flat_map(|outcome| &outcome.terms).sum();
-        sum / trials.len().max(1) as f64
+        mean_of_trials(trials)
+    }
+}
+
+impl Rollout for CylinderLife<Layer> {
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        let inputs = self.config().inputs();
+        if evaluation.parameters.len() != Perceptron::parameter_count(inputs, 2) {
+            return false;
+        }
+        let Ok(layer) = layer(inputs, in_order_of_layer(evaluation.parameters, inputs)) else { return false };
+        self.set_controller(layer);
+        true
+    }
+
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(self.controller().parameters());
+    }
+
+    fn outcome(&self) -> Outcome {
+        let (trial, config) = (self.trial(), self.config());
+        if trial.failed {
+            return Outcome::failed();
+        }
+        let share = |i: usize| f64::from(trial.near[i]) / f64::from(config.steps);
+        let mean = |i: usize| if trial.near[i] > 0 { trial.spun[i] / f64::from(trial.near[i]) } else { 0.0 };
+        let mut notes = vec![
+            ("collisions", Note::from(if trial.collided { 1.0 } else { 0.0 })),
+            ("end", Note::from(if trial.collided { "collision" } else { "time" })),
+        ];
+        let mut terms = vec![share(0)];
+        if config.radii.len() == 1 {
+            notes.push(("steps near", Note::from(f64::from(trial.near[0]))));
+        } else {
+            terms.push(-config.cost * share(1));
+            notes.push(("share of time near the first", Note::from(share(0))));
+            notes.push(("share of time near the other", Note::from(share(1))));
+            notes.push(("wheels' difference near the first [rad/s]", Note::from(mean(0))));
+            notes.push(("wheels' difference near the other [rad/s]", Note::from(mean(1))));
+        }
+        Outcome { terms, steps: trial.steps, success: !trial.collided && trial.distance[0] < config.near, notes }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use farsa_lab::Genotype;
     use farsa_nn::Controller as _;
 
     #[test]
     fn genes_are_read_as_the_original_wrote_them() {
         // Biases +5 and -5; of each wheel the weights of sensors 0 to 5.
         let genes = [0, 255, 10, 20, 30, 40, 50, 60, 110, 120, 130, 140, 150, 160];
-        let mut layer = layer(6, decode(&genes, 6, 5.0)).unwrap();
+        let task = evaluator(Config::default()).unwrap();
+        let parameters = Genotype::new(&task.parameters(), GENE_BITS).decode(&genes).unwrap();
+        let mut layer = layer(6, in_order_of_layer(&parameters, 6)).unwrap();
         let weight = |gene: u16| 5.0 - f64::from(gene) / 255.0 * 10.0;
         for (wheel, bias) in [(0, 5.0), (1, -5.0)] {
             for sensor in 0..6 {
@@ -326,13 +277,18 @@ mod tests {
                 assert!((f64::from(y[wheel]) - expected).abs() < 1e-6, "{wheel} {sensor}");
             }
         }
+        // To the last bit: the same products in another order.
+        for gene in 0..=255 {
+            let found = Genotype::new(&task.parameters()[..1], GENE_BITS).decode(&[gene]).unwrap();
+            assert_eq!(found[0], (5.0 - f64::from(gene) / 255.0 * 2.0 * 5.0) as f32);
+        }
     }
 
     #[test]
     fn fitness_is_the_mean_of_the_trials() {
-        let lives = Lives::new(Config::default()).unwrap();
+        let task = evaluator(Config::default()).unwrap();
         let trial = |near| Outcome { terms: vec![near], ..Outcome::default() };
-        assert_eq!(lives.fitness(&[trial(0.25), trial(0.75), trial(0.5)]), 0.5);
-        assert!(lives.fitness(&[trial(0.25), Outcome::failed()]).is_nan());
+        assert_eq!(task.fitness(&[trial(0.25), trial(0.75), trial(0.5)]), 0.5);
+        assert!(task.fitness(&[trial(0.25), Outcome::failed()]).is_nan());
     }
 }

@@ -4,9 +4,9 @@ use core::f32::consts::PI;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, Joints, Kinematics, MobileParts,
-    Motor as _, PairId, Planar, Pose, Rays, Sensor as _, Twist, WheelSpeed, WheelVelocity,
+    Motor as _, PairId, Planar, Pose, Rays, Recorder, Sensor as _, Twist, WheelSpeed, WheelVelocity,
 };
-use farsa_lab::{Error, Job, Life};
+use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream};
 use farsa_physics::arena::{ArenaError, FreePlace};
@@ -51,7 +51,6 @@ pub struct CylinderLife<C> {
     x: Vec<f32>,
     y: [f32; 2],
     trial: Trial,
-    begun: bool,
 }
 
 impl<C: Controller> CylinderLife<C> {
@@ -90,24 +89,23 @@ impl<C: Controller> CylinderLife<C> {
             x: vec![0.0; config.inputs()],
             y: [0.0; 2],
             trial: Trial::default(),
-            begun: false,
             config,
         })
     }
 
     /// Puts the cylinders and then the robot somewhere, each uniformly over where there is room; the heading is uniform.
     ///
-    /// All is drawn from the stream of [`Domain::Start`] of the job's trial, individual and generation: every evaluation
+    /// All is drawn from the stream of [`Domain::Start`] of the id's trial, individual and generation: every evaluation
     /// has places of its own.
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
-    pub fn arrange<W>(&mut self, world: &mut W, job: Job) -> Result<(), ArenaError>
+    pub fn arrange<W>(&mut self, world: &mut W, id: EpisodeId) -> Result<(), ArenaError>
     where
         W: Planar + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
         let Self { config, cylinders, places, .. } = self;
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         let free = |radius: f64, to_wall: f64| {
             let margin = radius + to_wall;
             let low = config.size.map(|x| margin.min(0.5 * x) as f32);
@@ -130,62 +128,6 @@ impl<C: Controller> CylinderLife<C> {
         world.place_body(self.parts.body, Pose::planar(at, stream.range(-PI, PI)), Twist::default());
         world.arranged();
         Ok(())
-    }
-
-    /// Opens a new account and arranges the world; a trial without room is a failed one.
-    pub fn begin<W>(&mut self, world: &mut W, job: Job)
-    where
-        W: Planar + Arrange + Handles<Body = BodyId, Joint = JointId>,
-    {
-        self.trial = Trial { failed: self.arrange(world, job).is_err(), ..Trial::default() };
-        self.controller.reset();
-        self.begun = false;
-    }
-
-    /// Senses, thinks and acts.
-    #[inline]
-    pub fn act<W>(&mut self, world: &mut W)
-    where
-        W: Planar
-            + Rays
-            + Kinematics
-            + Joints
-            + Actuated
-            + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
-            + ?Sized,
-    {
-        let (eyes, rest) = self.x.split_at_mut(EYES);
-        self.infrared.read(world, eyes);
-        if let Some(speeds) = &mut self.wheel_speeds {
-            speeds.read(world, rest);
-        }
-        self.controller.step(&self.x, &mut self.y);
-        self.wheels.drive(&self.y, world);
-    }
-
-    /// Judges the step that has passed; `Some` ends the trial with the fitness that it would earn alone.
-    ///
-    /// The step of a collision still counts, with the robot where it was set back to.
-    pub fn judge<W>(&mut self, world: &W) -> Option<f64>
-    where
-        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
-    {
-        let Self { config, parts, trial, .. } = self;
-        let [x, y, _] = world.pose(parts.body).position;
-        trial.steps += 1;
-        let [left, right] = parts.wheels.map(|wheel| f64::from(world.speed(wheel)));
-        for (i, radius) in config.radii.iter().enumerate() {
-            let [u, v] = [x - self.places[i][0], y - self.places[i][1]].map(f64::from);
-            let distance = Scalar::sqrt(u * u + v * v) - self.radius - radius;
-            trial.distance[i] = distance;
-            trial.failed |= !distance.is_finite();
-            if distance < config.near {
-                trial.near[i] += 1;
-                trial.spun[i] += (right - left).abs();
-            }
-        }
-        trial.collided = world.touches(self.pair);
-        (trial.failed || trial.collided || trial.steps >= config.steps).then(|| self.fitness())
     }
 
     /// What the trial has earned so far: the share of all its steps near the first cylinder, less the cost of those near
@@ -226,6 +168,11 @@ impl<C: Controller> CylinderLife<C> {
         &self.controller
     }
 
+    /// The controller, for other parameters.
+    pub fn controller_mut(&mut self) -> &mut C {
+        &mut self.controller
+    }
+
     /// Another controller of the same shape.
     pub fn set_controller(&mut self, controller: C) {
         debug_assert_eq!((controller.inputs(), controller.outputs()), (self.x.len(), 2), "inputs and outputs");
@@ -255,19 +202,70 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
     C: Controller,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.begin(world, job);
+    /// Opens a new account and arranges the world.
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.trial = Trial { failed: self.arrange(world, id).is_err(), ..Trial::default() };
+        self.controller.reset();
     }
 
-    fn tick(&mut self, world: &mut W) -> Option<f64> {
-        if self.trial.failed {
-            return Some(f64::NAN);
+    /// Whether there was room for everything.
+    fn has_started(&self) -> bool {
+        !self.trial.failed
+    }
+
+    #[inline]
+    fn act(&mut self, world: &mut W) {
+        let (eyes, rest) = self.x.split_at_mut(EYES);
+        self.infrared.read(world, eyes);
+        if let Some(speeds) = &mut self.wheel_speeds {
+            speeds.read(world, rest);
         }
-        let end = if self.begun { self.judge(world) } else { None };
-        self.begun = true;
-        if end.is_none() {
-            self.act(world);
+        self.controller.step(&self.x, &mut self.y);
+        self.wheels.drive(&self.y, world);
+    }
+
+    /// Judges the step that has passed; `Some` ends the trial with the fitness that it would earn alone.
+    ///
+    /// The step of a collision still counts, with the robot where it was set back to.
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        let Self { config, parts, trial, .. } = self;
+        let [x, y, _] = world.pose(parts.body).position;
+        trial.steps += 1;
+        let [left, right] = parts.wheels.map(|wheel| f64::from(world.speed(wheel)));
+        for (i, radius) in config.radii.iter().enumerate() {
+            let [u, v] = [x - self.places[i][0], y - self.places[i][1]].map(f64::from);
+            let distance = Scalar::sqrt(u * u + v * v) - self.radius - radius;
+            trial.distance[i] = distance;
+            trial.failed |= !distance.is_finite();
+            if distance < config.near {
+                trial.near[i] += 1;
+                trial.spun[i] += (right - left).abs();
+            }
         }
-        end
+        trial.collided = world.touches(self.pair);
+        (trial.failed || trial.collided || trial.steps >= config.steps).then(|| self.fitness())
+    }
+
+    fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.infrared.tell(world.pose(self.parts.body), &self.x, recorder);
+    }
+
+    /// Records what was sensed, computed and done before the step, and what it led to.
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        let Self { trial, parts, cylinders, config, .. } = self;
+        recorder.sensors(&self.x);
+        recorder.outputs(&self.y);
+        // No contacts: their forces are nominal.
+        let bodies = core::iter::once(parts.body).chain(cylinders.iter().copied());
+        bodies.for_each(|body| recorder.pose(body, world.pose(body)));
+        let pose = world.pose(parts.body);
+        let [x, y, _] = pose.position.map(f64::from);
+        let mut scalars = vec![x, y, f64::from(pose.heading())];
+        scalars.extend(&trial.distance[..cylinders.len()]);
+        let largest = config.robot.max_wheel_speed;
+        scalars.extend(self.y.iter().map(|y| (2.0 * f64::from(*y) - 1.0) * largest));
+        scalars.push(self.fitness());
+        recorder.scalars(&scalars);
+        recorder.tick(seconds(trial.steps, config.time_step));
     }
 }

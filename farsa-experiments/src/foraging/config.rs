@@ -3,7 +3,7 @@
 use farsa_lab::{Error, Setting, Settings};
 use farsa_physics::arena::{Area, Arena, World};
 
-use crate::team::setup as swarm_setup;
+use crate::team::task;
 use crate::team::{config::TeamConfig, config::whole};
 use crate::team::{nest, nest::COLORS, nest::NEST};
 
@@ -102,7 +102,7 @@ impl ForagingConfig {
     /// # Errors
     /// [`Error::Other`] for values that make no world.
     pub fn world(&self) -> Result<World, Error> {
-        swarm_setup::world(self.arena())
+        task::world(self.arena())
     }
 
     /// Channels that a controller reads: infrared, camera, ground and energy.

@@ -1,13 +1,13 @@
 //! The experiment `foraging`: a team carries food to its nest.
 
-use farsa_lab::{Error, Experiment, Job, Outcome, Setting, Settings, Setup};
+use farsa_lab::{EpisodeId, Error, Evaluator, Experiment, Outcome, Setting, Settings};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::{life::ForagingLife, life::ForagingMission};
 use crate::team::config::ROBOTS;
-use crate::team::setup::TeamSetup;
+use crate::team::task::evaluator;
 
 /// Can robots that see little and die soon feed a nest together? \[FARSA2\]
 ///
@@ -36,13 +36,13 @@ impl Experiment for Foraging {
         ForagingConfig::of_condition(condition).table()
     }
 
-    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
-        Ok(Box::new(TeamSetup::new(ForagingMission::new(ForagingConfig::of_condition(condition).read(settings)?))?))
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        Ok(Box::new(evaluator(ForagingMission::new(ForagingConfig::of_condition(condition).read(settings)?))?))
     }
 }
 
 /// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
-pub fn forage<C: Controller>(life: &mut ForagingLife<C>, world: &mut World, job: Job) -> Outcome {
-    farsa_lab::live(life, world, job);
+pub fn forage<C: Controller>(life: &mut ForagingLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    farsa_lab::run_episode(life, world, id, None);
     life.outcome(0)
 }

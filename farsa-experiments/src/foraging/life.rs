@@ -3,16 +3,16 @@
 use farsa_body::{Arrange as _, BodyId, ColorBand, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
-use farsa_physics::arena::{Arena, ArenaError, World};
+use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::field::Field;
 use crate::team::config::TeamConfig;
-use crate::team::{life::Mission, life::Moment, life::TeamLife};
+use crate::team::{life::Mission, life::Moment, life::TeamLife, life::TeamWorld};
 use crate::team::{nest::COLORS, nest::on_nest};
 use crate::team::{robots::OUTPUTS, robots::Team};
-use crate::team::{setup::eye_groups, setup::eye_names};
-use farsa_lab::{ChannelGroup, Error, Job, Note, Outcome};
+use crate::team::{task::eye_groups, task::eye_names};
+use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome};
 use farsa_view::Channel;
 
 /// Robots that forage, with a controller each, and the book of their food and energy.
@@ -79,11 +79,11 @@ impl Mission for ForagingMission {
         "team.robots"
     }
 
-    /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the job's trial, individual and
+    /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
     /// generation.
-    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
+    fn arrange<C: Controller, W: TeamWorld>(&mut self, team: &Team<C>, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
         let Self { config, field, nest } = self;
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         world.clear();
         let [low, high] = [config.nest_to_wall, config.team.size - config.nest_to_wall].map(|x| x as f32);
         let at = [0; 2].map(|_| stream.range(low, high.max(low)));
@@ -93,13 +93,13 @@ impl Mission for ForagingMission {
         team.scatter(world, Some((at, config.start_within as f32)), &mut stream)
     }
 
-    fn sense(&self, world: &World, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
+    fn sense<W: TeamWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
         let forager = &self.field.robots()[robot];
         rest.copy_from_slice(&[on_nest(world, at), forager.energy as f32]);
         forager.alive
     }
 
-    fn judge(&mut self, _: &World, moment: Moment<'_>) -> bool {
+    fn judge<W: TeamWorld>(&mut self, _: &W, moment: Moment<'_>) -> bool {
         for (robot, at) in moment.places.iter().enumerate() {
             self.field.step(robot, at.map(f64::from));
         }

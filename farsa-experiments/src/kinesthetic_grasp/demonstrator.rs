@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use farsa_body::{Channels as _, Kinematics as _, Motor as _, MusclePair, Sensor as _, Tabletop};
-use farsa_lab::{Error, Job};
+use farsa_lab::{EpisodeId, Error};
 use farsa_nn::{Controller, Demonstration};
 use farsa_physics::articulated::{Model, World};
 
@@ -65,19 +65,19 @@ impl Teacher {
         Ok(Self { scene, world, statics, judge, senses, motors })
     }
 
-    /// Leads the arm through the trial of a job. The motors get the teacher's commands, mixed with `share` \[0..1\] of those
+    /// Leads the arm through the trial of a id. The motors get the teacher's commands, mixed with `share` \[0..1\] of those
     /// that the network gives for the same sensor values, which is stepped from rest.
     ///
     /// The record ends with the trial, or where the sphere has rolled away by 3 cm; it is empty if the sphere lies out of
     /// reach.
-    pub(crate) fn lead<C: Controller>(&mut self, job: Job, network: &mut C, share: f32, record: &mut Record) {
+    pub(crate) fn lead<C: Controller>(&mut self, id: EpisodeId, network: &mut C, share: f32, record: &mut Record) {
         let Self { scene, world, statics, judge, senses, motors } = self;
         (record.success, record.x, record.wanted) = (false, Vec::new(), Vec::new());
-        judge.start(world, job);
+        judge.start(world, id);
         network.reset();
         senses.reset();
         motors.reset();
-        let (start, sphere) = scene.start(job);
+        let (start, sphere) = scene.start(id);
         let Ok(plan) = Plan::new(Timetable::default(), Arc::clone(statics), &start, sphere) else { return };
         let (mut x, mut own, mut y) = (vec![0.0; senses.channels()], [0.0; OUTPUTS], [0.0; OUTPUTS]);
         let mut time = 0.0;

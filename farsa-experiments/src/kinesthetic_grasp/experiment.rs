@@ -9,10 +9,7 @@ use crate::reach_grasp_lift::config::Config as Reach;
 use crate::reach_grasp_lift::experiment::Lives as ReachLives;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::worlds::Engine;
-use farsa_lab::{
-    ControllerExport, Description, ENGINE, Error, Experiment, Job, Lanes, Lesson, Outcome, Search, Setting, Settings,
-    Setup, StartExport, Tape, Task,
-};
+use farsa_lab::{ControllerExport, Description, ENGINE, EpisodeId, Error, Evaluation, Evaluator, Experiment, Lanes, Lesson, Outcome, Search, Setting, Settings, StartExport};
 use farsa_view::Stage;
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
@@ -112,7 +109,7 @@ impl Experiment for KinestheticGrasp {
         table
     }
 
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         Ok(Box::new(Lives::new(Config::read(settings)?)?))
     }
 }
@@ -159,16 +156,16 @@ impl Setup for Lives {
         self.lives.controller(genes)
     }
 
-    fn start(&self, job: Job) -> Option<StartExport> {
-        self.lives.start(job)
+    fn start(&self, id: EpisodeId) -> Option<StartExport> {
+        self.lives.start(id)
     }
 
     fn description(&self) -> Description {
         self.lives.description()
     }
 
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        self.lives.live(genes, job, tape)
+    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
+        self.lives.live(genes, id, tape)
     }
 
     fn use_lanes(&mut self, lanes: Lanes) -> Result<Lanes, Error> {

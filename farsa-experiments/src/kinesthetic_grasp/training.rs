@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use farsa_lab::{Error, Job, Lesson};
+use farsa_lab::{EpisodeId, Error, Lesson};
 use farsa_nn::{Adam, Error as NetworkError, Gradient, Layout, Leak, Learner, Loss, Network, ParameterKind};
 use farsa_num::{Domain, Scalar, Stream};
 
@@ -134,10 +134,10 @@ impl School {
         let last = (self.records.len() - 1).max(1) as f64;
         let mut successes = 0;
         for (number, record) in self.records.iter_mut().enumerate() {
-            let job = Job { seed, generation, individual: 0, trial: (TRIALS + number) as u32 };
+            let id = EpisodeId { seed, generation, individual: 0, trial: (TRIALS + number) as u32 };
             // From the teacher's alone to the network's full share. Consecutive demonstrations take the four starts in turn.
             let share = most * number as f64 / last;
-            self.teacher.lead(job, &mut network, share as f32, record);
+            self.teacher.lead(id, &mut network, share as f32, record);
             successes += u32::from(record.success);
             for x in record.x.chunks_exact_mut(self.units.len()) {
                 x.iter_mut().zip(&self.units).for_each(|(x, unit)| *x /= unit);

@@ -12,9 +12,7 @@ use crate::minimal_cognition::{
     network::INNER, network::LAYOUT, network::LINKED, network::MOTOR_ONES, network::MOTORS, network::NEURONS,
     network::RAYS, network::Wiring,
 };
-use farsa_lab::{
-    ChannelGroup, CtrnnExport, Description, Error, Experiment, Job, Note, Outcome, Setting, Settings, Setup, Tape,
-};
+use farsa_lab::{ChannelGroup, CtrnnExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, NoWorld, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials, seconds};
 use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, Role, Stage, View};
 
 /// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]
@@ -50,16 +48,9 @@ impl Experiment for MinimalCognition {
         Config::default().table()
     }
 
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
-        Ok(Box::new(Lives::new(Config::read(settings)?)?))
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        Ok(Box::new(evaluator(Config::read(settings)?)?))
     }
-}
-
-/// An agent, and how its network is made of genes.
-#[derive(Clone, Debug)]
-pub struct Lives {
-    wiring: Wiring,
-    life: AgentLife,
 }
 
 const AGENT: BodyId = BodyId(0);
@@ -71,44 +62,58 @@ const THICK: f64 = 2.0;
 const AWAY: f64 = -20.0;
 const PAPER: Color = [244, 243, 238];
 
-impl Lives {
-    /// Lives under a configuration.
+/// Evaluates under a configuration.
+///
+/// # Errors
+/// [`Error::Other`] for values that make no network.
+pub fn evaluator(config: Config) -> Result<InWorld<NoWorld, Agent>, Error> {
+    Ok(InWorld::new(NoWorld, Agent::new(config)?))
+}
+
+/// An agent, and how its network is made of parameters.
+#[derive(Clone, Debug)]
+pub struct Agent {
+    wiring: Wiring,
+    life: AgentLife,
+}
+
+impl Agent {
+    /// An agent under a configuration.
     ///
     /// # Errors
     /// [`Error::Other`] for values that make no network.
     pub fn new(config: Config) -> Result<Self, Error> {
         let wiring = Wiring::new(&config).map_err(|error| Error::Other(format!("minimal-cognition: {error}")))?;
-        let parameters = wiring.decode(&vec![0; wiring.genes()]).unwrap_or_default();
+        let first: Vec<f32> = wiring.parameters().iter().map(|parameter| parameter.ends[0] as f32).collect();
+        let parameters = wiring.expand(&first).unwrap_or_default();
         Ok(Self { wiring, life: AgentLife::new(config, parameters)? })
-    }
-
-    /// Tells a step that has just passed.
-    fn tell(&self, recorder: &mut dyn Recorder) {
-        let Self { life, .. } = self;
-        let Config { body, time_step, input_gain, ray_length, .. } = *life.config();
-        let ([object, agent], height) = (life.places(), life.height());
-        recorder.sensors(life.sensed());
-        recorder.neurons(&life.network().neuron_outputs()[..MOTOR_ONES.first]);
-        recorder.outputs(life.done());
-        let at = |place: [f64; 3]| place.map(|x| x as f32);
-        recorder.pose(AGENT, Pose::at(at([agent, 0.0, 0.0])));
-        let falling = usize::from(matches!(life.object(), Object::Diamond { .. }));
-        recorder.pose(OBJECTS[falling], Pose::at(at([object, height, 0.0])));
-        recorder.pose(OBJECTS[1 - falling], Pose::at(at([0.0, 0.0, AWAY])));
-        for ([sine, cosine], free) in life.rays().iter().zip(life.free()) {
-            let end = |distance: f64| {
-                let distance = 0.5 * body + distance;
-                at([agent + distance * sine, distance * cosine, THICK])
-            };
-            recorder.ray(end(0.0), end(free), free < ray_length && input_gain > 0.0);
-        }
-        recorder.scalars(&[agent, object, height, object - agent, life.score()]);
-        // Rounded to the nanosecond: 201 steps of 0.1 print as 20.1.
-        recorder.tick((f64::from(life.steps()) * time_step * 1e9).round() / 1e9);
     }
 }
 
-/// The parameters as [`Setup::stage`] says where they are: the weights between the layers, then biases, gains and time
+/// Records a step that has just passed.
+fn record(life: &AgentLife, recorder: &mut dyn Recorder) {
+    let Config { body, time_step, input_gain, ray_length, .. } = *life.config();
+    let ([object, agent], height) = (life.places(), life.height());
+    recorder.sensors(life.sensed());
+    recorder.neurons(&life.network().neuron_outputs()[..MOTOR_ONES.first]);
+    recorder.outputs(life.done());
+    let at = |place: [f64; 3]| place.map(|x| x as f32);
+    recorder.pose(AGENT, Pose::at(at([agent, 0.0, 0.0])));
+    let falling = usize::from(matches!(life.object(), Object::Diamond { .. }));
+    recorder.pose(OBJECTS[falling], Pose::at(at([object, height, 0.0])));
+    recorder.pose(OBJECTS[1 - falling], Pose::at(at([0.0, 0.0, AWAY])));
+    for ([sine, cosine], free) in life.rays().iter().zip(life.free()) {
+        let end = |distance: f64| {
+            let distance = 0.5 * body + distance;
+            at([agent + distance * sine, distance * cosine, THICK])
+        };
+        recorder.ray(end(0.0), end(free), free < ray_length && input_gain > 0.0);
+    }
+    recorder.scalars(&[agent, object, height, object - agent, life.score()]);
+    recorder.tick(seconds(life.steps(), time_step));
+}
+
+/// The parameters as [`Task::stage`] says where they are: the weights between the layers, then biases, gains and time
 /// constants.
 fn told(parameters: &[f32]) -> Vec<f32> {
     let CtrnnParts { weights, biases, gains, time_constants, .. } = LAYOUT.split(parameters);
@@ -119,9 +124,24 @@ fn told(parameters: &[f32]) -> Vec<f32> {
     linked.chain([biases, gains, time_constants].into_iter().flatten().copied()).collect()
 }
 
-impl Setup for Lives {
-    fn genes(&self) -> usize {
-        self.wiring.genes()
+impl Episode<NoWorld> for Agent {
+    fn start(&mut self, _: &mut NoWorld, id: EpisodeId) {
+        self.life.arrange(id);
+    }
+    fn act(&mut self, _: &mut NoWorld) {
+        self.life.step();
+    }
+    fn judge(&mut self, _: &mut NoWorld) -> Option<f64> {
+        self.life.ended().then(|| self.life.score())
+    }
+    fn record(&self, _: &NoWorld, recorder: &mut dyn Recorder) {
+        record(&self.life, recorder);
+    }
+}
+
+impl Task for Agent {
+    fn parameters(&self) -> Vec<Parameter> {
+        self.wiring.parameters().to_vec()
     }
 
     fn trials(&self) -> usize {
@@ -191,18 +211,6 @@ impl Setup for Lives {
         }
     }
 
-    fn ctrnn(&self, genes: &[u16]) -> Option<CtrnnExport> {
-        let (stage, network) = (self.stage(), self.life.network());
-        let names = |channels: Vec<Channel>| channels.into_iter().map(|channel| channel.name).collect();
-        Some(CtrnnExport {
-            layout: network.layout(),
-            time_step: network.time_step(),
-            parameters: self.wiring.decode(genes)?,
-            sensors: names(stage.sensors),
-            motors: names(stage.outputs),
-        })
-    }
-
     fn description(&self) -> Description {
         let config = self.life.config();
         let Config { input_gain, velocity_gain, time_step, .. } = *config;
@@ -226,32 +234,47 @@ impl Setup for Lives {
         }
     }
 
+    /// The mean over the trials.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl Exports for Agent {
+    fn ctrnn(&self, parameters: &[f32]) -> Option<CtrnnExport> {
+        let (stage, network) = (self.stage(), self.life.network());
+        let names = |channels: Vec<Channel>| channels.into_iter().map(|channel| channel.name).collect();
+        Some(CtrnnExport {
+            layout: network.layout(),
+            time_step: network.time_step(),
+            parameters: self.wiring.expand(parameters)?,
+            sensors: names(stage.sensors),
+            motors: names(stage.outputs),
+        })
+    }
+}
+
+impl Rollout for Agent {
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        let Some(parameters) = self.wiring.expand(evaluation.parameters) else { return false };
+        self.life.set_parameters(&parameters).is_ok()
+    }
+
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(&told(self.life.parameters()));
+    }
+
     /// Success is a circle nearer, or a diamond farther, than half of `fitness.clip`.
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        let Some(parameters) = self.wiring.decode(genes) else { return Outcome::failed() };
-        if self.life.set_parameters(&parameters).is_err() {
-            return Outcome::failed();
-        }
-        if let Some(recorder) = tape.recorder() {
-            recorder.parameters(&told(&parameters));
-        }
-        self.life.start(job);
-        while !self.life.ended() {
-            self.life.step();
-            if let Some(recorder) = tape.recorder() {
-                self.tell(recorder);
-            }
-        }
+    fn outcome(&self) -> Outcome {
         let (score, steps) = (self.life.score(), self.life.steps());
         let notes = vec![
             ("object", Note::from(self.life.object().name())),
             ("distance at the end", Note::from(self.life.distance())),
         ];
         Outcome { terms: vec![score], steps, success: score > 0.5, notes }
-    }
-
-    /// The mean over the trials.
-    fn fitness(&self, trials: &[Outcome]) -> f64 {
-        trials.iter().flat_map(|outcome| &outcome.terms).sum::<f64>() / trials.len().max(1) as f64
     }
 }

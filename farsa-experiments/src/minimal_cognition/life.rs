@@ -1,6 +1,6 @@
 //! A life of `minimal-cognition`: one object falls, and the agent moves under it.
 
-use farsa_lab::{Error, Job};
+use farsa_lab::{EpisodeId, Error};
 use farsa_nn::{Controller as _, Ctrnn};
 use farsa_num::{Domain, Stream, sin_cos};
 
@@ -58,16 +58,16 @@ impl AgentLife {
         self.network.reset();
     }
 
-    /// Begins the trial of a job: circles and diamonds by turns, each shape at distances of its own part of the range.
+    /// Begins the trial of a id: circles and diamonds by turns, each shape at distances of its own part of the range.
     ///
     /// Distance and side are drawn in this order from the stream of [`Domain::Start`], the same for all individuals.
-    pub fn start(&mut self, job: Job) {
+    pub fn arrange(&mut self, id: EpisodeId) {
         let Config { trials, offset, diameter, side, .. } = self.config;
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, 0, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         let parts = trials.div_ceil(2).max(1);
-        let part = f64::from(job.trial / 2 % parts);
+        let part = f64::from(id.trial / 2 % parts);
         let distance = offset * (part + stream.range_f64(0.0, 1.0)) / f64::from(parts);
-        let object = if job.trial.is_multiple_of(2) { Object::circle(diameter) } else { Object::diamond(side) };
+        let object = if id.trial.is_multiple_of(2) { Object::circle(diameter) } else { Object::diamond(side) };
         let right = stream.below(2) == 1;
         self.place(object, if right { distance } else { -distance });
     }

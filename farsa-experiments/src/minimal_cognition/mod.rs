@@ -13,7 +13,7 @@ mod network;
 mod object;
 
 pub use config::Config;
-pub use experiment::{Lives, MinimalCognition};
+pub use experiment::{Agent, MinimalCognition, evaluator};
 pub use life::AgentLife;
 pub use network::{INNER, LAYOUT, MOTORS, NEURONS, RAYS, Wiring};
 pub use object::Object;

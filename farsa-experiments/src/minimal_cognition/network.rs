@@ -1,7 +1,6 @@
 //! The network of `minimal-cognition`: layers of sensory, inner and motor neurons that are the same left and right.
 
-use farsa_evo::{GeneRange, decode};
-use farsa_lab::Error;
+use farsa_lab::{Error, Parameter};
 use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Span};
 
 use crate::minimal_cognition::config::Config;
@@ -46,8 +45,8 @@ const MIRROR: [usize; NEURONS] = [6, 5, 4, 3, 2, 1, 0, 11, 10, 9, 8, 7, 13, 12];
 #[derive(Clone, Debug)]
 pub struct Wiring {
     symmetry: CtrnnSymmetry<'static>,
-    /// What each gene stands for.
-    ranges: Vec<GeneRange>,
+    /// One for each gene.
+    parameters: Vec<Parameter>,
 }
 
 impl Wiring {
@@ -67,20 +66,32 @@ impl Wiring {
             CtrnnParameter::TimeConstant => config.time_constants,
             _ => both(config.weight_range),
         };
-        let ranges = symmetry.kinds().map(range).map(|[low, high]| GeneRange::new(1, low as f32, high as f32));
-        Ok(Self { symmetry, ranges: ranges.collect::<Result<_, _>>()? })
+        let mut parameters = Vec::new();
+        for (number, kind) in symmetry.kinds().enumerate() {
+            // Networks compute in f32.
+            let [low, high] = range(kind).map(|end| f64::from(end as f32));
+            if !(low.is_finite() && high.is_finite() && low <= high) {
+                return Err(Error::Other(format!("minimal-cognition: {kind:?} from {low} to {high}: no range of numbers")));
+            }
+            parameters.push(Parameter::new(format!("{kind:?} {}", number + 1), [low, high]));
+        }
+        Ok(Self { symmetry, parameters })
     }
 
     /// Number of genes: 47.
     pub fn genes(&self) -> usize {
-        self.ranges.len()
+        self.parameters.len()
     }
 
-    /// The parameters that these genes stand for, in the order of [`LAYOUT`]; `None` for another number of genes.
-    pub fn decode(&self, genes: &[u16]) -> Option<Vec<f32>> {
-        let (mut values, mut parameters) = (vec![0.0; self.genes()], vec![0.0; LAYOUT.parameter_count()]);
-        decode(genes, &self.ranges, &mut values).ok()?;
-        self.symmetry.expand(&values, &mut parameters).ok()?;
+    /// The numbers that the network is made of, with their ranges, in the order of the first parameters that they fill.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The network's parameters, in the order of [`LAYOUT`], that these numbers make; `None` for another count of them.
+    pub fn expand(&self, values: &[f32]) -> Option<Vec<f32>> {
+        let mut parameters = vec![0.0; LAYOUT.parameter_count()];
+        self.symmetry.expand(values, &mut parameters).ok()?;
         Some(parameters)
     }
 }
@@ -88,16 +99,19 @@ impl Wiring {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use farsa_lab::Genotype;
 
     fn decoded(genes: &[u16]) -> Vec<f32> {
-        Wiring::new(&Config::default()).unwrap().decode(genes).unwrap()
+        let wiring = Wiring::new(&Config::default()).unwrap();
+        let values = Genotype::new(wiring.parameters(), 16).decode(genes).unwrap();
+        wiring.expand(&values).unwrap()
     }
 
     #[test]
     fn there_are_the_sources_47_genes_and_each_has_its_parameters() {
         let wiring = Wiring::new(&Config::default()).unwrap();
         assert_eq!(wiring.genes(), 47);
-        assert!(wiring.decode(&[0; 46]).is_none());
+        assert!(wiring.expand(&[0.0; 46]).is_none());
         let plain = decoded(&[20_000; 47]);
         // How many parameters follow each gene: a pair, the middle alone, or the sensory neurons together.
         let followers: Vec<usize> = (0..47)

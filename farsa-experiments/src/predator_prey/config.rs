@@ -1,9 +1,9 @@
 //! The values of `predator-prey`, as settings.
 
-use farsa_lab::{Error, NetworkDecoder, Setting, Settings, TeamNetwork};
+use farsa_lab::{Error, OwnedNetwork, Setting, Settings};
 use farsa_physics::arena::{Arena, CollisionRule, World};
 
-use crate::team::setup as swarm_setup;
+use crate::team::task;
 use crate::team::{config::TeamConfig, config::whole};
 
 /// Words for the rules of collisions.
@@ -104,7 +104,7 @@ impl PredatorPreyConfig {
     /// # Errors
     /// [`Error::Other`] for values that make no world.
     pub fn world(&self) -> Result<World, Error> {
-        swarm_setup::world(self.arena())
+        task::world(self.arena())
     }
 
     /// The network of a genome.

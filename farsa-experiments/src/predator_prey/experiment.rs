@@ -1,12 +1,12 @@
 //! The experiment `predator-prey`: two populations evolve against each other.
 
-use farsa_lab::{Error, Experiment, Job, Outcome, Setting, Settings, Setup};
+use farsa_lab::{EpisodeId, Error, Evaluator, Experiment, Outcome, Setting, Settings};
 use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::predator_prey::config::PredatorPreyConfig;
 use crate::predator_prey::{life::PredatorPreyLife, life::PredatorPreyMission};
-use crate::team::setup::TeamSetup;
+use crate::team::task::evaluator;
 
 /// Do a predator and a prey that evolve against each other become better at both? \[FARSA2\]
 ///
@@ -29,13 +29,13 @@ impl Experiment for PredatorPrey {
         PredatorPreyConfig::default().table()
     }
 
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
-        Ok(Box::new(TeamSetup::new(PredatorPreyMission::new(PredatorPreyConfig::default().read(settings)?))?))
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        Ok(Box::new(evaluator(PredatorPreyMission::new(PredatorPreyConfig::default().read(settings)?))?))
     }
 }
 
 /// Lives one trial of any two controllers and tells what came of it for the predator, as an outcome of the experiment does.
-pub fn chase<C: Controller>(life: &mut PredatorPreyLife<C>, world: &mut World, job: Job) -> Outcome {
-    farsa_lab::live(life, world, job);
+pub fn chase<C: Controller>(life: &mut PredatorPreyLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    farsa_lab::run_episode(life, world, id, None);
     life.outcome(0)
 }

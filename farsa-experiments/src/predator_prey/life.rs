@@ -5,15 +5,15 @@ use core::f32::consts::PI;
 use farsa_body::{Arrange as _, BodyId, ColorBand, Contacts as _, PairId, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
-use farsa_physics::arena::{Arena, ArenaError, World};
+use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::predator_prey::{config::NAMES, config::OUTPUTS, config::PredatorPreyConfig};
 use crate::team::config::TeamConfig;
 use crate::team::{eyes::BLUE, eyes::RED};
-use crate::team::{life::Mission, life::Moment, life::TeamLife};
+use crate::team::{life::Mission, life::Moment, life::TeamLife, life::TeamWorld};
 use crate::team::{robots::Team, robots::distance};
-use crate::team::{setup::eye_groups, setup::eye_names};
-use farsa_lab::{ChannelGroup, Error, Job, Note, Outcome};
+use crate::team::{task::eye_groups, task::eye_names};
+use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome};
 use farsa_view::Channel;
 
 /// The predator is robot 0, the prey robot 1.
@@ -94,12 +94,12 @@ impl Mission for PredatorPreyMission {
     }
 
     /// Puts both on the middle line, a third and two thirds along it, at headings from the stream of [`Domain::Start`] of
-    /// the job's trial, generation, and place within its population.
+    /// the id's trial, generation, and place within its population.
     ///
     /// The same place in both populations has the same headings: the two lives of a test are one.
-    fn arrange<C: Controller>(&mut self, _: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError> {
-        let place = job.individual % (self.config.population as u32).max(1);
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, place, job.generation);
+    fn arrange<C: Controller, W: TeamWorld>(&mut self, _: &Team<C>, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
+        let place = id.individual % (self.config.population as u32).max(1);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, place, id.generation);
         self.captured = false;
         world.clear();
         let size = self.config.team.size as f32;
@@ -112,7 +112,7 @@ impl Mission for PredatorPreyMission {
     }
 
     /// Capture is told by either robot's contact: one that also collides with a wall may tell of the wall only.
-    fn judge(&mut self, world: &World, moment: Moment<'_>) -> bool {
+    fn judge<W: TeamWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool {
         let [predator, prey] = [PREDATOR, PREY].map(|robot| moment.places[robot]);
         self.gap = f64::from(distance(predator, prey)) - 2.0 * self.config.team.robot.radius;
         let met = |a: usize, b: usize| {

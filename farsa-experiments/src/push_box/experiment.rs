@@ -1,8 +1,12 @@
 //! The experiment `push-box`: what only a general world can do.
 
-use farsa_lab::{Error, Experiment, Setting, Settings, Setup};
+use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings};
 
 use crate::push_box::config::PushConfig;
+#[cfg(feature = "rapier")]
+use crate::push_box::life::{OUTPUTS, PushLife};
+#[cfg(feature = "rapier")]
+use crate::push_box::task::{Layer, layer};
 
 /// How far can a robot push a box that it only feels with its infrared sensors?
 ///
@@ -35,14 +39,27 @@ impl Experiment for PushBox {
         PushConfig::default().table()
     }
 
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         let config = PushConfig::default().read(settings)?;
         #[cfg(feature = "rapier")]
-        return Ok(Box::new(crate::push_box::setup::Lives::new(config)?));
+        return Ok(Box::new(evaluator(config)?));
         #[cfg(not(feature = "rapier"))]
         {
             let _ = config;
             Err(crate::worlds::missing("rapier"))
         }
     }
+}
+
+/// Evaluates under a configuration, in rapier.
+///
+/// # Errors
+/// [`Error::Other`] for values that make no world.
+#[cfg(feature = "rapier")]
+pub(crate) fn evaluator(
+    config: PushConfig,
+) -> Result<farsa_lab::InWorld<farsa_physics::rapier::ArenaWorld, PushLife<Layer>>, Error> {
+    let inputs = config.inputs();
+    let layer = layer(inputs, vec![0.0; farsa_nn::Perceptron::parameter_count(inputs, OUTPUTS)])?;
+    Ok(farsa_lab::InWorld::new(config.world()?, PushLife::new(config, layer)?))
 }

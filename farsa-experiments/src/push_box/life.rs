@@ -4,9 +4,9 @@ use core::f32::consts::PI;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, Joints, Kinematics, MobileParts,
-    Motor as _, PairId, Planar, Pose, Rays, Sensor as _, Twist, WheelVelocity,
+    Motor as _, PairId, Planar, Pose, Rays, Recorder, Sensor as _, Twist, WheelVelocity,
 };
-use farsa_lab::{Error, Job, Life};
+use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
@@ -48,7 +48,6 @@ pub struct PushLife<C> {
     /// Where the box was at the start and after the last step \[m\].
     places: [[f32; 2]; 2],
     trial: PushTrial,
-    begun: bool,
 }
 
 impl<C: Controller> PushLife<C> {
@@ -77,7 +76,6 @@ impl<C: Controller> PushLife<C> {
             y: [0.0; OUTPUTS],
             places: [[0.0; 2]; 2],
             trial: PushTrial::default(),
-            begun: false,
             config,
         })
     }
@@ -85,14 +83,14 @@ impl<C: Controller> PushLife<C> {
     /// Puts the box into the middle and the robot beside it: the headings of both, the direction in which the robot stands
     /// and its distance are uniform.
     ///
-    /// All is drawn from the stream of [`Domain::Start`] of the job's trial and generation: the individuals of a generation
+    /// All is drawn from the stream of [`Domain::Start`] of the id's trial and generation: the individuals of a generation
     /// have the same starts.
-    pub fn arrange<W>(&mut self, world: &mut W, job: Job)
+    pub fn arrange<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
     {
         let Self { config, parts, cube, .. } = self;
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, 0, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         world.clear();
         world.place_body(*cube, Pose::planar([0.0; 2], stream.range(-PI, PI)), Twist::default());
         let away = stream.range(config.apart[0] as f32, config.apart[1] as f32);
@@ -101,52 +99,6 @@ impl<C: Controller> PushLife<C> {
         let at = [away * cosine, away * sine];
         world.place_body(parts.body, Pose::planar(at, stream.range(-PI, PI)), Twist::default());
         world.arranged();
-    }
-
-    /// Opens a new account and arranges the world.
-    pub fn begin<W>(&mut self, world: &mut W, job: Job)
-    where
-        W: Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
-    {
-        self.arrange(world, job);
-        let [x, y, _] = world.pose(self.cube).position;
-        self.places = [[x, y]; 2];
-        self.trial = PushTrial::default();
-        self.controller.reset();
-        self.begun = false;
-    }
-
-    /// Senses, thinks and acts.
-    #[inline]
-    pub fn act<W>(&mut self, world: &mut W)
-    where
-        W: Planar + Rays + Kinematics + Actuated + Handles<Body = BodyId, Actuator = ActuatorId> + ?Sized,
-    {
-        self.infrared.read(world, &mut self.x);
-        self.controller.step(&self.x, &mut self.y);
-        self.wheels.drive(&self.y, world);
-    }
-
-    /// Judges the step that has passed; `Some` ends the trial with its fitness.
-    pub fn judge<W>(&mut self, world: &W) -> Option<f64>
-    where
-        W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized,
-    {
-        let Self { config, trial, places, .. } = self;
-        trial.steps += 1;
-        let [x, y, _] = world.pose(self.cube).position;
-        let apart = |[u, v]: [f32; 2]| {
-            let [u, v] = [x - u, y - v].map(f64::from);
-            Scalar::sqrt(u * u + v * v)
-        };
-        trial.moved = apart(places[0]);
-        trial.way += apart(places[1]);
-        places[1] = [x, y];
-        let [u, v, _] = world.velocity(self.cube).linear.map(f64::from);
-        trial.fastest = Scalar::max(trial.fastest, Scalar::sqrt(u * u + v * v));
-        trial.touched += u32::from(world.touches(self.pair));
-        trial.failed |= !(trial.way.is_finite() && trial.fastest.is_finite());
-        (trial.failed || trial.steps >= config.steps).then(|| self.fitness())
     }
 
     /// What the trial has earned: how far the box has come from where it stood, in metres; NaN for one that failed.
@@ -179,6 +131,11 @@ impl<C: Controller> PushLife<C> {
         &self.infrared
     }
 
+    /// The controller.
+    pub fn controller(&self) -> &C {
+        &self.controller
+    }
+
     /// Another controller of the same shape.
     pub fn set_controller(&mut self, controller: C) {
         debug_assert_eq!((controller.inputs(), controller.outputs()), (self.x.len(), OUTPUTS), "inputs and outputs");
@@ -208,16 +165,59 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
     C: Controller,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.begin(world, job);
+    /// Opens a new account and arranges the world.
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.arrange(world, id);
+        let [x, y, _] = world.pose(self.cube).position;
+        self.places = [[x, y]; 2];
+        self.trial = PushTrial::default();
+        self.controller.reset();
     }
 
-    fn tick(&mut self, world: &mut W) -> Option<f64> {
-        let end = if self.begun { self.judge(world) } else { None };
-        self.begun = true;
-        if end.is_none() {
-            self.act(world);
+    #[inline]
+    fn act(&mut self, world: &mut W) {
+        self.infrared.read(world, &mut self.x);
+        self.controller.step(&self.x, &mut self.y);
+        self.wheels.drive(&self.y, world);
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        let Self { config, trial, places, .. } = self;
+        trial.steps += 1;
+        let [x, y, _] = world.pose(self.cube).position;
+        let apart = |[u, v]: [f32; 2]| {
+            let [u, v] = [x - u, y - v].map(f64::from);
+            Scalar::sqrt(u * u + v * v)
+        };
+        trial.moved = apart(places[0]);
+        trial.way += apart(places[1]);
+        places[1] = [x, y];
+        let [u, v, _] = world.velocity(self.cube).linear.map(f64::from);
+        trial.fastest = Scalar::max(trial.fastest, Scalar::sqrt(u * u + v * v));
+        trial.touched += u32::from(world.touches(self.pair));
+        trial.failed |= !(trial.way.is_finite() && trial.fastest.is_finite());
+        (trial.failed || trial.steps >= config.steps).then(|| self.fitness())
+    }
+
+    fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.infrared.tell(world.pose(self.parts.body), &self.x, recorder);
+    }
+
+    /// Records what was sensed, computed and done before the step, and what it led to.
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        recorder.sensors(&self.x);
+        recorder.outputs(&self.y);
+        let mut scalars = Vec::with_capacity(9);
+        for body in [self.parts.body, self.cube] {
+            let pose = world.pose(body);
+            recorder.pose(body, pose);
+            let [x, y, _] = pose.position.map(f64::from);
+            scalars.extend([x, y, f64::from(pose.heading())]);
         }
-        end
+        let largest = self.config.robot.max_wheel_speed;
+        scalars.extend(self.y.iter().map(|y| (2.0 * f64::from(*y) - 1.0) * largest));
+        scalars.push(self.trial.moved);
+        recorder.scalars(&scalars);
+        recorder.tick(seconds(self.trial.steps, self.config.time_step));
     }
 }

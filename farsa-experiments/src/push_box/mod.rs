@@ -4,7 +4,7 @@
 //! - `config`: the values of `push-box`, as settings
 //! - `experiment`: its name, conditions and settings, and what lives its lives
 //! - `life`: a life of `push-box`: one trial with a robot and a box on an endless plane
-//! - `setup`: `push-box` ready to be lived
+//! - `task`: what there is to know of `push-box`, and its episodes over parameters
 
 #[cfg(feature = "rapier")]
 mod baseline;
@@ -13,7 +13,7 @@ mod experiment;
 #[cfg(feature = "rapier")]
 mod life;
 #[cfg(feature = "rapier")]
-mod setup;
+mod task;
 
 #[cfg(feature = "rapier")]
 pub use baseline::HomingPusher;

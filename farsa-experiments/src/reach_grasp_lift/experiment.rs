@@ -13,10 +13,7 @@ use crate::reach_grasp_lift::{config::Config, config::TRIALS};
 use crate::reach_grasp_lift::{life::Judge, life::ReachLife};
 use crate::reach_grasp_lift::{stage::NetworkLife, stage::Teller};
 use crate::worlds::Engine;
-use farsa_lab::{
-    ChannelGroup, ControllerExport, Description, Error, Experiment, Job, Lanes, Life, NetworkExport, Note, Outcome,
-    Setting, Settings, Setup, StartExport, Tape, Task, live_in_lanes,
-};
+use farsa_lab::{ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Lanes, NetworkExport, Note, Outcome, Setting, Settings, StartExport, run_in_lanes};
 use farsa_view::Stage;
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
@@ -49,7 +46,7 @@ impl Experiment for ReachGraspLift {
         Config::of_condition(condition != NO_LABELS).table()
     }
 
-    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         let config = Config::read(condition != NO_LABELS, settings)?;
         match config.engine {
             Engine::Articulated => Ok(Box::new(Lives::new(config)?)),
@@ -88,8 +85,8 @@ impl<W: ?Sized> Life<W> for Numbered
 where
     NetworkLife: Life<W>,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.life.start(world, job);
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.life.start(world, id);
     }
     fn tick(&mut self, world: &mut W) -> Option<f64> {
         self.life.tick(world)
@@ -207,8 +204,8 @@ where
         Some(scene.controller(network?, life.senses().names(), life.motors().names()))
     }
 
-    fn start(&self, job: Job) -> Option<StartExport> {
-        Some(self.life.judge().scene().start_by_name(job))
+    fn start(&self, id: EpisodeId) -> Option<StartExport> {
+        Some(self.life.judge().scene().start_by_name(id))
     }
 
     fn description(&self) -> Description {
@@ -258,14 +255,14 @@ where
         }
     }
 
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
+    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
         if !self.decoder.decode_into(genes, &mut self.life) {
             return Outcome::failed();
         }
         if let Some(recorder) = tape.recorder() {
             recorder.parameters(&self.decoder.parameters);
         }
-        self.life.start(&mut self.world, job);
+        self.life.start(&mut self.world, id);
         loop {
             self.life.act(&mut self.world);
             self.world.step();
@@ -293,8 +290,8 @@ where
 
     fn live_many<'g>(&mut self, next: &mut dyn FnMut() -> Option<Task<'g>>, done: &mut dyn FnMut(usize, Outcome)) {
         let Self { together: Some(Together { batch, lives }), decoder, .. } = self else {
-            while let Some(Task { number, genes, job, .. }) = next() {
-                done(number, self.live(genes, job, &mut Tape::off()));
+            while let Some(Task { number, genes, id, .. }) = next() {
+                done(number, self.live(genes, id, &mut Tape::off()));
             }
             return;
         };
@@ -305,7 +302,7 @@ where
                 let task = next()?;
                 *number = task.number;
                 if decoder.decode_into(task.genes, life) {
-                    return Some(task.job);
+                    return Some(task.id);
                 }
                 done.borrow_mut()(task.number, Outcome::failed());
             }
@@ -352,11 +349,11 @@ mod tests {
         let settings = Settings::new(ReachGraspLift.settings(LABELS)).unwrap();
         let mut setup = ReachGraspLift.prepare(LABELS, &settings).unwrap();
         let genes: Vec<u16> = (0..792u32).map(|i| (i * 40503) as u16).collect();
-        let job = Job { seed: 3, generation: 2, individual: 7, trial: 1 };
-        let plain = setup.live(&genes, job, &mut Tape::off());
-        setup.live(&genes, Job { trial: 3, ..job }, &mut Tape::off());
+        let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: 1 };
+        let plain = setup.live(&genes, id, &mut Tape::off());
+        setup.live(&genes, EpisodeId { trial: 3, ..id }, &mut Tape::off());
         let mut recording = Recording::new(setup.stage());
-        let taped = setup.live(&genes, job, &mut Tape::to(&mut recording));
+        let taped = setup.live(&genes, id, &mut Tape::to(&mut recording));
         assert_eq!(plain, taped);
         assert!(plain.is_finite(), "{plain:?}");
         let ticks = plain.steps as usize;
@@ -383,12 +380,12 @@ mod tests {
         let mut lives = Lives::new(Config::default()).unwrap();
         assert!(lives.decoder.decode(&genes));
         lives.life.controller_mut().copy_parameters(&lives.decoder.parameters).unwrap();
-        let fitness = farsa_lab::live(&mut lives.life, &mut lives.world, job);
+        let fitness = farsa_lab::live(&mut lives.life, &mut lives.world, id);
         assert_eq!(fitness, setup.fitness(core::slice::from_ref(&plain)));
         // Shared by the generation's individuals, another in the next generation.
-        let again = setup.live(&genes, Job { individual: 8, ..job }, &mut Tape::off());
+        let again = setup.live(&genes, EpisodeId { individual: 8, ..id }, &mut Tape::off());
         assert_eq!(again, plain);
-        assert_ne!(setup.live(&genes, Job { generation: 3, ..job }, &mut Tape::off()), plain);
+        assert_ne!(setup.live(&genes, EpisodeId { generation: 3, ..id }, &mut Tape::off()), plain);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Sensor,
 };
-use farsa_lab::{Error, Job, Life};
+use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::Controller;
 
 use crate::reach_grasp_lift::phase::Observation;
@@ -30,11 +30,11 @@ impl Judge {
     }
 
     /// Sets the world up for a trial and opens a new account.
-    pub fn start<W>(&mut self, world: &mut W, job: Job)
+    pub fn start<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
     {
-        self.scene.arrange(world, job);
+        self.scene.arrange(world, id);
         self.trial = Trial::default();
         self.begun = false;
     }
@@ -200,8 +200,8 @@ where
         + ?Sized,
     C: Controller,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.judge.start(world, job);
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.judge.start(world, id);
         self.controller.reset();
         self.senses.reset();
         self.motors.reset();

@@ -5,7 +5,7 @@ use farsa_body::{
     JointPosition, Joints, Keyframe, Kinematics, MjcfOptions, Motor, Muscles, PairId, Point, Pose, Robot, RobotError,
     Sensor, ServoGroup, ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
 };
-use farsa_lab::{Error, Job};
+use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::reach_grasp_lift::{config::Config, config::Displacement, config::TRIALS};
@@ -156,14 +156,14 @@ impl Scene {
     /// Every displacement is drawn from the stream of [`Domain::Start`], joints first, then the sphere's x and y; joints
     /// are clamped into their ranges. Deviations: the source displaces "each joint" by up to 1 degree and the sphere by
     /// up to 1.5 cm; that both are uniform and that the hand's joints are among them is chosen.
-    pub fn start(&self, job: Job) -> ([f64; 27], [f64; 2]) {
+    pub fn start(&self, id: EpisodeId) -> ([f64; 27], [f64; 2]) {
         let config = &self.config;
-        let trial = job.trial as usize % TRIALS;
+        let trial = id.trial as usize % TRIALS;
         let individual = match config.displacement {
             Displacement::PerGeneration => 0,
-            Displacement::PerIndividual => job.individual,
+            Displacement::PerIndividual => id.individual,
         };
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, individual, job.generation);
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, individual, id.generation);
         let mut displaced = |at: f64, by: f64| at + by * f64::from(stream.range(-1.0, 1.0));
         let joints = core::array::from_fn(|i| {
             let pose = if i < 4 { config.arm_poses[4 * trial + i] } else { 0.0 };
@@ -194,11 +194,11 @@ impl Scene {
     }
 
     /// Sets a world up for the start of a trial.
-    pub fn arrange<W>(&self, world: &mut W, job: Job)
+    pub fn arrange<W>(&self, world: &mut W, id: EpisodeId)
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
     {
-        let (joints, [x, y]) = self.start(job);
+        let (joints, [x, y]) = self.start(id);
         world.clear();
         for (joint, position) in ArmAndHand::joints().into_iter().zip(joints) {
             world.place_joint(joint, position as f32, 0.0);

@@ -6,7 +6,7 @@ use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Goal, Handles, InverseKinematics,
     InverseKinematicsError, JointId, Joints, KinematicTree, Kinematics, Law, Motor, MusclePair, Orientation, Tabletop,
 };
-use farsa_lab::{Error, Job, Life};
+use farsa_lab::{Episode, EpisodeId, Error};
 
 use crate::reach_grasp_lift::life::Judge;
 use crate::reach_grasp_lift::{scene::Motors, scene::OUTPUTS, scene::Scene};
@@ -297,8 +297,8 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
         + ?Sized,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.judge.start(world, job);
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.judge.start(world, id);
         let joints = self.statics.tree.joints();
         let start: Vec<f64> = joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
         let [x, y, _] = world.pose(Tabletop::SPHERE).position.map(f64::from);
@@ -328,7 +328,7 @@ mod tests {
         assert_eq!([smooth(-1.0), smooth(0.0), smooth(0.5), smooth(1.0), smooth(7.0)], [0.0, 0.0, 0.5, 1.0, 1.0]);
         let scene = Scene::new(Config::default()).unwrap();
         let statics = Arc::new(Statics::new(&scene).unwrap());
-        let (start, sphere) = scene.start(Job::default());
+        let (start, sphere) = scene.start(EpisodeId::default());
         let plan = Plan::new(Timetable::default(), statics, &start, sphere).unwrap();
         let mut last = plan.wanted(0.0);
         assert_eq!(last.0, seven(&start));

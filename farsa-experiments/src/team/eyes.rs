@@ -4,7 +4,6 @@ use farsa_body::{
     Beam, BodyId, ChannelError, ColorBand, InfraredRays, Kinematics as _, LinearCamera, MobileParts, MobileRobot,
     Planar as _, Recorder, Sensor as _,
 };
-use farsa_physics::arena::World;
 
 use crate::infrared::{sensor_rays::SensorRays, sensor_rays::Told};
 use crate::team::{config::EYES, config::TeamConfig};
@@ -85,7 +84,7 @@ impl RobotEyes {
     }
 
     /// Reads the infrared channels and then the camera's \[8 + sectors x colours\].
-    pub fn read(&mut self, world: &World, out: &mut [f32]) {
+    pub fn read<W: TeamWorld>(&mut self, world: &W, out: &mut [f32]) {
         let (near, seen) = out.split_at_mut(EYES);
         let Self { body, infrared, ring, things, .. } = self;
         let pose = world.pose(*body);
@@ -121,7 +120,7 @@ impl RobotEyes {
     /// Tells a recorder a ray for each infrared sensor, of the robot where it read `x` last and in the same world.
     ///
     /// One that did not read because its robot does not live tells none.
-    pub(crate) fn tell(&self, world: &World, x: &[f32], told: Told, recorder: &mut dyn Recorder) {
+    pub(crate) fn tell<W: TeamWorld>(&self, world: &W, x: &[f32], told: Told, recorder: &mut dyn Recorder) {
         let near = x.get(..EYES).unwrap_or_default();
         let pose = world.pose(self.body);
         if near.iter().all(|x| x.is_finite()) {
@@ -140,6 +139,7 @@ pub(crate) fn eye_angles(robot: &MobileRobot) -> [f64; EYES] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use farsa_physics::arena::World;
     use farsa_body::{Arrange as _, Pose, Twist};
 
     #[test]

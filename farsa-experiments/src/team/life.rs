@@ -1,12 +1,12 @@
 //! A life of a team: robots with a controller each, and a mission that says what it is about.
 
-use farsa_body::{ColorBand, Kinematics as _};
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, ColorBand, Contacts, Handles, JointId, Joints, Kinematics, Planar, Rays};
 use farsa_nn::Controller;
-use farsa_physics::arena::{Arena, ArenaError, World};
+use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::team::config::TeamConfig;
 use crate::team::robots::Team;
-use farsa_lab::{ChannelGroup, Error, Job, Life, Outcome};
+use farsa_lab::{ChannelGroup, Episode, EpisodeId, Error, Outcome};
 use farsa_view::Channel;
 
 /// Where the robots of a team are, and since when.
@@ -42,11 +42,11 @@ pub trait Mission: Send {
         usize::MAX
     }
 
-    /// Opens a new account and places everything for a trial, by random numbers of the job's alone.
+    /// Opens a new account and places everything for a trial, by random numbers of the id's alone.
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] where something has no room.
-    fn arrange<C: Controller>(&mut self, team: &Team<C>, world: &mut World, job: Job) -> Result<(), ArenaError>;
+    fn arrange<C: Controller, W: TeamWorld>(&mut self, team: &Team<C>, world: &mut W, id: EpisodeId) -> Result<(), ArenaError>;
 
     /// The setting that is to blame for too little room.
     fn crowded(&self) -> &'static str {
@@ -54,13 +54,13 @@ pub trait Mission: Send {
     }
 
     /// Fills the inputs of the robot at `at` \[m\] that are not its eyes'; false if it does not live.
-    fn sense(&self, world: &World, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
+    fn sense<W: TeamWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
         let _ = (world, robot, at, rest);
         true
     }
 
     /// Enters the step that has passed into the account; true if the trial is over before its time.
-    fn judge(&mut self, world: &World, moment: Moment<'_>) -> bool;
+    fn judge<W: TeamWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool;
 
     /// What population `own` has earned so far.
     fn earned(&self, own: usize, moment: Moment<'_>) -> f64;
@@ -84,6 +84,31 @@ pub trait Mission: Send {
     fn scalars(&self, moment: Moment<'_>) -> Vec<f64>;
 }
 
+/// A planar world that a team can be in: an arena, or a lane of many.
+pub trait TeamWorld:
+    Planar
+    + Rays
+    + Kinematics
+    + Joints
+    + Actuated
+    + Contacts
+    + Arrange
+    + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+{
+}
+
+impl<W> TeamWorld for W where
+    W: Planar
+        + Rays
+        + Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+{
+}
+
 /// Robots on a mission, with a controller each.
 #[derive(Clone, Debug)]
 pub struct TeamLife<M, C> {
@@ -94,7 +119,6 @@ pub struct TeamLife<M, C> {
     most_steps: u32,
     steps: u32,
     failed: bool,
-    begun: bool,
 }
 
 impl<M: Mission, C: Controller> TeamLife<M, C> {
@@ -110,7 +134,6 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
             most_steps: config.steps,
             steps: 0,
             failed: false,
-            begun: false,
             mission,
         })
     }
@@ -119,29 +142,8 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
-    pub fn arrange(&mut self, world: &mut World, job: Job) -> Result<(), ArenaError> {
-        self.mission.arrange(&self.team, world, job)
-    }
-
-    /// All robots sense, think and act.
-    pub fn act(&mut self, world: &mut World) {
-        let Self { mission, team, .. } = self;
-        team.act(world, |world, robot, parts, rest| {
-            let [x, y, _] = world.pose(parts.body).position;
-            mission.sense(world, robot, [x, y], rest)
-        });
-    }
-
-    /// Judges the step that has passed; `Some` ends the trial with what the first population earned.
-    pub fn judge(&mut self, world: &World) -> Option<f64> {
-        let Self { mission, team, places, .. } = self;
-        self.steps += 1;
-        for (robot, place) in places.iter_mut().enumerate() {
-            *place = team.place(world, robot);
-            self.failed |= !place.iter().all(|x| x.is_finite());
-        }
-        let over = mission.judge(world, Moment { places, steps: self.steps });
-        (self.failed || over || self.steps >= self.most_steps).then(|| self.fitness())
+    pub fn arrange<W: TeamWorld>(&mut self, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
+        self.mission.arrange(&self.team, world, id)
     }
 
     /// Where the robots are, and since when.
@@ -188,22 +190,35 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
     }
 }
 
-impl<M: Mission, C: Controller> Life<World> for TeamLife<M, C> {
-    fn start(&mut self, world: &mut World, job: Job) {
-        self.failed = self.arrange(world, job).is_err();
+impl<M: Mission, C: Controller, W: TeamWorld> Episode<W> for TeamLife<M, C> {
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.failed = self.arrange(world, id).is_err();
         self.team.reset();
-        (self.steps, self.begun) = (0, false);
+        self.steps = 0;
     }
 
-    fn tick(&mut self, world: &mut World) -> Option<f64> {
-        if self.failed {
-            return Some(f64::NAN);
+    fn has_started(&self) -> bool {
+        !self.failed
+    }
+
+    /// All robots sense, compute and act.
+    fn act(&mut self, world: &mut W) {
+        let Self { mission, team, .. } = self;
+        team.act(world, |world, robot, parts, rest| {
+            let [x, y, _] = world.pose(parts.body).position;
+            mission.sense(world, robot, [x, y], rest)
+        });
+    }
+
+    /// Judges the step that has passed; `Some` ends the trial with what the first population earned.
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        let Self { mission, team, places, .. } = self;
+        self.steps += 1;
+        for (robot, place) in places.iter_mut().enumerate() {
+            *place = team.place(world, robot);
+            self.failed |= !place.iter().all(|x| x.is_finite());
         }
-        let end = if self.begun { self.judge(world) } else { None };
-        self.begun = true;
-        if end.is_none() {
-            self.act(world);
-        }
-        end
+        let over = mission.judge(world, Moment { places, steps: self.steps });
+        (self.failed || over || self.steps >= self.most_steps).then(|| self.fitness())
     }
 }

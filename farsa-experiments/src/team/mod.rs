@@ -5,7 +5,7 @@
 //! - `life`: a life of a team: robots with a controller each, and a mission that says what it is about
 //! - `nest`: nests as robots of a team sense them: the ground, and what shines
 //! - `robots`: robots with a controller each: what they sense, think and do
-//! - `setup`: a mission of a team as an experiment lives it: from genes to outcomes
+//! - `task`: what there is to know of a mission, and its episodes over parameters
 //! - `steering`: how a robot of a team turns away from what it sees, for controllers without evolution
 
 pub(crate) mod config;
@@ -13,5 +13,5 @@ pub(crate) mod eyes;
 pub(crate) mod life;
 pub(crate) mod nest;
 pub(crate) mod robots;
-pub(crate) mod setup;
+pub(crate) mod task;
 pub(crate) mod steering;

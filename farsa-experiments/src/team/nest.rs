@@ -2,7 +2,7 @@
 
 use farsa_body::{ColorBand, Planar as _};
 use farsa_lab::Error;
-use farsa_physics::arena::World;
+use crate::team::life::TeamWorld;
 
 use crate::team::{eyes::BLUE, eyes::RED};
 
@@ -15,7 +15,7 @@ pub(crate) const NEST: [f64; 3] = [0.45, 0.45, 0.45];
 const DARK: f32 = 0.7;
 
 /// Whether the ground there is a nest's, as a sensor reads it \[0 or 1\].
-pub(crate) fn on_nest(world: &World, [x, y]: [f32; 2]) -> f32 {
+pub(crate) fn on_nest<W: TeamWorld>(world: &W, [x, y]: [f32; 2]) -> f32 {
     if world.ground([x, y])[0] < DARK { 1.0 } else { 0.0 }
 }
 

@@ -9,10 +9,11 @@ use farsa_body::{
 use farsa_lab::Error;
 use farsa_nn::Controller;
 use farsa_num::Stream;
-use farsa_physics::arena::{ArenaError, FreePlace, World};
+use farsa_physics::arena::{ArenaError, FreePlace};
 
 use crate::infrared::sensor_rays::Told;
 use crate::team::config::TeamConfig;
+use crate::team::life::TeamWorld;
 use crate::team::eyes::RobotEyes;
 
 /// The robots of a team in their world, with a controller each.
@@ -96,9 +97,9 @@ impl<C: Controller> Team<C> {
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
-    pub(crate) fn scatter(
+    pub(crate) fn scatter<W: TeamWorld>(
         &self,
-        world: &mut World,
+        world: &mut W,
         near: Option<([f32; 2], f32)>,
         stream: &mut Stream,
     ) -> Result<(), ArenaError> {
@@ -146,7 +147,11 @@ impl<C: Controller> Team<C> {
     /// Every robot senses, thinks and acts; `more` fills the inputs that are not its eyes', and says whether it lives.
     ///
     /// Who does not live stands still with its LEDs off, and neither senses nor thinks.
-    pub fn act(&mut self, world: &mut World, mut more: impl FnMut(&World, usize, &MobileParts, &mut [f32]) -> bool) {
+    pub fn act<W: TeamWorld>(
+        &mut self,
+        world: &mut W,
+        mut more: impl FnMut(&W, usize, &MobileParts, &mut [f32]) -> bool,
+    ) {
         let Self { members, controllers, seen, x, y, .. } = self;
         let [inputs, outputs] = [x.len(), y.len()].map(|all| all / members.len().max(1));
         // All sense before anybody acts.
@@ -174,7 +179,7 @@ impl<C: Controller> Team<C> {
 
     /// Tells a recorder the infrared rays of the robots, in the world in which they sensed last: all rays of robot `own`, of
     /// the others those that met something.
-    pub fn tell_rays(&self, world: &World, own: usize, recorder: &mut dyn Recorder) {
+    pub fn tell_rays<W: TeamWorld>(&self, world: &W, own: usize, recorder: &mut dyn Recorder) {
         for (robot, member) in self.members.iter().enumerate() {
             let told = if robot == own { Told::All } else { Told::Met };
             member.eyes.tell(world, self.sensed(robot), told, recorder);
@@ -182,7 +187,7 @@ impl<C: Controller> Team<C> {
     }
 
     /// Where a robot is \[m\].
-    pub fn place(&self, world: &World, robot: usize) -> [f32; 2] {
+    pub fn place<W: TeamWorld>(&self, world: &W, robot: usize) -> [f32; 2] {
         let [x, y, _] = world.pose(self.members[robot].parts.body).position;
         [x, y]
     }

@@ -1,10 +1,7 @@
 //! The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, Robot,
-};
-use farsa_evo::{GeneRange, decode};
-use farsa_nn::{Layout, ParameterKind};
+use farsa_body::{MjcfOptions, Recorder, Robot};
+use farsa_nn::Layout;
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
 
@@ -13,15 +10,13 @@ use crate::walking::gait::Rules;
 use crate::walking::settings::rapier_options;
 use crate::walking::{life::Brain, life::Launch, life::SENSES, life::Walk, life::WalkerLife};
 use crate::walking::{
-    settings::engine, settings::live_to_the_end, settings::mean, settings::mjcf_options, settings::on_contacts,
+    settings::engine, settings::mjcf_options, settings::on_contacts, settings::outcome,
     settings::walk,
 };
 use crate::walking::{stage::drawn, stage::exported, stage::stage};
 use crate::walking::{walker::Legs, walker::Walker};
 use crate::worlds::Engine;
-use farsa_lab::{
-    ChannelGroup, Description, ENGINE, Error, Experiment, Job, Life as _, Note, Outcome, Setting, Settings, Setup, Tape,
-};
+use farsa_lab::{Bodies, ChannelGroup, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, Genotype, Note, Outcome, Parameter, Setting, Settings, Task, mean_of_trials, network_parameters, run_episode};
 use farsa_view::Stage;
 
 /// Which bodies walk far? `[McGeer1990]`
@@ -68,8 +63,8 @@ const BODY: [Part; 10] = [
     part("start.swing_rate", "sqrt(g/l)", [-0.5, 0.5], "Rate of the swing leg at the launch: a gene."),
 ];
 
-/// Genes of a body.
-const BODY_GENES: usize = BODY.len();
+/// Parameters of a body.
+const BODY_PARAMETERS: usize = BODY.len();
 
 /// The values of `body-evolution` beside the genes' ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,49 +113,25 @@ impl Config {
         self.powered().then(|| Layout::new(SENSES, self.hidden as usize, 1).with_slope(1.0))
     }
 
-    /// What the genes of a body stand for, in their order.
-    fn decoded(&self, genes: &[u16]) -> Option<[f64; BODY_GENES]> {
-        let mut ranges = Vec::with_capacity(BODY.len());
-        for [low, high] in self.ranges {
-            ranges.push(GeneRange::new(1, low as f32, high as f32).ok()?);
-        }
-        let mut values = [0.0; BODY_GENES];
-        decode(genes.get(..BODY_GENES)?, &ranges, &mut values).ok()?;
-        Some(values.map(f64::from))
-    }
-
-    /// The body and the launch that genes stand for.
-    fn body(&self, genes: &[u16]) -> Option<(Walker, Launch)> {
-        let [length, ratio, hip, mass, foot_mass, foot_radius, spacing, angle, rate, swing] = self.decoded(genes)?;
+    /// The body and the launch that parameters are for.
+    fn body(&self, parameters: &[f32]) -> Option<(Walker, Launch)> {
+        let values: &[f32; BODY_PARAMETERS] = parameters.first_chunk()?;
+        let [length, ratio, hip, mass, foot_mass, foot_radius, spacing, angle, rate, swing] = values.map(f64::from);
         let legs = [length, length * ratio].map(|length| Legs { length, mass, foot_mass, foot_radius });
         let per_second = Scalar::sqrt(self.walk.gravity / length);
         let launch = Launch { angles: [angle, -angle], rates: [rate * per_second, swing * per_second] };
         Some((Walker { legs, hip_mass: hip, hip_spacing: spacing, ..self.walker }, launch))
     }
 
-    /// The network's parameters that the genes after the body's stand for.
-    fn parameters(&self, genes: &[u16]) -> Option<(Layout, Vec<f32>)> {
-        let layout = self.layout()?;
-        let mut ranges = Vec::new();
-        for kind in ParameterKind::ALL {
-            let weights = self.weights as f32;
-            let (low, high) = if kind == ParameterKind::Leak { (0.0, 1.0) } else { (-weights, weights) };
-            ranges.push(GeneRange::new(layout.range(kind).len(), low, high).ok()?);
-        }
-        let mut parameters = vec![0.0; layout.parameter_count()];
-        decode(genes.get(BODY_GENES..)?, &ranges, &mut parameters).ok()?;
-        Some((layout, parameters))
-    }
-
-    /// A genome's walker, and its life.
-    fn life(&self, genes: &[u16]) -> Option<(Robot, WalkerLife)> {
-        let (walker, launch) = self.body(genes)?;
+    /// A walker with these parameters, and its life.
+    fn life(&self, parameters: &[f32]) -> Option<(Robot, WalkerLife)> {
+        let (walker, launch) = self.body(parameters)?;
         let (robot, parts) = walker.robot();
-        let brain = if self.powered() {
-            let (layout, parameters) = self.parameters(genes)?;
-            Some(Brain::new(&walker, &parts, layout, parameters).ok()?)
-        } else {
-            None
+        let brain = match self.layout() {
+            Some(layout) => {
+                Some(Brain::new(&walker, &parts, layout, parameters.get(BODY_PARAMETERS..)?.to_vec()).ok()?)
+            }
+            None => None,
         };
         Some((robot, WalkerLife::new(walker, parts, self.walk, launch, brain)))
     }
@@ -240,7 +211,7 @@ impl Experiment for BodyEvolution {
         table
     }
 
-    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         let powered = condition == CONDITIONS[1];
         let plain = Config::new(powered);
         let number = |key: &str| settings.number(key);
@@ -275,23 +246,23 @@ impl Experiment for BodyEvolution {
             config.hidden = settings.count("network.hidden")? as u32;
             config.weights = number("network.range")?;
         }
-        Ok(Box::new(Lives::new(config)))
+        Ok(Box::new(Walkers::new(config)))
     }
 }
 
-/// Walkers, each in a world of its own body.
-pub struct Lives {
+/// Evaluates walkers, each in a world of its own body.
+pub struct Walkers {
     config: Config,
 }
 
-impl Lives {
-    /// Lives under a configuration.
+impl Walkers {
+    /// Evaluates under a configuration.
     pub fn new(config: Config) -> Self {
         Self { config }
     }
 
-    fn body(&self, genes: &[u16]) -> Walker {
-        self.config.body(genes).map_or(self.config.walker, |(walker, _)| walker)
+    fn body(&self, parameters: &[f32]) -> Walker {
+        self.config.body(parameters).map_or(self.config.walker, |(walker, _)| walker)
     }
 
     fn with_network(&self, stage: Stage) -> Stage {
@@ -304,9 +275,15 @@ impl Lives {
     }
 }
 
-impl Setup for Lives {
-    fn genes(&self) -> usize {
-        BODY_GENES + self.config.layout().map_or(0, |layout| layout.parameter_count())
+impl Task for Walkers {
+    fn parameters(&self) -> Vec<Parameter> {
+        let of_body = BODY.iter().zip(self.config.ranges);
+        // Bodies are computed from numbers that f32 holds.
+        let of_body = of_body.map(|(part, ends)| Parameter::new(part.key, ends.map(|end| f64::from(end as f32))));
+        let of_network = self.config.layout().and_then(|layout| {
+            network_parameters(&layout, self.config.weights, [0.0, 1.0], "network.range").ok()
+        });
+        of_body.chain(of_network.into_iter().flatten()).collect()
     }
 
     fn trials(&self) -> usize {
@@ -319,15 +296,9 @@ impl Setup for Lives {
 
     /// The stage of the middle of all bodies.
     fn stage(&self) -> Stage {
-        self.with_network(stage(&exported(&self.body(&[u16::MAX / 2; BODY_GENES]))))
-    }
-
-    fn stage_of(&self, genes: &[u16]) -> Stage {
-        self.with_network(stage(&drawn(&self.body(genes))))
-    }
-
-    fn mjcf_options(&self) -> MjcfOptions {
-        mjcf_options(&self.config.walk)
+        let genotype = Genotype::new(&self.parameters()[..BODY_PARAMETERS], u16::BITS);
+        let middle = genotype.decode(&[u16::MAX / 2; BODY_PARAMETERS]).unwrap_or_default();
+        self.with_network(stage(&exported(&self.body(&middle))))
     }
 
     fn description(&self) -> Description {
@@ -353,44 +324,66 @@ impl Setup for Lives {
         }
     }
 
+    /// The mean over the trials.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+
+    fn bodies(&self) -> Option<&dyn Bodies> {
+        Some(self)
+    }
+}
+
+impl Exports for Walkers {
+    fn mjcf_options(&self) -> Option<MjcfOptions> {
+        Some(mjcf_options(&self.config.walk))
+    }
+}
+
+impl Bodies for Walkers {
+    fn stage_with(&self, parameters: &[f32]) -> Stage {
+        self.with_network(stage(&drawn(&self.body(parameters))))
+    }
+}
+
+impl Evaluator for Walkers {
     /// Success is ten strides, twenty steps, without a fall.
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        let Some((robot, life)) = self.config.life(genes) else { return Outcome::failed() };
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
+        let Some((robot, life)) = self.config.life(evaluation.parameters) else { return Outcome::failed() };
         match self.config.engine {
-            Engine::Articulated => live_in(self.config.world(&robot), life, job, tape),
+            Engine::Articulated => walk_in(self.config.world(&robot), life, evaluation.id, recorder),
             #[cfg(feature = "rapier")]
             Engine::Rapier => {
                 let options = rapier_options(&self.config.walk, life.gait().walker(), self.config.substeps, 40);
-                live_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, job, tape)
+                walk_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, evaluation.id, recorder)
             }
             #[cfg(not(feature = "rapier"))]
             Engine::Rapier => Outcome::failed(),
         }
     }
-
-    /// The mean over the trials.
-    fn fitness(&self, trials: &[Outcome]) -> f64 {
-        mean(trials)
-    }
 }
 
-/// Lives a walker's life in a world; there is none for a body that cannot be.
-fn live_in<W>(world: Option<W>, mut life: WalkerLife, job: Job, tape: &mut Tape<'_>) -> Outcome
+/// A walk in a world; there is none for a body that cannot be.
+fn walk_in<W>(
+    world: Option<W>,
+    mut life: WalkerLife,
+    id: EpisodeId,
+    mut recorder: Option<&mut dyn Recorder>,
+) -> Outcome
 where
-    W: farsa_body::World
-        + Kinematics
-        + Joints
-        + Contacts
-        + Actuated
-        + Arrange
-        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
+    W: farsa_body::World,
+    WalkerLife: Episode<W>,
 {
     let Some(mut world) = world else { return Outcome::failed() };
-    if let (Some(recorder), Some(brain)) = (tape.recorder(), life.brain()) {
+    if let (Some(recorder), Some(brain)) = (&mut recorder, life.brain()) {
         recorder.parameters(brain.parameters());
     }
-    life.start(&mut world, job);
-    let mut outcome = live_to_the_end(&mut life, &mut world, tape);
+    run_episode(&mut life, &mut world, id, recorder);
+    let mut outcome = outcome(&life);
     let gait = life.gait();
     let walker = gait.walker();
     outcome.notes.push(("work of the motor [J]", Note::from(gait.energies()[0])));

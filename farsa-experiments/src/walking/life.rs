@@ -1,10 +1,10 @@
 //! A life of a walker: a launch, then steps until it falls or its time is over; with or without a network at the hip.
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints,
-    Motor as _, PairId, Scaled, Sensor as _, TorqueMotor, Touch,
+    Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints, Kinematics,
+    Motor as _, PairId, Recorder, Scaled, Sensor as _, TorqueMotor, Touch,
 };
-use farsa_lab::{Error, Job, Life};
+use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::{Controller, Layout, Leak, Network};
 use farsa_num::{Domain, Scalar, Stream};
 
@@ -174,7 +174,6 @@ pub struct WalkerLife {
     told: u32,
     known: usize,
     paces: [Pace; LAST],
-    begun: bool,
 }
 
 impl WalkerLife {
@@ -182,51 +181,7 @@ impl WalkerLife {
     pub fn new(walker: Walker, parts: WalkerParts, walk: Walk, launch: Launch, brain: Option<Brain>) -> Self {
         let gravity = Walker::gravity(walk.gravity, walk.slope);
         let gait = Gait::new(walker, parts, walk.rules, gravity, walk.time_step);
-        Self { walk, launch, gait, brain, told: 0, known: 0, paces: [Pace::default(); LAST], begun: false }
-    }
-
-    /// Launches the walker: its rates are those of the launch times 1 + noise * u, each with its own u from -1 to 1, the stance leg's
-    /// first, from the stream of [`Domain::Start`] of the job's trial, individual and generation.
-    pub fn begin<W>(&mut self, world: &mut W, job: Job)
-    where
-        W: Joints + Arrange + Handles<Joint = JointId> + ?Sized,
-    {
-        let mut stream = Stream::new(job.seed, Domain::Start, job.trial, job.individual, job.generation);
-        let rates = self.launch.rates.map(|rate| rate * (1.0 + self.walk.noise * stream.range_f64(-1.0, 1.0)));
-        let posture = Posture::standing(self.gait.walker(), 0, self.launch.angles, rates);
-        self.gait.start(world, 0, &posture);
-        if let Some(brain) = &mut self.brain {
-            brain.reset();
-        }
-        (self.told, self.known, self.begun) = (0, 0, false);
-    }
-
-    /// Thinks and acts, if there is something to think with.
-    pub fn act<W>(&mut self, world: &mut W)
-    where
-        W: Joints + Contacts + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
-    {
-        if let Some(brain) = &mut self.brain {
-            brain.act(world);
-        }
-    }
-
-    /// Judges the tick that has passed; `Some` ends the walk with the distance walked \[m\], NaN for a broken one.
-    pub fn judge<W>(&mut self, world: &mut W) -> Option<f64>
-    where
-        W: Joints + Contacts + Arrange + Handles<Joint = JointId> + ?Sized,
-    {
-        let work = self.brain.as_ref().map_or(0.0, |brain| brain.work(world));
-        let end = self.gait.judge(world, work);
-        let [before, last] = self.gait.footfalls();
-        if let Some([rate, swing_rate]) = last.rates.filter(|_| self.gait.steps() > self.told) {
-            let (period, length) = (last.time - before.time, last.place - before.place);
-            self.paces[self.known % LAST] = Pace { angle: last.angle, rate, swing_rate, period, length };
-            self.told = self.gait.steps();
-            self.known += 1;
-        }
-        let over = end.is_some() || self.gait.ticks() >= self.walk.steps;
-        over.then(|| self.distance())
+        Self { walk, launch, gait, brain, told: 0, known: 0, paces: [Pace::default(); LAST] }
     }
 
     /// From the first stance to the last footfall \[m\]: only feet that came to stand count. NaN for a broken walk, 0 for one with energy
@@ -272,20 +227,71 @@ impl WalkerLife {
     }
 }
 
-impl<W> Life<W> for WalkerLife
+impl<W> Episode<W> for WalkerLife
 where
-    W: Joints + Contacts + Actuated + Arrange + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
+    W: Kinematics
+        + Joints
+        + Contacts
+        + Actuated
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+        + ?Sized,
 {
-    fn start(&mut self, world: &mut W, job: Job) {
-        self.begin(world, job);
+    /// Launches the walker: its rates are those of the launch times 1 + noise * u, each with its own u from -1 to 1, the stance leg's
+    /// first, from the stream of [`Domain::Start`] of the id's trial, individual and generation.
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
+        let rates = self.launch.rates.map(|rate| rate * (1.0 + self.walk.noise * stream.range_f64(-1.0, 1.0)));
+        let posture = Posture::standing(self.gait.walker(), 0, self.launch.angles, rates);
+        self.gait.start(world, 0, &posture);
+        if let Some(brain) = &mut self.brain {
+            brain.reset();
+        }
+        (self.told, self.known) = (0, 0);
     }
 
-    fn tick(&mut self, world: &mut W) -> Option<f64> {
-        let end = if self.begun { self.judge(world) } else { None };
-        self.begun = true;
-        if end.is_none() {
-            self.act(world);
+    /// Senses, computes and acts, if there is a network.
+    fn act(&mut self, world: &mut W) {
+        if let Some(brain) = &mut self.brain {
+            brain.act(world);
         }
-        end
     }
+
+    /// Judges the tick that has passed; `Some` ends the walk with the distance walked \[m\], NaN for a broken one.
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        let work = self.brain.as_ref().map_or(0.0, |brain| brain.work(world));
+        let end = self.gait.judge(world, work);
+        let [before, last] = self.gait.footfalls();
+        if let Some([rate, swing_rate]) = last.rates.filter(|_| self.gait.steps() > self.told) {
+            let (period, length) = (last.time - before.time, last.place - before.place);
+            self.paces[self.known % LAST] = Pace { angle: last.angle, rate, swing_rate, period, length };
+            self.told = self.gait.steps();
+            self.known += 1;
+        }
+        let over = end.is_some() || self.gait.ticks() >= self.walk.steps;
+        over.then(|| self.distance())
+    }
+
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        let gait = &self.gait;
+        for body in shown_bodies(gait.parts()) {
+            recorder.pose(body, world.pose(body));
+        }
+        if let Some(brain) = &self.brain {
+            recorder.sensors(brain.sensed());
+            recorder.neurons(brain.hidden());
+            recorder.outputs(brain.done());
+        }
+        let posture = gait.posture();
+        let [work, gained] = gait.energies();
+        let [[x, z], [outer, inner], [u, v]] = [posture.hip, posture.angles, posture.rates];
+        let stance = gait.stance() as f64;
+        recorder.scalars(&[x, z, outer, inner, u, v, stance, f64::from(gait.steps()), gait.distance(), gained, work]);
+        recorder.tick(seconds(gait.ticks(), self.walk.time_step));
+    }
+}
+
+/// The bodies that are recorded.
+fn shown_bodies(parts: &WalkerParts) -> [BodyId; 3] {
+    [parts.hip, parts.legs[0], parts.legs[1]]
 }

@@ -5,19 +5,17 @@ pub use crate::walking::{life::Brain, life::Launch, life::Pace, life::SENSES, li
 pub use crate::walking::{walker::Legs, walker::Posture, walker::Walker, walker::WalkerParts};
 pub use crate::worlds::Engine;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
+use farsa_body::{MjcfOptions, Recorder};
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 
 use crate::walking::{
-    settings::engine, settings::live_to_the_end, settings::mean, settings::mjcf_options, settings::on_contacts,
+    settings::engine, settings::mjcf_options, settings::on_contacts, settings::outcome,
     settings::walk,
 };
 use crate::walking::{simplest_model::ModelGait, simplest_model::SLOPES, simplest_model::WalkingModel};
 use crate::walking::{stage::drawn, stage::exported, stage::stage};
-use farsa_lab::{
-    Description, ENGINE, Error, Experiment, Job, Life as _, Note, Outcome, Setting, Settings, Setup, Tape,
-};
+use farsa_lab::{Bodies, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials};
 use farsa_view::Stage;
 
 /// How near does a rigid body with light feet come to the simplest walking model? \[Garcia1998\]
@@ -159,7 +157,11 @@ impl Experiment for PassiveWalker {
         ]
     }
 
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, Error> {
+    fn gene_bits(&self) -> u32 {
+        1
+    }
+
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         let plain = Config::default();
         let number = |key: &str| settings.number(key);
         let legs = Legs {
@@ -185,72 +187,73 @@ impl Experiment for PassiveWalker {
             engine: settings.word(ENGINE)?.parse()?,
         };
         match config.engine {
-            Engine::Articulated => Ok(Box::new(Lives::new(config)?)),
+            Engine::Articulated => Ok(Box::new(evaluator(config)?)),
             #[cfg(feature = "rapier")]
-            Engine::Rapier => Ok(Box::new(Lives::in_rapier(config)?)),
+            Engine::Rapier => Ok(Box::new(evaluator_in_rapier(config)?)),
             #[cfg(not(feature = "rapier"))]
             Engine::Rapier => Err(config.engine.missing()),
         }
     }
 }
 
-/// A walker on its slope.
-pub struct Lives<W = World<f64>> {
+/// Evaluates a walker under a configuration, in our articulated world.
+///
+/// # Errors
+/// [`Error::Setting`] for a slope without gait, [`Error::Other`] for a body that cannot be.
+pub fn evaluator(config: Config) -> Result<InWorld<World<f64>, PassiveTrial>, Error> {
+    let (model, parts) = config.model()?;
+    Ok(InWorld::new(World::new(model), PassiveTrial::new(config, parts)?))
+}
+
+/// Evaluates a walker under a configuration, in rapier.
+///
+/// # Errors
+/// As [`evaluator`].
+#[cfg(feature = "rapier")]
+pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapier::World, PassiveTrial>, Error> {
+    let (robot, parts) = config.walker.robot();
+    let world = farsa_physics::rapier::World::new(&robot, &config.rapier_options());
+    let world = world.map_err(|error| Error::Other(format!("passive-walker: {error}")))?;
+    Ok(InWorld::new(world, PassiveTrial::new(config, parts)?))
+}
+
+/// A walk on the slope, beside the gait of the simplest walking model.
+pub struct PassiveTrial {
     config: Config,
-    world: W,
     life: WalkerLife,
     gait: ModelGait,
 }
 
-impl Lives {
-    /// Lives under a configuration, in our articulated world.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for a slope without gait, [`Error::Other`] for a body that cannot be.
-    pub fn new(config: Config) -> Result<Self, Error> {
-        let (model, parts) = config.model()?;
-        Self::assemble(config, World::new(model), parts)
-    }
-}
-
-#[cfg(feature = "rapier")]
-impl Lives<farsa_physics::rapier::World> {
-    /// Lives under a configuration, in rapier.
-    ///
-    /// # Errors
-    /// As [`Lives::new`].
-    pub fn in_rapier(config: Config) -> Result<Self, Error> {
-        let (robot, parts) = config.walker.robot();
-        let world = farsa_physics::rapier::World::new(&robot, &config.rapier_options());
-        Self::assemble(config, world.map_err(|error| Error::Other(format!("passive-walker: {error}")))?, parts)
-    }
-}
-
-impl<W> Lives<W> {
-    fn assemble(config: Config, world: W, parts: WalkerParts) -> Result<Self, Error> {
+impl PassiveTrial {
+    fn new(config: Config, parts: WalkerParts) -> Result<Self, Error> {
         let gait = config.gait()?;
         let life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&gait), None);
-        Ok(Self { config, world, life, gait })
+        Ok(Self { config, life, gait })
     }
 }
 
-impl<W> Setup for Lives<W>
+impl<W> Episode<W> for PassiveTrial
 where
-    W: farsa_body::World
-        + Kinematics
-        + Joints
-        + Contacts
-        + Actuated
-        + Arrange
-        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
-        + Send,
+    WalkerLife: Episode<W>,
 {
-    fn genes(&self) -> usize {
-        1
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.life.start(world, id);
     }
+    fn act(&mut self, world: &mut W) {
+        self.life.act(world);
+    }
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.life.judge(world)
+    }
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.life.record(world, recorder);
+    }
+}
 
-    fn gene_bits(&self) -> u32 {
-        1
+impl Task for PassiveTrial {
+    /// Nothing evolves: one parameter that nothing depends on.
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("none", [0.0, 1.0])]
     }
 
     fn trials(&self) -> usize {
@@ -265,14 +268,6 @@ where
         stage(&exported(&self.config.walker))
     }
 
-    fn stage_of(&self, _: &[u16]) -> Stage {
-        stage(&drawn(&self.config.walker))
-    }
-
-    fn mjcf_options(&self) -> MjcfOptions {
-        mjcf_options(&self.config.walk)
-    }
-
     fn description(&self) -> Description {
         let Walk { steps, time_step, .. } = self.config.walk;
         Description {
@@ -283,24 +278,48 @@ where
         }
     }
 
-    /// Success is ten strides, twenty steps, without a fall.
-    fn live(&mut self, _: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        self.life.start(&mut self.world, job);
-        let mut outcome = live_to_the_end(&mut self.life, &mut self.world, tape);
+    /// The mean over the trials.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+
+    fn bodies(&self) -> Option<&dyn Bodies> {
+        Some(self)
+    }
+}
+
+impl Exports for PassiveTrial {
+    fn mjcf_options(&self) -> Option<MjcfOptions> {
+        Some(mjcf_options(&self.config.walk))
+    }
+}
+
+impl Bodies for PassiveTrial {
+    fn stage_with(&self, _: &[f32]) -> Stage {
+        stage(&drawn(&self.config.walker))
+    }
+}
+
+impl Rollout for PassiveTrial {
+    fn load(&mut self, _: &Evaluation<'_>) -> bool {
+        true
+    }
+
+    fn outcome(&self) -> Outcome {
+        let mut outcome = outcome(&self.life);
         // A walk of fewer steps has no pace: 0 of everything, so that the same notes stand in every trial.
         let pace = self.life.pace().unwrap_or_default();
         let unit = self.life.unit_of_time();
         let of_model = |found: f64, known: f64| 100.0 * (found / known - 1.0);
-        outcome.notes.push(("step angle off the model's [%]", Note::from(of_model(pace.angle, self.gait.angle))));
-        outcome.notes.push(("step rate off the model's [%]", Note::from(of_model(pace.rate * unit, self.gait.rate))));
+        outcome.notes.extend([
+            ("step angle off the model's [%]", Note::from(of_model(pace.angle, self.gait.angle))),
+            ("step rate off the model's [%]", Note::from(of_model(pace.rate * unit, self.gait.rate))),
+            ("step period off the model's [%]", Note::from(of_model(pace.period / unit, self.gait.period))),
+        ]);
         outcome
-            .notes
-            .push(("step period off the model's [%]", Note::from(of_model(pace.period / unit, self.gait.period))));
-        outcome
-    }
-
-    /// The mean over the trials.
-    fn fitness(&self, trials: &[Outcome]) -> f64 {
-        mean(trials)
     }
 }

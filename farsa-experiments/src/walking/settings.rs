@@ -1,12 +1,9 @@
 //! The settings that all experiments with walkers have, and how a walk is lived and told.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, World,
-};
-use farsa_lab::{ENGINE, Error, Note, Outcome, Setting, Settings, Tape};
+use farsa_body::MjcfOptions;
+use farsa_lab::{ENGINE, Error, Note, Outcome, Setting, Settings};
 
 use crate::walking::gait::End;
-use crate::walking::stage::tell;
 use crate::walking::walker::Walker;
 use crate::walking::{life::Walk, life::WalkerLife};
 use crate::worlds::Engine;
@@ -76,39 +73,14 @@ pub(crate) fn mjcf_options(walk: &Walk) -> MjcfOptions {
     MjcfOptions { time_step: walk.time_step, gravity, ..MjcfOptions::default() }
 }
 
-/// Lives a walk that has been started to its end; success is ten strides, twenty steps, without a fall.
-pub(crate) fn live_to_the_end<W>(life: &mut WalkerLife, world: &mut W, tape: &mut Tape<'_>) -> Outcome
-where
-    W: World
-        + Kinematics
-        + Joints
-        + Contacts
-        + Actuated
-        + Arrange
-        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
-{
-    let distance = loop {
-        life.act(world);
-        world.step();
-        let end = life.judge(world);
-        if let Some(recorder) = tape.recorder() {
-            tell(life, world, recorder);
-        }
-        if let Some(distance) = end {
-            break distance;
-        }
-    };
+/// The outcome of a walk that has ended; success is ten strides, twenty steps, without a fall.
+pub(crate) fn outcome(life: &WalkerLife) -> Outcome {
     let gait = life.gait();
     let end = gait.end().map_or("time", End::name);
     Outcome {
-        terms: vec![distance],
+        terms: vec![life.distance()],
         steps: gait.ticks(),
         success: gait.end().is_none() && gait.steps() >= 20,
         notes: vec![("end", Note::from(end)), ("steps made", Note::from(f64::from(gait.steps())))],
     }
-}
-
-/// The mean of the trials' terms, of which a walk has one.
-pub(crate) fn mean(trials: &[Outcome]) -> f64 {
-    trials.iter().flat_map(|outcome| &outcome.terms).sum::<f64>() / trials.len().max(1) as f64
 }

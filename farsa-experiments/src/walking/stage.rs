@@ -5,7 +5,6 @@ use farsa_body::{BodyId, Collider, Kinematics, Pose, Recorder, Robot, Shape, Sur
 use farsa_num::sin_cos;
 use farsa_view::{Channel, Stage};
 
-use crate::walking::life::WalkerLife;
 use crate::walking::{walker::Walker, walker::WalkerParts};
 
 /// Half the thickness of drawn legs, axle and soles \[m\].
@@ -68,12 +67,7 @@ pub(crate) fn exported(walker: &Walker) -> Robot {
     })
 }
 
-/// The bodies that are told.
-fn bodies(parts: &WalkerParts) -> [BodyId; 3] {
-    [parts.hip, parts.legs[0], parts.legs[1]]
-}
-
-/// The stage of a walker as it is drawn or exported; its scalars are what [`tell`] tells.
+/// The stage of a walker as it is drawn or exported; its scalars are what [`WalkerLife`](crate::walking::life::WalkerLife) records.
 pub(crate) fn stage(robot: &Robot) -> Stage {
     let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
     let places = ["hip.x [m]", "hip.z [m]"].map(in_group("place"));
@@ -82,27 +76,4 @@ pub(crate) fn stage(robot: &Robot) -> Stage {
     let walked = ["steps", "distance [m]", "energy gained [J]", "work of the motor [J]"].map(in_group("fitness"));
     let scalars = places.into_iter().chain(joints.map(in_group("joint"))).chain([stance]).chain(walked);
     Stage { scalars: scalars.collect(), ..Stage::of_robot(robot) }
-}
-
-/// Tells a tick of a life that has been judged.
-pub(crate) fn tell<W>(life: &WalkerLife, world: &W, recorder: &mut dyn Recorder)
-where
-    W: Kinematics<Body = BodyId> + ?Sized,
-{
-    let gait = life.gait();
-    for body in bodies(gait.parts()) {
-        recorder.pose(body, world.pose(body));
-    }
-    if let Some(brain) = life.brain() {
-        recorder.sensors(brain.sensed());
-        recorder.neurons(brain.hidden());
-        recorder.outputs(brain.done());
-    }
-    let posture = gait.posture();
-    let [work, gained] = gait.energies();
-    let [[x, z], [outer, inner], [u, v]] = [posture.hip, posture.angles, posture.rates];
-    let stance = gait.stance() as f64;
-    recorder.scalars(&[x, z, outer, inner, u, v, stance, f64::from(gait.steps()), gait.distance(), gained, work]);
-    // Rounded to the nanosecond: 201 steps of 0.01 s print as 2.01.
-    recorder.tick((f64::from(gait.ticks()) * life.walk().time_step * 1e9).round() / 1e9);
 }

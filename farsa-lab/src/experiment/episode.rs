@@ -1,6 +1,6 @@
 //! An episode: what happens in a world from the first to the last step of a trial.
 
-use farsa_body::{Recorder, World};
+use farsa_body::{ActuatorId, BodyId, Handles, JointId, Recorder, World};
 use serde::{Deserialize, Serialize};
 
 /// Which episode of a run: every random number of an episode is drawn from a stream that these numbers name.
@@ -82,6 +82,24 @@ where
     }
 }
 
+/// No world, for episodes that hold all that changes themselves; it has no clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct NoWorld;
+
+impl Handles for NoWorld {
+    type Body = BodyId;
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+
+impl World for NoWorld {
+    fn step(&mut self) {}
+
+    fn time_step(&self) -> f32 {
+        0.0
+    }
+}
+
 /// The time after so many steps \[s\], rounded to the nanosecond: 201 steps of 0.1 s are 20.1 s.
 pub fn seconds(steps: u32, time_step: f64) -> f64 {
     (f64::from(steps) * time_step * 1e9).round() / 1e9
@@ -90,7 +108,6 @@ pub fn seconds(steps: u32, time_step: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::{ActuatorId, BodyId, Handles, JointId};
 
     struct Clock(u32);
 

@@ -33,7 +33,7 @@ pub use controller_export::{
     SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
 };
 pub use definition::Experiment;
-pub use episode::{Episode, EpisodeId, run_episode, seconds};
+pub use episode::{Episode, EpisodeId, NoWorld, run_episode, seconds};
 pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Lesson, Parameter, Task};
 pub use genotype::Genotype;
 pub use in_lanes::{Batch, run_in_lanes};
@@ -41,6 +41,6 @@ pub use in_world::{InWorld, Rollout};
 pub use lanes::Lanes;
 pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
 pub use neurocontroller::Neurocontroller;
-pub use outcome::{ChannelGroup, Description, Note, Outcome};
+pub use outcome::{ChannelGroup, Description, Note, Outcome, mean_of_trials};
 pub use search_kind::Search;
 pub use settings::{Setting, Settings, Source, Value};

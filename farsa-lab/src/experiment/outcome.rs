@@ -25,6 +25,11 @@ impl Outcome {
     }
 }
 
+/// The sum of all terms of all trials over their number: for experiments whose fitness is a mean.
+pub fn mean_of_trials(trials: &[Outcome]) -> f64 {
+    trials.iter().flat_map(|outcome| &outcome.terms).sum::<f64>() / trials.len().max(1) as f64
+}
+
 /// A value of [`Outcome::notes`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Note {

@@ -1,0 +1,168 @@
+//! What there is to know of `push-box`, and its episodes over parameters.
+
+use farsa_body::{Pose, Recorder};
+use farsa_nn::Perceptron;
+
+use crate::push_box::{life::OUTPUTS, life::PushLife};
+use farsa_lab::{ChannelGroup, Description, Error, Evaluation, Note, Outcome, Parameter, Rollout, Task, mean_of_trials};
+use farsa_view::{Channel, Form, Links, NodeParameters, Prop, Role, Stage, screen_color};
+
+/// The layer of two logistic units that parameters are for.
+pub(crate) type Layer = Perceptron<Vec<f32>>;
+
+/// Two logistic units over these parameters.
+pub(crate) fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error> {
+    Perceptron::new(inputs, OUTPUTS, 1.0, parameters).map_err(|error| Error::Other(format!("push-box: {error}")))
+}
+
+impl Task for PushLife<Layer> {
+    /// In the layer's order, from +range to -range.
+    fn parameters(&self) -> Vec<Parameter> {
+        let (inputs, range) = (self.config().inputs(), self.config().weight_range);
+        let wheels = ["left", "right"];
+        let weights = (1..=inputs)
+            .flat_map(|input| wheels.map(|wheel| format!("weight of sensor {input} on the {wheel} wheel")));
+        let biases = wheels.map(|wheel| format!("bias of the {wheel} wheel"));
+        weights.chain(biases).map(|name| Parameter::new(name, [range, -range])).collect()
+    }
+
+    fn trials(&self) -> usize {
+        self.config().trials as usize
+    }
+
+    fn terms(&self) -> Vec<String> {
+        vec!["moved [m]".into()]
+    }
+
+    fn stage(&self) -> Stage {
+        let config = self.config();
+        let (inputs, scene) = (config.inputs(), config.scene());
+        let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
+        let largest = config.robot.max_wheel_speed;
+        let places = ["x [m]", "y [m]", "heading [rad]"];
+        let of_box = places.map(|place| format!("box {place}"));
+        let wheels = ["left wheel [rad/s]", "right wheel [rad/s]"].map(in_group("actuator"));
+        let eyes = (1..=inputs).map(|number| format!("infrared {number}"));
+        let mut stage = Stage::of_arena(&scene.arena).with_sensors(eyes).with_outputs(["left wheel", "right wheel"]);
+        stage.outputs.iter_mut().chain(&mut stage.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
+        for block in &scene.blocks {
+            let half = block.size.map(|x| 0.5 * x);
+            let middle = Pose::at([0.0, 0.0, half[2]]);
+            let prop = Prop::new("box", Form::Box { half }, middle, Role::Thing).on(self.cube());
+            stage.props.push(prop.with_color(screen_color(block.color)));
+            stage.bodies.push("box".into());
+        }
+        Stage {
+            scalars: places
+                .into_iter()
+                .chain(of_box.iter().map(String::as_str))
+                .map(in_group("place"))
+                .chain(wheels.map(|wheel| wheel.range(-largest, largest)))
+                .chain([Channel::new("box moved [m]").group("fitness")])
+                .collect(),
+            links: vec![Links { from: [0, inputs], to: [inputs, inputs + OUTPUTS], first: 0 }],
+            node_parameters: vec![NodeParameters {
+                name: "bias".into(),
+                nodes: [inputs, inputs + OUTPUTS],
+                first: OUTPUTS * inputs,
+            }],
+            ..stage
+        }
+    }
+
+    fn description(&self) -> Description {
+        let config = self.config();
+        let (inputs, speed) = (config.inputs(), config.speed());
+        let wheels = format!("left and right, 0 backwards .. 1/2 at rest .. 1 ahead, {:.0} mm/s", 1e3 * speed);
+        Description {
+            sensors: vec![ChannelGroup::new("infrared", inputs, "all around, by rays, 0 nothing .. 1 at the hull")],
+            motors: vec![ChannelGroup::new("wheels", OUTPUTS, &wheels)],
+            network: format!("{inputs}-{OUTPUTS}, one layer of logistic units without memory"),
+            parameters: Perceptron::parameter_count(inputs, OUTPUTS),
+            steps: config.steps as usize,
+            step_seconds: config.time_step,
+        }
+    }
+
+    /// The mean over the trials.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean_of_trials(trials)
+    }
+}
+
+impl Rollout for PushLife<Layer> {
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        let inputs = self.config().inputs();
+        if evaluation.parameters.len() != Perceptron::parameter_count(inputs, OUTPUTS) {
+            return false;
+        }
+        let Ok(layer) = layer(inputs, evaluation.parameters.to_vec()) else { return false };
+        self.set_controller(layer);
+        true
+    }
+
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(self.controller().parameters());
+    }
+
+    fn outcome(&self) -> Outcome {
+        let (trial, config) = (self.trial(), self.config());
+        if trial.failed {
+            return Outcome::failed();
+        }
+        Outcome {
+            terms: vec![self.fitness()],
+            steps: trial.steps,
+            success: trial.moved >= config.far,
+            notes: vec![
+                ("way of the box [m]", Note::from(trial.way)),
+                ("share of time touching", Note::from(f64::from(trial.touched) / f64::from(config.steps))),
+                ("fastest of the box [m/s]", Note::from(trial.fastest)),
+            ],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::push_box::config::PushConfig;
+    use crate::push_box::experiment::evaluator;
+    use farsa_lab::{EpisodeId, Evaluator, Genotype};
+    use farsa_view::Recording;
+
+    #[test]
+    fn genes_are_decoded_over_the_whole_range() {
+        let task = evaluator(PushConfig::default()).unwrap();
+        let first = Genotype::new(&task.parameters()[..2], 16);
+        assert_eq!(first.decode(&[0, u16::MAX]).unwrap(), [5.0, -5.0]);
+        assert!(first.decode(&[u16::MAX / 2; 2]).unwrap()[0].abs() < 1e-3);
+        // To the last bit as values 2 of this experiment computed it.
+        for gene in (0..=u16::MAX).step_by(13) {
+            let as_before = (5.0 - f64::from(gene) / f64::from(u16::MAX) * 2.0 * 5.0) as f32;
+            assert_eq!(first.decode(&[gene; 2]).unwrap()[0], as_before);
+        }
+    }
+
+    #[test]
+    fn an_episode_can_be_repeated_and_recorded() {
+        let mut evaluator = evaluator(PushConfig { steps: 40, ..PushConfig::default() }).unwrap();
+        let genes: Vec<u16> = (0..18_u32).map(|i| (i * 40503) as u16).collect();
+        let parameters = Genotype::new(&evaluator.parameters(), 16).decode(&genes).unwrap();
+        let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: 1 };
+        let of = |id| Evaluation { number: 0, parameters: &parameters, opponents: &[], id };
+        let plain = evaluator.evaluate(of(id), None);
+        evaluator.evaluate(of(EpisodeId { trial: 3, ..id }), None);
+        let mut recording = Recording::new(evaluator.stage());
+        assert_eq!(evaluator.evaluate(of(id), Some(&mut recording)), plain);
+        assert!(plain.is_finite() && plain.steps == 40, "{plain:?}");
+        assert_eq!(recording.times().len(), 40);
+        let columns = evaluator.stage().columns();
+        let moved = columns.iter().position(|column| column == "box moved [m]").unwrap();
+        assert_eq!(recording.row(39).nth(moved), Some(plain.terms[0]));
+        // Shared by the generation's individuals.
+        assert_eq!(evaluator.evaluate(of(EpisodeId { individual: 8, ..id }), None), plain);
+        let short = Evaluation { parameters: &parameters[1..], ..of(id) };
+        assert!(!evaluator.evaluate(short, None).is_finite());
+    }
+}
