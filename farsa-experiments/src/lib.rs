@@ -29,14 +29,3 @@ pub use walking::body_evolution::BodyEvolution;
 pub use walking::passive_walker;
 pub use walking::passive_walker::PassiveWalker;
 pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
-
-pub use farsa_lab::{
-    ActuatorExport, BestOfRun, ChannelGroup, ControllerExport, CtrnnExport, Description, Error, Experiment, EpisodeId,
-    JudgeExport, Lanes, Lesson, Life, MotorDrive, MotorExport, NetworkExport, Neurocontroller, Note, Outcome,
-    PointExport, Search, SensorExport, SensorReading, ServoExport, Setting, Settings, Setup, Source, StartExport,
-    SurfaceExport, Tape, Task, VALUES_VERSION, Value, cli, evolution, live, live_in_lanes, read_genotypes,
-};
-pub use farsa_view::{
-    Beam, Camera, CastRay, Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Page, Picture, Placed, Prop, Push,
-    Recording, Role, Stage, Touching, View,
-};

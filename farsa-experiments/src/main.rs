@@ -4,8 +4,9 @@ use std::process::ExitCode;
 
 use farsa_experiments::{
     Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, KinestheticGrasp,
-    MinimalCognition, PassiveWalker, PredatorPrey, PushBox, ReachGraspLift, cli,
+    MinimalCognition, PassiveWalker, PredatorPrey, PushBox, ReachGraspLift,
 };
+use farsa_lab::cli;
 
 fn main() -> ExitCode {
     cli::main(&[

@@ -35,9 +35,7 @@ impl Experiment for Aggregation {
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        Ok(Box::new(evaluator(AggregationMission::new(
-            AggregationConfig::of_condition(condition).read(settings)?,
-        ))?))
+        Ok(Box::new(evaluator(AggregationMission::new(AggregationConfig::of_condition(condition).read(settings)?))?))
     }
 }
 

@@ -93,7 +93,12 @@ impl Mission for AggregationMission {
 
     /// Puts the nests and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
     /// generation.
-    fn arrange<C: Controller, W: TeamWorld>(&mut self, team: &Team<C>, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
+    fn arrange<C: Controller, W: TeamWorld>(
+        &mut self,
+        team: &Team<C>,
+        world: &mut W,
+        id: EpisodeId,
+    ) -> Result<(), ArenaError> {
         const TRIES: u32 = 1000;
         let Self { config, nests, .. } = self;
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);

@@ -4,7 +4,10 @@ use farsa_body::Recorder;
 use farsa_physics::arena::{Batch, World};
 
 use crate::braitenberg::{life::Config, life::LIGHTS, life::Vehicle, life::VehicleLife};
-use farsa_lab::{ChannelGroup, Description, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials};
+use farsa_lab::{
+    ChannelGroup, Description, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome, Parameter,
+    Rollout, Setting, Settings, Task, mean_of_trials,
+};
 use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 /// What four ways of wiring two light-driven wheels look like from outside \[Braitenberg1984, vehicles 2a to 3b\].

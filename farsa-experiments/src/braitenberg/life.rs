@@ -192,20 +192,7 @@ impl VehicleLife {
         let wiring = Wiring::new(config.vehicle, &robot.infrared.angles, config.gain, config.base);
         let (x, y) = ([0.0; LIGHTS], [0.5; 2]);
         let (distances, bearings) = ([0.0; 2], [0.0; 2]);
-        Ok(Self {
-            config,
-            parts,
-            lamp,
-            lights,
-            wheels,
-            wiring,
-            x,
-            y,
-            steps: 0,
-            distances,
-            bearings,
-            collisions: 0,
-        })
+        Ok(Self { config, parts, lamp, lights, wheels, wiring, x, y, steps: 0, distances, bearings, collisions: 0 })
     }
 
     /// Begins a trial with the robot so far from the lamp \[m\], seen from there in a direction, and with a heading \[rad\].
@@ -285,7 +272,7 @@ impl VehicleLife {
     }
 }
 
-impl<W> Life<W> for VehicleLife
+impl<W> Episode<W> for VehicleLife
 where
     W: Planar
         + Kinematics

@@ -6,5 +6,5 @@
 mod experiment;
 mod life;
 
-pub use experiment::{Braitenberg, Lives};
+pub use experiment::{Braitenberg, evaluator};
 pub use life::{Config, LIGHTS, Vehicle, VehicleLife, Wiring};

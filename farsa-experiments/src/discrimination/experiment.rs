@@ -10,7 +10,10 @@ use crate::discrimination::life::CylinderLife;
 use crate::discrimination::{config::Config, config::EYES, config::ROBOTS};
 use crate::infrared::settings::InfraredModel;
 use crate::worlds::PlanarEngine;
-use farsa_lab::{ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome, Parameter, Rollout, Search, Setting, Settings, Task, mean_of_trials};
+use farsa_lab::{
+    ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome,
+    Parameter, Rollout, Search, Setting, Settings, Task, mean_of_trials,
+};
 use farsa_view::{Channel, Links, NodeParameters, Stage};
 
 /// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2\]
@@ -133,9 +136,9 @@ impl Task for CylinderLife<Layer> {
         let (inputs, range) = (self.config().inputs(), self.config().weight_range);
         let wheels = ["left", "right"];
         let biases = wheels.map(|wheel| format!("bias of the {wheel} wheel"));
-        let weights = wheels.into_iter().flat_map(|wheel| {
-            (1..=inputs).map(move |input| format!("weight of sensor {input} on the {wheel} wheel"))
-        });
+        let weights = wheels
+            .into_iter()
+            .flat_map(|wheel| (1..=inputs).map(move |input| format!("weight of sensor {input} on the {wheel} wheel")));
         biases.into_iter().chain(weights).map(|name| Parameter::new(name, [range, -range])).collect()
     }
 

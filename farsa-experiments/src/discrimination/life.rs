@@ -190,7 +190,7 @@ impl<C: Controller> CylinderLife<C> {
     }
 }
 
-impl<W, C> Life<W> for CylinderLife<C>
+impl<W, C> Episode<W> for CylinderLife<C>
 where
     W: Planar
         + Rays

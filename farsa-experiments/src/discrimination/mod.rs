@@ -14,7 +14,7 @@ pub use crate::infrared::{settings::Infrared, settings::InfraredModel};
 pub use crate::worlds::PlanarEngine;
 pub use config::{Config, EYES};
 pub use cylinders::DiscriminationCylinders;
-pub use experiment::{Discrimination, Layer, evaluator};
 #[cfg(feature = "rapier")]
 pub use experiment::evaluator_in_rapier;
+pub use experiment::{Discrimination, Layer, evaluator};
 pub use life::{CYLINDERS, CylinderLife, Trial};

@@ -81,7 +81,12 @@ impl Mission for ForagingMission {
 
     /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
     /// generation.
-    fn arrange<C: Controller, W: TeamWorld>(&mut self, team: &Team<C>, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
+    fn arrange<C: Controller, W: TeamWorld>(
+        &mut self,
+        team: &Team<C>,
+        world: &mut W,
+        id: EpisodeId,
+    ) -> Result<(), ArenaError> {
         let Self { config, field, nest } = self;
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         world.clear();

@@ -19,6 +19,6 @@ pub use crate::team::{life::Mission, life::Moment, life::TeamLife};
 pub use baseline::HomingForager;
 pub use config::ForagingConfig;
 pub use experiment::{Foraging, forage};
-pub use farsa_lab::TeamNetwork;
+pub use farsa_lab::OwnedNetwork;
 pub use field::{Field, Forager};
 pub use life::{ForagingLife, ForagingMission};

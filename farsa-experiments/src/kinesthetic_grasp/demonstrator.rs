@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use farsa_body::{Channels as _, Kinematics as _, Motor as _, MusclePair, Sensor as _, Tabletop};
-use farsa_lab::{EpisodeId, Error};
+use farsa_lab::{Episode, EpisodeId, Error, run_episode};
 use farsa_nn::{Controller, Demonstration};
 use farsa_physics::articulated::{Model, World};
 
@@ -73,39 +73,92 @@ impl Teacher {
     pub(crate) fn lead<C: Controller>(&mut self, id: EpisodeId, network: &mut C, share: f32, record: &mut Record) {
         let Self { scene, world, statics, judge, senses, motors } = self;
         (record.success, record.x, record.wanted) = (false, Vec::new(), Vec::new());
-        judge.start(world, id);
-        network.reset();
-        senses.reset();
-        motors.reset();
-        let (start, sphere) = scene.start(id);
-        let Ok(plan) = Plan::new(Timetable::default(), Arc::clone(statics), &start, sphere) else { return };
-        let (mut x, mut own, mut y) = (vec![0.0; senses.channels()], [0.0; OUTPUTS], [0.0; OUTPUTS]);
-        let mut time = 0.0;
-        while judge.tick(world).is_none() {
-            senses.set_label(judge.trial().phase);
-            senses.read(world, &mut x);
-            let (positions, torques) = plan.torques(world, time);
-            let wanted = wanted(statics, &plan, &positions, &torques, time);
-            network.step(&x, &mut own);
-            record.x.extend_from_slice(&x);
-            record.wanted.extend_from_slice(&wanted);
-            for ((y, wanted), own) in y.iter_mut().zip(wanted).zip(own) {
-                *y = wanted + share * (own - wanted);
-            }
-            motors.drive(&y, world);
-            farsa_body::World::step(world);
+        let x = vec![0.0; senses.channels()];
+        let mut led = Led {
+            scene,
+            statics,
+            judge,
+            senses,
+            motors,
+            network,
+            share,
+            record,
+            plan: None,
+            x,
+            positions: Vec::new(),
+            time: 0.0,
+        };
+        run_episode(&mut led, world, id, None);
+        let success = led.plan.is_some() && led.judge.succeeds();
+        led.record.success = success;
+    }
+}
 
-            let (posture, _) = plan.wanted(time);
-            let follows = posture.iter().zip(&positions).all(|(wanted, q)| (wanted - q).abs() < PATIENCE);
-            time += if follows { scene.config.time_step } else { 0.0 };
-            let [x, y, z] = world.pose(Tabletop::SPHERE).position.map(f64::from);
-            let lies = z < scene.config.sphere_radius + 0.01;
-            let rolled = (x - sphere[0]).abs().max((y - sphere[1]).abs()) > ROLLED;
-            if lies && rolled {
-                break;
-            }
+/// An episode in which the arm is led.
+struct Led<'a, C> {
+    scene: &'a Scene,
+    statics: &'a Arc<Statics>,
+    judge: &'a mut Judge,
+    senses: &'a mut Senses,
+    motors: &'a mut Motors,
+    network: &'a mut C,
+    share: f32,
+    record: &'a mut Record,
+    /// The script, with the sphere's place; none if the sphere lies out of reach.
+    plan: Option<(Plan, [f64; 2])>,
+    x: Vec<f32>,
+    /// Of the arm's joints before the step \[rad\].
+    positions: Vec<f64>,
+    /// The script's own \[s\].
+    time: f64,
+}
+
+impl<C: Controller> Episode<World<f32>> for Led<'_, C> {
+    fn start(&mut self, world: &mut World<f32>, id: EpisodeId) {
+        self.judge.start(world, id);
+        self.network.reset();
+        self.senses.reset();
+        self.motors.reset();
+        let (start, sphere) = self.scene.start(id);
+        let plan = Plan::new(Timetable::default(), Arc::clone(self.statics), &start, sphere);
+        self.plan = plan.ok().map(|plan| (plan, sphere));
+        self.time = 0.0;
+    }
+
+    fn has_started(&self) -> bool {
+        self.plan.is_some()
+    }
+
+    fn act(&mut self, world: &mut World<f32>) {
+        let Some((plan, _)) = &self.plan else { return };
+        self.senses.set_label(self.judge.trial().phase);
+        self.senses.read(world, &mut self.x);
+        let (positions, torques) = plan.torques(world, self.time);
+        let wanted = wanted(self.statics, plan, &positions, &torques, self.time);
+        self.positions = positions.to_vec();
+        let (mut own, mut y) = ([0.0; OUTPUTS], [0.0; OUTPUTS]);
+        self.network.step(&self.x, &mut own);
+        self.record.x.extend_from_slice(&self.x);
+        self.record.wanted.extend_from_slice(&wanted);
+        for ((y, wanted), own) in y.iter_mut().zip(wanted).zip(own) {
+            *y = wanted + self.share * (own - wanted);
         }
-        record.success = judge.succeeds();
+        self.motors.drive(&y, world);
+    }
+
+    /// Ends the episode, too, where the sphere has rolled away.
+    fn judge(&mut self, world: &mut World<f32>) -> Option<f64> {
+        let (plan, sphere) = self.plan.as_ref()?;
+        let (posture, _) = plan.wanted(self.time);
+        let follows = posture.iter().zip(&self.positions).all(|(wanted, q)| (wanted - q).abs() < PATIENCE);
+        self.time += if follows { self.scene.config.time_step } else { 0.0 };
+        let [x, y, z] = world.pose(Tabletop::SPHERE).position.map(f64::from);
+        let lies = z < self.scene.config.sphere_radius + 0.01;
+        let rolled = (x - sphere[0]).abs().max((y - sphere[1]).abs()) > ROLLED;
+        if lies && rolled {
+            return Some(self.judge.trial().ledger.total());
+        }
+        self.judge.judge(world)
     }
 }
 

@@ -2,14 +2,19 @@
 
 use std::sync::Arc;
 
-use farsa_body::MjcfOptions;
+use farsa_body::Recorder;
+use farsa_physics::articulated::World;
 
 use crate::kinesthetic_grasp::{training::Lessons, training::School};
 use crate::reach_grasp_lift::config::Config as Reach;
-use crate::reach_grasp_lift::experiment::Lives as ReachLives;
+use crate::reach_grasp_lift::experiment::evaluator;
 use crate::reach_grasp_lift::scene::Scene;
+use crate::reach_grasp_lift::task::ReachTask;
 use crate::worlds::Engine;
-use farsa_lab::{ControllerExport, Description, ENGINE, EpisodeId, Error, Evaluation, Evaluator, Experiment, Lanes, Lesson, Outcome, Search, Setting, Settings, StartExport};
+use farsa_lab::{
+    Description, ENGINE, Error, Evaluation, Evaluator, Experiment, Exports, InLanes, InWorld, Learner, Outcome,
+    Parameter, Search, Setting, Settings, Task,
+};
 use farsa_view::Stage;
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
@@ -110,85 +115,67 @@ impl Experiment for KinestheticGrasp {
     }
 
     fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        Ok(Box::new(Lives::new(Config::read(settings)?)?))
+        Ok(Box::new(Trainee::new(Config::read(settings)?)?))
     }
 }
 
-/// The lives of `reach-grasp-lift`, and a school.
-pub struct Lives {
-    lives: ReachLives,
+/// Evaluates as `reach-grasp-lift` does, and takes lessons.
+pub struct Trainee {
+    evaluator: InWorld<World<f32>, ReachTask>,
     school: School,
 }
 
-impl Lives {
-    /// Lives and lessons under a configuration.
+impl Trainee {
+    /// Trials and lessons under a configuration.
     ///
     /// # Errors
     /// [`Error::Other`] for a configuration whose robot or network cannot be built.
     pub fn new(config: Config) -> Result<Self, Error> {
         let scene = Arc::new(Scene::new(config.reach.clone())?);
-        Ok(Self { lives: ReachLives::new(config.reach)?, school: School::new(scene, config.lessons)? })
+        Ok(Self { evaluator: evaluator(config.reach)?, school: School::new(scene, config.lessons)? })
     }
 }
 
-impl Setup for Lives {
-    fn genes(&self) -> usize {
-        self.lives.genes()
+impl Task for Trainee {
+    fn parameters(&self) -> Vec<Parameter> {
+        self.evaluator.parameters()
     }
 
     fn trials(&self) -> usize {
-        self.lives.trials()
+        self.evaluator.trials()
     }
 
     fn terms(&self) -> Vec<String> {
-        self.lives.terms()
+        self.evaluator.terms()
     }
 
     fn stage(&self) -> Stage {
-        self.lives.stage()
-    }
-
-    fn mjcf_options(&self) -> MjcfOptions {
-        self.lives.mjcf_options()
-    }
-
-    fn controller(&self, genes: &[u16]) -> Option<ControllerExport> {
-        self.lives.controller(genes)
-    }
-
-    fn start(&self, id: EpisodeId) -> Option<StartExport> {
-        self.lives.start(id)
+        self.evaluator.stage()
     }
 
     fn description(&self) -> Description {
-        self.lives.description()
-    }
-
-    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
-        self.lives.live(genes, id, tape)
-    }
-
-    fn use_lanes(&mut self, lanes: Lanes) -> Result<Lanes, Error> {
-        self.lives.use_lanes(lanes)
-    }
-
-    fn live_many<'g>(&mut self, next: &mut dyn FnMut() -> Option<Task<'g>>, done: &mut dyn FnMut(usize, Outcome)) {
-        self.lives.live_many(next, done);
-    }
-
-    fn first_words(&self, seed: u64) -> Vec<f64> {
-        self.school.first_words(seed)
-    }
-
-    fn lesson(&mut self, words: &mut [f64], seed: u64, generation: u32) -> Option<Lesson> {
-        self.school.lesson(words, seed, generation)
-    }
-
-    fn learned(&self, words: &[f64]) -> Vec<u16> {
-        self.school.genes(words)
+        self.evaluator.description()
     }
 
     fn fitness(&self, trials: &[Outcome]) -> f64 {
-        self.lives.fitness(trials)
+        self.evaluator.fitness(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        self.evaluator.exports()
+    }
+}
+
+impl Evaluator for Trainee {
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
+        self.evaluator.evaluate(evaluation, recorder)
+    }
+
+    fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
+        self.evaluator.in_lanes()
+    }
+
+    fn learner(&mut self) -> Option<&mut dyn Learner> {
+        Some(&mut self.school)
     }
 }

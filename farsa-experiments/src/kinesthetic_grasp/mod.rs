@@ -8,5 +8,5 @@ mod demonstrator;
 mod experiment;
 mod training;
 
-pub use experiment::{Config, KinestheticGrasp, Lives};
+pub use experiment::{Config, KinestheticGrasp, Trainee};
 pub use training::Lessons;

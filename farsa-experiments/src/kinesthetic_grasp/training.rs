@@ -164,6 +164,20 @@ impl School {
     }
 }
 
+impl farsa_lab::Learner for School {
+    fn first_words(&self, seed: u64) -> Vec<f64> {
+        Self::first_words(self, seed)
+    }
+
+    fn lesson(&mut self, words: &mut [f64], seed: u64, generation: u32) -> Option<Lesson> {
+        Self::lesson(self, words, seed, generation)
+    }
+
+    fn learned(&self, words: &[f64]) -> Vec<u16> {
+        self.genes(words)
+    }
+}
+
 /// Root of the mean squared error of motor values over all demonstrations.
 fn error(squares: &mut Gradient<f64>, pupil: &Learner<f64, Adam>, records: &[Record]) -> Result<f64, NetworkError> {
     let (mut sum, mut values) = (0.0, 0);

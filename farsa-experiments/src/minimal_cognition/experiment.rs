@@ -12,7 +12,10 @@ use crate::minimal_cognition::{
     network::INNER, network::LAYOUT, network::LINKED, network::MOTOR_ONES, network::MOTORS, network::NEURONS,
     network::RAYS, network::Wiring,
 };
-use farsa_lab::{ChannelGroup, CtrnnExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, NoWorld, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials, seconds};
+use farsa_lab::{
+    ChannelGroup, CtrnnExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
+    InWorld, NoWorld, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials, seconds,
+};
 use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, Role, Stage, View};
 
 /// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]

@@ -71,7 +71,9 @@ impl Wiring {
             // Networks compute in f32.
             let [low, high] = range(kind).map(|end| f64::from(end as f32));
             if !(low.is_finite() && high.is_finite() && low <= high) {
-                return Err(Error::Other(format!("minimal-cognition: {kind:?} from {low} to {high}: no range of numbers")));
+                return Err(Error::Other(format!(
+                    "minimal-cognition: {kind:?} from {low} to {high}: no range of numbers"
+                )));
             }
             parameters.push(Parameter::new(format!("{kind:?} {}", number + 1), [low, high]));
         }

@@ -1,6 +1,6 @@
 //! The values of `predator-prey`, as settings.
 
-use farsa_lab::{Error, OwnedNetwork, Setting, Settings};
+use farsa_lab::{Error, OwnedNetwork, Setting, Settings, resting_network};
 use farsa_physics::arena::{Arena, CollisionRule, World};
 
 use crate::team::task;
@@ -107,18 +107,14 @@ impl PredatorPreyConfig {
         task::world(self.arena())
     }
 
-    /// The network of a genome.
+    /// The network with these parameters.
     ///
     /// # Errors
-    /// [`Error::Other`] for a genome of another length.
-    pub fn network(&self, genes: &[u16]) -> Result<TeamNetwork, Error> {
-        let mut decoder = NetworkDecoder::new(self.team.layout(self.inputs(), OUTPUTS), self.team.weight_range)?;
-        let mut network = decoder.network()?;
-        if decoder.decode_into(genes, core::slice::from_mut(&mut network)) {
-            return Ok(network);
-        }
-        let (found, wanted) = (genes.len(), decoder.layout.parameter_count());
-        Err(Error::Other(format!("predator-prey: {found} genes where {wanted} are wanted")))
+    /// [`Error::Other`] for another number of them.
+    pub fn network(&self, parameters: &[f32]) -> Result<OwnedNetwork, Error> {
+        let mut network = resting_network(&self.team.layout(self.inputs(), OUTPUTS))?;
+        network.copy_parameters(parameters).map_err(|error| Error::Other(format!("predator-prey: {error}")))?;
+        Ok(network)
     }
 
     /// Channels that a controller reads: infrared and camera.

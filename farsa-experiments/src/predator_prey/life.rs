@@ -97,7 +97,12 @@ impl Mission for PredatorPreyMission {
     /// the id's trial, generation, and place within its population.
     ///
     /// The same place in both populations has the same headings: the two lives of a test are one.
-    fn arrange<C: Controller, W: TeamWorld>(&mut self, _: &Team<C>, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
+    fn arrange<C: Controller, W: TeamWorld>(
+        &mut self,
+        _: &Team<C>,
+        world: &mut W,
+        id: EpisodeId,
+    ) -> Result<(), ArenaError> {
         let place = id.individual % (self.config.population as u32).max(1);
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, place, id.generation);
         self.captured = false;

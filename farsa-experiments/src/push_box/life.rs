@@ -153,7 +153,7 @@ impl<C: Controller> PushLife<C> {
     }
 }
 
-impl<W, C> Life<W> for PushLife<C>
+impl<W, C> Episode<W> for PushLife<C>
 where
     W: Planar
         + Rays

@@ -4,7 +4,9 @@ use farsa_body::{Pose, Recorder};
 use farsa_nn::Perceptron;
 
 use crate::push_box::{life::OUTPUTS, life::PushLife};
-use farsa_lab::{ChannelGroup, Description, Error, Evaluation, Note, Outcome, Parameter, Rollout, Task, mean_of_trials};
+use farsa_lab::{
+    ChannelGroup, Description, Error, Evaluation, Note, Outcome, Parameter, Rollout, Task, mean_of_trials,
+};
 use farsa_view::{Channel, Form, Links, NodeParameters, Prop, Role, Stage, screen_color};
 
 /// The layer of two logistic units that parameters are for.
@@ -20,8 +22,8 @@ impl Task for PushLife<Layer> {
     fn parameters(&self) -> Vec<Parameter> {
         let (inputs, range) = (self.config().inputs(), self.config().weight_range);
         let wheels = ["left", "right"];
-        let weights = (1..=inputs)
-            .flat_map(|input| wheels.map(|wheel| format!("weight of sensor {input} on the {wheel} wheel")));
+        let weights =
+            (1..=inputs).flat_map(|input| wheels.map(|wheel| format!("weight of sensor {input} on the {wheel} wheel")));
         let biases = wheels.map(|wheel| format!("bias of the {wheel} wheel"));
         weights.chain(biases).map(|name| Parameter::new(name, [range, -range])).collect()
     }

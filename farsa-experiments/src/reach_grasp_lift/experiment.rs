@@ -1,20 +1,12 @@
 //! The experiment `reach-grasp-lift` as the `farsa` command runs it.
 
-use std::sync::Arc;
-
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
-use farsa_nn::Network;
 use farsa_physics::articulated::{Batch, Model, World};
 
-use crate::reach_grasp_lift::decoder::Decoder;
-use crate::reach_grasp_lift::fitness::Ledger;
+use crate::reach_grasp_lift::config::Config;
 use crate::reach_grasp_lift::scene::Scene;
-use crate::reach_grasp_lift::{config::Config, config::TRIALS};
-use crate::reach_grasp_lift::{life::Judge, life::ReachLife};
-use crate::reach_grasp_lift::{stage::NetworkLife, stage::Teller};
+use crate::reach_grasp_lift::task::ReachTask;
 use crate::worlds::Engine;
-use farsa_lab::{ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Lanes, NetworkExport, Note, Outcome, Setting, Settings, StartExport, run_in_lanes};
-use farsa_view::Stage;
+use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings};
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
@@ -49,47 +41,12 @@ impl Experiment for ReachGraspLift {
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         let config = Config::read(condition != NO_LABELS, settings)?;
         match config.engine {
-            Engine::Articulated => Ok(Box::new(Lives::new(config)?)),
+            Engine::Articulated => Ok(Box::new(evaluator(config)?)),
             #[cfg(feature = "rapier")]
-            Engine::Rapier => Ok(Box::new(Lives::in_rapier(config)?)),
+            Engine::Rapier => Ok(Box::new(evaluator_in_rapier(config)?)),
             #[cfg(not(feature = "rapier"))]
             Engine::Rapier => Err(config.engine.missing()),
         }
-    }
-}
-
-/// The scene in its world with a network that genes are decoded into: everything that a thread needs to live lives.
-pub struct Lives<W = World<f32>> {
-    world: W,
-    /// For worlds in lanes, where there are any.
-    model: Option<Model<f32>>,
-    life: NetworkLife,
-    decoder: Decoder,
-    teller: Teller,
-    /// For lives side by side.
-    together: Option<Together>,
-}
-
-/// Worlds in lanes, and the life in each with the number of its task.
-struct Together {
-    batch: Batch,
-    lives: Vec<Numbered>,
-}
-
-struct Numbered {
-    life: NetworkLife,
-    number: usize,
-}
-
-impl<W: ?Sized> Life<W> for Numbered
-where
-    NetworkLife: Life<W>,
-{
-    fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.life.start(world, id);
-    }
-    fn tick(&mut self, world: &mut W) -> Option<f64> {
-        self.life.tick(world)
     }
 }
 
@@ -97,228 +54,29 @@ fn wrong(error: &dyn std::fmt::Display) -> Error {
     Error::Other(format!("reach-grasp-lift: {error}"))
 }
 
-impl Lives {
-    /// Lives under a configuration, in our articulated world.
-    ///
-    /// # Errors
-    /// [`Error::Other`] for a configuration whose robot or network cannot be built.
-    pub fn new(config: Config) -> Result<Self, Error> {
-        Self::assemble(config, |scene| {
-            let model = Model::new(&scene.robot, &scene.config.options()).map_err(|error| wrong(&error))?;
-            Ok((World::new(model.clone()), Some(model)))
-        })
-    }
+/// Evaluates under a configuration, in our articulated world.
+///
+/// # Errors
+/// [`Error::Other`] for a configuration whose robot or network cannot be built.
+pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, ReachTask>, Error> {
+    let scene = Scene::new(config)?;
+    let model = Model::new(&scene.robot, &scene.config.options()).map_err(|error| wrong(&error))?;
+    let world = World::new(model.clone());
+    let batch =
+        move |lanes: Lanes| Batch::new(model.clone(), lanes.count(), lanes.level()).map_err(|error| wrong(&error));
+    Ok(InWorld::new(world, ReachTask::new(scene)?).with_lanes(batch))
 }
 
+/// Evaluates under a configuration, in rapier.
+///
+/// # Errors
+/// As [`evaluator`].
 #[cfg(feature = "rapier")]
-impl Lives<farsa_physics::rapier::World> {
-    /// Lives under a configuration, in rapier.
-    ///
-    /// # Errors
-    /// [`Error::Other`] for a configuration whose robot or network cannot be built.
-    pub fn in_rapier(config: Config) -> Result<Self, Error> {
-        Self::assemble(config, |scene| {
-            let world = farsa_physics::rapier::World::new(&scene.robot, &scene.config.rapier_options());
-            Ok((world.map_err(|error| wrong(&error))?, None))
-        })
-    }
-}
-
-impl<W> Lives<W> {
-    fn assemble(
-        config: Config,
-        world: impl FnOnce(&Scene) -> Result<(W, Option<Model<f32>>), Error>,
-    ) -> Result<Self, Error> {
-        let layout = config.layout();
-        let decoder = Decoder::new(layout, config.leak, config.weight_range as f32)?;
-        let (zeros, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
-        let network = Network::new(layout, config.leak, zeros, state).map_err(|error| wrong(&error))?;
-        let scene = Scene::new(config)?;
-        let (world, model) = world(&scene)?;
-        let teller = Teller::new(&scene);
-        let life = ReachLife::new(Arc::new(scene), network)?;
-        Ok(Self { world, model, life, decoder, teller, together: None })
-    }
-
-    fn outcome(judge: &Judge) -> Outcome {
-        let time_step = judge.scene().config.time_step;
-        let trial = judge.trial();
-        let Ledger { reach, grasp, lift, bonus } = trial.ledger;
-        let second = judge.scene().config.steps_per_second();
-        // What the printed reward alone would call a success: any height will do.
-        let printed = trial.lifted >= second && !trial.fallen;
-        Outcome {
-            terms: vec![reach, grasp, lift, bonus],
-            steps: trial.steps,
-            success: judge.succeeds(),
-            notes: vec![
-                ("phase", Note::from(trial.phase.name())),
-                ("end", Note::from(if trial.fallen { "sphere fell" } else { "time" })),
-                ("off the table", Note::from(if printed { "yes" } else { "no" })),
-                ("held [s]", Note::from(f64::from(trial.held) * time_step)),
-                ("height [cm]", Note::from(judge.seen().height)),
-                ("highest [cm]", Note::from(trial.highest)),
-            ],
-        }
-    }
-}
-
-impl<W> Setup for Lives<W>
-where
-    W: farsa_body::World
-        + Kinematics
-        + Joints
-        + Actuated
-        + Contacts
-        + Arrange
-        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
-        + Send,
-{
-    fn genes(&self) -> usize {
-        self.decoder.parameters.len()
-    }
-
-    fn trials(&self) -> usize {
-        TRIALS
-    }
-
-    fn terms(&self) -> Vec<String> {
-        ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec()
-    }
-
-    fn stage(&self) -> Stage {
-        Teller::stage(&self.life)
-    }
-
-    fn mjcf_options(&self) -> MjcfOptions {
-        let scene = self.life.judge().scene();
-        scene.mjcf_options()
-    }
-
-    fn controller(&self, genes: &[u16]) -> Option<ControllerExport> {
-        let (scene, life) = (self.life.judge().scene(), &self.life);
-        let config = &scene.config;
-        let mut decoder = Decoder::new(config.layout(), config.leak, config.weight_range as f32).ok()?;
-        let network =
-            decoder.decode(genes).then(|| NetworkExport::new(&config.layout(), config.leak, &decoder.parameters));
-        Some(scene.controller(network?, life.senses().names(), life.motors().names()))
-    }
-
-    fn start(&self, id: EpisodeId) -> Option<StartExport> {
-        Some(self.life.judge().scene().start_by_name(id))
-    }
-
-    fn description(&self) -> Description {
-        let config = &self.life.judge().scene().config;
-        let saturation = config.touch_saturation;
-        let mut sensors = vec![
-            ChannelGroup::new("arm joints", 7, "J1..J7, 0 at the lower and 1 at the upper limit"),
-            ChannelGroup::new(
-                "hand joints",
-                10,
-                "J8 J9 J10 J13 J14 J17 J18 J21 J22, 0 extended and 1 flexed; J16, 0 at the lower and 1 at the upper limit",
-            ),
-            ChannelGroup::new(
-                "touch",
-                6,
-                &format!("thumb, index, middle, ring, little finger, palm: touching pairs / {saturation}, at most 1"),
-            ),
-            ChannelGroup::new("sphere position", 3, "sphere's centre relative to the palm's, x, y, z [cm]"),
-        ];
-        if config.labels {
-            let meaning = format!("{} for the present phase (reach, grasp, lift), else 0", config.label_amplitude);
-            sensors.push(ChannelGroup::new("label", 3, &meaning));
-        }
-        let motors = vec![
-            ChannelGroup::new("muscles", 14, "activation of agonist and antagonist of J1..J7, 0..1"),
-            ChannelGroup::new(
-                "servo groups",
-                9,
-                "J8; J9; J10 J11; J13; J14 J15; J17; J18 J19; abduction J12 J16 J20 J24; J21-J23 J25-J27: 0 extended or \
-                 together, 1 flexed or spread",
-            ),
-        ];
-        let layout = config.layout();
-        let leak = config.leak.name();
-        Description {
-            sensors,
-            motors,
-            network: format!(
-                "{}-{}-{}, recurrent hidden layer, leak {leak}",
-                layout.sensors(),
-                layout.hidden(),
-                layout.outputs()
-            ),
-            parameters: layout.parameter_count(),
-            steps: config.steps as usize,
-            step_seconds: config.time_step,
-        }
-    }
-
-    fn live(&mut self, genes: &[u16], id: EpisodeId, tape: &mut Tape<'_>) -> Outcome {
-        if !self.decoder.decode_into(genes, &mut self.life) {
-            return Outcome::failed();
-        }
-        if let Some(recorder) = tape.recorder() {
-            recorder.parameters(&self.decoder.parameters);
-        }
-        self.life.start(&mut self.world, id);
-        loop {
-            self.life.act(&mut self.world);
-            self.world.step();
-            let end = self.life.judge_mut().judge(&self.world);
-            if let Some(recorder) = tape.recorder() {
-                self.teller.tell(&self.world, &self.life, recorder);
-            }
-            if end.is_some() {
-                return Self::outcome(self.life.judge());
-            }
-        }
-    }
-
-    fn use_lanes(&mut self, lanes: Lanes) -> Result<Lanes, Error> {
-        self.together = None;
-        let Some(model) = &self.model else { return Ok(Lanes::one()) };
-        if lanes.count() > 1 {
-            let batch = Batch::new(model.clone(), lanes.count(), lanes.level());
-            let batch = batch.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
-            let lives = (0..lanes.count()).map(|_| Numbered { life: self.life.clone(), number: 0 }).collect();
-            self.together = Some(Together { batch, lives });
-        }
-        Ok(lanes)
-    }
-
-    fn live_many<'g>(&mut self, next: &mut dyn FnMut() -> Option<Task<'g>>, done: &mut dyn FnMut(usize, Outcome)) {
-        let Self { together: Some(Together { batch, lives }), decoder, .. } = self else {
-            while let Some(Task { number, genes, id, .. }) = next() {
-                done(number, self.live(genes, id, &mut Tape::off()));
-            }
-            return;
-        };
-        // What came of the tasks that have no life waits until the borrowed `done` is free.
-        let done = std::cell::RefCell::new(done);
-        let begin = |Numbered { life, number }: &mut Numbered| {
-            loop {
-                let task = next()?;
-                *number = task.number;
-                if decoder.decode_into(task.genes, life) {
-                    return Some(task.id);
-                }
-                done.borrow_mut()(task.number, Outcome::failed());
-            }
-        };
-        let end = |lived: &mut Numbered, _: f64| done.borrow_mut()(lived.number, Self::outcome(lived.life.judge()));
-        live_in_lanes(lives, batch, begin, end);
-    }
-
-    fn fitness(&self, trials: &[Outcome]) -> f64 {
-        let mut sum = Ledger::default();
-        for outcome in trials {
-            let [reach, grasp, lift, bonus] = outcome.terms[..] else { return f64::NAN };
-            sum.add(&Ledger { reach, grasp, lift, bonus });
-        }
-        sum.total()
-    }
+pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapier::World, ReachTask>, Error> {
+    let scene = Scene::new(config)?;
+    let world = farsa_physics::rapier::World::new(&scene.robot, &scene.config.rapier_options());
+    let world = world.map_err(|error| wrong(&error))?;
+    Ok(InWorld::new(world, ReachTask::new(scene)?))
 }
 
 #[cfg(test)]

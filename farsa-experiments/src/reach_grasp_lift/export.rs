@@ -1,7 +1,10 @@
 //! The controller of `reach-grasp-lift` and its starts for other programs.
 
 use farsa_body::{ActuatorId, ArmAndHand, BodyId, Finger, JointId, Pair, PairId, Tabletop};
-use farsa_lab::{ActuatorExport, ControllerExport, EpisodeId, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport, SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport};
+use farsa_lab::{
+    ActuatorExport, ControllerExport, EpisodeId, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,
+    SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
+};
 
 use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::{scene::Scene, scene::TARGET_SCALE};

@@ -19,14 +19,13 @@ pub struct Judge {
     trial: Trial,
     seen: Observation,
     earned: Ledger,
-    begun: bool,
 }
 
 impl Judge {
     /// A judge of trials in this scene.
     pub fn new(scene: Arc<Scene>) -> Self {
         let (trial, seen, earned) = (Trial::default(), Observation::default(), Ledger::default());
-        Self { scene, trial, seen, earned, begun: false }
+        Self { scene, trial, seen, earned }
     }
 
     /// Sets the world up for a trial and opens a new account.
@@ -36,19 +35,6 @@ impl Judge {
     {
         self.scene.arrange(world, id);
         self.trial = Trial::default();
-        self.begun = false;
-    }
-
-    /// [`Judge::judge`] for [`Life::tick`]: at the first tick of a trial no step has passed that could be judged.
-    pub fn tick<W>(&mut self, world: &W) -> Option<f64>
-    where
-        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
-    {
-        if self.begun {
-            return self.judge(world);
-        }
-        self.begun = true;
-        None
     }
 
     /// Judges the step that has passed; `Some` ends the trial with what it would earn alone, NaN if the world broke down.
@@ -101,7 +87,7 @@ impl Judge {
 
 /// A trial lived by a controller: the robot senses, the controller steps, the motors act, every control step.
 ///
-/// The fitness of this [`Life`] is what its one trial would earn alone; that of an individual takes the sums of the
+/// The return of this [`Episode`] is what its one trial would earn alone; that of an individual takes the sums of the
 /// ledgers of its four trials ([`Ledger::total`]).
 #[derive(Clone, Debug)]
 pub struct ReachLife<C> {
@@ -132,30 +118,9 @@ impl<C: Controller> ReachLife<C> {
         Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS] })
     }
 
-    /// Senses, thinks and acts; the label is the phase after the step before.
-    pub fn act<W>(&mut self, world: &mut W)
-    where
-        W: Kinematics
-            + Joints
-            + Actuated
-            + Contacts
-            + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
-            + ?Sized,
-    {
-        self.senses.set_label(self.judge.trial().phase);
-        self.senses.read(world, &mut self.x);
-        self.controller.step(&self.x, &mut self.y);
-        self.motors.drive(&self.y, world);
-    }
-
     /// The judge of the trial.
     pub fn judge(&self) -> &Judge {
         &self.judge
-    }
-
-    /// The same, to judge a step of a life that is lived without [`Life::tick`].
-    pub fn judge_mut(&mut self) -> &mut Judge {
-        &mut self.judge
     }
 
     /// The sensors.
@@ -189,7 +154,7 @@ impl<C: Controller> ReachLife<C> {
     }
 }
 
-impl<W, C> Life<W> for ReachLife<C>
+impl<W, C> Episode<W> for ReachLife<C>
 where
     W: Kinematics
         + Joints
@@ -207,11 +172,15 @@ where
         self.motors.reset();
     }
 
-    fn tick(&mut self, world: &mut W) -> Option<f64> {
-        let end = self.judge.tick(world);
-        if end.is_none() {
-            self.act(world);
-        }
-        end
+    /// Senses, computes and acts; the label is the phase after the step before.
+    fn act(&mut self, world: &mut W) {
+        self.senses.set_label(self.judge.trial().phase);
+        self.senses.read(world, &mut self.x);
+        self.controller.step(&self.x, &mut self.y);
+        self.motors.drive(&self.y, world);
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.judge.judge(world)
     }
 }

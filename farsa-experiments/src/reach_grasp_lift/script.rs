@@ -287,7 +287,7 @@ impl ScriptLife {
     }
 }
 
-impl<W> Life<W> for ScriptLife
+impl<W> Episode<W> for ScriptLife
 where
     W: Kinematics
         + Joints
@@ -305,16 +305,16 @@ where
         self.plan = Plan::new(self.timetable, Arc::clone(&self.statics), &start, [x, y]).ok();
     }
 
-    fn tick(&mut self, world: &mut W) -> Option<f64> {
-        let end = self.judge.tick(world);
-        if end.is_none() {
-            if let Some(plan) = &self.plan {
-                let time = f64::from(self.judge.trial().steps) * self.judge.scene().config.time_step;
-                self.done = plan.outputs(world, time);
-            }
-            self.motors.drive(&self.done, world);
+    fn act(&mut self, world: &mut W) {
+        if let Some(plan) = &self.plan {
+            let time = f64::from(self.judge.trial().steps) * self.judge.scene().config.time_step;
+            self.done = plan.outputs(world, time);
         }
-        end
+        self.motors.drive(&self.done, world);
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.judge.judge(world)
     }
 }
 

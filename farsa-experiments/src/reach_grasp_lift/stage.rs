@@ -97,8 +97,8 @@ impl Teller {
         }
     }
 
-    /// Tells what was sensed, computed and done before the step that has just been judged, and what it led to.
-    pub(crate) fn tell<W>(&self, world: &W, life: &NetworkLife, recorder: &mut dyn Recorder)
+    /// Records what was sensed, computed and done before the step that has just been judged, and what it led to.
+    pub(crate) fn record<W>(&self, world: &W, life: &NetworkLife, recorder: &mut dyn Recorder)
     where
         W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId>,
     {

@@ -6,6 +6,7 @@ use farsa_body::{
 };
 
 use crate::infrared::{sensor_rays::SensorRays, sensor_rays::Told};
+use crate::team::life::TeamWorld;
 use crate::team::{config::EYES, config::TeamConfig};
 
 /// What shines red, whatever else shines with it.
@@ -139,8 +140,8 @@ pub(crate) fn eye_angles(robot: &MobileRobot) -> [f64; EYES] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_physics::arena::World;
     use farsa_body::{Arrange as _, Pose, Twist};
+    use farsa_physics::arena::World;
 
     #[test]
     fn the_shortcut_reads_what_the_rays_read_and_groups_their_largest() {

@@ -1,6 +1,8 @@
 //! A life of a team: robots with a controller each, and a mission that says what it is about.
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, ColorBand, Contacts, Handles, JointId, Joints, Kinematics, Planar, Rays};
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, ColorBand, Contacts, Handles, JointId, Joints, Kinematics, Planar, Rays,
+};
 use farsa_nn::Controller;
 use farsa_physics::arena::{Arena, ArenaError};
 
@@ -46,7 +48,12 @@ pub trait Mission: Send {
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] where something has no room.
-    fn arrange<C: Controller, W: TeamWorld>(&mut self, team: &Team<C>, world: &mut W, id: EpisodeId) -> Result<(), ArenaError>;
+    fn arrange<C: Controller, W: TeamWorld>(
+        &mut self,
+        team: &Team<C>,
+        world: &mut W,
+        id: EpisodeId,
+    ) -> Result<(), ArenaError>;
 
     /// The setting that is to blame for too little room.
     fn crowded(&self) -> &'static str {

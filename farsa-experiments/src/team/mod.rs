@@ -13,5 +13,5 @@ pub(crate) mod eyes;
 pub(crate) mod life;
 pub(crate) mod nest;
 pub(crate) mod robots;
-pub(crate) mod task;
 pub(crate) mod steering;
+pub(crate) mod task;

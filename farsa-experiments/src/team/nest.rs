@@ -1,8 +1,8 @@
 //! Nests as robots of a team sense them: the ground, and what shines.
 
+use crate::team::life::TeamWorld;
 use farsa_body::{ColorBand, Planar as _};
 use farsa_lab::Error;
-use crate::team::life::TeamWorld;
 
 use crate::team::{eyes::BLUE, eyes::RED};
 

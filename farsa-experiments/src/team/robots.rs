@@ -13,8 +13,8 @@ use farsa_physics::arena::{ArenaError, FreePlace};
 
 use crate::infrared::sensor_rays::Told;
 use crate::team::config::TeamConfig;
-use crate::team::life::TeamWorld;
 use crate::team::eyes::RobotEyes;
+use crate::team::life::TeamWorld;
 
 /// The robots of a team in their world, with a controller each.
 ///

@@ -10,13 +10,15 @@ use crate::walking::gait::Rules;
 use crate::walking::settings::rapier_options;
 use crate::walking::{life::Brain, life::Launch, life::SENSES, life::Walk, life::WalkerLife};
 use crate::walking::{
-    settings::engine, settings::mjcf_options, settings::on_contacts, settings::outcome,
-    settings::walk,
+    settings::engine, settings::mjcf_options, settings::on_contacts, settings::outcome, settings::walk,
 };
 use crate::walking::{stage::drawn, stage::exported, stage::stage};
 use crate::walking::{walker::Legs, walker::Walker};
 use crate::worlds::Engine;
-use farsa_lab::{Bodies, ChannelGroup, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, Genotype, Note, Outcome, Parameter, Setting, Settings, Task, mean_of_trials, network_parameters, run_episode};
+use farsa_lab::{
+    Bodies, ChannelGroup, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
+    Genotype, Note, Outcome, Parameter, Setting, Settings, Task, mean_of_trials, network_parameters, run_episode,
+};
 use farsa_view::Stage;
 
 /// Which bodies walk far? `[McGeer1990]`
@@ -280,9 +282,10 @@ impl Task for Walkers {
         let of_body = BODY.iter().zip(self.config.ranges);
         // Bodies are computed from numbers that f32 holds.
         let of_body = of_body.map(|(part, ends)| Parameter::new(part.key, ends.map(|end| f64::from(end as f32))));
-        let of_network = self.config.layout().and_then(|layout| {
-            network_parameters(&layout, self.config.weights, [0.0, 1.0], "network.range").ok()
-        });
+        let of_network = self
+            .config
+            .layout()
+            .and_then(|layout| network_parameters(&layout, self.config.weights, [0.0, 1.0], "network.range").ok());
         of_body.chain(of_network.into_iter().flatten()).collect()
     }
 
@@ -368,12 +371,7 @@ impl Evaluator for Walkers {
 }
 
 /// A walk in a world; there is none for a body that cannot be.
-fn walk_in<W>(
-    world: Option<W>,
-    mut life: WalkerLife,
-    id: EpisodeId,
-    mut recorder: Option<&mut dyn Recorder>,
-) -> Outcome
+fn walk_in<W>(world: Option<W>, mut life: WalkerLife, id: EpisodeId, mut recorder: Option<&mut dyn Recorder>) -> Outcome
 where
     W: farsa_body::World,
     WalkerLife: Episode<W>,

@@ -1,8 +1,8 @@
 //! A life of a walker: a launch, then steps until it falls or its time is over; with or without a network at the hip.
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints, Kinematics,
-    Motor as _, PairId, Recorder, Scaled, Sensor as _, TorqueMotor, Touch,
+    Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints,
+    Kinematics, Motor as _, PairId, Recorder, Scaled, Sensor as _, TorqueMotor, Touch,
 };
 use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::{Controller, Layout, Leak, Network};

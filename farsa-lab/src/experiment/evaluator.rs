@@ -3,9 +3,9 @@
 use farsa_body::{MjcfOptions, Recorder};
 use farsa_view::Stage;
 
+use crate::error::Error;
 use crate::experiment::controller_export::{ControllerExport, CtrnnExport, StartExport};
 use crate::experiment::episode::EpisodeId;
-use crate::error::Error;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Description, Outcome};
 

@@ -3,8 +3,8 @@
 use farsa_body::{Recorder, World};
 use farsa_view::Stage;
 
-use crate::experiment::episode::{Episode, EpisodeId, run_episode};
 use crate::error::Error;
+use crate::experiment::episode::{Episode, EpisodeId, run_episode};
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Parameter, Task};
 use crate::experiment::in_lanes::{Batch, run_in_lanes};
 use crate::experiment::lanes::Lanes;

@@ -23,7 +23,9 @@ pub fn network_parameters(layout: &Layout, range: f64, leaks: [f32; 2], key: &st
         let name = move |index: usize| {
             let pair = |targets: usize| (index / targets + 1, index % targets + 1);
             match kind {
-                ParameterKind::SensorWeight => format!("weight of sensor {} on neuron {}", pair(hidden).0, pair(hidden).1),
+                ParameterKind::SensorWeight => {
+                    format!("weight of sensor {} on neuron {}", pair(hidden).0, pair(hidden).1)
+                }
                 ParameterKind::RecurrentWeight => {
                     format!("weight of neuron {} on neuron {}", pair(hidden).0, pair(hidden).1)
                 }

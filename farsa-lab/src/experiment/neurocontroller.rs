@@ -143,10 +143,7 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         Description {
             sensors: vec![ChannelGroup::new("sensors", inputs, "inputs of the network")],
             motors: vec![ChannelGroup::new("motors", outputs, "outputs of the network, each 0 to 1")],
-            network: format!(
-                "{inputs}-{}-{outputs}, recurrent hidden layer, leaks as filters",
-                self.layout.hidden()
-            ),
+            network: format!("{inputs}-{}-{outputs}, recurrent hidden layer, leaks as filters", self.layout.hidden()),
             parameters: self.layout.parameter_count(),
             steps,
             step_seconds,

@@ -317,12 +317,12 @@ fn ticks(stat: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::evolution;
-    use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
     use crate::experiment::definition::Experiment;
-    use crate::experiment::outcome::Description;
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
     use crate::experiment::lanes::Wanted;
+    use crate::experiment::outcome::Description;
     use crate::experiment::settings::{Setting, Settings, Value};
+    use crate::search::evolution;
     use farsa_body::Recorder;
     use farsa_view::Stage;
 

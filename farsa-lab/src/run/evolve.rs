@@ -28,8 +28,8 @@ use crate::search::opponents::Meeting;
 use crate::store::directory::Directory;
 use crate::store::directory::replace;
 use crate::store::identity::Identity;
-use crate::store::log::Log;
 use crate::store::log;
+use crate::store::log::Log;
 use crate::store::manifest::Manifest;
 use crate::store::manifest::Session;
 
@@ -226,7 +226,8 @@ impl Run<'_> {
         let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
         let id = EpisodeId { seed, generation, ..EpisodeId::default() };
         let opponents = Opponents { parameters: &opponents, each: populations - 1 };
-        let fitness = fitness_of_all(pool, &parameters, opponents, id, stop, progress).map_err(Unsuccessful::Unfinished)?;
+        let fitness =
+            fitness_of_all(pool, &parameters, opponents, id, stop, progress).map_err(Unsuccessful::Unfinished)?;
         let judged = self.evolution.judged(&fitness).map_err(|error| lost(&error.to_string()))?;
         let statistics = Statistics::of(&judged).ok_or_else(|| lost("no individual was evaluated"))?;
         let best = self.evolution.champions(&judged).into_iter().map(|best| {
@@ -368,15 +369,15 @@ pub(crate) fn evaluate_all(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::directory::Directory;
-    use crate::search::evolution;
-    use crate::evaluation::test;
-    use crate::experiment::evaluator::{Evaluator, Parameter, Task};
-    use crate::experiment::definition::Experiment;
-    use crate::experiment::outcome::Description;
-    use crate::experiment::lanes::Wanted;
     use crate::evaluation::replay::{Which, replay};
+    use crate::evaluation::test;
+    use crate::experiment::definition::Experiment;
+    use crate::experiment::evaluator::{Evaluator, Parameter, Task};
+    use crate::experiment::lanes::Wanted;
+    use crate::experiment::outcome::Description;
     use crate::experiment::settings::{Setting, Settings, Value};
+    use crate::search::evolution;
+    use crate::store::directory::Directory;
     use farsa_body::Recorder;
     use farsa_view::Stage;
     use std::path::PathBuf;

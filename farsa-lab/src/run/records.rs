@@ -18,8 +18,8 @@ use crate::search::learning::Lessons;
 use crate::store::directory::Directory;
 use crate::store::identity::Identity;
 use crate::store::log::Mark;
-use crate::store::sealed::Sealed;
 use crate::store::sealed;
+use crate::store::sealed::Sealed;
 
 /// `checkpoint.bin`: all that the next generation depends on.
 #[derive(Debug)]
@@ -290,7 +290,8 @@ impl Champions {
         let found = Self::read(plan, directory)?;
         found.identity.same_values(&plan.identity()?, &path)?;
         let genes = evaluator.parameters().len();
-        if found.best.len() != evaluator.populations().len() || found.best.iter().any(|best| best.genes.len() != genes) {
+        if found.best.len() != evaluator.populations().len() || found.best.iter().any(|best| best.genes.len() != genes)
+        {
             return Err(Error::damaged(&path, "its genome is not one of the experiment"));
         }
         Ok(found)

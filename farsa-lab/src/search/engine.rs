@@ -53,9 +53,7 @@ impl Evolution {
                 let learner = evaluator.learner().ok_or_else(|| Error::Other(NO_LEARNER.into()))?;
                 Learning::new(learner, seed).map(Self::Learning).map_err(refused)
             }
-            (Search::Learning, _) => {
-                Err(Error::Other(format!("{}: several populations that learn", name)))
-            }
+            (Search::Learning, _) => Err(Error::Other(format!("{}: several populations that learn", name))),
             (Search::Truncation, populations) => {
                 let config = evolution::config(settings, genes, gene_bits)?;
                 if populations == 1 {

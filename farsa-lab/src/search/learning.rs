@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::experiment::evaluator::Learner;
 use crate::experiment::evaluator::Lesson;
+use crate::figures::plot;
 use crate::figures::plot::Chart;
 use crate::figures::plot::Curve;
-use crate::figures::plot;
 
 /// An individual that learns.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -1,0 +1,204 @@
+//! What there is to know of `reach-grasp-lift`, and its episodes over parameters.
+
+use std::sync::Arc;
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, Recorder,
+};
+use farsa_nn::Network;
+
+use crate::reach_grasp_lift::config::TRIALS;
+use crate::reach_grasp_lift::fitness::Ledger;
+use crate::reach_grasp_lift::life::ReachLife;
+use crate::reach_grasp_lift::parameters::Ranges;
+use crate::reach_grasp_lift::scene::Scene;
+use crate::reach_grasp_lift::stage::{NetworkLife, Teller};
+use farsa_lab::{
+    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, NetworkExport, Note,
+    Outcome, Parameter, Rollout, StartExport, Task,
+};
+use farsa_view::Stage;
+
+/// A trial lived by a network, with what it records.
+#[derive(Clone)]
+pub struct ReachTask {
+    life: NetworkLife,
+    ranges: Ranges,
+    teller: Arc<Teller>,
+}
+
+impl ReachTask {
+    /// Trials in a scene.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a configuration whose network cannot be built.
+    pub fn new(scene: Scene) -> Result<Self, Error> {
+        let (config, layout) = (&scene.config, scene.config.layout());
+        let ranges = Ranges::new(layout, config.leak, config.weight_range as f32)?;
+        let (zeros, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
+        let network = Network::new(layout, config.leak, zeros, state);
+        let network = network.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
+        let teller = Arc::new(Teller::new(&scene));
+        Ok(Self { life: ReachLife::new(Arc::new(scene), network)?, ranges, teller })
+    }
+
+    fn scene(&self) -> &Scene {
+        self.life.judge().scene()
+    }
+}
+
+impl<W> Episode<W> for ReachTask
+where
+    W: Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
+{
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.life.start(world, id);
+    }
+
+    fn act(&mut self, world: &mut W) {
+        self.life.act(world);
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        Episode::judge(&mut self.life, world)
+    }
+
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.teller.record(world, &self.life, recorder);
+    }
+}
+
+impl Rollout for ReachTask {
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        let parameters = self.ranges.of_network(evaluation.parameters);
+        self.life.controller_mut().copy_parameters(&parameters).is_ok()
+    }
+
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(self.life.controller().parameters());
+    }
+
+    fn outcome(&self) -> Outcome {
+        let judge = self.life.judge();
+        let time_step = judge.scene().config.time_step;
+        let trial = judge.trial();
+        let Ledger { reach, grasp, lift, bonus } = trial.ledger;
+        let second = judge.scene().config.steps_per_second();
+        // What the printed reward alone would call a success: any height will do.
+        let printed = trial.lifted >= second && !trial.fallen;
+        Outcome {
+            terms: vec![reach, grasp, lift, bonus],
+            steps: trial.steps,
+            success: judge.succeeds(),
+            notes: vec![
+                ("phase", Note::from(trial.phase.name())),
+                ("end", Note::from(if trial.fallen { "sphere fell" } else { "time" })),
+                ("off the table", Note::from(if printed { "yes" } else { "no" })),
+                ("held [s]", Note::from(f64::from(trial.held) * time_step)),
+                ("height [cm]", Note::from(judge.seen().height)),
+                ("highest [cm]", Note::from(trial.highest)),
+            ],
+        }
+    }
+}
+
+impl Task for ReachTask {
+    fn parameters(&self) -> Vec<Parameter> {
+        self.ranges.parameters()
+    }
+
+    fn trials(&self) -> usize {
+        TRIALS
+    }
+
+    fn terms(&self) -> Vec<String> {
+        ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec()
+    }
+
+    fn stage(&self) -> Stage {
+        Teller::stage(&self.life)
+    }
+
+    fn description(&self) -> Description {
+        let config = &self.life.judge().scene().config;
+        let saturation = config.touch_saturation;
+        let mut sensors = vec![
+            ChannelGroup::new("arm joints", 7, "J1..J7, 0 at the lower and 1 at the upper limit"),
+            ChannelGroup::new(
+                "hand joints",
+                10,
+                "J8 J9 J10 J13 J14 J17 J18 J21 J22, 0 extended and 1 flexed; J16, 0 at the lower and 1 at the upper limit",
+            ),
+            ChannelGroup::new(
+                "touch",
+                6,
+                &format!("thumb, index, middle, ring, little finger, palm: touching pairs / {saturation}, at most 1"),
+            ),
+            ChannelGroup::new("sphere position", 3, "sphere's centre relative to the palm's, x, y, z [cm]"),
+        ];
+        if config.labels {
+            let meaning = format!("{} for the present phase (reach, grasp, lift), else 0", config.label_amplitude);
+            sensors.push(ChannelGroup::new("label", 3, &meaning));
+        }
+        let motors = vec![
+            ChannelGroup::new("muscles", 14, "activation of agonist and antagonist of J1..J7, 0..1"),
+            ChannelGroup::new(
+                "servo groups",
+                9,
+                "J8; J9; J10 J11; J13; J14 J15; J17; J18 J19; abduction J12 J16 J20 J24; J21-J23 J25-J27: 0 extended or \
+                 together, 1 flexed or spread",
+            ),
+        ];
+        let layout = config.layout();
+        let leak = config.leak.name();
+        Description {
+            sensors,
+            motors,
+            network: format!(
+                "{}-{}-{}, recurrent hidden layer, leak {leak}",
+                layout.sensors(),
+                layout.hidden(),
+                layout.outputs()
+            ),
+            parameters: layout.parameter_count(),
+            steps: config.steps as usize,
+            step_seconds: config.time_step,
+        }
+    }
+
+    /// The sum of the ledgers, each part within the individual's cap.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        let mut sum = Ledger::default();
+        for outcome in trials {
+            let [reach, grasp, lift, bonus] = outcome.terms[..] else { return f64::NAN };
+            sum.add(&Ledger { reach, grasp, lift, bonus });
+        }
+        sum.total()
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl Exports for ReachTask {
+    fn mjcf_options(&self) -> Option<MjcfOptions> {
+        Some(self.scene().mjcf_options())
+    }
+
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let config = &self.scene().config;
+        let parameters = self.ranges.of_network(parameters);
+        let network = NetworkExport::new(&config.layout(), config.leak, &parameters);
+        Some(self.scene().controller(network, self.life.senses().names(), self.life.motors().names()))
+    }
+
+    fn start(&self, id: EpisodeId) -> Option<StartExport> {
+        Some(self.scene().start_by_name(id))
+    }
+}
