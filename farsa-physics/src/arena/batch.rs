@@ -18,7 +18,7 @@ use crate::arena::model::Model;
 use crate::arena::step::WORK_WORDS;
 use crate::arena::view::{self as view, View};
 use crate::arena::world::{World, ports};
-use crate::articulated::batch::LANES;
+use crate::articulated::lockstep::LANES;
 
 /// Worlds of one arena, one in each lane of SIMD vectors, all at their description's start at first.
 ///

@@ -4,7 +4,8 @@ use alloc::vec::Vec;
 
 use farsa_num::sin_cos;
 
-use crate::arena::description::Wall;
+/// The colour of what has none of its own.
+pub(crate) const GREY: [f64; 3] = [0.5; 3];
 
 /// The form of a [`Convex`].
 #[derive(Clone, Debug, PartialEq)]
@@ -57,14 +58,14 @@ impl Convex {
     /// Corners follow each other either way round. A corner on the straight line between its neighbours is allowed, a
     /// dent is not.
     pub fn prism(corners: &[[f64; 2]], height: f64) -> Self {
-        Self { form: ConvexForm::Prism { corners: corners.into(), height }, color: Wall::COLOR }
+        Self { form: ConvexForm::Prism { corners: corners.into(), height }, color: GREY }
     }
 
     /// The grey convex hull of points [m], in any order; the third coordinate is the height above the ground.
     ///
     /// Needs the feature `parry`. Points within the hull are allowed.
     pub fn hull(points: &[[f64; 3]]) -> Self {
-        Self { form: ConvexForm::Hull { points: points.into() }, color: Wall::COLOR }
+        Self { form: ConvexForm::Hull { points: points.into() }, color: GREY }
     }
 
     /// The same obstacle in another colour.

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_body::{ActuatorId, BodyId, JointId, MobileParts, MobileRobot};
 
-use crate::arena::convex::Convex;
+use crate::arena::convex::{Convex, GREY};
 
 /// A wall: a box that stands on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ impl Wall {
     /// Height of a wall that is given none [m].
     pub const HEIGHT: f64 = 0.1;
     /// Colour of a wall that is given none.
-    pub const COLOR: [f64; 3] = [0.5; 3];
+    pub const COLOR: [f64; 3] = GREY;
 
     /// A box with its middle at `centre` [m], of so much length and thickness [m], its length along `heading` [rad].
     pub fn cuboid(centre: [f64; 2], size: [f64; 2], heading: f64) -> Self {

@@ -9,7 +9,7 @@ use farsa_num::fearless_simd::{Level, Simd, f32x8, f32x16};
 use crate::arena::infrared::ring;
 use crate::arena::model::Model;
 use crate::arena::step::step;
-use crate::articulated::batch::LANES;
+use crate::articulated::lockstep::LANES;
 
 /// Steps all worlds of a batch together.
 pub(crate) trait Lockstep: Send + Sync {

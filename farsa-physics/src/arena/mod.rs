@@ -8,6 +8,7 @@
 //! - `outline`: outlines of convex obstacles in `f64`: hulls, checks, distances
 //! - `facets`: faces of a convex hull in space; the one file that knows parry
 //! - `model`: the constant part, checked
+//! - `slab`: a wall as the step has it
 //! - `solid`: convex obstacles as the step has them, and where discs and rays meet them
 //! - `surface`: nearest points and overlaps of discs with walls and with each other
 //! - `step`: one step, of one world or of lanes
@@ -35,6 +36,7 @@ mod lockstep;
 pub(crate) mod model;
 mod outline;
 mod place;
+pub(crate) mod slab;
 mod solid;
 pub(crate) mod step;
 pub(crate) mod surface;

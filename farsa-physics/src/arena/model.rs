@@ -9,6 +9,7 @@ use crate::arena::convex::{Convex, ConvexForm};
 use crate::arena::description::{AreaShape, Arena, CollisionRule, Search};
 use crate::arena::error::{ArenaError, Part};
 use crate::arena::outline::{check_turns, distance, width};
+use crate::arena::slab::Slab;
 use crate::arena::solid::{Face, Solid, middle, prism_faces};
 
 /// Words of a body's pose: x, y, heading and its cosine and sine.
@@ -36,28 +37,6 @@ pub(crate) struct Kind {
     pub(crate) infrared: Vec<[f32; 2]>,
     /// How infrared sensors see it.
     pub(crate) seen: AnalyticInfrared,
-}
-
-/// A wall.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Slab {
-    pub(crate) centre: [f32; 2],
-    /// Unit vector along its length.
-    pub(crate) axis: [f32; 2],
-    /// Half its length and thickness.
-    pub(crate) half: [f32; 2],
-    /// Half the sides of the upright rectangle around it.
-    pub(crate) around: [f32; 2],
-    pub(crate) height: f32,
-    pub(crate) color: [f32; 3],
-}
-
-impl Slab {
-    /// Whether some of it may be within `range` [m] of a place.
-    #[inline]
-    pub(crate) fn within_reach(&self, from: [f32; 2], range: f32) -> bool {
-        (0..2).all(|k| (from[k] - self.centre[k]).abs() <= self.around[k] + range)
-    }
 }
 
 /// A cylinder.
@@ -370,20 +349,6 @@ impl Model {
     }
 
     fn of(arena: &Arena, kinds: Vec<Kind>, robots: Vec<(u16, u16)>, solids: Vec<Solid>) -> Self {
-        let slabs = arena.walls.iter().map(|wall| {
-            // Walls along the axes are exactly so.
-            let (sine, cosine) = sin_cos(wall.heading);
-            let [a, b] = wall.size.map(|x| 0.5 * x);
-            let around = [a * cosine.abs() + b * sine.abs(), a * sine.abs() + b * cosine.abs()];
-            Slab {
-                centre: narrow(wall.centre),
-                axis: narrow([cosine, sine]),
-                half: narrow([a, b]),
-                around: narrow(around),
-                height: wall.height as f32,
-                color: narrow(wall.color),
-            }
-        });
         let rounds = arena.cylinders.iter().map(|cylinder| Round {
             radius: cylinder.radius as f32,
             height: cylinder.height as f32,
@@ -405,7 +370,7 @@ impl Model {
             largest: radii.fold(0.0, Scalar::max),
             travel: travels.fold(0.0, Scalar::max),
             attachments: kinds.iter().any(|kind| kind.robot.attachment.is_some()),
-            slabs: slabs.collect(),
+            slabs: arena.walls.iter().map(Slab::from_wall).collect(),
             solids,
             rounds: rounds.collect(),
             patches: patches.collect(),

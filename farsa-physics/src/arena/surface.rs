@@ -2,7 +2,7 @@
 
 use farsa_num::Scalar;
 
-use crate::arena::model::Slab;
+use crate::arena::slab::Slab;
 
 /// A disc that overlaps something: how deep [m], the unit vector out of it, and the point of its surface [m].
 #[derive(Clone, Copy)]

@@ -6,11 +6,8 @@ use core::fmt;
 use farsa_num::fearless_simd::Level;
 
 use crate::articulated::lane::{Lane, Words};
-use crate::articulated::lockstep::{self, Lockstep};
+use crate::articulated::lockstep::{self, LANES, Lockstep};
 use crate::articulated::model::{Model, ModelError};
-
-/// The numbers of worlds that a [`Batch`] can have.
-pub const LANES: [usize; 2] = [8, 16];
 
 /// Worlds of one model, one in each lane of SIMD vectors, all at their description's start at first.
 ///

@@ -9,10 +9,12 @@ use alloc::vec::Vec;
 use farsa_num::Scalar;
 use farsa_num::fearless_simd::{Level, Simd, f32x8, f32x16};
 
-use crate::articulated::batch::LANES;
 use crate::articulated::lane::{LINK_WORDS, Words};
 use crate::articulated::model::Model;
 use crate::articulated::step::{Scratch, step};
+
+/// The numbers of worlds that a [`Batch`](crate::articulated::Batch) can have.
+pub const LANES: [usize; 2] = [8, 16];
 
 /// Steps all worlds of a batch together.
 pub(crate) trait Lockstep: Send + Sync {

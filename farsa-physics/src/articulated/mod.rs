@@ -21,7 +21,7 @@
 //! - `lane`: one world of a batch behind the ports
 
 #[cfg(all(feature = "lanes", not(test)))]
-pub(crate) mod batch;
+mod batch;
 #[cfg(feature = "alloc")]
 mod collision;
 #[cfg(feature = "alloc")]
@@ -56,9 +56,11 @@ pub(crate) mod view;
 mod world;
 
 #[cfg(all(feature = "lanes", not(test)))]
-pub use batch::{Batch, LANES};
+pub use batch::Batch;
 #[cfg(all(feature = "lanes", not(test)))]
 pub use lane::Lane;
+#[cfg(all(feature = "lanes", not(test)))]
+pub use lockstep::LANES;
 #[cfg(feature = "alloc")]
 pub use model::{Model, ModelError, Options};
 pub use spatial::Spatial;

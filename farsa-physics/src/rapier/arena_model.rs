@@ -14,8 +14,8 @@ use rapier3d::prelude::{CoefficientCombineRule, InteractionTestMode, JointAxis};
 use crate::arena::convex::{Convex, ConvexForm};
 use crate::rapier::arena_options::ArenaOptions;
 use crate::rapier::arena_scene::{ArenaScene, Block, Chassis};
+use crate::rapier::convert::vector;
 use crate::rapier::error::RapierError;
-use crate::rapier::model::vector;
 
 /// What a wheel turns about.
 pub(crate) const AXLE: JointAxis = JointAxis::AngX;

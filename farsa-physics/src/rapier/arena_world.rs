@@ -12,7 +12,8 @@ use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::arena::crowd::Crowd;
-use crate::arena::model::{Model, POSE_WORDS, Slab, VELOCITY, WHEELS, pose_words};
+use crate::arena::model::{Model, POSE_WORDS, VELOCITY, WHEELS, pose_words};
+use crate::arena::slab::Slab;
 use crate::arena::step::{show, turned, wheel_speed};
 use crate::arena::view::View;
 use crate::rapier::arena_model::{AXLE, ArenaPlan, Vehicle, build, standing, upright};

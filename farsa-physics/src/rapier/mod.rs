@@ -39,6 +39,7 @@
 //! - `options`: how a world is stepped
 //! - `scene`: a robot with things around it, as data
 //! - `error`: why a world cannot be built
+//! - `convert`: vectors, frames and shapes as rapier has them
 //! - `model`: from a description to rapier's bodies, joints and colliders
 //! - `rules`: who may touch whom, and with what friction
 //! - `world`: one world of rapier
@@ -57,6 +58,7 @@ mod arena_ports;
 mod arena_scene;
 mod arena_world;
 mod contact;
+mod convert;
 mod error;
 mod model;
 mod options;

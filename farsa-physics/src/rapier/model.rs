@@ -7,8 +7,8 @@ use farsa_body::{BodyId, JointKind, Law, Pose, Robot, Shape};
 use rapier3d::dynamics::{
     GenericJointBuilder, JointAxesMask, JointAxis, MultibodyIndex, RigidBodyBuilder, RigidBodyHandle,
 };
-use rapier3d::geometry::{ColliderBuilder, ColliderHandle, SharedShape};
-use rapier3d::math::{Mat3, Rotation, Vector};
+use rapier3d::geometry::{ColliderBuilder, ColliderHandle};
+use rapier3d::math::Mat3;
 use rapier3d::parry::mass_properties::MassProperties;
 use rapier3d::pipeline::{ActiveHooks, PhysicsWorld};
 
@@ -17,6 +17,7 @@ use crate::articulated::model::{ModelError, Mount, Options as Stops};
 use crate::articulated::spatial::{rotate, sub};
 use crate::articulated::tree::{Link, Motion, WORLD};
 use crate::articulated::view::quaternion;
+use crate::rapier::convert::{pose, shape_of, vector};
 use crate::rapier::error::RapierError;
 use crate::rapier::options::Options;
 use crate::rapier::rules::Rules;
@@ -78,28 +79,6 @@ pub(crate) struct Plan {
     pub(crate) actuators: usize,
     pub(crate) time_step: f32,
     pub(crate) substeps: u32,
-}
-
-pub(crate) fn vector(v: [f64; 3]) -> Vector {
-    v.map(|x| x as f32).into()
-}
-
-/// A frame as rapier has it.
-fn pose(mount: &Mount<f64>) -> rapier3d::math::Pose {
-    let q = quaternion(&mount.rotation).map(|x| x as f32);
-    rapier3d::math::Pose::from_parts(vector(mount.position), Rotation::from_array(q).normalize())
-}
-
-pub(crate) fn shape_of(shape: &Shape) -> SharedShape {
-    match *shape {
-        Shape::Sphere { radius } => SharedShape::ball(radius as f32),
-        Shape::Capsule { radius, half_length } => SharedShape::capsule_z(half_length as f32, radius as f32),
-        Shape::Box { half } => {
-            let [x, y, z] = half.map(|a| a as f32);
-            SharedShape::cuboid(x, y, z)
-        }
-        Shape::Plane => SharedShape::halfspace(Vector::Z),
-    }
 }
 
 /// Mass, centre and inertia as rapier has them.

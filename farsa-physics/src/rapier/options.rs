@@ -3,8 +3,8 @@
 use rapier3d::dynamics::{FrictionModel, SpringCoefficients};
 use rapier3d::pipeline::PhysicsWorld;
 
+use crate::rapier::convert::vector;
 use crate::rapier::error::RapierError;
-use crate::rapier::model::vector;
 
 /// How a world of rapier is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,6 +9,7 @@ use rapier3d::geometry::{SharedShape, TriMeshFlags};
 use rapier3d::math::{Pose as Frame, Rotation, Vector};
 use rapier3d::parry::utils::Array2;
 
+use crate::rapier::convert::shape_of;
 use crate::rapier::error::RapierError;
 
 /// The form of a thing, in its own frame.
@@ -230,7 +231,7 @@ impl Thing {
         // rapier's cylinders and height fields stand upright along y.
         let upright = Frame::from_rotation(Rotation::from_xyzw(quarter, 0.0, 0.0, quarter));
         Ok(match &self.form {
-            Form::Simple(shape) => (crate::rapier::model::shape_of(shape), Frame::IDENTITY),
+            Form::Simple(shape) => (shape_of(shape), Frame::IDENTITY),
             Form::Cylinder { radius, half_length } => {
                 (SharedShape::cylinder(*half_length as f32, *radius as f32), upright)
             }
