@@ -141,13 +141,8 @@ impl<S: Scalar> Solver<'_, S> {
             // Overlapping bounds say nothing of the surfaces.
             let far = far.max(zero);
             if !near.any() {
-                for w in own.chunks_exact_mut(POINT_WORDS) {
-                    forget(w, zero, far);
-                }
-                if let Some(first) = pair.rolling {
-                    for w in &mut turns[3 * first..3 * (first + pair.points)] {
-                        *w = zero;
-                    }
+                for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
+                    forget_point(words, rolling_words(pair, index, turns), far);
                 }
                 continue;
             }
@@ -158,7 +153,7 @@ impl<S: Scalar> Solver<'_, S> {
                     None => near,
                 };
                 if !near.any() {
-                    forget(words, zero, far);
+                    forget_point(words, rolling_words(pair, index, turns), far);
                     continue;
                 }
                 let point = find(simd, model, pair, self.placed, index);
@@ -171,12 +166,7 @@ impl<S: Scalar> Solver<'_, S> {
                 // What a lane remembers must not depend on its neighbours.
                 let gap = S::select(near & point.valid, point.gap, far);
                 if !mask.any() {
-                    forget(words, zero, gap);
-                    if let Some(first) = pair.rolling {
-                        for w in &mut turns[3 * (first + index)..3 * (first + index + 1)] {
-                            *w = zero;
-                        }
-                    }
+                    forget_point(words, rolling_words(pair, index, turns), gap);
                     continue;
                 }
                 let [t1, t2] = tangents(point.normal);
@@ -350,10 +340,23 @@ impl<S: Scalar> Solver<'_, S> {
     }
 }
 
-/// The state words of a point that carries nothing.
+/// The rolling impulse of a pair's point among those of all points; empty for a pair without rolling friction.
 #[inline(always)]
-fn forget<S: Scalar>(words: &mut [S], zero: S, gap: S) {
+fn rolling_words<'a, R, S>(pair: &Pair<R>, index: usize, all: &'a mut [S]) -> &'a mut [S] {
+    match pair.rolling {
+        Some(first) => &mut all[3 * (first + index)..3 * (first + index + 1)],
+        None => &mut [],
+    }
+}
+
+/// Writes the state of a point that carries nothing: its gap, and no impulse from which the next step could start.
+#[inline(always)]
+fn forget_point<S: Scalar>(words: &mut [S], rolling: &mut [S], gap: S) {
+    let zero = gap.constant(0.0);
     for w in words.iter_mut() {
+        *w = zero;
+    }
+    for w in rolling {
         *w = zero;
     }
     words[7] = gap;
