@@ -1,5 +1,5 @@
 //! Free bodies whose origin is away from their centre of mass, against closed forms.
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::unwrap_used)]
 
 mod common;
 

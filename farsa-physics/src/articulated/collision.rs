@@ -43,6 +43,7 @@ const COINCIDENT: f64 = 1e-9;
 /// Two balls about `a` and `b`; a radius of zero is a point.
 #[inline(always)]
 pub(crate) fn balls<S: Scalar>(a: Vector<S>, ra: S, b: Vector<S>, rb: S) -> Point<S> {
+    // Lanes divide whether they use the quotient or not: a divisor of 1 takes the place of one that is none.
     let d = sub(a, b);
     let length = dot(d, d).sqrt();
     let apart = length.gt(length.constant(COINCIDENT));
@@ -71,6 +72,8 @@ pub(crate) fn nearest_of_segments<S: Scalar>(
     d2: Vector<S>,
     h2: S,
 ) -> (Vector<S>, Vector<S>) {
+    // Minimise |c1 + s d1 - c2 - t d2|^2: s = (b f - c) / (1 - b^2) on the lines, clamped; then t for that s, clamped; then s
+    // once more for that t, which is exact where t was clamped and changes nothing where it was not. Parallel ones begin at s = 0.
     let r = sub(c1, c2);
     let b = dot(d1, d2);
     let c = dot(d1, r);
@@ -94,6 +97,8 @@ fn sign_of<S: Scalar>(x: S) -> S {
 /// Signed distance of a point to a box and the outward normal, both in the box's axes.
 #[inline(always)]
 fn box_distance<S: Scalar>(p: Vector<S>, half: Vector<S>) -> (S, Vector<S>) {
+    // By symmetry in the octant of positive coordinates: q = |p| - half, outside the length of its positive part
+    // max(q, 0), inside the largest component of q, which is negative.
     let zero = p[0].constant(0.0);
     let one = p[0].constant(1.0);
     let sign = [sign_of(p[0]), sign_of(p[1]), sign_of(p[2])];
@@ -138,6 +143,7 @@ pub(crate) fn segment_box<S: Scalar>(
     place: &Placed<S>,
     half: Vector<S>,
 ) -> Point<S> {
+    // In the box's axes the segment is c + t d. The slope of the distance along it is the outward normal times d.
     let c = rotate_back(&place.rotation, sub(centre, place.position));
     let d = rotate_back(&place.rotation, axis);
     let (first, at_first) = box_distance(sub(c, scale(d, half_length)), half);
@@ -192,6 +198,7 @@ pub(crate) fn corner<S: Scalar>(place: &Placed<S>, half: Vector<S>, index: usize
 /// Edge `index` (0..12) of a box in the world: middle, direction, half length.
 #[inline(always)]
 pub(crate) fn edge<S: Scalar>(place: &Placed<S>, half: Vector<S>, index: usize) -> (Vector<S>, Vector<S>, S) {
+    // Four edges along each axis, at the four corners of the other two.
     let along = index / 4;
     let (u, v) = ((along + 1) % 3, (along + 2) % 3);
     let zero = half[0].constant(0.0);

@@ -8,19 +8,20 @@ use crate::articulated::collision::{
 };
 use crate::articulated::model::{Form, Model, Pair};
 use crate::articulated::spatial::{Vector, add, dot, product, rotate, scale, splat, splat_matrix, sub};
-use crate::articulated::tree::{LinkWork, WORLD};
+use crate::articulated::tree::{LinkData, WORLD};
 
 /// The colliders in the world.
 #[inline(always)]
 pub(crate) fn place_colliders<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
     out: &mut [Placed<S>],
 ) {
     for (c, o) in model.colliders.iter().zip(out) {
         let own = splat_matrix(simd, c.mount.rotation);
         let offset = splat::<S>(simd, c.mount.position);
+        // `acceleration` holds the predicted velocity here, see `predict`: what it is at the collider's origin.
         *o = if c.mount.link == WORLD {
             Placed { rotation: own, position: offset, velocity: [S::splat(simd, S::Real::of(0.0)); 3] }
         } else {
@@ -40,6 +41,8 @@ pub(crate) fn clearance<S: Scalar>(
     pair: &Pair<S::Real>,
     placed: &[Placed<S>],
 ) -> S {
+    // A ball around the first shape against the second itself where that costs little (plane, box), else against its ball:
+    // a ball around a table would be near everything.
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
     let bound = S::splat(simd, model.colliders[a].bound);
@@ -62,6 +65,7 @@ pub(crate) fn edge_distance<S: Scalar>(
     placed: &[Placed<S>],
     index: usize,
 ) -> Option<S> {
+    // Of a small box on a large one most of the twelve edges are far away; each costs a search with twelve halvings.
     let [a, b] = pair.colliders;
     match (model.colliders[a].form, model.colliders[b].form) {
         (Form::Block { .. }, Form::Block { half }) if index >= 8 => {
@@ -104,6 +108,8 @@ fn point<S: Scalar>(
     placed: &[Placed<S>],
     index: usize,
 ) -> Point<S> {
+    // Spheres and capsules are balls swept over a point or a segment, corners and edges of boxes the same with radius 0: each
+    // pair comes down to a ball with a ball, a box or a plane. Shapes come in the order ball, capsule, block, plane.
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
     match (model.colliders[a].form, model.colliders[b].form) {
@@ -130,6 +136,7 @@ fn point<S: Scalar>(
             balls(na, S::splat(simd, ra), nb, S::splat(simd, rb))
         }
         (Form::Capsule { radius, half_length }, Form::Block { half }) => {
+            // Both ends of the axis, and the deepest place between them, where the capsule lies across an edge.
             let half = splat::<S>(simd, half);
             if index < 2 {
                 ball_box(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb, half)
@@ -141,6 +148,8 @@ fn point<S: Scalar>(
             ball_plane(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb)
         }
         (Form::Block { half: ha }, Form::Block { half: hb }) => {
+            // Corners of a in b, then edges of b through a, whose normal is turned round: it pushes a away from b. Corners of
+            // b in a are not looked at by themselves; the description's order is chosen for that (see `model_builder`).
             let zero = S::splat(simd, S::Real::of(0.0));
             let (ha, hb) = (splat::<S>(simd, ha), splat::<S>(simd, hb));
             if index < 8 {

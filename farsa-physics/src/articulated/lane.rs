@@ -11,7 +11,7 @@ use crate::articulated::model::Model;
 use crate::articulated::ray;
 use crate::articulated::spatial::{Matrix, Spatial, Vector};
 use crate::articulated::step::{Precision, Scratch};
-use crate::articulated::tree::LinkWork;
+use crate::articulated::tree::LinkData;
 use crate::articulated::view::{self, View};
 
 /// Words that the ports read of a link: rotation, position, reference point, velocity.
@@ -55,7 +55,7 @@ impl Words {
     }
 }
 
-fn link_words(w: &LinkWork<f32>) -> [f32; LINK_WORDS] {
+fn link_words(w: &LinkData<f32>) -> [f32; LINK_WORDS] {
     let [[a, b, c], [d, e, f], [g, h, i]] = w.rotation;
     let [[x, y, z], [u, v, n], [k, l, m], [o, p, q]] = [w.position, w.reference, w.velocity.angular, w.velocity.linear];
     [a, b, c, d, e, f, g, h, i, x, y, z, u, v, n, k, l, m, o, p, q]

@@ -8,7 +8,7 @@ use farsa_num::{Real, Scalar};
 
 use crate::articulated::model::{ModelError, Mount, Options};
 use crate::articulated::spatial::{Matrix, Vector, add, cross, matrix_of, product, rotate, rotate_symmetric, sub};
-use crate::articulated::tree::{Link, LinkWork, Motion, WORLD, mass_matrix, place};
+use crate::articulated::tree::{Link, LinkData, Motion, WORLD, forward_kinematics, mass_matrix};
 
 /// A rotation whose third column is the axis.
 fn axis_frame(axis: Vector<f64>) -> Matrix<f64> {
@@ -205,10 +205,10 @@ pub(crate) fn set_limits(
     dofs: usize,
     options: &Options,
 ) -> Result<(), ModelError> {
-    let mut work = vec![LinkWork::<f64>::new(()); links.len()];
+    let mut work = vec![LinkData::<f64>::new(()); links.len()];
     let mut matrix = vec![0.0; dofs * dofs];
     let velocities = vec![0.0; dofs];
-    place((), links, initial, &velocities, &mut work);
+    forward_kinematics((), links, initial, &velocities, &mut work);
     mass_matrix((), links, &mut work, &mut matrix);
     for (segment, mount) in robot.segments.iter().zip(mounts) {
         let Some(link) = links.get_mut(usize::from(mount.link)) else { continue };

@@ -67,8 +67,11 @@ pub use spatial::Spatial;
 #[cfg(feature = "alloc")]
 pub use step::{Precision, Scratch, step};
 pub use tree::{
-    Link, LinkWork, Root, accelerations, centre_of_mass, inverse_dynamics, jacobian, kinetic_energy, mass_matrix,
-    place, potential_energy,
+    Link, LinkData, Root, accelerations, centre_of_mass, forward_kinematics, inverse_dynamics, jacobian,
+    kinetic_energy, mass_matrix, potential_energy,
 };
+/// Their former names.
+#[doc(hidden)]
+pub use tree::{LinkData as LinkWork, forward_kinematics as place};
 #[cfg(feature = "alloc")]
 pub use world::World;

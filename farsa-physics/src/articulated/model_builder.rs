@@ -83,6 +83,118 @@ fn reach_of(links: &[Link<f64>], a: u16, b: u16) -> Reach {
     Reach { first, second, meet, dofs }
 }
 
+/// A collider in its link's frame: where, which form, the radius of its bound, and its rank in the order of forms.
+type Fitted = (Mount<f64>, Form<f64>, f64, u8);
+
+fn colliders_of(robot: &Robot, mounts: &[Mount<f64>]) -> Vec<Fitted> {
+    let fitted = robot.colliders.iter().map(|c| {
+        let base = c.body.map_or(Mount { link: WORLD, rotation: IDENTITY, position: [0.0; 3] }, |b| mounts[b.index()]);
+        let (form, bound, rank) = form_of(c.shape);
+        (compose(&base, &frame(&c.placement)), form, bound, rank)
+    });
+    fitted.collect()
+}
+
+fn cast_collider<R: Real>((mount, form, bound, _): &Fitted) -> Collider<R> {
+    Collider {
+        mount: cast_mount(mount),
+        form: match *form {
+            Form::Ball { radius } => Form::Ball { radius: R::of(radius) },
+            Form::Capsule { radius, half_length } => {
+                Form::Capsule { radius: R::of(radius), half_length: R::of(half_length) }
+            }
+            Form::Block { half } => Form::Block { half: half.map(R::of) },
+            Form::Plane => Form::Plane,
+        },
+        bound: R::of(*bound),
+    }
+}
+
+/// The pairs, and how many points and entries of rows they have together.
+struct Pairs<R> {
+    pairs: Vec<Pair<R>>,
+    points: usize,
+    rolling: usize,
+    row_entries: usize,
+    rolling_entries: usize,
+}
+
+fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -> Result<Pairs<R>, ModelError> {
+    let mut all = Pairs {
+        pairs: Vec::with_capacity(robot.pairs.len()),
+        points: 0,
+        rolling: 0,
+        row_entries: 0,
+        rolling_entries: 0,
+    };
+    for p in &robot.pairs {
+        let [a, b] = p.colliders;
+        let movable = |c: usize| colliders[c].0.link != WORLD;
+        let rank = |c: usize| colliders[c].3;
+        // Of two boxes the moving one comes first: its corners and the still one's edges are looked at.
+        let flipped = rank(a) > rank(b) || (rank(a) == 2 && rank(b) == 2 && !movable(a));
+        let [a, b] = if flipped { [b, a] } else { [a, b] };
+        let Some(count) = points_of(&colliders[a].1, &colliders[b].1) else {
+            let names = [a, b].map(|c| robot.colliders[c].name.clone());
+            return Err(RobotError::Shapes { colliders: names }.into());
+        };
+        let reach = reach_of(links, colliders[a].0.link, colliders[b].0.link);
+        let rolls = p.surface.rolling_friction > 0.0;
+        let entries = reach.dofs.len() * count;
+        all.pairs.push(Pair {
+            colliders: [a, b],
+            flipped,
+            point: all.points,
+            points: count,
+            row: all.row_entries,
+            rolling_row: all.rolling_entries,
+            rolling: rolls.then_some(all.rolling),
+            friction: R::of(p.surface.friction),
+            rolling_friction: R::of(p.surface.rolling_friction),
+            stiffness: R::of(p.surface.stiffness),
+            damping: R::of(p.surface.damping),
+            at_stops: reach.first.iter().chain(&reach.second).any(|l| has_stop(&links[usize::from(*l)])),
+            reach,
+        });
+        all.points += count;
+        all.row_entries += entries;
+        if rolls {
+            all.rolling += count;
+            all.rolling_entries += entries;
+        }
+    }
+    Ok(all)
+}
+
+/// The positions at the start, and as many zeros as there are velocities.
+fn start_of(robot: &Robot, links: &[Link<f64>], mounts: &[Mount<f64>], len: usize) -> Vec<f64> {
+    let mut initial = vec![0.0; len];
+    for (segment, mount) in robot.segments.iter().zip(mounts) {
+        let Some(link) = links.get(usize::from(mount.link)) else { continue };
+        let at = usize::from(link.q);
+        match segment.joint.kind {
+            JointKind::Floating => {
+                let pose = segment.joint.placement;
+                initial[at..at + 3].copy_from_slice(&pose.position);
+                initial[at + 3..at + 7].copy_from_slice(&unit(pose.rotation));
+            }
+            JointKind::Fixed => {}
+            _ => initial[at] = 0.0_f64.max(segment.joint.range[0]).min(segment.joint.range[1]),
+        }
+    }
+    initial
+}
+
+fn stop_paths_of(links: &[Link<f64>]) -> Vec<StopPath> {
+    let mut row = 0;
+    let paths = (0..links.len()).map(|i| {
+        let dofs = reach_of(links, i as u16, WORLD).dofs;
+        row += dofs.len();
+        StopPath { row: row - dofs.len(), dofs }
+    });
+    paths.collect()
+}
+
 impl<R: Real> Model<R> {
     /// Builds the constant part of a world from a robot's (or a whole scene's) description.
     ///
@@ -103,113 +215,32 @@ impl<R: Real> Model<R> {
         }
         let (mut links, mounts) = links_of(robot);
         choose_references(&mut links);
-        let mut colliders = Vec::new();
-        let mut kinds = Vec::new();
-        for c in &robot.colliders {
-            let base =
-                c.body.map_or(Mount { link: WORLD, rotation: IDENTITY, position: [0.0; 3] }, |b| mounts[b.index()]);
-            let (form, bound, kind) = form_of(c.shape);
-            colliders.push((compose(&base, &frame(&c.placement)), form, bound));
-            kinds.push(kind);
-        }
-        let mut pairs = Vec::new();
-        let (mut points, mut rolling, mut row, mut rolling_row) = (0, 0, 0, 0);
-        let mut pair_bodies = Vec::new();
-        for p in &robot.pairs {
-            let [a, b] = p.colliders;
-            let movable = |c: usize| colliders[c].0.link != WORLD;
-            // Of two boxes the moving one comes first: its corners and the still one's edges are looked at.
-            let flipped = kinds[a] > kinds[b] || (kinds[a] == 2 && kinds[b] == 2 && !movable(a));
-            let [a, b] = if flipped { [b, a] } else { [a, b] };
-            let names = || [a, b].map(|c| robot.colliders[c].name.clone());
-            let Some(count) = points_of(&colliders[a].1, &colliders[b].1) else {
-                return Err(RobotError::Shapes { colliders: names() }.into());
-            };
-            let reach = reach_of(&links, colliders[a].0.link, colliders[b].0.link);
-            let rolls = p.surface.rolling_friction > 0.0;
-            pair_bodies.push(p.colliders.map(|c| robot.colliders[c].body));
-            let entries = reach.dofs.len() * count;
-            pairs.push(Pair {
-                colliders: [a, b],
-                flipped,
-                point: points,
-                points: count,
-                row,
-                rolling_row,
-                rolling: rolls.then_some(rolling),
-                friction: R::of(p.surface.friction),
-                rolling_friction: R::of(p.surface.rolling_friction),
-                stiffness: R::of(p.surface.stiffness),
-                damping: R::of(p.surface.damping),
-                at_stops: reach.first.iter().chain(&reach.second).any(|l| has_stop(&links[usize::from(*l)])),
-                reach,
-            });
-            points += count;
-            row += entries;
-            if rolls {
-                rolling += count;
-                rolling_row += entries;
-            }
-        }
+        let colliders = colliders_of(robot, &mounts);
+        let Pairs { pairs, points, rolling, row_entries, rolling_entries } = pairs_of(robot, &links, &colliders)?;
         let positions = links.iter().map(|l| if l.motion == Motion::Floating { 7 } else { 1 }).sum();
         let dofs = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
-        let mut initial = vec![0.0; positions + dofs];
-        for (segment, mount) in robot.segments.iter().zip(&mounts) {
-            let Some(link) = links.get(usize::from(mount.link)) else { continue };
-            let at = usize::from(link.q);
-            match segment.joint.kind {
-                JointKind::Floating => {
-                    let pose = segment.joint.placement;
-                    initial[at..at + 3].copy_from_slice(&pose.position);
-                    initial[at + 3..at + 7].copy_from_slice(&unit(pose.rotation));
-                }
-                JointKind::Fixed => {}
-                _ => initial[at] = 0.0_f64.max(segment.joint.range[0]).min(segment.joint.range[1]),
-            }
-        }
+        let initial = start_of(robot, &links, &mounts, positions + dofs);
         set_limits(robot, &mounts, &mut links, &initial, dofs, options)?;
-        let mut stop_row = 0;
-        let stop_paths = (0..links.len())
-            .map(|i| {
-                let dofs = reach_of(&links, i as u16, WORLD).dofs;
-                stop_row += dofs.len();
-                StopPath { row: stop_row - dofs.len(), dofs }
-            })
-            .collect::<Vec<_>>();
+        let stop_paths = stop_paths_of(&links);
+        let actuators =
+            robot.actuators.iter().map(|a| Actuator { link: mounts[a.joint.index()].link, law: a.law.cast() });
+        let bodies_of = |pair: &farsa_body::Pair| pair.colliders.map(|c| robot.colliders[c].body);
         let mut model = Self {
             links: links.iter().map(Link::cast).collect(),
             mounts: mounts.iter().map(cast_mount).collect(),
-            pair_bodies,
+            pair_bodies: robot.pairs.iter().map(bodies_of).collect(),
             joints: robot.segments.iter().map(|s| s.joint.kind).collect(),
             collider_bodies: robot.colliders.iter().map(|c| c.body).collect(),
-            colliders: colliders
-                .iter()
-                .map(|(mount, form, bound)| Collider {
-                    mount: cast_mount(mount),
-                    form: match *form {
-                        Form::Ball { radius } => Form::Ball { radius: R::of(radius) },
-                        Form::Capsule { radius, half_length } => {
-                            Form::Capsule { radius: R::of(radius), half_length: R::of(half_length) }
-                        }
-                        Form::Block { half } => Form::Block { half: half.map(R::of) },
-                        Form::Plane => Form::Plane,
-                    },
-                    bound: R::of(*bound),
-                })
-                .collect(),
+            colliders: colliders.iter().map(cast_collider).collect(),
             pairs,
-            actuators: robot
-                .actuators
-                .iter()
-                .map(|a| Actuator { link: mounts[a.joint.index()].link, law: a.law.cast() })
-                .collect(),
+            actuators: actuators.collect(),
             initial: Vec::new(),
             positions,
             dofs,
             points,
             rolling,
-            row_entries: row,
-            rolling_entries: rolling_row,
+            row_entries,
+            rolling_entries,
             stops: links.iter().map(has_stop).collect(),
             stop_entries: stop_paths.iter().map(|p| p.dofs.len()).sum(),
             stop_paths,

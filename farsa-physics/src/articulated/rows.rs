@@ -1,13 +1,15 @@
 //! Rows: what unit forces and moments at a contact do to the articulated bodies.
 //!
-//! [`crate::articulated::tree::accelerations`] has already factorised the joint-space inertia: a row `y` along the path from a link to
-//! its root gives every product `J M^-1 J^T` that is needed.
+//! [`accelerations`](crate::articulated::tree::accelerations) has already factorised the inverse of the joint-space
+//! inertia, `M^-1 = B B^T`. The row `y = B^T J^T` of a unit force has entries only along the path from its link to the
+//! root, and gives every product that is needed: `J M^-1 J^T = y^T y`, and with the response `z`, the sum of `y` times
+//! impulse over all points, the change of a point's velocity `y^T z`. Own derivation.
 
 use farsa_num::{Mask, Real, Scalar};
 
 use crate::articulated::model::{Model, Pair};
 use crate::articulated::spatial::{Spatial, Vector, sub};
-use crate::articulated::tree::{LinkWork, Motion, Root, WORLD};
+use crate::articulated::tree::{LinkData, Motion, Root, WORLD};
 
 /// Two unit vectors across a unit normal, without a branch [Duff2017].
 #[inline(always)]
@@ -21,7 +23,7 @@ pub(crate) fn tangents<S: Scalar>(n: Vector<S>) -> [Vector<S>; 2] {
 
 /// Predicted velocity of a collider's point.
 #[inline(always)]
-pub(crate) fn velocity_at<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkWork<S>], point: Vector<S>) -> Vector<S> {
+pub(crate) fn velocity_at<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkData<S>], point: Vector<S>) -> Vector<S> {
     if link == WORLD {
         return [S::splat(simd, S::Real::of(0.0)); 3];
     }
@@ -31,7 +33,7 @@ pub(crate) fn velocity_at<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkWork<
 
 /// Predicted angular velocity of a link.
 #[inline(always)]
-pub(crate) fn spin<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkWork<S>]) -> Vector<S> {
+pub(crate) fn spin<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkData<S>]) -> Vector<S> {
     if link == WORLD { [S::splat(simd, S::Real::of(0.0)); 3] } else { work[usize::from(link)].acceleration.angular }
 }
 
@@ -43,9 +45,9 @@ type Pull<S> = [Spatial<S>; 3];
 fn climb<S: Scalar>(
     model: &Model<S::Real>,
     link: u16,
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
     roots: &[Root<S>],
-    root_of: &[S],
+    inverse_sqrt_inertia: &[S],
     p: &mut Pull<S>,
     out: &mut [[S; 3]],
 ) -> usize {
@@ -59,8 +61,10 @@ fn climb<S: Scalar>(
         }
         return 6;
     }
+    // The inward pass of the articulated bodies for a force alone: the joint takes s . p, as y = s . p / sqrt(D) in the row,
+    // and hands p - U (s . p) / D on.
     let w = &work[usize::from(link)];
-    let root = root_of[usize::from(l.dof)];
+    let root = inverse_sqrt_inertia[usize::from(l.dof)];
     for k in 0..3 {
         let y = w.subspace.dot(p[k]);
         out[0][k] = y * root;
@@ -84,7 +88,7 @@ fn pull<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     collider: usize,
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
     load: Load<S>,
     axes: &[Vector<S>; 3],
 ) -> Pull<S> {
@@ -112,9 +116,9 @@ pub(crate) fn write_rows<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     pair: &Pair<S::Real>,
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
     roots: &[Root<S>],
-    root_of: &[S],
+    inverse_sqrt_inertia: &[S],
     load: Load<S>,
     axes: &[Vector<S>; 3],
     rows: &mut [[S; 3]],
@@ -122,7 +126,7 @@ pub(crate) fn write_rows<S: Scalar>(
     S::vectorize(
         simd,
         #[inline(always)]
-        || write(simd, model, pair, work, roots, root_of, load, axes, rows),
+        || write(simd, model, pair, work, roots, inverse_sqrt_inertia, load, axes, rows),
     )
 }
 
@@ -131,13 +135,15 @@ fn write<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     pair: &Pair<S::Real>,
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
     roots: &[Root<S>],
-    root_of: &[S],
+    inverse_sqrt_inertia: &[S],
     load: Load<S>,
     axes: &[Vector<S>; 3],
     rows: &mut [[S; 3]],
 ) -> [S; 6] {
+    // Equal and opposite loads climb from both links. Where the two paths meet they are added and go on as one, so that
+    // velocities which both sides share get one entry.
     let reach = &pair.reach;
     let minus = S::splat(simd, S::Real::of(-1.0));
     let first_entries = reach.dofs.len() - reach.second.iter().map(|l| entries(model, *l)).sum::<usize>();
@@ -145,7 +151,7 @@ fn write<S: Scalar>(
     let mut other = [other[0].scale(minus), other[1].scale(minus), other[2].scale(minus)];
     let mut at = first_entries;
     for &link in &reach.second {
-        at += climb(model, link, work, roots, root_of, &mut other, &mut rows[at..]);
+        at += climb(model, link, work, roots, inverse_sqrt_inertia, &mut other, &mut rows[at..]);
     }
     let mut p = pull(simd, model, pair.colliders[0], work, load, axes);
     let mut at = 0;
@@ -155,8 +161,9 @@ fn write<S: Scalar>(
                 p[k] += other[k];
             }
         }
-        at += climb(model, link, work, roots, root_of, &mut p, &mut rows[at..]);
+        at += climb(model, link, work, roots, inverse_sqrt_inertia, &mut p, &mut rows[at..]);
     }
+    // The block of J M^-1 J^T: nn, 11, 22, n1, n2, 12.
     let mut a = [S::splat(simd, S::Real::of(0.0)); 6];
     for y in rows.iter() {
         a[0] += y[0] * y[0];

@@ -8,13 +8,13 @@
 
 use farsa_num::{Mask, Real, Scalar};
 
-use crate::articulated::collision::Placed;
+use crate::articulated::collision::{Placed, Point};
 use crate::articulated::contact::{clearance, edge_distance, find};
 use crate::articulated::model::{Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
 use crate::articulated::spatial::{Vector, add, dot, scale, select, sub};
 use crate::articulated::stop::{Stop, relax_stop};
-use crate::articulated::tree::{LinkWork, Root};
+use crate::articulated::tree::{LinkData, Root};
 
 /// How much faster than their centres the surfaces of two shapes may approach [m/s]: a shape of 3 cm at 50 rad/s.
 const TURNING: f64 = 1.5;
@@ -27,7 +27,7 @@ pub(crate) struct Block<S: Scalar> {
     /// Relative velocity along the axes without contact impulses.
     velocity: [S; 3],
     impulse: [S; 3],
-    /// `J M^-1 J^T` of the block: nn, 11, 22, n1, n2, 12.
+    /// `A = J M^-1 J^T` of the block: nn, 11, 22, n1, n2, 12.
     response: [S; 6],
     /// Reciprocals of the diagonal response: of the normal row, or of all three rolling rows.
     inverse: [S; 3],
@@ -61,13 +61,25 @@ impl<S: Scalar> Block<S> {
     }
 }
 
+/// A contact point that is near enough to be looked at.
+#[derive(Clone, Copy)]
+struct Candidate<S: Scalar> {
+    point: Point<S>,
+    /// Predicted velocity of the first shape's point relative to the second's.
+    velocity: Vector<S>,
+    /// In which lanes it may carry an impulse.
+    mask: S::Mask,
+    /// The gap to be remembered.
+    gap: S,
+}
+
 /// The parts of the scratch that the contact solver uses.
 pub(crate) struct Solver<'a, S: Scalar> {
     pub(crate) placed: &'a [Placed<S>],
-    pub(crate) work: &'a [LinkWork<S>],
+    pub(crate) work: &'a [LinkData<S>],
     pub(crate) roots: &'a [Root<S>],
     /// Square roots of the reciprocals of the joints' articulated inertias [dofs].
-    pub(crate) root_of: &'a [S],
+    pub(crate) inverse_sqrt_inertia: &'a [S],
     pub(crate) blocks: &'a mut [Block<S>],
     pub(crate) rolling: &'a mut [Block<S>],
     pub(crate) rows: &'a mut [[S; 3]],
@@ -92,6 +104,12 @@ fn bounds<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Real>
     [clearance(simd, model, pair, placed), reach]
 }
 
+#[inline(always)]
+fn links_of_pair<R>(model: &Model<R>, pair: &Pair<R>) -> [u16; 2] {
+    let [a, b] = pair.colliders;
+    [model.colliders[a].mount.link, model.colliders[b].mount.link]
+}
+
 /// How many pairs a step that left the colliders at these places has looked at the surfaces of.
 pub(crate) fn near_pairs<R: Real>(model: &Model<R>, placed: &[Placed<R>]) -> usize {
     let near = |pair: &&Pair<R>| {
@@ -110,12 +128,12 @@ impl<S: Scalar> Solver<'_, S> {
         simd: S::Simd,
         model: &Model<S::Real>,
         points: &mut [S],
-        turns: &mut [S],
+        rolling_impulses: &mut [S],
     ) -> (usize, [S::Mask; 2]) {
         S::vectorize(
             simd,
             #[inline(always)]
-            || self.set_up_all(simd, model, points, turns),
+            || self.set_up_all(simd, model, points, rolling_impulses),
         )
     }
 
@@ -125,122 +143,180 @@ impl<S: Scalar> Solver<'_, S> {
         simd: S::Simd,
         model: &Model<S::Real>,
         points: &mut [S],
-        turns: &mut [S],
+        rolling_impulses: &mut [S],
     ) -> (usize, [S::Mask; 2]) {
         let zero = S::splat(simd, S::Real::of(0.0));
-        let one = S::splat(simd, S::Real::of(1.0));
-        let h = S::splat(simd, model.h);
-        let margin = S::splat(simd, model.margin);
         let mut count = 0;
         let mut touched = [zero.lt(zero); 2];
         for (p, pair) in model.pairs.iter().enumerate() {
+            // Broad phase: most pairs are far apart, and cost one distance. Every way out of here writes the words of all
+            // points, or an impulse of an earlier step would start a later contact.
             let own = &mut points[POINT_WORDS * pair.point..POINT_WORDS * (pair.point + pair.points)];
             let [far, reach] = bounds(simd, model, pair, self.placed);
-            let [a, b] = pair.colliders;
             let near = far.le(reach);
             // Overlapping bounds say nothing of the surfaces.
             let far = far.max(zero);
             if !near.any() {
                 for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
-                    forget_point(words, rolling_words(pair, index, turns), far);
+                    forget_point(words, rolling_words(pair, index, rolling_impulses), far);
                 }
                 continue;
             }
-            let links = [model.colliders[a].mount.link, model.colliders[b].mount.link];
             for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
+                let rolling = rolling_words(pair, index, rolling_impulses);
                 let near = match edge_distance(simd, model, pair, self.placed, index) {
                     Some(distance) => near & distance.le(reach),
                     None => near,
                 };
                 if !near.any() {
-                    forget_point(words, rolling_words(pair, index, turns), far);
+                    forget_point(words, rolling, far);
                     continue;
                 }
-                let point = find(simd, model, pair, self.placed, index);
-                let v = sub(
-                    velocity_at(simd, links[0], self.work, point.position),
-                    velocity_at(simd, links[1], self.work, point.position),
-                );
-                let closing = dot(v, point.normal).min(zero);
-                let mask = near & point.valid & (point.gap + h * closing).lt(margin);
-                // What a lane remembers must not depend on its neighbours.
-                let gap = S::select(near & point.valid, point.gap, far);
-                if !mask.any() {
-                    forget_point(words, rolling_words(pair, index, turns), gap);
+                let candidate = self.gap_and_mask(simd, model, pair, index, near, far);
+                if !candidate.mask.any() {
+                    forget_point(words, rolling, candidate.gap);
                     continue;
                 }
-                let [t1, t2] = tangents(point.normal);
-                let axes = [point.normal, t1, t2];
-                let i = pair.point + index;
-                let n = pair.reach.dofs.len();
-                let rows = &mut self.rows[pair.row + index * n..pair.row + (index + 1) * n];
-                let response = write_rows(
-                    simd,
-                    model,
-                    pair,
-                    self.work,
-                    self.roots,
-                    self.root_of,
-                    Load::Forces(point.position),
-                    &axes,
-                    rows,
-                );
-                // Above the surface only the spring at the end of the step counts, below it also the damper.
-                let stiffness = h * S::splat(simd, pair.stiffness);
-                let touching = point.gap.le(zero);
-                let rate = S::select(touching, stiffness + S::splat(simd, pair.damping), stiffness);
-                let compliance = one / (h * rate);
-                let offset = point.gap * S::splat(simd, pair.stiffness) / rate;
-                let old = [words[0], words[1], words[2]];
-                let slip = S::splat(simd, model.slip);
-                let friction = S::splat(simd, pair.friction);
-                let normal = dot(old, axes[0]).max(zero);
-                let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
-                let impulse = select(mask, [normal, across[0], across[1]], [zero; 3]);
-                let (a1, a2) = (response[1] + slip, response[2] + slip);
-                self.blocks[i] = Block {
-                    mask,
-                    axes,
-                    velocity: [dot(v, axes[0]), dot(v, axes[1]), dot(v, axes[2])],
-                    impulse,
-                    response,
-                    inverse: [one / (response[0] + compliance); 3],
-                    stick: [a1, a2, one / (a1 * a2 - response[5] * response[5])],
-                    slide: one / (a1.max(a2) + response[5].abs()),
-                    compliance,
-                    offset,
-                    gap,
-                    point: point.position,
-                };
-                apply(&pair.reach.dofs, rows, impulse, mask, self.response);
-                if let Some(first) = pair.rolling {
-                    let turning = sub(spin(simd, links[0], self.work), spin(simd, links[1], self.work));
-                    let rows = &mut self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
-                    let response =
-                        write_rows(simd, model, pair, self.work, self.roots, self.root_of, Load::Moments, &axes, rows);
-                    let words = &turns[3 * (first + index)..3 * (first + index) + 3];
-                    let old = [words[0], words[1], words[2]];
-                    let limit = S::splat(simd, pair.rolling_friction) * impulse[0];
-                    let wanted = cap([dot(old, axes[0]), dot(old, axes[1]), dot(old, axes[2])], limit);
-                    let impulse = select(mask, wanted, [zero; 3]);
-                    self.rolling[first + index] = Block {
-                        velocity: [dot(turning, axes[0]), dot(turning, axes[1]), dot(turning, axes[2])],
-                        impulse,
-                        response,
-                        inverse: [one / response[0], one / response[1], one / response[2]],
-                        ..self.blocks[i]
-                    };
-                    apply(&pair.reach.dofs, rows, impulse, mask, self.response);
+                self.normal_block(simd, model, pair, index, &candidate, [words[0], words[1], words[2]]);
+                if let [x, y, z] = *rolling {
+                    self.rolling_block(simd, model, pair, index, [x, y, z]);
                 }
-                touched[0] = touched[0] | mask;
+                touched[0] = touched[0] | candidate.mask;
                 if pair.at_stops {
-                    touched[1] = touched[1] | mask;
+                    touched[1] = touched[1] | candidate.mask;
                 }
                 self.active[count] = (p as u16, index as u16);
                 count += 1;
             }
         }
         (count, touched)
+    }
+
+    /// One contact point: where it is, and in which lanes it may carry an impulse. `far` is the distance of the pair's
+    /// bounds, remembered as the gap in lanes where nothing nearer is known.
+    #[inline(always)]
+    fn gap_and_mask(
+        &self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        pair: &Pair<S::Real>,
+        index: usize,
+        near: S::Mask,
+        far: S,
+    ) -> Candidate<S> {
+        let zero = S::splat(simd, S::Real::of(0.0));
+        let h = S::splat(simd, model.h);
+        let margin = S::splat(simd, model.margin);
+        let links = links_of_pair(model, pair);
+        let point = find(simd, model, pair, self.placed, index);
+        let velocity = sub(
+            velocity_at(simd, links[0], self.work, point.position),
+            velocity_at(simd, links[1], self.work, point.position),
+        );
+        // Speculative contact: the point counts when its predicted gap at the end of the step, gap + h v_n, is below the
+        // margin, so that a fast shape is met before it is inside. A velocity that separates does not count: contacts
+        // pushed by others may need the point all the same.
+        let closing = dot(velocity, point.normal).min(zero);
+        let mask = near & point.valid & (point.gap + h * closing).lt(margin);
+        // What a lane remembers must not depend on its neighbours.
+        let gap = S::select(near & point.valid, point.gap, far);
+        Candidate { point, velocity, mask, gap }
+    }
+
+    /// Sets up the normal and friction rows of a point and starts them from the impulse `old` of the last step, given in
+    /// the world's axes.
+    #[inline(always)]
+    fn normal_block(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        pair: &Pair<S::Real>,
+        index: usize,
+        candidate: &Candidate<S>,
+        old: [S; 3],
+    ) {
+        let zero = S::splat(simd, S::Real::of(0.0));
+        let one = S::splat(simd, S::Real::of(1.0));
+        let h = S::splat(simd, model.h);
+        let Candidate { point, velocity: v, mask, gap } = *candidate;
+        let [t1, t2] = tangents(point.normal);
+        let axes = [point.normal, t1, t2];
+        let n = pair.reach.dofs.len();
+        let rows = &mut self.rows[pair.row + index * n..pair.row + (index + 1) * n];
+        let load = Load::Forces(point.position);
+        let response =
+            write_rows(simd, model, pair, self.work, self.roots, self.inverse_sqrt_inertia, load, &axes, rows);
+
+        // The normal law f = max(0, -k (gap + h v+) - d v+), with v+ the velocity after the step, as one row of impulses
+        // l = h f: where it pushes, v+ + l / (h r) + k gap / r = 0 with the rate r = h k + d. The second term is
+        // `compliance`, the third `offset`. Implicit in v+, so that stiff contacts of light bodies gain no energy.
+        // Above the surface only the spring at the end of the step counts, below it also the damper.
+        let stiffness = h * S::splat(simd, pair.stiffness);
+        let touching = point.gap.le(zero);
+        let rate = S::select(touching, stiffness + S::splat(simd, pair.damping), stiffness);
+        let compliance = one / (h * rate);
+        let offset = point.gap * S::splat(simd, pair.stiffness) / rate;
+
+        // Warm start: the last step's impulse along the new axes, brought back into the friction cone |l_t| <= mu l_n.
+        let slip = S::splat(simd, model.slip);
+        let friction = S::splat(simd, pair.friction);
+        let normal = dot(old, axes[0]).max(zero);
+        let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
+        let impulse = select(mask, [normal, across[0], across[1]], [zero; 3]);
+
+        // Friction is the row v_t + slip l_t = 0 inside the cone; `slip` on the diagonal makes it regular. Sticking needs
+        // the inverse of the 2 x 2 block, sliding a bound of its largest eigenvalue, max(a1, a2) + |a12| (Gershgorin).
+        let (a1, a2) = (response[1] + slip, response[2] + slip);
+        self.blocks[pair.point + index] = Block {
+            mask,
+            axes,
+            velocity: [dot(v, axes[0]), dot(v, axes[1]), dot(v, axes[2])],
+            impulse,
+            response,
+            inverse: [one / (response[0] + compliance); 3],
+            stick: [a1, a2, one / (a1 * a2 - response[5] * response[5])],
+            slide: one / (a1.max(a2) + response[5].abs()),
+            compliance,
+            offset,
+            gap,
+            point: point.position,
+        };
+        apply(&pair.reach.dofs, rows, impulse, mask, self.response);
+    }
+
+    /// Sets up the rolling rows of a point whose normal block is there: unit moments about the same axes, limited by
+    /// `rolling_friction` [m] times the normal impulse.
+    #[inline(always)]
+    fn rolling_block(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        pair: &Pair<S::Real>,
+        index: usize,
+        old: [S; 3],
+    ) {
+        let Some(first) = pair.rolling else { return };
+        let zero = S::splat(simd, S::Real::of(0.0));
+        let one = S::splat(simd, S::Real::of(1.0));
+        let links = links_of_pair(model, pair);
+        let block = self.blocks[pair.point + index];
+        let axes = block.axes;
+        let turning = sub(spin(simd, links[0], self.work), spin(simd, links[1], self.work));
+        let n = pair.reach.dofs.len();
+        let rows = &mut self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
+        let response =
+            write_rows(simd, model, pair, self.work, self.roots, self.inverse_sqrt_inertia, Load::Moments, &axes, rows);
+        let limit = S::splat(simd, pair.rolling_friction) * block.impulse[0];
+        let wanted = cap([dot(old, axes[0]), dot(old, axes[1]), dot(old, axes[2])], limit);
+        let impulse = select(block.mask, wanted, [zero; 3]);
+        self.rolling[first + index] = Block {
+            velocity: [dot(turning, axes[0]), dot(turning, axes[1]), dot(turning, axes[2])],
+            impulse,
+            response,
+            inverse: [one / response[0], one / response[1], one / response[2]],
+            ..block
+        };
+        apply(&pair.reach.dofs, rows, impulse, block.mask, self.response);
     }
 
     /// Sweeps over the active points, forwards and backwards in turn, and over the stops.
@@ -255,6 +331,9 @@ impl<S: Scalar> Solver<'_, S> {
 
     #[inline(always)]
     fn sweep_all(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
+        // Symmetric projected Gauss-Seidel: backwards every other time, so that no point is always served last. A fixed
+        // number of sweeps, because a test of convergence would let lanes differ from worlds alone. What is left over
+        // is made up for by the warm start of the next step.
         for round in 0..model.sweeps {
             for k in 0..count {
                 let (p, index) = self.active[if round % 2 == 0 { k } else { count - 1 - k }];
@@ -278,12 +357,14 @@ impl<S: Scalar> Solver<'_, S> {
         let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
         let mut v = velocity(dofs, rows, block.velocity, self.response);
         let [_, _, _, a01, a02, a12] = block.response;
+        // Normal row: l += -(v + c l + offset) / (A_nn + c), not below 0. What this changes is felt across at once.
         let old = block.impulse;
         let normal = (old[0] - (v[0] + block.compliance * old[0] + block.offset) * block.inverse[0]).max(zero);
         let d0 = normal - old[0];
         v[1] += a01 * d0;
         v[2] += a02 * d0;
-        // Sticking solves both tangents at once; sliding steps against the velocity, alike in all directions.
+        // Sticking solves both tangents at once; sliding steps against the velocity, alike in all directions, and is
+        // projected onto the cone of the new normal impulse.
         let limit = S::splat(simd, pair.friction) * normal;
         let (w1, w2) = (v[1] + slip * old[1], v[2] + slip * old[2]);
         let stick = [
@@ -297,6 +378,7 @@ impl<S: Scalar> Solver<'_, S> {
         let new = select(block.mask, [normal, across[0], across[1]], [zero; 3]);
         block.impulse = new;
         apply(dofs, rows, sub(new, old), block.mask, self.response);
+        // Rolling rows: each axis by its own diagonal, then the whole moment projected onto its limit.
         if let Some(first) = pair.rolling {
             let limit = S::splat(simd, pair.rolling_friction) * new[0];
             let block = &mut self.rolling[first + index];
@@ -312,7 +394,14 @@ impl<S: Scalar> Solver<'_, S> {
 
     /// Writes the impulses into the state.
     #[inline(always)]
-    pub(crate) fn store(&self, simd: S::Simd, model: &Model<S::Real>, count: usize, points: &mut [S], turns: &mut [S]) {
+    pub(crate) fn store(
+        &self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        count: usize,
+        points: &mut [S],
+        rolling_impulses: &mut [S],
+    ) {
         let zero = S::splat(simd, S::Real::of(0.0));
         for &(p, index) in &self.active[..count] {
             let (pair, index) = (&model.pairs[usize::from(p)], usize::from(index));
@@ -333,7 +422,7 @@ impl<S: Scalar> Solver<'_, S> {
                 let roll = &self.rolling[first + index];
                 let total = combine(&roll.axes, roll.impulse);
                 for k in 0..3 {
-                    turns[3 * (first + index) + k] = S::select(roll.mask, total[k], zero);
+                    rolling_impulses[3 * (first + index) + k] = S::select(roll.mask, total[k], zero);
                 }
             }
         }

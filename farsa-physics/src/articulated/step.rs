@@ -11,17 +11,17 @@ use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::solver::{Block, Solver};
 use crate::articulated::spatial::{Spatial, Vector, add, matrix_of, rotate, scale, splat, sub};
 use crate::articulated::stop::{Stop, set_up_stops};
-use crate::articulated::tree::{LinkWork, Motion, Root, WORLD, accelerations, place};
+use crate::articulated::tree::{LinkData, Motion, Root, WORLD, accelerations, forward_kinematics};
 
 /// Everything that a step computes and forgets, for one model; made once, reused for every step.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Scalar> {
-    pub(crate) links: Vec<LinkWork<S>>,
+    pub(crate) links: Vec<LinkData<S>>,
     pub(crate) roots: Vec<Root<S>>,
     tau: Vec<S>,
     diagonal: Vec<S>,
     qdd: Vec<S>,
-    root_of: Vec<S>,
+    inverse_sqrt_inertia: Vec<S>,
     response: Vec<S>,
     pub(crate) placed: Vec<Placed<S>>,
     blocks: Vec<Block<S>>,
@@ -38,12 +38,12 @@ impl<S: Scalar> Scratch<S> {
     pub fn new(simd: S::Simd, model: &Model<S::Real>) -> Self {
         let zero = S::splat(simd, S::Real::of(0.0));
         Self {
-            links: vec![LinkWork::new(simd); model.links.len()],
+            links: vec![LinkData::new(simd); model.links.len()],
             roots: vec![Root::new(simd); model.roots],
             tau: vec![zero; model.dofs],
             diagonal: vec![zero; model.dofs],
             qdd: vec![zero; model.dofs],
-            root_of: vec![zero; model.dofs],
+            inverse_sqrt_inertia: vec![zero; model.dofs],
             response: vec![zero; model.dofs],
             placed: vec![Placed::new(simd); model.colliders.len()],
             blocks: vec![Block::new(simd); model.points],
@@ -57,12 +57,12 @@ impl<S: Scalar> Scratch<S> {
     }
 
     /// Where the links are, after [`Scratch::place`] or a step, for the kernels of [`crate::articulated`].
-    pub fn links(&mut self) -> &mut [LinkWork<S>] {
+    pub fn links(&mut self) -> &mut [LinkData<S>] {
         &mut self.links
     }
 
     /// The factors of the floating links, for [`crate::articulated::accelerations`].
-    pub fn parts(&mut self) -> (&mut [LinkWork<S>], &mut [Root<S>]) {
+    pub fn parts(&mut self) -> (&mut [LinkData<S>], &mut [Root<S>]) {
         (&mut self.links, &mut self.roots)
     }
 
@@ -108,15 +108,15 @@ pub(crate) struct Parts<'a, S> {
     pub(crate) v: &'a mut [S],
     pub(crate) commands: &'a mut [S],
     pub(crate) points: &'a mut [S],
-    pub(crate) turns: &'a mut [S],
+    pub(crate) rolling_impulses: &'a mut [S],
 }
 
 pub(crate) fn parts<'a, R: Real, S>(model: &Model<R>, state: &'a mut [S]) -> Parts<'a, S> {
     let (q, rest) = state.split_at_mut(model.positions);
     let (v, rest) = rest.split_at_mut(model.dofs);
     let (commands, rest) = rest.split_at_mut(2 * model.actuators.len());
-    let (points, turns) = rest.split_at_mut(POINT_WORDS * model.points);
-    Parts { q, v, commands, points, turns }
+    let (points, rolling_impulses) = rest.split_at_mut(POINT_WORDS * model.points);
+    Parts { q, v, commands, points, rolling_impulses }
 }
 
 /// Lets one control step pass for every lane of `state` [`Model::state_len`].
@@ -139,17 +139,21 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
     let zero = S::splat(simd, S::Real::of(0.0));
     let h = S::splat(simd, model.h);
     let state = parts(model, state);
+    // Velocities without contacts: v += h qdd, with qdd from the articulated bodies, whose factor stays in `links` and
+    // `roots` for the contacts.
     efforts(simd, model, state.q, state.v, state.commands, &mut s.tau, &mut s.diagonal);
     accelerate(simd, model, &s.tau, &s.diagonal, &mut s.links, &mut s.roots, &mut s.qdd);
     for (v, a) in state.v.iter_mut().zip(&s.qdd) {
         *v += h * *a;
     }
+    // Contacts see the predicted velocities at the old places. Their rows are in the factor's coordinates: M^-1 = B B^T with
+    // B from the articulated bodies, so a joint's column of B begins with D^-1/2, D its articulated inertia.
     if model.points > 0 {
         predict(simd, model, state.v, &mut s.links);
         place_colliders(simd, model, &s.links, &mut s.placed);
         for (link, w) in model.links.iter().zip(&s.links) {
             if link.motion != Motion::Floating {
-                s.root_of[usize::from(link.dof)] = w.reciprocal.sqrt();
+                s.inverse_sqrt_inertia[usize::from(link.dof)] = w.reciprocal.sqrt();
             }
         }
         for z in &mut s.response {
@@ -159,7 +163,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             placed: &s.placed,
             work: &s.links,
             roots: &s.roots,
-            root_of: &s.root_of,
+            inverse_sqrt_inertia: &s.inverse_sqrt_inertia,
             blocks: &mut s.blocks,
             rolling: &mut s.rolling,
             rows: &mut s.rows,
@@ -169,7 +173,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             stops: &mut s.stops,
             stop_rows: &[],
         };
-        let (count, [touched, pushed]) = solver.set_up(simd, model, state.points, state.turns);
+        let (count, [touched, pushed]) = solver.set_up(simd, model, state.points, state.rolling_impulses);
         if count > 0 {
             let stops = set_up_stops(
                 simd,
@@ -178,28 +182,29 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
                 state.v,
                 solver.work,
                 solver.roots,
-                solver.root_of,
+                solver.inverse_sqrt_inertia,
                 pushed,
                 &mut s.stop_rows,
                 solver.stops,
             );
             solver.stop_rows = &s.stop_rows;
             solver.sweep(simd, model, count, stops);
-            solver.store(simd, model, count, state.points, state.turns);
-            respond(simd, model, &s.response, &s.root_of, touched, &mut s.links, &s.roots, state.v);
+            solver.store(simd, model, count, state.points, state.rolling_impulses);
+            respond(simd, model, &s.response, &s.inverse_sqrt_inertia, touched, &mut s.links, &s.roots, state.v);
         }
     }
+    // Semi-implicit Euler: positions move by the new velocities.
     integrate(simd, model, state.q, state.v, &s.links);
     place_links(simd, model, state.q, state.v, &mut s.links);
 }
 
-/// [`place`] as a function of its own.
+/// [`forward_kinematics`] as a function of its own.
 #[inline(never)]
-fn place_links<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &[S], v: &[S], work: &mut [LinkWork<S>]) {
+fn place_links<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &[S], v: &[S], work: &mut [LinkData<S>]) {
     S::vectorize(
         simd,
         #[inline(always)]
-        || place(simd, &model.links, q, v, work),
+        || forward_kinematics(simd, &model.links, q, v, work),
     );
 }
 
@@ -210,7 +215,7 @@ fn accelerate<S: Scalar>(
     model: &Model<S::Real>,
     tau: &[S],
     diagonal: &[S],
-    work: &mut [LinkWork<S>],
+    work: &mut [LinkData<S>],
     roots: &mut [Root<S>],
     qdd: &mut [S],
 ) {
@@ -243,6 +248,8 @@ fn efforts<S: Scalar>(
             }
             continue;
         }
+        // A force -k (q - q0) - d v is taken implicitly, at q + h v' and v' = v + h qdd: its part in qdd goes to the
+        // diagonal as h d + h^2 k, the rest stays as the effort -k (q + h v - q0) - d v.
         let (x, speed) = (q[usize::from(link.q)], v[at]);
         let damping = S::splat(simd, link.damping);
         // A stop acts where the joint would be at the end of the step.
@@ -257,6 +264,7 @@ fn efforts<S: Scalar>(
         diagonal[at] =
             S::splat(simd, link.armature) + h * damping + S::select(hard, h * stop + h * h * stiffness, zero);
     }
+    // Actuators, linearised at the start of the step: tau(q, v) and the -k h v that its stiffness adds by the end of it.
     for (actuator, command) in model.actuators.iter().zip(commands.chunks_exact(2)) {
         let link = &model.links[usize::from(actuator.link)];
         let at = usize::from(link.dof);
@@ -269,7 +277,7 @@ fn efforts<S: Scalar>(
 
 /// Velocities of the links under the predicted joint velocities, into the links' acceleration fields.
 #[inline(always)]
-fn predict<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, v: &[S], work: &mut [LinkWork<S>]) {
+fn predict<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, v: &[S], work: &mut [LinkData<S>]) {
     for (i, link) in model.links.iter().enumerate() {
         let at = usize::from(link.dof);
         let parent =
@@ -284,14 +292,18 @@ fn predict<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, v: &[S], work: &mut
 }
 
 /// Adds the velocities that the impulses give, in the lanes that have any.
+///
+/// The second half of the solution with the factor: from the root outwards, `dv_i = D_i^-1/2 z_i - D_i^-1 U_i . dv_parent`,
+/// with z the response, D the joint's articulated inertia and U its column. It is the last pass of [`accelerations`], for
+/// a change of velocity.
 #[inline(always)]
 fn respond<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     response: &[S],
-    root_of: &[S],
+    inverse_sqrt_inertia: &[S],
     touched: S::Mask,
-    work: &mut [LinkWork<S>],
+    work: &mut [LinkData<S>],
     roots: &[Root<S>],
     v: &mut [S],
 ) {
@@ -311,7 +323,7 @@ fn respond<S: Scalar>(
         let parent =
             if link.parent == WORLD { Spatial::zero(simd) } else { work[usize::from(link.parent)].acceleration };
         let w = &mut work[i];
-        let x = root_of[at] * response[at] - w.reciprocal * w.column.dot(parent);
+        let x = inverse_sqrt_inertia[at] * response[at] - w.reciprocal * w.column.dot(parent);
         v[at] = S::select(touched, v[at] + x, v[at]);
         w.acceleration = parent + w.subspace.scale(x);
     }
@@ -319,7 +331,7 @@ fn respond<S: Scalar>(
 
 /// Positions from the new velocities.
 #[inline(always)]
-fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &mut [S], v: &[S], work: &[LinkWork<S>]) {
+fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &mut [S], v: &[S], work: &[LinkData<S>]) {
     let h = S::splat(simd, model.h);
     for (link, w) in model.links.iter().zip(work) {
         let (iq, at) = (usize::from(link.q), usize::from(link.dof));
@@ -327,6 +339,8 @@ fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &mut [S], v: &
             q[iq] += h * v[at];
             continue;
         }
+        // Quaternion: q' = q + (h / 2) (w, 0) q with the spin w in the world's axes, brought back to unit length. A step
+        // turns by 2 atan(h |w| / 2), less than h |w| by (h |w|)^3 / 12.
         let turn: Vector<S> = scale([v[at], v[at + 1], v[at + 2]], h * h.constant(0.5));
         let [x, y, z, r] = [q[iq + 3], q[iq + 4], q[iq + 5], q[iq + 6]];
         let new = [
@@ -340,6 +354,8 @@ fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &mut [S], v: &
         let shrink = one / length;
         let new = [new[0] * shrink, new[1] * shrink, new[2] * shrink, new[3] * shrink];
         q[iq + 3..iq + 7].copy_from_slice(&new);
+        // The velocity is that of the centre of mass, the position that of the origin: the origin moves by h v and by what
+        // the turn about the centre does to the vector between them, R c before less R' c after.
         let centre = splat::<S>(simd, link.centre);
         let before = sub(w.centre, w.position);
         let after = rotate(&matrix_of(new), centre);

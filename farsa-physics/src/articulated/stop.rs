@@ -8,7 +8,7 @@ use farsa_num::{Mask, Real, Scalar};
 use crate::articulated::model::Model;
 use crate::articulated::rows::equal;
 use crate::articulated::spatial::Spatial;
-use crate::articulated::tree::{LinkWork, Motion, WORLD};
+use crate::articulated::tree::{LinkData, Motion, WORLD};
 
 /// Joints are watched when a change of speed of this size [rad/s or m/s] would bring them to a stop within a step.
 const CHANGE: f64 = 20.0;
@@ -44,9 +44,9 @@ pub(crate) fn set_up_stops<S: Scalar>(
     model: &Model<S::Real>,
     q: &[S],
     v: &[S],
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
     roots: &[crate::articulated::tree::Root<S>],
-    root_of: &[S],
+    inverse_sqrt_inertia: &[S],
     pushed: S::Mask,
     rows: &mut [S],
     stops: &mut [Stop<S>],
@@ -54,7 +54,7 @@ pub(crate) fn set_up_stops<S: Scalar>(
     S::vectorize(
         simd,
         #[inline(always)]
-        || watch(simd, model, q, v, work, roots, root_of, pushed, rows, stops),
+        || watch(simd, model, q, v, work, roots, inverse_sqrt_inertia, pushed, rows, stops),
     )
 }
 
@@ -64,9 +64,9 @@ fn watch<S: Scalar>(
     model: &Model<S::Real>,
     q: &[S],
     v: &[S],
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
     roots: &[crate::articulated::tree::Root<S>],
-    root_of: &[S],
+    inverse_sqrt_inertia: &[S],
     pushed: S::Mask,
     rows: &mut [S],
     stops: &mut [Stop<S>],
@@ -93,7 +93,7 @@ fn watch<S: Scalar>(
         }
         let path = &model.stop_paths[i];
         let rows = &mut rows[path.row..path.row + path.dofs.len()];
-        let mut y = root_of[usize::from(link.dof)];
+        let mut y = inverse_sqrt_inertia[usize::from(link.dof)];
         rows[0] = y;
         let mut response = y * y;
         let mut p: Spatial<S> = work[i].column.scale(minus * work[i].reciprocal);
@@ -111,7 +111,7 @@ fn watch<S: Scalar>(
             } else {
                 let w = &work[usize::from(next)];
                 let s = w.subspace.dot(p);
-                y = s * root_of[usize::from(l.dof)];
+                y = s * inverse_sqrt_inertia[usize::from(l.dof)];
                 rows[at] = y;
                 response += y * y;
                 at += 1;

@@ -49,7 +49,7 @@ pub struct Link<R> {
 
 /// What the sweeps compute for one link.
 #[derive(Clone, Copy, Debug)]
-pub struct LinkWork<S> {
+pub struct LinkData<S> {
     pub(crate) rotation: Matrix<S>,
     pub(crate) position: Vector<S>,
     /// Centre of mass in the world.
@@ -69,7 +69,7 @@ pub struct LinkWork<S> {
     pub(crate) acceleration: Spatial<S>,
 }
 
-impl<S: Scalar> LinkWork<S> {
+impl<S: Scalar> LinkData<S> {
     /// An empty one.
     pub fn new(simd: S::Simd) -> Self {
         let o = S::splat(simd, S::Real::of(0.0));
@@ -100,8 +100,15 @@ fn turn<S: Scalar>(r: Vector<S>, s: S, c: S) -> Vector<S> {
 
 /// Places all links: forward kinematics and velocities from positions `q` [positions] and velocities `v` [dofs] into `work` [links].
 #[inline(always)]
-pub fn place<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], q: &[S], v: &[S], work: &mut [LinkWork<S>]) {
+pub fn forward_kinematics<S: Scalar>(
+    simd: S::Simd,
+    links: &[Link<S::Real>],
+    q: &[S],
+    v: &[S],
+    work: &mut [LinkData<S>],
+) {
     let zero = S::splat(simd, S::Real::of(0.0));
+    // First pass: rotations and origins. A joint's frame turns about or slides along its own z axis.
     for (i, link) in links.iter().enumerate() {
         let at = usize::from(link.q);
         let (rotation, position) = if link.motion == Motion::Floating {
@@ -128,6 +135,9 @@ pub fn place<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], q: &[S], v: &[S]
         w.position = position;
         w.centre = add(position, rotate(&rotation, splat::<S>(simd, link.centre)));
     }
+    // Second pass, once the reference points are known: the joint's motion subspace s, v_i = v_parent + s q', and the
+    // acceleration that velocities alone give, c_i = v_parent x s q'. There is no term for a subspace that moves with the link,
+    // for s q' x s q' = 0, and none for the reference point: spatial vectors are taken where it is now.
     for (i, link) in links.iter().enumerate() {
         let reference = work[usize::from(link.reference)].centre;
         let parent = if link.parent == WORLD { Spatial::zero(simd) } else { work[usize::from(link.parent)].velocity };
@@ -157,7 +167,7 @@ pub fn place<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], q: &[S], v: &[S]
 
 /// The rigid inertias of all links about their references, into `work[..].inertia`.
 #[inline(always)]
-pub(crate) fn rigid_inertias<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut [LinkWork<S>]) {
+pub(crate) fn rigid_inertias<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut [LinkData<S>]) {
     for (link, w) in links.iter().zip(work) {
         let about_centre = splat_symmetric(simd, link.inertia);
         let turned = rotate_symmetric(&w.rotation, &about_centre);
@@ -168,7 +178,7 @@ pub(crate) fn rigid_inertias<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], 
 /// Joint accelerations under joint efforts: articulated bodies [Featherstone2008] table 7.1.
 ///
 /// `tau` [dofs] are efforts, `diagonal` [dofs] is added to the joint-space inertia (armature and h d + h^2 k of implicit
-/// terms), `qdd` [dofs] receives accelerations; `work` must have been [`place`]d. Deviations: common axes and reference
+/// terms), `qdd` [dofs] receives accelerations; `work` must have gone through [`forward_kinematics`]. Deviations: common axes and reference
 /// point instead of link coordinates; gravity [m/s2] as a field instead of an acceleration of the base; a floating
 /// link's linear acceleration is that of its centre of mass. The factor stays in `work` and `roots`.
 #[inline(always)]
@@ -178,15 +188,19 @@ pub fn accelerations<S: Scalar>(
     gravity: [S::Real; 3],
     tau: &[S],
     diagonal: &[S],
-    work: &mut [LinkWork<S>],
+    work: &mut [LinkData<S>],
     roots: &mut [Root<S>],
     qdd: &mut [S],
 ) {
     let one = S::splat(simd, S::Real::of(1.0));
     rigid_inertias(simd, links, work);
+    // Bias forces p_i = v_i x* I_i v_i; gravity comes in with the acceleration of the base, below.
     for w in work.iter_mut() {
         w.force = w.velocity.cross_force(w.inertia.times(w.velocity));
     }
+    // Inwards, articulated inertias I^A and bias forces p^A. With U = I^A s, D = s . U + diagonal and u = tau - s . p^A a link
+    // hands its parent I^A - U U^T / D and p^A + (I^A - U U^T / D) c + U u / D. Common axes and one reference point: both are
+    // added as they are. A floating link takes its six velocities at once, with a Cholesky factor in the place of D.
     for (i, link) in links.iter().enumerate().rev() {
         let at = usize::from(link.dof);
         let w = &mut work[i];
@@ -208,12 +222,15 @@ pub fn accelerations<S: Scalar>(
             parent.force += force;
         }
     }
+    // Outwards, q'' = (u - U . (a_parent + c)) / D and a = a_parent + c + s q''. The base is accelerated by minus gravity, so
+    // accelerations of links are those relative to free fall.
     let field = splat::<S>(simd, gravity);
     let zero = Spatial::zero(simd);
     let base = Spatial { angular: zero.angular, linear: sub(zero.linear, field) };
     for (i, link) in links.iter().enumerate() {
         let at = usize::from(link.dof);
         if link.motion == Motion::Floating {
+            // I^A a = f - p^A. From spatial to conventional acceleration of the centre of mass: a + w x v, and free fall.
             let w = &mut work[i];
             let effort = Spatial {
                 angular: [tau[at], tau[at + 1], tau[at + 2]],
@@ -253,7 +270,7 @@ impl<S: Scalar> Root<S> {
 
 /// Joint efforts that produce the accelerations `qdd` [dofs]: recursive Newton-Euler [Featherstone2008] table 5.1, into `tau` [dofs].
 ///
-/// `armature` counts; `work` must have been [`place`]d. With `qdd` and velocities zero these are the efforts that hold
+/// `armature` counts; `work` must have gone through [`forward_kinematics`]. With `qdd` and velocities zero these are the efforts that hold
 /// the robot against gravity [m/s2]. Deviations as in [`accelerations`].
 #[inline(always)]
 pub fn inverse_dynamics<S: Scalar>(
@@ -261,9 +278,11 @@ pub fn inverse_dynamics<S: Scalar>(
     links: &[Link<S::Real>],
     gravity: [S::Real; 3],
     qdd: &[S],
-    work: &mut [LinkWork<S>],
+    work: &mut [LinkData<S>],
     tau: &mut [S],
 ) {
+    // Outwards, accelerations relative to free fall and the force that each link alone needs, f = I a + v x* I v; inwards,
+    // the forces of all that a joint carries, of which it feels tau = s . f.
     let zero = Spatial::zero(simd);
     let field = splat::<S>(simd, gravity);
     let base = Spatial { angular: zero.angular, linear: sub(zero.linear, field) };
@@ -301,9 +320,9 @@ pub fn inverse_dynamics<S: Scalar>(
 
 /// The joint-space inertia, armature included: composite bodies [Featherstone2008] table 6.2, into `matrix` [dofs x dofs, rows].
 ///
-/// `work` must have been [`place`]d.
+/// `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
-pub fn mass_matrix<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut [LinkWork<S>], matrix: &mut [S]) {
+pub fn mass_matrix<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut [LinkData<S>], matrix: &mut [S]) {
     let zero = S::splat(simd, S::Real::of(0.0));
     let one = S::splat(simd, S::Real::of(1.0));
     let dofs: usize = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
@@ -330,6 +349,8 @@ pub fn mass_matrix<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut
             }
             continue;
         }
+        // I^c s is the force that a unit acceleration of the joint needs; what each joint above feels of it is an entry of the
+        // column, M_ji = s_j . I^c_i s_i.
         let f = inertia.times(work[i].subspace);
         matrix[at * dofs + at] = work[i].subspace.dot(f) + S::splat(simd, link.armature);
         let mut above = link.parent;
@@ -358,12 +379,12 @@ pub fn mass_matrix<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut
 
 /// The Jacobian of a point of a link in the world's axes, into `matrix` [6 x dofs, rows: angular x, y, z, linear x, y, z].
 ///
-/// `point` is in the world [m]; `work` must have been [`place`]d.
+/// `point` is in the world [m]; `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
 pub fn jacobian<S: Scalar>(
     simd: S::Simd,
     links: &[Link<S::Real>],
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
     link: usize,
     point: [S; 3],
     matrix: &mut [S],
@@ -379,6 +400,8 @@ pub fn jacobian<S: Scalar>(
         let l = &links[usize::from(next)];
         let w = &work[usize::from(next)];
         let at = usize::from(l.dof);
+        // A joint moves the point by its subspace, taken there: s_lin + s_ang x arm. Of a floating link's velocities the
+        // linear ones are those of its centre of mass, which may not be the reference.
         let arm = sub(point, w.reference);
         if l.motion == Motion::Floating {
             let arm = sub(point, w.centre);
@@ -403,9 +426,9 @@ pub fn jacobian<S: Scalar>(
     }
 }
 
-/// Kinetic energy of the links and their armatures [J]; `v` [dofs]; `work` must have been [`place`]d.
+/// Kinetic energy of the links and their armatures [J]; `v` [dofs]; `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
-pub fn kinetic_energy<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], v: &[S], work: &mut [LinkWork<S>]) -> S {
+pub fn kinetic_energy<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], v: &[S], work: &mut [LinkData<S>]) -> S {
     rigid_inertias(simd, links, work);
     let mut twice = S::splat(simd, S::Real::of(0.0));
     for (link, w) in links.iter().zip(work.iter()) {
@@ -418,13 +441,13 @@ pub fn kinetic_energy<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], v: &[S]
     twice * twice.constant(0.5)
 }
 
-/// Potential energy in the field `gravity` [m/s2] [J], zero at the world's origin; `work` must have been [`place`]d.
+/// Potential energy in the field `gravity` [m/s2] [J], zero at the world's origin; `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
 pub fn potential_energy<S: Scalar>(
     simd: S::Simd,
     links: &[Link<S::Real>],
     gravity: [S::Real; 3],
-    work: &[LinkWork<S>],
+    work: &[LinkData<S>],
 ) -> S {
     let mut energy = S::splat(simd, S::Real::of(0.0));
     for (link, w) in links.iter().zip(work.iter()) {
@@ -433,9 +456,9 @@ pub fn potential_energy<S: Scalar>(
     energy
 }
 
-/// Centre of mass of all links in the world [m]; `work` must have been [`place`]d.
+/// Centre of mass of all links in the world [m]; `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
-pub fn centre_of_mass<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &[LinkWork<S>]) -> [S; 3] {
+pub fn centre_of_mass<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &[LinkData<S>]) -> [S; 3] {
     let zero = S::splat(simd, S::Real::of(0.0));
     let (mut sum, mut mass) = ([zero; 3], zero);
     for (link, w) in links.iter().zip(work.iter()) {

@@ -11,8 +11,10 @@ use farsa_num::Real;
 
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::ray;
+use crate::articulated::solver::near_pairs;
 use crate::articulated::spatial::{Matrix, Spatial, Vector, sub};
 use crate::articulated::step::{Precision, Scratch};
+use crate::articulated::tree::{forward_kinematics, inverse_dynamics, kinetic_energy, potential_energy};
 use crate::articulated::view::{self, View};
 
 /// One articulated world: a model and its state.
@@ -71,8 +73,8 @@ impl<R: Precision> World<R> {
     pub fn energy(&mut self) -> [f64; 2] {
         let v = &self.state[self.model.positions..];
         let work = &mut self.scratch.links;
-        let kinetic = crate::articulated::tree::kinetic_energy((), &self.model.links, v, work);
-        let potential = crate::articulated::tree::potential_energy((), &self.model.links, self.model.gravity, work);
+        let kinetic = kinetic_energy((), &self.model.links, v, work);
+        let potential = potential_energy((), &self.model.links, self.model.gravity, work);
         [kinetic.to_f64(), potential.to_f64()]
     }
 
@@ -93,8 +95,8 @@ impl<R: Precision> World<R> {
         let zeros = vec![R::of(0.0); self.model.dofs];
         let (model, state) = (&self.model, &self.state);
         let work = &mut self.scratch.links;
-        crate::articulated::tree::place((), &model.links, &state[..model.positions], &zeros, work);
-        crate::articulated::tree::inverse_dynamics((), &model.links, model.gravity, &zeros, work, tau);
+        forward_kinematics((), &model.links, &state[..model.positions], &zeros, work);
+        inverse_dynamics((), &model.links, model.gravity, &zeros, work, tau);
         self.arranged();
     }
 
@@ -102,7 +104,7 @@ impl<R: Precision> World<R> {
     ///
     /// Before the first step it means nothing.
     pub fn near_pairs(&self) -> usize {
-        crate::articulated::solver::near_pairs(&self.model, &self.scratch.placed)
+        near_pairs(&self.model, &self.scratch.placed)
     }
 
     /// Pose of a body's frame in full precision.
