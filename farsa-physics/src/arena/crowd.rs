@@ -9,7 +9,7 @@ use crate::arena::description::CollisionRule;
 use crate::arena::grid::Grid;
 use crate::arena::model::{CONTACT, HELD, MET, Model, NOTHING, POSE_WORDS, VELOCITY};
 use crate::arena::solid::{beside, meets_solid, overlaps_solid};
-use crate::arena::step::{LEFT, Met, SWEEPS, WORK_WORDS, act, give, note, place};
+use crate::arena::step::{LEFT, Met, SWEEPS, WORK_WORDS, add_push, keep_deepest, position_of, step_without_collisions};
 use crate::arena::surface::{Meeting, meets_disc, meets_wall, ray_to_disc, wall_squared};
 
 /// What a step of a crowd needs beside the state.
@@ -31,7 +31,7 @@ pub(crate) struct Crowd {
 }
 
 fn at(words: &[f32], body: usize) -> [f32; 2] {
-    place::<f32>((), words, body)
+    position_of::<f32>((), words, body)
 }
 
 fn square(a: [f32; 2], b: [f32; 2]) -> f32 {
@@ -78,7 +78,13 @@ impl Crowd {
 
     /// What a robot overlaps, and its sum of pushes in the order of bodies if it is asked for.
     #[inline]
-    fn meet(&self, model: &Model, words: &[f32], robot: usize, mut push: Option<&mut [f32; 2]>) -> Option<Met<f32>> {
+    fn find_overlap(
+        &self,
+        model: &Model,
+        words: &[f32],
+        robot: usize,
+        mut push: Option<&mut [f32; 2]>,
+    ) -> Option<Met<f32>> {
         let own = at(words, robot);
         let radius = model.kind(robot).radius;
         let left = radius * LEFT;
@@ -86,10 +92,10 @@ impl Crowd {
         let mut take = |meeting: Meeting<f32>, body: f32, part: f32, push: &mut Option<&mut [f32; 2]>| {
             let first = Met { meeting: Meeting { depth: 0.0, out: [0.0; 2], point: [0.0; 2] }, body: NOTHING };
             let mut new = met.unwrap_or(first);
-            note(&mut new, true, meeting, body);
+            keep_deepest(&mut new, true, meeting, body);
             met = Some(new);
             if let Some(push) = push {
-                give(push, true, meeting, meeting.depth * part + left);
+                add_push(push, true, meeting, meeting.depth * part + left);
             }
         };
         for slab in &model.slabs {
@@ -136,7 +142,7 @@ impl Crowd {
     pub(crate) fn step(&mut self, model: &Model, words: &mut [f32], work: &mut [f32]) {
         self.hold(model, words);
         for robot in 0..model.robots.len() {
-            act::<f32>((), model, words, work, robot);
+            step_without_collisions::<f32>((), model, words, work, robot);
         }
         if self.held {
             self.carry(model, words, work);
@@ -261,7 +267,7 @@ impl Crowd {
         }
     }
 
-    fn tell(model: &Model, words: &mut [f32], robot: usize, met: &Met<f32>) {
+    fn record_contact(model: &Model, words: &mut [f32], robot: usize, met: &Met<f32>) {
         let word = model.robot_word(robot, 0);
         if words[word + CONTACT] <= 0.0 {
             let Meeting { depth, out, point } = met.meeting;
@@ -283,8 +289,8 @@ impl Crowd {
             pushes.clear();
             for robot in 0..model.robots.len() {
                 let mut push = [0.0; 2];
-                if let Some(met) = self.meet(model, words, robot, Some(&mut push)) {
-                    Self::tell(model, words, robot, &met);
+                if let Some(met) = self.find_overlap(model, words, robot, Some(&mut push)) {
+                    Self::record_contact(model, words, robot, &met);
                     pushes.push((robot as u16, push));
                 }
             }
@@ -322,8 +328,8 @@ impl Crowd {
         self.back.fill(false);
         self.now.clear();
         for robot in 0..robots {
-            if let Some(met) = self.meet(model, words, robot, None) {
-                Self::tell(model, words, robot, &met);
+            if let Some(met) = self.find_overlap(model, words, robot, None) {
+                Self::record_contact(model, words, robot, &met);
                 self.now.push(robot as u16);
             }
         }
@@ -370,8 +376,8 @@ impl Crowd {
             found.sort_unstable();
             found.dedup();
             for robot in &found {
-                if let Some(met) = self.meet(model, words, usize::from(*robot), None) {
-                    Self::tell(model, words, usize::from(*robot), &met);
+                if let Some(met) = self.find_overlap(model, words, usize::from(*robot), None) {
+                    Self::record_contact(model, words, usize::from(*robot), &met);
                 }
             }
             self.last = now;

@@ -33,7 +33,7 @@ pub(crate) fn store<S: Scalar<Real = f32>>(words: &mut [f32], index: usize, x: S
 }
 
 #[inline(always)]
-pub(crate) fn place<S: Scalar<Real = f32>>(simd: S::Simd, words: &[f32], body: usize) -> [S; 2] {
+pub(crate) fn position_of<S: Scalar<Real = f32>>(simd: S::Simd, words: &[f32], body: usize) -> [S; 2] {
     let at = POSE_WORDS * body;
     [load(simd, words, at), load(simd, words, at + 1)]
 }
@@ -59,6 +59,7 @@ fn wrapped<S: Scalar>(x: S, half: f64) -> S {
 /// Source: own (chord of an arc: its length times sin(h) / h, h half the angle, in the direction half-way).
 #[inline(always)]
 pub(crate) fn drive<S: Scalar<Real = f32>>(kind: &Kind, pose: [S; POSE_WORDS], speeds: [S; 2]) -> [S; POSE_WORDS] {
+    // With the wheels' speeds w_l and w_r: the turn 2 half = (w_r - w_l) r T / b, the arc (w_l + w_r) r T / 2.
     let [x, y, heading, cosine, sine] = pose;
     let half = (speeds[1] - speeds[0]) * x.like(kind.half_turn);
     let arc = (speeds[0] + speeds[1]) * x.like(kind.advance);
@@ -87,13 +88,14 @@ pub(crate) fn shown<S: Scalar>(command: S) -> S {
 
 /// Everything of a robot's step but collisions.
 #[inline(always)]
-pub(crate) fn act<S: Scalar<Real = f32>>(
+pub(crate) fn step_without_collisions<S: Scalar<Real = f32>>(
     simd: S::Simd,
     model: &Model,
     words: &mut [f32],
     work: &mut [f32],
     robot: usize,
 ) {
+    // Wheels take their commands at once: their positions and speeds.
     let kind = model.kind(robot);
     let most = S::splat(simd, kind.max_wheel_speed);
     let first = model.command(robot, 0);
@@ -105,6 +107,7 @@ pub(crate) fn act<S: Scalar<Real = f32>>(
         store(words, word + WHEELS + k, turned(position, speeds[k], model.time_step));
         store(words, word + WHEELS + 2 + k, speeds[k]);
     }
+    // The pose, and the old one beside it, to which a collision sets the robot back.
     let mut pose = [speeds[0]; POSE_WORDS];
     for k in 0..POSE_WORDS {
         pose[k] = load(simd, words, POSE_WORDS * robot + k);
@@ -114,11 +117,13 @@ pub(crate) fn act<S: Scalar<Real = f32>>(
     for k in 0..POSE_WORDS {
         store(words, POSE_WORDS * robot + k, pose[k]);
     }
+    // The velocity at the end of the step, along the new heading.
     let forward = (speeds[0] + speeds[1]) * speeds[0].like(kind.speeds[0]);
     let spin = (speeds[1] - speeds[0]) * speeds[0].like(kind.speeds[1]);
     for (k, x) in [forward * pose[3], forward * pose[4], spin].into_iter().enumerate() {
         store(words, word + VELOCITY + k, x);
     }
+    // Nothing met so far, nothing pushed, nobody set back.
     let zero = S::splat(simd, 0.0);
     for k in 0..5 {
         store(words, word + CONTACT + k, zero);
@@ -127,12 +132,17 @@ pub(crate) fn act<S: Scalar<Real = f32>>(
     for k in PUSHED..=SOON {
         store(work, WORK_WORDS * robot + k, zero);
     }
-    show::<S>(simd, model, words, robot);
+    show_leds_and_signal::<S>(simd, model, words, robot);
 }
 
 /// Shows a robot's LEDs and signal as they were commanded.
 #[inline(always)]
-pub(crate) fn show<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], robot: usize) {
+pub(crate) fn show_leds_and_signal<S: Scalar<Real = f32>>(
+    simd: S::Simd,
+    model: &Model,
+    words: &mut [f32],
+    robot: usize,
+) {
     let kind = model.kind(robot);
     let (first, word) = (model.command(robot, 0), model.robot_word(robot, 0));
     let mut next = 2;
@@ -155,9 +165,12 @@ pub(crate) struct Met<S> {
 }
 
 /// Whether a robot overlaps anything.
+///
+/// Squares are compared, here and where a world alone looks for overlaps: with a root on one side only, the two could differ in
+/// the last bit.
 #[inline(always)]
 fn overlaps<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], robot: usize) -> S::Mask {
-    let at = place::<S>(simd, words, robot);
+    let at = position_of::<S>(simd, words, robot);
     let own = model.kind(robot).radius;
     let zero = S::splat(simd, 0.0);
     let square = S::splat(simd, own * own);
@@ -173,7 +186,7 @@ fn overlaps<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], 
     }
     for body in 0..model.round_bodies() {
         if body != robot {
-            let other = place::<S>(simd, words, body);
+            let other = position_of::<S>(simd, words, body);
             let [x, y] = [at[0] - other[0], at[1] - other[1]];
             let sum = own + model.radius(body);
             any = any | (x * x + y * y).lt(S::splat(simd, sum * sum));
@@ -184,8 +197,15 @@ fn overlaps<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], 
 
 /// What a robot overlaps most, and by how much all of it together pushes; `push` keeps to robots by half.
 #[inline(always)]
-fn meet<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], robot: usize, push: &mut [S; 2]) -> Met<S> {
-    let at = place::<S>(simd, words, robot);
+fn find_overlap<S: Scalar<Real = f32>>(
+    simd: S::Simd,
+    model: &Model,
+    words: &[f32],
+    robot: usize,
+    push: &mut [S; 2],
+) -> Met<S> {
+    // Lanes that overlap nothing come through all of this with their sums as they were: every change is masked.
+    let at = position_of::<S>(simd, words, robot);
     let radius = S::splat(simd, model.kind(robot).radius);
     let zero = S::splat(simd, 0.0);
     let nothing = S::splat(simd, NOTHING);
@@ -195,28 +215,29 @@ fn meet<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], robo
     for slab in &model.slabs {
         let meeting = meets_wall(slab, at, radius);
         let mask = wall_squared(slab, at).lt(square);
-        note(&mut met, mask, meeting, nothing);
-        give(push, mask, meeting, meeting.depth + left);
+        keep_deepest(&mut met, mask, meeting, nothing);
+        add_push(push, mask, meeting, meeting.depth + left);
     }
     for solid in &model.solids {
         let mask = overlaps_solid(solid, at, radius);
         if mask.any() {
             let meeting = meets_solid(solid, at, radius);
-            note(&mut met, mask, meeting, nothing);
-            give(push, mask, meeting, meeting.depth + left);
+            keep_deepest(&mut met, mask, meeting, nothing);
+            add_push(push, mask, meeting, meeting.depth + left);
         }
     }
     for body in 0..model.round_bodies() {
         if body != robot {
-            let other = place::<S>(simd, words, body);
+            let other = position_of::<S>(simd, words, body);
             let [x, y] = [at[0] - other[0], at[1] - other[1]];
             let other_radius = S::splat(simd, model.radius(body));
             let sum = radius + other_radius;
             let mask = (x * x + y * y).lt(sum * sum);
             let meeting = meets_disc(at, other, radius, other_radius);
-            note(&mut met, mask, meeting, S::splat(simd, body as f32));
+            keep_deepest(&mut met, mask, meeting, S::splat(simd, body as f32));
+            // Two robots are pushed by half the depth each; a cylinder stands.
             let part = S::splat(simd, if body < model.robots.len() { 0.5 } else { 1.0 });
-            give(push, mask, meeting, meeting.depth * part + left);
+            add_push(push, mask, meeting, meeting.depth * part + left);
         }
     }
     met
@@ -225,8 +246,9 @@ fn meet<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &[f32], robo
 /// The smallest depth that is told of what overlaps: rounding may leave none [m].
 const LEAST: f32 = 1e-12;
 
+/// Keeps of two meetings the deeper one; of equal ones the first.
 #[inline(always)]
-pub(crate) fn note<S: Scalar<Real = f32>>(met: &mut Met<S>, mask: S::Mask, meeting: Meeting<S>, body: S) {
+pub(crate) fn keep_deepest<S: Scalar<Real = f32>>(met: &mut Met<S>, mask: S::Mask, meeting: Meeting<S>, body: S) {
     let depth = meeting.depth.max(body.like(LEAST));
     let mask = mask & depth.gt(met.meeting.depth);
     met.meeting.depth = S::select(mask, depth, met.meeting.depth);
@@ -237,22 +259,24 @@ pub(crate) fn note<S: Scalar<Real = f32>>(met: &mut Met<S>, mask: S::Mask, meeti
     met.body = S::select(mask, body, met.body);
 }
 
+/// Adds a push out of what was met, in the lanes of the mask.
 #[inline(always)]
-pub(crate) fn give<S: Scalar>(push: &mut [S; 2], mask: S::Mask, meeting: Meeting<S>, by: S) {
+pub(crate) fn add_push<S: Scalar>(push: &mut [S; 2], mask: S::Mask, meeting: Meeting<S>, by: S) {
     for k in 0..2 {
         push[k] = S::select(mask, push[k] + meeting.out[k] * by, push[k]);
     }
 }
 
+/// Stores a word in the lanes of the mask.
 #[inline(always)]
-fn keep<S: Scalar<Real = f32>>(simd: S::Simd, words: &mut [f32], index: usize, mask: S::Mask, x: S) {
+fn store_where<S: Scalar<Real = f32>>(simd: S::Simd, words: &mut [f32], index: usize, mask: S::Mask, x: S) {
     let old = load::<S>(simd, words, index);
     store(words, index, S::select(mask, x, old));
 }
 
 /// Tells the contacts port what a robot has met, in the lanes of the mask that have met nothing yet.
 #[inline(always)]
-fn tell<S: Scalar<Real = f32>>(
+fn record_contact<S: Scalar<Real = f32>>(
     simd: S::Simd,
     model: &Model,
     words: &mut [f32],
@@ -265,14 +289,16 @@ fn tell<S: Scalar<Real = f32>>(
     let mask = mask & first;
     let Meeting { depth, out, point } = met.meeting;
     for (k, x) in [depth, out[0], out[1], point[0], point[1]].into_iter().enumerate() {
-        keep(simd, words, word + CONTACT + k, mask, x);
+        store_where(simd, words, word + CONTACT + k, mask, x);
     }
-    keep(simd, words, word + MET, mask, met.body);
+    store_where(simd, words, word + MET, mask, met.body);
 }
 
 /// Pushes overlapping robots apart and off what stands.
 #[inline(always)]
 fn push<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], work: &mut [f32]) {
+    // Jacobi: all pushes of a sweep are found before anybody moves, so that the order of robots does not matter. Those that
+    // are left after the last sweep are undone.
     let zero = S::splat(simd, 0.0);
     let one = S::splat(simd, 1.0);
     for _ in 0..SWEEPS {
@@ -282,9 +308,9 @@ fn push<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
             let mut push = [zero; 2];
             if mask.any() {
                 moved = true;
-                let met = meet(simd, model, words, robot, &mut push);
-                tell(simd, model, words, robot, mask, &met);
-                keep(simd, work, WORK_WORDS * robot + PUSHED, mask, one);
+                let met = find_overlap(simd, model, words, robot, &mut push);
+                record_contact(simd, model, words, robot, mask, &met);
+                store_where(simd, work, WORK_WORDS * robot + PUSHED, mask, one);
             }
             store(work, WORK_WORDS * robot + PUSH, push[0]);
             store(work, WORK_WORDS * robot + PUSH + 1, push[1]);
@@ -298,10 +324,11 @@ fn push<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
             for k in 0..2 {
                 let x = load::<S>(simd, words, POSE_WORDS * robot + k);
                 let by = load(simd, work, WORK_WORDS * robot + PUSH + k);
-                keep(simd, words, POSE_WORDS * robot + k, mask, x + by);
+                store_where(simd, words, POSE_WORDS * robot + k, mask, x + by);
             }
         }
     }
+    // Whoever was pushed has the velocity of the way that it really went.
     let time_step = S::splat(simd, model.time_step);
     for robot in 0..model.robots.len() {
         let pushed = load::<S>(simd, work, WORK_WORDS * robot + PUSHED).gt(zero);
@@ -309,7 +336,7 @@ fn push<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
             for k in 0..2 {
                 let [new, old] =
                     [load::<S>(simd, words, POSE_WORDS * robot + k), load::<S>(simd, work, WORK_WORDS * robot + k)];
-                keep(simd, words, model.robot_word(robot, VELOCITY + k), pushed, (new - old) / time_step);
+                store_where(simd, words, model.robot_word(robot, VELOCITY + k), pushed, (new - old) / time_step);
             }
         }
     }
@@ -321,6 +348,8 @@ fn undo<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
     let zero = S::splat(simd, 0.0);
     let one = S::splat(simd, 1.0);
     let robots = model.robots.len();
+    // A robot that is set back may stand where another has come to in the meantime, which is then set back in the next round.
+    // Where all stand where they stood, nobody overlaps: as many rounds as robots, and one that finds nothing.
     // Each round but the last sets somebody back.
     for _ in 0..=robots {
         let mut any = false;
@@ -329,8 +358,8 @@ fn undo<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
             let mask = overlaps::<S>(simd, model, words, robot) & !back;
             if mask.any() {
                 any = true;
-                let met = meet(simd, model, words, robot, &mut [zero; 2]);
-                tell(simd, model, words, robot, mask, &met);
+                let met = find_overlap(simd, model, words, robot, &mut [zero; 2]);
+                record_contact(simd, model, words, robot, mask, &met);
             }
             store(work, WORK_WORDS * robot + SOON, S::select(mask, one, zero));
         }
@@ -342,14 +371,15 @@ fn undo<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
             if mask.any() {
                 for k in 0..POSE_WORDS {
                     let old = load::<S>(simd, work, WORK_WORDS * robot + k);
-                    keep(simd, words, POSE_WORDS * robot + k, mask, old);
+                    store_where(simd, words, POSE_WORDS * robot + k, mask, old);
                 }
                 for k in 0..3 {
-                    keep(simd, words, model.robot_word(robot, VELOCITY + k), mask, zero);
+                    store_where(simd, words, model.robot_word(robot, VELOCITY + k), mask, zero);
                 }
-                keep(simd, work, WORK_WORDS * robot + BACK, mask, one);
+                store_where(simd, work, WORK_WORDS * robot + BACK, mask, one);
             }
         }
+        // Alone, it is where it was: there is nobody to look again for.
         if robots == 1 {
             break;
         }
@@ -361,7 +391,7 @@ fn undo<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
 #[inline(always)]
 pub(crate) fn step<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], work: &mut [f32]) {
     for robot in 0..model.robots.len() {
-        act::<S>(simd, model, words, work, robot);
+        step_without_collisions::<S>(simd, model, words, work, robot);
     }
     if model.collisions == CollisionRule::Circles {
         push::<S>(simd, model, words, work);

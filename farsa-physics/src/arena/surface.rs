@@ -47,6 +47,8 @@ pub(crate) fn to_wall<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2]) -> [S; 2] 
 /// How a disc that overlaps a wall does so.
 #[inline(always)]
 pub(crate) fn meets_wall<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2], radius: S) -> Meeting<S> {
+    // In the wall's frame (u, v) is the centre, (a, b) its nearest point of the wall; their difference is the way out, and
+    // zero for a centre within.
     let zero = radius.constant(0.0);
     let one = radius.constant(1.0);
     let ([u, v], [a, b]) = within(slab, at);
@@ -69,6 +71,7 @@ pub(crate) fn meets_wall<S: Scalar<Real = f32>>(slab: &Slab, at: [S; 2], radius:
 /// How a disc at a place that overlaps another disc does so.
 #[inline(always)]
 pub(crate) fn meets_disc<S: Scalar<Real = f32>>(at: [S; 2], other: [S; 2], radius: S, other_radius: S) -> Meeting<S> {
+    // Along the line of centres; along x for two at one place, which have none.
     let [x, y] = [at[0] - other[0], at[1] - other[1]];
     let distance = (x * x + y * y).sqrt();
     let apart = distance.gt(radius.constant(0.0));
@@ -95,6 +98,8 @@ pub(crate) fn ray_to_disc(from: [f32; 2], direction: [f32; 2], radius: f32) -> O
 
 /// Where a ray enters a wall [m]; `None` if it begins within or misses.
 pub(crate) fn ray_to_wall(slab: &Slab, from: [f32; 2], direction: [f32; 2]) -> Option<f32> {
+    // Slabs: the ray is within the wall where it is between both pairs of sides, from the last entry to the first exit
+    // [Ericson2005] section 5.3.3.
     let ([u, v], _) = within(slab, from);
     let [c, s] = slab.axis;
     let way = [direction[0] * c + direction[1] * s, direction[1] * c - direction[0] * s];

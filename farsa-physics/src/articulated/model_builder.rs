@@ -112,7 +112,7 @@ fn cast_collider<R: Real>((mount, form, bound, _): &Fitted) -> Collider<R> {
 
 /// The pairs, and how many points and entries of rows they have together.
 struct Pairs<R> {
-    pairs: Vec<Pair<R>>,
+    list: Vec<Pair<R>>,
     points: usize,
     rolling: usize,
     row_entries: usize,
@@ -121,7 +121,7 @@ struct Pairs<R> {
 
 fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -> Result<Pairs<R>, ModelError> {
     let mut all = Pairs {
-        pairs: Vec::with_capacity(robot.pairs.len()),
+        list: Vec::with_capacity(robot.pairs.len()),
         points: 0,
         rolling: 0,
         row_entries: 0,
@@ -141,7 +141,7 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
         let reach = reach_of(links, colliders[a].0.link, colliders[b].0.link);
         let rolls = p.surface.rolling_friction > 0.0;
         let entries = reach.dofs.len() * count;
-        all.pairs.push(Pair {
+        all.list.push(Pair {
             colliders: [a, b],
             flipped,
             point: all.points,
@@ -216,7 +216,7 @@ impl<R: Real> Model<R> {
         let (mut links, mounts) = links_of(robot);
         choose_references(&mut links);
         let colliders = colliders_of(robot, &mounts);
-        let Pairs { pairs, points, rolling, row_entries, rolling_entries } = pairs_of(robot, &links, &colliders)?;
+        let Pairs { list: pairs, points, rolling, row_entries, rolling_entries } = pairs_of(robot, &links, &colliders)?;
         let positions = links.iter().map(|l| if l.motion == Motion::Floating { 7 } else { 1 }).sum();
         let dofs = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
         let initial = start_of(robot, &links, &mounts, positions + dofs);

@@ -14,6 +14,7 @@ use crate::articulated::tree::{LinkData, Motion, Root, WORLD};
 /// Two unit vectors across a unit normal, without a branch [Duff2017].
 #[inline(always)]
 pub(crate) fn tangents<S: Scalar>(n: Vector<S>) -> [Vector<S>; 2] {
+    // The sign of n_z keeps the divisor, sign + n_z, away from zero.
     let one = n[0].constant(1.0);
     let sign = S::select(n[2].lt(n[0].constant(0.0)), -one, one);
     let a = -(one / (sign + n[2]));

@@ -14,7 +14,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use crate::arena::crowd::Crowd;
 use crate::arena::model::{Model, POSE_WORDS, VELOCITY, WHEELS, pose_words};
 use crate::arena::slab::Slab;
-use crate::arena::step::{show, turned, wheel_speed};
+use crate::arena::step::{show_leds_and_signal, turned, wheel_speed};
 use crate::arena::view::View;
 use crate::rapier::arena_model::{AXLE, ArenaPlan, Vehicle, build, standing, upright};
 use crate::rapier::arena_options::ArenaOptions;
@@ -175,7 +175,7 @@ impl ArenaWorld {
             self.settle();
         }
         for robot in 0..self.plan.vehicles.len() {
-            show::<f32>((), &self.model, &mut self.words, robot);
+            show_leds_and_signal::<f32>((), &self.model, &mut self.words, robot);
         }
         self.count();
         self.met.fill((None, PairContact::default()));
