@@ -14,7 +14,7 @@ use crate::arena::solid::{Face, Solid, middle, prism_faces};
 
 /// Words of a body's pose: x, y, heading and its cosine and sine.
 pub(crate) const POSE_WORDS: usize = 5;
-/// Words of a robot beside its pose; see `arena_view`.
+/// Words of a robot beside its pose; see [`VELOCITY`] and what follows it.
 pub(crate) const ROBOT_WORDS: usize = 18;
 /// More bodies than these are looked for in a grid.
 const MANY: usize = 32;

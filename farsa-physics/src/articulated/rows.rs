@@ -190,6 +190,7 @@ pub(crate) fn equal<S: Scalar>(a: S, b: S) -> S::Mask {
 /// The relative velocity of a block under the response so far.
 #[inline(always)]
 pub(crate) fn velocity<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], mut v: [S; 3], response: &[S]) -> [S; 3] {
+    // v + y^T z: the velocity without impulses, and what all impulses so far add.
     for (&d, y) in dofs.iter().zip(rows) {
         let z = response[usize::from(d)];
         v[0] += y[0] * z;
@@ -205,6 +206,7 @@ pub(crate) fn velocity<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], mut v: [S; 3], 
 /// only, and many in none.
 #[inline(always)]
 pub(crate) fn apply<S: Scalar>(dofs: &[u16], rows: &[[S; 3]], change: [S; 3], mask: S::Mask, response: &mut [S]) {
+    // z += y dl, which is all that the other points need to know of this one.
     let zero = change[0].constant(0.0);
     let none = equal(change[0], zero) & equal(change[1], zero) & equal(change[2], zero);
     let mask = mask & !none;

@@ -91,6 +91,7 @@ fn watch<S: Scalar>(
         if !mask.any() {
             continue;
         }
+        // The row of a unit effort at the joint: 1 / sqrt(D) for itself, and -U / D climbs on towards the root.
         let path = &model.stop_paths[i];
         let rows = &mut rows[path.row..path.row + path.dofs.len()];
         let mut y = inverse_sqrt_inertia[usize::from(link.dof)];
@@ -119,6 +120,8 @@ fn watch<S: Scalar>(
             }
             next = l.parent;
         }
+        // A stop is a spring at the end of the step, l = -h k (q + h v+ - q0). With v+ = v + A l, v without this stop, that is
+        // l = -h k (q + h v - q0) / (1 + h^2 k A): `gain` times the overrun that there would be without it.
         let stiffness = h * S::splat(simd, link.limit_stiffness);
         stops[count] = Stop {
             mask,
