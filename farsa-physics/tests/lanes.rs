@@ -11,11 +11,12 @@ use channels::channels_conform;
 use common::{Babble, commands, drive, first_point, model, points_of, scene, start};
 use farsa_body::testing::{Probe, check_arrange, check_rays, check_world};
 use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics,
-    PairContact, PairId, Pose, Rays, Robot, ServoRange, Snapshot, Twist, World as _,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Contacts, Handles, Hit, Joint, JointId, Joints,
+    Kinematics, MassProperties, PairContact, PairId, Pose, Rays, Robot, Segment, ServoRange, Shape, Snapshot, Surface,
+    Twist, World as _,
 };
 use farsa_num::fearless_simd::Level;
-use farsa_num::{Digest, Domain, Stream};
+use farsa_num::{Digest, Domain, Stream, sin_cos};
 use farsa_physics::articulated::{Batch, LANES, Lane, Model, ModelError, Options, World};
 
 /// Control steps of every lane; ten times as many with `FARSA_LONG=1`.
@@ -154,6 +155,68 @@ fn every_lane_has_the_bits_of_the_world_alone() {
     }
     println!("{ran} control steps in lanes");
     assert!(ran >= 100_000 || Batch::levels(Level::new()).count() < 3);
+}
+
+/// A small box over the edge of a large one, with friction against rolling.
+fn box_on_an_edge() -> (Robot, BodyId) {
+    let mut robot = Robot::new("boxes");
+    let half = [0.05; 3];
+    let start = Joint::floating(Pose::at([0.0, 0.0, 2.0]));
+    let small = robot.add_segment(Segment::new("small", None, start, MassProperties::cuboid(0.1, half)));
+    let skin = Collider::new("small", Some(small), Shape::Box { half }, Pose::identity());
+    let block = Collider::new("block", None, Shape::Box { half: [0.5; 3] }, Pose::identity());
+    let pair = [skin, block].map(|collider| robot.add_collider(collider));
+    robot.add_pair(pair, Surface { friction: 0.5, rolling_friction: 0.01, stiffness: 1e4, damping: 30.0 });
+    (robot, small)
+}
+
+/// A box that is moved away from an edge, without [`Arrange::clear`], forgets what kept it from rolling there, whether a
+/// neighbour still leans on that edge or not.
+#[test]
+fn a_box_moved_off_an_edge_forgets_how_it_rolled_there() {
+    let (robot, small) = box_on_an_edge();
+    let model = model(&robot, Options::default());
+    // Face to edge, an eighth of a turn about y, 1 mm deep and spinning.
+    let (sine, cosine) = sin_cos(core::f32::consts::FRAC_PI_8);
+    let out = 0.5 + 0.049 * core::f32::consts::FRAC_1_SQRT_2;
+    let leaning = Pose { position: [out, 0.0, out], rotation: [0.0, sine, 0.0, cosine] };
+    let spinning = Twist { linear: [0.0; 3], angular: [3.0, 5.0, 2.0] };
+    // On the top of the large box, far from its edges, but near enough to look at the pair.
+    let moved = Pose::at([0.0, 0.0, 0.5495]);
+    let mut world = World::new(model.clone());
+    world.place_body(small, leaning, spinning);
+    world.arranged();
+    world.step();
+    // Three words for each of 8 corners and 12 edges of the pair, behind all others.
+    let edges = |state: &[f32]| state[state.len() - 3 * 12..].to_vec();
+    assert!(edges(world.state()).iter().any(|x| *x != 0.0), "nothing rolls on the edge");
+    world.place_body(small, moved, Twist::default());
+    world.arranged();
+    world.step();
+    assert!(edges(world.state()).iter().all(|x| *x == 0.0), "rolling impulses left: {:?}", edges(world.state()));
+    for level in Batch::levels(Level::new()) {
+        for lanes in LANES {
+            let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
+            for lane in 0..lanes {
+                let mut lane = batch.lane(lane);
+                lane.place_body(small, leaning, spinning);
+                lane.arranged();
+            }
+            batch.step();
+            // The even lanes go, the odd ones stay at the edge.
+            for lane in (0..lanes).step_by(2) {
+                let mut lane = batch.lane(lane);
+                lane.place_body(small, moved, Twist::default());
+                lane.arranged();
+            }
+            batch.step();
+            let mut own = vec![0.0; model.state_len()];
+            for lane in (0..lanes).step_by(2) {
+                batch.lane(lane).save(&mut own);
+                assert!(digest(&own) == digest(world.state()), "{level:?}: lane {lane} of {lanes} differs");
+            }
+        }
+    }
 }
 
 #[test]

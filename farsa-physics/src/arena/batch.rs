@@ -1,0 +1,200 @@
+//! Many planar worlds of one arena that are stepped together, one in each lane of SIMD vectors.
+
+use alloc::boxed::Box;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt;
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileParts,
+    Near, PairContact, PairId, Planar, Pose, Rays, Sight, Snapshot, Twist, World as _,
+};
+use farsa_num::fearless_simd::Level;
+
+use crate::arena::description::Arena;
+use crate::arena::error::ArenaError;
+use crate::arena::lockstep::{self as lockstep, Lockstep};
+use crate::arena::model::Model;
+use crate::arena::step::WORK_WORDS;
+use crate::arena::view::{self as view, View};
+use crate::arena::world::{World, ports};
+use crate::articulated::lockstep::LANES;
+
+/// Worlds of one arena, one in each lane of SIMD vectors, all at their description's start at first.
+///
+/// Every world has the bits of a [`World`] that is arranged, commanded and stepped like it, whatever its neighbours do.
+/// It looks at everything, not into a grid: lanes are for arenas of a few robots. While an attachment device holds or wants
+/// to in any lane, lanes are stepped one by one.
+///
+/// ```
+/// use farsa_body::{Actuated, Kinematics, MobileRobot};
+/// use farsa_num::fearless_simd::Level;
+/// use farsa_physics::arena::{Arena, Batch};
+///
+/// let mut arena = Arena::walled(0.4, 0.4);
+/// arena.add_robot(MobileRobot::khepera(), [0.1, 0.2], 0.0);
+/// let mut batch = Batch::new(&arena, 8, Level::baseline())?;
+/// let parts = batch.parts(0);
+/// for i in 0..8 {
+///     parts.motors.map(|motor| batch.lane(i).command(motor, [i as f32, 0.0]));
+/// }
+/// batch.step();
+/// assert_eq!(batch.lane(0).pose(parts.body).position[0], 0.1);
+/// assert!(batch.lane(5).pose(parts.body).position[0] > 0.103);
+/// # Ok::<(), farsa_physics::arena::ArenaError>(())
+/// ```
+pub struct Batch {
+    /// A world alone, for what lanes do one by one.
+    alone: World,
+    lanes: usize,
+    /// One word of every lane, then the next word of every lane.
+    words: Vec<f32>,
+    work: Vec<f32>,
+    lockstep: Box<dyn Lockstep>,
+}
+
+impl Batch {
+    /// So many worlds, 8 or 16, stepped by the instructions of `level`; see [`levels`](crate::articulated::Batch::levels).
+    ///
+    /// # Errors
+    /// What is wrong with the description, or [`ArenaError::Lanes`] for another number of worlds.
+    pub fn new(arena: &Arena, lanes: usize, level: Level) -> Result<Self, ArenaError> {
+        if !LANES.contains(&lanes) {
+            let nearest = LANES.into_iter().min_by_key(|known| known.abs_diff(lanes)).unwrap_or(LANES[0]);
+            return Err(ArenaError::Lanes { lanes, nearest });
+        }
+        let alone = World::new(arena)?;
+        let model = alone.model();
+        let words = model.initial.iter().flat_map(|x| core::iter::repeat_n(*x, lanes)).collect();
+        let work = vec![0.0; WORK_WORDS * model.robots.len() * lanes];
+        Ok(Self { lanes, words, work, lockstep: lockstep::lockstep(lanes, level), alone })
+    }
+
+    /// Of the instruction sets up to `best` those that there are steps for, narrowest first.
+    pub fn levels(best: Level) -> impl Iterator<Item = Level> {
+        crate::articulated::lockstep::levels(best)
+    }
+
+    /// Number of worlds.
+    pub fn lanes(&self) -> usize {
+        self.lanes
+    }
+
+    /// By which numbers the parts of a robot are known; those of the last robot for a number beyond it.
+    pub fn parts(&self, robot: usize) -> MobileParts {
+        self.alone.parts(robot)
+    }
+
+    /// One of the worlds; the last one for a number beyond it, which is a mistake.
+    pub fn lane(&mut self, index: usize) -> Lane<'_> {
+        debug_assert!(index < self.lanes, "lane {index} of {}", self.lanes);
+        Lane { model: self.alone.model(), words: &mut self.words, lanes: self.lanes, index: index.min(self.lanes - 1) }
+    }
+
+    /// Sets the command of an actuator in every world [lanes].
+    pub fn command(&mut self, actuator: ActuatorId, values: &[f32]) {
+        let model = self.alone.model();
+        debug_assert_eq!(values.len(), self.lanes, "a command for each lane");
+        if actuator.index() < model.actuators {
+            let first = (model.first_command() + actuator.index()) * self.lanes;
+            for (word, x) in self.words[first..first + self.lanes].iter_mut().zip(values) {
+                *word = *x;
+            }
+        }
+    }
+
+    /// Readings of a robot's ring of analytic infrared sensors in every world: [sensors x lanes], as
+    /// [`World::infrared`] tells them in each; a shorter slice gets the first sensors.
+    pub fn infrared(&self, robot: usize, out: &mut [f32]) {
+        let model = self.alone.model();
+        self.lockstep.infrared(model, &self.words, robot.min(model.robots.len() - 1), out);
+    }
+
+    /// Lets one control step pass in every world.
+    pub fn step(&mut self) {
+        if self.alone.model().attachments && (0..self.lanes).any(|lane| view::holds(&self.lane(lane))) {
+            for lane in 0..self.lanes {
+                let own = self.words.iter().skip(lane).step_by(self.lanes);
+                self.alone.words_mut().iter_mut().zip(own).for_each(|(x, from)| *x = *from);
+                self.alone.arranged();
+                self.alone.step();
+                let own = self.words.iter_mut().skip(lane).step_by(self.lanes);
+                own.zip(self.alone.words()).for_each(|(to, x)| *to = *x);
+            }
+        } else {
+            self.lockstep.step(self.alone.model(), &mut self.words, &mut self.work);
+        }
+    }
+}
+
+impl Clone for Batch {
+    fn clone(&self) -> Self {
+        Self {
+            alone: self.alone.clone(),
+            lanes: self.lanes,
+            words: self.words.clone(),
+            work: self.work.clone(),
+            lockstep: self.lockstep.another(),
+        }
+    }
+}
+
+impl fmt::Debug for Batch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Batch").field("lanes", &self.lanes).field("words", &self.words).finish_non_exhaustive()
+    }
+}
+
+/// One world of a [`Batch`]: the ports of a [`World`], no step.
+///
+/// What is done to it touches no other lane.
+#[derive(Debug)]
+pub struct Lane<'a> {
+    model: &'a Model,
+    words: &'a mut [f32],
+    lanes: usize,
+    index: usize,
+}
+
+impl Lane<'_> {
+    /// By which numbers the parts of a robot are known; those of the last robot for a number beyond it.
+    pub fn parts(&self, robot: usize) -> MobileParts {
+        self.model.parts(robot)
+    }
+}
+
+impl View for Lane<'_> {
+    fn model(&self) -> &Model {
+        self.model
+    }
+    #[inline(always)]
+    fn word(&self, index: usize) -> f32 {
+        self.words[index * self.lanes + self.index]
+    }
+    #[inline(always)]
+    fn set_word(&mut self, index: usize, x: f32) {
+        self.words[index * self.lanes + self.index] = x;
+    }
+    #[inline]
+    fn visit(&self, _: [f32; 2], _: [f32; 2], tell: impl FnMut(usize)) {
+        (0..self.model.round_bodies()).for_each(tell);
+    }
+    fn gridded(&self) -> bool {
+        false
+    }
+}
+
+ports!(Lane<'_>);
+
+impl Arrange for Lane<'_> {
+    fn clear(&mut self) {
+        view::clear(self);
+    }
+    fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
+        view::place_joint(self, joint, position, speed);
+    }
+    fn place_body(&mut self, body: BodyId, pose: Pose, _: Twist) {
+        view::place_body(self, body, pose);
+    }
+    fn arranged(&mut self) {}
+}

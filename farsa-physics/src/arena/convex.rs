@@ -1,0 +1,113 @@
+//! Convex obstacles of a planar world as data.
+
+use alloc::vec::Vec;
+
+use farsa_num::sin_cos;
+
+/// The colour of what has none of its own.
+pub(crate) const GREY: [f64; 3] = [0.5; 3];
+
+/// The form of a [`Convex`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConvexForm {
+    /// An upright prism on the ground.
+    Prism {
+        /// Corners of its base, in turn, either way round [m].
+        corners: Vec<[f64; 2]>,
+        /// Height [m].
+        height: f64,
+    },
+    /// The convex hull of points, in any order; needs the feature `parry`.
+    Hull {
+        /// The points: x, y and the height above the ground, which is not negative [m].
+        points: Vec<[f64; 3]>,
+    },
+}
+
+/// A convex obstacle that does not move, in the world's frame.
+///
+/// In the plane it is its outline as seen from above: that is what robots collide with, what [`Planar`](farsa_body::Planar)
+/// tells and what infrared sensors feel. Rays in space ([`Rays`](farsa_body::Rays)) meet the solid itself, slopes included.
+/// Like a wall, it is no body.
+///
+/// ```
+/// use farsa_body::{MobileRobot, Planar, Rays};
+/// use farsa_physics::arena::{Arena, Convex, World};
+///
+/// let mut arena = Arena::walled(1.0, 1.0);
+/// arena.add_convex(Convex::prism(&[[0.4, 0.4], [0.7, 0.4], [0.4, 0.7]], 0.1));
+/// arena.add_robot(MobileRobot::khepera(), [0.2, 0.2], 0.0);
+/// let world = World::new(&arena)?;
+/// // Past the corner along the diagonal, the long side is met.
+/// let sight = world.look([0.9, 0.9], [-0.5_f32.sqrt(), -0.5_f32.sqrt()], 2.0, None).unwrap();
+/// assert!((sight.distance - 0.35 * 2.0_f32.sqrt()).abs() < 1e-6);
+/// assert!(world.cast([0.5, 0.1, 0.11], [0.0, 1.0, 0.0], 0.5).is_none());
+/// # Ok::<(), farsa_physics::arena::ArenaError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Convex {
+    /// Its form and place.
+    pub form: ConvexForm,
+    /// Red, green and blue [0..1].
+    pub color: [f64; 3],
+}
+
+impl Convex {
+    /// A grey upright prism over the convex polygon with these corners [m], of a height [m].
+    ///
+    /// Corners follow each other either way round. A corner on the straight line between its neighbours is allowed, a
+    /// dent is not.
+    pub fn prism(corners: &[[f64; 2]], height: f64) -> Self {
+        Self { form: ConvexForm::Prism { corners: corners.into(), height }, color: GREY }
+    }
+
+    /// The grey convex hull of points [m], in any order; the third coordinate is the height above the ground.
+    ///
+    /// Needs the feature `parry`. Points within the hull are allowed.
+    pub fn hull(points: &[[f64; 3]]) -> Self {
+        Self { form: ConvexForm::Hull { points: points.into() }, color: GREY }
+    }
+
+    /// The same obstacle in another colour.
+    pub fn with_color(self, color: [f64; 3]) -> Self {
+        Self { color, ..self }
+    }
+
+    /// The same obstacle turned counter-clockwise about the origin by `heading` [rad], then moved by `at` [m].
+    pub fn placed(self, at: [f64; 2], heading: f64) -> Self {
+        let (sine, cosine) = sin_cos(heading);
+        let place = |x: f64, y: f64| [at[0] + (x * cosine - y * sine), at[1] + (x * sine + y * cosine)];
+        let form = match self.form {
+            ConvexForm::Prism { corners, height } => {
+                ConvexForm::Prism { corners: corners.iter().map(|[x, y]| place(*x, *y)).collect(), height }
+            }
+            ConvexForm::Hull { points } => {
+                let points = points.iter().map(|[x, y, z]| {
+                    let [x, y] = place(*x, *y);
+                    [x, y, *z]
+                });
+                ConvexForm::Hull { points: points.collect() }
+            }
+        };
+        Self { form, ..self }
+    }
+
+    /// Corners of its outline as seen from above, counter-clockwise from the lowest x [m]; fewer than three if it has no
+    /// area.
+    pub fn outline(&self) -> Vec<[f64; 2]> {
+        match &self.form {
+            ConvexForm::Prism { corners, .. } => crate::arena::outline::hull(corners),
+            ConvexForm::Hull { points } => {
+                crate::arena::outline::hull(&points.iter().map(|[x, y, _]| [*x, *y]).collect::<Vec<_>>())
+            }
+        }
+    }
+
+    /// Its highest point above the ground [m].
+    pub fn height(&self) -> f64 {
+        match &self.form {
+            ConvexForm::Prism { height, .. } => *height,
+            ConvexForm::Hull { points } => points.iter().fold(0.0, |most: f64, [.., z]| most.max(*z)),
+        }
+    }
+}

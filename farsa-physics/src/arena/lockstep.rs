@@ -1,0 +1,78 @@
+//! The compiled steps of batches of planar worlds: one for every number of lanes and instruction set.
+
+use alloc::boxed::Box;
+use core::marker::PhantomData;
+
+use farsa_num::Scalar;
+use farsa_num::fearless_simd::{Level, Simd, f32x8, f32x16};
+
+use crate::arena::infrared::ring;
+use crate::arena::model::Model;
+use crate::arena::step::step;
+use crate::articulated::lockstep::LANES;
+
+/// Steps all worlds of a batch together.
+pub(crate) trait Lockstep: Send + Sync {
+    /// One control step; see [`step`].
+    fn step(&self, model: &Model, words: &mut [f32], work: &mut [f32]);
+    /// Readings of a robot's infrared ring; see [`ring`].
+    fn infrared(&self, model: &Model, words: &[f32], robot: usize, out: &mut [f32]);
+    /// The same again.
+    fn another(&self) -> Box<dyn Lockstep>;
+}
+
+/// Nothing but the proof that the instructions are there.
+struct Vectors<S: Scalar> {
+    simd: S::Simd,
+    scalar: PhantomData<fn() -> S>,
+}
+
+impl<S> Lockstep for Vectors<S>
+where
+    S: Scalar<Real = f32> + 'static,
+    S::Simd: Send + Sync,
+{
+    fn step(&self, model: &Model, words: &mut [f32], work: &mut [f32]) {
+        S::vectorize(
+            self.simd,
+            #[inline(always)]
+            || step::<S>(self.simd, model, words, work),
+        );
+    }
+
+    fn infrared(&self, model: &Model, words: &[f32], robot: usize, out: &mut [f32]) {
+        S::vectorize(
+            self.simd,
+            #[inline(always)]
+            || ring::<S>(self.simd, model, words, robot, out),
+        );
+    }
+
+    fn another(&self) -> Box<dyn Lockstep> {
+        Box::new(Self { simd: self.simd, scalar: PhantomData })
+    }
+}
+
+/// The steps of so many lanes, one of [`LANES`], at the widest instruction set up to `level` that there are steps for.
+pub(crate) fn lockstep(lanes: usize, level: Level) -> Box<dyn Lockstep> {
+    fn of<S: Simd>(simd: S, lanes: usize) -> Box<dyn Lockstep> {
+        if lanes == LANES[0] {
+            Box::new(Vectors::<f32x8<S>> { simd, scalar: PhantomData })
+        } else {
+            Box::new(Vectors::<f32x16<S>> { simd, scalar: PhantomData })
+        }
+    }
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        if let Some(simd) = level.as_avx512() {
+            return of(simd, lanes);
+        }
+        if let Some(simd) = level.as_avx2() {
+            return of(simd, lanes);
+        }
+        if let Some(simd) = level.as_sse2() {
+            return of(simd, lanes);
+        }
+    }
+    farsa_num::fearless_simd::dispatch!(level, simd => of(simd, lanes))
+}

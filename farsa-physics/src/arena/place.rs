@@ -1,0 +1,79 @@
+//! Finding a free place in a planar world.
+
+use farsa_body::{BodyId, Planar};
+use farsa_num::Stream;
+
+use crate::arena::error::ArenaError;
+
+/// What makes a place free for a disc, all distances from surface to surface [m].
+///
+/// Places are drawn uniformly from the region until one is free: two draws of the stream for each try.
+///
+/// ```
+/// use farsa_body::{Arrange, MobileRobot, Pose, Twist};
+/// use farsa_num::{Domain, Stream};
+/// use farsa_physics::arena::{Arena, ArenaError, FreePlace, World};
+///
+/// let mut arena = Arena::walled(0.4, 0.4);
+/// let robot = arena.add_robot(MobileRobot::khepera(), [0.2, 0.2], 0.0);
+/// let mut world = World::new(&arena)?;
+/// let mut stream = Stream::new(1, Domain::Start, 0, 0, 0);
+/// let free = FreePlace { walls: 0.01, ..FreePlace::new([[0.0, 0.0], [0.4, 0.4]], 0.035) };
+/// let at = free.find(&world, &mut stream)?;
+/// world.place_body(world.parts(robot).body, Pose::planar(at, stream.range(-3.14, 3.14)), Twist::default());
+/// world.arranged();
+/// # Ok::<(), ArenaError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreePlace<'a> {
+    /// The lowest and highest coordinates of the disc's centre [m].
+    pub region: [[f32; 2]; 2],
+    /// Radius of the disc [m].
+    pub radius: f32,
+    /// How far it keeps from every wall [m].
+    pub walls: f32,
+    /// From which bodies it keeps how far [m]; others are not looked at.
+    pub bodies: &'a [(BodyId, f32)],
+    /// Places that are tried at most.
+    pub tries: u32,
+}
+
+impl<'a> FreePlace<'a> {
+    /// A disc within a region that overlaps no wall; a thousand tries.
+    pub fn new(region: [[f32; 2]; 2], radius: f32) -> Self {
+        Self { region, radius, walls: 0.0, bodies: &[], tries: 1000 }
+    }
+
+    /// The same disc, which also keeps from these bodies.
+    pub fn clear_of(self, bodies: &'a [(BodyId, f32)]) -> Self {
+        Self { bodies, ..self }
+    }
+
+    /// A free place [m].
+    ///
+    /// # Errors
+    /// [`ArenaError::NoFreePlace`] if none of the tries is free.
+    pub fn find<W: Planar<Body = BodyId>>(&self, world: &W, stream: &mut Stream) -> Result<[f32; 2], ArenaError> {
+        let [low, high] = self.region;
+        let farthest = self.bodies.iter().fold(self.walls, |most, (_, far)| most.max(*far));
+        let mut short = f32::INFINITY;
+        for _ in 0..self.tries {
+            let at = [0, 1].map(|k| stream.range(low[k], high[k]));
+            let mut lacks = f32::NEG_INFINITY;
+            world.near(at, self.radius + farthest.max(0.0), &mut |near| {
+                let clearance = match near.body {
+                    None => Some(self.walls),
+                    Some(body) => self.bodies.iter().find(|(b, _)| *b == body).map(|(_, far)| *far),
+                };
+                if let Some(clearance) = clearance {
+                    lacks = lacks.max(self.radius + clearance - near.distance);
+                }
+            });
+            if lacks <= 0.0 {
+                return Ok(at);
+            }
+            short = short.min(lacks);
+        }
+        Err(ArenaError::NoFreePlace { tries: self.tries, radius: self.radius, short })
+    }
+}

@@ -1,0 +1,102 @@
+//! Many articulated worlds of one model that are stepped together, one in each lane of SIMD vectors.
+
+use alloc::boxed::Box;
+use core::fmt;
+
+use farsa_num::fearless_simd::Level;
+
+use crate::articulated::lane::{Lane, Words};
+use crate::articulated::lockstep::{self, LANES, Lockstep};
+use crate::articulated::model::{Model, ModelError};
+
+/// Worlds of one model, one in each lane of SIMD vectors, all at their description's start at first.
+///
+/// Every world has the bits of a [`World`](crate::articulated::World) that is arranged, commanded and stepped like it,
+/// whatever its neighbours do.
+///
+/// ```
+/// use farsa_body::{Arrange, Joint, JointId, Joints, MassProperties, Pose, Robot, Segment};
+/// use farsa_num::fearless_simd::Level;
+/// use farsa_physics::articulated::{Batch, Model, Options};
+///
+/// let mut pendulum = Robot::new("pendulum");
+/// let joint = Joint::revolute("pivot", [0.0, 1.0, 0.0], Pose::identity(), [-4.0, 4.0]);
+/// let rod = MassProperties { centre: [0.0, 0.0, -0.5], ..MassProperties::sphere(1.0, 0.1) };
+/// pendulum.add_segment(Segment::new("rod", None, joint, rod));
+/// let mut batch = Batch::new(Model::new(&pendulum, &Options::default())?, 8, Level::baseline())?;
+/// for i in 0..8 {
+///     let mut lane = batch.lane(i);
+///     lane.place_joint(JointId(0), 0.1 * i as f32, 0.0);
+///     lane.arranged();
+/// }
+/// batch.step();
+/// assert_eq!(batch.lane(0).position(JointId(0)), 0.0);
+/// assert!(batch.lane(5).position(JointId(0)) < 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Batch {
+    model: Model<f32>,
+    words: Words,
+    lockstep: Box<dyn Lockstep>,
+}
+
+impl Batch {
+    /// So many worlds, one of [`LANES`], stepped by the instructions of `level`.
+    ///
+    /// A level that is none of [`Batch::levels`] takes the next lower one.
+    ///
+    /// # Errors
+    /// [`ModelError::Lanes`] for another number of worlds.
+    pub fn new(model: Model<f32>, lanes: usize, level: Level) -> Result<Self, ModelError> {
+        if !LANES.contains(&lanes) {
+            let nearest = LANES.into_iter().min_by_key(|known| known.abs_diff(lanes)).unwrap_or(LANES[0]);
+            return Err(ModelError::Lanes { lanes, nearest });
+        }
+        let words = Words::new(&model, lanes);
+        let lockstep = lockstep::lockstep(&model, lanes, level);
+        Ok(Self { model, words, lockstep })
+    }
+
+    /// Of the instruction sets up to `best` those that there are steps for, narrowest first.
+    ///
+    /// On x86-64 SSE2, AVX2 and AVX-512, elsewhere `best` itself. `Level::new()`, with `fearless_simd`'s feature `std`, is
+    /// the best of this machine.
+    pub fn levels(best: Level) -> impl Iterator<Item = Level> {
+        lockstep::levels(best)
+    }
+
+    /// Number of worlds.
+    pub fn lanes(&self) -> usize {
+        self.words.lanes
+    }
+
+    /// The constant part, shared by all.
+    pub fn model(&self) -> &Model<f32> {
+        &self.model
+    }
+
+    /// One of the worlds; the last one for a number beyond it, which is a mistake.
+    pub fn lane(&mut self, index: usize) -> Lane<'_> {
+        debug_assert!(index < self.words.lanes, "lane {index} of {}", self.words.lanes);
+        Lane { index: index.min(self.words.lanes - 1), model: &self.model, words: &mut self.words }
+    }
+
+    /// Lets one control step pass in every world.
+    pub fn step(&mut self) {
+        self.lockstep.step(&self.model, &mut self.words);
+    }
+}
+
+impl Clone for Batch {
+    fn clone(&self) -> Self {
+        // What the steps remember is in the words: loaded again, it is the same.
+        let words = Words { arranged: true, ..self.words.clone() };
+        Self { model: self.model.clone(), words, lockstep: self.lockstep.another() }
+    }
+}
+
+impl fmt::Debug for Batch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Batch").field("model", &self.model).field("words", &self.words).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,173 @@
+//! Contact points: where two colliders may touch.
+
+use farsa_num::{Real, Scalar};
+
+use crate::articulated::collision::{
+    Placed, Point, ball_box, ball_plane, balls, corner, distance_to_box, edge, nearest_of_segments, nearest_on_segment,
+    segment_box,
+};
+use crate::articulated::model::{Form, Model, Pair};
+use crate::articulated::spatial::{Vector, add, dot, product, rotate, scale, splat, splat_matrix, sub};
+use crate::articulated::tree::{LinkData, WORLD};
+
+/// The colliders in the world.
+#[inline(always)]
+pub(crate) fn place_colliders<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    work: &[LinkData<S>],
+    out: &mut [Placed<S>],
+) {
+    for (c, o) in model.colliders.iter().zip(out) {
+        let own = splat_matrix(simd, c.mount.rotation);
+        let offset = splat::<S>(simd, c.mount.position);
+        // `acceleration` holds the predicted velocity here, see `predict`: what it is at the collider's origin.
+        *o = if c.mount.link == WORLD {
+            Placed { rotation: own, position: offset, velocity: [S::splat(simd, S::Real::of(0.0)); 3] }
+        } else {
+            let w = &work[usize::from(c.mount.link)];
+            let position = add(w.position, rotate(&w.rotation, offset));
+            let velocity = w.acceleration.at(sub(position, w.reference));
+            Placed { rotation: product(&w.rotation, &own), position, velocity }
+        };
+    }
+}
+
+/// Distance between a pair's bounds [m]; nothing can touch while it is positive.
+#[inline(always)]
+pub(crate) fn clearance<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    pair: &Pair<S::Real>,
+    placed: &[Placed<S>],
+) -> S {
+    // A ball around the first shape against the second itself where that costs little (plane, box), else against its ball:
+    // a ball around a table would be near everything.
+    let [a, b] = pair.colliders;
+    let (pa, pb) = (&placed[a], &placed[b]);
+    let bound = S::splat(simd, model.colliders[a].bound);
+    match model.colliders[b].form {
+        Form::Plane => dot(sub(pa.position, pb.position), pb.axis()) - bound,
+        Form::Block { half } => distance_to_box(pa.position, pb, splat::<S>(simd, half)) - bound,
+        _ => {
+            let d = sub(pa.position, pb.position);
+            dot(d, d).sqrt() - bound - S::splat(simd, model.colliders[b].bound)
+        }
+    }
+}
+
+/// For an edge of a box against a box: the distance left between the edge and the other's bound [m].
+#[inline(always)]
+pub(crate) fn edge_distance<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    pair: &Pair<S::Real>,
+    placed: &[Placed<S>],
+    index: usize,
+) -> Option<S> {
+    // Of a small box on a large one most of the twelve edges are far away; each costs a search with twelve halvings.
+    let [a, b] = pair.colliders;
+    match (model.colliders[a].form, model.colliders[b].form) {
+        (Form::Block { .. }, Form::Block { half }) if index >= 8 => {
+            let (middle, direction, length) = edge(&placed[b], splat::<S>(simd, half), index - 8);
+            let near = nearest_on_segment(middle, direction, length, placed[a].position);
+            let d = sub(near, placed[a].position);
+            Some(dot(d, d).sqrt() - S::splat(simd, model.colliders[a].bound))
+        }
+        _ => None,
+    }
+}
+
+/// One end of a capsule's axis, the upper one unless `index` is 0.
+#[inline(always)]
+fn end<S: Scalar>(place: &Placed<S>, index: usize, half: S) -> Vector<S> {
+    add(place.position, scale(place.axis(), if index == 0 { -half } else { half }))
+}
+
+/// Contact point `index` of a pair.
+#[inline(never)]
+pub(crate) fn find<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    pair: &Pair<S::Real>,
+    placed: &[Placed<S>],
+    index: usize,
+) -> Point<S> {
+    S::vectorize(
+        simd,
+        #[inline(always)]
+        || point(simd, model, pair, placed, index),
+    )
+}
+
+#[inline(always)]
+fn point<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    pair: &Pair<S::Real>,
+    placed: &[Placed<S>],
+    index: usize,
+) -> Point<S> {
+    // Spheres and capsules are balls swept over a point or a segment, corners and edges of boxes the same with radius 0: each
+    // pair comes down to a ball with a ball, a box or a plane. Shapes come in the order ball, capsule, block, plane.
+    let [a, b] = pair.colliders;
+    let (pa, pb) = (&placed[a], &placed[b]);
+    match (model.colliders[a].form, model.colliders[b].form) {
+        (Form::Ball { radius: ra }, Form::Ball { radius: rb }) => {
+            balls(pa.position, S::splat(simd, ra), pb.position, S::splat(simd, rb))
+        }
+        (Form::Ball { radius: ra }, Form::Capsule { radius: rb, half_length }) => {
+            let near = nearest_on_segment(pb.position, pb.axis(), S::splat(simd, half_length), pa.position);
+            balls(pa.position, S::splat(simd, ra), near, S::splat(simd, rb))
+        }
+        (Form::Ball { radius }, Form::Block { half }) => {
+            ball_box(pa.position, S::splat(simd, radius), pb, splat::<S>(simd, half))
+        }
+        (Form::Ball { radius }, Form::Plane) => ball_plane(pa.position, S::splat(simd, radius), pb),
+        (Form::Capsule { radius: ra, half_length: la }, Form::Capsule { radius: rb, half_length: lb }) => {
+            let (na, nb) = nearest_of_segments(
+                pa.position,
+                pa.axis(),
+                S::splat(simd, la),
+                pb.position,
+                pb.axis(),
+                S::splat(simd, lb),
+            );
+            balls(na, S::splat(simd, ra), nb, S::splat(simd, rb))
+        }
+        (Form::Capsule { radius, half_length }, Form::Block { half }) => {
+            // Both ends of the axis, and the deepest place between them, where the capsule lies across an edge.
+            let half = splat::<S>(simd, half);
+            if index < 2 {
+                ball_box(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb, half)
+            } else {
+                segment_box(pa.position, pa.axis(), S::splat(simd, half_length), S::splat(simd, radius), pb, half)
+            }
+        }
+        (Form::Capsule { radius, half_length }, _) => {
+            ball_plane(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb)
+        }
+        (Form::Block { half: ha }, Form::Block { half: hb }) => {
+            // Corners of a in b, then edges of b through a, whose normal is turned round: it pushes a away from b. Corners of
+            // b in a are not looked at by themselves; the description's order is chosen for that (see `model_builder`).
+            let zero = S::splat(simd, S::Real::of(0.0));
+            let (ha, hb) = (splat::<S>(simd, ha), splat::<S>(simd, hb));
+            if index < 8 {
+                ball_box(corner(pa, ha, index), zero, pb, hb)
+            } else {
+                let (middle, direction, length) = edge(pb, hb, index - 8);
+                let mut found = segment_box(middle, direction, length, zero, pa, ha);
+                found.normal = scale(found.normal, S::splat(simd, S::Real::of(-1.0)));
+                found
+            }
+        }
+        (Form::Block { half }, _) => {
+            ball_plane(corner(pa, splat::<S>(simd, half), index), S::splat(simd, S::Real::of(0.0)), pb)
+        }
+        (Form::Plane, _) => ball_plane(pa.position, S::splat(simd, S::Real::of(0.0)), pb),
+    }
+}
+
+#[cfg(test)]
+#[path = "contact_oracles.rs"]
+mod oracles;

@@ -1,0 +1,419 @@
+//! Contact points of every pair of shapes against brute force, and what must hold for all of them.
+#![allow(clippy::unwrap_used)]
+
+extern crate std;
+
+use alloc::vec::Vec;
+
+use farsa_body::{BodyId, Collider, Joint, MassProperties, Pose, Robot, Segment, Shape, Surface};
+use proptest::prelude::*;
+
+use super::{find, place_colliders};
+use crate::articulated::collision::{Placed, Point};
+use crate::articulated::{Model, Options, Scratch};
+
+type V = [f64; 3];
+
+fn dot(a: V, b: V) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+fn norm(a: V) -> f64 {
+    dot(a, a).sqrt()
+}
+fn add(a: V, b: V, k: f64) -> V {
+    [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]]
+}
+fn sub(a: V, b: V) -> V {
+    add(a, b, -1.0)
+}
+
+/// The points that the world looks at, of two shapes on two free bodies.
+fn points_in<R: farsa_num::Real>(a: (Shape, Pose<f64>), b: (Shape, Pose<f64>)) -> Vec<Point<R>> {
+    let mut robot = Robot::new("two");
+    for (name, (shape, place)) in [("a", a), ("b", b)] {
+        // Half of the pose in the body, half in the collider.
+        let inner = Pose { position: [0.01, -0.02, 0.03], rotation: [0.5, -0.5, 0.5, 0.5] };
+        let back = Pose { position: [0.0; 3], rotation: [-0.5, 0.5, -0.5, 0.5] };
+        let mut body = place.compose(&back.compose(&Pose::at([-0.01, 0.02, -0.03])));
+        let n = body.rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
+        body.rotation = body.rotation.map(|x| x / n);
+        let id = robot.add_segment(Segment::new(name, None, Joint::floating(body), MassProperties::sphere(1.0, 0.1)));
+        robot.add_collider(Collider::new(name, Some(id), shape, inner));
+    }
+    assert_eq!(robot.segments.len(), BodyId(2).index());
+    robot.add_pair([0, 1], Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 1e5, damping: 100.0 });
+    let model = Model::<R>::new(&robot, &Options::default()).unwrap();
+    let mut scratch = Scratch::new((), &model);
+    scratch.place((), &model, &model.initial);
+    let mut placed = [Placed::new(()), Placed::new(())];
+    place_colliders((), &model, scratch.links(), &mut placed);
+    let pair = &model.pairs[0];
+    let sign = R::of(if pair.flipped { -1.0 } else { 1.0 });
+    (0..pair.points)
+        .map(|i| {
+            let mut p = find((), &model, pair, &placed, i);
+            p.normal = p.normal.map(|x| x * sign);
+            p
+        })
+        .collect()
+}
+
+fn points(a: (Shape, Pose<f64>), b: (Shape, Pose<f64>)) -> Vec<Point<f64>> {
+    points_in(a, b)
+}
+
+fn valid(points: &[Point<f64>]) -> impl Iterator<Item = &Point<f64>> {
+    points.iter().filter(|p| p.valid)
+}
+
+fn gap(points: &[Point<f64>]) -> f64 {
+    valid(points).map(|p| p.gap).fold(f64::INFINITY, f64::min)
+}
+
+/// Signed distance of a point to the surface of a shape.
+fn distance(shape: Shape, place: &Pose<f64>, p: V) -> f64 {
+    let p = place.transform_back(p);
+    match shape {
+        Shape::Sphere { radius } => norm(p) - radius,
+        Shape::Capsule { radius, half_length } => {
+            norm(sub(p, [0.0, 0.0, p[2].clamp(-half_length, half_length)])) - radius
+        }
+        Shape::Box { half } => {
+            let q = [0, 1, 2].map(|k: usize| p[k].abs() - half[k]);
+            norm(q.map(|x| x.max(0.0))) + q[0].max(q[1]).max(q[2]).min(0.0)
+        }
+        Shape::Plane => p[2],
+    }
+}
+
+/// The smallest value of a convex function on [-h, h].
+fn least(h: f64, f: &mut dyn FnMut(f64) -> f64) -> f64 {
+    let (mut a, mut b) = (-h, h);
+    for _ in 0..100 {
+        let (x, y) = ((2.0 * a + b) / 3.0, (a + 2.0 * b) / 3.0);
+        if f(x) < f(y) { b = y } else { a = x }
+    }
+    f(f64::midpoint(a, b))
+}
+
+fn along(place: &Pose<f64>, t: f64) -> V {
+    place.transform([0.0, 0.0, t])
+}
+
+fn corners(half: V, place: &Pose<f64>) -> Vec<V> {
+    (0..8)
+        .map(|i| place.transform([0, 1, 2].map(|k: usize| if i >> k & 1 == 0 { -half[k] } else { half[k] })))
+        .collect()
+}
+
+fn edges(half: V, place: &Pose<f64>) -> Vec<(V, V)> {
+    let c = corners(half, place);
+    (0..8)
+        .flat_map(|i| [1, 2, 4].into_iter().filter(move |b| i & b == 0).map(move |b| (i, i | b)))
+        .map(|(i, j)| (c[i], c[j]))
+        .collect()
+}
+
+/// Distance of two segments.
+fn between(a: (V, V), b: (V, V)) -> f64 {
+    let at = |s: (V, V), t: f64| add(s.0, sub(s.1, s.0), f64::midpoint(t, 1.0));
+    let point_to = |p: V| {
+        let d = sub(b.1, b.0);
+        let t = (dot(sub(p, b.0), d) / dot(d, d)).clamp(0.0, 1.0);
+        norm(sub(p, add(b.0, d, t)))
+    };
+    least(1.0, &mut |t| point_to(at(a, t)))
+}
+
+/// Whether a plane separates two boxes: the fifteen axes of [Ericson2005] section 4.4.1.
+fn separated(ha: V, pa: &Pose<f64>, hb: V, pb: &Pose<f64>) -> bool {
+    let axes = |p: &Pose<f64>| [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| p.rotate(e));
+    let (a, b) = (axes(pa), axes(pb));
+    let cross = |u: V, v: V| [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let crosses = a.iter().flat_map(|u| b.iter().map(move |v| cross(*u, *v))).filter(|c| norm(*c) > 1e-9);
+    let d = sub(pa.position, pb.position);
+    a.into_iter().chain(b).chain(crosses).any(|n| {
+        let reach = |axes: [V; 3], h: V| (0..3).map(|k| h[k] * dot(axes[k], n).abs()).sum::<f64>();
+        dot(d, n).abs() > reach(a, ha) + reach(b, hb)
+    })
+}
+
+/// The smallest signed gap of two shapes by brute force: exact for all but boxes that overlap boxes.
+fn brute((sa, pa): (Shape, Pose<f64>), (sb, pb): (Shape, Pose<f64>)) -> f64 {
+    match (sa, sb) {
+        (Shape::Sphere { radius }, _) => distance(sb, &pb, pa.position) - radius,
+        (Shape::Capsule { radius, half_length }, _) => {
+            least(half_length, &mut |t| distance(sb, &pb, along(&pa, t))) - radius
+        }
+        (Shape::Box { half }, Shape::Plane) => {
+            corners(half, &pa).into_iter().map(|c| distance(sb, &pb, c)).fold(f64::INFINITY, f64::min)
+        }
+        (Shape::Box { half: ha }, Shape::Box { half: hb }) => {
+            let mut d = f64::INFINITY;
+            for c in corners(ha, &pa) {
+                d = d.min(distance(sb, &pb, c));
+            }
+            for c in corners(hb, &pb) {
+                d = d.min(distance(sa, &pa, c));
+            }
+            for a in edges(ha, &pa) {
+                for b in edges(hb, &pb) {
+                    d = d.min(between(a, b));
+                }
+            }
+            d
+        }
+        _ => brute((sb, pb), (sa, pa)),
+    }
+}
+
+fn pose(reach: f64) -> impl Strategy<Value = Pose<f64>> {
+    let turn = prop::array::uniform4(-1.0..1.0)
+        .prop_filter("a direction", |q: &[f64; 4]| q.iter().map(|x| x * x).sum::<f64>() > 0.01);
+    (prop::array::uniform3(-reach..reach), turn).prop_map(|(position, q)| {
+        let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+        Pose { position, rotation: q.map(|x| x / n) }
+    })
+}
+
+fn ball() -> impl Strategy<Value = Shape> {
+    (0.005..0.05).prop_map(|radius| Shape::Sphere { radius })
+}
+fn capsule() -> impl Strategy<Value = Shape> {
+    (0.005..0.03, 0.005..0.08).prop_map(|(radius, half_length)| Shape::Capsule { radius, half_length })
+}
+fn block() -> impl Strategy<Value = Shape> {
+    prop::array::uniform3(0.01..0.1).prop_map(|half| Shape::Box { half })
+}
+fn any_pair() -> impl Strategy<Value = [Shape; 2]> {
+    let round = || prop_oneof![ball(), capsule()];
+    let all = || prop_oneof![ball(), capsule(), block()];
+    prop_oneof![
+        8 => (round(), all()).prop_map(|(a, b)| [a, b]),
+        4 => (all(), Just(Shape::Plane)).prop_map(|(a, b)| [a, b]),
+        2 => (block(), block()).prop_map(|(a, b)| [a, b]),
+        2 => (all(), round()).prop_map(|(a, b)| [a, b]),
+    ]
+}
+
+/// How far the search along an axis may miss the deepest place.
+fn slack(shapes: [Shape; 2]) -> f64 {
+    let search = |s: Shape| match s {
+        Shape::Capsule { half_length, .. } => half_length,
+        Shape::Box { half } => half[0].max(half[1]).max(half[2]),
+        _ => 0.0,
+    };
+    match shapes {
+        [Shape::Capsule { .. }, Shape::Box { .. }]
+        | [Shape::Box { .. }, Shape::Capsule { .. }]
+        | [Shape::Box { .. }, Shape::Box { .. }] => 1.5e-3 * search(shapes[0]).max(search(shapes[1])) + 1e-9,
+        _ => 1e-9,
+    }
+}
+
+fn boxes(shapes: [Shape; 2]) -> bool {
+    shapes.iter().all(|s| matches!(s, Shape::Box { .. }))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_smallest_gap_is_that_of_brute_force(shapes in any_pair(), pa in pose(0.1), pb in pose(0.1)) {
+        prop_assume!(!boxes(shapes));
+        let found = points((shapes[0], pa), (shapes[1], pb));
+        let (g, truth) = (gap(&found), brute((shapes[0], pa), (shapes[1], pb)));
+        prop_assert!((g - truth).abs() <= slack(shapes), "{g} instead of {truth}");
+    }
+
+    #[test]
+    fn points_lie_midway_between_the_surfaces(shapes in any_pair(), pa in pose(0.1), pb in pose(0.1)) {
+        for p in valid(&points((shapes[0], pa), (shapes[1], pb))) {
+            prop_assert!((norm(p.normal) - 1.0).abs() < 1e-12);
+            let (on_a, on_b) = (add(p.position, p.normal, p.gap / 2.0), add(p.position, p.normal, -p.gap / 2.0));
+            let (da, db) = (distance(shapes[0], &pa, on_a), distance(shapes[1], &pb, on_b));
+            if boxes(shapes) {
+                // A corner or edge of the one on its surface or beneath, the other's surface met exactly.
+                prop_assert!(da <= 1e-9 && db <= 1e-9 && da.max(db).abs() <= 1e-9, "{da} {db}");
+            } else {
+                // Of a capsule that reaches deep into a box, or lies flat on it, an end's ball may be within the capsule.
+                let round_first = matches!(shapes[0], Shape::Sphere { .. } | Shape::Capsule { .. });
+                let (round, other) = if round_first { (da, db) } else { (db, da) };
+                prop_assert!(round <= 1e-9 && other.abs() <= 1e-9, "{da} {db}");
+            }
+        }
+    }
+
+    #[test]
+    fn moving_both_moves_the_points(shapes in any_pair(), pa in pose(0.1), pb in pose(0.1), by in pose(1.0)) {
+        let here = points((shapes[0], pa), (shapes[1], pb));
+        let there = points((shapes[0], by.compose(&pa)), (shapes[1], by.compose(&pb)));
+        // Where two answers are equally good, rounding decides: the smallest gap is the same whatever the answer.
+        if gap(&here).is_finite() || gap(&there).is_finite() {
+            prop_assert!((gap(&here) - gap(&there)).abs() <= 1e-9 + slack(shapes));
+        }
+        for (p, q) in here.iter().zip(&there) {
+            if p.valid && q.valid && norm(sub(q.normal, by.rotate(p.normal))) < 1e-3 {
+                prop_assert!(norm(sub(q.position, by.transform(p.position))) < 1e-6);
+                prop_assert!((p.gap - q.gap).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn exchanging_the_two_reverses_the_normal(shapes in any_pair(), pa in pose(0.1), pb in pose(0.1)) {
+        // Of two boxes the first one's corners are looked at: another set of points.
+        prop_assume!(!boxes(shapes));
+        let (ab, ba) = (points((shapes[0], pa), (shapes[1], pb)), points((shapes[1], pb), (shapes[0], pa)));
+        prop_assert_eq!(ab.len(), ba.len());
+        for (p, q) in ab.iter().zip(&ba) {
+            prop_assert!((p.gap - q.gap).abs() < 1e-12 && p.valid == q.valid);
+            if norm(add(p.normal, q.normal, 1.0)) > 1e-9 {
+                // Capsules that cross may be pushed apart either way.
+                let round = |s: &Shape| matches!(s, Shape::Capsule { .. } | Shape::Sphere { .. });
+                prop_assert!(shapes.iter().all(round));
+            }
+        }
+    }
+
+    #[test]
+    fn a_gap_changes_no_faster_than_the_shapes_move(
+        shapes in any_pair(), pa in pose(0.1), pb in pose(0.1), by in prop::array::uniform3(-0.02..0.02),
+    ) {
+        prop_assume!(!boxes(shapes));
+        let moved = Pose { position: add(pa.position, by, 1.0), ..pa };
+        let (before, after) = (points((shapes[0], pa), (shapes[1], pb)), points((shapes[0], moved), (shapes[1], pb)));
+        prop_assert!((gap(&before) - gap(&after)).abs() <= norm(by) + slack(shapes));
+        // And along the normal as fast as that, while the shapes are apart.
+        let Some(p) = valid(&before).min_by(|a, b| a.gap.total_cmp(&b.gap)) else { return Ok(()) };
+        if p.gap > 1e-3 {
+            let away = Pose { position: add(pa.position, p.normal, 1e-4), ..pa };
+            let g = gap(&points((shapes[0], away), (shapes[1], pb)));
+            prop_assert!((g - p.gap - 1e-4).abs() < 2e-6 + slack(shapes), "{} {g}", p.gap);
+        }
+    }
+
+    #[test]
+    fn single_precision_agrees(shapes in any_pair(), pa in pose(0.1), pb in pose(0.1)) {
+        let wide = points((shapes[0], pa), (shapes[1], pb));
+        let narrow = points_in::<f32>((shapes[0], pa), (shapes[1], pb));
+        let least = narrow.iter().filter(|p| p.valid).map(|p| f64::from(p.gap)).fold(f64::INFINITY, f64::min);
+        if least.is_finite() && gap(&wide).is_finite() {
+            prop_assert!((least - gap(&wide)).abs() <= 1e-6 + slack(shapes));
+        }
+    }
+
+    #[test]
+    fn boxes_apart_have_no_smaller_gap_than_brute_force(
+        ha in prop::array::uniform3(0.01..0.1), hb in prop::array::uniform3(0.01..0.1), pa in pose(0.15), pb in pose(0.15),
+    ) {
+        let (a, b) = ((Shape::Box { half: ha }, pa), (Shape::Box { half: hb }, pb));
+        if separated(ha, &pa, hb, &pb) {
+            prop_assert!(gap(&points(a, b)) >= brute(a, b) - 1e-9);
+        }
+    }
+}
+
+/// What of two boxes is nearest.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, PartialOrd, Ord)]
+enum Nearest {
+    CornerOfFirst,
+    CornerOfSecond,
+    Edges,
+}
+
+#[test]
+fn boxes_find_corners_of_the_first_and_edges_of_the_second() {
+    use farsa_num::{Domain, Stream};
+    let mut s = Stream::new(1, Domain::Start, 0, 0, 0);
+    let mut counts = [0; 3];
+    let mut misses = [0; 3];
+    let mut worst = [0.0_f64; 3];
+    for _ in 0..6_000 {
+        let mut block = || [0.03, 0.031, 0.01].map(|h: f64| h * s.range_f64(0.5, 3.0));
+        let (ha, hb) = (block(), block());
+        let mut pose = || {
+            let q: [f64; 4] = core::array::from_fn(|_| s.range_f64(-1.0, 1.0));
+            let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+            Pose { position: core::array::from_fn(|_| s.range_f64(-0.1, 0.1)), rotation: q.map(|x| x / n) }
+        };
+        let (pa, pb) = (pose(), pose());
+        let (a, b) = (Shape::Box { half: ha }, Shape::Box { half: hb });
+        let truth = brute((a, pa), (b, pb));
+        if !separated(ha, &pa, hb, &pb) || truth > 0.02 {
+            continue;
+        }
+        let close = |d: f64, slack: f64| (d - truth).abs() < slack;
+        let kind = if corners(ha, &pa).into_iter().any(|c| close(distance(b, &pb, c), 1e-6)) {
+            Nearest::CornerOfFirst
+        } else if corners(hb, &pb).into_iter().any(|c| close(distance(a, &pa, c), slack([a, b]))) {
+            Nearest::CornerOfSecond
+        } else {
+            Nearest::Edges
+        };
+        let k = kind as usize;
+        let off = gap(&points((a, pa), (b, pb))) - truth;
+        counts[k] += 1;
+        misses[k] += usize::from(off > slack([a, b]));
+        if off.is_finite() {
+            worst[k] = worst[k].max(off);
+        }
+    }
+    std::println!(
+        "boxes apart: [corner of the first, corner of the second, edges]: {counts:?}, missed {misses:?}, by up to {worst:?} m"
+    );
+    assert!(counts.iter().all(|n| *n > 100));
+    assert_eq!(misses[0], 0, "corners of the first");
+    assert_eq!(misses[2], 0, "edges");
+    // A known limit: a corner of the second (still) box that pokes the first one's face is seen when its edges are.
+}
+
+#[test]
+fn a_capsule_across_an_edge_touches_with_its_middle() {
+    // A box with its top at z = 0; the capsule lies across its edge at x = 0.1, tilted, both ends clear.
+    let table = (Shape::Box { half: [0.1, 0.1, 0.1] }, Pose::at([0.0, 0.0, -0.1]));
+    for degrees in [30.0_f64, 45.0, 60.0] {
+        let (s, c) = farsa_num::sin_cos(degrees.to_radians());
+        for gap_wanted in [0.002, -0.001] {
+            // Out of the edge between the two faces' normals; the axis falls across it.
+            let n = [s, 0.0, c];
+            let direction = [c, 0.0, -s];
+            let radius = 0.006;
+            let middle = add([0.1, 0.0, 0.0], n, radius + gap_wanted);
+            // A frame whose z axis is that direction.
+            let angle = farsa_num::atan2(direction[0], direction[2]);
+            let (s, c) = farsa_num::sin_cos(angle / 2.0);
+            let capsule = (
+                Shape::Capsule { radius, half_length: 0.03 },
+                Pose { position: add(middle, direction, 0.004), rotation: [0.0, s, 0.0, c] },
+            );
+            let found = points(capsule, table);
+            assert!(found[2].valid, "{degrees} deg");
+            assert!((found[2].gap - gap_wanted).abs() < 3e-5, "{} for {gap_wanted}", found[2].gap);
+            assert!(found[0].gap > 0.005 && found[1].gap > 0.005);
+            if gap_wanted > 0.0 {
+                assert!(norm(sub(found[2].normal, n)) < 0.01, "{:?} for {n:?}", found[2].normal);
+            }
+        }
+    }
+    // Lying flat on the top, it touches with its ends and the middle does not count.
+    let flat = Pose { position: [0.0, 0.0, 0.005], rotation: [0.0, 0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt()] };
+    let found = points((Shape::Capsule { radius: 0.006, half_length: 0.03 }, flat), table);
+    assert!(found[0].valid && found[1].valid && !found[2].valid);
+    assert!(found[..2].iter().all(|p| (p.gap + 0.001).abs() < 1e-12 && norm(sub(p.normal, [0.0, 0.0, 1.0])) < 1e-12));
+}
+
+#[test]
+fn shapes_with_one_centre_are_pushed_apart() {
+    let at = Pose::at([0.1, 0.2, 0.3]);
+    for (a, b) in [
+        (Shape::Sphere { radius: 0.02 }, Shape::Sphere { radius: 0.03 }),
+        (Shape::Sphere { radius: 0.02 }, Shape::Capsule { radius: 0.01, half_length: 0.05 }),
+        (Shape::Capsule { radius: 0.02, half_length: 0.03 }, Shape::Capsule { radius: 0.01, half_length: 0.05 }),
+        (Shape::Sphere { radius: 0.02 }, Shape::Box { half: [0.03, 0.05, 0.04] }),
+    ] {
+        for p in points((a, at), (b, at)) {
+            assert!((norm(p.normal) - 1.0).abs() < 1e-12 && p.gap < 0.0 && p.gap.is_finite());
+        }
+    }
+}

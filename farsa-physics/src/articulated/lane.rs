@@ -1,0 +1,198 @@
+//! One world of a batch, with the ports of a world alone.
+
+use alloc::vec::Vec;
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
+    Pose, Rays, Snapshot, Twist,
+};
+
+use crate::articulated::model::Model;
+use crate::articulated::ray;
+use crate::articulated::spatial::{Matrix, Spatial, Vector};
+use crate::articulated::step::{Precision, Scratch};
+use crate::articulated::tree::LinkData;
+use crate::articulated::view::{self, View};
+
+/// Words that the ports read of a link: rotation, position, reference point, velocity.
+pub(crate) const LINK_WORDS: usize = 21;
+
+/// What the ports of all lanes read and write: one word of every lane, then the next word of every lane.
+#[derive(Clone, Debug)]
+pub(crate) struct Words {
+    pub(crate) lanes: usize,
+    /// [`Model::state_len`] words.
+    pub(crate) state: Vec<f32>,
+    /// [`LINK_WORDS`] of each link.
+    pub(crate) links: Vec<f32>,
+    /// Whether more than commands was changed since the last step.
+    pub(crate) arranged: bool,
+    /// A world alone, to place the links of one lane.
+    pub(crate) alone: (Vec<f32>, Scratch<f32>),
+}
+
+impl Words {
+    pub(crate) fn new(model: &Model<f32>, lanes: usize) -> Self {
+        let state = model.initial.iter().flat_map(|x| core::iter::repeat_n(*x, lanes)).collect();
+        let links = alloc::vec![0.0; LINK_WORDS * model.links.len() * lanes];
+        let alone = (model.initial.clone(), Scratch::new((), model));
+        let mut words = Self { lanes, state, links, arranged: true, alone };
+        (0..lanes).for_each(|lane| words.place(model, lane));
+        words
+    }
+
+    /// Where the links of one lane are, from its state.
+    fn place(&mut self, model: &Model<f32>, lane: usize) {
+        let (state, scratch) = &mut self.alone;
+        for (x, from) in state.iter_mut().zip(self.state.iter().skip(lane).step_by(self.lanes)) {
+            *x = *from;
+        }
+        f32::place(model, state, scratch);
+        let to = self.links.iter_mut().skip(lane).step_by(self.lanes);
+        for (to, x) in to.zip(scratch.links.iter().flat_map(link_words)) {
+            *to = x;
+        }
+    }
+}
+
+fn link_words(w: &LinkData<f32>) -> [f32; LINK_WORDS] {
+    let [[a, b, c], [d, e, f], [g, h, i]] = w.rotation;
+    let [[x, y, z], [u, v, n], [k, l, m], [o, p, q]] = [w.position, w.reference, w.velocity.angular, w.velocity.linear];
+    [a, b, c, d, e, f, g, h, i, x, y, z, u, v, n, k, l, m, o, p, q]
+}
+
+/// One world of a [`Batch`](crate::articulated::Batch): the ports of a [`World`](crate::articulated::World), no step.
+///
+/// What is done to it touches no other lane.
+#[derive(Debug)]
+pub struct Lane<'a> {
+    pub(crate) model: &'a Model<f32>,
+    pub(crate) words: &'a mut Words,
+    pub(crate) index: usize,
+}
+
+impl Lane<'_> {
+    /// The constant part.
+    pub fn model(&self) -> &Model<f32> {
+        self.model
+    }
+
+    fn link<const N: usize>(&self, link: usize, first: usize) -> [f32; N] {
+        let at = (LINK_WORDS * link + first) * self.words.lanes + self.index;
+        core::array::from_fn(|k| self.words.links[at + k * self.words.lanes])
+    }
+
+    fn link_matrix(&self, link: usize) -> Matrix<f32> {
+        let [a, b, c, d, e, f, g, h, i] = self.link(link, 0);
+        [[a, b, c], [d, e, f], [g, h, i]]
+    }
+}
+
+impl View<f32> for Lane<'_> {
+    fn model(&self) -> &Model<f32> {
+        self.model
+    }
+    #[inline]
+    fn word(&self, index: usize) -> f32 {
+        self.words.state[index * self.words.lanes + self.index]
+    }
+    #[inline]
+    fn set_word(&mut self, index: usize, x: f32) {
+        self.words.state[index * self.words.lanes + self.index] = x;
+    }
+    fn place(&self, link: usize) -> (Matrix<f32>, Vector<f32>) {
+        (self.link_matrix(link), self.link(link, 9))
+    }
+    fn motion(&self, link: usize) -> (Spatial<f32>, Vector<f32>) {
+        (Spatial { angular: self.link(link, 15), linear: self.link(link, 18) }, self.link(link, 12))
+    }
+}
+
+impl Handles for Lane<'_> {
+    type Body = BodyId;
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+
+impl Kinematics for Lane<'_> {
+    fn pose(&self, body: BodyId) -> Pose {
+        view::pose(self, body)
+    }
+    fn velocity(&self, body: BodyId) -> Twist {
+        view::velocity(self, body)
+    }
+}
+
+impl Joints for Lane<'_> {
+    fn position(&self, joint: JointId) -> f32 {
+        view::joint_position(self, joint)
+    }
+    fn speed(&self, joint: JointId) -> f32 {
+        view::joint_speed(self, joint)
+    }
+}
+
+impl Actuated for Lane<'_> {
+    fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
+        view::command(self, actuator.index(), value);
+    }
+}
+
+impl Contacts for Lane<'_> {
+    fn pairs(&self) -> usize {
+        self.model.pairs.len()
+    }
+    fn pair_bodies(&self, pair: PairId) -> [Option<BodyId>; 2] {
+        self.model.pair_bodies.get(pair.index()).copied().unwrap_or([None; 2])
+    }
+    fn pair_contact(&self, pair: PairId) -> PairContact {
+        view::pair_contact(self, pair)
+    }
+    fn touches(&self, pair: PairId) -> bool {
+        view::touches(self, pair)
+    }
+}
+
+impl Rays for Lane<'_> {
+    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+        ray::cast(self, origin, direction, range)
+    }
+}
+
+impl Snapshot for Lane<'_> {
+    fn snapshot_len(&self) -> usize {
+        self.model.state_len()
+    }
+    fn save(&self, out: &mut [f32]) {
+        for (i, o) in out.iter_mut().take(self.snapshot_len()).enumerate() {
+            *o = self.word(i);
+        }
+    }
+    fn restore(&mut self, from: &[f32]) {
+        for (i, x) in from.iter().take(self.snapshot_len()).enumerate() {
+            self.set_word(i, *x);
+        }
+        self.arranged();
+    }
+}
+
+impl Arrange for Lane<'_> {
+    fn clear(&mut self) {
+        for i in 0..self.model.state_len() {
+            self.set_word(i, self.model.initial[i]);
+        }
+        self.arranged();
+    }
+    fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
+        view::place_joint(self, joint, position, speed);
+        self.words.arranged = true;
+    }
+    fn place_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
+        view::place_body(self, body, pose, twist);
+        self.words.arranged = true;
+    }
+    fn arranged(&mut self) {
+        self.words.place(self.model, self.index);
+        self.words.arranged = true;
+    }
+}

@@ -1,0 +1,127 @@
+//! The compiled steps of batches: one for every number of lanes and instruction set, here and nowhere else.
+//!
+//! Each takes the compiler about as long as all the rest of the crate, so the crate's unit tests are built without them.
+
+use alloc::boxed::Box;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::Scalar;
+use farsa_num::fearless_simd::{Level, Simd, f32x8, f32x16};
+
+use crate::articulated::lane::{LINK_WORDS, Words};
+use crate::articulated::model::Model;
+use crate::articulated::step::{Scratch, step};
+
+/// The numbers of worlds that a [`Batch`](crate::articulated::Batch) can have.
+pub const LANES: [usize; 2] = [8, 16];
+
+/// Steps all worlds of a batch together.
+pub(crate) trait Lockstep: Send + Sync {
+    /// One control step from words to words.
+    fn step(&mut self, model: &Model<f32>, words: &mut Words);
+    /// The same again.
+    fn another(&self) -> Box<dyn Lockstep>;
+}
+
+/// State and scratch in vectors.
+#[derive(Clone)]
+struct Vectors<S: Scalar> {
+    simd: S::Simd,
+    state: Vec<S>,
+    scratch: Scratch<S>,
+}
+
+impl<S: Scalar<Real = f32>> Vectors<S> {
+    fn new(simd: S::Simd, model: &Model<f32>) -> Self {
+        Self { simd, state: vec![S::splat(simd, 0.0); model.state_len()], scratch: Scratch::new(simd, model) }
+    }
+
+    #[inline(always)]
+    fn run(&mut self, model: &Model<f32>, words: &mut Words) {
+        let simd = self.simd;
+        if words.arranged {
+            for (x, from) in self.state.iter_mut().zip(words.state.chunks_exact(S::LANES)) {
+                *x = S::load(simd, from);
+            }
+            // The lanes that nobody has touched come to the bits that they have.
+            self.scratch.place(simd, model, &self.state);
+            words.arranged = false;
+        } else {
+            let commands = model.first_command()..model.first_point();
+            let from = words.state.chunks_exact(S::LANES).skip(commands.start);
+            for (x, from) in self.state[commands].iter_mut().zip(from) {
+                *x = S::load(simd, from);
+            }
+        }
+        step(simd, model, &mut self.state, &mut self.scratch);
+        for (x, to) in self.state.iter().zip(words.state.chunks_exact_mut(S::LANES)) {
+            x.store(to);
+        }
+        for (w, to) in self.scratch.links.iter().zip(words.links.chunks_exact_mut(LINK_WORDS * S::LANES)) {
+            let rotation = w.rotation.as_flattened();
+            let velocity = [w.velocity.angular, w.velocity.linear];
+            let all = [rotation, &w.position, &w.reference, velocity.as_flattened()];
+            for (x, to) in all.into_iter().flatten().zip(to.chunks_exact_mut(S::LANES)) {
+                x.store(to);
+            }
+        }
+    }
+}
+
+impl<S> Lockstep for Vectors<S>
+where
+    S: Scalar<Real = f32> + Send + Sync + 'static,
+    S::Simd: Send + Sync,
+    S::Mask: Send + Sync,
+{
+    fn step(&mut self, model: &Model<f32>, words: &mut Words) {
+        S::vectorize(
+            self.simd,
+            #[inline(always)]
+            || self.run(model, words),
+        );
+    }
+
+    fn another(&self) -> Box<dyn Lockstep> {
+        Box::new(self.clone())
+    }
+}
+
+/// Of the instruction sets up to `best` those that there are steps for, narrowest first.
+pub(crate) fn levels(best: Level) -> impl Iterator<Item = Level> {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    let known = [
+        best.is_fallback().then_some(best),
+        best.as_sse2().map(Simd::level),
+        best.as_avx2().map(Simd::level),
+        best.as_avx512().map(Simd::level),
+    ];
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    let known = [Some(best)];
+    known.into_iter().flatten()
+}
+
+/// The steps of so many lanes, one of [`LANES`], at the widest instruction set up to `level` that there are steps for.
+pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, level: Level) -> Box<dyn Lockstep> {
+    fn of<S: Simd>(simd: S, model: &Model<f32>, lanes: usize) -> Box<dyn Lockstep> {
+        if lanes == LANES[0] {
+            Box::new(Vectors::<f32x8<S>>::new(simd, model))
+        } else {
+            Box::new(Vectors::<f32x16<S>>::new(simd, model))
+        }
+    }
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        if let Some(simd) = level.as_avx512() {
+            return of(simd, model, lanes);
+        }
+        if let Some(simd) = level.as_avx2() {
+            return of(simd, model, lanes);
+        }
+        if let Some(simd) = level.as_sse2() {
+            return of(simd, model, lanes);
+        }
+    }
+    farsa_num::fearless_simd::dispatch!(level, simd => of(simd, model, lanes))
+}

@@ -1,0 +1,77 @@
+//! Articulated rigid bodies in reduced coordinates with compliant contacts.
+//!
+//! From a description to a step, and out again:
+//!
+//! - `model`: the constant part: links, colliders, pairs, actuators, options
+//! - `model_builder`: makes a model from a description
+//! - `links`: the moving links of a description, and their inertias
+//! - `spatial`: spatial vectors and inertias [Featherstone2008]
+//! - `tree`: forward kinematics, articulated bodies, Newton-Euler, composite bodies
+//! - `collision`: gap, normal and point of two convex shapes
+//! - `contact`: the contact points of each pair of colliders
+//! - `rows`: what a unit force or moment at a contact does to the tree
+//! - `stop`: joint stops as one-sided rows
+//! - `solver`: the impulses of contacts and stops, solved together
+//! - `step`: one control step, of one world or of lanes
+//! - `view`: answers of the ports, from the words of a state
+//! - `ray`: ray casts
+//! - `world`: one world behind the ports
+//! - `lockstep`: the compiled steps of batches
+//! - `batch`: many worlds in SIMD lanes
+//! - `lane`: one world of a batch behind the ports
+
+#[cfg(all(feature = "lanes", not(test)))]
+mod batch;
+#[cfg(feature = "alloc")]
+mod collision;
+#[cfg(feature = "alloc")]
+mod contact;
+#[cfg(all(feature = "lanes", not(test)))]
+mod lane;
+#[cfg(feature = "alloc")]
+pub(crate) mod links;
+#[cfg(all(feature = "lanes", not(test)))]
+pub(crate) mod lockstep;
+#[cfg(feature = "alloc")]
+pub(crate) mod model;
+#[cfg(feature = "alloc")]
+mod model_builder;
+#[cfg(feature = "alloc")]
+pub(crate) mod ray;
+#[cfg(feature = "alloc")]
+mod rows;
+#[cfg(feature = "alloc")]
+mod solver;
+#[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "contacts need models, which own vectors"))]
+pub(crate) mod spatial;
+#[cfg(feature = "alloc")]
+mod step;
+#[cfg(feature = "alloc")]
+mod stop;
+#[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
+pub(crate) mod tree;
+#[cfg(feature = "alloc")]
+pub(crate) mod view;
+#[cfg(feature = "alloc")]
+mod world;
+
+#[cfg(all(feature = "lanes", not(test)))]
+pub use batch::Batch;
+#[cfg(all(feature = "lanes", not(test)))]
+pub use lane::Lane;
+#[cfg(all(feature = "lanes", not(test)))]
+pub use lockstep::LANES;
+#[cfg(feature = "alloc")]
+pub use model::{Model, ModelError, Options};
+pub use spatial::Spatial;
+#[cfg(feature = "alloc")]
+pub use step::{Precision, Scratch, step};
+pub use tree::{
+    Link, LinkData, Root, accelerations, centre_of_mass, forward_kinematics, inverse_dynamics, jacobian,
+    kinetic_energy, mass_matrix, potential_energy,
+};
+/// Their former names.
+#[doc(hidden)]
+pub use tree::{LinkData as LinkWork, forward_kinematics as place};
+#[cfg(feature = "alloc")]
+pub use world::World;

@@ -1,0 +1,260 @@
+//! The constant part of an articulated world: links, colliders, pairs, actuators, options.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use farsa_body::{BodyId, JointKind, Law, RobotError};
+use farsa_num::Real;
+
+use crate::articulated::spatial::{Matrix, Vector};
+use crate::articulated::tree::{Link, WORLD};
+
+/// How an articulated world is stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Control step [s].
+    pub time_step: f64,
+    /// Dynamics steps per control step.
+    pub substeps: u32,
+    /// Gravity [m/s2].
+    pub gravity: [f64; 3],
+    /// Sweeps over the contacts per dynamics step.
+    pub sweeps: u32,
+    /// Tangential velocity per friction impulse at a sticking contact [m/(s N s)]: what is left of creep.
+    pub slip: f64,
+    /// Natural frequency of a joint stop, from the joint's own inertia at position 0 [rad/s].
+    pub limit_frequency: f64,
+    /// Damping ratio of a joint stop.
+    pub limit_damping: f64,
+    /// Contacts are watched from this distance on [m].
+    pub margin: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            time_step: 0.01,
+            substeps: 4,
+            gravity: [0.0, 0.0, -9.81],
+            sweeps: 10,
+            slip: 1e-3,
+            limit_frequency: 1000.0,
+            limit_damping: 1.0,
+            margin: 5e-4,
+        }
+    }
+}
+
+/// Why a model cannot be made.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// The description is not valid.
+    Robot(RobotError),
+    /// An option is out of its range.
+    Option {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A joint that nothing makes heavy: no mass beyond it about its axis and no armature.
+    Weightless {
+        /// The segment's name.
+        segment: String,
+    },
+    /// More parts than 16 bits can number.
+    TooMany {
+        /// Which parts.
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
+    /// A number of lanes that there are no vectors for.
+    Lanes {
+        /// The number.
+        lanes: usize,
+        /// The nearest one of [`LANES`](crate::articulated::LANES).
+        nearest: usize,
+    },
+}
+
+impl From<RobotError> for ModelError {
+    fn from(e: RobotError) -> Self {
+        Self::Robot(e)
+    }
+}
+
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Robot(e) => e.fmt(f),
+            Self::Option { name, value } => write!(f, "option {name} is {value}"),
+            Self::Weightless { segment } => write!(f, "segment {segment}: its joint moves no mass and has no armature"),
+            Self::TooMany { what, count } => write!(f, "{count} {what}: at most 65534"),
+            Self::Lanes { lanes, nearest } => write!(f, "{lanes} worlds in lanes: the nearest number is {nearest}"),
+        }
+    }
+}
+
+impl core::error::Error for ModelError {}
+
+/// Where a segment is: on which link, and its frame in the link's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mount<R> {
+    pub(crate) link: u16,
+    pub(crate) rotation: Matrix<R>,
+    pub(crate) position: Vector<R>,
+}
+
+/// The form of a collider with its sizes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Form<R> {
+    Ball { radius: R },
+    Capsule { radius: R, half_length: R },
+    Block { half: Vector<R> },
+    Plane,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Collider<R> {
+    pub(crate) mount: Mount<R>,
+    pub(crate) form: Form<R>,
+    /// Radius of the ball about its origin that holds it; none for a plane.
+    pub(crate) bound: R,
+}
+
+/// The two sides of a contact in the joint space: which velocities its rows reach.
+#[derive(Clone, Debug)]
+pub(crate) struct Reach {
+    /// Links from the first collider's up to the root.
+    pub(crate) first: Vec<u16>,
+    /// Links from the second collider's up to, but without, the first one that is also in `first`.
+    pub(crate) second: Vec<u16>,
+    /// Where in `first` the two meet; its length when they do not.
+    pub(crate) meet: usize,
+    /// The velocities of a row's entries, in the order in which they are written.
+    pub(crate) dofs: Vec<u16>,
+}
+
+/// The velocities that a joint's own effort reaches, from the joint to the root, and where its row begins.
+#[derive(Clone, Debug)]
+pub(crate) struct StopPath {
+    pub(crate) dofs: Vec<u16>,
+    pub(crate) row: usize,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Pair<R> {
+    /// Colliders in the order ball, capsule, block, plane.
+    pub(crate) colliders: [usize; 2],
+    /// Whether that is the other way round than in the description.
+    pub(crate) flipped: bool,
+    /// First contact point and their number.
+    pub(crate) point: usize,
+    pub(crate) points: usize,
+    /// First entry of the first point's rows.
+    pub(crate) row: usize,
+    /// The same for the rolling rows.
+    pub(crate) rolling_row: usize,
+    /// Number of the first point's rolling impulse, where there is rolling friction.
+    pub(crate) rolling: Option<usize>,
+    pub(crate) friction: R,
+    pub(crate) rolling_friction: R,
+    pub(crate) stiffness: R,
+    pub(crate) damping: R,
+    /// Whether the pair can push a joint that has a stop.
+    pub(crate) at_stops: bool,
+    pub(crate) reach: Reach,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Actuator<R> {
+    pub(crate) link: u16,
+    pub(crate) law: Law<R>,
+}
+
+/// The constant part of an articulated world, each number rounded once from the description.
+#[derive(Clone, Debug)]
+pub struct Model<R> {
+    pub(crate) links: Vec<Link<R>>,
+    pub(crate) mounts: Vec<Mount<R>>,
+    /// The description's body pairs, for the ports.
+    pub(crate) pair_bodies: Vec<[Option<BodyId>; 2]>,
+    pub(crate) joints: Vec<JointKind>,
+    pub(crate) collider_bodies: Vec<Option<BodyId>>,
+    pub(crate) colliders: Vec<Collider<R>>,
+    pub(crate) pairs: Vec<Pair<R>>,
+    pub(crate) actuators: Vec<Actuator<R>>,
+    /// The state after [`farsa_body::Arrange::clear`].
+    pub(crate) initial: Vec<R>,
+    pub(crate) positions: usize,
+    pub(crate) dofs: usize,
+    pub(crate) points: usize,
+    pub(crate) rolling: usize,
+    pub(crate) row_entries: usize,
+    pub(crate) rolling_entries: usize,
+    /// Which links' joints have a stop, and the rows of them.
+    pub(crate) stops: Vec<bool>,
+    pub(crate) stop_paths: Vec<StopPath>,
+    pub(crate) stop_entries: usize,
+    pub(crate) roots: usize,
+    pub(crate) gravity: [R; 3],
+    /// Control step and dynamics step [s].
+    pub(crate) time_step: R,
+    pub(crate) h: R,
+    pub(crate) substeps: u32,
+    pub(crate) sweeps: u32,
+    pub(crate) slip: R,
+    pub(crate) margin: R,
+}
+
+/// Words of the state per contact point: impulse, normal impulse, point, gap.
+pub(crate) const POINT_WORDS: usize = 8;
+
+impl<R: Real> Model<R> {
+    /// Number of positions: one per joint, seven per floating body (position, quaternion x, y, z, w).
+    pub fn positions(&self) -> usize {
+        self.positions
+    }
+    /// Number of velocities: one per joint, six per floating body (angular, then that of the centre of mass).
+    pub fn dofs(&self) -> usize {
+        self.dofs
+    }
+    /// The moving links in the order of their velocities, for the kernels.
+    pub fn links(&self) -> &[Link<R>] {
+        &self.links
+    }
+    /// Gravity [m/s2].
+    pub fn gravity(&self) -> [R; 3] {
+        self.gravity
+    }
+    /// Length of a state: positions, velocities, two commands per actuator, eight words per contact point, three per rolling point.
+    pub fn state_len(&self) -> usize {
+        self.first_point() + POINT_WORDS * self.points + 3 * self.rolling
+    }
+    /// Where the commands begin in a state.
+    pub(crate) fn first_command(&self) -> usize {
+        self.positions + self.dofs
+    }
+    /// Where the words of the contact points begin in a state.
+    pub(crate) fn first_point(&self) -> usize {
+        self.first_command() + 2 * self.actuators.len()
+    }
+    /// The link of a body's segment and the velocity it begins with; `None` for what is fixed to the world.
+    pub fn link_of(&self, body: BodyId) -> Option<usize> {
+        let mount = self.mounts.get(body.index())?;
+        (mount.link != WORLD).then_some(usize::from(mount.link))
+    }
+    /// The index of a joint's position and velocity; `None` for fixed and floating joints.
+    pub fn joint_index(&self, joint: farsa_body::JointId) -> Option<(usize, usize)> {
+        match self.joints.get(joint.index())? {
+            JointKind::Revolute | JointKind::Prismatic => {
+                let link = &self.links[usize::from(self.mounts[joint.index()].link)];
+                Some((usize::from(link.q), usize::from(link.dof)))
+            }
+            _ => None,
+        }
+    }
+}

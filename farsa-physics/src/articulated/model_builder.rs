@@ -1,0 +1,260 @@
+//! The construction of a model from a description.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_body::{JointKind, Robot, RobotError, Shape};
+use farsa_num::{Real, Scalar};
+
+use crate::articulated::links::{IDENTITY, cast_mount, choose_references, compose, frame, links_of, set_limits, unit};
+use crate::articulated::model::{Actuator, Collider, Form, Model, ModelError, Mount, Options, Pair, Reach, StopPath};
+use crate::articulated::tree::{Link, Motion, WORLD};
+
+fn check(options: &Options) -> Result<(), ModelError> {
+    let bad = |name, value: f64| Err(ModelError::Option { name, value });
+    for (name, value, low, high) in [
+        ("time_step", options.time_step, 1e-6, 1.0),
+        ("substeps", f64::from(options.substeps), 1.0, 1e6),
+        ("sweeps", f64::from(options.sweeps), 1.0, 1e4),
+        ("slip", options.slip, 0.0, 1e6),
+        ("limit_frequency", options.limit_frequency, 1.0, 1e6),
+        ("limit_damping", options.limit_damping, 0.0, 1e3),
+        ("margin", options.margin, 0.0, 0.1),
+        ("gravity x", options.gravity[0], -1e4, 1e4),
+        ("gravity y", options.gravity[1], -1e4, 1e4),
+        ("gravity z", options.gravity[2], -1e4, 1e4),
+    ] {
+        if !(low..=high).contains(&value) {
+            return bad(name, value);
+        }
+    }
+    Ok(())
+}
+
+fn form_of(shape: Shape) -> (Form<f64>, f64, u8) {
+    match shape {
+        Shape::Sphere { radius } => (Form::Ball { radius }, radius, 0),
+        Shape::Capsule { radius, half_length } => (Form::Capsule { radius, half_length }, radius + half_length, 1),
+        Shape::Box { half } => {
+            (Form::Block { half }, Scalar::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 2)
+        }
+        Shape::Plane => (Form::Plane, 0.0, 3),
+    }
+}
+
+/// Contact points of a pair of forms, in their canonical order.
+fn points_of(a: &Form<f64>, b: &Form<f64>) -> Option<usize> {
+    match (a, b) {
+        (Form::Ball { .. }, _) | (Form::Capsule { .. }, Form::Capsule { .. }) => Some(1),
+        (Form::Capsule { .. }, Form::Plane) => Some(2),
+        (Form::Capsule { .. }, Form::Block { .. }) => Some(3),
+        (Form::Block { .. }, Form::Plane) => Some(8),
+        // Corners of the one in the other, edges of the other in the one.
+        (Form::Block { .. }, Form::Block { .. }) => Some(20),
+        _ => None,
+    }
+}
+
+fn has_stop(link: &Link<f64>) -> bool {
+    link.motion != Motion::Floating && (link.lower.is_finite() || link.upper.is_finite())
+}
+
+fn reach_of(links: &[Link<f64>], a: u16, b: u16) -> Reach {
+    let path = |mut link: u16| {
+        let mut p = Vec::new();
+        while link != WORLD {
+            p.push(link);
+            link = links[usize::from(link)].parent;
+        }
+        p
+    };
+    let first = path(a);
+    let mut second = path(b);
+    let meet = first.iter().position(|l| second.contains(l)).unwrap_or(first.len());
+    if let Some(common) = first.get(meet) {
+        second.truncate(second.iter().position(|l| l == common).unwrap_or(0));
+    }
+    let mut dofs = Vec::new();
+    for &l in first.iter().chain(&second) {
+        let link = &links[usize::from(l)];
+        let n = if link.motion == Motion::Floating { 6 } else { 1 };
+        dofs.extend((0..n).map(|k| link.dof + k));
+    }
+    Reach { first, second, meet, dofs }
+}
+
+/// A collider in its link's frame: where, which form, the radius of its bound, and its rank in the order of forms.
+type Fitted = (Mount<f64>, Form<f64>, f64, u8);
+
+fn colliders_of(robot: &Robot, mounts: &[Mount<f64>]) -> Vec<Fitted> {
+    let fitted = robot.colliders.iter().map(|c| {
+        let base = c.body.map_or(Mount { link: WORLD, rotation: IDENTITY, position: [0.0; 3] }, |b| mounts[b.index()]);
+        let (form, bound, rank) = form_of(c.shape);
+        (compose(&base, &frame(&c.placement)), form, bound, rank)
+    });
+    fitted.collect()
+}
+
+fn cast_collider<R: Real>((mount, form, bound, _): &Fitted) -> Collider<R> {
+    Collider {
+        mount: cast_mount(mount),
+        form: match *form {
+            Form::Ball { radius } => Form::Ball { radius: R::of(radius) },
+            Form::Capsule { radius, half_length } => {
+                Form::Capsule { radius: R::of(radius), half_length: R::of(half_length) }
+            }
+            Form::Block { half } => Form::Block { half: half.map(R::of) },
+            Form::Plane => Form::Plane,
+        },
+        bound: R::of(*bound),
+    }
+}
+
+/// The pairs, and how many points and entries of rows they have together.
+struct Pairs<R> {
+    list: Vec<Pair<R>>,
+    points: usize,
+    rolling: usize,
+    row_entries: usize,
+    rolling_entries: usize,
+}
+
+fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -> Result<Pairs<R>, ModelError> {
+    let mut all = Pairs {
+        list: Vec::with_capacity(robot.pairs.len()),
+        points: 0,
+        rolling: 0,
+        row_entries: 0,
+        rolling_entries: 0,
+    };
+    for p in &robot.pairs {
+        let [a, b] = p.colliders;
+        let movable = |c: usize| colliders[c].0.link != WORLD;
+        let rank = |c: usize| colliders[c].3;
+        // Of two boxes the moving one comes first: its corners and the still one's edges are looked at.
+        let flipped = rank(a) > rank(b) || (rank(a) == 2 && rank(b) == 2 && !movable(a));
+        let [a, b] = if flipped { [b, a] } else { [a, b] };
+        let Some(count) = points_of(&colliders[a].1, &colliders[b].1) else {
+            let names = [a, b].map(|c| robot.colliders[c].name.clone());
+            return Err(RobotError::Shapes { colliders: names }.into());
+        };
+        let reach = reach_of(links, colliders[a].0.link, colliders[b].0.link);
+        let rolls = p.surface.rolling_friction > 0.0;
+        let entries = reach.dofs.len() * count;
+        all.list.push(Pair {
+            colliders: [a, b],
+            flipped,
+            point: all.points,
+            points: count,
+            row: all.row_entries,
+            rolling_row: all.rolling_entries,
+            rolling: rolls.then_some(all.rolling),
+            friction: R::of(p.surface.friction),
+            rolling_friction: R::of(p.surface.rolling_friction),
+            stiffness: R::of(p.surface.stiffness),
+            damping: R::of(p.surface.damping),
+            at_stops: reach.first.iter().chain(&reach.second).any(|l| has_stop(&links[usize::from(*l)])),
+            reach,
+        });
+        all.points += count;
+        all.row_entries += entries;
+        if rolls {
+            all.rolling += count;
+            all.rolling_entries += entries;
+        }
+    }
+    Ok(all)
+}
+
+/// The positions at the start, and as many zeros as there are velocities.
+fn start_of(robot: &Robot, links: &[Link<f64>], mounts: &[Mount<f64>], len: usize) -> Vec<f64> {
+    let mut initial = vec![0.0; len];
+    for (segment, mount) in robot.segments.iter().zip(mounts) {
+        let Some(link) = links.get(usize::from(mount.link)) else { continue };
+        let at = usize::from(link.q);
+        match segment.joint.kind {
+            JointKind::Floating => {
+                let pose = segment.joint.placement;
+                initial[at..at + 3].copy_from_slice(&pose.position);
+                initial[at + 3..at + 7].copy_from_slice(&unit(pose.rotation));
+            }
+            JointKind::Fixed => {}
+            _ => initial[at] = 0.0_f64.max(segment.joint.range[0]).min(segment.joint.range[1]),
+        }
+    }
+    initial
+}
+
+fn stop_paths_of(links: &[Link<f64>]) -> Vec<StopPath> {
+    let mut row = 0;
+    let paths = (0..links.len()).map(|i| {
+        let dofs = reach_of(links, i as u16, WORLD).dofs;
+        row += dofs.len();
+        StopPath { row: row - dofs.len(), dofs }
+    });
+    paths.collect()
+}
+
+impl<R: Real> Model<R> {
+    /// Builds the constant part of a world from a robot's (or a whole scene's) description.
+    ///
+    /// # Errors
+    /// A description that is not valid, an option out of range, a joint without inertia, more than 65534 parts.
+    pub fn new(robot: &Robot, options: &Options) -> Result<Self, ModelError> {
+        robot.validate()?;
+        check(options)?;
+        for (what, count) in [
+            ("segments", robot.segments.len()),
+            ("colliders", robot.colliders.len()),
+            ("pairs", robot.pairs.len()),
+            ("actuators", robot.actuators.len()),
+        ] {
+            if count >= usize::from(u16::MAX) / 8 {
+                return Err(ModelError::TooMany { what, count });
+            }
+        }
+        let (mut links, mounts) = links_of(robot);
+        choose_references(&mut links);
+        let colliders = colliders_of(robot, &mounts);
+        let Pairs { list: pairs, points, rolling, row_entries, rolling_entries } = pairs_of(robot, &links, &colliders)?;
+        let positions = links.iter().map(|l| if l.motion == Motion::Floating { 7 } else { 1 }).sum();
+        let dofs = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
+        let initial = start_of(robot, &links, &mounts, positions + dofs);
+        set_limits(robot, &mounts, &mut links, &initial, dofs, options)?;
+        let stop_paths = stop_paths_of(&links);
+        let actuators =
+            robot.actuators.iter().map(|a| Actuator { link: mounts[a.joint.index()].link, law: a.law.cast() });
+        let bodies_of = |pair: &farsa_body::Pair| pair.colliders.map(|c| robot.colliders[c].body);
+        let mut model = Self {
+            links: links.iter().map(Link::cast).collect(),
+            mounts: mounts.iter().map(cast_mount).collect(),
+            pair_bodies: robot.pairs.iter().map(bodies_of).collect(),
+            joints: robot.segments.iter().map(|s| s.joint.kind).collect(),
+            collider_bodies: robot.colliders.iter().map(|c| c.body).collect(),
+            colliders: colliders.iter().map(cast_collider).collect(),
+            pairs,
+            actuators: actuators.collect(),
+            initial: Vec::new(),
+            positions,
+            dofs,
+            points,
+            rolling,
+            row_entries,
+            rolling_entries,
+            stops: links.iter().map(has_stop).collect(),
+            stop_entries: stop_paths.iter().map(|p| p.dofs.len()).sum(),
+            stop_paths,
+            roots: links.iter().filter(|l| l.motion == Motion::Floating).count(),
+            gravity: options.gravity.map(R::of),
+            time_step: R::of(options.time_step),
+            h: R::of(options.time_step / f64::from(options.substeps)),
+            substeps: options.substeps,
+            sweeps: options.sweeps,
+            slip: R::of(options.slip),
+            margin: R::of(options.margin),
+        };
+        model.initial = initial.into_iter().map(R::of).collect();
+        model.initial.resize(model.state_len(), R::of(0.0));
+        Ok(model)
+    }
+}

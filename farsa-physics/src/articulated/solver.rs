@@ -1,0 +1,466 @@
+//! The contact solver: points that may carry an impulse, set up as rows over the articulated factor and solved together.
+//!
+//! Every contact point is a spring and damper along its normal and friction across it, both taken implicitly: the
+//! impulse of a step is a function of the velocity *after* it. The velocities after it are those without contacts plus
+//! the response of the articulated bodies to all impulses ([`crate::articulated::rows`]). Sweeps of projected Gauss-Seidel over the
+//! points keep non-negative normal impulses and the friction cone exactly, and every impulse acts equally and oppositely
+//! on both sides, whether the sweeps have converged or not.
+
+use farsa_num::{Mask, Real, Scalar};
+
+use crate::articulated::collision::{Placed, Point};
+use crate::articulated::contact::{clearance, edge_distance, find};
+use crate::articulated::model::{Model, POINT_WORDS, Pair};
+use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
+use crate::articulated::spatial::{Vector, add, dot, scale, select, sub};
+use crate::articulated::stop::{Stop, relax_stop};
+use crate::articulated::tree::{LinkData, Root};
+
+/// How much faster than their centres the surfaces of two shapes may approach [m/s]: a shape of 3 cm at 50 rad/s.
+const TURNING: f64 = 1.5;
+
+/// One contact point's block of three rows: normal, two tangents (or spin and two rolling axes).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Block<S: Scalar> {
+    mask: S::Mask,
+    axes: [Vector<S>; 3],
+    /// Relative velocity along the axes without contact impulses.
+    velocity: [S; 3],
+    impulse: [S; 3],
+    /// `A = J M^-1 J^T` of the block: nn, 11, 22, n1, n2, 12.
+    response: [S; 6],
+    /// Reciprocals of the diagonal response: of the normal row, or of all three rolling rows.
+    inverse: [S; 3],
+    /// The tangents' diagonal and the reciprocal of their determinant.
+    stick: [S; 3],
+    slide: S,
+    /// Compliance and offset of the normal law.
+    compliance: S,
+    offset: S,
+    gap: S,
+    point: Vector<S>,
+}
+
+impl<S: Scalar> Block<S> {
+    pub(crate) fn new(simd: S::Simd) -> Self {
+        let o = S::splat(simd, S::Real::of(0.0));
+        Self {
+            mask: o.lt(o),
+            axes: [[o; 3]; 3],
+            velocity: [o; 3],
+            impulse: [o; 3],
+            response: [o; 6],
+            inverse: [o; 3],
+            stick: [o; 3],
+            slide: o,
+            compliance: o,
+            offset: o,
+            gap: o,
+            point: [o; 3],
+        }
+    }
+}
+
+/// A contact point that is near enough to be looked at.
+#[derive(Clone, Copy)]
+struct Candidate<S: Scalar> {
+    point: Point<S>,
+    /// Predicted velocity of the first shape's point relative to the second's.
+    velocity: Vector<S>,
+    /// In which lanes it may carry an impulse.
+    mask: S::Mask,
+    /// The gap to be remembered.
+    gap: S,
+}
+
+/// The parts of the scratch that the contact solver uses.
+pub(crate) struct Solver<'a, S: Scalar> {
+    pub(crate) placed: &'a [Placed<S>],
+    pub(crate) work: &'a [LinkData<S>],
+    pub(crate) roots: &'a [Root<S>],
+    /// Square roots of the reciprocals of the joints' articulated inertias [dofs].
+    pub(crate) inverse_sqrt_inertia: &'a [S],
+    pub(crate) blocks: &'a mut [Block<S>],
+    pub(crate) rolling: &'a mut [Block<S>],
+    pub(crate) rows: &'a mut [[S; 3]],
+    pub(crate) rolling_rows: &'a mut [[S; 3]],
+    /// Response of all impulses so far, in the factor's coordinates [dofs].
+    pub(crate) response: &'a mut [S],
+    /// Pair and point of the active points.
+    pub(crate) active: &'a mut [(u16, u16)],
+    pub(crate) stops: &'a mut [Stop<S>],
+    pub(crate) stop_rows: &'a [S],
+}
+
+/// Distance between a pair's bounds, and the distance within which its surfaces are looked at [m].
+///
+/// The bounds close by the centres' relative velocity, and a little more for turning.
+#[inline(always)]
+fn bounds<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Real>, placed: &[Placed<S>]) -> [S; 2] {
+    let h = S::splat(simd, model.h);
+    let [a, b] = pair.colliders;
+    let approach = sub(placed[a].velocity, placed[b].velocity);
+    let reach = S::splat(simd, model.margin) + h * (dot(approach, approach).sqrt() + h.constant(TURNING));
+    [clearance(simd, model, pair, placed), reach]
+}
+
+#[inline(always)]
+fn links_of_pair<R>(model: &Model<R>, pair: &Pair<R>) -> [u16; 2] {
+    let [a, b] = pair.colliders;
+    [model.colliders[a].mount.link, model.colliders[b].mount.link]
+}
+
+/// How many pairs a step that left the colliders at these places has looked at the surfaces of.
+pub(crate) fn near_pairs<R: Real>(model: &Model<R>, placed: &[Placed<R>]) -> usize {
+    let near = |pair: &&Pair<R>| {
+        let [far, reach] = bounds((), model, pair, placed);
+        far <= reach
+    };
+    model.pairs.iter().filter(near).count()
+}
+
+impl<S: Scalar> Solver<'_, S> {
+    /// Finds the points that may carry an impulse and sets their rows up; returns how many there are, and in which lanes
+    /// there are any and any that push a joint with a stop.
+    #[inline(never)]
+    pub(crate) fn set_up(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        points: &mut [S],
+        rolling_impulses: &mut [S],
+    ) -> (usize, [S::Mask; 2]) {
+        S::vectorize(
+            simd,
+            #[inline(always)]
+            || self.set_up_all(simd, model, points, rolling_impulses),
+        )
+    }
+
+    #[inline(always)]
+    fn set_up_all(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        points: &mut [S],
+        rolling_impulses: &mut [S],
+    ) -> (usize, [S::Mask; 2]) {
+        let zero = S::splat(simd, S::Real::of(0.0));
+        let mut count = 0;
+        let mut touched = [zero.lt(zero); 2];
+        for (p, pair) in model.pairs.iter().enumerate() {
+            // Broad phase: most pairs are far apart, and cost one distance. Every way out of here writes the words of all
+            // points, or an impulse of an earlier step would start a later contact.
+            let own = &mut points[POINT_WORDS * pair.point..POINT_WORDS * (pair.point + pair.points)];
+            let [far, reach] = bounds(simd, model, pair, self.placed);
+            let near = far.le(reach);
+            // Overlapping bounds say nothing of the surfaces.
+            let far = far.max(zero);
+            if !near.any() {
+                for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
+                    forget_point(words, rolling_words(pair, index, rolling_impulses), far);
+                }
+                continue;
+            }
+            for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
+                let rolling = rolling_words(pair, index, rolling_impulses);
+                let near = match edge_distance(simd, model, pair, self.placed, index) {
+                    Some(distance) => near & distance.le(reach),
+                    None => near,
+                };
+                if !near.any() {
+                    forget_point(words, rolling, far);
+                    continue;
+                }
+                let candidate = self.gap_and_mask(simd, model, pair, index, near, far);
+                if !candidate.mask.any() {
+                    forget_point(words, rolling, candidate.gap);
+                    continue;
+                }
+                self.normal_block(simd, model, pair, index, &candidate, [words[0], words[1], words[2]]);
+                if let [x, y, z] = *rolling {
+                    self.rolling_block(simd, model, pair, index, [x, y, z]);
+                }
+                touched[0] = touched[0] | candidate.mask;
+                if pair.at_stops {
+                    touched[1] = touched[1] | candidate.mask;
+                }
+                self.active[count] = (p as u16, index as u16);
+                count += 1;
+            }
+        }
+        (count, touched)
+    }
+
+    /// One contact point: where it is, and in which lanes it may carry an impulse. `far` is the distance of the pair's
+    /// bounds, remembered as the gap in lanes where nothing nearer is known.
+    #[inline(always)]
+    fn gap_and_mask(
+        &self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        pair: &Pair<S::Real>,
+        index: usize,
+        near: S::Mask,
+        far: S,
+    ) -> Candidate<S> {
+        let zero = S::splat(simd, S::Real::of(0.0));
+        let h = S::splat(simd, model.h);
+        let margin = S::splat(simd, model.margin);
+        let links = links_of_pair(model, pair);
+        let point = find(simd, model, pair, self.placed, index);
+        let velocity = sub(
+            velocity_at(simd, links[0], self.work, point.position),
+            velocity_at(simd, links[1], self.work, point.position),
+        );
+        // Speculative contact: the point counts when its predicted gap at the end of the step, gap + h v_n, is below the
+        // margin, so that a fast shape is met before it is inside. A velocity that separates does not count: contacts
+        // pushed by others may need the point all the same.
+        let closing = dot(velocity, point.normal).min(zero);
+        let mask = near & point.valid & (point.gap + h * closing).lt(margin);
+        // What a lane remembers must not depend on its neighbours.
+        let gap = S::select(near & point.valid, point.gap, far);
+        Candidate { point, velocity, mask, gap }
+    }
+
+    /// Sets up the normal and friction rows of a point and starts them from the impulse `old` of the last step, given in
+    /// the world's axes.
+    #[inline(always)]
+    fn normal_block(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        pair: &Pair<S::Real>,
+        index: usize,
+        candidate: &Candidate<S>,
+        old: [S; 3],
+    ) {
+        let zero = S::splat(simd, S::Real::of(0.0));
+        let one = S::splat(simd, S::Real::of(1.0));
+        let h = S::splat(simd, model.h);
+        let Candidate { point, velocity: v, mask, gap } = *candidate;
+        let [t1, t2] = tangents(point.normal);
+        let axes = [point.normal, t1, t2];
+        let n = pair.reach.dofs.len();
+        let rows = &mut self.rows[pair.row + index * n..pair.row + (index + 1) * n];
+        let load = Load::Forces(point.position);
+        let response =
+            write_rows(simd, model, pair, self.work, self.roots, self.inverse_sqrt_inertia, load, &axes, rows);
+
+        // The normal law f = max(0, -k (gap + h v+) - d v+), with v+ the velocity after the step, as one row of impulses
+        // l = h f: where it pushes, v+ + l / (h r) + k gap / r = 0 with the rate r = h k + d. The second term is
+        // `compliance`, the third `offset`. Implicit in v+, so that stiff contacts of light bodies gain no energy.
+        // Above the surface only the spring at the end of the step counts, below it also the damper.
+        let stiffness = h * S::splat(simd, pair.stiffness);
+        let touching = point.gap.le(zero);
+        let rate = S::select(touching, stiffness + S::splat(simd, pair.damping), stiffness);
+        let compliance = one / (h * rate);
+        let offset = point.gap * S::splat(simd, pair.stiffness) / rate;
+
+        // Warm start: the last step's impulse along the new axes, brought back into the friction cone |l_t| <= mu l_n.
+        let slip = S::splat(simd, model.slip);
+        let friction = S::splat(simd, pair.friction);
+        let normal = dot(old, axes[0]).max(zero);
+        let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
+        let impulse = select(mask, [normal, across[0], across[1]], [zero; 3]);
+
+        // Friction is the row v_t + slip l_t = 0 inside the cone; `slip` on the diagonal makes it regular. Sticking needs
+        // the inverse of the 2 x 2 block, sliding a bound of its largest eigenvalue, max(a1, a2) + |a12| (Gershgorin).
+        let (a1, a2) = (response[1] + slip, response[2] + slip);
+        self.blocks[pair.point + index] = Block {
+            mask,
+            axes,
+            velocity: [dot(v, axes[0]), dot(v, axes[1]), dot(v, axes[2])],
+            impulse,
+            response,
+            inverse: [one / (response[0] + compliance); 3],
+            stick: [a1, a2, one / (a1 * a2 - response[5] * response[5])],
+            slide: one / (a1.max(a2) + response[5].abs()),
+            compliance,
+            offset,
+            gap,
+            point: point.position,
+        };
+        apply(&pair.reach.dofs, rows, impulse, mask, self.response);
+    }
+
+    /// Sets up the rolling rows of a point whose normal block is there: unit moments about the same axes, limited by
+    /// `rolling_friction` [m] times the normal impulse.
+    #[inline(always)]
+    fn rolling_block(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        pair: &Pair<S::Real>,
+        index: usize,
+        old: [S; 3],
+    ) {
+        let Some(first) = pair.rolling else { return };
+        let zero = S::splat(simd, S::Real::of(0.0));
+        let one = S::splat(simd, S::Real::of(1.0));
+        let links = links_of_pair(model, pair);
+        let block = self.blocks[pair.point + index];
+        let axes = block.axes;
+        let turning = sub(spin(simd, links[0], self.work), spin(simd, links[1], self.work));
+        let n = pair.reach.dofs.len();
+        let rows = &mut self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
+        let response =
+            write_rows(simd, model, pair, self.work, self.roots, self.inverse_sqrt_inertia, Load::Moments, &axes, rows);
+        let limit = S::splat(simd, pair.rolling_friction) * block.impulse[0];
+        let wanted = cap([dot(old, axes[0]), dot(old, axes[1]), dot(old, axes[2])], limit);
+        let impulse = select(block.mask, wanted, [zero; 3]);
+        self.rolling[first + index] = Block {
+            velocity: [dot(turning, axes[0]), dot(turning, axes[1]), dot(turning, axes[2])],
+            impulse,
+            response,
+            inverse: [one / response[0], one / response[1], one / response[2]],
+            ..block
+        };
+        apply(&pair.reach.dofs, rows, impulse, block.mask, self.response);
+    }
+
+    /// Sweeps over the active points, forwards and backwards in turn, and over the stops.
+    #[inline(never)]
+    pub(crate) fn sweep(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
+        S::vectorize(
+            simd,
+            #[inline(always)]
+            || self.sweep_all(simd, model, count, stops),
+        );
+    }
+
+    #[inline(always)]
+    fn sweep_all(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
+        // Symmetric projected Gauss-Seidel: backwards every other time, so that no point is always served last. A fixed
+        // number of sweeps, because a test of convergence would let lanes differ from worlds alone. What is left over
+        // is made up for by the warm start of the next step.
+        for round in 0..model.sweeps {
+            for k in 0..count {
+                let (p, index) = self.active[if round % 2 == 0 { k } else { count - 1 - k }];
+                self.relax(simd, model, usize::from(p), usize::from(index));
+            }
+            for stop in &mut self.stops[..stops] {
+                relax_stop(simd, model, stop, self.stop_rows, self.response);
+            }
+        }
+    }
+
+    /// Brings one point's impulse to its law, given all others.
+    #[inline(always)]
+    fn relax(&mut self, simd: S::Simd, model: &Model<S::Real>, pair: usize, index: usize) {
+        let pair = &model.pairs[pair];
+        let dofs = &pair.reach.dofs;
+        let n = dofs.len();
+        let zero = S::splat(simd, S::Real::of(0.0));
+        let slip = S::splat(simd, model.slip);
+        let block = &mut self.blocks[pair.point + index];
+        let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
+        let mut v = velocity(dofs, rows, block.velocity, self.response);
+        let [_, _, _, a01, a02, a12] = block.response;
+        // Normal row: l += -(v + c l + offset) / (A_nn + c), not below 0. What this changes is felt across at once.
+        let old = block.impulse;
+        let normal = (old[0] - (v[0] + block.compliance * old[0] + block.offset) * block.inverse[0]).max(zero);
+        let d0 = normal - old[0];
+        v[1] += a01 * d0;
+        v[2] += a02 * d0;
+        // Sticking solves both tangents at once; sliding steps against the velocity, alike in all directions, and is
+        // projected onto the cone of the new normal impulse.
+        let limit = S::splat(simd, pair.friction) * normal;
+        let (w1, w2) = (v[1] + slip * old[1], v[2] + slip * old[2]);
+        let stick = [
+            old[1] - (block.stick[1] * w1 - a12 * w2) * block.stick[2],
+            old[2] - (block.stick[0] * w2 - a12 * w1) * block.stick[2],
+            zero,
+        ];
+        let slide = [old[1] - w1 * block.slide, old[2] - w2 * block.slide, zero];
+        let holds = dot(stick, stick).le(limit * limit);
+        let across = select(holds, stick, cap(slide, limit));
+        let new = select(block.mask, [normal, across[0], across[1]], [zero; 3]);
+        block.impulse = new;
+        apply(dofs, rows, sub(new, old), block.mask, self.response);
+        // Rolling rows: each axis by its own diagonal, then the whole moment projected onto its limit.
+        if let Some(first) = pair.rolling {
+            let limit = S::splat(simd, pair.rolling_friction) * new[0];
+            let block = &mut self.rolling[first + index];
+            let rows = &self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
+            let v = velocity(dofs, rows, block.velocity, self.response);
+            let old = block.impulse;
+            let change = [v[0] * block.inverse[0], v[1] * block.inverse[1], v[2] * block.inverse[2]];
+            let new = select(block.mask, cap(sub(old, change), limit), [zero; 3]);
+            block.impulse = new;
+            apply(dofs, rows, sub(new, old), block.mask, self.response);
+        }
+    }
+
+    /// Writes the impulses into the state.
+    #[inline(always)]
+    pub(crate) fn store(
+        &self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        count: usize,
+        points: &mut [S],
+        rolling_impulses: &mut [S],
+    ) {
+        let zero = S::splat(simd, S::Real::of(0.0));
+        for &(p, index) in &self.active[..count] {
+            let (pair, index) = (&model.pairs[usize::from(p)], usize::from(index));
+            let block = &self.blocks[pair.point + index];
+            let words = &mut points[POINT_WORDS * (pair.point + index)..POINT_WORDS * (pair.point + index + 1)];
+            let total = combine(&block.axes, block.impulse);
+            for k in 0..3 {
+                words[k] = S::select(block.mask, total[k], zero);
+                words[4 + k] = S::select(block.mask, block.point[k], zero);
+            }
+            words[3] = block.impulse[0];
+            // The gap at the end of the step: that is where the poses are, and what the force belongs to.
+            let n = pair.reach.dofs.len();
+            let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
+            let v = velocity(&pair.reach.dofs, rows, block.velocity, self.response);
+            words[7] = S::select(block.mask, block.gap + S::splat(simd, model.h) * v[0], block.gap);
+            if let Some(first) = pair.rolling {
+                let roll = &self.rolling[first + index];
+                let total = combine(&roll.axes, roll.impulse);
+                for k in 0..3 {
+                    rolling_impulses[3 * (first + index) + k] = S::select(roll.mask, total[k], zero);
+                }
+            }
+        }
+    }
+}
+
+/// The rolling impulse of a pair's point among those of all points; empty for a pair without rolling friction.
+#[inline(always)]
+fn rolling_words<'a, R, S>(pair: &Pair<R>, index: usize, all: &'a mut [S]) -> &'a mut [S] {
+    match pair.rolling {
+        Some(first) => &mut all[3 * (first + index)..3 * (first + index + 1)],
+        None => &mut [],
+    }
+}
+
+/// Writes the state of a point that carries nothing: its gap, and no impulse from which the next step could start.
+#[inline(always)]
+fn forget_point<S: Scalar>(words: &mut [S], rolling: &mut [S], gap: S) {
+    let zero = gap.constant(0.0);
+    for w in words.iter_mut() {
+        *w = zero;
+    }
+    for w in rolling {
+        *w = zero;
+    }
+    words[7] = gap;
+}
+
+#[inline(always)]
+fn combine<S: Scalar>(axes: &[Vector<S>; 3], x: [S; 3]) -> Vector<S> {
+    add(add(scale(axes[0], x[0]), scale(axes[1], x[1])), scale(axes[2], x[2]))
+}
+
+/// A vector shortened to `limit` where it is longer.
+#[inline(always)]
+fn cap<S: Scalar>(x: [S; 3], limit: S) -> [S; 3] {
+    let length = dot(x, x).sqrt();
+    let over = length.gt(limit);
+    let one = length.constant(1.0);
+    scale(x, S::select(over, limit / S::select(over, length, one), one))
+}

@@ -1,0 +1,367 @@
+//! One control step: efforts, articulated bodies, contacts, integration, at every dynamics step.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::{Real, Scalar};
+
+use crate::articulated::collision::Placed;
+use crate::articulated::contact::place_colliders;
+use crate::articulated::model::{Model, POINT_WORDS};
+use crate::articulated::solver::{Block, Solver};
+use crate::articulated::spatial::{Spatial, Vector, add, matrix_of, rotate, scale, splat, sub};
+use crate::articulated::stop::{Stop, set_up_stops};
+use crate::articulated::tree::{LinkData, Motion, Root, WORLD, accelerations, forward_kinematics};
+
+/// Everything that a step computes and forgets, for one model; made once, reused for every step.
+#[derive(Clone, Debug)]
+pub struct Scratch<S: Scalar> {
+    pub(crate) links: Vec<LinkData<S>>,
+    pub(crate) roots: Vec<Root<S>>,
+    tau: Vec<S>,
+    diagonal: Vec<S>,
+    qdd: Vec<S>,
+    inverse_sqrt_inertia: Vec<S>,
+    response: Vec<S>,
+    pub(crate) placed: Vec<Placed<S>>,
+    blocks: Vec<Block<S>>,
+    rolling: Vec<Block<S>>,
+    rows: Vec<[S; 3]>,
+    rolling_rows: Vec<[S; 3]>,
+    active: Vec<(u16, u16)>,
+    stops: Vec<Stop<S>>,
+    stop_rows: Vec<S>,
+}
+
+impl<S: Scalar> Scratch<S> {
+    /// Room for the steps of one model.
+    pub fn new(simd: S::Simd, model: &Model<S::Real>) -> Self {
+        let zero = S::splat(simd, S::Real::of(0.0));
+        Self {
+            links: vec![LinkData::new(simd); model.links.len()],
+            roots: vec![Root::new(simd); model.roots],
+            tau: vec![zero; model.dofs],
+            diagonal: vec![zero; model.dofs],
+            qdd: vec![zero; model.dofs],
+            inverse_sqrt_inertia: vec![zero; model.dofs],
+            response: vec![zero; model.dofs],
+            placed: vec![Placed::new(simd); model.colliders.len()],
+            blocks: vec![Block::new(simd); model.points],
+            rolling: vec![Block::new(simd); model.rolling],
+            rows: vec![[zero; 3]; model.row_entries],
+            rolling_rows: vec![[zero; 3]; model.rolling_entries],
+            active: vec![(0, 0); model.points],
+            stops: vec![Stop::new(simd); model.links.len()],
+            stop_rows: vec![zero; model.stop_entries],
+        }
+    }
+
+    /// Where the links are, after [`Scratch::place`] or a step, for the kernels of [`crate::articulated`].
+    pub fn links(&mut self) -> &mut [LinkData<S>] {
+        &mut self.links
+    }
+
+    /// The factors of the floating links, for [`crate::articulated::accelerations`].
+    pub fn parts(&mut self) -> (&mut [LinkData<S>], &mut [Root<S>]) {
+        (&mut self.links, &mut self.roots)
+    }
+
+    /// Places the links of `state` [`Model::state_len`]; needed once before the first step and after any change from outside.
+    #[inline(always)]
+    pub fn place(&mut self, simd: S::Simd, model: &Model<S::Real>, state: &[S]) {
+        let (q, rest) = state.split_at(model.positions);
+        place_links(simd, model, q, rest, &mut self.links);
+    }
+}
+
+/// What a [`crate::articulated::World`] computes in: `f32` for speed, `f64` for reference.
+///
+/// The step is compiled here, once for each, and not again in every crate that steps a world.
+pub trait Precision: Real {
+    /// [`step`] for one world.
+    fn step(model: &Model<Self>, state: &mut [Self], scratch: &mut Scratch<Self>);
+    /// [`Scratch::place`] for one world.
+    fn place(model: &Model<Self>, state: &[Self], scratch: &mut Scratch<Self>);
+}
+
+impl Precision for f32 {
+    fn step(model: &Model<f32>, state: &mut [f32], scratch: &mut Scratch<f32>) {
+        step((), model, state, scratch);
+    }
+    fn place(model: &Model<f32>, state: &[f32], scratch: &mut Scratch<f32>) {
+        scratch.place((), model, state);
+    }
+}
+
+impl Precision for f64 {
+    fn step(model: &Model<f64>, state: &mut [f64], scratch: &mut Scratch<f64>) {
+        step((), model, state, scratch);
+    }
+    fn place(model: &Model<f64>, state: &[f64], scratch: &mut Scratch<f64>) {
+        scratch.place((), model, state);
+    }
+}
+
+/// The parts of a state.
+pub(crate) struct Parts<'a, S> {
+    pub(crate) q: &'a mut [S],
+    pub(crate) v: &'a mut [S],
+    pub(crate) commands: &'a mut [S],
+    pub(crate) points: &'a mut [S],
+    pub(crate) rolling_impulses: &'a mut [S],
+}
+
+pub(crate) fn parts<'a, R: Real, S>(model: &Model<R>, state: &'a mut [S]) -> Parts<'a, S> {
+    let (q, rest) = state.split_at_mut(model.positions);
+    let (v, rest) = rest.split_at_mut(model.dofs);
+    let (commands, rest) = rest.split_at_mut(2 * model.actuators.len());
+    let (points, rolling_impulses) = rest.split_at_mut(POINT_WORDS * model.points);
+    Parts { q, v, commands, points, rolling_impulses }
+}
+
+/// Lets one control step pass for every lane of `state` [`Model::state_len`].
+///
+/// `scratch` must have been made for the model, and [`Scratch::place`]d once since `state` was changed from outside.
+///
+/// # Panics
+/// If `state` is shorter than [`Model::state_len`], or `scratch` is another model's.
+#[inline(always)]
+pub fn step<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], scratch: &mut Scratch<S>) {
+    for _ in 0..model.substeps {
+        substep(simd, model, state, scratch);
+    }
+}
+
+/// The large pieces are functions of their own, which the compiler makes in a fraction of the time that it takes for one
+/// function of everything.
+#[inline(always)]
+fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s: &mut Scratch<S>) {
+    let zero = S::splat(simd, S::Real::of(0.0));
+    let h = S::splat(simd, model.h);
+    let state = parts(model, state);
+    // Velocities without contacts: v += h qdd, with qdd from the articulated bodies, whose factor stays in `links` and
+    // `roots` for the contacts.
+    efforts(simd, model, state.q, state.v, state.commands, &mut s.tau, &mut s.diagonal);
+    accelerate(simd, model, &s.tau, &s.diagonal, &mut s.links, &mut s.roots, &mut s.qdd);
+    for (v, a) in state.v.iter_mut().zip(&s.qdd) {
+        *v += h * *a;
+    }
+    // Contacts see the predicted velocities at the old places. Their rows are in the factor's coordinates: M^-1 = B B^T with
+    // B from the articulated bodies, so a joint's column of B begins with D^-1/2, D its articulated inertia.
+    if model.points > 0 {
+        predict(simd, model, state.v, &mut s.links);
+        place_colliders(simd, model, &s.links, &mut s.placed);
+        for (link, w) in model.links.iter().zip(&s.links) {
+            if link.motion != Motion::Floating {
+                s.inverse_sqrt_inertia[usize::from(link.dof)] = w.reciprocal.sqrt();
+            }
+        }
+        for z in &mut s.response {
+            *z = zero;
+        }
+        let mut solver = Solver {
+            placed: &s.placed,
+            work: &s.links,
+            roots: &s.roots,
+            inverse_sqrt_inertia: &s.inverse_sqrt_inertia,
+            blocks: &mut s.blocks,
+            rolling: &mut s.rolling,
+            rows: &mut s.rows,
+            rolling_rows: &mut s.rolling_rows,
+            response: &mut s.response,
+            active: &mut s.active,
+            stops: &mut s.stops,
+            stop_rows: &[],
+        };
+        let (count, [touched, pushed]) = solver.set_up(simd, model, state.points, state.rolling_impulses);
+        if count > 0 {
+            let stops = set_up_stops(
+                simd,
+                model,
+                state.q,
+                state.v,
+                solver.work,
+                solver.roots,
+                solver.inverse_sqrt_inertia,
+                pushed,
+                &mut s.stop_rows,
+                solver.stops,
+            );
+            solver.stop_rows = &s.stop_rows;
+            solver.sweep(simd, model, count, stops);
+            solver.store(simd, model, count, state.points, state.rolling_impulses);
+            respond(simd, model, &s.response, &s.inverse_sqrt_inertia, touched, &mut s.links, &s.roots, state.v);
+        }
+    }
+    // Semi-implicit Euler: positions move by the new velocities.
+    integrate(simd, model, state.q, state.v, &s.links);
+    place_links(simd, model, state.q, state.v, &mut s.links);
+}
+
+/// [`forward_kinematics`] as a function of its own.
+#[inline(never)]
+fn place_links<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &[S], v: &[S], work: &mut [LinkData<S>]) {
+    S::vectorize(
+        simd,
+        #[inline(always)]
+        || forward_kinematics(simd, &model.links, q, v, work),
+    );
+}
+
+/// [`accelerations`] as a function of its own.
+#[inline(never)]
+fn accelerate<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    tau: &[S],
+    diagonal: &[S],
+    work: &mut [LinkData<S>],
+    roots: &mut [Root<S>],
+    qdd: &mut [S],
+) {
+    S::vectorize(
+        simd,
+        #[inline(always)]
+        || accelerations(simd, &model.links, model.gravity, tau, diagonal, work, roots, qdd),
+    );
+}
+
+/// Efforts and implicit diagonals of actuators, joint damping and stops.
+#[inline(always)]
+fn efforts<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    q: &[S],
+    v: &[S],
+    commands: &[S],
+    tau: &mut [S],
+    diagonal: &mut [S],
+) {
+    let zero = S::splat(simd, S::Real::of(0.0));
+    let h = S::splat(simd, model.h);
+    for link in &model.links {
+        let at = usize::from(link.dof);
+        if link.motion == Motion::Floating {
+            for j in at..at + 6 {
+                tau[j] = zero;
+                diagonal[j] = zero;
+            }
+            continue;
+        }
+        // A force -k (q - q0) - d v is taken implicitly, at q + h v' and v' = v + h qdd: its part in qdd goes to the
+        // diagonal as h d + h^2 k, the rest stays as the effort -k (q + h v - q0) - d v.
+        let (x, speed) = (q[usize::from(link.q)], v[at]);
+        let damping = S::splat(simd, link.damping);
+        // A stop acts where the joint would be at the end of the step.
+        let ahead = x + h * speed;
+        let over = ahead.gt(S::splat(simd, link.upper));
+        let under = ahead.lt(S::splat(simd, link.lower));
+        let bound = S::select(over, S::splat(simd, link.upper), S::splat(simd, link.lower));
+        let hard = over | under;
+        let stiffness = S::splat(simd, link.limit_stiffness);
+        let stop = S::splat(simd, link.limit_damping);
+        tau[at] = S::select(hard, -(stiffness * (ahead - bound)) - stop * speed, zero) - damping * speed;
+        diagonal[at] =
+            S::splat(simd, link.armature) + h * damping + S::select(hard, h * stop + h * h * stiffness, zero);
+    }
+    // Actuators, linearised at the start of the step: tau(q, v) and the -k h v that its stiffness adds by the end of it.
+    for (actuator, command) in model.actuators.iter().zip(commands.chunks_exact(2)) {
+        let link = &model.links[usize::from(actuator.link)];
+        let at = usize::from(link.dof);
+        let speed = v[at];
+        let e = actuator.law.effort(q[usize::from(link.q)], speed, [command[0], command[1]]);
+        tau[at] += e.torque - h * e.stiffness * speed;
+        diagonal[at] += h * e.damping + h * h * e.stiffness;
+    }
+}
+
+/// Velocities of the links under the predicted joint velocities, into the links' acceleration fields.
+#[inline(always)]
+fn predict<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, v: &[S], work: &mut [LinkData<S>]) {
+    for (i, link) in model.links.iter().enumerate() {
+        let at = usize::from(link.dof);
+        let parent =
+            if link.parent == WORLD { Spatial::zero(simd) } else { work[usize::from(link.parent)].acceleration };
+        let w = &mut work[i];
+        w.acceleration = if link.motion == Motion::Floating {
+            Spatial { angular: [v[at], v[at + 1], v[at + 2]], linear: [v[at + 3], v[at + 4], v[at + 5]] }
+        } else {
+            parent + w.subspace.scale(v[at])
+        };
+    }
+}
+
+/// Adds the velocities that the impulses give, in the lanes that have any.
+///
+/// The second half of the solution with the factor: from the root outwards, `dv_i = D_i^-1/2 z_i - D_i^-1 U_i . dv_parent`,
+/// with z the response, D the joint's articulated inertia and U its column. It is the last pass of [`accelerations`], for
+/// a change of velocity.
+#[inline(always)]
+fn respond<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    response: &[S],
+    inverse_sqrt_inertia: &[S],
+    touched: S::Mask,
+    work: &mut [LinkData<S>],
+    roots: &[Root<S>],
+    v: &mut [S],
+) {
+    for (i, link) in model.links.iter().enumerate() {
+        let at = usize::from(link.dof);
+        if link.motion == Motion::Floating {
+            let mut y = [S::splat(simd, S::Real::of(0.0)); 6];
+            y.copy_from_slice(&response[at..at + 6]);
+            let change = roots[usize::from(link.root)].factor.other_half(y);
+            for k in 0..3 {
+                v[at + k] = S::select(touched, v[at + k] + change.angular[k], v[at + k]);
+                v[at + 3 + k] = S::select(touched, v[at + 3 + k] + change.linear[k], v[at + 3 + k]);
+            }
+            work[i].acceleration = change;
+            continue;
+        }
+        let parent =
+            if link.parent == WORLD { Spatial::zero(simd) } else { work[usize::from(link.parent)].acceleration };
+        let w = &mut work[i];
+        let x = inverse_sqrt_inertia[at] * response[at] - w.reciprocal * w.column.dot(parent);
+        v[at] = S::select(touched, v[at] + x, v[at]);
+        w.acceleration = parent + w.subspace.scale(x);
+    }
+}
+
+/// Positions from the new velocities.
+#[inline(always)]
+fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &mut [S], v: &[S], work: &[LinkData<S>]) {
+    let h = S::splat(simd, model.h);
+    for (link, w) in model.links.iter().zip(work) {
+        let (iq, at) = (usize::from(link.q), usize::from(link.dof));
+        if link.motion != Motion::Floating {
+            q[iq] += h * v[at];
+            continue;
+        }
+        // Quaternion: q' = q + (h / 2) (w, 0) q with the spin w in the world's axes, brought back to unit length. A step
+        // turns by 2 atan(h |w| / 2), less than h |w| by (h |w|)^3 / 12.
+        let turn: Vector<S> = scale([v[at], v[at + 1], v[at + 2]], h * h.constant(0.5));
+        let [x, y, z, r] = [q[iq + 3], q[iq + 4], q[iq + 5], q[iq + 6]];
+        let new = [
+            x + (turn[0] * r + turn[1] * z - turn[2] * y),
+            y + (turn[1] * r + turn[2] * x - turn[0] * z),
+            z + (turn[2] * r + turn[0] * y - turn[1] * x),
+            r - (turn[0] * x + turn[1] * y + turn[2] * z),
+        ];
+        let one = h.constant(1.0);
+        let length = (new[0] * new[0] + new[1] * new[1] + new[2] * new[2] + new[3] * new[3]).sqrt();
+        let shrink = one / length;
+        let new = [new[0] * shrink, new[1] * shrink, new[2] * shrink, new[3] * shrink];
+        q[iq + 3..iq + 7].copy_from_slice(&new);
+        // The velocity is that of the centre of mass, the position that of the origin: the origin moves by h v and by what
+        // the turn about the centre does to the vector between them, R c before less R' c after.
+        let centre = splat::<S>(simd, link.centre);
+        let before = sub(w.centre, w.position);
+        let after = rotate(&matrix_of(new), centre);
+        let moved = add(scale([v[at + 3], v[at + 4], v[at + 5]], h), sub(before, after));
+        for k in 0..3 {
+            q[iq + k] += moved[k];
+        }
+    }
+}

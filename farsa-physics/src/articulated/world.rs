@@ -1,0 +1,238 @@
+//! One articulated world that answers the ports.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
+    Pose, Rays, Snapshot, Twist,
+};
+use farsa_num::Real;
+
+use crate::articulated::model::{Model, POINT_WORDS};
+use crate::articulated::ray;
+use crate::articulated::solver::near_pairs;
+use crate::articulated::spatial::{Matrix, Spatial, Vector, sub};
+use crate::articulated::step::{Precision, Scratch};
+use crate::articulated::tree::{forward_kinematics, inverse_dynamics, kinetic_energy, potential_energy};
+use crate::articulated::view::{self, View};
+
+/// One articulated world: a model and its state.
+#[derive(Clone, Debug)]
+pub struct World<R: Precision> {
+    model: Model<R>,
+    state: Vec<R>,
+    scratch: Scratch<R>,
+}
+
+fn f32_of<R: Real>(x: [R; 3]) -> [f32; 3] {
+    x.map(|x| x.to_f64() as f32)
+}
+
+impl<R: Precision> World<R> {
+    /// A world at its description's start.
+    pub fn new(model: Model<R>) -> Self {
+        let state = model.initial.clone();
+        let scratch = Scratch::new((), &model);
+        let mut world = Self { model, state, scratch };
+        world.arranged();
+        world
+    }
+
+    /// The constant part.
+    pub fn model(&self) -> &Model<R> {
+        &self.model
+    }
+
+    /// Positions, velocities, commands and contacts [`Model::state_len`].
+    pub fn state(&self) -> &[R] {
+        &self.state
+    }
+
+    /// The same, to be changed; [`Arrange::arranged`] must follow.
+    pub fn state_mut(&mut self) -> &mut [R] {
+        &mut self.state
+    }
+
+    /// Joint and floating positions [positions].
+    pub fn positions(&self) -> &[R] {
+        &self.state[..self.model.positions]
+    }
+
+    /// Joint and floating velocities [dofs].
+    pub fn velocities(&self) -> &[R] {
+        &self.state[self.model.positions..self.model.positions + self.model.dofs]
+    }
+
+    /// Whether every word of the state is finite.
+    pub fn is_finite(&self) -> bool {
+        self.state[..self.model.positions + self.model.dofs].iter().all(|x| x.to_f64().is_finite())
+    }
+
+    /// Kinetic and potential energy [J], armatures included, contacts and actuators not.
+    pub fn energy(&mut self) -> [f64; 2] {
+        let v = &self.state[self.model.positions..];
+        let work = &mut self.scratch.links;
+        let kinetic = kinetic_energy((), &self.model.links, v, work);
+        let potential = potential_energy((), &self.model.links, self.model.gravity, work);
+        [kinetic.to_f64(), potential.to_f64()]
+    }
+
+    /// Linear momentum of all moving bodies [N s], armatures not counted.
+    pub fn momentum(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (link, w) in self.model.links.iter().zip(&self.scratch.links) {
+            let v = w.velocity.at(sub(w.centre, w.reference));
+            for k in 0..3 {
+                sum[k] += link.mass.to_f64() * v[k].to_f64();
+            }
+        }
+        sum
+    }
+
+    /// Joint efforts that hold the present positions at rest against gravity: recursive Newton-Euler [dofs; N m or N].
+    pub fn gravity_efforts(&mut self, tau: &mut [R]) {
+        let zeros = vec![R::of(0.0); self.model.dofs];
+        let (model, state) = (&self.model, &self.state);
+        let work = &mut self.scratch.links;
+        forward_kinematics((), &model.links, &state[..model.positions], &zeros, work);
+        inverse_dynamics((), &model.links, model.gravity, &zeros, work, tau);
+        self.arranged();
+    }
+
+    /// Number of pairs that the last dynamics step has looked at the surfaces of: those whose bounds were near.
+    ///
+    /// Before the first step it means nothing.
+    pub fn near_pairs(&self) -> usize {
+        near_pairs(&self.model, &self.scratch.placed)
+    }
+
+    /// Pose of a body's frame in full precision.
+    pub fn pose_of(&self, body: BodyId) -> Pose<R> {
+        view::pose(self, body)
+    }
+
+    /// Velocity of a body's origin and its angular velocity in full precision.
+    pub fn velocity_of(&self, body: BodyId) -> Twist<R> {
+        view::velocity(self, body)
+    }
+}
+
+impl<R: Precision> View<R> for World<R> {
+    fn model(&self) -> &Model<R> {
+        &self.model
+    }
+    fn word(&self, index: usize) -> R {
+        self.state[index]
+    }
+    fn carries(&self, first: usize, points: usize) -> bool {
+        let words = &self.state[first..first + POINT_WORDS * points];
+        words.chunks_exact(POINT_WORDS).any(|words| words[3] > R::of(0.0))
+    }
+    fn set_word(&mut self, index: usize, x: R) {
+        self.state[index] = x;
+    }
+    fn place(&self, link: usize) -> (Matrix<R>, Vector<R>) {
+        let w = &self.scratch.links[link];
+        (w.rotation, w.position)
+    }
+    fn motion(&self, link: usize) -> (Spatial<R>, Vector<R>) {
+        let w = &self.scratch.links[link];
+        (w.velocity, w.reference)
+    }
+}
+
+impl<R: Precision> Handles for World<R> {
+    type Body = BodyId;
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+
+impl<R: Precision> farsa_body::World for World<R> {
+    fn step(&mut self) {
+        R::step(&self.model, &mut self.state, &mut self.scratch);
+    }
+    fn time_step(&self) -> f32 {
+        self.model.time_step.to_f64() as f32
+    }
+}
+
+impl<R: Precision> Kinematics for World<R> {
+    fn pose(&self, body: BodyId) -> Pose {
+        self.pose_of(body).cast()
+    }
+    fn velocity(&self, body: BodyId) -> Twist {
+        let v = self.velocity_of(body);
+        Twist { linear: f32_of(v.linear), angular: f32_of(v.angular) }
+    }
+}
+
+impl<R: Precision> Joints for World<R> {
+    fn position(&self, joint: JointId) -> f32 {
+        view::joint_position(self, joint)
+    }
+    fn speed(&self, joint: JointId) -> f32 {
+        view::joint_speed(self, joint)
+    }
+}
+
+impl<R: Precision> Actuated for World<R> {
+    fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
+        view::command(self, actuator.index(), value);
+    }
+}
+
+impl<R: Precision> Contacts for World<R> {
+    fn pairs(&self) -> usize {
+        self.model.pairs.len()
+    }
+    fn pair_bodies(&self, pair: PairId) -> [Option<BodyId>; 2] {
+        self.model.pair_bodies.get(pair.index()).copied().unwrap_or([None; 2])
+    }
+    fn pair_contact(&self, pair: PairId) -> PairContact {
+        view::pair_contact(self, pair)
+    }
+    fn touches(&self, pair: PairId) -> bool {
+        view::touches(self, pair)
+    }
+}
+
+impl<R: Precision> Rays for World<R> {
+    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+        ray::cast(self, origin, direction, range)
+    }
+}
+
+impl<R: Precision> Snapshot for World<R> {
+    fn snapshot_len(&self) -> usize {
+        self.state.len()
+    }
+    fn save(&self, out: &mut [f32]) {
+        for (o, x) in out.iter_mut().zip(&self.state) {
+            *o = x.to_f64() as f32;
+        }
+    }
+    fn restore(&mut self, from: &[f32]) {
+        for (x, f) in self.state.iter_mut().zip(from) {
+            *x = R::of(f64::from(*f));
+        }
+        self.arranged();
+    }
+}
+
+impl<R: Precision> Arrange for World<R> {
+    fn clear(&mut self) {
+        self.state.copy_from_slice(&self.model.initial);
+        self.arranged();
+    }
+
+    fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
+        view::place_joint(self, joint, position, speed);
+    }
+    fn place_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
+        view::place_body(self, body, pose, twist);
+    }
+    fn arranged(&mut self) {
+        R::place(&self.model, &self.state, &mut self.scratch);
+    }
+}

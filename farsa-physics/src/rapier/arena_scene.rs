@@ -1,0 +1,197 @@
+//! Wheeled robots as rigid bodies, and what they can push, as data.
+
+use alloc::vec::Vec;
+
+use farsa_body::{BodyId, MobileRobot, PairId};
+
+use crate::arena::description::{Arena, Wall};
+use crate::rapier::error::RapierError;
+
+/// What a wheeled robot is as a rigid body, beside what [`MobileRobot`] says of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chassis {
+    /// Mass of all of it [kg].
+    pub mass: f64,
+    /// Part of the mass that is in the two wheels together.
+    pub wheel_share: f64,
+    /// The largest torque of each wheel's motor, at the wheel [N m].
+    pub torque: f64,
+    /// Inertia of each motor and its gear, at the wheel [kg m2].
+    pub rotor_inertia: f64,
+    /// Coefficient of friction between wheels and ground.
+    pub grip: f64,
+    /// Coefficient of friction of the hull with what it runs into.
+    pub friction: f64,
+}
+
+impl Chassis {
+    /// Density of a robot, spread over its hull [kg/m3]: an e-puck of 150 g has 780, a Khepera of 80 g has 690 \[chosen\].
+    pub const DENSITY: f64 = 750.0;
+
+    /// The chassis of a robot of which only the size is known.
+    ///
+    /// All of it is chosen: its mass by [`Chassis::DENSITY`], a tenth of it in the wheels; motors that together push with half
+    /// the robot's weight and, geared as they are, resist acceleration as a fifth of its mass more would; rubber wheels (0.8)
+    /// and a smooth hull (0.3).
+    pub fn of(robot: &MobileRobot) -> Self {
+        let volume = core::f64::consts::PI * robot.radius * robot.radius * robot.height;
+        let mass = Self::DENSITY * volume;
+        let wheel = robot.wheel_radius;
+        Self {
+            mass,
+            wheel_share: 0.1,
+            torque: 0.25 * 9.81 * mass * wheel,
+            rotor_inertia: 0.1 * mass * wheel * wheel,
+            grip: 0.8,
+            friction: 0.3,
+        }
+    }
+
+    /// The fields with their names and ranges.
+    fn fields(&self) -> [(&'static str, f64, [f64; 2]); 6] {
+        [
+            ("mass", self.mass, [1e-6, 1e6]),
+            ("share of the wheels", self.wheel_share, [1e-3, 0.9]),
+            ("torque", self.torque, [0.0, 1e6]),
+            ("rotor inertia", self.rotor_inertia, [0.0, 1e6]),
+            ("grip", self.grip, [0.0, 1e3]),
+            ("friction", self.friction, [0.0, 1e3]),
+        ]
+    }
+}
+
+/// A box that stands on the ground and can be pushed over it.
+///
+/// Its frame has x along its length, z up and the origin on the ground below its middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Its middle at first [m].
+    pub centre: [f64; 2],
+    /// Where its length points to at first, counter-clockwise from the x axis [rad].
+    pub heading: f64,
+    /// Length, breadth and height [m].
+    pub size: [f64; 3],
+    /// Mass [kg], spread evenly.
+    pub mass: f64,
+    /// Coefficient of friction with the ground and with what is smoother.
+    pub friction: f64,
+    /// Red, green and blue [0..1].
+    pub color: [f64; 3],
+}
+
+impl Block {
+    /// A grey block of this size [m] and mass [kg] with its middle at `centre` [m], along the axes, with friction 0.5.
+    pub fn new(centre: [f64; 2], size: [f64; 3], mass: f64) -> Self {
+        Self { centre, heading: 0.0, size, mass, friction: 0.5, color: Wall::COLOR }
+    }
+
+    /// The fields with their names and ranges.
+    fn fields(&self) -> [(&'static str, f64, [f64; 2]); 11] {
+        let (place, length, color) = ([-1e5, 1e5], [1e-4, 1e3], [0.0, 1.0]);
+        let ([x, y], [a, b, c], [red, green, blue]) = (self.centre, self.size, self.color);
+        [
+            ("place", x, place),
+            ("place", y, place),
+            ("heading", self.heading, [-1e4, 1e4]),
+            ("length", a, length),
+            ("breadth", b, length),
+            ("height", c, length),
+            ("mass", self.mass, [1e-6, 1e6]),
+            ("friction", self.friction, [0.0, 1e3]),
+            ("colour", red, color),
+            ("colour", green, color),
+            ("colour", blue, color),
+        ]
+    }
+}
+
+/// An arena whose robots are rigid bodies on wheels, and blocks that they can push.
+///
+/// Bodies, joints and actuators have the numbers of the arena; blocks come after the areas.
+///
+/// ```
+/// use farsa_body::{Actuated, Kinematics, MobileRobot, World as _};
+/// use farsa_physics::arena::Arena;
+/// use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld, Block, RapierError};
+///
+/// fn main() -> Result<(), RapierError> {
+///     let mut arena = Arena::new();
+///     let robot = arena.add_robot(MobileRobot::e_puck(), [0.0, 0.0], 0.0);
+///     let mut scene = ArenaScene::new(arena);
+///     scene.add_block(Block::new([0.12, 0.0], [0.12, 0.12, 0.05], 0.1));
+///     let mut world = ArenaWorld::new(&scene, &ArenaOptions::default())?;
+///     world.parts(robot).motors.map(|motor| world.command(motor, [5.0, 0.0]));
+///     for _ in 0..60 {
+///         world.step();
+///     }
+///     // Three seconds at 0.1 m/s, less 25 mm that the robot drives alone.
+///     let place = world.pose(scene.block(0)).position[0];
+///     assert!((place - 0.4).abs() < 0.02, "{place} m");
+///     Ok(())
+/// }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArenaScene {
+    /// The arena; its rule of collisions is of the kinematic world and not looked at here.
+    pub arena: Arena,
+    /// What each of its robots is as a rigid body.
+    pub chassis: Vec<Chassis>,
+    /// The blocks.
+    pub blocks: Vec<Block>,
+}
+
+impl ArenaScene {
+    /// An arena without blocks whose robots have the chassis that is chosen for their size.
+    pub fn new(arena: Arena) -> Self {
+        let chassis = arena.robots.iter().map(|placed| Chassis::of(&placed.robot)).collect();
+        Self { arena, chassis, blocks: Vec::new() }
+    }
+
+    /// Adds a block; its number.
+    pub fn add_block(&mut self, block: Block) -> usize {
+        self.blocks.push(block);
+        self.blocks.len() - 1
+    }
+
+    /// Number of the arena's bodies.
+    pub(crate) fn arena_bodies(&self) -> usize {
+        self.arena.robots.len() + self.arena.cylinders.len() + self.arena.areas.len()
+    }
+
+    /// The body of a block, when everything of the arena is added.
+    pub fn block(&self, block: usize) -> BodyId {
+        BodyId((self.arena_bodies() + block) as u16)
+    }
+
+    /// The pair of a block and whatever it touches beside the ground; those of robots come before.
+    pub fn block_pair(&self, block: usize) -> PairId {
+        PairId((self.arena.robots.len() + block) as u16)
+    }
+
+    /// Looks at everything but the arena, which is looked at elsewhere.
+    pub(crate) fn check(&self) -> Result<(), RapierError> {
+        let (robots, chassis) = (self.arena.robots.len(), self.chassis.len());
+        if robots != chassis {
+            return Err(RapierError::Chassis { robots, chassis });
+        }
+        if let Some(robot) = self.arena.robots.iter().position(|placed| placed.robot.attachment.is_some()) {
+            return Err(RapierError::Attachment { robot });
+        }
+        let fits = |(_, value, [low, high]): &(&str, f64, [f64; 2])| (*low..=*high).contains(value);
+        for (robot, chassis) in self.chassis.iter().enumerate() {
+            if let Some((field, value, range)) = chassis.fields().into_iter().find(|field| !fits(field)) {
+                return Err(RapierError::Part { part: "robot", number: robot, field, value, range });
+            }
+        }
+        for (block, it) in self.blocks.iter().enumerate() {
+            if let Some((field, value, range)) = it.fields().into_iter().find(|field| !fits(field)) {
+                return Err(RapierError::Part { part: "block", number: block, field, value, range });
+            }
+        }
+        let count = self.arena_bodies() + self.blocks.len();
+        if count > usize::from(u16::MAX) {
+            return Err(crate::articulated::model::ModelError::TooMany { what: "bodies and blocks", count }.into());
+        }
+        Ok(())
+    }
+}

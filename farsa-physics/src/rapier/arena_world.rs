@@ -1,0 +1,469 @@
+//! One world of wheeled robots in rapier.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt;
+
+use farsa_body::{BodyId, JointId, MobileParts, PairContact, Pose, Twist};
+use farsa_num::Scalar;
+use rapier3d::dynamics::{Multibody, MultibodyJoint};
+use rapier3d::geometry::ColliderHandle;
+use rapier3d::math::Vector;
+use rapier3d::pipeline::PhysicsWorld;
+
+use crate::arena::crowd::Crowd;
+use crate::arena::model::{Model, POSE_WORDS, VELOCITY, WHEELS, pose_words};
+use crate::arena::slab::Slab;
+use crate::arena::step::{show_leds_and_signal, turned, wheel_speed};
+use crate::arena::view::View;
+use crate::rapier::arena_model::{AXLE, ArenaPlan, Vehicle, build, standing, upright};
+use crate::rapier::arena_options::ArenaOptions;
+use crate::rapier::arena_scene::ArenaScene;
+use crate::rapier::contact::{pair_contact, touches};
+use crate::rapier::error::RapierError;
+use crate::rapier::model::Touching;
+use crate::rapier::snapshot::copy;
+use crate::rapier::world::LEAST_STIFFNESS;
+
+/// A planar world whose robots are rigid bodies on wheels, in rapier; the ports of [`crate::arena::World`], and blocks.
+///
+/// - *Robots*: a hull (upright cylinder) on two wheels and two skids without friction, one of which is on the ground. Wheels
+///   touch the ground in one point each. So robots accelerate, slip and stall. The centre of mass is between the wheels.
+/// - *Motors* turn a wheel with a torque in proportion to what it lacks of the commanded speed, all of it where that is a
+///   hundredth of the greatest speed or more; for a NaN they stand still.
+/// - *Wheels* tell the mean speed of the last control step, as encoders do, and positions within +-16 turns.
+/// - *Walls, convex obstacles and cylinders* do not move. Of two surfaces that rub the smoother one decides; walls and ground
+///   are rougher than anything.
+/// - *Contacts*: pair `r` is robot `r` and what its hull met hardest in any step of rapier of the last control step, with that
+///   force; then come the pairs of blocks. `None` is a wall, and nothing where it does not touch. The ground is left out.
+/// - *Seen* are robots and cylinders as in the kinematic world; blocks by the side that is most nearly on the ground, as if
+///   they stood on it, in the order of the numbers; rays in space meet them as they lie.
+/// - *Poses* of robots and blocks are those of rapier: a robot leans by some tenths of a degree on its skids.
+/// - *Arranging*: a body keeps its place and heading of a pose, upright and at rest. What is put into something is pushed out.
+///
+/// A world that has broken down does not step and tells NaN of robots and blocks, until it is cleared or restored.
+pub struct ArenaWorld {
+    pub(crate) model: Model,
+    pub(crate) plan: ArenaPlan,
+    pub(crate) physics: PhysicsWorld,
+    initial: PhysicsWorld,
+    /// Those of a kinematic world: places, wheels, commands and what is shown.
+    pub(crate) words: Vec<f32>,
+    pub(crate) crowd: Crowd,
+    /// Of each pair the other body and how they touched.
+    pub(crate) met: Vec<(Option<BodyId>, PairContact)>,
+    /// The blocks as sensors of the plane see them.
+    pub(crate) slabs: Vec<Slab>,
+    pub(crate) lost: bool,
+    /// Whether something was placed since colliders and neighbours were brought up to date.
+    pub(crate) moved: bool,
+}
+
+/// A place of a world that has broken down.
+const NOWHERE: Pose = Pose { position: [f32::NAN; 3], rotation: [f32::NAN; 4] };
+
+impl ArenaWorld {
+    /// A world at its description's start.
+    ///
+    /// # Errors
+    /// What is wrong with the arena ([`RapierError::Arena`]), a robot with an attachment device, not as many chassis as
+    /// robots, a number out of its range, a block that overlaps something.
+    pub fn new(scene: &ArenaScene, options: &ArenaOptions) -> Result<Self, RapierError> {
+        let model = Model::new(&scene.arena)?;
+        scene.check()?;
+        let (plan, physics) = build(scene, options)?;
+        let words = model.initial.clone();
+        let crowd = Crowd::new(&model, scene.arena.size);
+        let (blocks, pairs) = (plan.parcels.len(), plan.vehicles.len() + plan.parcels.len());
+        let mut world = Self {
+            model,
+            plan,
+            initial: copy(&physics),
+            physics,
+            words,
+            crowd,
+            met: vec![(None, PairContact::default()); pairs],
+            slabs: Vec::with_capacity(blocks),
+            lost: false,
+            moved: true,
+        };
+        world.settle();
+        world.initial = copy(&world.physics);
+        Ok(world)
+    }
+
+    /// Number of robots.
+    pub fn robots(&self) -> usize {
+        self.plan.vehicles.len()
+    }
+
+    /// By which numbers the parts of a robot are known; those of the last robot for a number beyond it.
+    pub fn parts(&self, robot: usize) -> MobileParts {
+        self.model.parts(robot)
+    }
+
+    /// Whether the world has not broken down.
+    pub fn is_finite(&self) -> bool {
+        !self.lost
+    }
+
+    /// rapier's own state, for what the ports do not tell.
+    pub fn physics(&self) -> &PhysicsWorld {
+        &self.physics
+    }
+
+    /// The number of a body among the blocks.
+    pub(crate) fn block_of(&self, body: BodyId) -> Option<usize> {
+        body.index().checked_sub(self.model.bodies()).filter(|block| *block < self.plan.parcels.len())
+    }
+
+    fn multibody(&self, vehicle: &Vehicle) -> Option<&Multibody> {
+        self.physics.multibody_joints.get_multibody(vehicle.multibody)
+    }
+
+    /// Pose of a robot, from what rapier has.
+    pub(crate) fn robot_pose(&self, robot: usize) -> Pose {
+        let vehicle = self.plan.vehicles[robot];
+        if self.lost {
+            return NOWHERE;
+        }
+        let at = self.physics.bodies[vehicle.body].position();
+        let at = Pose { position: at.translation.into(), rotation: at.rotation.into() };
+        at.compose(&Pose::at([0.0, 0.0, -vehicle.axle]))
+    }
+
+    /// Pose of a block, from what rapier has.
+    pub(crate) fn block_pose(&self, block: usize) -> Pose {
+        let parcel = &self.plan.parcels[block];
+        if self.lost {
+            return NOWHERE;
+        }
+        let at = self.physics.bodies[parcel.body].position();
+        let at = Pose { position: at.translation.into(), rotation: at.rotation.into() };
+        at.compose(&Pose::at([0.0, 0.0, -parcel.half[2]]))
+    }
+
+    /// The velocity of a body's origin, which lies so far below its centre of mass in its frame.
+    fn below(pose: &Pose, linear: Vector, angular: Vector, depth: f32) -> Twist {
+        let arm = Vector::from(pose.rotate([0.0, 0.0, -depth]));
+        Twist { linear: (linear + angular.cross(arm)).into(), angular: angular.into() }
+    }
+
+    pub(crate) fn robot_velocity(&self, robot: usize) -> Twist {
+        let vehicle = self.plan.vehicles[robot];
+        let Some(multibody) = self.multibody(&vehicle).filter(|_| !self.lost) else {
+            return Twist { linear: [f32::NAN; 3], angular: [f32::NAN; 3] };
+        };
+        // A link's body has its velocity only from the next step on.
+        let v = multibody.generalized_velocity();
+        let (linear, angular) = (Vector::new(v[0], v[1], v[2]), Vector::new(v[3], v[4], v[5]));
+        Self::below(&self.robot_pose(robot), linear, angular, vehicle.axle)
+    }
+
+    pub(crate) fn block_velocity(&self, block: usize) -> Twist {
+        let parcel = &self.plan.parcels[block];
+        if self.lost {
+            return Twist { linear: [f32::NAN; 3], angular: [f32::NAN; 3] };
+        }
+        let rigid = &self.physics.bodies[parcel.body];
+        Self::below(&self.block_pose(block), rigid.linvel(), rigid.angvel(), parcel.half[2])
+    }
+
+    /// One control step.
+    pub(crate) fn advance(&mut self) {
+        if self.moved {
+            self.settle();
+        }
+        for robot in 0..self.plan.vehicles.len() {
+            show_leds_and_signal::<f32>((), &self.model, &mut self.words, robot);
+        }
+        self.count();
+        self.met.fill((None, PairContact::default()));
+        for _ in 0..self.plan.substeps {
+            if !self.lost {
+                self.drive();
+            }
+            if self.lost {
+                break;
+            }
+            self.physics.step_with_events(&(), &());
+            self.examine();
+            self.feel();
+        }
+        self.count();
+        self.observe();
+    }
+
+    /// Gives rapier the motors' law: a torque in proportion to the speed that a wheel lacks, up to the largest.
+    ///
+    /// As a damping it is part of the multibody's mass. A motor of rapier is a constraint, which at each wheel works against
+    /// that of friction: with few sweeps wheels slip in proportion to what they push, and impulses that start where the last
+    /// ones ended make the wheels of one axle push against each other until the grip is used up.
+    fn drive(&mut self) {
+        for (robot, vehicle) in self.plan.vehicles.iter().enumerate() {
+            let most = self.model.kind(robot).max_wheel_speed;
+            let Some(multibody) = self.physics.multibody_joints.get_multibody_mut_internal(vehicle.multibody) else {
+                continue;
+            };
+            for (side, (link, dof)) in vehicle.wheels.into_iter().enumerate() {
+                let commanded = wheel_speed(self.words[self.model.command(robot, side)], most);
+                let lacking = commanded - multibody.generalized_velocity()[dof];
+                // A gain that lets the largest torque fade as the wheel comes up to speed, so that it does not overshoot.
+                let gain = vehicle.gain.min(vehicle.torque / lacking.abs());
+                let Some(found) = multibody.link_mut(link) else { continue };
+                let rest = found.joint.coords()[AXLE as usize] + gain * commanded / LEAST_STIFFNESS;
+                // rapier would replace an acceleration that is none by zero and go on.
+                self.lost |= !(rest.is_finite() && lacking.is_finite());
+                found.joint.set_spring(AXLE as usize, LEAST_STIFFNESS, rest);
+                multibody.damping_mut()[dof] = gain;
+            }
+        }
+    }
+
+    /// Looks whether rapier has broken down.
+    fn examine(&mut self) {
+        let multibodies = self.physics.multibody_joints.multibodies();
+        let finite = |m: &Multibody| m.generalized_velocity().iter().all(|v| v.is_finite());
+        self.lost |= !self.physics.quarantine().is_empty() || !multibodies.into_iter().all(finite);
+    }
+
+    /// Keeps what robots and blocks met hardest.
+    fn feel(&mut self) {
+        let Self { plan, physics, met, model, .. } = self;
+        let hulls = plan.vehicles.iter().map(|vehicle| (vehicle.hull, true));
+        let own = hulls.chain(plan.parcels.iter().map(|parcel| (parcel.collider, false)));
+        for ((collider, of_links), met) in own.zip(met) {
+            for pair in physics.narrow_phase.contact_pairs_with(collider) {
+                let other = if pair.collider1 == collider { pair.collider2 } else { pair.collider1 };
+                if other == plan.ground {
+                    continue;
+                }
+                let of_links = of_links || plan.vehicles.iter().any(|vehicle| vehicle.hull == other);
+                let pair = touching([collider, other], of_links);
+                if touches(physics, &pair) {
+                    let contact = pair_contact(physics, &pair);
+                    if contact.normal_force > met.1.normal_force {
+                        *met = (plan.body_of(other, model.bodies()), contact);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Writes down where everything is now.
+    fn observe(&mut self) {
+        for robot in 0..self.plan.vehicles.len() {
+            let (pose, twist) = (self.robot_pose(robot), self.robot_velocity(robot));
+            let [x, y, _] = pose.position;
+            let words = pose_words([x, y], pose.heading());
+            self.words[POSE_WORDS * robot..][..POSE_WORDS].copy_from_slice(&words);
+            let first = self.model.robot_word(robot, 0);
+            let [u, v, _] = twist.linear;
+            self.words[first + VELOCITY..][..3].copy_from_slice(&[u, v, twist.angular[2]]);
+            if self.lost {
+                self.words[first + WHEELS..][..4].fill(f32::NAN);
+            }
+        }
+        self.see_blocks();
+        if !self.lost {
+            self.crowd.fill(&self.words);
+        }
+    }
+
+    /// Reads how far wheels have turned, from where they were when this was called last; their positions are kept within their
+    /// range.
+    fn count(&mut self) {
+        for (robot, vehicle) in self.plan.vehicles.iter().enumerate() {
+            let first = self.model.robot_word(robot, WHEELS);
+            let Some(multibody) = self.physics.multibody_joints.get_multibody_mut_internal(vehicle.multibody) else {
+                continue;
+            };
+            for (side, (link, _)) in vehicle.wheels.into_iter().enumerate() {
+                let Some(link) = multibody.link_mut(link) else { continue };
+                let position = link.joint.coords()[AXLE as usize];
+                self.words[first + 2 + side] = (position - self.words[first + side]) / self.model.time_step;
+                let kept = turned(position, 0.0, 0.0);
+                self.words[first + side] = kept;
+                if kept != position {
+                    link.joint = MultibodyJoint::new(link.joint.data, false);
+                    link.joint.apply_displacement(&[kept]);
+                }
+            }
+        }
+    }
+
+    /// Brings the blocks' outlines in the plane up to date.
+    fn see_blocks(&mut self) {
+        self.slabs.clear();
+        for block in 0..self.plan.parcels.len() {
+            let slab = self.slab(block);
+            self.slabs.push(slab);
+        }
+    }
+
+    /// Brings what sensors see up to date after the words were brought back.
+    pub(crate) fn look_again(&mut self) {
+        if self.lost {
+            self.observe();
+        } else {
+            self.see_blocks();
+            self.crowd.fill(&self.words);
+        }
+    }
+
+    /// A block as if it stood on the side that is most nearly on the ground.
+    fn slab(&self, block: usize) -> Slab {
+        let parcel = &self.plan.parcels[block];
+        let pose = self.block_pose(block);
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| pose.rotate(axis));
+        // The last of equals, so that one that stands upright does so.
+        let up = (0..3).fold(2, |up, k| if axes[k][2].abs() > axes[up][2].abs() { k } else { up });
+        let [along, across] = [[1, 2], [0, 2], [0, 1]][up];
+        let [x, y, _] = axes[along];
+        let length = Scalar::sqrt(x * x + y * y);
+        let axis = [x / length, y / length];
+        let half = [parcel.half[along], parcel.half[across]];
+        let [a, b] = half;
+        let [x, y, _] = pose.transform([0.0, 0.0, parcel.half[2]]);
+        let [c, s] = axis.map(f32::abs);
+        Slab {
+            centre: [x, y],
+            axis,
+            half,
+            around: [a * c + b * s, a * s + b * c],
+            height: 2.0 * parcel.half[up],
+            color: parcel.color,
+        }
+    }
+
+    /// Back to the start, with everything forgotten.
+    pub(crate) fn reset(&mut self) {
+        self.physics = copy(&self.initial);
+        self.met.fill((None, PairContact::default()));
+        (self.lost, self.moved) = (false, false);
+        self.observe();
+    }
+
+    /// Puts a wheel somewhere.
+    pub(crate) fn put_wheel(&mut self, joint: JointId, position: f32, speed: f32) {
+        let (robot, side) = (joint.index() / 2, joint.index() % 2);
+        let Some(vehicle) = self.plan.vehicles.get(robot).copied() else { return };
+        let (link, dof) = vehicle.wheels[side];
+        let Some(multibody) = self.physics.multibody_joints.get_multibody_mut(vehicle.multibody) else { return };
+        if let Some(found) = multibody.link_mut(link) {
+            found.joint = MultibodyJoint::new(found.joint.data, false);
+            found.joint.apply_displacement(&[position]);
+        }
+        multibody.generalized_velocity_mut()[dof] = speed;
+        self.moved = true;
+    }
+
+    /// Puts a robot, cylinder or block down, upright and at rest; areas have nothing in rapier.
+    pub(crate) fn put_body(&mut self, body: BodyId, pose: &Pose) {
+        let robots = self.plan.vehicles.len();
+        self.moved = true;
+        if let Some(vehicle) = self.plan.vehicles.get(body.index()).copied() {
+            self.met[body.index()] = (None, PairContact::default());
+            if let Some(rigid) = self.physics.bodies.get_mut(vehicle.body) {
+                rigid.set_position(standing(pose, vehicle.axle), true);
+                rigid.set_linvel(Vector::ZERO, true);
+                rigid.set_angvel(Vector::ZERO, true);
+            }
+            if let Some(multibody) = self.physics.multibody_joints.get_multibody_mut(vehicle.multibody) {
+                multibody.generalized_velocity_mut().rows_mut(0, 6).fill(0.0);
+            }
+        } else if let Some(block) = self.block_of(body) {
+            self.met[robots + block] = (None, PairContact::default());
+            let parcel = &self.plan.parcels[block];
+            if let Some(rigid) = self.physics.bodies.get_mut(parcel.body) {
+                rigid.set_position(standing(pose, parcel.half[2]), true);
+                rigid.set_linvel(Vector::ZERO, true);
+                rigid.set_angvel(Vector::ZERO, true);
+            }
+        } else if let Some(cylinder) = body.index().checked_sub(robots)
+            && let Some(handle) = self.plan.cylinders.get(cylinder)
+            && let Some(collider) = self.physics.colliders.get_mut(*handle)
+        {
+            let mut at = standing(pose, self.plan.cylinder_halves[cylinder]);
+            at.rotation = upright();
+            collider.set_position(at);
+        }
+    }
+
+    /// Brings everything that follows from places up to date: links, colliders, who is near whom, what is seen.
+    pub(crate) fn settle(&mut self) {
+        if core::mem::take(&mut self.moved) {
+            let physics = &mut self.physics;
+            for vehicle in &self.plan.vehicles {
+                if let Some(multibody) = physics.multibody_joints.get_multibody_mut(vehicle.multibody) {
+                    multibody.forward_kinematics(&physics.bodies, true);
+                    multibody.update_rigid_bodies(&mut physics.bodies, true);
+                }
+            }
+            // A step of no time, without the impulses of the last one, does only that.
+            let usual = physics.integration_parameters;
+            (physics.integration_parameters.dt, physics.integration_parameters.warmstart_coefficient) = (0.0, 0.0);
+            physics.step_with_events(&(), &());
+            physics.integration_parameters = usual;
+            self.examine();
+        }
+        self.observe();
+    }
+
+    /// Whether rapier's state is of a world of this description, as far as numbers of parts tell.
+    pub(crate) fn fits(&self, physics: &PhysicsWorld) -> bool {
+        let parts = |p: &PhysicsWorld| {
+            let dofs: Vec<_> = p.multibody_joints.multibodies().map(Multibody::ndofs).collect();
+            (p.bodies.len(), p.colliders.len(), dofs)
+        };
+        parts(physics) == parts(&self.initial)
+    }
+}
+
+/// Two colliders as a pair.
+fn touching(colliders: [ColliderHandle; 2], of_links: bool) -> Touching {
+    Touching { colliders, bodies: [None; 2], carriers: [None; 2], rolling_friction: 0.0, of_links }
+}
+
+impl View for ArenaWorld {
+    fn model(&self) -> &Model {
+        &self.model
+    }
+    #[inline(always)]
+    fn word(&self, index: usize) -> f32 {
+        self.words[index]
+    }
+    #[inline(always)]
+    fn set_word(&mut self, index: usize, x: f32) {
+        self.words[index] = x;
+    }
+    fn visit(&self, low: [f32; 2], high: [f32; 2], tell: impl FnMut(usize)) {
+        self.crowd.visit(&self.model, low, high, tell);
+    }
+    fn gridded(&self) -> bool {
+        self.crowd.grid.is_some()
+    }
+}
+
+impl Clone for ArenaWorld {
+    fn clone(&self) -> Self {
+        Self {
+            model: self.model.clone(),
+            plan: self.plan.clone(),
+            physics: copy(&self.physics),
+            initial: copy(&self.initial),
+            words: self.words.clone(),
+            crowd: self.crowd.clone(),
+            met: self.met.clone(),
+            slabs: self.slabs.clone(),
+            lost: self.lost,
+            moved: self.moved,
+        }
+    }
+}
+
+impl fmt::Debug for ArenaWorld {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ArenaWorld").field("plan", &self.plan).field("lost", &self.lost).finish_non_exhaustive()
+    }
+}

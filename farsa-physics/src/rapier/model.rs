@@ -1,0 +1,320 @@
+//! From a description to rapier's bodies, joints and colliders.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_body::{BodyId, JointKind, Law, Pose, Robot, Shape};
+use rapier3d::dynamics::{
+    GenericJointBuilder, JointAxesMask, JointAxis, MultibodyIndex, RigidBodyBuilder, RigidBodyHandle,
+};
+use rapier3d::geometry::{ColliderBuilder, ColliderHandle};
+use rapier3d::math::Mat3;
+use rapier3d::parry::mass_properties::MassProperties;
+use rapier3d::pipeline::{ActiveHooks, PhysicsWorld};
+
+use crate::articulated::links::{compose, frame, links_of, set_limits};
+use crate::articulated::model::{ModelError, Mount, Options as Stops};
+use crate::articulated::spatial::{rotate, sub};
+use crate::articulated::tree::{Link, Motion, WORLD};
+use crate::articulated::view::quaternion;
+use crate::rapier::convert::{pose, shape_of, vector};
+use crate::rapier::error::RapierError;
+use crate::rapier::options::Options;
+use crate::rapier::rules::Rules;
+use crate::rapier::scene::{Scene, Side, Thing};
+
+/// What moves: a free body, or a link of a multibody.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carrier {
+    pub(crate) body: RigidBodyHandle,
+    /// The multibody, the link's number there, and the number of its first velocity there.
+    pub(crate) link: Option<(MultibodyIndex, usize, usize)>,
+    /// About the axis or along it, for joints: rapier's number of it.
+    pub(crate) axis: usize,
+    /// Damping of the joint itself [N m s/rad or N s/m].
+    pub(crate) damping: f32,
+    /// Mean inertia of the body alone [kg m2].
+    pub(crate) inertia: f32,
+}
+
+/// Where a body of the ports is: on which carrier (none: the world), and its frame in the carrier's.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) carrier: Option<usize>,
+    pub(crate) pose: Pose,
+}
+
+/// A pair of colliders as the port knows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touching {
+    pub(crate) colliders: [ColliderHandle; 2],
+    pub(crate) bodies: [Option<BodyId>; 2],
+    pub(crate) carriers: [Option<usize>; 2],
+    pub(crate) rolling_friction: f32,
+    /// Whether a link of a multibody is among them.
+    pub(crate) of_links: bool,
+}
+
+/// A joint with its actuators.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drive {
+    pub(crate) carrier: usize,
+    pub(crate) first: usize,
+    pub(crate) count: usize,
+}
+
+/// The constant part of a world of rapier.
+#[derive(Clone, Debug)]
+pub(crate) struct Plan {
+    pub(crate) carriers: Vec<Carrier>,
+    pub(crate) places: Vec<Place>,
+    pub(crate) kinds: Vec<JointKind>,
+    pub(crate) colliders: Vec<ColliderHandle>,
+    pub(crate) collider_bodies: Vec<Option<BodyId>>,
+    pub(crate) pairs: Vec<Touching>,
+    pub(crate) rules: Rules,
+    pub(crate) drives: Vec<Drive>,
+    /// The laws of the drives' actuators, drive by drive, with the numbers of the actuators.
+    pub(crate) laws: Vec<(Law<f32>, usize)>,
+    pub(crate) actuators: usize,
+    pub(crate) time_step: f32,
+    pub(crate) substeps: u32,
+}
+
+/// Mass, centre and inertia as rapier has them.
+fn mass_of(link: &Link<f64>) -> MassProperties {
+    let [xx, yy, zz, xy, xz, yz] = link.inertia.map(|x| x as f32);
+    let inertia = Mat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
+    MassProperties::with_inertia_matrix(vector(link.centre), link.mass as f32, inertia)
+}
+
+/// Puts the frames of floating links into their centres of mass: the root of one of rapier's multibodies turns about its
+/// origin.
+fn centre_roots(links: &mut [Link<f64>], mounts: &mut [Mount<f64>]) -> Vec<[f64; 3]> {
+    let mut shifts = vec![[0.0; 3]; links.len()];
+    for i in 0..links.len() {
+        if links[i].motion != Motion::Floating {
+            continue;
+        }
+        shifts[i] = links[i].centre;
+        links[i].centre = [0.0; 3];
+        for link in links.iter_mut().filter(|link| usize::from(link.parent) == i) {
+            link.offset = sub(link.offset, shifts[i]);
+        }
+        for mount in mounts.iter_mut().filter(|mount| usize::from(mount.link) == i) {
+            mount.position = sub(mount.position, shifts[i]);
+        }
+    }
+    shifts
+}
+
+/// Builds the bodies, joints and colliders of a scene.
+pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(Plan, PhysicsWorld), RapierError> {
+    let robot = &scene.robot;
+    robot.validate()?;
+    options.check()?;
+    scene.check()?;
+    for (what, count) in [
+        ("segments and things", robot.segments.len() + scene.things.len()),
+        ("colliders and things", robot.colliders.len() + scene.things.len()),
+        ("pairs", scene.sides().count()),
+        ("actuators", robot.actuators.len()),
+    ] {
+        if count >= usize::from(u16::MAX) {
+            return Err(ModelError::TooMany { what, count }.into());
+        }
+    }
+    let (mut links, mut mounts) = links_of(robot);
+    check_masses(robot, &mounts, &links)?;
+    let shifts = centre_roots(&mut links, &mut mounts);
+    let mut physics = options.world();
+    let mut carriers = add_links(&mut physics, &links, &shifts);
+
+    let place = |mount: &Mount<f64>| Place {
+        carrier: (mount.link != WORLD).then_some(usize::from(mount.link)),
+        pose: Pose { position: mount.position, rotation: quaternion(&mount.rotation) }.cast(),
+    };
+    let mut places: Vec<_> = mounts.iter().map(place).collect();
+    let mut colliders = Vec::new();
+    let mut on = Vec::new();
+    for (number, collider) in robot.colliders.iter().enumerate() {
+        let local = frame(&collider.placement);
+        let mount = collider.body.map_or(local, |body| compose(&mounts[body.index()], &local));
+        let carrier = (mount.link != WORLD).then_some(usize::from(mount.link));
+        if carrier.is_some() && collider.shape == Shape::Plane {
+            return Err(RapierError::MovingPlane { collider: collider.name.clone() });
+        }
+        let built = ColliderBuilder::new(shape_of(&collider.shape))
+            .position(pose(&mount))
+            .density(0.0)
+            .user_data(Rules::mark(number))
+            .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS | ActiveHooks::MODIFY_SOLVER_CONTACTS);
+        colliders.push(physics.insert_collider(built, carrier.map(|c| carriers[c].body)));
+        on.push(carrier);
+    }
+    let mut bodies: Vec<_> = robot.colliders.iter().map(|c| c.body).collect();
+    let mut kinds: Vec<_> = robot.segments.iter().map(|s| s.joint.kind).collect();
+    for thing in &scene.things {
+        let carrier = thing.mass.map(|_| carriers.len());
+        bodies.push(Some(BodyId(places.len() as u16)));
+        kinds.push(if carrier.is_some() { JointKind::Floating } else { JointKind::Fixed });
+        let pose = if carrier.is_some() { Pose::identity() } else { thing.placement.cast() };
+        places.push(Place { carrier, pose });
+        let (added, collider) = add_thing(&mut physics, thing, colliders.len())?;
+        carriers.extend(added);
+        colliders.push(collider);
+        on.push(carrier);
+    }
+    let sides: Vec<_> = scene.sides().map(|sides| sides.map(|side| number_of(side, robot.colliders.len()))).collect();
+    let surface = |number: usize| robot.pairs.get(number).map(|pair| pair.surface);
+    let rules = sides.iter().enumerate().map(|(number, sides)| {
+        let thing = |number: &usize| Some(scene.things.get(number.checked_sub(robot.colliders.len())?)?.friction);
+        let between = || match (thing(&sides[0]), thing(&sides[1])) {
+            (Some(a), Some(b)) => farsa_num::Scalar::sqrt(a * b),
+            (a, b) => a.or(b).unwrap_or(0.0),
+        };
+        (*sides, surface(number).map_or_else(between, |surface| surface.friction))
+    });
+    let rules: Vec<_> = rules.collect();
+    let pairs = sides.iter().enumerate().map(|(number, sides)| Touching {
+        colliders: sides.map(|c| colliders[c]),
+        bodies: sides.map(|c| bodies[c]),
+        carriers: sides.map(|c| on[c]),
+        rolling_friction: surface(number).map_or(0.0, |surface| surface.rolling_friction as f32),
+        of_links: sides.iter().any(|c| on[*c].is_some_and(|c| carriers[c].link.is_some())),
+    });
+    let (drives, laws) = drives_of(robot, &mounts);
+    let plan = Plan {
+        pairs: pairs.collect(),
+        kinds,
+        collider_bodies: bodies,
+        rules: Rules::new(colliders.len(), &rules),
+        carriers,
+        places,
+        colliders,
+        drives,
+        laws,
+        actuators: robot.actuators.len(),
+        time_step: options.time_step as f32,
+        substeps: options.substeps,
+    };
+    Ok((plan, physics))
+}
+
+/// The number of a side's collider.
+fn number_of(side: Side, colliders: usize) -> usize {
+    match side {
+        Side::Collider(number) => number,
+        Side::Thing(number) => colliders + number,
+    }
+}
+
+/// A thing's body, if it moves, and its collider.
+fn add_thing(
+    physics: &mut PhysicsWorld,
+    thing: &Thing,
+    number: usize,
+) -> Result<(Option<Carrier>, ColliderHandle), RapierError> {
+    let (shape, local) = thing.shape()?;
+    let at = pose(&frame(&thing.placement));
+    let built = ColliderBuilder::new(shape)
+        .user_data(Rules::mark(number))
+        .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS | ActiveHooks::MODIFY_SOLVER_CONTACTS);
+    let Some(mass) = thing.mass else {
+        return Ok((None, physics.insert_collider(built.position(at * local), None)));
+    };
+    let body = physics.insert_body(RigidBodyBuilder::dynamic().can_sleep(false).pose(at));
+    let collider = physics.insert_collider(built.position(local).mass(mass as f32), Some(body));
+    Ok((Some(Carrier { body, link: None, axis: 0, damping: 0.0, inertia: 0.0 }), collider))
+}
+
+/// Refuses joints that move no mass and have no armature.
+fn check_masses(robot: &Robot, mounts: &[Mount<f64>], links: &[Link<f64>]) -> Result<(), ModelError> {
+    let mut links = links.to_vec();
+    let (mut initial, mut dofs) = (Vec::new(), 0);
+    for link in &links {
+        let floating = link.motion == Motion::Floating;
+        initial.extend_from_slice(if floating { &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0] } else { &[0.0] });
+        dofs += if floating { 6 } else { 1 };
+    }
+    set_limits(robot, mounts, &mut links, &initial, dofs, &Stops::default())
+}
+
+/// The moving bodies and their joints.
+fn add_links(physics: &mut PhysicsWorld, links: &[Link<f64>], shifts: &[[f64; 3]]) -> Vec<Carrier> {
+    let mut handles = Vec::new();
+    for (link, shift) in links.iter().zip(shifts) {
+        let at = Mount { link: WORLD, rotation: link.rotation, position: link.offset };
+        let body = RigidBodyBuilder::dynamic()
+            .can_sleep(false)
+            .gyroscopic_forces_enabled(true)
+            .additional_mass_properties(mass_of(link));
+        if link.motion == Motion::Floating {
+            let position = crate::articulated::spatial::add(at.position, rotate(&at.rotation, *shift));
+            handles.push(physics.insert_body(body.pose(pose(&Mount { position, ..at }))));
+            continue;
+        }
+        let child = physics.insert_body(body);
+        let parent = match handles.get(usize::from(link.parent)) {
+            Some(parent) => *parent,
+            None => physics.insert_body(RigidBodyBuilder::fixed()),
+        };
+        let (free, axis) = match link.motion {
+            Motion::Prismatic => (JointAxesMask::LIN_Z, JointAxis::LinZ),
+            _ => (JointAxesMask::ANG_Z, JointAxis::AngZ),
+        };
+        let mut joint = GenericJointBuilder::new(JointAxesMask::all() & !free).local_frame1(pose(&at));
+        if link.lower.is_finite() || link.upper.is_finite() {
+            let bound = |x: f64| x.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
+            joint = joint.limits(axis, [bound(link.lower), bound(link.upper)]);
+        }
+        physics.insert_multibody_joint(parent, child, joint.build());
+        handles.push(child);
+    }
+    let mut carriers: Vec<Carrier> = Vec::new();
+    // A fixed root only loses its six velocities here, and with them their numbers.
+    let joints = &mut physics.multibody_joints;
+    let roots: Vec<_> = handles.iter().filter_map(|h| joints.rigid_body_link(*h).map(|l| l.multibody)).collect();
+    for root in &roots {
+        if let Some(multibody) = joints.get_multibody_mut(*root) {
+            multibody.forward_kinematics(&physics.bodies, true);
+            multibody.damping_mut().fill(0.0);
+        }
+    }
+    for (link, handle) in links.iter().zip(&handles) {
+        let found = physics.multibody_joints.rigid_body_link(*handle).copied();
+        let place = found.and_then(|found| {
+            let multibody = physics.multibody_joints.get_multibody_mut(found.multibody)?;
+            let dof = multibody.links().take(found.id).map(|l| l.joint().ndofs()).sum();
+            if link.motion != Motion::Floating {
+                multibody.armature_mut()[dof] = link.armature as f32;
+                multibody.damping_mut()[dof] = link.damping as f32;
+                let start = 0.0_f64.max(link.lower).min(link.upper) as f32;
+                multibody.link_mut(found.id)?.joint.apply_displacement(&[start]);
+            }
+            Some((found.multibody, found.id, dof))
+        });
+        carriers.push(Carrier {
+            body: *handle,
+            link: place,
+            axis: if link.motion == Motion::Prismatic { 2 } else { 5 },
+            damping: link.damping as f32,
+            inertia: ((link.inertia[0] + link.inertia[1] + link.inertia[2]) / 3.0) as f32,
+        });
+    }
+    carriers
+}
+
+/// The joints that have actuators, with the laws of these.
+fn drives_of(robot: &Robot, mounts: &[Mount<f64>]) -> (Vec<Drive>, Vec<(Law<f32>, usize)>) {
+    let (mut drives, mut laws) = (Vec::new(), Vec::new());
+    for (segment, mount) in mounts.iter().enumerate() {
+        let first = laws.len();
+        let own = robot.actuators.iter().enumerate().filter(|(_, a)| a.joint.index() == segment);
+        laws.extend(own.map(|(number, actuator)| (actuator.law.cast(), number)));
+        if laws.len() > first {
+            drives.push(Drive { carrier: usize::from(mount.link), first, count: laws.len() - first });
+        }
+    }
+    (drives, laws)
+}

@@ -1,0 +1,261 @@
+//! A robot with things around it that only a general world can have.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use farsa_body::{BodyId, PairId, Pose, Robot, RobotError, Shape};
+use rapier3d::geometry::{SharedShape, TriMeshFlags};
+use rapier3d::math::{Pose as Frame, Rotation, Vector};
+use rapier3d::parry::utils::Array2;
+
+use crate::rapier::convert::shape_of;
+use crate::rapier::error::RapierError;
+
+/// The form of a thing, in its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Form {
+    /// A sphere, capsule, box or plane as robots have them.
+    Simple(Shape),
+    /// A cylinder about the z axis.
+    Cylinder {
+        /// Radius [m].
+        radius: f64,
+        /// Half its length [m].
+        half_length: f64,
+    },
+    /// The convex hull of points [m].
+    Hull(Vec<[f32; 3]>),
+    /// A surface of triangles, which does not move; only its outside is met.
+    Mesh {
+        /// Vertices [m].
+        vertices: Vec<[f32; 3]>,
+        /// The numbers of each triangle's vertices, counter-clockwise as seen from outside.
+        triangles: Vec<[u32; 3]>,
+    },
+    /// A landscape over a rectangle about the origin, which does not move.
+    HeightField {
+        /// Heights above z = 0 [rows * columns; m]: row after row towards +y, in a row towards +x.
+        heights: Vec<f32>,
+        /// Number of rows and columns.
+        size: [usize; 2],
+        /// Extent along x and y [m].
+        extent: [f64; 2],
+    },
+}
+
+/// Something beside the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Thing {
+    /// Its name, unique in the scene.
+    pub name: String,
+    /// Its form.
+    pub form: Form,
+    /// Where it is at the start, in the world.
+    pub placement: Pose<f64>,
+    /// Its mass [kg], spread evenly; `None` for what does not move.
+    pub mass: Option<f64>,
+    /// Coefficient of sliding friction with the robot; between two things the geometric mean of theirs.
+    pub friction: f64,
+}
+
+impl Thing {
+    /// A thing that moves, with friction 0.5.
+    pub fn movable(name: &str, form: Form, placement: Pose<f64>, mass: f64) -> Self {
+        Self { name: name.into(), form, placement, mass: Some(mass), friction: 0.5 }
+    }
+
+    /// A thing that does not move, with friction 0.5.
+    pub fn fixed(name: &str, form: Form, placement: Pose<f64>) -> Self {
+        Self { name: name.into(), form, placement, mass: None, friction: 0.5 }
+    }
+}
+
+/// A robot and the things around it.
+///
+/// The robot's colliders touch each other as its pairs say; a thing touches all of them and all other things, except that
+/// what never moves does not touch what never moves. Bodies and pairs of things are numbered after the robot's own.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Scene {
+    /// The robot.
+    pub robot: Robot,
+    /// The things.
+    pub things: Vec<Thing>,
+}
+
+/// One of the two sides of a pair: a collider of the robot or a thing, by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Collider(usize),
+    Thing(usize),
+}
+
+impl Scene {
+    /// A scene of a robot alone.
+    pub fn new(robot: Robot) -> Self {
+        Self { robot, things: Vec::new() }
+    }
+
+    /// Appends a thing and tells its body.
+    pub fn add(&mut self, thing: Thing) -> BodyId {
+        self.things.push(thing);
+        BodyId((self.robot.segments.len() + self.things.len() - 1) as u16)
+    }
+
+    /// The body of a segment or thing of this name.
+    pub fn body(&self, name: &str) -> Option<BodyId> {
+        let thing = || self.things.iter().position(|thing| thing.name == name);
+        self.robot.body(name).or_else(|| Some(BodyId((self.robot.segments.len() + thing()?) as u16)))
+    }
+
+    /// The pair of two colliders or things of these names, in either order.
+    pub fn pair(&self, a: &str, b: &str) -> Option<PairId> {
+        let side = |name: &str| {
+            let thing = self.things.iter().position(|thing| thing.name == name).map(Side::Thing);
+            thing.or_else(|| self.robot.collider(name).map(Side::Collider))
+        };
+        let (a, b) = (side(a)?, side(b)?);
+        let found = self.sides().position(|pair| pair == [a, b] || pair == [b, a]);
+        found.map(|number| PairId(number as u16))
+    }
+
+    /// Both sides of every pair, the robot's own first.
+    pub(crate) fn sides(&self) -> impl Iterator<Item = [Side; 2]> {
+        let robot = &self.robot;
+        let rides = |collider: usize| robot.colliders.get(collider).is_some_and(|c| robot_moves(robot, c.body));
+        let own = robot.pairs.iter().map(|pair| pair.colliders.map(Side::Collider));
+        let others = self.things.iter().enumerate().flat_map(move |(number, thing)| {
+            let moves = thing.mass.is_some();
+            let colliders = (0..robot.colliders.len()).filter(move |c| moves || rides(*c)).map(Side::Collider);
+            let things = (0..number).filter(move |other| moves || self.things[*other].mass.is_some()).map(Side::Thing);
+            colliders.chain(things).map(move |other| [Side::Thing(number), other])
+        });
+        own.chain(others)
+    }
+
+    /// Looks whether things can be built; the robot is looked at elsewhere.
+    pub(crate) fn check(&self) -> Result<(), RapierError> {
+        for (number, thing) in self.things.iter().enumerate() {
+            let taken = self.things[..number].iter().any(|other| other.name == thing.name)
+                || self.robot.segments.iter().any(|segment| segment.name == thing.name)
+                || self.robot.colliders.iter().any(|collider| collider.name == thing.name);
+            if taken {
+                return Err(RobotError::Name { name: thing.name.clone() }.into());
+            }
+            thing.check()?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a body of the robot moves.
+fn robot_moves(robot: &Robot, mut body: Option<BodyId>) -> bool {
+    while let Some(segment) = body.and_then(|body| robot.segments.get(body.index())) {
+        if segment.joint.kind != farsa_body::JointKind::Fixed {
+            return true;
+        }
+        body = segment.parent;
+    }
+    false
+}
+
+impl Thing {
+    fn check(&self) -> Result<(), RapierError> {
+        let value = |field: &'static str, value: f64, good: bool| {
+            let wrong = || RapierError::Thing { name: self.name.clone(), field, value };
+            if good { Ok(()) } else { Err(wrong()) }
+        };
+        let positive = |field, x: f64| value(field, x, (1e-6..=1e6).contains(&x));
+        for x in self.placement.position {
+            value("position", x, x.is_finite() && x.abs() <= 1e6)?;
+        }
+        let length: f64 = self.placement.rotation.iter().map(|x| x * x).sum();
+        value("length of the rotation's quaternion, squared", length, (length - 1.0).abs() < 1e-6)?;
+        value("friction", self.friction, (0.0..=1e6).contains(&self.friction))?;
+        if let Some(mass) = self.mass {
+            positive("mass", mass)?;
+        }
+        let points = |points: &[[f32; 3]]| {
+            let far = points.iter().flatten().find(|x| !(x.is_finite() && x.abs() <= 1e6));
+            far.map_or(Ok(()), |x| value("coordinate of a point", f64::from(*x), false))
+        };
+        let still = |form: &'static str| match self.mass {
+            Some(_) => Err(RapierError::Immovable { name: self.name.clone(), form }),
+            None => Ok(()),
+        };
+        match &self.form {
+            Form::Simple(Shape::Sphere { radius }) => positive("radius", *radius),
+            Form::Simple(Shape::Capsule { radius, half_length }) => {
+                positive("radius", *radius)?;
+                value("half length", *half_length, (0.0..=1e6).contains(half_length))
+            }
+            Form::Simple(Shape::Box { half }) => half.iter().try_for_each(|x| positive("half edge", *x)),
+            Form::Simple(Shape::Plane) => still("plane"),
+            Form::Cylinder { radius, half_length } => {
+                positive("radius", *radius)?;
+                positive("half length", *half_length)
+            }
+            Form::Hull(corners) => points(corners),
+            Form::Mesh { vertices, triangles } => {
+                still("mesh")?;
+                points(vertices)?;
+                value("number of triangles", triangles.len() as f64, !triangles.is_empty())?;
+                let count = vertices.len();
+                let lost = |vertex: &u32| *vertex as usize >= count;
+                for (number, triangle) in triangles.iter().enumerate() {
+                    if let Some(vertex) = triangle.iter().find(|vertex| lost(vertex)) {
+                        let (name, vertex) = (self.name.clone(), *vertex);
+                        return Err(RapierError::Triangle { name, triangle: number, vertex, count });
+                    }
+                }
+                Ok(())
+            }
+            Form::HeightField { heights, size, extent } => {
+                still("height field")?;
+                let [rows, columns] = *size;
+                if rows < 2 || columns < 2 || rows.checked_mul(columns) != Some(heights.len()) {
+                    let (name, size) = (self.name.clone(), *size);
+                    return Err(RapierError::Grid { name, size, heights: heights.len() });
+                }
+                let far = heights.iter().find(|x| !(x.is_finite() && x.abs() <= 1e6));
+                far.map_or(Ok(()), |x| value("height", f64::from(*x), false))?;
+                extent.iter().try_for_each(|x| positive("extent", *x))
+            }
+        }
+    }
+
+    /// The form as rapier has it, and its frame in the thing's.
+    pub(crate) fn shape(&self) -> Result<(SharedShape, Frame), RapierError> {
+        let unusable = |why: String| RapierError::Unusable { name: self.name.clone(), why };
+        let quarter = core::f32::consts::FRAC_1_SQRT_2;
+        // rapier's cylinders and height fields stand upright along y.
+        let upright = Frame::from_rotation(Rotation::from_xyzw(quarter, 0.0, 0.0, quarter));
+        Ok(match &self.form {
+            Form::Simple(shape) => (shape_of(shape), Frame::IDENTITY),
+            Form::Cylinder { radius, half_length } => {
+                (SharedShape::cylinder(*half_length as f32, *radius as f32), upright)
+            }
+            Form::Hull(points) => {
+                let points: Vec<Vector> = points.iter().map(|point| Vector::from(*point)).collect();
+                let hull = (points.len() > 3).then(|| SharedShape::convex_hull(&points)).flatten();
+                // A flat hull has no mass of its own.
+                let hull = hull.filter(|hull| hull.mass_properties(1.0).mass() > 0.0);
+                let why = || unusable(format!("{} points span no solid", points.len()));
+                (hull.ok_or_else(why)?, Frame::IDENTITY)
+            }
+            Form::Mesh { vertices, triangles } => {
+                let vertices = vertices.iter().map(|vertex| Vector::from(*vertex)).collect();
+                let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
+                let mesh = SharedShape::trimesh_with_flags(vertices, triangles.clone(), flags);
+                (mesh.map_err(|error| unusable(format!("{error}")))?, Frame::IDENTITY)
+            }
+            Form::HeightField { heights, size: [rows, columns], extent: [x, y] } => {
+                // Upright, rapier's rows run towards -y; its grid lies column after column.
+                let at = |row: usize, column: usize| heights[(rows - 1 - row) * columns + column];
+                let data = (0..*columns).flat_map(|column| (0..*rows).map(move |row| at(row, column))).collect();
+                let grid = Array2::new(*rows, *columns, data);
+                (SharedShape::heightfield(grid, Vector::new(*x as f32, 1.0, *y as f32)), upright)
+            }
+        })
+    }
+}
