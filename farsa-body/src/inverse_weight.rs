@@ -5,10 +5,10 @@ use alloc::vec::Vec;
 
 use farsa_num::Scalar;
 
-use crate::kinematics::{KinematicTree, dot, sub};
+use crate::kinematics::tree::{KinematicTree, dot, sub};
 use crate::pose::{Pose, cross};
-use crate::robot::{JointKind, Robot};
-use crate::validation::RobotError;
+use crate::robot::description::{JointKind, Robot};
+use crate::robot::validation::RobotError;
 
 /// Angular and linear velocity at unit speed of one degree of freedom.
 type Column = ([f64; 3], [f64; 3]);
@@ -128,9 +128,9 @@ fn half_solved(factor: &[f64], row: &mut [f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mass_properties::MassProperties;
     use crate::ports::BodyId;
-    use crate::robot::{Joint, Segment};
+    use crate::robot::description::{Joint, Segment};
+    use crate::robot::mass_properties::MassProperties;
 
     #[test]
     fn closed_forms() {

@@ -6,7 +6,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::Write as _;
 
-use crate::robot::Robot;
+use crate::robot::description::Robot;
 
 /// Lines of XML, each as far in as it is nested.
 #[derive(Default)]

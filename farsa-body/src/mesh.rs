@@ -6,11 +6,11 @@ use std::vec::Vec;
 
 use farsa_num::Scalar;
 
-use crate::kinematics::{dot, sub};
-use crate::mass_properties::MassProperties;
+use crate::kinematics::tree::{dot, sub};
 use crate::pose::{Pose, cross, norm};
 use crate::principal_axes::principal_axes;
-use crate::robot::Shape;
+use crate::robot::mass_properties::MassProperties;
+use crate::robot::shape::Shape;
 
 /// No shape is thinner [m].
 const THINNEST: f64 = 1e-6;

@@ -8,13 +8,14 @@ use core::fmt::Write as _;
 
 use farsa_num::Scalar;
 
-use crate::actuator::Law;
+use crate::actuators::law::Law;
 use crate::inverse_weight::inverse_weights;
 use crate::markup::{Lines, numbers, quoted, segment_names};
 use crate::ports::BodyId;
 use crate::pose::Pose;
-use crate::robot::{Actuator, Collider, JointKind, Pair, Robot, Segment, Shape};
-use crate::validation::RobotError;
+use crate::robot::description::{Actuator, Collider, JointKind, Pair, Robot, Segment};
+use crate::robot::shape::Shape;
+use crate::robot::validation::RobotError;
 
 /// What a MuJoCo model says beside the robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -317,7 +318,7 @@ fn geom(collider: &Collider) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm_and_hand::ArmAndHand;
+    use crate::robots::arm_and_hand::ArmAndHand;
 
     #[test]
     fn contacts_yield_as_ours_at_rest() {

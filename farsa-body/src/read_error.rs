@@ -4,7 +4,7 @@ use std::fmt;
 use std::string::String;
 use std::vec::Vec;
 
-use crate::validation::RobotError;
+use crate::robot::validation::RobotError;
 
 /// A line of a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -9,7 +9,6 @@ use std::vec::Vec;
 use farsa_num::sin_cos;
 
 use crate::markup_tree::{Element, Tree};
-use crate::mass_properties::MassProperties;
 use crate::pose::{Pose, cross, norm};
 use crate::principal_axes::{rotation_of_axes, rotation_to};
 use crate::read_error::{Place, ReadError};
@@ -19,7 +18,8 @@ use crate::read_mjcf_classes::{ACTUATORS, Classes};
 use crate::read_mjcf_contacts::contacts;
 use crate::reading::{Frame, Reader, Repair};
 use crate::repair::settle;
-use crate::robot::Robot;
+use crate::robot::description::Robot;
+use crate::robot::mass_properties::MassProperties;
 use crate::solid::scaled;
 
 /// Why the attributes that are not read are not, for each element; MuJoCo's schema says which there are.

@@ -4,14 +4,14 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use crate::actuator::{Held, Law, Servo, Torque};
+use crate::actuators::law::{Held, Law, Servo, Torque};
 use crate::markup_tree::Element;
 use crate::read_error::ReadError;
 use crate::read_mjcf::{Compiler, Names};
 use crate::read_mjcf_bodies::Bodies;
 use crate::read_mjcf_classes::{ACTUATORS, Classed, Classes};
 use crate::reading::{Notes, Reader};
-use crate::robot::Robot;
+use crate::robot::description::Robot;
 
 /// A spring of MuJoCo's: force = gain x control + bias of position and of speed.
 struct Gains {

@@ -8,7 +8,6 @@ use std::vec;
 use std::vec::Vec;
 
 use crate::markup_tree::Element;
-use crate::mass_properties::MassProperties;
 use crate::ports::{BodyId, JointId};
 use crate::pose::Pose;
 use crate::read_error::{Place, ReadError};
@@ -17,7 +16,9 @@ use crate::read_mjcf_classes::{Classed, Classes};
 use crate::read_mjcf_geoms::{Meshes, check_geom, geom};
 use crate::read_mjcf_joints::{check_joint, joint};
 use crate::reading::{Frame, Reader};
-use crate::robot::{Collider, Joint, JointKind, Robot, Segment, Shape};
+use crate::robot::description::{Collider, Joint, JointKind, Robot, Segment};
+use crate::robot::mass_properties::MassProperties;
+use crate::robot::shape::Shape;
 use crate::solid::{Solid, scaled};
 
 /// One body of the file; the first is the world.

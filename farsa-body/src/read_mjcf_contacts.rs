@@ -11,7 +11,8 @@ use crate::read_error::ReadError;
 use crate::read_mjcf_bodies::{Bodies, Geom};
 use crate::read_mjcf_classes::{Classed, Classes};
 use crate::reading::{Notes, Reader};
-use crate::robot::{JointKind, Robot, Shape, Surface};
+use crate::robot::description::{JointKind, Robot, Surface};
+use crate::robot::shape::Shape;
 
 /// What MuJoCo knows of a contact.
 #[derive(Clone, Copy)]

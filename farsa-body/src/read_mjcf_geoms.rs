@@ -13,7 +13,7 @@ use crate::read_error::ReadError;
 use crate::read_mjcf::{Compiler, ROTATIONS, SHOW};
 use crate::read_mjcf_classes::{Classed, Classes};
 use crate::reading::{self, Notes, Reader};
-use crate::robot::Shape;
+use crate::robot::shape::Shape;
 use crate::solid::Solid;
 
 /// The meshes in `asset` elements, by name.

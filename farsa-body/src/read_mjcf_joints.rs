@@ -10,7 +10,7 @@ use crate::read_error::ReadError;
 use crate::read_mjcf::{Compiler, SHOW};
 use crate::read_mjcf_classes::Classed;
 use crate::reading::{Notes, Reader};
-use crate::robot::{Joint, JointKind};
+use crate::robot::description::{Joint, JointKind};
 
 /// From here on a limit is none [rad or m]: what `Robot::to_mjcf` writes for infinite ones.
 const ENDLESS: f64 = 1e10;

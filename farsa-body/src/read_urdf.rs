@@ -9,16 +9,17 @@ use std::vec::Vec;
 
 use farsa_num::sin_cos;
 
-use crate::actuator::{Law, Torque};
+use crate::actuators::law::{Law, Torque};
 use crate::markup_tree::{Element, Tree};
-use crate::mass_properties::MassProperties;
 use crate::mesh::Mesh;
 use crate::ports::{BodyId, JointId};
 use crate::pose::{Pose, norm};
 use crate::read_error::{Place, ReadError};
 use crate::reading::{Frame, Meshes, Reader};
 use crate::repair::settle;
-use crate::robot::{Collider, Joint, JointKind, Robot, Segment, Shape};
+use crate::robot::description::{Collider, Joint, JointKind, Robot, Segment};
+use crate::robot::mass_properties::MassProperties;
+use crate::robot::shape::Shape;
 use crate::solid::Solid;
 
 /// The root link that stands for the world itself.

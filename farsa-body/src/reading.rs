@@ -12,7 +12,7 @@ use crate::pose::Pose;
 use crate::read_error::{Place, ReadError};
 use crate::read_mjcf;
 use crate::read_urdf;
-use crate::robot::Robot;
+use crate::robot::description::Robot;
 
 /// How much a model may hold, so that reading it takes bounded time and memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,13 +2,13 @@
 
 use std::vec::Vec;
 
-use crate::mass_properties::MassProperties;
 use crate::ports::BodyId;
 use crate::pose::Pose;
 use crate::principal_axes::principal_axes;
 use crate::read_error::{Place, ReadError};
 use crate::reading::{Notes, Repair};
-use crate::robot::{JointKind, Robot};
+use crate::robot::description::{JointKind, Robot};
+use crate::robot::mass_properties::MassProperties;
 
 /// Gives what moves a mass, if the links fixed to it have one or the caller said which, and refuses what no body can have.
 ///
@@ -86,7 +86,7 @@ fn take_over(robot: &mut Robot, places: &[Place], notes: &mut Notes) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::{Joint, Segment};
+    use crate::robot::description::{Joint, Segment};
     use std::vec;
 
     #[test]

@@ -2,10 +2,10 @@
 
 use std::string::String;
 
-use crate::mass_properties::MassProperties;
 use crate::mesh::{Mesh, z_to_axis};
 use crate::pose::Pose;
-use crate::robot::Shape;
+use crate::robot::mass_properties::MassProperties;
+use crate::robot::shape::Shape;
 
 /// A shape of a model file, in its own frame.
 #[derive(Clone, Debug, PartialEq)]

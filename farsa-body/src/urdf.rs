@@ -6,12 +6,13 @@ use alloc::vec::Vec;
 
 use farsa_num::{atan2, sin_cos};
 
-use crate::actuator::Law;
+use crate::actuators::law::Law;
 use crate::markup::{Lines, numbers, quoted, segment_names, unused};
 use crate::ports::{BodyId, JointId};
 use crate::pose::{Pose, norm};
-use crate::robot::{Collider, JointKind, Robot, Segment, Shape};
-use crate::validation::RobotError;
+use crate::robot::description::{Collider, JointKind, Robot, Segment};
+use crate::robot::shape::Shape;
+use crate::robot::validation::RobotError;
 
 /// The name of the link that stands for the world.
 const WORLD: &str = "world";
@@ -203,8 +204,8 @@ mod tests {
 
     #[test]
     fn names_are_unique() {
-        use crate::mass_properties::MassProperties;
-        use crate::robot::Joint;
+        use crate::robot::description::Joint;
+        use crate::robot::mass_properties::MassProperties;
         let mut robot = Robot::new("two");
         let ball = MassProperties::sphere(1.0, 0.1);
         let first =
