@@ -8,8 +8,6 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
-#[cfg(feature = "files")]
-extern crate std;
 
 /// Actuator laws: muscles, servos, torques.
 pub mod actuators;
@@ -17,55 +15,17 @@ pub mod actuators;
 mod channel;
 /// Sensors and motors made of sensors and motors.
 mod compose;
-#[cfg(feature = "alloc")]
-mod inverse_weight;
 /// Poses of segments, Jacobians, gravity torques, inverse kinematics.
 #[cfg(feature = "alloc")]
 pub mod kinematics;
-#[cfg(feature = "alloc")]
-mod markup;
-#[cfg(feature = "files")]
-mod markup_check;
-#[cfg(feature = "files")]
-mod markup_tree;
-#[cfg(feature = "files")]
-mod mesh;
-#[cfg(feature = "alloc")]
-mod mjcf;
-#[cfg(feature = "files")]
-mod model_files;
 /// Motors: from values in [0, 1] to commands.
 pub mod motors;
 /// The ports: what a world may offer, and the two sides that use it.
 mod ports;
 /// Positions, orientations and velocities.
 mod pose;
-#[cfg(feature = "files")]
-mod principal_axes;
-#[cfg(feature = "files")]
-mod read_error;
-#[cfg(feature = "files")]
-mod read_mjcf;
-#[cfg(feature = "files")]
-mod read_mjcf_actuators;
-#[cfg(feature = "files")]
-mod read_mjcf_bodies;
-#[cfg(feature = "files")]
-mod read_mjcf_classes;
-#[cfg(feature = "files")]
-mod read_mjcf_contacts;
-#[cfg(feature = "files")]
-mod read_mjcf_geoms;
-#[cfg(feature = "files")]
-mod read_mjcf_joints;
-#[cfg(feature = "files")]
-mod read_urdf;
-#[cfg(feature = "files")]
-mod reading;
 /// What records a life, tick by tick.
 mod recorder;
-#[cfg(feature = "files")]
-mod repair;
 /// A robot as data.
 #[cfg(feature = "alloc")]
 pub mod robot;
@@ -74,13 +34,9 @@ pub mod robot;
 pub mod robots;
 /// Sensors: from a world to values for a network.
 pub mod sensors;
-#[cfg(feature = "files")]
-mod solid;
 /// The conformance kit for worlds, sensors and motors.
 #[cfg(feature = "alloc")]
 pub mod testing;
-#[cfg(feature = "alloc")]
-mod urdf;
 /// Wrappers around sensors and motors: noise, delay, scale, damage.
 pub mod wrappers;
 
@@ -88,8 +44,6 @@ pub use actuators::{Effort, Held, Law, MusclePair, MuscleVariant, Servo, Tension
 pub use channel::ChannelError;
 #[cfg(feature = "alloc")]
 pub use kinematics::{Goal, InverseKinematics, InverseKinematicsError, KinematicTree, Orientation, Solution};
-#[cfg(feature = "alloc")]
-pub use mjcf::{Keyframe, MjcfOptions};
 pub use motors::{
     AttachmentMotor, Leds, Muscles, ServoGroup, ServoRange, SignalMotor, SpeedAndTurn, TorqueMotor, WheelVelocity,
 };
@@ -98,10 +52,6 @@ pub use ports::{
     Near, PairContact, PairId, Planar, Rays, Sensor, Sight, Snapshot, World,
 };
 pub use pose::{Pose, Twist};
-#[cfg(feature = "files")]
-pub use read_error::{Place, ReadError};
-#[cfg(feature = "files")]
-pub use reading::{Frame, Limits, Meshes, Note, ReadOptions, Reading, Repair};
 pub use recorder::{Recorder, record_world};
 #[cfg(feature = "alloc")]
 pub use robot::{

@@ -1,9 +1,8 @@
 //! The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, Robot,
-};
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Robot};
 use farsa_evo::{GeneRange, decode};
+use farsa_models::MjcfOptions;
 use farsa_nn::{Layout, ParameterKind};
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use farsa_body::{MjcfOptions, Recorder};
+use farsa_body::Recorder;
+use farsa_models::MjcfOptions;
 
 use crate::controller_export::{ControllerExport, CtrnnExport, StartExport};
 use crate::error::Error;

@@ -52,8 +52,8 @@ pub(crate) fn robot(plan: &Plan<'_>, format: ModelFormat) -> Result<String, Erro
     let name = plan.experiment.name();
     let robot = setup.stage().robot.ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
-        ModelFormat::Mjcf => robot.to_mjcf(&setup.mjcf_options()),
-        ModelFormat::Urdf => robot.to_urdf(),
+        ModelFormat::Mjcf => farsa_models::mjcf::write(&robot, &setup.mjcf_options()),
+        ModelFormat::Urdf => farsa_models::urdf::write(&robot),
     };
     text.map_err(|error| Error::Other(format!("{name}: {error}")))
 }

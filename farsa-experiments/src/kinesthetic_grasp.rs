@@ -4,7 +4,7 @@ pub use crate::kinesthetic_grasp_school::Lessons;
 
 use std::sync::Arc;
 
-use farsa_body::MjcfOptions;
+use farsa_models::MjcfOptions;
 
 use crate::controller_export::{ControllerExport, StartExport};
 use crate::engine::{ENGINE, Engine};

@@ -5,7 +5,8 @@ pub use crate::gait::{End, Footfall, Gait, Rules};
 pub use crate::walker::{Legs, Posture, Walker, WalkerParts};
 pub use crate::walker_life::{Brain, Launch, Pace, SENSES, Walk, WalkerLife};
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics};
+use farsa_models::MjcfOptions;
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 

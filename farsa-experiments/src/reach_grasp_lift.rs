@@ -9,7 +9,8 @@ pub use crate::script::{Plan, ScriptLife, Statics, Timetable};
 
 use std::sync::Arc;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions};
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics};
+use farsa_models::MjcfOptions;
 use farsa_nn::Network;
 use farsa_physics::articulated::{Batch, Model, World};
 

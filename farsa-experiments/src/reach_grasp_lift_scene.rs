@@ -2,9 +2,10 @@
 
 use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, ChannelError, Channels, Contacts, Finger, Handles, JointId,
-    JointPosition, Joints, Keyframe, Kinematics, MjcfOptions, Motor, Muscles, PairId, Point, Pose, Robot, RobotError,
-    Sensor, ServoGroup, ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
+    JointPosition, Joints, Kinematics, Motor, Muscles, PairId, Point, Pose, Robot, RobotError, Sensor, ServoGroup,
+    ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
 };
+use farsa_models::{Keyframe, MjcfOptions};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::error::Error;

@@ -1,8 +1,7 @@
 //! The settings that all experiments with walkers have, and how a walk is lived and told.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, World,
-};
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, World};
+use farsa_models::MjcfOptions;
 
 use crate::engine::{ENGINE, Engine};
 use crate::error::Error;

@@ -1,0 +1,421 @@
+//! The bodies of an MJCF file: joints, inertias, geoms.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, MassProperties, Pose, Robot, Segment, Shape};
+
+use crate::context::Context;
+use crate::error::{Place, ReadError};
+use crate::frame::Frame;
+use crate::mesh::solid::{Solid, scaled};
+use crate::mjcf::classes::{Classed, Classes};
+use crate::mjcf::compiler::{Compiler, ROTATIONS, SHOW};
+use crate::mjcf::geoms::{MeshAssets, check_geom, geom};
+use crate::mjcf::joints::{check_joint, joint};
+use crate::mjcf::names::Names;
+use crate::xml::tree::Element;
+
+/// One body of the file; the first is the world.
+pub(crate) struct Body {
+    pub(crate) segment: Option<BodyId>,
+    pub(crate) parent: usize,
+    /// The body whose motion it shares: itself, or the first above that moves, or the world.
+    pub(crate) carrier: usize,
+}
+
+/// A geom that became a collider.
+pub(crate) struct Geom<'t, 'c> {
+    pub(crate) classed: Classed<'t, 'c>,
+    pub(crate) body: usize,
+    pub(crate) collider: usize,
+}
+
+/// What the bodies are made of and what other sections ask about them.
+pub(crate) struct Bodies<'t, 'c> {
+    model: Element<'t>,
+    compiler: &'c Compiler,
+    classes: &'c Classes<'t>,
+    meshes: MeshAssets<'t, 'c>,
+    pub(crate) names: Names,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) list: Vec<Body>,
+    pub(crate) by_name: BTreeMap<String, usize>,
+    pub(crate) joints: BTreeMap<String, JointId>,
+    pub(crate) geoms: Vec<Geom<'t, 'c>>,
+    /// Geoms that pairs name.
+    paired: BTreeSet<&'t str>,
+    joint_number: usize,
+    geom_number: usize,
+}
+
+/// A body that is yet to be read.
+struct Waiting<'t> {
+    element: Element<'t>,
+    parent: usize,
+    class: usize,
+    /// The frame that it stands in, in the parent's.
+    within: Pose<f64>,
+}
+
+/// An element of a body, with the frame and class that the `frame`s around it give.
+type Item<'t> = (Element<'t>, Pose<f64>, usize);
+
+impl<'t, 'c> Bodies<'t, 'c> {
+    pub(crate) fn new(
+        model: Element<'t>,
+        compiler: &'c Compiler,
+        classes: &'c Classes<'t>,
+        context: &mut Context<'_>,
+    ) -> Result<Self, ReadError> {
+        for element in classes.elements() {
+            match element.tag() {
+                "joint" => check_joint(element, &mut context.warnings)?,
+                "geom" => check_geom(element, &mut context.warnings)?,
+                _ => {}
+            }
+        }
+        let pairs = model.all("contact").flat_map(|contact| contact.all("pair"));
+        let paired = pairs.flat_map(|pair| [pair.attribute("geom1"), pair.attribute("geom2")]).flatten().collect();
+        Ok(Self {
+            model,
+            compiler,
+            classes,
+            meshes: MeshAssets::of(model, classes, &mut context.warnings)?,
+            names: Names::default(),
+            frames: Vec::new(),
+            list: vec![Body { segment: None, parent: 0, carrier: 0 }],
+            by_name: BTreeMap::from([("world".to_owned(), 0)]),
+            joints: BTreeMap::new(),
+            geoms: Vec::new(),
+            paired,
+            joint_number: 0,
+            geom_number: 0,
+        })
+    }
+
+    /// Reads all bodies into the robot; `places` gets the line of each segment.
+    pub(crate) fn read(
+        &mut self,
+        robot: &mut Robot,
+        places: &mut Vec<Place>,
+        context: &mut Context<'_>,
+    ) -> Result<(), ReadError> {
+        let worlds: Vec<Element<'t>> = self.model.all("worldbody").collect();
+        self.take_names(&worlds)?;
+        for world in worlds {
+            world.check(&[], &[], &mut context.warnings)?;
+            let items = self.items(world, 0, context)?;
+            self.colliders(robot, 0, &Pose::identity(), &items, context)?;
+            if let Some((joint, ..)) =
+                items.iter().find(|(e, ..)| ["joint", "freejoint", "inertial"].contains(&e.tag()))
+            {
+                return Err(joint.unsupported("the world neither moves nor has a mass"));
+            }
+            let mut waiting = Self::waiting(0, &items);
+            while let Some(next) = waiting.pop() {
+                let (index, items) = self.body(robot, places, &next, context)?;
+                waiting.extend(Self::waiting(index, &items));
+            }
+        }
+        Ok(())
+    }
+
+    /// The names in the file, so that made ones are others.
+    fn take_names(&mut self, worlds: &[Element<'t>]) -> Result<(), ReadError> {
+        let mut open = worlds.to_vec();
+        while let Some(element) = open.pop() {
+            match element.tag() {
+                "body" => drop(self.names.declare("body", element)?),
+                "joint" | "freejoint" => drop(self.names.declare("joint", element)?),
+                "geom" => drop(self.names.declare("geom", element)?),
+                _ => {}
+            }
+            let children: Vec<_> = element.children().collect();
+            open.extend(children.into_iter().rev());
+        }
+        Ok(())
+    }
+
+    /// The bodies among the items, the first last.
+    fn waiting(parent: usize, items: &[Item<'t>]) -> Vec<Waiting<'t>> {
+        let bodies = items.iter().rev().filter(|(element, ..)| element.tag() == "body");
+        bodies.map(|&(element, within, class)| Waiting { element, parent, class, within }).collect()
+    }
+
+    /// The elements of a body, those in frames in the frames' places.
+    fn items(&self, body: Element<'t>, class: usize, context: &mut Context<'_>) -> Result<Vec<Item<'t>>, ReadError> {
+        let mut items = Vec::new();
+        let mut open: Vec<Item<'t>> = vec![(body, Pose::identity(), class)];
+        let mut first = true;
+        while let Some((element, within, class)) = open.pop() {
+            let (mut inner, mut inherited) = (within, class);
+            if first {
+                first = false;
+            } else if element.tag() == "frame" {
+                let read = [&["name", "pos", "childclass"][..], &ROTATIONS].concat();
+                element.check(&read, &[], &mut context.warnings)?;
+                inner = within.compose(&self.compiler.pose(Some(element), Some(element))?);
+                if let Some(name) = element.attribute("childclass") {
+                    inherited = self.classes.find(element, name)?;
+                }
+            } else {
+                items.push((element, within, class));
+                continue;
+            }
+            let ignored =
+                [("site camera light", "frames and lamps are not described"), ("plugin", "plugins are MuJoCo's")];
+            let read = [
+                "body",
+                "frame",
+                "joint",
+                "freejoint",
+                "geom",
+                "inertial",
+                "attach",
+                "replicate",
+                "composite",
+                "flexcomp",
+            ];
+            element.check_children(&read, &ignored, &mut context.warnings)?;
+            let children: Vec<_> = element.children().filter(|child| read.contains(&child.tag())).collect();
+            open.extend(children.into_iter().rev().map(|child| (child, inner, inherited)));
+        }
+        let other =
+            |(element, ..): &&Item<'t>| ["attach", "replicate", "composite", "flexcomp"].contains(&element.tag());
+        match items.iter().find(other) {
+            Some((element, ..)) => Err(element.unsupported(
+                "makes bodies by MuJoCo's rules; let MuJoCo write the model out (mj_saveLastXML) and read that",
+            )),
+            None => Ok(items),
+        }
+    }
+
+    /// Reads one body and tells its number and items.
+    fn body(
+        &mut self,
+        robot: &mut Robot,
+        places: &mut Vec<Place>,
+        next: &Waiting<'t>,
+        context: &mut Context<'_>,
+    ) -> Result<(usize, Vec<Item<'t>>), ReadError> {
+        let Waiting { element, parent, within, .. } = *next;
+        let read = [&["name", "pos", "childclass"][..], &ROTATIONS].concat();
+        let ignored = [
+            ("mocap", "the body stands fixed"),
+            ("gravcomp", "weights are not compensated"),
+            ("user simple fuse sleep", "how MuJoCo computes"),
+        ];
+        element.check(&read, &ignored, &mut context.warnings)?;
+        let class = match element.attribute("childclass") {
+            Some(name) => self.classes.find(element, name)?,
+            None => next.class,
+        };
+        let items = self.items(element, class, context)?;
+        let index = self.list.len();
+        let name = element.attribute("name").filter(|name| !name.is_empty()).map(str::to_owned);
+        let name = name.unwrap_or_else(|| self.names.generate("body", format!("body{index}")));
+        let carrying = &self.frames_of(parent);
+        let placed = within.compose(&self.compiler.pose(Some(element), Some(element))?);
+        let placement = carrying.1.compose(&placed);
+        let mass = self.mass(element, &items, context)?;
+        let joints = self.joints_of(element, &items, context)?;
+
+        let moves = !joints.is_empty();
+        let parent_segment = carrying.0;
+        if joints.iter().any(|(joint, _)| joint.kind == JointKind::Floating) {
+            if parent != 0 {
+                return Err(element.unsupported("a free joint on a body; only bodies in the world can be free"));
+            }
+            if joints.len() > 1 {
+                return Err(element.unsupported("a free joint beside others"));
+            }
+        }
+        // Where the body's frame is in that of the last segment; before the first joint that is where it stands.
+        let mut frame = placement;
+        let mut last = parent_segment;
+        let count = joints.len();
+        let share = context.options.between;
+        for (i, (joint, anchor)) in joints.into_iter().enumerate() {
+            let here = frame.compose(&Pose::at(anchor));
+            let start = joint.placement;
+            let joint = Joint { placement: here.compose(&start), ..joint };
+            frame = Pose::at(anchor.map(|x| -x));
+            let own = i + 1 == count;
+            let segment = if own { name.clone() } else { format!("{name}_{}", joint.name) };
+            let segment = if own { segment } else { self.names.generate("body", segment) };
+            let part = scaled(&mass, if own { 1.0 - share * (count - 1) as f64 } else { share });
+            let part = MassProperties { centre: [0, 1, 2].map(|k| part.centre[k] - anchor[k]), ..part };
+            let single = joint.kind.is_single().then(|| joint.name.clone());
+            let id = robot.add_segment(Segment::new(&segment, last, joint, part));
+            if let Some(joint) = single {
+                self.joints.insert(joint, JointId(id.0));
+            }
+            places.push(element.place());
+            last = Some(id);
+        }
+        if count > 1 {
+            context.warnings.add(
+                element.place(),
+                "body with several joints",
+                "got segments with a share of its mass between",
+            );
+        }
+        if !moves {
+            last = Some(robot.add_segment(Segment::new(&name, parent_segment, Joint::fixed(placement), mass)));
+            places.push(element.place());
+            frame = Pose::identity();
+        }
+        let carrier = if moves { index } else { self.list[parent].carrier };
+        self.list.push(Body { segment: last, parent, carrier });
+        self.by_name.insert(name.clone(), index);
+        self.frames.push(Frame { name, body: last, placement: frame });
+        self.colliders(robot, index, &frame, &items, context)?;
+        Ok((index, items))
+    }
+
+    /// The segment of a body and where its frame is in it.
+    fn frames_of(&self, body: usize) -> (Option<BodyId>, Pose<f64>) {
+        match body.checked_sub(1) {
+            None => (None, Pose::identity()),
+            Some(i) => (self.frames[i].body, self.frames[i].placement),
+        }
+    }
+
+    /// The joints of a body, each with its placement from where the last left the frame, and its anchor.
+    fn joints_of(
+        &mut self,
+        body: Element<'t>,
+        items: &[Item<'t>],
+        context: &mut Context<'_>,
+    ) -> Result<Vec<(Joint, [f64; 3])>, ReadError> {
+        let mut joints = Vec::new();
+        for (element, within, class) in items {
+            let number = self.joint_number;
+            let made = match element.tag() {
+                "freejoint" => {
+                    element.check(&["name"], &[("align group", "how MuJoCo computes")], &mut context.warnings)?;
+                    let name = element.attribute("name").unwrap_or_default().to_owned();
+                    (Joint { name, ..Joint::floating(Pose::identity()) }, [0.0; 3])
+                }
+                "joint" => {
+                    check_joint(*element, &mut context.warnings)?;
+                    let classed = self.classes.with(*element, *class)?;
+                    let name = element.attribute("name").filter(|name| !name.is_empty()).map(str::to_owned);
+                    let name = name.unwrap_or_else(|| self.names.generate("joint", format!("joint{number}")));
+                    joint(&classed, &name, within, self.compiler, context)?
+                }
+                _ => continue,
+            };
+            self.joint_number += 1;
+            joints.push(made);
+        }
+        if joints.len() > 6 {
+            return Err(body.unsupported("more than six joints"));
+        }
+        Ok(joints)
+    }
+
+    /// The mass of a body in its frame.
+    fn mass(
+        &mut self,
+        body: Element<'t>,
+        items: &[Item<'t>],
+        context: &mut Context<'_>,
+    ) -> Result<MassProperties, ReadError> {
+        let mut given = items.iter().filter(|(element, ..)| element.tag() == "inertial");
+        let inertial = given.next();
+        if let (Some((first, ..)), Some((second, ..))) = (inertial, given.next()) {
+            let (name, first) = (body.label(), first.place().line);
+            return Err(ReadError::Twice { place: second.place(), what: "inertial of".into(), name, first });
+        }
+        let none = MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] };
+        match (inertial, self.compiler.inertia_from_geom) {
+            (Some((element, within, _)), None | Some(false)) => self.inertial(*element, within, context),
+            (None, Some(false)) => Ok(none),
+            _ => {
+                let mut sum = none;
+                for (element, within, class) in items.iter().filter(|(element, ..)| element.tag() == "geom") {
+                    let classed = self.classes.with(*element, *class)?;
+                    let group = classed.number("group")?.unwrap_or(0.0);
+                    let [low, high] = self.compiler.inertia_groups;
+                    let mass = classed.not_negative("mass")?;
+                    let density = classed.not_negative("density")?.unwrap_or(1000.0);
+                    if !(low..=high).contains(&group) || mass == Some(0.0) || (mass.is_none() && density == 0.0) {
+                        continue;
+                    }
+                    if classed.word("shellinertia", &["true", "false"])? == Some("true") {
+                        context.warnings.add(element.place(), "geom `shellinertia`", "counted as solid");
+                    }
+                    match geom(&classed, within, self.compiler, &self.meshes, context)? {
+                        None | Some((Solid::Ours(Shape::Plane), _)) => {}
+                        Some((solid, at)) => sum = sum.with(&solid.mass_properties(mass, density).placed(&at)),
+                    }
+                }
+                Ok(sum)
+            }
+        }
+    }
+
+    fn inertial(
+        &self,
+        element: Element<'t>,
+        within: &Pose<f64>,
+        context: &mut Context<'_>,
+    ) -> Result<MassProperties, ReadError> {
+        let read = [&["pos", "mass", "diaginertia", "fullinertia"][..], &ROTATIONS].concat();
+        element.check(&read, &[], &mut context.warnings)?;
+        let mass = element.number("mass")?.ok_or_else(|| element.missing("mass"))?;
+        if mass < 0.0 {
+            return Err(element.wrong("mass", element.needed("mass")?, "but must not be negative"));
+        }
+        let inertia = match (element.array::<3>("diaginertia")?, element.array::<6>("fullinertia")?) {
+            (Some([xx, yy, zz]), None) => [xx, yy, zz, 0.0, 0.0, 0.0],
+            (None, Some(full)) => full,
+            (Some(_), Some(_)) => {
+                return Err(element.wrong("fullinertia", element.needed("fullinertia")?, "but there is diaginertia"));
+            }
+            (None, None) => return Err(element.missing("diaginertia or fullinertia")),
+        };
+        let pose = within.compose(&self.compiler.pose(Some(element), Some(element))?);
+        let body = MassProperties { mass, centre: [0.0; 3], inertia };
+        let turned = pose.rotation != Pose::identity().rotation;
+        Ok(if turned { body.placed(&pose) } else { MassProperties { centre: pose.position, ..body } })
+    }
+
+    /// Makes colliders of the geoms of a body, whose frame is at `frame` in its segment's.
+    fn colliders(
+        &mut self,
+        robot: &mut Robot,
+        body: usize,
+        frame: &Pose<f64>,
+        items: &[Item<'t>],
+        context: &mut Context<'_>,
+    ) -> Result<(), ReadError> {
+        for (element, within, class) in items.iter().filter(|(element, ..)| element.tag() == "geom") {
+            check_geom(*element, &mut context.warnings)?;
+            let number = self.geom_number;
+            self.geom_number += 1;
+            let classed = self.classes.with(*element, *class)?;
+            let bits = |name| Ok::<_, ReadError>(classed.number(name)?.unwrap_or(1.0) != 0.0);
+            let touches = bits("contype")? | bits("conaffinity")?;
+            let own = element.attribute("name").filter(|name| !name.is_empty());
+            let named = own.is_some_and(|name| self.paired.contains(name));
+            if classed.text("type") == Some("mesh") && !touches && !named {
+                context.warnings.add(element.place(), "geom of a mesh that touches nothing", SHOW);
+                continue;
+            }
+            let Some((solid, at)) = geom(&classed, within, self.compiler, &self.meshes, context)? else { continue };
+            let (shape, inner, why) = solid.shape();
+            if let Some(why) = why {
+                context.warnings.add(element.place(), format!("geom {}", solid.label()), why);
+            }
+            let name = own.map(str::to_owned);
+            let name = name.unwrap_or_else(|| self.names.generate("geom", format!("geom{number}")));
+            let placement = frame.compose(&at).compose(&inner);
+            let segment = self.list[body].segment;
+            let collider = robot.add_collider(Collider::new(&name, segment, shape, placement));
+            self.geoms.push(Geom { classed, body, collider });
+        }
+        Ok(())
+    }
+}
