@@ -17,6 +17,8 @@ pub(crate) fn principal_axes([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> ([f64; 3], [
             if m[i][j] == 0.0 {
                 continue;
             }
+            // cot(2 a) of the angle a that clears m[i][j]; t = tan(a) is the smaller root of t^2 + 2 slope t - 1 = 0, so
+            // that no turn exceeds 45 degrees, without which the sweeps need not converge.
             let slope = (m[j][j] - m[i][i]) / (2.0 * m[i][j]);
             let t = slope.signum() / (slope.abs() + Scalar::sqrt(slope * slope + 1.0));
             let c = 1.0 / Scalar::sqrt(t * t + 1.0);
@@ -40,6 +42,7 @@ pub(crate) fn principal_axes([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> ([f64; 3], [
             }
         }
     }
+    // Rounding has not kept the axes exactly perpendicular.
     axes[2] = cross(axes[0], axes[1]);
     ([m[0][0], m[1][1], m[2][2]], rotation_of_axes(axes))
 }

@@ -11,7 +11,10 @@ use crate::mjcf::names::Names;
 use crate::warnings::Warnings;
 use crate::xml::tree::Element;
 
-/// A spring of MuJoCo's: force = gain x control + bias of position and of speed.
+/// A spring of MuJoCo's: force = gain x control + position x length + speed x velocity.
+///
+/// Its documentation, "Computation, Actuation model": the kinds of actuators are shortcuts for `general`, with a fixed
+/// `gainprm` and an affine `biasprm`. A servo is gain = kp, position = -kp, speed = -kv.
 struct Gains {
     gain: f64,
     position: f64,
@@ -153,7 +156,8 @@ fn law(classed: &Classed<'_, '_>, compiler: &Compiler, warnings: &mut Warnings) 
     if let Some(force) = largest(classed, "forcelimited", "forcerange", compiler, warnings)? {
         limit = force * gear.abs();
     }
-    // Speed at the joint to force at the joint takes the gear twice.
+    // An actuator's length is gear x q and its force is multiplied by the gear: from q to the joint's torque takes the
+    // gear twice, from the control once.
     let (stiffness, damping) = (-gains.position * gear * gear, -gains.speed * gear * gear);
     let sound = [stiffness, damping, gear, gains.gain].iter().all(|x| x.is_finite());
     if !sound || stiffness < 0.0 || damping < 0.0 {

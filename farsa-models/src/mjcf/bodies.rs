@@ -13,6 +13,7 @@ use crate::mjcf::compiler::{Compiler, ROTATIONS, SHOW};
 use crate::mjcf::geoms::{MeshAssets, check_geom, geom};
 use crate::mjcf::joints::{check_joint, joint};
 use crate::mjcf::names::Names;
+use crate::warnings::Warnings;
 use crate::xml::tree::Element;
 
 /// One body of the file; the first is the world.
@@ -55,6 +56,17 @@ struct Waiting<'t> {
     class: usize,
     /// The frame that it stands in, in the parent's.
     within: Pose<f64>,
+}
+
+/// A body that is about to become segments.
+struct Piece<'n, 't> {
+    element: Element<'t>,
+    name: &'n str,
+    /// The segment that it hangs on.
+    carrying: Option<BodyId>,
+    /// Where it stands in that segment's frame.
+    placement: Pose<f64>,
+    mass: MassProperties,
 }
 
 /// An element of a body, with the frame and class that the `frame`s around it give.
@@ -111,6 +123,8 @@ impl<'t, 'c> Bodies<'t, 'c> {
             {
                 return Err(joint.unsupported("the world neither moves nor has a mass"));
             }
+            // A stack and no recursion: bodies may be nested as deep as the limits allow. The first child is on top, so
+            // that segments come in the file's order, parents before their children.
             let mut waiting = Self::waiting(0, &items);
             while let Some(next) = waiting.pop() {
                 let (index, items) = self.body(robot, places, &next, context)?;
@@ -120,16 +134,20 @@ impl<'t, 'c> Bodies<'t, 'c> {
         Ok(())
     }
 
-    /// The names in the file, so that made ones are others.
+    /// Takes all names that the file declares, so that no generated one is a name that comes later.
     fn take_names(&mut self, worlds: &[Element<'t>]) -> Result<(), ReadError> {
         let mut open = worlds.to_vec();
         while let Some(element) = open.pop() {
-            match element.tag() {
-                "body" => drop(self.names.declare("body", element)?),
-                "joint" | "freejoint" => drop(self.names.declare("joint", element)?),
-                "geom" => drop(self.names.declare("geom", element)?),
-                _ => {}
+            let kind = match element.tag() {
+                "body" => Some("body"),
+                "joint" | "freejoint" => Some("joint"),
+                "geom" => Some("geom"),
+                _ => None,
+            };
+            if let Some(kind) = kind {
+                self.names.declare(kind, element)?;
             }
+            // The last of the stack is the next: children go on it backwards.
             let children: Vec<_> = element.children().collect();
             open.extend(children.into_iter().rev());
         }
@@ -199,13 +217,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         context: &mut Context<'_>,
     ) -> Result<(usize, Vec<Item<'t>>), ReadError> {
         let Waiting { element, parent, within, .. } = *next;
-        let read = [&["name", "pos", "childclass"][..], &ROTATIONS].concat();
-        let ignored = [
-            ("mocap", "the body stands fixed"),
-            ("gravcomp", "weights are not compensated"),
-            ("user simple fuse sleep", "how MuJoCo computes"),
-        ];
-        element.check(&read, &ignored, &mut context.warnings)?;
+        check_body(element, &mut context.warnings)?;
         let class = match element.attribute("childclass") {
             Some(name) => self.classes.find(element, name)?,
             None => next.class,
@@ -214,36 +226,61 @@ impl<'t, 'c> Bodies<'t, 'c> {
         let index = self.list.len();
         let name = element.attribute("name").filter(|name| !name.is_empty()).map(str::to_owned);
         let name = name.unwrap_or_else(|| self.names.generate("body", format!("body{index}")));
-        let carrying = &self.frames_of(parent);
+
+        let (carrying, carrying_frame) = self.frames_of(parent);
         let placed = within.compose(&self.compiler.pose(Some(element), Some(element))?);
-        let placement = carrying.1.compose(&placed);
+        let placement = carrying_frame.compose(&placed);
         let mass = self.mass(element, &items, context)?;
         let joints = self.joints_of(element, &items, context)?;
+        check_free(element, parent, &joints)?;
 
         let moves = !joints.is_empty();
-        let parent_segment = carrying.0;
-        if joints.iter().any(|(joint, _)| joint.kind == JointKind::Floating) {
-            if parent != 0 {
-                return Err(element.unsupported("a free joint on a body; only bodies in the world can be free"));
-            }
-            if joints.len() > 1 {
-                return Err(element.unsupported("a free joint beside others"));
-            }
-        }
-        // Where the body's frame is in that of the last segment; before the first joint that is where it stands.
-        let mut frame = placement;
-        let mut last = parent_segment;
-        let count = joints.len();
-        let share = context.options.between;
+        let piece = Piece { element, name: &name, carrying, placement, mass };
+        let (segment, frame) = if moves {
+            self.jointed(robot, places, &piece, joints, context)
+        } else {
+            let fixed = Segment::new(&name, carrying, Joint::fixed(placement), mass);
+            places.push(element.place());
+            (Some(robot.add_segment(fixed)), Pose::identity())
+        };
+
+        let carrier = if moves { index } else { self.list[parent].carrier };
+        self.list.push(Body { segment, parent, carrier });
+        self.by_name.insert(name.clone(), index);
+        self.frames.push(Frame { name, body: segment, placement: frame });
+        self.colliders(robot, index, &frame, &items, context)?;
+        Ok((index, items))
+    }
+
+    /// Adds a segment for each joint of a body; tells the last, and where the body's frame is in it.
+    ///
+    /// A MuJoCo body may have several joints, which act one after the other; a description has one joint a segment, so
+    /// all but the last joint carry a segment that stands for no body of the file. It gets a small share of the mass,
+    /// because what moves must have one.
+    fn jointed(
+        &mut self,
+        robot: &mut Robot,
+        places: &mut Vec<Place>,
+        piece: &Piece<'_, 't>,
+        joints: Vec<(Joint, [f64; 3])>,
+        context: &mut Context<'_>,
+    ) -> (Option<BodyId>, Pose<f64>) {
+        let Piece { element, name, carrying, placement, mass } = *piece;
+        let (count, share) = (joints.len(), context.options.between);
+        // The body's frame in that of the last segment; before the first joint that is where it stands.
+        let (mut last, mut frame) = (carrying, placement);
         for (i, (joint, anchor)) in joints.into_iter().enumerate() {
-            let here = frame.compose(&Pose::at(anchor));
-            let start = joint.placement;
-            let joint = Joint { placement: here.compose(&start), ..joint };
+            // A segment's frame is at its joint: the anchor is the origin, and the body's frame is off by minus the anchor.
+            let at_anchor = frame.compose(&Pose::at(anchor));
+            let joint = Joint { placement: at_anchor.compose(&joint.placement), ..joint };
             frame = Pose::at(anchor.map(|x| -x));
-            let own = i + 1 == count;
-            let segment = if own { name.clone() } else { format!("{name}_{}", joint.name) };
-            let segment = if own { segment } else { self.names.generate("body", segment) };
-            let part = scaled(&mass, if own { 1.0 - share * (count - 1) as f64 } else { share });
+            let is_last = i + 1 == count;
+            let (segment, part) = if is_last {
+                (name.to_owned(), 1.0 - share * (count - 1) as f64)
+            } else {
+                (self.names.generate("body", format!("{name}_{}", joint.name)), share)
+            };
+            let part = scaled(&mass, part);
             let part = MassProperties { centre: [0, 1, 2].map(|k| part.centre[k] - anchor[k]), ..part };
             let single = joint.kind.is_single().then(|| joint.name.clone());
             let id = robot.add_segment(Segment::new(&segment, last, joint, part));
@@ -260,17 +297,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
                 "got segments with a share of its mass between",
             );
         }
-        if !moves {
-            last = Some(robot.add_segment(Segment::new(&name, parent_segment, Joint::fixed(placement), mass)));
-            places.push(element.place());
-            frame = Pose::identity();
-        }
-        let carrier = if moves { index } else { self.list[parent].carrier };
-        self.list.push(Body { segment: last, parent, carrier });
-        self.by_name.insert(name.clone(), index);
-        self.frames.push(Frame { name, body: last, placement: frame });
-        self.colliders(robot, index, &frame, &items, context)?;
-        Ok((index, items))
+        (last, frame)
     }
 
     /// The segment of a body and where its frame is in it.
@@ -329,6 +356,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             return Err(ReadError::Twice { place: second.place(), what: "inertial of".into(), name, first });
         }
         let none = MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] };
+        // `inertiafromgeom`: "true" overrides an `inertial`, "false" makes do with it, "auto" infers what is not given.
         match (inertial, self.compiler.inertia_from_geom) {
             (Some((element, within, _)), None | Some(false)) => self.inertial(*element, within, context),
             (None, Some(false)) => Ok(none),
@@ -336,6 +364,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
                 let mut sum = none;
                 for (element, within, class) in items.iter().filter(|(element, ..)| element.tag() == "geom") {
                     let classed = self.classes.with(*element, *class)?;
+                    // `inertiagrouprange` selects by group; a geom of no mass is for collisions only.
                     let group = classed.number("group")?.unwrap_or(0.0);
                     let [low, high] = self.compiler.inertia_groups;
                     let mass = classed.not_negative("mass")?;
@@ -396,6 +425,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             let number = self.geom_number;
             self.geom_number += 1;
             let classed = self.classes.with(*element, *class)?;
+            // The checks of a geom's numbers come with its pairs; here any bit will do.
             let bits = |name| Ok::<_, ReadError>(classed.number(name)?.unwrap_or(1.0) != 0.0);
             let touches = bits("contype")? | bits("conaffinity")?;
             let own = element.attribute("name").filter(|name| !name.is_empty());
@@ -418,4 +448,27 @@ impl<'t, 'c> Bodies<'t, 'c> {
         }
         Ok(())
     }
+}
+
+fn check_body(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
+    let read = [&["name", "pos", "childclass"][..], &ROTATIONS].concat();
+    let ignored = [
+        ("mocap", "the body stands fixed"),
+        ("gravcomp", "weights are not compensated"),
+        ("user simple fuse sleep", "how MuJoCo computes"),
+    ];
+    element.check(&read, &ignored, warnings)
+}
+
+/// Refuses a free joint where MuJoCo's format has none: on a body within another, or beside other joints.
+fn check_free(body: Element<'_>, parent: usize, joints: &[(Joint, [f64; 3])]) -> Result<(), ReadError> {
+    if joints.iter().any(|(joint, _)| joint.kind == JointKind::Floating) {
+        if parent != 0 {
+            return Err(body.unsupported("a free joint on a body; only bodies in the world can be free"));
+        }
+        if joints.len() > 1 {
+            return Err(body.unsupported("a free joint beside others"));
+        }
+    }
+    Ok(())
 }

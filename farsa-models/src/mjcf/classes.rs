@@ -128,6 +128,7 @@ impl<'t> Classed<'t, '_> {
             element.tag() == tag || (ACTUATORS.contains(&tag) && ACTUATORS.contains(&element.tag()))
         };
         let mut class = Some(self.class);
+        // The nearest class that says it; within a class the last element, which overrides those before it.
         while let Some(current) = class {
             let found = self.classes.elements[current].iter().rev().find(|element| alike(element) && says(element));
             if let Some(found) = found {

@@ -48,6 +48,7 @@ impl Compiler {
         for element in model.all("compiler") {
             settings.add(element, context)?;
         }
+        // Of the file's bounds and the caller's the stricter hold.
         let asked = context.options.repair;
         settings.repair.least_mass = settings.repair.least_mass.max(asked.least_mass);
         settings.repair.least_inertia = settings.repair.least_inertia.max(asked.least_inertia);
@@ -152,6 +153,7 @@ impl Compiler {
             [x, y, z, cosine]
         };
         match name {
+            // MuJoCo writes quaternions w first.
             "quat" => {
                 let [w, x, y, z] = element.array("quat")?.unwrap_or([1.0, 0.0, 0.0, 0.0]);
                 unit([x, y, z, w])
@@ -182,6 +184,7 @@ impl Compiler {
                     let n = norm(&v);
                     if n > 1e-10 { Ok(v.map(|x| x / n)) } else { Err(none()) }
                 };
+                // x as given, y made perpendicular to it, z their product.
                 let x = normal([a, b, c])?;
                 let along = x[0] * d + x[1] * e + x[2] * f;
                 let y = normal([d - along * x[0], e - along * x[1], f - along * x[2]])?;

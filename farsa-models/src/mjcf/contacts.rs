@@ -25,7 +25,31 @@ struct Contact {
     mix: f64,
 }
 
+/// Two colliders that may touch.
+type PairContact = ([usize; 2], Contact);
+
+/// A geom that may touch others by its bits, with them.
+struct Touching<'b, 't, 'c> {
+    geom: &'b Geom<'t, 'c>,
+    contype: u32,
+    conaffinity: u32,
+    contact: Contact,
+}
+
+/// What the `contact` sections declare.
+#[derive(Default)]
+struct Declared {
+    pairs: Vec<PairContact>,
+    /// The line of each `pair`, by its colliders in ascending order; those that cannot be described are here as well.
+    lines: BTreeMap<[usize; 2], usize>,
+    /// Bodies whose geoms do not touch, in ascending order.
+    excluded: BTreeSet<[usize; 2]>,
+}
+
 /// Adds the pairs of the `contact` section and those that MuJoCo makes of the geoms' bits.
+///
+/// MuJoCo's documentation, "Computation, Collision detection, Selection": the pairs that a model declares, joined with
+/// those that its geoms' `contype` and `conaffinity` allow. Declared pairs come first here, in the file's order.
 pub(crate) fn contacts<'t>(
     model: Element<'t>,
     robot: &mut Robot,
@@ -36,96 +60,162 @@ pub(crate) fn contacts<'t>(
     for element in classes.elements().filter(|element| element.tag() == "pair") {
         check_pair(element, &mut context.warnings)?;
     }
-    let by_name: BTreeMap<&str, &Geom<'t, '_>> =
-        bodies.geoms.iter().map(|geom| (robot.colliders[geom.collider].name.as_str(), geom)).collect();
-    let mut pairs: Vec<([usize; 2], Contact)> = Vec::new();
-    let mut known = BTreeSet::new();
-    let mut excluded = BTreeSet::new();
-    let mut lines = BTreeMap::new();
-    for section in model.all("contact") {
-        section.check(&[], &[], &mut context.warnings)?;
-        section.check_children(&["pair", "exclude"], &[], &mut context.warnings)?;
-        for element in section.all("exclude") {
-            element.check(&["name", "body1", "body2"], &[], &mut context.warnings)?;
-            let [a, b] = ["body1", "body2"].map(|end| {
-                let name = element.needed(end)?;
-                let known = bodies.by_name.get(name).copied();
-                known.ok_or_else(|| element.unknown("body", name, bodies.by_name.keys().map(String::as_str)))
-            });
-            let (a, b) = (a?, b?);
-            excluded.insert([a.min(b), a.max(b)]);
-        }
-        for element in section.all("pair") {
-            check_pair(element, &mut context.warnings)?;
-            let [a, b] = ["geom1", "geom2"].map(|end| {
-                let name = element.needed(end)?;
-                let found = by_name.get(name).copied();
-                // A geom that was left out has been noted already.
-                let left_out = found.is_none() && bodies.names.has("geom", name);
-                if left_out {
-                    Ok(None)
-                } else {
-                    found.map(Some).ok_or_else(|| element.unknown("geom", name, bodies.names.of("geom")))
-                }
-            });
-            let (Some(a), Some(b)) = (a?, b?) else { continue };
-            let colliders = [a.collider, b.collider];
-            let key = [a.collider.min(b.collider), a.collider.max(b.collider)];
-            if let Some(first) = lines.insert(key, element.place().line) {
-                let name = [element.needed("geom1")?, element.needed("geom2")?].join("` and `");
-                return Err(ReadError::Twice { place: element.place(), what: "pair of".into(), name, first });
-            }
-            let contact = explicit(&classes.with(element, 0)?, &mixed(&of_geom(a)?, &of_geom(b)?))?;
-            if possible(robot, colliders) {
-                pairs.push((colliders, contact));
-            } else {
-                context.warnings.add(element.place(), "pair", "of shapes on one body, or of two planes, left out");
-            }
-            known.insert(key);
-        }
-    }
-    let mut details = Vec::new();
-    for geom in &bodies.geoms {
-        let bits = |name| {
-            let number = geom.classed.number(name)?.unwrap_or(1.0);
-            let wrong =
-                || geom.classed.element.wrong(name, geom.classed.text(name).unwrap_or_default(), "but must be bits");
-            if (0.0..=4_294_967_295.0).contains(&number) { Ok(number as u32) } else { Err(wrong()) }
-        };
-        details.push((geom, bits("contype")?, bits("conaffinity")?, of_geom(geom)?));
-    }
-    // Those that touch nothing are many, those that touch something are compared with each other.
-    details.retain(|(_, kind, affinity, _)| *kind != 0 || *affinity != 0);
+    let declared = Declared::from_model(model, robot, classes, bodies, &mut context.warnings)?;
     let most = context.options.limits.contacts;
-    if let Some((geom, ..)) = details.get(most) {
-        let place = geom.classed.element.place();
-        return Err(ReadError::TooMuch { place, what: "geoms that may touch", limit: most });
-    }
-    let mut count = 0_usize;
-    for (i, (a, kind_a, affinity_a, contact_a)) in details.iter().enumerate() {
-        for (b, kind_b, affinity_b, contact_b) in &details[i + 1..] {
-            let key = [a.collider.min(b.collider), a.collider.max(b.collider)];
-            let meet = kind_a & affinity_b != 0 || kind_b & affinity_a != 0;
-            if !meet || !apart(bodies, a.body, b.body) || known.contains(&key) {
-                continue;
-            }
-            if excluded.contains(&[a.body.min(b.body), a.body.max(b.body)]) || !possible(robot, key) {
-                continue;
-            }
-            count += 1;
-            if pairs.len() >= usize::from(u16::MAX) {
-                let place = b.classed.element.place();
-                return Err(ReadError::TooMuch { place, what: "pairs of geoms that may touch", limit: 65535 });
-            }
-            pairs.push((key, mixed(contact_a, contact_b)));
-        }
-    }
-    if pairs.is_empty() {
+    let generated = generated(robot, bodies, &touching(bodies, most)?, &declared)?;
+    if declared.pairs.is_empty() && generated.is_empty() {
         return Ok(());
     }
-    if count > 0 {
-        context.warnings.add(model.place(), "contype, conaffinity", format!("became {count} pairs"));
+    if !generated.is_empty() {
+        let what = format!("became {} pairs", generated.len());
+        context.warnings.add(model.place(), "contype, conaffinity", what);
     }
+    limit_freedoms(model, robot, most)?;
+    let pairs = declared.pairs.into_iter().chain(generated);
+    add_pairs(model, robot, pairs, &mut context.warnings)
+}
+
+impl Declared {
+    fn from_model<'t>(
+        model: Element<'t>,
+        robot: &Robot,
+        classes: &Classes<'t>,
+        bodies: &Bodies<'t, '_>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ReadError> {
+        let by_name: BTreeMap<&str, &Geom<'t, '_>> =
+            bodies.geoms.iter().map(|geom| (robot.colliders[geom.collider].name.as_str(), geom)).collect();
+        let mut declared = Self::default();
+        for section in model.all("contact") {
+            section.check(&[], &[], warnings)?;
+            section.check_children(&["pair", "exclude"], &[], warnings)?;
+            for element in section.all("exclude") {
+                declared.exclude(element, bodies, warnings)?;
+            }
+            for element in section.all("pair") {
+                check_pair(element, warnings)?;
+                let [a, b] = ["geom1", "geom2"].map(|end| named_geom(element, end, &by_name, bodies));
+                // A pair with a geom that was left out is left out with it.
+                if let (Some(a), Some(b)) = (a?, b?) {
+                    declared.pair(element, [a, b], robot, classes, warnings)?;
+                }
+            }
+        }
+        Ok(declared)
+    }
+
+    fn exclude(
+        &mut self,
+        element: Element<'_>,
+        bodies: &Bodies<'_, '_>,
+        warnings: &mut Warnings,
+    ) -> Result<(), ReadError> {
+        element.check(&["name", "body1", "body2"], &[], warnings)?;
+        let [a, b] = ["body1", "body2"].map(|end| {
+            let name = element.needed(end)?;
+            let body = bodies.by_name.get(name).copied();
+            body.ok_or_else(|| element.unknown("body", name, bodies.by_name.keys().map(String::as_str)))
+        });
+        self.excluded.insert(ascending([a?, b?]));
+        Ok(())
+    }
+
+    fn pair<'t>(
+        &mut self,
+        element: Element<'t>,
+        [a, b]: [&Geom<'t, '_>; 2],
+        robot: &Robot,
+        classes: &Classes<'t>,
+        warnings: &mut Warnings,
+    ) -> Result<(), ReadError> {
+        let colliders = [a.collider, b.collider];
+        if let Some(first) = self.lines.insert(ascending(colliders), element.place().line) {
+            let name = [element.needed("geom1")?, element.needed("geom2")?].join("` and `");
+            return Err(ReadError::Twice { place: element.place(), what: "pair of".into(), name, first });
+        }
+        let contact = explicit(&classes.with(element, 0)?, &mixed(&of_geom(a)?, &of_geom(b)?))?;
+        if possible(robot, colliders) {
+            self.pairs.push((colliders, contact));
+        } else {
+            warnings.add(element.place(), "pair", "of shapes on one body, or of two planes, left out");
+        }
+        Ok(())
+    }
+}
+
+fn ascending([a, b]: [usize; 2]) -> [usize; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The geom that an end of a `pair` names; `None` if it was left out, which has been warned about already.
+fn named_geom<'b, 't, 'c>(
+    pair: Element<'t>,
+    end: &str,
+    by_name: &BTreeMap<&str, &'b Geom<'t, 'c>>,
+    bodies: &Bodies<'t, '_>,
+) -> Result<Option<&'b Geom<'t, 'c>>, ReadError> {
+    let name = pair.needed(end)?;
+    match by_name.get(name) {
+        Some(geom) => Ok(Some(geom)),
+        None if bodies.names.has("geom", name) => Ok(None),
+        None => Err(pair.unknown("geom", name, bodies.names.of("geom"))),
+    }
+}
+
+/// The geoms that touch anything by their bits, at most `most`: they are compared with each other, and those that touch
+/// nothing are many.
+fn touching<'b, 't, 'c>(bodies: &'b Bodies<'t, 'c>, most: usize) -> Result<Vec<Touching<'b, 't, 'c>>, ReadError> {
+    let mut touching = Vec::new();
+    for geom in &bodies.geoms {
+        let classed = &geom.classed;
+        let bits = |name| {
+            let number = classed.number(name)?.unwrap_or(1.0);
+            let wrong = || classed.element.wrong(name, classed.text(name).unwrap_or_default(), "but must be bits");
+            if (0.0..=4_294_967_295.0).contains(&number) { Ok(number as u32) } else { Err(wrong()) }
+        };
+        let (contype, conaffinity) = (bits("contype")?, bits("conaffinity")?);
+        touching.push(Touching { geom, contype, conaffinity, contact: of_geom(geom)? });
+    }
+    touching.retain(|one| one.contype != 0 || one.conaffinity != 0);
+    if let Some(beyond) = touching.get(most) {
+        let place = beyond.geom.classed.element.place();
+        return Err(ReadError::TooMuch { place, what: "geoms that may touch", limit: most });
+    }
+    Ok(touching)
+}
+
+/// The pairs that MuJoCo makes of the geoms' bits: two geoms touch if one's `contype` and the other's `conaffinity` have
+/// a bit in common, unless the pair is declared, their bodies are excluded, or share their motion or are parent and child.
+fn generated(
+    robot: &Robot,
+    bodies: &Bodies<'_, '_>,
+    touching: &[Touching<'_, '_, '_>],
+    declared: &Declared,
+) -> Result<Vec<PairContact>, ReadError> {
+    let mut pairs = Vec::new();
+    for (i, a) in touching.iter().enumerate() {
+        for b in &touching[i + 1..] {
+            let colliders = ascending([a.geom.collider, b.geom.collider]);
+            let meet = a.contype & b.conaffinity != 0 || b.contype & a.conaffinity != 0;
+            if !meet || !apart(bodies, a.geom.body, b.geom.body) || declared.lines.contains_key(&colliders) {
+                continue;
+            }
+            if declared.excluded.contains(&ascending([a.geom.body, b.geom.body])) || !possible(robot, colliders) {
+                continue;
+            }
+            // A pair's number has 16 bits.
+            if declared.pairs.len() + pairs.len() >= usize::from(u16::MAX) {
+                let place = b.geom.classed.element.place();
+                return Err(ReadError::TooMuch { place, what: "pairs of geoms that may touch", limit: 65535 });
+            }
+            pairs.push((colliders, mixed(&a.contact, &b.contact)));
+        }
+    }
+    Ok(pairs)
+}
+
+/// Refuses robots whose inverse weights would take long: their mass matrix is factorised, which goes with the cube.
+fn limit_freedoms(model: Element<'_>, robot: &Robot, most: usize) -> Result<(), ReadError> {
     let freedoms = robot.segments.iter().map(|segment| match segment.joint.kind {
         JointKind::Fixed => 0,
         JointKind::Floating => 6,
@@ -135,17 +225,26 @@ pub(crate) fn contacts<'t>(
         let what = "degrees of freedom of a robot with contacts";
         return Err(ReadError::TooMuch { place: model.place(), what, limit: most });
     }
+    Ok(())
+}
+
+/// Adds the pairs with the springs and dampers that their bodies' inverse weights make of MuJoCo's numbers.
+fn add_pairs(
+    model: Element<'_>,
+    robot: &mut Robot,
+    pairs: impl Iterator<Item = PairContact>,
+    warnings: &mut Warnings,
+) -> Result<(), ReadError> {
     let weights = inverse_weights(robot).map_err(|error| ReadError::Robot { file: model.place().file, error })?;
     for (colliders, contact) in pairs {
         let w: f64 = colliders
             .iter()
             .map(|collider| robot.colliders[*collider].body.map_or(0.0, |body| weights[body.index()]))
             .sum();
-        let surface = contact.surface(w);
         if contact.dimensions == 4.0 {
-            context.warnings.add(model.place(), "condim 4", "friction about the normal alone is left out");
+            warnings.add(model.place(), "condim 4", "friction about the normal alone is left out");
         }
-        robot.add_pair(colliders, surface);
+        robot.add_pair(colliders, contact.surface(w));
     }
     Ok(())
 }
@@ -164,6 +263,10 @@ fn possible(robot: &Robot, [a, b]: [usize; 2]) -> bool {
 }
 
 /// Whether MuJoCo lets the geoms of two bodies touch: not if they move as one, nor if one carries the other.
+///
+/// Bodies without joints count as part of what carries them ("welded" in MuJoCo's documentation). Parent and child are
+/// kept apart because their geoms overlap at the joint by design; the world as a parent is the exception, or nothing
+/// could stand on the ground.
 fn apart(bodies: &Bodies<'_, '_>, a: usize, b: usize) -> bool {
     let carrier = |body: usize| bodies.list[body].carrier;
     let (a, b) = (carrier(a), carrier(b));
@@ -171,6 +274,7 @@ fn apart(bodies: &Bodies<'_, '_>, a: usize, b: usize) -> bool {
     a != b && (a == 0 || b == 0 || (above(a) != b && above(b) != a))
 }
 
+/// The numbers of one geom, MuJoCo's defaults where it says nothing.
 fn of_geom(geom: &Geom<'_, '_>) -> Result<Contact, ReadError> {
     let start = Contact {
         friction: [1.0, 0.005, 0.0001],
@@ -192,6 +296,7 @@ fn of_geom(geom: &Geom<'_, '_>) -> Result<Contact, ReadError> {
     Ok(contact)
 }
 
+/// The list `friction`, of at most so many.
 fn friction(classed: &Classed<'_, '_>, most: usize) -> Result<Option<Vec<f64>>, ReadError> {
     let list = classed.list("friction", 1, most)?;
     match (&list, classed.source("friction")) {
@@ -215,6 +320,7 @@ fn explicit(classed: &Classed<'_, '_>, geoms: &Contact) -> Result<Contact, ReadE
     Ok(contact)
 }
 
+/// `condim`, `solref` and `solimp` where an element gives them, else those of `contact`.
 fn explicit_solver(classed: &Classed<'_, '_>, mut contact: Contact) -> Result<Contact, ReadError> {
     contact.dimensions = classed.number("condim")?.unwrap_or(contact.dimensions);
     if let Some(list) = classed.list("solref", 1, 2)? {
@@ -225,16 +331,22 @@ fn explicit_solver(classed: &Classed<'_, '_>, mut contact: Contact) -> Result<Co
         }
     }
     if let Some(list) = classed.list("solimp", 1, 5)? {
+        // `solimp` is dmin, dmax, width, midpoint, power: at rest a contact is deeper than the width, where d is dmax.
         contact.impedance = list.get(1).copied().unwrap_or(contact.impedance);
     }
     Ok(contact)
 }
 
 /// MuJoCo's rules for two geoms: the higher priority, else the larger friction and the weighted mean of the rest.
+///
+/// "Computation, Collision detection, Contact parameters" in its documentation. A `solref` of negative numbers (a
+/// stiffness and a damping) has no mean with one of positive numbers (a time constant and a damping ratio): the smaller
+/// of each number is taken.
 fn mixed(a: &Contact, b: &Contact) -> Contact {
     if a.priority != b.priority {
         return if a.priority > b.priority { *a } else { *b };
     }
+    // Two weights of 0 share equally.
     let sum = a.mix + b.mix;
     let share = if sum > 0.0 { a.mix / sum } else { 0.5 };
     let mean = |a: f64, b: f64| share * a + (1.0 - share) * b;
@@ -255,9 +367,10 @@ impl Contact {
     /// The force is `(aref - a) d / ((1 - d) w)`, `aref = -b v - k d x`, with `k = 1 / (d tau ratio)^2` and
     /// `b = 2 / (d tau)`, or with `k = K / d^2` and `b = B / d` for the numbers -K, -B.
     fn surface(&self, w: f64) -> Surface {
-        // MuJoCo bounds both so.
+        // mjMINIMP and mjMAXIMP.
         let d = self.impedance.clamp(0.0001, 0.9999);
         let [tau, ratio] = self.solref;
+        // What stands over (1 - d) w in the force, with d in k and b cancelled: x times the first, v times the second.
         let (stiffness, damping) = if tau > 0.0 && ratio > 0.0 {
             (1.0 / (tau * tau * ratio * ratio), 2.0 / tau)
         } else {
@@ -267,6 +380,7 @@ impl Contact {
         let yielding = ((1.0 - d) * w).max(1e-9);
         let [friction, _, rolling] = self.friction;
         let finite = |x: f64| x.clamp(0.0, 1e15);
+        // `condim`: 1 has no friction, 3 along the surface, 4 also about the normal, 6 also against rolling.
         Surface {
             friction: if self.dimensions >= 3.0 { friction } else { 0.0 },
             rolling_friction: if self.dimensions >= 6.0 { rolling } else { 0.0 },

@@ -83,6 +83,7 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
                 numbers("face")?.chunks_exact(3).map(|f| [corner(f[0]), corner(f[1]), corner(f[2])]).collect();
             Mesh { points, triangles }
         };
+        // `refpos` and `refquat` say where the origin of the mesh is in its file: what is subtracted, before it is scaled.
         let from = element.array::<3>("refpos")?.unwrap_or([0.0; 3]);
         let turn = match element.array::<4>("refquat")? {
             Some([w, x, y, z]) if norm(&[w, x, y, z]) > 1e-10 => {
@@ -169,7 +170,7 @@ pub(crate) fn geom<'t>(
     let mut sizes = classed.list("size", 1, 3)?.unwrap_or_default();
     let source = classed.source("size").unwrap_or(element);
     if let Some([a, b, c, d, e, f]) = classed.array::<6>("fromto")?.filter(|_| !["sphere", "plane"].contains(&kind)) {
-        // From the second point to the first, as MuJoCo turns it.
+        // MuJoCo turns z from the second point to the first. It matters for boxes, whose x and y follow from the turn.
         let along = [a - d, b - e, c - f];
         let length = norm(&along);
         if !(length > 1e-14 && length.is_finite()) {
@@ -185,6 +186,7 @@ pub(crate) fn geom<'t>(
         }
         sizes.push(length / 2.0);
     }
+    // How many of `size` each kind uses; a plane's are only how it is drawn.
     let needed = match kind {
         "plane" => 0,
         "sphere" => 1,

@@ -23,6 +23,8 @@ pub(crate) fn inverse_weights(robot: &Robot) -> Result<Vec<f64>, RobotError> {
     let centres: Vec<_> = robot.segments.iter().zip(&poses).map(|(s, pose)| pose.transform(s.centre)).collect();
     let columns: Vec<Vec<(usize, Column)>> =
         (0..robot.segments.len()).map(|i| columns_of(robot, &poses, &first, i, centres[i])).collect();
+    // The mass matrix at rest: M = sum over segments of J^T diag(I, m) J, with J the columns at the centre of mass, and the
+    // armatures on the diagonal.
     let mut matrix = vec![0.0; n * n];
     for (i, segment) in robot.segments.iter().enumerate() {
         if segment.joint.kind.is_single() {
@@ -38,6 +40,8 @@ pub(crate) fn inverse_weights(robot: &Robot) -> Result<Vec<f64>, RobotError> {
             }
         }
     }
+    // The weight is tr(J M^-1 J^T) / 3 over the three directions of J's linear part. With M = L L^T each term is the
+    // square of L^-1 j, so one forward substitution a direction is enough.
     factorise(&mut matrix, n);
     let mut row = vec![0.0; n];
     let weights = columns.iter().map(|columns| {

@@ -96,7 +96,8 @@ pub(crate) fn joint(
     let mut joint = Joint::revolute(name, axis, Pose::identity(), range).with_damping(damping);
     joint.kind = kind;
     joint.armature = classed.not_negative("armature")?.unwrap_or(0.0);
-    // At position `ref` the body is where the file has it: at 0 it is so far back.
+    // `ref` is the joint's position in the configuration that the file describes. Positions mean the same here, so at
+    // position 0 the segment stands back from there by `ref`, about or along the axis.
     let reference = classed.number("ref")?.unwrap_or(0.0) * unit;
     if reference != 0.0 {
         let length = norm(&axis);

@@ -184,6 +184,7 @@ fn origin(within: Element<'_>, context: &mut Context<'_>) -> Result<Pose<f64>, R
         rotation[axis] = sine;
         Pose { rotation, ..Pose::identity() }
     };
+    // Angles about the fixed axes, x first: the matrix is Rz Ry Rx.
     let turn = about(2, yaw).compose(&about(1, pitch)).compose(&about(0, roll));
     let length = norm(&turn.rotation);
     Ok(Pose { position, rotation: turn.rotation.map(|x| x / length) })
