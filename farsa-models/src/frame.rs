@@ -3,6 +3,7 @@
 use farsa_body::{BodyId, Pose};
 /// Where a link or body of the file is in the robot.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frame {
     /// Its name in the file, or `bodyN` for MJCF's N-th if it has none.
     pub name: String,

@@ -38,6 +38,7 @@ use crate::xml::tree::Tree;
 /// - *Contacts of MuJoCo* are springs and dampers here: stiffness and damping are those at rest at full impedance.
 /// - *Commands* are efforts and joint positions; MuJoCo's, before its gears, are other numbers.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Imported {
     /// The robot; valid.
     pub robot: Robot,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// How much a model may hold, so that reading it takes bounded time and memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Limits {
     /// Bytes of a file.
     pub bytes: usize,
@@ -43,6 +44,7 @@ impl Default for Limits {
 
 /// What becomes of meshes that may touch something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Meshes {
     /// Each becomes the smallest by volume of the ball, capsule and box that hold all its points; see [`Imported`].
     #[default]
@@ -55,6 +57,7 @@ pub enum Meshes {
 ///
 /// MJCF's `compiler` has the same settings (`boundmass`, `boundinertia`, `balanceinertia`), which are obeyed there anyway.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Repair {
     /// Least mass of what moves [kg].
     pub least_mass: f64,
@@ -66,6 +69,7 @@ pub struct Repair {
 
 /// How to read a model; [`ReadOptions::default`] reads it strictly.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ReadOptions {
     /// The folder that all files that the model names must lie in; `None` for the folder of the model itself.
     pub root: Option<PathBuf>,

@@ -6,6 +6,7 @@ use crate::error::Place;
 
 /// Something that the file says and the robot does not.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Warning {
     /// Where it stands first.
     pub place: Place,

@@ -2,6 +2,7 @@
 
 /// What an actuator does to its joint at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Effort<S> {
     /// Torque [N m] or force [N], positive towards a growing joint position.
     pub torque: S,

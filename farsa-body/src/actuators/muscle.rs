@@ -51,6 +51,7 @@ pub struct MusclePair<R> {
 
 /// The three parts of one muscle's tension.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tension<S> {
     /// What the activation adds [N].
     pub active: S,

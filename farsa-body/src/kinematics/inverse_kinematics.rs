@@ -11,6 +11,7 @@ use crate::pose::{Pose, norm};
 
 /// Joint positions and how far they miss a goal.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solution {
     /// Joint positions [rad or m], in the order of [`KinematicTree::joints`].
     pub joints: Vec<f64>,

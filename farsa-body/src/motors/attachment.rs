@@ -6,6 +6,7 @@ use crate::ports::{Actuated, ActuatorId, BodyId, Channels, Motor, Planar, Sensor
 /// Reads whether a robot's attachment device holds something: 1 if so, else 0. One channel.
 #[doc(alias = "gripper")]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AttachmentSensor<B = BodyId> {
     body: B,
 }
@@ -34,6 +35,7 @@ impl<B: Copy, W: Planar<Body = B> + ?Sized> Sensor<W> for AttachmentSensor<B> {
 /// NaN lets go.
 #[doc(alias = "gripper")]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AttachmentMotor<A = ActuatorId> {
     device: A,
 }

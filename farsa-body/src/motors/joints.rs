@@ -9,6 +9,7 @@ use crate::ports::{Actuated, ActuatorId, Channels, Motor};
 ///
 /// The agonist pulls towards the joint's lower limit. A slice with one value leaves the antagonist slack.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Muscles<A = ActuatorId> {
     pair: A,
 }

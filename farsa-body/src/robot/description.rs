@@ -130,6 +130,7 @@ pub struct Robot {
 
 /// Where the parts of a merged robot begin in the lists of the one that took them in, from [`Robot::merge`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Offsets {
     /// Index of its first segment.
     pub segments: usize,

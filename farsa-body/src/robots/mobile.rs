@@ -164,6 +164,7 @@ impl MobileRobot {
 
 /// By which numbers a world knows the parts of a [`MobileRobot`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MobileParts {
     /// The robot.
     pub body: BodyId,

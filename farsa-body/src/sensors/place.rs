@@ -85,6 +85,7 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for TargetPosition<B> 
 
 /// Reads the height of a point of a body above the world's origin [m], one channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Height<B = BodyId> {
     point: Point<B>,
 }
@@ -112,6 +113,7 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for Height<B> {
 ///
 /// Of the two quaternions of an orientation the one with w >= 0 is read, so that equal orientations read alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyPose<B = BodyId> {
     body: B,
 }
@@ -140,6 +142,7 @@ impl<B: Copy, W: Kinematics<Body = B> + ?Sized> Sensor<W> for BodyPose<B> {
 
 /// Reads the velocity of a body's origin [m/s] and its angular velocity [rad/s]: six channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyVelocity<B = BodyId> {
     body: B,
     axes: Axes,

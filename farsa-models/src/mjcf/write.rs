@@ -10,6 +10,7 @@ use crate::xml::write::{Lines, numbers, quoted, segment_names};
 
 /// What a MuJoCo model says beside the robot.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct MjcfOptions {
     /// The step that MuJoCo shall take, which its contact parameters depend on [s].
     pub time_step: f64,
@@ -29,6 +30,7 @@ impl Default for MjcfOptions {
 
 /// A named state at rest.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Keyframe {
     /// Its name.
     pub name: String,
