@@ -10,13 +10,13 @@ use crate::warnings::Warnings;
 /// Gives what moves a mass, if the links fixed to it have one or the caller said which, and refuses what no body can have.
 ///
 /// `places` says where each segment is in its file.
-pub(crate) fn settle(
+pub(crate) fn repair_masses(
     robot: &mut Robot,
     places: &[Place],
     repair: &Repair,
     warnings: &mut Warnings,
 ) -> Result<(), ReadError> {
-    take_over(robot, places, warnings);
+    move_fixed_masses(robot, places, warnings);
     for (segment, place) in robot.segments.iter_mut().zip(places) {
         let moves = segment.joint.kind != JointKind::Fixed;
         let mut body = segment.mass_properties();
@@ -56,7 +56,7 @@ pub(crate) fn repaired(body: &MassProperties, moves: bool, repair: &Repair) -> O
 }
 
 /// Moves the masses of fixed links to the moving one that carries them, where it has none itself.
-fn take_over(robot: &mut Robot, places: &[Place], warnings: &mut Warnings) {
+fn move_fixed_masses(robot: &mut Robot, places: &[Place], warnings: &mut Warnings) {
     let without: Vec<bool> =
         robot.segments.iter().map(|segment| segment.joint.kind != JointKind::Fixed && segment.mass == 0.0).collect();
     // The segment whose motion each shares, and its place in that one's frame.
@@ -113,13 +113,14 @@ mod tests {
             robot.add_segment(Segment::new(name, Some(arm), Joint::fixed(Pose::at([x, 0.0, 0.0])), ball));
         }
         let places = vec![Place { file: "r".into(), line: 1 }; 3];
-        settle(&mut robot, &places, &Repair::default(), &mut Warnings::default()).expect("a mass");
+        repair_masses(&mut robot, &places, &Repair::default(), &mut Warnings::default()).expect("a mass");
         let own = robot.segments[0].mass_properties();
         assert_eq!((own.mass, own.centre), (2.0, [0.0; 3]));
         assert!((own.inertia[2] - 2.0 * (0.4 * 0.01 + 0.25)).abs() < 1e-15);
         assert!(robot.segments[1].mass == 0.0 && robot.validate().is_ok());
         robot.segments[0].mass = 0.0;
-        let error = settle(&mut robot, &places, &Repair::default(), &mut Warnings::default()).expect_err("no mass");
+        let error =
+            repair_masses(&mut robot, &places, &Repair::default(), &mut Warnings::default()).expect_err("no mass");
         assert!(matches!(error, ReadError::Mass { .. }), "{error}");
     }
 }

@@ -7,7 +7,8 @@ use crate::mesh::triangles::{Mesh, z_to_axis};
 /// A shape of a model file, in its own frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Solid {
-    Ours(Shape),
+    /// One that a description has as well.
+    Native(Shape),
     /// About z, with half the length.
     Cylinder {
         radius: f64,
@@ -23,7 +24,7 @@ impl Solid {
     pub(crate) fn shape(&self) -> (Shape, Pose<f64>, Option<&'static str>) {
         let here = Pose::identity();
         match self {
-            Self::Ours(shape) => (*shape, here, None),
+            Self::Native(shape) => (*shape, here, None),
             Self::Cylinder { radius, half_length } if half_length > radius => {
                 let shape = Shape::Capsule { radius: *radius, half_length: half_length - radius };
                 (shape, here, Some("a cylinder became the capsule of its radius and length"))
@@ -54,16 +55,16 @@ impl Solid {
     fn volume(&self) -> f64 {
         let pi = std::f64::consts::PI;
         match self {
-            Self::Ours(Shape::Sphere { radius }) => 4.0 / 3.0 * pi * radius * radius * radius,
-            Self::Ours(Shape::Capsule { radius, half_length }) => {
+            Self::Native(Shape::Sphere { radius }) => 4.0 / 3.0 * pi * radius * radius * radius,
+            Self::Native(Shape::Capsule { radius, half_length }) => {
                 pi * radius * radius * (2.0 * half_length + 4.0 / 3.0 * radius)
             }
-            Self::Ours(Shape::Box { half }) => 8.0 * half[0] * half[1] * half[2],
-            Self::Ours(Shape::Plane) => 0.0,
+            Self::Native(Shape::Box { half }) => 8.0 * half[0] * half[1] * half[2],
+            Self::Native(Shape::Plane) => 0.0,
             Self::Cylinder { radius, half_length } => 2.0 * pi * radius * radius * half_length,
             Self::Ellipsoid([a, b, c]) => 4.0 / 3.0 * pi * a * b * c,
             Self::Mesh(mesh) => {
-                mesh.solid(1.0).map_or_else(|| Self::Ours(mesh.fitted().0).volume(), |solid| solid.mass)
+                mesh.solid(1.0).map_or_else(|| Self::Native(mesh.fitted().0).volume(), |solid| solid.mass)
             }
         }
     }
@@ -72,7 +73,7 @@ impl Solid {
     pub(crate) fn mass_properties(&self, mass: Option<f64>, density: f64) -> MassProperties {
         let mass = mass.unwrap_or_else(|| density * self.volume());
         match self {
-            Self::Ours(shape) => MassProperties::of_shape(shape, mass),
+            Self::Native(shape) => MassProperties::of_shape(shape, mass),
             Self::Cylinder { radius, half_length } => MassProperties::cylinder(mass, *radius, *half_length),
             Self::Ellipsoid(axes) => {
                 let [a, b, c] = axes.map(|x| x * x * mass / 5.0);
@@ -91,10 +92,10 @@ impl Solid {
     /// What to call it in messages.
     pub(crate) fn label(&self) -> String {
         let name = match self {
-            Self::Ours(Shape::Sphere { .. }) => "sphere",
-            Self::Ours(Shape::Capsule { .. }) => "capsule",
-            Self::Ours(Shape::Box { .. }) => "box",
-            Self::Ours(Shape::Plane) => "plane",
+            Self::Native(Shape::Sphere { .. }) => "sphere",
+            Self::Native(Shape::Capsule { .. }) => "capsule",
+            Self::Native(Shape::Box { .. }) => "box",
+            Self::Native(Shape::Plane) => "plane",
             Self::Cylinder { .. } => "cylinder",
             Self::Ellipsoid(_) => "ellipsoid",
             Self::Mesh(_) => "mesh",

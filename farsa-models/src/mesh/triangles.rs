@@ -21,8 +21,8 @@ impl Mesh {
     pub(crate) fn parse(name: &str, bytes: &[u8]) -> Result<Self, String> {
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
         let mesh = match ending.as_str() {
-            "stl" => Self::of_stl(bytes)?,
-            "obj" => Self::of_obj(bytes)?,
+            "stl" => Self::from_stl(bytes)?,
+            "obj" => Self::from_obj(bytes)?,
             _ => return Err("meshes are read from STL and OBJ only; leave meshes out, or convert it".into()),
         };
         if mesh.points.is_empty() {
@@ -34,7 +34,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    fn of_stl(bytes: &[u8]) -> Result<Self, String> {
+    fn from_stl(bytes: &[u8]) -> Result<Self, String> {
         let count = bytes.get(80..84).and_then(|four| Some(u32::from_le_bytes(four.try_into().ok()?) as usize));
         if let Some(count) = count.filter(|count| bytes.len() >= 84 && (bytes.len() - 84) / 50 >= *count) {
             // Text that happens to announce no more triangles than it has room for is text all the same.
@@ -79,7 +79,7 @@ impl Mesh {
         self.triangles.push([first, first + 1, first + 2]);
     }
 
-    fn of_obj(bytes: &[u8]) -> Result<Self, String> {
+    fn from_obj(bytes: &[u8]) -> Result<Self, String> {
         let mut mesh = Self::default();
         // Comments may be in any encoding.
         for (i, line) in bytes.split(|byte| *byte == b'\n').enumerate() {

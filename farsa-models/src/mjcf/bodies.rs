@@ -2,15 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, MassProperties, Pose, Robot, Segment, Shape};
+use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, MassProperties, Pose, Robot, Segment};
 
 use crate::context::Context;
 use crate::error::{Place, ReadError};
 use crate::frame::Frame;
-use crate::mesh::solid::{Solid, scaled};
+use crate::mesh::solid::scaled;
 use crate::mjcf::classes::{Classed, Classes};
 use crate::mjcf::compiler::{Compiler, ROTATIONS, SHOW};
 use crate::mjcf::geoms::{MeshAssets, check_geom, geom};
+use crate::mjcf::inertials::body_mass;
+use crate::mjcf::items::{Item, items};
 use crate::mjcf::joints::{check_joint, joint};
 use crate::mjcf::names::Names;
 use crate::warnings::Warnings;
@@ -69,9 +71,6 @@ struct Piece<'n, 't> {
     mass: MassProperties,
 }
 
-/// An element of a body, with the frame and class that the `frame`s around it give.
-type Item<'t> = (Element<'t>, Pose<f64>, usize);
-
 impl<'t, 'c> Bodies<'t, 'c> {
     pub(crate) fn new(
         model: Element<'t>,
@@ -92,7 +91,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             model,
             compiler,
             classes,
-            meshes: MeshAssets::of(model, classes, &mut context.warnings)?,
+            meshes: MeshAssets::from_model(model, classes, &mut context.warnings)?,
             names: Names::default(),
             frames: Vec::new(),
             list: vec![Body { segment: None, parent: 0, carrier: 0 }],
@@ -116,7 +115,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         self.take_names(&worlds)?;
         for world in worlds {
             world.check(&[], &[], &mut context.warnings)?;
-            let items = self.items(world, 0, context)?;
+            let items = items(world, 0, self.compiler, self.classes, context)?;
             self.colliders(robot, 0, &Pose::identity(), &items, context)?;
             if let Some((joint, ..)) =
                 items.iter().find(|(e, ..)| ["joint", "freejoint", "inertial"].contains(&e.tag()))
@@ -160,54 +159,6 @@ impl<'t, 'c> Bodies<'t, 'c> {
         bodies.map(|&(element, within, class)| Waiting { element, parent, class, within }).collect()
     }
 
-    /// The elements of a body, those in frames in the frames' places.
-    fn items(&self, body: Element<'t>, class: usize, context: &mut Context<'_>) -> Result<Vec<Item<'t>>, ReadError> {
-        let mut items = Vec::new();
-        let mut open: Vec<Item<'t>> = vec![(body, Pose::identity(), class)];
-        let mut first = true;
-        while let Some((element, within, class)) = open.pop() {
-            let (mut inner, mut inherited) = (within, class);
-            if first {
-                first = false;
-            } else if element.tag() == "frame" {
-                let read = [&["name", "pos", "childclass"][..], &ROTATIONS].concat();
-                element.check(&read, &[], &mut context.warnings)?;
-                inner = within.compose(&self.compiler.pose(Some(element), Some(element))?);
-                if let Some(name) = element.attribute("childclass") {
-                    inherited = self.classes.find(element, name)?;
-                }
-            } else {
-                items.push((element, within, class));
-                continue;
-            }
-            let ignored =
-                [("site camera light", "frames and lamps are not described"), ("plugin", "plugins are MuJoCo's")];
-            let read = [
-                "body",
-                "frame",
-                "joint",
-                "freejoint",
-                "geom",
-                "inertial",
-                "attach",
-                "replicate",
-                "composite",
-                "flexcomp",
-            ];
-            element.check_children(&read, &ignored, &mut context.warnings)?;
-            let children: Vec<_> = element.children().filter(|child| read.contains(&child.tag())).collect();
-            open.extend(children.into_iter().rev().map(|child| (child, inner, inherited)));
-        }
-        let other =
-            |(element, ..): &&Item<'t>| ["attach", "replicate", "composite", "flexcomp"].contains(&element.tag());
-        match items.iter().find(other) {
-            Some((element, ..)) => Err(element.unsupported(
-                "makes bodies by MuJoCo's rules; let MuJoCo write the model out (mj_saveLastXML) and read that",
-            )),
-            None => Ok(items),
-        }
-    }
-
     /// Reads one body and tells its number and items.
     fn body(
         &mut self,
@@ -222,7 +173,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             Some(name) => self.classes.find(element, name)?,
             None => next.class,
         };
-        let items = self.items(element, class, context)?;
+        let items = items(element, class, self.compiler, self.classes, context)?;
         let index = self.list.len();
         let name = element.attribute("name").filter(|name| !name.is_empty()).map(str::to_owned);
         let name = name.unwrap_or_else(|| self.names.generate("body", format!("body{index}")));
@@ -230,7 +181,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         let (carrying, carrying_frame) = self.frames_of(parent);
         let placed = within.compose(&self.compiler.pose(Some(element), Some(element))?);
         let placement = carrying_frame.compose(&placed);
-        let mass = self.mass(element, &items, context)?;
+        let mass = body_mass(element, &items, self.compiler, self.classes, &self.meshes, context)?;
         let joints = self.joints_of(element, &items, context)?;
         check_free(element, parent, &joints)?;
 
@@ -340,75 +291,6 @@ impl<'t, 'c> Bodies<'t, 'c> {
             return Err(body.unsupported("more than six joints"));
         }
         Ok(joints)
-    }
-
-    /// The mass of a body in its frame.
-    fn mass(
-        &mut self,
-        body: Element<'t>,
-        items: &[Item<'t>],
-        context: &mut Context<'_>,
-    ) -> Result<MassProperties, ReadError> {
-        let mut given = items.iter().filter(|(element, ..)| element.tag() == "inertial");
-        let inertial = given.next();
-        if let (Some((first, ..)), Some((second, ..))) = (inertial, given.next()) {
-            let (name, first) = (body.label(), first.place().line);
-            return Err(ReadError::Twice { place: second.place(), what: "inertial of".into(), name, first });
-        }
-        let none = MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] };
-        // `inertiafromgeom`: "true" overrides an `inertial`, "false" makes do with it, "auto" infers what is not given.
-        match (inertial, self.compiler.inertia_from_geom) {
-            (Some((element, within, _)), None | Some(false)) => self.inertial(*element, within, context),
-            (None, Some(false)) => Ok(none),
-            _ => {
-                let mut sum = none;
-                for (element, within, class) in items.iter().filter(|(element, ..)| element.tag() == "geom") {
-                    let classed = self.classes.with(*element, *class)?;
-                    // `inertiagrouprange` selects by group; a geom of no mass is for collisions only.
-                    let group = classed.number("group")?.unwrap_or(0.0);
-                    let [low, high] = self.compiler.inertia_groups;
-                    let mass = classed.not_negative("mass")?;
-                    let density = classed.not_negative("density")?.unwrap_or(1000.0);
-                    if !(low..=high).contains(&group) || mass == Some(0.0) || (mass.is_none() && density == 0.0) {
-                        continue;
-                    }
-                    if classed.word("shellinertia", &["true", "false"])? == Some("true") {
-                        context.warnings.add(element.place(), "geom `shellinertia`", "counted as solid");
-                    }
-                    match geom(&classed, within, self.compiler, &self.meshes, context)? {
-                        None | Some((Solid::Ours(Shape::Plane), _)) => {}
-                        Some((solid, at)) => sum = sum.with(&solid.mass_properties(mass, density).placed(&at)),
-                    }
-                }
-                Ok(sum)
-            }
-        }
-    }
-
-    fn inertial(
-        &self,
-        element: Element<'t>,
-        within: &Pose<f64>,
-        context: &mut Context<'_>,
-    ) -> Result<MassProperties, ReadError> {
-        let read = [&["pos", "mass", "diaginertia", "fullinertia"][..], &ROTATIONS].concat();
-        element.check(&read, &[], &mut context.warnings)?;
-        let mass = element.number("mass")?.ok_or_else(|| element.missing("mass"))?;
-        if mass < 0.0 {
-            return Err(element.wrong("mass", element.needed("mass")?, "but must not be negative"));
-        }
-        let inertia = match (element.array::<3>("diaginertia")?, element.array::<6>("fullinertia")?) {
-            (Some([xx, yy, zz]), None) => [xx, yy, zz, 0.0, 0.0, 0.0],
-            (None, Some(full)) => full,
-            (Some(_), Some(_)) => {
-                return Err(element.wrong("fullinertia", element.needed("fullinertia")?, "but there is diaginertia"));
-            }
-            (None, None) => return Err(element.missing("diaginertia or fullinertia")),
-        };
-        let pose = within.compose(&self.compiler.pose(Some(element), Some(element))?);
-        let body = MassProperties { mass, centre: [0.0; 3], inertia };
-        let turned = pose.rotation != Pose::identity().rotation;
-        Ok(if turned { body.placed(&pose) } else { MassProperties { centre: pose.position, ..body } })
     }
 
     /// Makes colliders of the geoms of a body, whose frame is at `frame` in its segment's.

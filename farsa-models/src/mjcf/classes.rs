@@ -46,7 +46,7 @@ impl<'t> Classes<'t> {
     /// The classes in the `default` elements of the model.
     ///
     /// Every question is asked of them one after the other: there may be no more than `most` elements in them.
-    pub(crate) fn of(model: Element<'t>, most: usize) -> Result<Self, ReadError> {
+    pub(crate) fn from_model(model: Element<'t>, most: usize) -> Result<Self, ReadError> {
         let names = BTreeMap::from([("main".to_owned(), 0)]);
         let mut classes = Self { names, parents: vec![None], elements: vec![Vec::new()] };
         let mut waiting: Vec<(Element<'t>, Option<usize>)> =

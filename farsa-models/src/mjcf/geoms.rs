@@ -22,7 +22,11 @@ pub(crate) struct MeshAssets<'t, 'c> {
 }
 
 impl<'t, 'c> MeshAssets<'t, 'c> {
-    pub(crate) fn of(model: Element<'t>, classes: &'c Classes<'t>, warnings: &mut Warnings) -> Result<Self, ReadError> {
+    pub(crate) fn from_model(
+        model: Element<'t>,
+        classes: &'c Classes<'t>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ReadError> {
         let mut all: BTreeMap<String, Classed<'t, 'c>> = BTreeMap::new();
         for asset in model.all("asset") {
             let ignored =
@@ -209,11 +213,11 @@ pub(crate) fn geom<'t>(
         ));
     }
     let solid = match kind {
-        "plane" => Solid::Ours(Shape::Plane),
-        "sphere" => Solid::Ours(Shape::Sphere { radius: sizes[0] }),
-        "capsule" => Solid::Ours(Shape::Capsule { radius: sizes[0], half_length: sizes[1] }),
+        "plane" => Solid::Native(Shape::Plane),
+        "sphere" => Solid::Native(Shape::Sphere { radius: sizes[0] }),
+        "capsule" => Solid::Native(Shape::Capsule { radius: sizes[0], half_length: sizes[1] }),
         "cylinder" => Solid::Cylinder { radius: sizes[0], half_length: sizes[1] },
-        "box" => Solid::Ours(Shape::Box { half: [sizes[0], sizes[1], sizes[2]] }),
+        "box" => Solid::Native(Shape::Box { half: [sizes[0], sizes[1], sizes[2]] }),
         _ => Solid::Ellipsoid([sizes[0], sizes[1], sizes[2]]),
     };
     Ok(Some((solid, within.compose(&pose))))

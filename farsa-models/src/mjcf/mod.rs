@@ -17,6 +17,12 @@ mod names;
 /// Bodies and the segments that they become.
 mod bodies;
 
+/// The elements of a body, those of its `frame`s among them.
+mod items;
+
+/// The masses of bodies.
+mod inertials;
+
 /// Joints.
 mod joints;
 
@@ -26,8 +32,11 @@ mod geoms;
 /// Actuators.
 mod actuators;
 
-/// Which colliders may touch, and how their surfaces act.
+/// Which colliders may touch.
 mod contacts;
+
+/// How two surfaces act on each other.
+mod surface;
 
 /// How easily a force moves each body, which contact parameters are relative to.
 mod inverse_weight;

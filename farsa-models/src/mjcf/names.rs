@@ -41,7 +41,7 @@ impl Names {
     }
 
     /// All names of a kind.
-    pub(crate) fn of(&self, kind: &'static str) -> impl Iterator<Item = &str> + '_ {
+    pub(crate) fn all(&self, kind: &'static str) -> impl Iterator<Item = &str> + '_ {
         self.taken.keys().filter(move |(other, _)| *other == kind).map(|(_, name)| name.as_str())
     }
 }

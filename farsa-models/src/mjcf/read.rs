@@ -11,7 +11,7 @@ use crate::mjcf::bodies::Bodies;
 use crate::mjcf::classes::{ACTUATORS, Classes};
 use crate::mjcf::compiler::{Compiler, MUJOCO};
 use crate::mjcf::contacts::contacts;
-use crate::repair::settle;
+use crate::repair::repair_masses;
 use crate::xml::tree::Tree;
 
 pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec<Frame>), ReadError> {
@@ -30,7 +30,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
     let read = ["compiler", "default", "asset", "worldbody", "contact", "actuator"];
     model.check_children(&read, &ignored, &mut context.warnings)?;
     let compiler = Compiler::from_model(model, context)?;
-    let classes = Classes::of(model, context.options.limits.defaults)?;
+    let classes = Classes::from_model(model, context.options.limits.defaults)?;
     for element in classes.elements() {
         let valid = ["joint", "geom", "pair", "mesh"].contains(&element.tag()) || ACTUATORS.contains(&element.tag());
         if !valid {
@@ -45,7 +45,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
     let mut places: Vec<Place> = Vec::new();
     let mut bodies = Bodies::new(model, &compiler, &classes, context)?;
     bodies.read(&mut robot, &mut places, context)?;
-    settle(&mut robot, &places, &compiler.repair, &mut context.warnings)?;
+    repair_masses(&mut robot, &places, &compiler.repair, &mut context.warnings)?;
     if compiler.total_mass > 0.0 {
         let sum: f64 = robot.segments.iter().map(|segment| segment.mass).sum();
         for segment in robot.segments.iter_mut().filter(|_| sum > 0.0) {

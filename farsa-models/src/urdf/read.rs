@@ -13,7 +13,7 @@ use crate::frame::Frame;
 use crate::mesh::solid::Solid;
 use crate::mesh::triangles::Mesh;
 use crate::options::Meshes;
-use crate::repair::settle;
+use crate::repair::repair_masses;
 use crate::vector::norm;
 use crate::xml::tree::{Element, Tree};
 
@@ -43,7 +43,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
     let root = tree.root();
     root.check_open(&["name", "version"], &mut context.warnings)?;
     root.check_children(&["link", "joint"], &NOTED, &mut context.warnings)?;
-    let links = Links::of(root)?;
+    let links = Links::from_model(root)?;
     let order = links.order()?;
     let mut robot = Robot::new(root.attribute("name").unwrap_or_default());
     let mut places = Vec::new();
@@ -75,12 +75,12 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
     }
     names(&mut robot);
     let repair = context.options.repair;
-    settle(&mut robot, &places, &repair, &mut context.warnings)?;
+    repair_masses(&mut robot, &places, &repair, &mut context.warnings)?;
     Ok((robot, frames))
 }
 
 impl<'t> Links<'t> {
-    fn of(root: Element<'t>) -> Result<Self, ReadError> {
+    fn from_model(root: Element<'t>) -> Result<Self, ReadError> {
         let links: Vec<Element<'t>> = root.all("link").collect();
         if links.is_empty() {
             return Err(root.missing("link"));
@@ -345,7 +345,7 @@ fn capsule(
     let end = |(_, solid, place, _): &(String, Solid, Pose<f64>, Place), z: f64| {
         let point = at.transform_back(place.position);
         let off = norm(&[point[0], point[1], point[2] - z]);
-        *solid == Solid::Ours(Shape::Sphere { radius }) && off <= 1e-9 * (1.0 + half_length)
+        *solid == Solid::Native(Shape::Sphere { radius }) && off <= 1e-9 * (1.0 + half_length)
     };
     let pair = (end(a, -half_length) && end(b, half_length)) || (end(a, half_length) && end(b, -half_length));
     pair.then_some(Shape::Capsule { radius, half_length })
@@ -366,7 +366,7 @@ fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Soli
     let solid = match shape.tag() {
         "sphere" => {
             shape.check_open(&["radius"], &mut context.warnings)?;
-            Solid::Ours(Shape::Sphere { radius: positive("radius")? })
+            Solid::Native(Shape::Sphere { radius: positive("radius")? })
         }
         "box" => {
             shape.check_open(&["size"], &mut context.warnings)?;
@@ -374,7 +374,7 @@ fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Soli
             if size.iter().any(|x| *x <= 0.0) {
                 return Err(shape.wrong("size", shape.needed("size")?, "but must be positive"));
             }
-            Solid::Ours(Shape::Box { half: size.map(|x| x / 2.0) })
+            Solid::Native(Shape::Box { half: size.map(|x| x / 2.0) })
         }
         kind @ ("cylinder" | "capsule") => {
             shape.check_open(&["radius", "length"], &mut context.warnings)?;
@@ -385,7 +385,7 @@ fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Soli
                 return Err(shape.wrong("length", shape.needed("length")?, "but must not be negative"));
             }
             match kind {
-                "capsule" => Solid::Ours(Shape::Capsule { radius, half_length }),
+                "capsule" => Solid::Native(Shape::Capsule { radius, half_length }),
                 _ => Solid::Cylinder { radius, half_length },
             }
         }

@@ -32,7 +32,7 @@ pub(crate) fn check(file: &str, text: &str, elements: &mut usize, limits: &Limit
             let why = "a document type; models have none, and entities are not read".to_string();
             return Err(ReadError::Malformed { place: place(), why });
         }
-        let tag = Tag::of(rest);
+        let tag = Tag::from_bytes(rest);
         at += tag.length;
         if rest.starts_with(b"</") {
             depth = depth.saturating_sub(1);
@@ -79,7 +79,7 @@ struct Tag {
 
 impl Tag {
     /// The tag that the bytes begin with, to its `>` outside of quotes or to the end.
-    fn of(bytes: &[u8]) -> Self {
+    fn from_bytes(bytes: &[u8]) -> Self {
         let mut tag = Self { length: bytes.len(), attributes: 0, namespaces: 0, empty: false };
         let mut quote = None;
         for (i, byte) in bytes.iter().enumerate() {

@@ -213,7 +213,7 @@ impl<'t> Element<'t> {
         ReadError::Unknown { place: self.place(), what: what.into(), name: name.into(), nearest }
     }
 
-    /// Refuses attributes that the format does not have and notes those that are not read, each with its reason.
+    /// Refuses attributes that the format does not have and warns of those that are not read, each with its reason.
     pub(crate) fn check(
         &self,
         read: &[&str],
