@@ -9,16 +9,13 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
-/// Actuator laws: muscles, servos, torques.
 pub mod actuators;
 /// The error of constructors of sensors, motors and wrappers, and writing to slices that may be short.
 mod channel;
 /// Sensors and motors made of sensors and motors.
 mod compose;
-/// Poses of segments, Jacobians, gravity torques, inverse kinematics.
 #[cfg(feature = "alloc")]
 pub mod kinematics;
-/// Motors: from values in [0, 1] to commands.
 pub mod motors;
 /// The ports: what a world may offer, and the two sides that use it.
 mod ports;
@@ -26,18 +23,13 @@ mod ports;
 mod pose;
 /// What records a life, tick by tick.
 mod recorder;
-/// A robot as data.
 #[cfg(feature = "alloc")]
 pub mod robot;
-/// Robots that are ready to use.
 #[cfg(feature = "alloc")]
 pub mod robots;
-/// Sensors: from a world to values for a network.
 pub mod sensors;
-/// The conformance kit for worlds, sensors and motors.
 #[cfg(feature = "alloc")]
 pub mod testing;
-/// Wrappers around sensors and motors: noise, delay, scale, damage.
 pub mod wrappers;
 
 pub use actuators::{Effort, Held, Law, MusclePair, MuscleVariant, Servo, Tension, Torque};

@@ -12,13 +12,11 @@ mod frame;
 mod imported;
 /// Triangles, the solids that stand for them, and their principal axes.
 mod mesh;
-/// MuJoCo's own format.
 pub mod mjcf;
 /// How to read: strictly, or with what repairs and limits.
 mod options;
 /// Masses that no body can have.
 mod repair;
-/// The format of ROS.
 pub mod urdf;
 /// Products and lengths of vectors.
 mod vector;

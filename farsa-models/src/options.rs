@@ -46,7 +46,7 @@ impl Default for Limits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Meshes {
-    /// Each becomes the smallest by volume of the ball, capsule and box that hold all its points; see [`Imported`].
+    /// Each becomes the smallest by volume of the ball, capsule and box that hold all its points; see [`Imported`](crate::Imported).
     #[default]
     Fit,
     /// They are left out, without looking at their files, and noted.

@@ -25,7 +25,6 @@
 pub(crate) mod beam;
 /// The colour of the ground.
 pub(crate) mod ground_color;
-/// Infrared rings: by rays, by a formula, by measured tables.
 pub mod infrared;
 /// A fan of laser range finders.
 pub(crate) mod laser_distance;
