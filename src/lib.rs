@@ -8,6 +8,9 @@ pub use farsa_body as body;
 /// Evolution by ask and tell.
 #[cfg(feature = "alloc")]
 pub use farsa_evo as evo;
+/// Robots from URDF and MJCF files, and back; needs std.
+#[cfg(feature = "models")]
+pub use farsa_models as models;
 /// Recurrent networks over borrowed parameters.
 pub use farsa_nn as nn;
 /// Scalars, SIMD lanes, functions and random streams with the same bits everywhere.

@@ -6,7 +6,7 @@
 // `drive` takes phases from the standard input, one after the other, their commands one by one: each after a line that
 // tells the state and the contacts.
 //
-// The muscles' law is farsa-body/src/muscle.rs: torque without its damping part in qfrc_applied; damping, and stiffness
+// The muscles' law is farsa-body/src/actuators/muscle.rs: torque without its damping part in qfrc_applied; damping, and stiffness
 // times the step, in dof_damping, which MuJoCo integrates implicitly. Both are computed before every mj_step and are not
 // in the time.
 

@@ -5,11 +5,12 @@ use std::fs;
 
 use farsa::body::testing::{Probe, check_arrange, check_world};
 use farsa::body::{
-    Collider, Contacts as _, Joint, JointId, Joints as _, Kinematics as _, Law, MassProperties, MjcfOptions,
-    Motor as _, MusclePair, Muscles, Pose, Recorder as _, Robot, RobotError, Segment, Servo, ServoGroup, ServoRange,
-    Shape, Surface, World as _,
+    Collider, Contacts as _, Joint, JointId, Joints as _, Kinematics as _, Law, MassProperties, Motor as _, MusclePair,
+    Muscles, Pose, Recorder as _, Robot, RobotError, Segment, Servo, ServoGroup, ServoRange, Shape, Surface,
+    World as _,
 };
 use farsa::physics::articulated::{Model, Options, World};
+use farsa_models::{MjcfOptions, mjcf, urdf};
 use farsa_view::{Camera, Page, Recording, Stage};
 
 const SHOULDER: [f64; 2] = [-1.5, 1.5]; // rad
@@ -112,8 +113,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let picture = recording.picture(seen as usize).ok_or("nothing to see")?;
     fs::write("kick.svg", picture.svg(Camera::named("side")?, [600, 400], "kick-"))?;
     fs::write("kick.html", Page::new("Kick").with("kicker", recording).html())?;
-    fs::write("kicker.xml", robot.to_mjcf(&MjcfOptions::default())?)?;
-    fs::write("kicker.urdf", robot.to_urdf()?)?;
+    fs::write("kicker.xml", mjcf::write(&robot, &MjcfOptions::default())?)?;
+    fs::write("kicker.urdf", urdf::write(&robot)?)?;
     println!("{kicks} ticks of touch; kick.svg, kick.html, kicker.xml, kicker.urdf");
     Ok(())
 }

@@ -89,6 +89,7 @@ pub trait Actuated: Handles {
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hit<B> {
     /// Distance along the ray [m].
     pub distance: f32,
@@ -107,6 +108,7 @@ pub trait Rays: Handles {
 
 /// How a pair of colliders touched at the end of the last step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PairContact {
     /// Number of points that carry a normal force > 0.
     pub points: u32,
@@ -138,6 +140,7 @@ pub trait Contacts: Handles {
 
 /// A surface near a place of a planar world, and its point that is nearest to there.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Near<B> {
     /// The body whose surface it is; `None` for a wall.
     pub body: Option<B>,
@@ -155,6 +158,7 @@ pub struct Near<B> {
 
 /// What is seen along a line in a planar world.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sight<B> {
     /// Distance along the line [m].
     pub distance: f32,
@@ -166,6 +170,7 @@ pub struct Sight<B> {
 
 /// A lamp of a planar world.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lamp<B> {
     /// The body that shines.
     pub body: B,

@@ -163,7 +163,7 @@ macro_rules! others {
 
 others!(
     farsa_body::RobotError,
-    farsa_body::ReadError,
+    farsa_models::ReadError,
     farsa_body::ChannelError,
     farsa_physics::articulated::ModelError,
     farsa_physics::arena::ArenaError,

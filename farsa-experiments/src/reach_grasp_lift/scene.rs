@@ -1,8 +1,9 @@
 //! The scene of `reach-grasp-lift`: how a trial starts in it, what the robot senses and does, and what the judge sees.
 
+use farsa_models::{Keyframe, MjcfOptions};
 use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, ChannelError, Channels, Contacts, Finger, Handles, JointId,
-    JointPosition, Joints, Keyframe, Kinematics, MjcfOptions, Motor, Muscles, PairId, Point, Pose, Robot, RobotError,
+    JointPosition, Joints, Kinematics, Motor, Muscles, PairId, Point, Pose, Robot, RobotError,
     Sensor, ServoGroup, ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
 };
 use farsa_lab::{EpisodeId, Error};

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, MjcfOptions, Recorder,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Recorder,
 };
+use farsa_models::MjcfOptions;
 use farsa_nn::Network;
 
 use crate::reach_grasp_lift::config::TRIALS;

@@ -1,6 +1,7 @@
 //! The experiment `body-evolution`: the body of a walker evolves, alone or with a network at its hip.
 
-use farsa_body::{MjcfOptions, Recorder, Robot};
+use farsa_body::{Recorder, Robot};
+use farsa_models::MjcfOptions;
 use farsa_nn::Layout;
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};

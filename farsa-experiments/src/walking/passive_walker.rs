@@ -5,7 +5,8 @@ pub use crate::walking::{life::Brain, life::Launch, life::Pace, life::SENSES, li
 pub use crate::walking::{walker::Legs, walker::Posture, walker::Walker, walker::WalkerParts};
 pub use crate::worlds::Engine;
 
-use farsa_body::{MjcfOptions, Recorder};
+use farsa_body::Recorder;
+use farsa_models::MjcfOptions;
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 

@@ -1,6 +1,6 @@
 //! The settings that all experiments with walkers have, and how a walk is lived and told.
 
-use farsa_body::MjcfOptions;
+use farsa_models::MjcfOptions;
 use farsa_lab::{ENGINE, Error, Note, Outcome, Setting, Settings};
 
 use crate::walking::gait::End;

@@ -1,7 +1,7 @@
 //! `farsa export`: robots, controllers, genotypes and starts as files for other programs.
 
 use clap::ValueEnum;
-use farsa_body::MjcfOptions;
+use farsa_models::{MjcfOptions, mjcf, urdf};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -57,8 +57,8 @@ pub(crate) fn robot(plan: &Plan<'_>, format: ModelFormat) -> Result<String, Erro
     let name = plan.experiment.name();
     let robot = evaluator.stage().robot.ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
-        ModelFormat::Mjcf => robot.to_mjcf(&mjcf_options(evaluator.as_ref())),
-        ModelFormat::Urdf => robot.to_urdf(),
+        ModelFormat::Mjcf => mjcf::write(&robot, &mjcf_options(evaluator.as_ref())),
+        ModelFormat::Urdf => urdf::write(&robot),
     };
     text.map_err(|error| Error::Other(format!("{name}: {error}")))
 }

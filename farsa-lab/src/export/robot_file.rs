@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
-use farsa_body::{JointKind, Law, Meshes, MjcfOptions, ReadError, ReadOptions, Reading, Repair, Servo};
+use farsa_body::{JointKind, Law, Servo};
+use farsa_models::{Imported, Meshes, MjcfOptions, ReadError, ReadOptions, Repair, mjcf, urdf};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -85,7 +86,7 @@ struct JointSummary {
 ///
 /// # Errors
 /// [`Error::Other`] with what is wrong with the file, and the argument that could help.
-pub(crate) fn read(args: &RobotArgs) -> Result<Reading, Error> {
+pub(crate) fn read(args: &RobotArgs) -> Result<Imported, Error> {
     let options = ReadOptions {
         root: args.root.clone(),
         packages: args.packages.clone(),
@@ -94,7 +95,7 @@ pub(crate) fn read(args: &RobotArgs) -> Result<Reading, Error> {
         repair: Repair { least_mass: args.least_mass, least_inertia: args.least_inertia, balance: args.balance },
         ..ReadOptions::default()
     };
-    Reading::of_file(&args.file, &options).map_err(|error| {
+    Imported::from_file(&args.file, &options).map_err(|error| {
         let hint = match &error {
             ReadError::Mass { .. } => "; or --least-mass, --least-inertia, --balance",
             ReadError::Mesh { .. } => "; or --without-meshes",
@@ -110,16 +111,16 @@ pub(crate) fn read(args: &RobotArgs) -> Result<Reading, Error> {
 ///
 /// # Errors
 /// [`Error::Other`] if it cannot be written.
-pub(crate) fn written(reading: &Reading, format: ModelFormat) -> Result<String, Error> {
+pub(crate) fn written(reading: &Imported, format: ModelFormat) -> Result<String, Error> {
     let text = match format {
-        ModelFormat::Mjcf => reading.robot.to_mjcf(&MjcfOptions::default()),
-        ModelFormat::Urdf => reading.robot.to_urdf(),
+        ModelFormat::Mjcf => mjcf::write(&reading.robot, &MjcfOptions::default()),
+        ModelFormat::Urdf => urdf::write(&reading.robot),
     };
     text.map_err(|error| Error::Other(error.to_string()))
 }
 
 impl Summary {
-    pub(crate) fn of(args: &RobotArgs, reading: &Reading) -> Self {
+    pub(crate) fn of(args: &RobotArgs, reading: &Imported) -> Self {
         let robot = &reading.robot;
         let joints = robot.joints().map(|id| {
             let segment = &robot.segments[id.index()];
@@ -159,7 +160,7 @@ impl Summary {
             colliders: robot.colliders.len(),
             pairs: robot.pairs.len(),
             mass: robot.segments.iter().map(|segment| segment.mass).sum(),
-            notes: reading.notes.iter().map(ToString::to_string).collect(),
+            notes: reading.warnings.iter().map(ToString::to_string).collect(),
         }
     }
 

@@ -3,8 +3,9 @@
 
 use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Handles, Joint, JointId, Joints, Kinematics, Law,
-    MassProperties, MjcfOptions, Pose, Robot, Segment, Servo, Shape, Surface, Tabletop, Twist, World,
+    MassProperties, Pose, Robot, Segment, Servo, Shape, Surface, Tabletop, Twist, World,
 };
+use farsa_models::{MjcfOptions, mjcf};
 use farsa_num::sin_cos;
 use serde_json::{Value, json};
 
@@ -120,7 +121,7 @@ impl Scene {
 
     /// The robot as MuJoCo's model.
     pub(crate) fn mjcf(&self) -> String {
-        self.robot.to_mjcf(&MjcfOptions { time_step: MODEL_STEP, ..MjcfOptions::default() }).unwrap()
+        mjcf::write(&self.robot, &MjcfOptions { time_step: MODEL_STEP, ..MjcfOptions::default() }).unwrap()
     }
 
     /// The timetable by the model's names.

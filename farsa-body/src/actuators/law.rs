@@ -1,0 +1,177 @@
+//! Actuator laws: from a joint's position, speed and a command to an effort and its derivatives.
+
+use farsa_num::{Real, Scalar};
+
+use crate::actuators::effort::Effort;
+use crate::actuators::muscle::MusclePair;
+
+/// A position servo: a spring and damper to the commanded position, with a capped effort.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Servo<R> {
+    /// Position gain [N m/rad or N/m].
+    pub stiffness: R,
+    /// Speed gain [N m s/rad or N s/m].
+    pub damping: R,
+    /// Largest effort [N m or N].
+    pub limit: R,
+}
+
+/// A motor that exerts the commanded torque, capped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Torque<R> {
+    /// Largest effort [N m or N].
+    pub limit: R,
+}
+
+/// A user's own law, evaluated once per control step: the commanded torque with constant stiffness and damping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Held<R> {
+    /// Stiffness around the position at which the second command was given [N m/rad or N/m].
+    pub stiffness: R,
+    /// Damping [N m s/rad or N s/m].
+    pub damping: R,
+}
+
+/// The law of one actuator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Law<R> {
+    /// Two muscles that pull against each other.
+    MusclePair(MusclePair<R>),
+    /// A position servo.
+    Servo(Servo<R>),
+    /// A torque motor.
+    Torque(Torque<R>),
+    /// A law of the user's, held over the control step.
+    Held(Held<R>),
+}
+
+impl<R: Real> Servo<R> {
+    /// The servo's effort at position `q` and speed `qdot`, with the desired position in `command[0]`.
+    ///
+    /// Whether it saturates is decided here; a saturated servo has no stiffness and no damping.
+    #[inline(always)]
+    pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
+        let limit = q.like(self.limit);
+        let stiffness = q.like(self.stiffness);
+        let damping = q.like(self.damping);
+        let wanted = stiffness * (command[0] - q) - damping * qdot;
+        let free = wanted.abs().lt(limit);
+        let zero = q.constant(0.0);
+        Effort {
+            torque: wanted.clamp(-limit, limit),
+            stiffness: S::select(free, stiffness, zero),
+            damping: S::select(free, damping, zero),
+        }
+    }
+}
+
+impl<R: Real> Law<R> {
+    /// The effort at position `q` and speed `qdot` under `command`, as [`crate::Actuated::command`] describes it.
+    #[inline(always)]
+    pub fn effort<S: Scalar<Real = R>>(&self, q: S, qdot: S, command: [S; 2]) -> Effort<S> {
+        let zero = q.constant(0.0);
+        match self {
+            Self::MusclePair(law) => law.effort(q, qdot, command),
+            Self::Servo(law) => law.effort(q, qdot, command),
+            Self::Torque(law) => {
+                let limit = q.like(law.limit);
+                Effort { torque: command[0].clamp(-limit, limit), stiffness: zero, damping: zero }
+            }
+            Self::Held(law) => {
+                let (stiffness, damping) = (q.like(law.stiffness), q.like(law.damping));
+                Effort { torque: command[0] - stiffness * (q - command[1]) - damping * qdot, stiffness, damping }
+            }
+        }
+    }
+
+    /// The same law in another precision, each number rounded once.
+    pub fn cast<Q: Real>(&self) -> Law<Q> {
+        let c = |x: R| Q::of(x.to_f64());
+        match self {
+            Self::MusclePair(m) => Law::MusclePair(MusclePair {
+                tension: c(m.tension),
+                moment_arm: c(m.moment_arm),
+                lower: c(m.lower),
+                upper: c(m.upper),
+                rest_length: c(m.rest_length),
+                longest: c(m.longest),
+                shortest: c(m.shortest),
+                shape: c(m.shape),
+                passive_scale: c(m.passive_scale),
+                viscosity: c(m.viscosity),
+            }),
+            Self::Servo(s) => Law::Servo(Servo { stiffness: c(s.stiffness), damping: c(s.damping), limit: c(s.limit) }),
+            Self::Torque(t) => Law::Torque(Torque { limit: c(t.limit) }),
+            Self::Held(h) => Law::Held(Held { stiffness: c(h.stiffness), damping: c(h.damping) }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn servo<R: Real>() -> Servo<R> {
+        Servo { stiffness: R::of(2.0), damping: R::of(0.5), limit: R::of(0.75) }
+    }
+
+    fn servo_is_a_capped_spring<R: Real>() {
+        let effort = |q: f64, w: f64, wanted: f64| {
+            let e = servo::<R>().effort(R::of(q), R::of(w), [R::of(wanted), R::of(9.0)]);
+            [e.torque, e.stiffness, e.damping].map(Real::to_f64)
+        };
+        // Numbers that both precisions hold exactly.
+        assert_eq!(effort(0.25, 0.5, 0.5), [0.25, 2.0, 0.5], "within the cap");
+        assert_eq!(effort(0.0, 0.0, 1.0), [0.75, 0.0, 0.0], "stalled: no spring left");
+        assert_eq!(effort(0.0, 0.0, -1.0), [-0.75, 0.0, 0.0]);
+        assert_eq!(effort(0.0, 0.0, 0.375), [0.75, 0.0, 0.0], "at the cap it counts as saturated");
+        assert_eq!(effort(0.0, 2.0, 0.5), [0.0, 2.0, 0.5], "damped to a standstill");
+        assert_eq!(effort(0.5, -3.0, 0.5), [0.75, 0.0, 0.0], "damping is under the cap too");
+    }
+
+    #[test]
+    fn servo_pulls_until_it_stalls() {
+        servo_is_a_capped_spring::<f32>();
+        servo_is_a_capped_spring::<f64>();
+    }
+
+    #[test]
+    fn torque_is_capped_and_held_is_a_spring() {
+        let motor = Law::Torque(Torque { limit: 1.5 });
+        for (command, torque) in [(0.5, 0.5), (2.0, 1.5), (-9.0, -1.5)] {
+            assert_eq!(motor.effort(0.3, -0.2, [command, 7.0]), Effort { torque, stiffness: 0.0, damping: 0.0 });
+        }
+        let held = Law::Held(Held { stiffness: 4.0, damping: 0.5 });
+        // The second command is the position at which the first was meant.
+        assert_eq!(held.effort(0.75, 2.0, [3.0, 0.5]), Effort { torque: 1.0, stiffness: 4.0, damping: 0.5 });
+        assert_eq!(held.effort(0.5, 0.0, [3.0, 0.5]).torque, 3.0);
+    }
+
+    #[test]
+    fn casting_rounds_each_number_once() {
+        let laws: [Law<f64>; 4] = [
+            Law::MusclePair(MusclePair::thesis(300.1, 0.0103, [-2.1, 0.7])),
+            Law::Servo(Servo { stiffness: 0.1, damping: 0.2, limit: 0.3 }),
+            Law::Torque(Torque { limit: 0.7 }),
+            Law::Held(Held { stiffness: 0.9, damping: 1.1 }),
+        ];
+        for law in laws {
+            let narrow = law.cast::<f32>();
+            assert_eq!(law.cast::<f64>(), law);
+            assert_eq!(narrow.cast::<f64>().cast::<f32>(), narrow);
+            let (wide, narrow) = (law.effort(0.2, 0.1, [0.3, 0.4]), narrow.effort(0.2f32, 0.1, [0.3, 0.4]));
+            assert!((wide.torque - f64::from(narrow.torque)).abs() < 1e-5);
+            assert!((wide.stiffness - f64::from(narrow.stiffness)).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_lost_joint_stays_lost() {
+        let pair = Law::MusclePair(MusclePair::thesis(300.0f32, 0.01, [-1.0, 1.0]));
+        assert!(pair.effort(f32::NAN, 0.0, [0.0; 2]).torque.is_nan());
+    }
+}

@@ -1,0 +1,22 @@
+//! Actuator laws: pure functions from a joint's position, speed and command to an [`Effort`].
+//!
+//! | you want | law | `command[0]`, `command[1]` |
+//! |---|---|---|
+//! | two antagonist muscles, as in an animal's joint | [`MusclePair`] | activations of agonist and antagonist in [0, 1] |
+//! | a joint that goes to a position | [`Servo`] | desired position [rad or m], unused |
+//! | a joint that pushes as hard as it is told | [`Torque`] | effort [N m or N], unused |
+//! | a law of your own, computed once per control step | [`Held`] | effort, and the position at which it holds |
+//!
+//! A [`Law`] is one of these, in a [`Robot`](crate::Robot)'s description or alone. Laws run on plain floats and on SIMD
+//! lanes, with equal bits.
+
+/// The torque of an actuator, with its stiffness and damping.
+pub(crate) mod effort;
+/// The laws: servo, torque, held, and the choice among all.
+pub(crate) mod law;
+/// The pair of muscles: tension from length, rate and activation.
+pub(crate) mod muscle;
+
+pub use effort::Effort;
+pub use law::{Held, Law, Servo, Torque};
+pub use muscle::{MusclePair, MuscleVariant, Tension};

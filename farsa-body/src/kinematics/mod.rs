@@ -1,0 +1,19 @@
+//! Questions to a description that need no world: where its segments are, and which posture reaches a goal.
+//!
+//! | question | answer |
+//! |---|---|
+//! | where are the segments at these joint positions? | [`KinematicTree::poses`] |
+//! | how does a point move with the joints? | [`KinematicTree::jacobian`] |
+//! | which torques hold the robot against gravity? | [`KinematicTree::gravity_torques`] |
+//! | which joint positions bring a body to a place? | [`InverseKinematics::solve`] with a [`Goal`] |
+
+/// What a posture is to achieve: a point's position, a body's orientation.
+pub(crate) mod goal;
+/// Damped least squares within joint limits.
+pub(crate) mod inverse_kinematics;
+/// Forward kinematics, Jacobians and gravity torques.
+pub(crate) mod tree;
+
+pub use goal::{Goal, Orientation};
+pub use inverse_kinematics::{InverseKinematics, InverseKinematicsError, Solution};
+pub use tree::KinematicTree;

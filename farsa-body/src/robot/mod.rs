@@ -1,0 +1,25 @@
+//! A robot, or a whole scene, as data: what every world is built from and every model file is read into.
+//!
+//! Begin with [`Robot::new`], add [`Segment`]s with their [`Joint`]s, [`Collider`]s and [`Actuator`]s, say which
+//! [`Pair`]s may touch, and call [`Robot::validate`]. All numbers are `f64`; a world rounds them once.
+//!
+//! | you have | take |
+//! |---|---|
+//! | the size and mass of a solid part | [`MassProperties`]: `sphere`, `capsule`, `cylinder`, `cuboid`; `placed` and `with` move and join them |
+//! | two points and a radius | [`Collider::capsule_between`] |
+//! | two robots for one world | [`Robot::prefixed`], then [`Robot::merge`], whose [`Offsets`] say where the parts went |
+//! | a file | the crate `farsa-models`, which reads and writes URDF and MJCF |
+
+/// The robot, its segments, joints, colliders, pairs and actuators.
+pub(crate) mod description;
+/// Mass, centre of mass and inertia of solid bodies: computed, moved, joined.
+pub(crate) mod mass_properties;
+/// The forms of colliders.
+pub(crate) mod shape;
+/// What can be wrong with a description, and the search for it.
+pub(crate) mod validation;
+
+pub use description::{Actuator, Collider, Joint, JointKind, Offsets, Pair, Robot, Segment, Surface};
+pub use mass_properties::MassProperties;
+pub use shape::Shape;
+pub use validation::RobotError;

@@ -1,0 +1,487 @@
+//! What can be wrong with a robot's description, and the search for it.
+
+use alloc::collections::BTreeSet;
+use alloc::string::String;
+use core::fmt;
+
+use crate::actuators::law::Law;
+use crate::pose::{Pose, norm};
+use crate::robot::description::{JointKind, Robot, Segment, Surface};
+use crate::robot::shape::Shape;
+
+/// What is wrong with a robot's description.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RobotError {
+    /// A segment's parent comes later, or not at all.
+    Parent {
+        /// The segment's name.
+        segment: String,
+        /// The parent's index.
+        parent: usize,
+    },
+    /// A number is NaN, infinite or out of its range.
+    Value {
+        /// The part's name.
+        part: String,
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A joint's range is NaN or ends before it begins.
+    Range {
+        /// The joint's name.
+        joint: String,
+        /// The range [rad or m].
+        range: [f64; 2],
+    },
+    /// A mass or inertia that no moving body can have.
+    Inertia {
+        /// The segment's name.
+        segment: String,
+        /// Its mass [kg].
+        mass: f64,
+        /// Its inertia [xx, yy, zz, xy, xz, yz; kg m2].
+        inertia: [f64; 6],
+    },
+    /// An index points to nothing.
+    Index {
+        /// The part's name.
+        part: String,
+        /// Which index.
+        field: &'static str,
+        /// Its value.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// More parts of one kind than 65535, which indices can tell apart.
+    Count {
+        /// The kind of parts.
+        parts: &'static str,
+        /// How many there are.
+        count: usize,
+    },
+    /// Two parts of one kind have the same name.
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// A part that needs a name has none.
+    Unnamed {
+        /// The kind of part.
+        part: &'static str,
+        /// Its index.
+        index: usize,
+    },
+    /// A floating joint on a segment that has a parent.
+    Floating {
+        /// The segment's name.
+        segment: String,
+    },
+    /// An actuator on a joint that does not turn or slide.
+    Actuated {
+        /// The actuator's name.
+        actuator: String,
+        /// The name of the segment that the joint carries.
+        segment: String,
+    },
+    /// A pair of shapes that no world can bring into contact.
+    Shapes {
+        /// The two colliders' names.
+        colliders: [String; 2],
+    },
+    /// A pair of colliders on the same body, or both fixed to the world.
+    SameBody {
+        /// The two colliders' names.
+        colliders: [String; 2],
+    },
+    /// A pair that is listed twice.
+    Twice {
+        /// The two colliders' names.
+        colliders: [String; 2],
+    },
+}
+
+impl fmt::Display for RobotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parent { segment, parent } => {
+                write!(f, "segment {segment}: parent {parent} is not an earlier segment")
+            }
+            Self::Value { part, field, value } => write!(f, "{part}: {field} is {value}"),
+            Self::Range { joint, range: [low, high] } => write!(f, "joint {joint}: no range from {low} to {high}"),
+            Self::Inertia { segment, mass, inertia } => {
+                write!(f, "segment {segment}: no body has mass {mass} and inertia {inertia:?}")
+            }
+            Self::Index { part, field, index, count } => write!(f, "{part}: {field} {index} of {count}"),
+            Self::Count { parts, count } => write!(f, "{count} {parts} are more than 65535"),
+            Self::Name { name } => write!(f, "the name {name} is used twice"),
+            Self::Unnamed { part, index } => write!(f, "{part} {index} has no name"),
+            Self::Floating { segment } => write!(f, "segment {segment}: a floating joint must not have a parent"),
+            Self::Actuated { actuator, segment } => {
+                write!(f, "actuator {actuator}: the joint of segment {segment} neither turns nor slides")
+            }
+            Self::Shapes { colliders: [a, b] } => write!(f, "colliders {a} and {b}: no contact between such shapes"),
+            Self::SameBody { colliders: [a, b] } => write!(f, "colliders {a} and {b} are on one body"),
+            Self::Twice { colliders: [a, b] } => write!(f, "colliders {a} and {b} are paired twice"),
+        }
+    }
+}
+
+impl core::error::Error for RobotError {}
+
+/// Demands of a number of the named part: NaN never passes.
+struct Part<'a>(&'a str);
+
+impl Part<'_> {
+    fn demand(&self, ok: bool, field: &'static str, value: f64) -> Result<(), RobotError> {
+        if ok { Ok(()) } else { Err(RobotError::Value { part: self.0.into(), field, value }) }
+    }
+
+    fn finite(&self, field: &'static str, value: f64) -> Result<(), RobotError> {
+        self.demand(value.is_finite(), field, value)
+    }
+
+    fn positive(&self, field: &'static str, value: f64) -> Result<(), RobotError> {
+        self.demand(value.is_finite() && value > 0.0, field, value)
+    }
+
+    fn not_negative(&self, field: &'static str, value: f64) -> Result<(), RobotError> {
+        self.demand(value.is_finite() && value >= 0.0, field, value)
+    }
+
+    fn vector(&self, field: &'static str, vector: &[f64]) -> Result<(), RobotError> {
+        vector.iter().try_for_each(|x| self.finite(field, *x))
+    }
+
+    fn placement(&self, placement: &Pose<f64>) -> Result<(), RobotError> {
+        self.vector("position", &placement.position)?;
+        self.vector("rotation", &placement.rotation)?;
+        let n = norm(&placement.rotation);
+        self.demand((n - 1.0).abs() <= 1e-6, "length of the rotation's quaternion", n)
+    }
+
+    fn shape(&self, shape: &Shape) -> Result<(), RobotError> {
+        match shape {
+            Shape::Sphere { radius } => self.positive("radius", *radius),
+            Shape::Capsule { radius, half_length } => {
+                self.positive("radius", *radius)?;
+                self.not_negative("half length", *half_length)
+            }
+            Shape::Box { half } => half.iter().try_for_each(|x| self.positive("half edge length", *x)),
+            Shape::Plane => Ok(()),
+        }
+    }
+
+    fn surface(&self, surface: &Surface) -> Result<(), RobotError> {
+        self.not_negative("friction", surface.friction)?;
+        self.not_negative("rolling friction", surface.rolling_friction)?;
+        self.positive("contact stiffness", surface.stiffness)?;
+        self.not_negative("contact damping", surface.damping)
+    }
+
+    fn law(&self, law: &Law<f64>) -> Result<(), RobotError> {
+        match law {
+            Law::MusclePair(m) => {
+                self.not_negative("tension", m.tension)?;
+                self.finite("moment arm", m.moment_arm)?;
+                self.not_negative("moment arm", m.moment_arm)?;
+                self.vector("range", &[m.lower, m.upper])?;
+                self.demand(m.upper > m.lower, "upper end of the range", m.upper)?;
+                self.vector("length", &[m.shortest, m.rest_length, m.longest])?;
+                self.demand(m.rest_length >= m.shortest, "rest length", m.rest_length)?;
+                self.demand(m.longest > m.rest_length, "longest length", m.longest)?;
+                self.positive("shape", m.shape)?;
+                self.not_negative("passive scale", m.passive_scale)?;
+                self.not_negative("viscosity", m.viscosity)
+            }
+            Law::Servo(s) => {
+                self.not_negative("stiffness", s.stiffness)?;
+                self.not_negative("damping", s.damping)?;
+                self.demand(s.limit >= 0.0, "limit", s.limit)
+            }
+            Law::Torque(t) => self.demand(t.limit >= 0.0, "limit", t.limit),
+            Law::Held(h) => {
+                self.not_negative("stiffness", h.stiffness)?;
+                self.not_negative("damping", h.damping)
+            }
+        }
+    }
+}
+
+fn unique<'a>(names: impl Iterator<Item = &'a String>) -> Result<(), RobotError> {
+    let mut seen = BTreeSet::new();
+    for name in names.filter(|name| !name.is_empty()) {
+        if !seen.insert(name) {
+            return Err(RobotError::Name { name: name.clone() });
+        }
+    }
+    Ok(())
+}
+
+fn named<'a>(part: &'static str, mut names: impl Iterator<Item = &'a String>) -> Result<(), RobotError> {
+    names.position(String::is_empty).map_or(Ok(()), |index| Err(RobotError::Unnamed { part, index }))
+}
+
+fn index(part: &str, field: &'static str, index: usize, count: usize) -> Result<(), RobotError> {
+    if index < count { Ok(()) } else { Err(RobotError::Index { part: part.into(), field, index, count }) }
+}
+
+fn segment(own_index: usize, segment: &Segment) -> Result<(), RobotError> {
+    let part = Part(&segment.name);
+    let joint = &segment.joint;
+    if let Some(parent) = segment.parent {
+        if parent.index() >= own_index {
+            return Err(RobotError::Parent { segment: segment.name.clone(), parent: parent.index() });
+        }
+        if joint.kind == JointKind::Floating {
+            return Err(RobotError::Floating { segment: segment.name.clone() });
+        }
+    }
+    part.placement(&joint.placement)?;
+    part.not_negative("mass", segment.mass)?;
+    part.vector("centre of mass", &segment.centre)?;
+    part.vector("inertia", &segment.inertia)?;
+    part.not_negative("armature", joint.armature)?;
+    part.not_negative("joint damping", joint.damping)?;
+    if !segment.mass_properties().is_physical(joint.kind != JointKind::Fixed) {
+        let Segment { name, mass, inertia, .. } = segment.clone();
+        return Err(RobotError::Inertia { segment: name, mass, inertia });
+    }
+    if joint.kind.is_single() {
+        if joint.name.is_empty() {
+            return Err(RobotError::Unnamed { part: "joint", index: own_index });
+        }
+        part.vector("axis", &joint.axis)?;
+        let length = norm(&joint.axis);
+        part.demand(length.is_finite() && length > 1e-6, "length of the axis", length)?;
+        let [low, high] = joint.range;
+        if !(low <= high && low < f64::INFINITY && high > f64::NEG_INFINITY) {
+            return Err(RobotError::Range { joint: joint.name.clone(), range: joint.range });
+        }
+    }
+    Ok(())
+}
+
+impl Robot {
+    /// Looks for anything by which no world can be built from the description, and tells the first it finds.
+    ///
+    /// Checked are: indices and the order of parents, at most 65535 parts of a kind, names present and unique within
+    /// their kind, finite numbers, unit quaternions (to 1e-6), axes longer than 1e-6, ordered ranges, floating joints
+    /// only in the world, masses and inertias of moving bodies > 0 and possible, positive shapes, laws and surfaces,
+    /// pairs of different bodies listed once and with at most one plane.
+    ///
+    /// # Errors
+    /// The first fault, as a [`RobotError`].
+    pub fn validate(&self) -> Result<(), RobotError> {
+        let counts = [
+            ("segments", self.segments.len()),
+            ("colliders", self.colliders.len()),
+            ("pairs", self.pairs.len()),
+            ("actuators", self.actuators.len()),
+        ];
+        for (parts, count) in counts {
+            if count > usize::from(u16::MAX) {
+                return Err(RobotError::Count { parts, count });
+            }
+        }
+        named("segment", self.segments.iter().map(|s| &s.name))?;
+        named("collider", self.colliders.iter().map(|c| &c.name))?;
+        named("actuator", self.actuators.iter().map(|a| &a.name))?;
+        unique(self.segments.iter().map(|s| &s.name))?;
+        unique(self.segments.iter().map(|s| &s.joint.name))?;
+        unique(self.colliders.iter().map(|c| &c.name))?;
+        unique(self.actuators.iter().map(|a| &a.name))?;
+        for (i, one) in self.segments.iter().enumerate() {
+            segment(i, one)?;
+        }
+        for collider in &self.colliders {
+            if let Some(body) = collider.body {
+                index(&collider.name, "body", body.index(), self.segments.len())?;
+            }
+            Part(&collider.name).shape(&collider.shape)?;
+            Part(&collider.name).placement(&collider.placement)?;
+        }
+        for actuator in &self.actuators {
+            index(&actuator.name, "joint", actuator.joint.index(), self.segments.len())?;
+            let carried = &self.segments[actuator.joint.index()];
+            if !carried.joint.kind.is_single() {
+                return Err(RobotError::Actuated { actuator: actuator.name.clone(), segment: carried.name.clone() });
+            }
+            Part(&actuator.name).law(&actuator.law)?;
+        }
+        self.validate_pairs()
+    }
+
+    fn validate_pairs(&self) -> Result<(), RobotError> {
+        let mut seen = BTreeSet::new();
+        for pair in &self.pairs {
+            let [a, b] = pair.colliders;
+            index("a pair", "collider", a, self.colliders.len())?;
+            index("a pair", "collider", b, self.colliders.len())?;
+            let colliders = || [self.colliders[a].name.clone(), self.colliders[b].name.clone()];
+            if self.colliders[a].body == self.colliders[b].body {
+                return Err(RobotError::SameBody { colliders: colliders() });
+            }
+            if !seen.insert([a.min(b), a.max(b)]) {
+                return Err(RobotError::Twice { colliders: colliders() });
+            }
+            if self.colliders[a].shape == Shape::Plane && self.colliders[b].shape == Shape::Plane {
+                return Err(RobotError::Shapes { colliders: colliders() });
+            }
+            Part(&self.colliders[a].name).surface(&pair.surface)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuators::law::{Held, Servo, Torque};
+    use crate::actuators::muscle::MusclePair;
+    use crate::ports::{BodyId, JointId};
+    use crate::robot::description::{Collider, Joint};
+    use crate::robot::mass_properties::MassProperties;
+    use alloc::format;
+    use alloc::string::ToString;
+    use alloc::vec::Vec;
+
+    fn good() -> Robot {
+        let mut r = Robot::new("good");
+        let at = Pose::at([0.0, 0.0, 0.1]);
+        let ball = MassProperties::sphere(1.0, 0.1);
+        let hinge = Joint::revolute("hinge", [0.0, 2.0, 0.0], at, [f64::NEG_INFINITY, f64::INFINITY]);
+        let arm = r.add_segment(Segment::new("arm", None, hinge, ball));
+        let slide = Joint::prismatic("slide", [1.0, 0.0, 0.0], at, [0.0, 0.1]);
+        r.add_segment(Segment::new("hand", Some(arm), slide, ball));
+        let skin = MassProperties::sphere(0.0, 0.0);
+        r.add_segment(Segment::new("skin", Some(arm), Joint::fixed(at), skin));
+        r.add_segment(Segment::new("thing", None, Joint::floating(at), ball));
+        let shapes = [
+            ("a", Some(BodyId(0)), Shape::Sphere { radius: 0.1 }),
+            ("b", Some(BodyId(1)), Shape::Capsule { radius: 0.1, half_length: 0.0 }),
+            ("c", Some(BodyId(3)), Shape::Box { half: [0.1; 3] }),
+            ("d", None, Shape::Plane),
+            ("e", Some(BodyId(2)), Shape::Plane),
+        ];
+        for (name, body, shape) in shapes {
+            r.add_collider(Collider::new(name, body, shape, at));
+        }
+        let surface = Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 1e4, damping: 10.0 };
+        for pair in [[0, 1], [0, 2], [0, 3], [1, 2], [3, 1], [3, 2]] {
+            r.add_pair(pair, surface);
+        }
+        r.add_actuator("muscles", JointId(0), Law::MusclePair(MusclePair::thesis(300.0, 0.01, [-1.0, 1.0])));
+        r.add_actuator("servo", JointId(1), Law::Servo(Servo { stiffness: 1.0, damping: 0.1, limit: f64::INFINITY }));
+        r.add_actuator("torque", JointId(0), Law::Torque(Torque { limit: 1.0 }));
+        r.add_actuator("held", JointId(0), Law::Held(Held { stiffness: 1.0, damping: 0.0 }));
+        r
+    }
+
+    fn fault(change: impl FnOnce(&mut Robot)) -> RobotError {
+        let mut robot = good();
+        change(&mut robot);
+        robot.validate().expect_err("a fault")
+    }
+
+    fn muscles(robot: &mut Robot) -> &mut MusclePair<f64> {
+        let Law::MusclePair(m) = &mut robot.actuators[0].law else { panic!("no muscles") };
+        m
+    }
+
+    #[test]
+    fn a_good_robot_passes() {
+        assert_eq!(good().validate(), Ok(()));
+        assert_eq!(Robot::default().validate(), Ok(()));
+    }
+
+    #[test]
+    fn faults_of_structure() {
+        let name = |s: &str| s.to_string();
+        assert_eq!(
+            fault(|r| r.segments[1].parent = Some(BodyId(1))),
+            RobotError::Parent { segment: name("hand"), parent: 1 }
+        );
+        assert_eq!(fault(|r| r.segments[3].parent = Some(BodyId(0))), RobotError::Floating { segment: name("thing") });
+        assert_eq!(fault(|r| r.segments[1].name = name("arm")), RobotError::Name { name: name("arm") });
+        assert_eq!(fault(|r| r.segments[1].joint.name = name("hinge")), RobotError::Name { name: name("hinge") });
+        assert_eq!(fault(|r| r.colliders[1].name = name("a")), RobotError::Name { name: name("a") });
+        assert_eq!(fault(|r| r.actuators[1].name = name("held")), RobotError::Name { name: name("held") });
+        assert_eq!(fault(|r| r.segments[1].name.clear()), RobotError::Unnamed { part: "segment", index: 1 });
+        assert_eq!(fault(|r| r.segments[1].joint.name.clear()), RobotError::Unnamed { part: "joint", index: 1 });
+        let body = RobotError::Index { part: name("a"), field: "body", index: 4, count: 4 };
+        assert_eq!(fault(|r| r.colliders[0].body = Some(BodyId(4))), body);
+        let joint = RobotError::Index { part: name("servo"), field: "joint", index: 9, count: 4 };
+        assert_eq!(fault(|r| r.actuators[1].joint = JointId(9)), joint);
+        assert_eq!(
+            fault(|r| r.actuators[1].joint = JointId(2)),
+            RobotError::Actuated { actuator: name("servo"), segment: name("skin") }
+        );
+        let collider = RobotError::Index { part: name("a pair"), field: "collider", index: 5, count: 5 };
+        assert_eq!(fault(|r| r.pairs[0].colliders[1] = 5), collider);
+        let colliders = [name("b"), name("a")];
+        assert_eq!(fault(|r| r.pairs[1].colliders = [1, 0]), RobotError::Twice { colliders });
+        let colliders = [name("a"), name("a")];
+        assert_eq!(fault(|r| r.pairs[0].colliders = [0, 0]), RobotError::SameBody { colliders });
+        let colliders = [name("d"), name("e")];
+        assert_eq!(fault(|r| r.pairs[0].colliders = [3, 4]), RobotError::Shapes { colliders });
+        let many = fault(|r| r.pairs = alloc::vec![r.pairs[0]; 65536]);
+        assert_eq!(many, RobotError::Count { parts: "pairs", count: 65536 });
+    }
+
+    #[test]
+    fn faults_of_numbers() {
+        type Change = fn(&mut Robot);
+        let values: [(&str, Change); 28] = [
+            ("rotation", |r| r.segments[0].joint.placement.rotation[3] = 1.1),
+            ("rotation", |r| r.colliders[0].placement.rotation[0] = f64::NAN),
+            ("position", |r| r.colliders[0].placement.position[0] = f64::INFINITY),
+            ("mass", |r| r.segments[0].mass = -1.0),
+            ("mass", |r| r.segments[2].mass = f64::NAN),
+            ("centre of mass", |r| r.segments[0].centre[2] = f64::NAN),
+            ("inertia", |r| r.segments[0].inertia[5] = f64::NAN),
+            ("armature", |r| r.segments[0].joint.armature = -1.0),
+            ("joint damping", |r| r.segments[0].joint.damping = f64::NAN),
+            ("axis", |r| r.segments[0].joint.axis = [0.0; 3]),
+            ("axis", |r| r.segments[0].joint.axis[0] = f64::NAN),
+            ("radius", |r| r.colliders[0].shape = Shape::Sphere { radius: 0.0 }),
+            ("half length", |r| r.colliders[0].shape = Shape::Capsule { radius: 1.0, half_length: -1.0 }),
+            ("half edge length", |r| r.colliders[0].shape = Shape::Box { half: [1.0, 0.0, 1.0] }),
+            ("friction", |r| r.pairs[0].surface.friction = -0.1),
+            ("rolling friction", |r| r.pairs[0].surface.rolling_friction = f64::NAN),
+            ("contact stiffness", |r| r.pairs[0].surface.stiffness = 0.0),
+            ("contact damping", |r| r.pairs[0].surface.damping = -1.0),
+            ("tension", |r| muscles(r).tension = f64::NAN),
+            ("moment arm", |r| muscles(r).moment_arm = -0.01),
+            ("range", |r| muscles(r).upper = f64::INFINITY),
+            ("upper end of the range", |r| muscles(r).upper = muscles(r).lower),
+            ("rest length", |r| muscles(r).rest_length = 1.0),
+            ("longest length", |r| muscles(r).longest = 2.5),
+            ("shape", |r| muscles(r).shape = 0.0),
+            ("viscosity", |r| muscles(r).viscosity = -0.9),
+            ("limit", |r| r.actuators[2].law = Law::Torque(Torque { limit: f64::NAN })),
+            ("damping", |r| r.actuators[3].law = Law::Held(Held { stiffness: 1.0, damping: -1.0 })),
+        ];
+        for (expected, change) in values {
+            let error = fault(change);
+            let RobotError::Value { part, field, .. } = &error else { panic!("{expected}: {error}") };
+            assert!(field.contains(expected), "{expected}: {error}");
+            assert_eq!(format!("{error}").find(part.as_str()), Some(0), "the message names the part");
+        }
+        for range in [[1.0, -1.0], [f64::NAN, 1.0], [f64::INFINITY; 2]] {
+            let error = fault(|r| r.segments[0].joint.range = range);
+            assert!(matches!(&error, RobotError::Range { joint, .. } if joint == "hinge"), "{error}");
+        }
+        let impossible: Vec<fn(&mut Robot)> =
+            alloc::vec![|r| r.segments[0].mass = 0.0, |r| r.segments[3].inertia = [0.0; 6], |r| r.segments[1]
+                .inertia =
+                [1.0, 1.0, 3.0, 0.0, 0.0, 0.0],];
+        for change in impossible {
+            let error = fault(change);
+            assert!(matches!(error, RobotError::Inertia { .. }), "{error}");
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Robots that are ready to use, every number a public field.
+//!
+//! | robot | what it is | its world |
+//! |---|---|---|
+//! | [`ArmAndHand`] | an arm of seven joints driven by muscle pairs, and a hand of twenty joints driven by servos | articulated |
+//! | [`Tabletop`] | a table with a sphere, the scene of the arm in `reach-grasp-lift` | articulated |
+//! | [`MobileRobot`] | a round robot on two wheels: [`khepera`](MobileRobot::khepera), [`e_puck`](MobileRobot::e_puck), [`marxbot`](MobileRobot::marxbot) | planar |
+//!
+//! To change one, change its fields before it is built: `ArmAndHand { moment_arm: 0.02, ..ArmAndHand::default() }`.
+
+/// The arm and hand of `reach-grasp-lift`.
+pub(crate) mod arm_and_hand;
+/// Wheeled robots, and the numbers by which a planar world knows their parts.
+pub(crate) mod mobile;
+/// The table and the sphere of `reach-grasp-lift`.
+pub(crate) mod tabletop;
+
+pub use arm_and_hand::{ArmAndHand, Finger};
+pub use mobile::{InfraredRing, MobileParts, MobileRobot};
+pub use tabletop::Tabletop;

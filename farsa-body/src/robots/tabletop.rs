@@ -1,0 +1,120 @@
+//! The table and the sphere of the experiment `reach-grasp-lift`.
+
+use crate::ports::BodyId;
+use crate::pose::Pose;
+use crate::robot::description::{Collider, Joint, Robot, Segment, Surface};
+use crate::robot::mass_properties::MassProperties;
+use crate::robot::shape::Shape;
+use crate::robot::validation::RobotError;
+use crate::robots::arm_and_hand::{ArmAndHand, Finger};
+
+/// A table before the arm and hand, with a sphere on it; every number a field.
+///
+/// The table's top is at z = 0. All numbers are our own choice; the source gives the sphere's radius.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+pub struct Tabletop {
+    /// Extent of the table along X [m].
+    pub table_x: [f64; 2],
+    /// Extent of the table along Y [m].
+    pub table_y: [f64; 2],
+    /// How far the solid table goes down [m].
+    pub table_depth: f64,
+    /// Radius of the sphere [m].
+    pub sphere_radius: f64,
+    /// Mass of the sphere, solid [kg].
+    pub sphere_mass: f64,
+    /// Where the sphere rests on the table at first, X and Y [m].
+    pub sphere_start: [f64; 2],
+    /// Contact of hand and sphere.
+    pub hand_on_sphere: Surface,
+    /// Contact of the sphere with the table.
+    pub sphere_on_table: Surface,
+    /// Contact of arm and hand with the table.
+    pub arm_on_table: Surface,
+}
+
+impl Default for Tabletop {
+    fn default() -> Self {
+        let surface = ArmAndHand::default().surface;
+        Self {
+            table_x: [0.03, 0.50],
+            table_y: [-0.55, 0.25],
+            table_depth: 0.30,
+            sphere_radius: 0.025,
+            sphere_mass: 0.050,
+            sphere_start: [0.10, -0.18],
+            hand_on_sphere: surface,
+            sphere_on_table: Surface { rolling_friction: 5e-4, ..surface },
+            arm_on_table: surface,
+        }
+    }
+}
+
+impl Tabletop {
+    /// The sphere in the robot that [`Tabletop::scene`] makes.
+    pub const SPHERE: BodyId = BodyId(27);
+
+    /// Arm and hand, sphere and table in one robot, the arm's parts first.
+    ///
+    /// After the arm's own pairs come those of the `sphere` with the palm and the fifteen phalanges (finger by finger),
+    /// then those of the
+    /// `table` with the sphere, forearm, palm and phalanges.
+    ///
+    /// # Errors
+    /// What [`Robot::validate`] finds with the numbers given.
+    pub fn scene(&self, arm: &ArmAndHand) -> Result<Robot, RobotError> {
+        let mut robot = arm.robot()?;
+        let [x, y] = self.sphere_start;
+        let start = Joint::floating(Pose::at([x, y, self.sphere_radius]));
+        let solid = MassProperties::sphere(self.sphere_mass, self.sphere_radius);
+        let body = robot.add_segment(Segment::new("sphere", None, start, solid));
+        let shape = Shape::Sphere { radius: self.sphere_radius };
+        let sphere = robot.add_collider(Collider::new("sphere", Some(body), shape, Pose::identity()));
+        let ([x0, x1], [y0, y1], z0) = (self.table_x, self.table_y, -self.table_depth);
+        let half = [(x1 - x0) / 2.0, (y1 - y0) / 2.0, -z0 / 2.0];
+        let middle = Pose::at([f64::midpoint(x0, x1), f64::midpoint(y0, y1), z0 / 2.0]);
+        let table = robot.add_collider(Collider::new("table", None, Shape::Box { half }, middle));
+
+        let [_, forearm, palm] = ArmAndHand::ARM_COLLIDERS;
+        let phalanges = || Finger::ALL.into_iter().flat_map(ArmAndHand::phalange_colliders);
+        for part in core::iter::once(palm).chain(phalanges()) {
+            robot.add_pair([part, sphere], self.hand_on_sphere);
+        }
+        robot.add_pair([sphere, table], self.sphere_on_table);
+        for part in [forearm, palm].into_iter().chain(phalanges()) {
+            robot.add_pair([part, table], self.arm_on_table);
+        }
+        robot.validate()?;
+        Ok(robot)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scene_holds_arm_sphere_and_table() {
+        let robot = Tabletop::default().scene(&ArmAndHand::default()).expect("a valid scene");
+        assert_eq!(robot.segments.len(), 28);
+        assert_eq!(robot.body("sphere"), Some(Tabletop::SPHERE));
+        assert_eq!(robot.colliders.len(), 20);
+        // Thumb with the others' outer phalanges, neighbours, palm with the outer ones; sphere with palm and phalanges; table.
+        assert_eq!(robot.pairs.len(), (2 * 8 + 3 + 6) + 16 + 18);
+        assert!(robot.pair("sphere", "little_distal").is_some());
+        assert!(robot.pair("table", "sphere").is_some());
+        assert!(robot.pair("table", "upper_arm").is_none());
+        assert_eq!(robot.pairs[robot.pair("table", "sphere").expect("a pair").index()].surface.rolling_friction, 5e-4);
+    }
+
+    #[test]
+    fn impossible_tables_are_refused() {
+        let flat = Tabletop { table_depth: 0.0, ..Tabletop::default() };
+        assert!(flat.scene(&ArmAndHand::default()).is_err());
+        let heavy = Tabletop { sphere_mass: f64::INFINITY, ..Tabletop::default() };
+        assert!(heavy.scene(&ArmAndHand::default()).is_err());
+        let strong = ArmAndHand { moment_arm: f64::NAN, ..ArmAndHand::default() };
+        assert!(Tabletop::default().scene(&strong).is_err());
+    }
+}

@@ -1,0 +1,60 @@
+//! Sensors of the ground.
+
+use crate::channel::{ChannelError, finite, groups, unit};
+use crate::ports::{BodyId, Channels, Kinematics, Planar, Sensor};
+use crate::sensors::stance::Stance;
+
+/// Reads the colour of the ground under places of a robot, in [0, 1]: one channel a place, the mean of red, green and
+/// blue.
+///
+/// After [`GroundColor::rgb`] three a place, red, green and blue. The places are any list of points of the robot's frame.
+/// Wrap it in [`crate::Noisy`] for noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundColor<L, B = BodyId> {
+    body: B,
+    places: L,
+    colors: usize,
+}
+
+impl<L: AsRef<[[f32; 2]]>, B> GroundColor<L, B> {
+    /// Sensors of grey at these places [m] in the frame of `body`.
+    ///
+    /// # Errors
+    /// [`ChannelError::Groups`] if there are no places, [`ChannelError::Value`] if one is not finite.
+    pub fn new(body: B, places: L) -> Result<Self, ChannelError> {
+        groups("places", places.as_ref().len(), 1)?;
+        for &x in places.as_ref().iter().flatten() {
+            finite("place", x)?;
+        }
+        Ok(Self { body, places, colors: 1 })
+    }
+
+    /// The same with three channels a place: red, green and blue.
+    pub fn rgb(self) -> Self {
+        Self { colors: 3, ..self }
+    }
+}
+
+impl<L: AsRef<[[f32; 2]]>, B> Channels for GroundColor<L, B> {
+    fn channels(&self) -> usize {
+        self.colors * self.places.as_ref().len()
+    }
+}
+
+impl<L, B, W> Sensor<W> for GroundColor<L, B>
+where
+    L: AsRef<[[f32; 2]]>,
+    B: Copy,
+    W: Planar<Body = B> + Kinematics + ?Sized,
+{
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        let stance = Stance::of(world, self.body);
+        for (values, &place) in out.chunks_mut(self.colors).zip(self.places.as_ref()) {
+            let [r, g, b] = world.ground(stance.place(place)).map(unit);
+            let color = if self.colors == 3 { [r, g, b] } else { [(r + g + b) / 3.0; 3] };
+            for (o, x) in values.iter_mut().zip(color) {
+                *o = unit(x);
+            }
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Infrared sensors by rays, for any world that can cast them.
+
+#[cfg(feature = "alloc")]
+use alloc::vec::Vec;
+
+use farsa_num::Scalar;
+
+use crate::channel::{ChannelError, finite, groups, positive, unit};
+use crate::ports::{BodyId, Channels, Kinematics, Rays, Sensor};
+#[cfg(feature = "alloc")]
+use crate::robots::mobile::MobileRobot;
+use crate::sensors::beam::{Beam, BeamFrame};
+
+/// Reads how near the nearest thing in each cone of a ring of infrared sensors is, one channel each in [0, 1]:
+/// 1 - distance / range, 1 at the hull, 0 where nothing is within the range.
+///
+/// The distance is that of the nearest hit of all rays of a cone, from the hull along the ray: so that the number of rays
+/// changes how finely a cone is searched but not what a wall across it reads. A real sensor sums up the light that comes
+/// back from the whole cone; [`SampledInfrared`](crate::SampledInfrared) is nearer to that. Nothing sees the own body.
+///
+/// The beams are any list, in groups of one sensor each. Noise comes from the wrapper:
+///
+/// ```
+/// # #[cfg(feature = "alloc")] {
+/// use farsa_body::{BodyId, InfraredRays, MobileRobot, Noise, Noisy, Saturated};
+/// use farsa_num::{Domain, Stream};
+///
+/// let ring = InfraredRays::of(&MobileRobot::khepera(), BodyId(0))?;
+/// let noise = Noisy::new(ring, Noise::Uniform(0.05), Stream::new(7, Domain::Sensor, 0, 0, 0))?;
+/// let ring = Saturated::new(noise, 0.0, 1.0)?; // noise is never clamped by itself
+/// # }
+/// # Ok::<(), farsa_body::ChannelError>(())
+/// ```
+#[doc(alias = "proximity")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InfraredRays<L, B = BodyId> {
+    body: B,
+    beams: L,
+    rays: usize,
+    height: f32,
+    range: f32,
+}
+
+impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
+    /// A ring of sensors of `rays` beams each at `height` [m] above the origin of `body`, which see as far as `range` [m]
+    /// from the hull.
+    ///
+    /// # Errors
+    /// [`ChannelError::Groups`] if the beams are none or no whole sensors, [`ChannelError::Value`] if a beam's direction
+    /// is no unit vector, a number is not finite or `range` is not > 0.
+    pub fn new(body: B, beams: L, rays: usize, height: f32, range: f32) -> Result<Self, ChannelError> {
+        groups("beams", beams.as_ref().len(), rays)?;
+        beams.as_ref().iter().try_for_each(Beam::check)?;
+        Ok(Self { body, beams, rays, height: finite("height", height)?, range: positive("range", range)? })
+    }
+}
+
+impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
+    /// Reads as [`Sensor::read`] does, without casting the rays that meet nothing, which one may know who knows what is near.
+    ///
+    /// `meets` gets the ends of a ray \[m\] and says whether there may be something between them; a ray of which it says
+    /// no reads 0.
+    #[inline]
+    pub fn read_where<W>(&self, world: &W, out: &mut [f32], mut meets: impl FnMut([f32; 3], [f32; 3]) -> bool)
+    where
+        W: Rays<Body = B> + Kinematics + ?Sized,
+    {
+        let frame = BeamFrame::of(world, self.body, self.height);
+        for (o, cone) in out.iter_mut().zip(self.beams.as_ref().chunks_exact(self.rays)) {
+            let mut nearest = self.range;
+            for beam in cone {
+                if let Some(distance) = frame.distance(world, beam, self.range, &mut meets) {
+                    nearest = Scalar::min(nearest, distance);
+                }
+            }
+            *o = unit(1.0 - nearest / self.range);
+        }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<B> InfraredRays<Vec<Beam>, B> {
+    /// The ring of a robot whose body this is, at half its height, in the order of [`crate::InfraredRing::angles`].
+    ///
+    /// # Errors
+    /// Those of [`InfraredRays::new`].
+    pub fn of(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
+        let (ring, rays) = (&robot.infrared, robot.infrared.rays);
+        let cone =
+            |&angle: &f64| (0..rays).map(move |ray| Beam::in_cone(robot.radius, angle, ring.aperture, ray, rays));
+        let beams = ring.angles.iter().flat_map(cone).collect();
+        Self::new(body, beams, rays, (0.5 * robot.height) as f32, ring.range as f32)
+    }
+}
+
+impl<L: AsRef<[Beam]>, B> Channels for InfraredRays<L, B> {
+    fn channels(&self) -> usize {
+        self.beams.as_ref().len() / self.rays
+    }
+}
+
+impl<L, B, W> Sensor<W> for InfraredRays<L, B>
+where
+    L: AsRef<[Beam]>,
+    B: Copy + PartialEq,
+    W: Rays<Body = B> + Kinematics + ?Sized,
+{
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        self.read_where(world, out, |_, _| true);
+    }
+}

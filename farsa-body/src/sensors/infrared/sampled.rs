@@ -1,0 +1,154 @@
+//! Infrared sensors by measured tables, for worlds of the plane.
+
+use alloc::vec::Vec;
+use core::borrow::Borrow;
+
+use farsa_num::atan2;
+
+use crate::channel::{ChannelError, groups, positive};
+use crate::ports::{BodyId, Channels, Kinematics, Near, Planar, Sensor};
+use crate::sensors::infrared::table::InfraredTable;
+use crate::sensors::stance::Stance;
+
+/// Which measured table answers for which surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InfraredTables {
+    walls: InfraredTable,
+    bodies: Vec<(f32, InfraredTable)>,
+}
+
+impl InfraredTables {
+    /// A table for walls, and tables for round bodies with the radii [m] at which they were measured.
+    ///
+    /// A body takes the table whose radius is nearest to its own, of two equally near the earlier; without any, that of
+    /// the walls.
+    ///
+    /// # Errors
+    /// [`ChannelError::Groups`] if a table has another number of sensors than that of the walls, [`ChannelError::Value`]
+    /// if a radius is not a finite number > 0.
+    pub fn new(walls: InfraredTable, bodies: Vec<(f32, InfraredTable)>) -> Result<Self, ChannelError> {
+        for (radius, table) in &bodies {
+            positive("radius of a table", *radius)?;
+            if table.sensors() != walls.sensors() {
+                let (count, size) = (table.sensors(), walls.sensors());
+                return Err(ChannelError::Groups { field: "sensors of a table", count, size });
+            }
+        }
+        Ok(Self { walls, bodies })
+    }
+
+    /// Number of sensors.
+    pub fn sensors(&self) -> usize {
+        self.walls.sensors()
+    }
+
+    /// The distance from the hull at which all responses end [m].
+    pub fn range(&self) -> f32 {
+        self.bodies.iter().map(|(_, table)| table.range()).fold(self.walls.range(), farsa_num::Scalar::max)
+    }
+
+    /// The table for a round body of this radius [m], or with 0 for a wall.
+    pub fn table(&self, radius: f32) -> &InfraredTable {
+        let mut nearest = (f32::INFINITY, &self.walls);
+        if radius > 0.0 {
+            for (measured, table) in &self.bodies {
+                let gap = (measured - radius).abs();
+                if gap < nearest.0 {
+                    nearest = (gap, table);
+                }
+            }
+        }
+        nearest.1
+    }
+}
+
+/// Reads a ring of infrared sensors from measured tables, one channel each in [0, 1].
+///
+/// Every wall and every other body adds what its table holds for the distance of its nearest point to the hull and for
+/// that point's bearing from the robot's centre; the sum is cut at 1, and nothing hides anything. The nearest point of a
+/// round body lies towards its centre. That of a wall is the foot of the perpendicular, or the wall's end where that is
+/// nearer: two walls of a corner answer both, each for its own nearest point.
+///
+/// The tables are owned, borrowed, or shared by an `Rc` or `Arc`. Wrap it in [`crate::Noisy`] for noise, as
+/// [`crate::InfraredRays`] shows.
+///
+/// ```
+/// use farsa_body::testing::PlaneWorld;
+/// use farsa_body::{InfraredTable, InfraredTables, MobileRobot, SampledInfrared, Sensor};
+///
+/// // Two sensors, four angles, one distance; measured at a wall only.
+/// let walls = InfraredTable::parse("2 4 1 0 50\nTURN 0\n512 512\n0 256\n0 0\n256 0\nEND\n").unwrap();
+/// let tables = InfraredTables::new(walls, Vec::new())?;
+/// let mut world = PlaneWorld::new();
+/// let parts = world.add_robot(&MobileRobot::khepera(), [0.0, 0.0], 0.1);
+/// world.add_wall([[0.07, -1.0], [0.07, 1.0]], [1.0; 3]);
+/// let mut sensor = SampledInfrared::new(parts.body, 0.035, &tables)?;
+/// let mut x = [0.0; 2];
+/// sensor.read(&world, &mut x);
+/// assert_eq!(x, [0.5, 0.5]);
+/// # Ok::<(), farsa_body::ChannelError>(())
+/// ```
+#[doc(alias = "proximity")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledInfrared<T, B = BodyId> {
+    body: B,
+    radius: f32,
+    tables: T,
+    channels: usize,
+}
+
+impl<T: Borrow<InfraredTables>, B> SampledInfrared<T, B> {
+    /// All sensors of the tables, on the round hull of `radius` [m] of `body`.
+    ///
+    /// # Errors
+    /// [`ChannelError::Value`] if `radius` is not a finite number > 0.
+    pub fn new(body: B, radius: f32, tables: T) -> Result<Self, ChannelError> {
+        let channels = tables.borrow().sensors();
+        Ok(Self { body, radius: positive("radius", radius)?, tables, channels })
+    }
+
+    /// Only the first sensors: of a Khepera's eight the first six are those in front.
+    ///
+    /// # Errors
+    /// [`ChannelError::Selection`] if there are not so many, [`ChannelError::Groups`] if it is none.
+    pub fn first(self, sensors: usize) -> Result<Self, ChannelError> {
+        groups("sensors", sensors, 1)?;
+        let channels = self.tables.borrow().sensors();
+        if sensors > channels {
+            return Err(ChannelError::Selection { start: 0, end: sensors, channels });
+        }
+        Ok(Self { channels: sensors, ..self })
+    }
+}
+
+impl<T, B> Channels for SampledInfrared<T, B> {
+    fn channels(&self) -> usize {
+        self.channels
+    }
+}
+
+impl<T, B, W> Sensor<W> for SampledInfrared<T, B>
+where
+    T: Borrow<InfraredTables>,
+    B: Copy + PartialEq,
+    W: Planar<Body = B> + Kinematics + ?Sized,
+{
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        let (stance, tables) = (Stance::of(world, self.body), self.tables.borrow());
+        let channels = self.channels.min(out.len());
+        let out = &mut out[..channels];
+        out.fill(0.0);
+        world.near(stance.at, self.radius + tables.range(), &mut |near: Near<B>| {
+            if near.body != Some(self.body) {
+                let [x, y] = stance.bearing(&near);
+                let response = tables.table(near.radius).response(near.distance - self.radius, atan2(y, x));
+                for (o, reading) in out.iter_mut().zip(response.unwrap_or_default()) {
+                    *o += reading;
+                }
+            }
+        });
+        for o in out {
+            *o = farsa_num::Scalar::min(*o, 1.0);
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! A fan of laser range finders.
+
+use crate::channel::{ChannelError, finite, groups, positive, unit};
+use crate::ports::{BodyId, Channels, Kinematics, Rays, Sensor};
+use crate::sensors::beam::{Beam, BeamFrame};
+
+/// Reads how far each beam of a fan reaches, one channel each in [0, 1]: distance / range, 1 where nothing is within the
+/// range.
+///
+/// Distances are from the hull. The beams are any list; [`Beam::in_cone`] makes a fan. Wrap it in [`crate::Noisy`] for
+/// noise.
+#[doc(alias = "lidar")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserDistance<L, B = BodyId> {
+    body: B,
+    beams: L,
+    height: f32,
+    range: f32,
+}
+
+impl<L: AsRef<[Beam]>, B> LaserDistance<L, B> {
+    /// A fan of beams at `height` [m] above the origin of `body`, which reach as far as `range` [m] from the hull.
+    ///
+    /// # Errors
+    /// [`ChannelError::Groups`] if there are no beams, [`ChannelError::Value`] if a beam's direction is no unit vector, a
+    /// number is not finite or `range` is not > 0.
+    pub fn new(body: B, beams: L, height: f32, range: f32) -> Result<Self, ChannelError> {
+        groups("beams", beams.as_ref().len(), 1)?;
+        beams.as_ref().iter().try_for_each(Beam::check)?;
+        Ok(Self { body, beams, height: finite("height", height)?, range: positive("range", range)? })
+    }
+}
+
+impl<L: AsRef<[Beam]>, B> Channels for LaserDistance<L, B> {
+    fn channels(&self) -> usize {
+        self.beams.as_ref().len()
+    }
+}
+
+impl<L, B, W> Sensor<W> for LaserDistance<L, B>
+where
+    L: AsRef<[Beam]>,
+    B: Copy + PartialEq,
+    W: Rays<Body = B> + Kinematics + ?Sized,
+{
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        let frame = BeamFrame::of(world, self.body, self.height);
+        for (o, beam) in out.iter_mut().zip(self.beams.as_ref()) {
+            *o = frame
+                .distance(world, beam, self.range, |_, _| true)
+                .map_or(1.0, |distance| unit(distance / self.range));
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! A camera with one line of pixels.
+
+#[cfg(feature = "alloc")]
+use alloc::vec::Vec;
+
+use crate::channel::{ChannelError, finite_range, groups, positive};
+use crate::ports::{BodyId, Channels, Kinematics, Planar, Sensor};
+use crate::sensors::beam::Beam;
+use crate::sensors::stance::Stance;
+
+/// The colours that a pixel answers to: those whose red, green and blue each lie in a range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ColorBand {
+    /// The least of red, green and blue.
+    pub low: [f32; 3],
+    /// The most of red, green and blue.
+    pub high: [f32; 3],
+}
+
+impl ColorBand {
+    /// All colours whose red, green and blue each differ by at most `tolerance` from those of `color`.
+    pub fn around(color: [f32; 3], tolerance: f32) -> Self {
+        Self { low: color.map(|x| x - tolerance), high: color.map(|x| x + tolerance) }
+    }
+
+    /// Whether a colour is in the band.
+    pub fn shows(&self, color: [f32; 3]) -> bool {
+        (0..3).all(|i| self.low[i] <= color[i] && color[i] <= self.high[i])
+    }
+}
+
+/// Reads how much of each sector of a robot's view shows each of some colours, sectors x colours channels in [0, 1],
+/// those of the leftmost sector first.
+///
+/// Each sector is searched by rays. Every ray sees the nearest surface and nothing behind it, also where that hides the
+/// farther one in part only; a channel is the share of its sector's rays that see its colour. Colours are never averaged:
+/// a ray that sees magenta counts for bands that hold magenta, not for red and blue. The own body is not seen.
+///
+/// The rays and bands are any lists. Wrap it in [`crate::Noisy`] for noise. Red and blue robots to the left and to the
+/// right, each whether or not its other LED shines as well:
+///
+/// ```
+/// # #[cfg(feature = "alloc")] {
+/// use farsa_body::testing::PlaneWorld;
+/// use farsa_body::{Channels, ColorBand, LinearCamera, MobileRobot, Sensor};
+///
+/// let red = ColorBand { low: [0.5, 0.0, 0.0], high: [1.0, 0.3, 1.0] };
+/// let blue = ColorBand { low: [0.0, 0.0, 0.5], high: [1.0, 0.3, 1.0] };
+/// let mut world = PlaneWorld::new();
+/// let robot = world.add_robot(&MobileRobot::marxbot(), [0.0, 0.0], 0.0);
+/// world.add_disc([1.0, 0.3], 0.2, [1.0, 0.0, 0.0]);
+/// let mut camera = LinearCamera::of_view(robot.body, 1.0, 2, 10, [red, blue], 5.0)?;
+/// let mut x = [0.0; 4];
+/// camera.read(&world, &mut x);
+/// assert_eq!(x, [0.8, 0.0, 0.0, 0.0]);
+/// # }
+/// # Ok::<(), farsa_body::ChannelError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearCamera<R, C, B = BodyId> {
+    body: B,
+    rays: R,
+    per_sector: usize,
+    bands: C,
+    range: f32,
+}
+
+impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
+    /// A camera on `body` with `per_sector` rays in each sector, which sees as far as `range` [m]; [`Beam::in_view`] makes
+    /// its rays.
+    ///
+    /// # Errors
+    /// [`ChannelError::Groups`] if the rays are none or no whole sectors or there are no bands, [`ChannelError::Range`] if
+    /// a band runs backwards or is not finite, [`ChannelError::Value`] if a ray's direction is no unit vector, its place is
+    /// not finite or `range` is not a finite number > 0.
+    pub fn new(body: B, rays: R, per_sector: usize, bands: C, range: f32) -> Result<Self, ChannelError> {
+        groups("rays", rays.as_ref().len(), per_sector)?;
+        groups("colours", bands.as_ref().len(), 1)?;
+        rays.as_ref().iter().try_for_each(Beam::check)?;
+        for band in bands.as_ref() {
+            for (from, to) in band.low.into_iter().zip(band.high) {
+                finite_range(from, to)?;
+                if from > to {
+                    return Err(ChannelError::Range { from, to });
+                }
+            }
+        }
+        Ok(Self { body, rays, per_sector, bands, range: positive("range", range)? })
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<C: AsRef<[ColorBand]>, B> LinearCamera<Vec<Beam>, C, B> {
+    /// A camera at the origin of `body` that looks ahead, with a field of view [rad] in equal sectors of `per_sector` rays
+    /// each; of 2 pi it sees all around.
+    ///
+    /// # Errors
+    /// [`ChannelError::Value`] if the field of view is not within 0 and 2 pi, and those of [`LinearCamera::new`].
+    pub fn of_view(
+        body: B,
+        field_of_view: f64,
+        sectors: usize,
+        per_sector: usize,
+        bands: C,
+        range: f32,
+    ) -> Result<Self, ChannelError> {
+        const FULL: f64 = 2.0 * core::f64::consts::PI;
+        if !(field_of_view > 0.0 && field_of_view <= FULL + ROUNDED) {
+            return Err(ChannelError::Value { field: "field of view", value: field_of_view as f32 });
+        }
+        let rays = sectors.saturating_mul(per_sector);
+        if rays > MOST_RAYS {
+            return Err(ChannelError::Groups { field: "rays", count: rays, size: per_sector });
+        }
+        let rays = (0..rays).map(|ray| Beam::in_view([0.0; 2], field_of_view, ray, rays)).collect();
+        Self::new(body, rays, per_sector, bands, range)
+    }
+}
+
+/// More rays than this nobody needs, and a slip may run out of memory.
+#[cfg(feature = "alloc")]
+const MOST_RAYS: usize = 1 << 20;
+
+/// By how much 2 pi in single precision is beyond 2 pi, and a little more [rad].
+#[cfg(feature = "alloc")]
+const ROUNDED: f64 = 1e-6;
+
+impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> Channels for LinearCamera<R, C, B> {
+    fn channels(&self) -> usize {
+        self.rays.as_ref().len() / self.per_sector * self.bands.as_ref().len()
+    }
+}
+
+impl<R, C, B, W> Sensor<W> for LinearCamera<R, C, B>
+where
+    R: AsRef<[Beam]>,
+    C: AsRef<[ColorBand]>,
+    B: Copy,
+    W: Planar<Body = B> + Kinematics + ?Sized,
+{
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        let (stance, bands) = (Stance::of(world, self.body), self.bands.as_ref());
+        let rays = self.rays.as_ref();
+        let shown = Shown::of(world, &stance, rays, self.range, |color| bands.iter().any(|band| band.shows(color)));
+        for (values, sector) in out.chunks_mut(bands.len()).zip(rays.chunks_exact(self.per_sector)) {
+            values.fill(0.0);
+            for ray in sector {
+                let (from, direction) = (stance.place(ray.from), stance.turn(ray.direction));
+                if !shown.may_meet(from, direction) {
+                    continue;
+                }
+                if let Some(sight) = world.look(from, direction, self.range, Some(self.body)) {
+                    for (o, band) in values.iter_mut().zip(bands) {
+                        *o += if band.shows(sight.color) { 1.0 } else { 0.0 };
+                    }
+                }
+            }
+            for o in values {
+                *o /= self.per_sector as f32;
+            }
+        }
+    }
+}
+
+/// What a camera's bands show of what is around: only a ray that may meet some of it can change what the camera reads.
+struct Shown {
+    /// Centre and radius of round bodies [m].
+    rounds: [([f32; 2], f32); MOST_SHOWN],
+    count: usize,
+    /// A wall is shown, or more bodies than there is room for: every ray may meet something.
+    anywhere: bool,
+}
+
+/// As many bodies as there usually are; of more it does not pay to try each before every ray.
+const MOST_SHOWN: usize = 16;
+
+impl Shown {
+    #[inline]
+    fn of<W: Planar + ?Sized>(
+        world: &W,
+        stance: &Stance,
+        rays: &[Beam],
+        range: f32,
+        shows: impl Fn([f32; 3]) -> bool,
+    ) -> Self {
+        let mut shown = Self { rounds: [([0.0; 2], 0.0); MOST_SHOWN], count: 0, anywhere: false };
+        let aside = |ray: &Beam| ray.from[0].abs() + ray.from[1].abs();
+        let reach = rays.iter().map(aside).fold(0.0, f32::max) + range;
+        world.near(stance.at, reach, &mut |near| {
+            if shown.anywhere || !shows(near.color) {
+                return;
+            }
+            // The middle lies a radius behind the nearest point, which does not tell it from close by.
+            let told = near.body.is_some() && near.distance > 0.5 * near.radius;
+            let Some(room) = shown.rounds.get_mut(shown.count).filter(|_| told) else {
+                shown.anywhere = true;
+                return;
+            };
+            let behind = near.radius / near.distance;
+            let centre = [0, 1].map(|k| near.point[k] + (near.point[k] - stance.at[k]) * behind);
+            *room = (centre, near.radius);
+            shown.count += 1;
+        });
+        shown
+    }
+
+    /// Whether a ray of unit direction may meet something shown; sometimes also if it does not.
+    #[inline]
+    fn may_meet(&self, from: [f32; 2], direction: [f32; 2]) -> bool {
+        self.anywhere
+            || self.rounds[..self.count].iter().any(|(centre, radius)| {
+                let [x, y] = [centre[0] - from[0], centre[1] - from[1]];
+                let (along, across) = (x * direction[0] + y * direction[1], x * direction[1] - y * direction[0]);
+                // A little more than the radius, for rounding; and never "no" for a number that is none.
+                let room = 1.01 * radius + 1e-3 * (x.abs() + y.abs());
+                !(along < -room || across.abs() > room)
+            })
+    }
+}

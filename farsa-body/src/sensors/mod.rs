@@ -1,0 +1,64 @@
+//! Sensors: from a world to values for a network. Which one do I need?
+//!
+//! | to sense | take | channels | port |
+//! |---|---|---|---|
+//! | a joint's position, as a share of its range | [`JointPosition`] | 1 | `Joints` |
+//! | a joint's speed | [`JointSpeed`] | 1 | `Joints` |
+//! | whether something touches, or how hard | [`Touch`], [`ContactForce`] | 1 | `Contacts` |
+//! | where a target is, as seen from a body | [`TargetPosition`] | 3 | `Kinematics` |
+//! | a body's height, pose, velocity | [`Height`], [`BodyPose`], [`BodyVelocity`] | 1, 7, 6 | `Kinematics` |
+//! | how fast the wheels turn | [`WheelSpeed`] | 1 a wheel | `Joints` |
+//! | what pushes or pulls a robot on wheels | [`Traction`] | 2 | `Kinematics`, `Joints` |
+//! | what is near a wheeled robot | one of the [infrared rings](infrared) | 1 a sensor | `Rays` or `Planar` |
+//! | how far away things are, in a fan of beams | [`LaserDistance`] | 1 a beam | `Rays` |
+//! | colours around, in sectors | [`LinearCamera`] | sectors x colours | `Planar` |
+//! | lamps | [`LightSensors`] | 1 a sensor | `Planar` |
+//! | the ground's colour | [`GroundColor`] | 1 or 3 a place | `Planar` |
+//! | what other robots signal | [`SignalSensor`] | sectors | `Planar` |
+//! | whether the attachment device holds something | [`AttachmentSensor`] | 1 | `Planar` |
+//! | a label, an instruction, a bias that the experiment sets | [`Signal`] | any | none |
+//!
+//! All implement [`Sensor`](crate::Sensor) for any world that has the port. Tuples, arrays and `Vec`s of sensors are
+//! sensors. For noise, delay, another scale or damage put a [wrapper](crate::wrappers) around one.
+
+/// Rays that leave a robot's hull, and fans of them.
+pub(crate) mod beam;
+/// The colour of the ground.
+pub(crate) mod ground_color;
+pub mod infrared;
+/// A fan of laser range finders.
+pub(crate) mod laser_distance;
+/// Lamps, by a ring of sensors.
+pub(crate) mod light_sensors;
+/// A camera with one line of pixels.
+pub(crate) mod linear_camera;
+/// Where bodies are and how they move.
+pub(crate) mod place;
+/// Positions and speeds of the robot's own joints.
+pub(crate) mod proprioception;
+/// Channels that the experiment sets.
+pub(crate) mod signal;
+/// What robots hear of each other.
+pub(crate) mod signal_sensor;
+/// Where a mobile robot stands and where it looks to; what the sensors of the plane share.
+pub(crate) mod stance;
+/// Contacts and their forces.
+pub(crate) mod touch;
+/// What a robot feels of its wheels.
+pub(crate) mod wheel_speed;
+
+pub use crate::motors::attachment::AttachmentSensor;
+pub use beam::Beam;
+pub use ground_color::GroundColor;
+pub use infrared::{AnalyticInfrared, InfraredAnalytic, InfraredRays};
+#[cfg(feature = "alloc")]
+pub use infrared::{InfraredTable, InfraredTableError, InfraredTables, SampledInfrared};
+pub use laser_distance::LaserDistance;
+pub use light_sensors::LightSensors;
+pub use linear_camera::{ColorBand, LinearCamera};
+pub use place::{Axes, BodyPose, BodyVelocity, Height, Point, TargetPosition};
+pub use proprioception::{JointPosition, JointSpeed};
+pub use signal::Signal;
+pub use signal_sensor::SignalSensor;
+pub use touch::{ContactForce, Touch};
+pub use wheel_speed::{Traction, WheelSpeed};

@@ -1,0 +1,149 @@
+//! The kit's checks of setting a world up.
+
+use alloc::format;
+
+use crate::ports::{Actuated, Arrange, Contacts, Joints, Kinematics, Snapshot, World};
+use crate::pose::{Pose, Twist};
+use crate::testing::probe::Probe;
+use crate::testing::promise::{ConformanceError, Promise, ensure};
+use crate::testing::trace::{HOLD, Instant, parting, saved, trace};
+
+/// How far what is read may be from where it was placed; a world may keep other coordinates.
+const NEAR: f32 = 1e-4;
+
+/// Checks what every world promises about being set up for a new life, on worlds that `make` makes all alike.
+///
+/// A cleared world knows nothing of its past, joints, floating and planar bodies are where they were placed, and what the ports
+/// tell after [`Arrange::arranged`] is what a snapshot brings back.
+///
+/// # Errors
+/// The first broken promise.
+pub fn check_arrange<W>(
+    make: impl Fn() -> W,
+    probe: &Probe<W::Body, W::Joint, W::Actuator>,
+) -> Result<(), ConformanceError>
+where
+    W: World + Joints + Kinematics + Actuated + Contacts + Snapshot + Arrange,
+    W::Body: PartialEq,
+{
+    let forgets = |difference| match difference {
+        Some(detail) => Err(ConformanceError { promise: Promise::ClearForgets, detail }),
+        None => Ok(()),
+    };
+    let (mut fresh, mut used) = (make(), make());
+    trace(&mut used, probe, 0..3 * HOLD + 1, false);
+    for world in [&mut fresh, &mut used] {
+        world.clear();
+        world.arranged();
+    }
+    forgets(Instant::of(&fresh, probe).difference(&Instant::of(&used, probe)))?;
+    for (index, &(joint, _)) in probe.joints.iter().enumerate() {
+        let speed = fresh.speed(joint);
+        ensure(speed == 0.0, Promise::ClearForgets, || format!("joint {index} is cleared to a speed of {speed}"))?;
+    }
+
+    for world in [&mut fresh, &mut used] {
+        place(world, probe);
+        world.arranged();
+    }
+    check_joints(&fresh, probe)?;
+    check_bodies(&mut fresh, probe)?;
+
+    let instant = Instant::of(&fresh, probe);
+    let mut restored = make();
+    restored.restore(&saved(&fresh));
+    let difference = instant.difference(&Instant::of(&restored, probe));
+    ensure(difference.is_none(), Promise::Arranged, || difference.unwrap_or_default())?;
+
+    // After the same setting up the same life, whatever went before.
+    let [a, b] = [&mut fresh, &mut used].map(|world| trace(world, probe, 1..2 * HOLD, false));
+    forgets(parting(&a, &b))
+}
+
+/// A place within a joint's range, another for each.
+fn joint_place(index: usize, [low, high]: [f32; 2]) -> [f32; 2] {
+    let part = 0.25 + 0.125 * (index % 5) as f32;
+    [low + (high - low) * part, 0.1 * (index % 3) as f32 - 0.1]
+}
+
+/// A place and a velocity for a floating body, another for each, far from everything.
+fn body_place(index: usize) -> (Pose, Twist) {
+    let i = index as f32;
+    (
+        Pose { position: [10.0 + i, -20.0, 30.0], rotation: [0.5, -0.5, 0.5, 0.5] },
+        Twist { linear: [0.1, 0.2 + i, -0.3], angular: [-0.4, 0.5, 0.6] },
+    )
+}
+
+/// A place on the plane, another for each, far from everything.
+fn planar_place(index: usize) -> Pose {
+    let i = index as f32;
+    let (sine, cosine) = farsa_num::sin_cos(0.5 * (0.3 + i));
+    Pose { position: [10.0 + i, -20.0, 0.0], rotation: [0.0, 0.0, sine, cosine] }
+}
+
+fn place<W: Arrange>(world: &mut W, probe: &Probe<W::Body, W::Joint, W::Actuator>) {
+    for (index, &(joint, range)) in probe.joints.iter().enumerate() {
+        let [position, speed] = joint_place(index, range);
+        world.place_joint(joint, position, speed);
+    }
+    for (index, &body) in probe.floating.iter().enumerate() {
+        let (pose, twist) = body_place(index);
+        world.place_body(body, pose, twist);
+    }
+    for (index, &body) in probe.planar.iter().enumerate() {
+        world.place_body(body, planar_place(index), Twist::default());
+    }
+}
+
+fn check_joints<W: Joints>(world: &W, probe: &Probe<W::Body, W::Joint, W::Actuator>) -> Result<(), ConformanceError> {
+    for (index, &(joint, range)) in probe.joints.iter().enumerate() {
+        let placed = joint_place(index, range);
+        let told = [world.position(joint), world.speed(joint)];
+        ensure(near(&placed, &told), Promise::JointPlaced, || {
+            format!("joint {index}: {told:?} instead of {placed:?}")
+        })?;
+    }
+    Ok(())
+}
+
+fn check_bodies<W>(world: &mut W, probe: &Probe<W::Body, W::Joint, W::Actuator>) -> Result<(), ConformanceError>
+where
+    W: Joints + Kinematics + Contacts + Snapshot + Arrange,
+    W::Body: PartialEq,
+{
+    for (index, &body) in probe.floating.iter().enumerate() {
+        let (pose, twist) = body_place(index);
+        let (told, moving) = (world.pose(body), world.velocity(body));
+        let kept = near(&pose.position, &told.position)
+            && same_turn(&pose, &told)
+            && near(&twist.linear, &moving.linear)
+            && near(&twist.angular, &moving.angular);
+        ensure(kept, Promise::BodyPlaced, || format!("floating body {index}: {told:?}, {moving:?}"))?;
+    }
+    for (index, &body) in probe.planar.iter().enumerate() {
+        let (pose, told, moving) = (planar_place(index), world.pose(body), world.velocity(body));
+        let kept = near(&pose.position, &told.position) && same_turn(&pose, &told) && moving == Twist::default();
+        ensure(kept, Promise::BodyPlaced, || format!("planar body {index}: {told:?}, {moving:?}"))?;
+    }
+    let before = Instant::of(world, probe);
+    let placed = |body| probe.floating.contains(body) || probe.planar.contains(body);
+    for &body in probe.bodies.iter().filter(|body| !placed(body)) {
+        world.place_body(body, Pose::at([1.0, 2.0, 3.0]), Twist::default());
+    }
+    world.arranged();
+    let difference = before.difference(&Instant::of(world, probe));
+    ensure(difference.is_none(), Promise::BodyPlaced, || {
+        format!("a body on a joint was placed: {}", difference.unwrap_or_default())
+    })
+}
+
+/// Whether two orientations are the same; either quaternion will do.
+fn same_turn(a: &Pose, b: &Pose) -> bool {
+    let same: f32 = a.rotation.iter().zip(b.rotation).fold(0.0, |sum, (a, b)| sum + a * b);
+    same.abs() > 1.0 - NEAR
+}
+
+fn near(a: &[f32], b: &[f32]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= NEAR * (1.0 + a.abs()))
+}

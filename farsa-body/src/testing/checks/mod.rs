@@ -1,0 +1,18 @@
+//! The kit's checks.
+
+/// Setting a world up for a new life.
+mod arrange;
+/// Sensors and motors.
+mod channels;
+/// What a world of the plane shows.
+mod planar;
+/// Ray casts.
+mod rays;
+/// A world that steps.
+mod world;
+
+pub use arrange::check_arrange;
+pub use channels::{check_motor, check_sensor};
+pub use planar::check_planar;
+pub use rays::check_rays;
+pub use world::check_world;

@@ -1,0 +1,151 @@
+//! The kit's checks of what a world of the plane shows.
+
+use alloc::{format, string::String, vec::Vec};
+
+use farsa_num::{Domain, Scalar, Stream, sin_cos};
+
+use crate::ports::{Lamp, Near, Planar};
+use crate::testing::promise::{ConformanceError, Promise, ensure};
+
+/// Number of directions looked in from every place.
+const LOOKS: usize = 256;
+
+/// How far two ways to the same point may differ [m].
+const CLOSE: f32 = 1e-4;
+
+/// Checks what every world of the plane promises about what is near, in sight, underfoot and shining, at these places [m]
+/// and as far as `range` [m].
+///
+/// What is near is told within its range, with the distance of its point, and again within twice the range; what is seen
+/// in a random direction is the nearest thing there, told as near and not seen without its body; a round body that is near
+/// is in sight or behind something nearer. Colours and signals are in [0, 1].
+///
+/// `bodies` are all bodies of the world; no place lies within a wall. Something must be near and something in sight.
+///
+/// # Errors
+/// [`Promise::Near`], [`Promise::Look`] or [`Promise::Shown`] with what was wrong.
+pub fn check_planar<W>(world: &W, bodies: &[W::Body], places: &[[f32; 2]], range: f32) -> Result<(), ConformanceError>
+where
+    W: Planar,
+    W::Body: PartialEq,
+{
+    let mut stream = Stream::new(0, Domain::Sensor, 0, 0, 0);
+    let (mut met, mut seen) = (0, 0);
+    for &from in places {
+        shown(&world.ground(from), || format!("the ground at {from:?}"))?;
+        let near = told(world, from, range);
+        met += near.len();
+        check_near(world, bodies, from, range, &near)?;
+        for _ in 0..LOOKS {
+            let (s, c) = sin_cos(stream.range(-core::f32::consts::PI, core::f32::consts::PI));
+            seen += usize::from(check_look(world, bodies, from, [c, s], range, &near)?);
+        }
+    }
+    ensure(met > 0, Promise::Near, || format!("nothing within {range} m of any of {} places", places.len()))?;
+    ensure(seen > 0, Promise::Look, || format!("nothing in sight from any of {} places", places.len()))?;
+    let mut lamps: Vec<Lamp<W::Body>> = Vec::new();
+    world.lamps(&mut |lamp| lamps.push(lamp));
+    for (index, lamp) in lamps.iter().enumerate() {
+        let kept = bodies.contains(&lamp.body)
+            && lamp.position.iter().all(|x| x.is_finite())
+            && lamp.intensity.is_finite()
+            && lamp.intensity >= 0.0;
+        ensure(kept, Promise::Shown, || {
+            format!("lamp {index} at {:?}, intensity {}, or of no body", lamp.position, lamp.intensity)
+        })?;
+    }
+    Ok(())
+}
+
+fn told<W: Planar>(world: &W, from: [f32; 2], range: f32) -> Vec<Near<W::Body>> {
+    let mut all = Vec::new();
+    world.near(from, range, &mut |near| all.push(near));
+    all
+}
+
+fn shown(values: &[f32], what: impl Fn() -> String) -> Result<(), ConformanceError> {
+    let kept = values.iter().all(|x| (0.0..=1.0).contains(x));
+    ensure(kept, Promise::Shown, || format!("{} shows {values:?}", what()))
+}
+
+fn check_near<W>(
+    world: &W,
+    bodies: &[W::Body],
+    from: [f32; 2],
+    range: f32,
+    all: &[Near<W::Body>],
+) -> Result<(), ConformanceError>
+where
+    W: Planar,
+    W::Body: PartialEq,
+{
+    let farther = told(world, from, 2.0 * range);
+    for (index, near) in all.iter().enumerate() {
+        let what = || format!("surface {index} near {from:?} at {:?}", near.point);
+        let broken = |why: &str| format!("{}: {why}", what());
+        let way = [near.point[0] - from[0], near.point[1] - from[1]];
+        let apart = Scalar::sqrt(way[0] * way[0] + way[1] * way[1]);
+        let distance = near.distance;
+        ensure(distance <= range, Promise::Near, || broken(&format!("{distance} of {range}")))?;
+        ensure((apart - distance.abs()).abs() < CLOSE, Promise::Near, || {
+            broken(&format!("told at {distance}, is at {apart}"))
+        })?;
+        ensure(near.radius.is_finite() && near.radius >= 0.0, Promise::Near, || {
+            broken(&format!("a radius of {}", near.radius))
+        })?;
+        let kept = match &near.body {
+            Some(body) => bodies.contains(body) && distance >= -near.radius - CLOSE,
+            None => near.radius == 0.0 && near.signal.is_none() && distance >= 0.0,
+        };
+        ensure(kept, Promise::Near, || broken("a wall with a radius or a signal, or no body of the world"))?;
+        shown(&near.color, what)?;
+        shown(near.signal.as_slice(), what)?;
+        ensure(farther.contains(near), Promise::Near, || broken("not told within twice the range"))?;
+        // A wall may be looked at along its edge; a round body cannot be missed in its middle.
+        if near.radius > 0.0 && distance > CLOSE {
+            let sight = world.look(from, way.map(|x| x / apart), 2.0 * range, None);
+            ensure(sight.is_some_and(|sight| sight.distance <= distance + CLOSE), Promise::Look, || {
+                broken("not in sight, nor hidden")
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether something was seen.
+fn check_look<W>(
+    world: &W,
+    bodies: &[W::Body],
+    from: [f32; 2],
+    direction: [f32; 2],
+    range: f32,
+    near: &[Near<W::Body>],
+) -> Result<bool, ConformanceError>
+where
+    W: Planar,
+    W::Body: PartialEq,
+{
+    let look = |range| world.look(from, direction, range, None);
+    let Some(sight) = look(range) else { return Ok(false) };
+    let what = || format!("look from {from:?} along {direction:?}");
+    let (distance, body) = (sight.distance, sight.body);
+    ensure((0.0..=range).contains(&distance), Promise::Look, || format!("{}: {distance} of {range}", what()))?;
+    let known = body.as_ref().is_none_or(|body| bodies.contains(body));
+    ensure(known, Promise::Look, || format!("{}: a body that does not exist", what()))?;
+    shown(&sight.color, what)?;
+    let same = |range| look(range).is_some_and(|s| s.distance == distance && s.body == body);
+    ensure(same(range) && same(2.0 * range), Promise::Look, || format!("{}: not seen again", what()))?;
+    let short = 0.99 * distance;
+    ensure(short < 1e-3 || look(short).is_none(), Promise::Look, || {
+        format!("{}: seen at {distance} and within {short}", what())
+    })?;
+    let told =
+        |near: &Near<W::Body>| near.body == body && near.distance <= distance + CLOSE && near.color == sight.color;
+    ensure(near.iter().any(told), Promise::Near, || format!("{}: seen at {distance}, but not told", what()))?;
+    if body.is_some() {
+        let behind = world.look(from, direction, range, body);
+        let other = behind.is_none_or(|behind| behind.body != body && behind.distance >= distance);
+        ensure(other, Promise::Look, || format!("{}: not blind to the body asked for", what()))?;
+    }
+    Ok(true)
+}

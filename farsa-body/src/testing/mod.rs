@@ -1,0 +1,35 @@
+//! The conformance kit: what every world, sensor and motor promises, as functions that name the first broken promise.
+//!
+//! | you wrote | check it with |
+//! |---|---|
+//! | a world that steps | [`check_world`] |
+//! | one that can be set up anew | [`check_arrange`] |
+//! | one that casts rays | [`check_rays`] |
+//! | a world of the plane | [`check_planar`] |
+//! | a sensor or a motor | [`check_sensor`], [`check_motor`], in a [`PointWorld`] or a [`PlaneWorld`] |
+//!
+//! ```
+//! use farsa_body::testing::{PointWorld, Probe, check_world};
+//!
+//! let probe = Probe::numbered(3, [[-20.0, 0.0], [20.0, 0.0]]);
+//! assert_eq!(check_world(|| PointWorld::new(3), &probe), Ok(()));
+//! ```
+
+/// The checks, a file for each part of the promises.
+mod checks;
+/// A small world of the plane with every port of mobile robots.
+mod plane_world;
+/// A small world with every other port.
+mod point_world;
+/// Which parts of a world the kit looks at and moves.
+mod probe;
+/// The promises, and the error that names a broken one.
+mod promise;
+/// What a world did, as bits, and how two runs compare.
+mod trace;
+
+pub use checks::{check_arrange, check_motor, check_planar, check_rays, check_sensor, check_world};
+pub use plane_world::PlaneWorld;
+pub use point_world::PointWorld;
+pub use probe::Probe;
+pub use promise::{ConformanceError, Promise};

@@ -1,0 +1,71 @@
+//! What the kit looks at and moves in a world.
+
+use alloc::vec::Vec;
+
+use crate::actuators::law::Law;
+use crate::ports::{ActuatorId, BodyId, JointId};
+use crate::robot::description::{Actuator, JointKind, Robot};
+
+/// The parts of a world that the kit looks at and moves, and how long and how closely.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe<B = BodyId, J = JointId, A = ActuatorId> {
+    /// All bodies.
+    pub bodies: Vec<B>,
+    /// The bodies that move freely.
+    pub floating: Vec<B>,
+    /// The bodies that can be put anywhere on a plane: place and heading are kept, and they are at rest.
+    pub planar: Vec<B>,
+    /// The joints with two positions [rad or m] between which they can be placed.
+    pub joints: Vec<(J, [f32; 2])>,
+    /// The actuators with the lower and upper ends of the two numbers of their commands.
+    pub actuators: Vec<(A, [[f32; 2]; 2])>,
+    /// Number of steps of a run, at least 16.
+    pub steps: usize,
+    /// How far the mean speed over a step may lie outside what the speeds at its ends allow [m/s or rad/s].
+    pub slack: f32,
+}
+
+impl Probe {
+    /// The steps of a run where none are asked for.
+    const STEPS: usize = 200;
+    /// The slack where none is asked for.
+    const SLACK: f32 = 0.1;
+
+    /// A probe of a world built from this robot.
+    pub fn of(robot: &Robot) -> Self {
+        let finite = |range: [f64; 2]| {
+            let [low, high] = range.map(|x| x as f32);
+            [if low.is_finite() { low } else { -1.0 }, if high.is_finite() { high } else { 1.0 }]
+        };
+        let range = |joint: JointId| finite(robot.segments.get(joint.index()).map_or([0.0; 2], |s| s.joint.range));
+        let command = |actuator: &Actuator| match actuator.law {
+            Law::MusclePair(_) => [[0.0; 2], [1.0; 2]],
+            Law::Servo(_) => range(actuator.joint).map(|x| [x, 0.0]),
+            Law::Torque(torque) => finite([-torque.limit, torque.limit]).map(|x| [x, 0.0]),
+            Law::Held(_) => [[-1.0, 0.0], [1.0, 0.0]],
+        };
+        let kinds = || robot.segments.iter().map(|s| s.joint.kind).enumerate();
+        Self {
+            bodies: kinds().map(|(i, _)| BodyId(i as u16)).collect(),
+            floating: kinds().filter(|(_, k)| *k == JointKind::Floating).map(|(i, _)| BodyId(i as u16)).collect(),
+            planar: Vec::new(),
+            joints: robot.joints().map(|joint| (joint, range(joint))).collect(),
+            actuators: (0u16..).map(ActuatorId).zip(robot.actuators.iter().map(command)).collect(),
+            steps: Self::STEPS,
+            slack: Self::SLACK,
+        }
+    }
+
+    /// A probe of a world whose `count` bodies, joints (placed between 0 and 1) and actuators have the same numbers.
+    pub fn numbered(count: u16, commands: [[f32; 2]; 2]) -> Self {
+        Self {
+            bodies: (0..count).map(BodyId).collect(),
+            floating: Vec::new(),
+            planar: Vec::new(),
+            joints: (0..count).map(|i| (JointId(i), [0.0, 1.0])).collect(),
+            actuators: (0..count).map(|i| (ActuatorId(i), commands)).collect(),
+            steps: Self::STEPS,
+            slack: Self::SLACK,
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Wrappers that change every value in the same way: gain and offset, saturation, nothing at all.
+
+#[cfg(feature = "alloc")]
+use alloc::{vec, vec::Vec};
+
+use farsa_num::Scalar;
+
+use crate::channel::{ChannelError, finite, finite_range};
+use crate::ports::Channels;
+use crate::wrappers::wrap::{Filter, Wrapped, wrapper};
+
+/// Passes gain * x + offset on for every value x that a sensor reads or a motor is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scaled<T, M>(Wrapped<T, Scale, M>);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Scale {
+    gain: f32,
+    offset: f32,
+}
+
+impl Filter for Scale {
+    fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
+        for (p, &x) in passed.iter_mut().zip(values) {
+            *p = self.gain * x + self.offset;
+        }
+    }
+}
+
+wrapper!(Scaled);
+
+#[cfg(feature = "alloc")]
+impl<T: Channels> Scaled<T, Vec<f32>> {
+    /// Wraps a sensor or motor.
+    ///
+    /// # Errors
+    /// [`ChannelError::Value`] if a number is not finite.
+    pub fn new(inner: T, gain: f32, offset: f32) -> Result<Self, ChannelError> {
+        let memory = vec![0.0; inner.channels()];
+        Self::new_in(inner, gain, offset, memory)
+    }
+}
+
+impl<T: Channels, M: AsMut<[f32]>> Scaled<T, M> {
+    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    ///
+    /// # Errors
+    /// [`ChannelError::Value`] if a number is not finite, [`ChannelError::Memory`] if the memory is too short.
+    pub fn new_in(inner: T, gain: f32, offset: f32, memory: M) -> Result<Self, ChannelError> {
+        let scale = Scale { gain: finite("gain", gain)?, offset: finite("offset", offset)? };
+        Wrapped::new(inner, scale, memory).map(Self)
+    }
+}
+
+/// Passes on the value in [low, high] nearest to what a sensor reads or a motor is given; `low` for NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Saturated<T, M>(Wrapped<T, Saturation, M>);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Saturation {
+    low: f32,
+    high: f32,
+}
+
+impl Filter for Saturation {
+    fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
+        for (p, &x) in passed.iter_mut().zip(values) {
+            *p = Scalar::clamp(x, self.low, self.high);
+        }
+    }
+}
+
+wrapper!(Saturated);
+
+#[cfg(feature = "alloc")]
+impl<T: Channels> Saturated<T, Vec<f32>> {
+    /// Wraps a sensor or motor.
+    ///
+    /// # Errors
+    /// [`ChannelError::Range`] if `low > high` or a number is not finite.
+    pub fn new(inner: T, low: f32, high: f32) -> Result<Self, ChannelError> {
+        let memory = vec![0.0; inner.channels()];
+        Self::new_in(inner, low, high, memory)
+    }
+}
+
+impl<T: Channels, M: AsMut<[f32]>> Saturated<T, M> {
+    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    ///
+    /// # Errors
+    /// [`ChannelError::Range`] if `low > high` or a number is not finite, [`ChannelError::Memory`] if the memory is
+    /// too short.
+    pub fn new_in(inner: T, low: f32, high: f32, memory: M) -> Result<Self, ChannelError> {
+        finite_range(low, high)?;
+        if low > high {
+            return Err(ChannelError::Range { from: low, to: high });
+        }
+        Wrapped::new(inner, Saturation { low, high }, memory).map(Self)
+    }
+}
+
+/// Passes every value on as it is and keeps the last tick's: `values()` reads them without disturbing the sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recorded<T, M>(Wrapped<T, Record, M>);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Record;
+
+impl Filter for Record {
+    fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
+        passed.copy_from_slice(values);
+    }
+}
+
+wrapper!(Recorded);
+
+#[cfg(feature = "alloc")]
+impl<T: Channels> Recorded<T, Vec<f32>> {
+    /// Wraps a sensor or motor.
+    pub fn new(inner: T) -> Self {
+        let memory = vec![0.0; inner.channels()];
+        Self(Wrapped { inner, filter: Record, memory })
+    }
+}
+
+impl<T: Channels, M: AsMut<[f32]>> Recorded<T, M> {
+    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    ///
+    /// # Errors
+    /// [`ChannelError::Memory`] if the memory is too short.
+    pub fn new_in(inner: T, memory: M) -> Result<Self, ChannelError> {
+        Wrapped::new(inner, Record, memory).map(Self)
+    }
+}

@@ -1,0 +1,101 @@
+//! A robot from a file or a text, in either format.
+
+use std::path::Path;
+
+use farsa_body::Robot;
+
+use crate::context::Context;
+use crate::error::ReadError;
+use crate::files::ModelFiles;
+use crate::frame::Frame;
+use crate::mjcf;
+use crate::options::ReadOptions;
+use crate::urdf;
+use crate::warnings::{Warning, Warnings};
+use crate::xml::tree::Tree;
+
+/// A robot that was read from a file.
+///
+/// **What is read.** URDF: links, inertials, joints but `planar` and `spherical` ones, limits, damping, collision shapes;
+/// a joint's largest effort makes a [`Torque`](farsa_body::Torque) of the joint's name. MJCF: `compiler`, `default` classes,
+/// `include`, bodies and `frame`s, inertials or the geoms' inertias, hinges, slides and free joints with range, damping,
+/// armature and `ref`, geoms, contact pairs with exclusions and surfaces as they are at rest, motors, position and velocity
+/// actuators on joints (also as `general`). Names that the format does not know are errors, with the nearest that it does.
+/// What a description has no place for is listed in [`Imported::warnings`], or an error where leaving it out would make
+/// another robot: ball joints, `attach`, `replicate`, `composite`, `flexcomp`.
+///
+/// **Rules of translation.**
+/// - *Several joints of a MuJoCo body* make segments between them, called after body and joint, each with a small share of
+///   the body's mass ([`ReadOptions::between`]): a description has one joint a segment, and all that moves has a mass.
+/// - *A joint off its body's origin*: the segment's frame is at the joint; [`Imported::frames`] says where the body's is.
+/// - *Fixed links* stay segments. Only if a moving one has no mass itself it takes over that of the links fixed to it.
+/// - *Several bodies in the world* are one description; a URDF has one root.
+/// - *Shapes that we lack*: a cylinder becomes the capsule of its radius and length, or a ball of its radius if it is
+///   flatter than that; an ellipsoid the capsule along its longest axis with the radius of the next. In a URDF a cylinder
+///   with equal spheres at its ends is a capsule, as [`urdf::write`](crate::urdf::write()) writes it. Masses are those of the true shapes.
+/// - *Meshes* (STL, OBJ) become the smallest by volume of a ball, a capsule and a box that hold all their points, the
+///   latter two along the mesh's own axes or the principal axes of its surface; meshes that can touch nothing are left out.
+/// - *Contacts of MuJoCo* are springs and dampers here: stiffness and damping are those at rest at full impedance.
+/// - *Commands* are efforts and joint positions; MuJoCo's, before its gears, are other numbers.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Imported {
+    /// The robot; valid.
+    pub robot: Robot,
+    /// Where the file's links or bodies are in it, in the file's order.
+    pub frames: Vec<Frame>,
+    /// What was left out or replaced, in alphabetical order.
+    pub warnings: Vec<Warning>,
+}
+
+impl Imported {
+    /// Reads a URDF or MJCF file; which of them it is its root element says.
+    ///
+    /// # Errors
+    /// What is wrong, with the line: see [`ReadError`].
+    pub fn from_file(path: &Path, options: &ReadOptions) -> Result<Self, ReadError> {
+        let mut files = ModelFiles::new(path.parent(), options)?;
+        let text = files.model(path)?;
+        Self::read(&path.display().to_string(), &text, files, options)
+    }
+
+    /// Reads the text of a URDF or MJCF; without [`ReadOptions::root`] it must name no files.
+    ///
+    /// ```
+    /// use farsa_models::{Imported, ReadOptions};
+    ///
+    /// let text = r#"<mujoco><worldbody><body name="rod" pos="0 0 1">
+    ///     <joint name="hinge" axis="0 1 0" range="-90 90"/><geom type="capsule" fromto="0 0 0 0 0 -0.5" size="0.01"/>
+    /// </body></worldbody></mujoco>"#;
+    /// let imported = Imported::from_text(text, &ReadOptions::default())?;
+    /// assert_eq!(imported.robot.joint("hinge").map(|joint| joint.index()), Some(0));
+    ///
+    /// let error = Imported::from_text(&text.replace("axis", "axes"), &ReadOptions::default()).unwrap_err();
+    /// assert_eq!(error.to_string(), "text line 2: unknown attribute of joint `axes`; the nearest is `axis`");
+    /// # Ok::<(), farsa_models::ReadError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong, with the line: see [`ReadError`].
+    pub fn from_text(text: &str, options: &ReadOptions) -> Result<Self, ReadError> {
+        Self::read("text", text, ModelFiles::new(None, options)?, options)
+    }
+
+    fn read(file: &str, text: &str, files: ModelFiles, options: &ReadOptions) -> Result<Self, ReadError> {
+        let mut context = Context { files, options, warnings: Warnings::default(), elements: 0 };
+        let tree = Tree::parse(file, text, &mut context)?;
+        let root = tree.root();
+        let (robot, frames) = match root.tag() {
+            "robot" => urdf::read::read(&tree, &mut context)?,
+            "mujoco" => mjcf::read::read(&tree, &mut context)?,
+            _ => return Err(root.unknown("root of a model", root.tag(), ["robot", "mujoco"])),
+        };
+        robot.validate().map_err(|error| ReadError::Robot { file: file.into(), error })?;
+        Ok(Self { robot, frames, warnings: context.warnings.list() })
+    }
+
+    /// Where the link or body of this name in the file is.
+    pub fn frame(&self, name: &str) -> Option<&Frame> {
+        self.frames.iter().find(|frame| frame.name == name)
+    }
+}

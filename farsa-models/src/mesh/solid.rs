@@ -1,0 +1,110 @@
+//! Shapes of model files as ours, with the masses of the true ones.
+
+use farsa_body::{MassProperties, Pose, Shape};
+
+use crate::mesh::triangles::{Mesh, z_to_axis};
+
+/// A shape of a model file, in its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Solid {
+    /// One that a description has as well.
+    Native(Shape),
+    /// About z, with half the length.
+    Cylinder {
+        radius: f64,
+        half_length: f64,
+    },
+    /// Half axes.
+    Ellipsoid([f64; 3]),
+    Mesh(Mesh),
+}
+
+impl Solid {
+    /// Our shape for it, its place in the solid's frame, and what became of it unless it is the same.
+    pub(crate) fn shape(&self) -> (Shape, Pose<f64>, Option<&'static str>) {
+        let here = Pose::identity();
+        match self {
+            Self::Native(shape) => (*shape, here, None),
+            Self::Cylinder { radius, half_length } if half_length > radius => {
+                let shape = Shape::Capsule { radius: *radius, half_length: half_length - radius };
+                (shape, here, Some("a cylinder became the capsule of its radius and length"))
+            }
+            Self::Cylinder { radius, .. } => {
+                (Shape::Sphere { radius: *radius }, here, Some("a flat cylinder became the ball of its radius"))
+            }
+            Self::Ellipsoid(axes) => {
+                let long = (0..3).fold(0, |long, k| if axes[k] > axes[long] { k } else { long });
+                let radius = axes[(long + 1) % 3].max(axes[(long + 2) % 3]);
+                let rotation = z_to_axis(long);
+                let shape = Shape::Capsule { radius, half_length: axes[long] - radius };
+                let why = "an ellipsoid became the capsule along its longest axis with the radius of the next";
+                (shape, Pose { rotation, ..here }, Some(why))
+            }
+            Self::Mesh(mesh) => {
+                let (shape, at) = mesh.fitted();
+                let why = match shape {
+                    Shape::Sphere { .. } => "a mesh became the ball that holds it",
+                    Shape::Capsule { .. } => "a mesh became the capsule that holds it",
+                    _ => "a mesh became the box that holds it",
+                };
+                (shape, at, Some(why))
+            }
+        }
+    }
+
+    fn volume(&self) -> f64 {
+        let pi = std::f64::consts::PI;
+        match self {
+            Self::Native(Shape::Sphere { radius }) => 4.0 / 3.0 * pi * radius * radius * radius,
+            Self::Native(Shape::Capsule { radius, half_length }) => {
+                pi * radius * radius * (2.0 * half_length + 4.0 / 3.0 * radius)
+            }
+            Self::Native(Shape::Box { half }) => 8.0 * half[0] * half[1] * half[2],
+            Self::Native(Shape::Plane) => 0.0,
+            Self::Cylinder { radius, half_length } => 2.0 * pi * radius * radius * half_length,
+            Self::Ellipsoid([a, b, c]) => 4.0 / 3.0 * pi * a * b * c,
+            Self::Mesh(mesh) => {
+                mesh.solid(1.0).map_or_else(|| Self::Native(mesh.fitted().0).volume(), |solid| solid.mass)
+            }
+        }
+    }
+
+    /// The mass properties of the true shape with `mass` [kg], or else of this `density` [kg/m3].
+    pub(crate) fn mass_properties(&self, mass: Option<f64>, density: f64) -> MassProperties {
+        let mass = mass.unwrap_or_else(|| density * self.volume());
+        match self {
+            Self::Native(shape) => MassProperties::of_shape(shape, mass),
+            Self::Cylinder { radius, half_length } => MassProperties::cylinder(mass, *radius, *half_length),
+            Self::Ellipsoid(axes) => {
+                let [a, b, c] = axes.map(|x| x * x * mass / 5.0);
+                MassProperties { mass, centre: [0.0; 3], inertia: [b + c, a + c, a + b, 0.0, 0.0, 0.0] }
+            }
+            Self::Mesh(mesh) => mesh.solid(1.0).map_or_else(
+                || {
+                    let (shape, at) = mesh.fitted();
+                    MassProperties::of_shape(&shape, mass).placed(&at)
+                },
+                |solid| scaled(&solid, mass / solid.mass),
+            ),
+        }
+    }
+
+    /// What to call it in messages.
+    pub(crate) fn label(&self) -> String {
+        let name = match self {
+            Self::Native(Shape::Sphere { .. }) => "sphere",
+            Self::Native(Shape::Capsule { .. }) => "capsule",
+            Self::Native(Shape::Box { .. }) => "box",
+            Self::Native(Shape::Plane) => "plane",
+            Self::Cylinder { .. } => "cylinder",
+            Self::Ellipsoid(_) => "ellipsoid",
+            Self::Mesh(_) => "mesh",
+        };
+        name.into()
+    }
+}
+
+/// The same body with mass and inertia times `by`.
+pub(crate) fn scaled(body: &MassProperties, by: f64) -> MassProperties {
+    MassProperties { mass: body.mass * by, centre: body.centre, inertia: body.inertia.map(|x| x * by) }
+}

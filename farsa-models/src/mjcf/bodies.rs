@@ -1,0 +1,356 @@
+//! The bodies of an MJCF file: joints, inertias, geoms.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, MassProperties, Pose, Robot, Segment};
+
+use crate::context::Context;
+use crate::error::{Place, ReadError};
+use crate::frame::Frame;
+use crate::mesh::solid::scaled;
+use crate::mjcf::classes::{Classed, Classes};
+use crate::mjcf::compiler::{Compiler, ROTATIONS, SHOW};
+use crate::mjcf::geoms::{MeshAssets, check_geom, geom};
+use crate::mjcf::inertials::body_mass;
+use crate::mjcf::items::{Item, items};
+use crate::mjcf::joints::{check_joint, joint};
+use crate::mjcf::names::Names;
+use crate::warnings::Warnings;
+use crate::xml::tree::Element;
+
+/// One body of the file; the first is the world.
+pub(crate) struct Body {
+    pub(crate) segment: Option<BodyId>,
+    pub(crate) parent: usize,
+    /// The body whose motion it shares: itself, or the first above that moves, or the world.
+    pub(crate) carrier: usize,
+}
+
+/// A geom that became a collider.
+pub(crate) struct Geom<'t, 'c> {
+    pub(crate) classed: Classed<'t, 'c>,
+    pub(crate) body: usize,
+    pub(crate) collider: usize,
+}
+
+/// What the bodies are made of and what other sections ask about them.
+pub(crate) struct Bodies<'t, 'c> {
+    model: Element<'t>,
+    compiler: &'c Compiler,
+    classes: &'c Classes<'t>,
+    meshes: MeshAssets<'t, 'c>,
+    pub(crate) names: Names,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) list: Vec<Body>,
+    pub(crate) by_name: BTreeMap<String, usize>,
+    pub(crate) joints: BTreeMap<String, JointId>,
+    pub(crate) geoms: Vec<Geom<'t, 'c>>,
+    /// Geoms that pairs name.
+    paired: BTreeSet<&'t str>,
+    joint_number: usize,
+    geom_number: usize,
+}
+
+/// A body that is yet to be read.
+struct Waiting<'t> {
+    element: Element<'t>,
+    parent: usize,
+    class: usize,
+    /// The frame that it stands in, in the parent's.
+    within: Pose<f64>,
+}
+
+/// A body that is about to become segments.
+struct Piece<'n, 't> {
+    element: Element<'t>,
+    name: &'n str,
+    /// The segment that it hangs on.
+    carrying: Option<BodyId>,
+    /// Where it stands in that segment's frame.
+    placement: Pose<f64>,
+    mass: MassProperties,
+}
+
+impl<'t, 'c> Bodies<'t, 'c> {
+    pub(crate) fn new(
+        model: Element<'t>,
+        compiler: &'c Compiler,
+        classes: &'c Classes<'t>,
+        context: &mut Context<'_>,
+    ) -> Result<Self, ReadError> {
+        for element in classes.elements() {
+            match element.tag() {
+                "joint" => check_joint(element, &mut context.warnings)?,
+                "geom" => check_geom(element, &mut context.warnings)?,
+                _ => {}
+            }
+        }
+        let pairs = model.all("contact").flat_map(|contact| contact.all("pair"));
+        let paired = pairs.flat_map(|pair| [pair.attribute("geom1"), pair.attribute("geom2")]).flatten().collect();
+        Ok(Self {
+            model,
+            compiler,
+            classes,
+            meshes: MeshAssets::from_model(model, classes, &mut context.warnings)?,
+            names: Names::default(),
+            frames: Vec::new(),
+            list: vec![Body { segment: None, parent: 0, carrier: 0 }],
+            by_name: BTreeMap::from([("world".to_owned(), 0)]),
+            joints: BTreeMap::new(),
+            geoms: Vec::new(),
+            paired,
+            joint_number: 0,
+            geom_number: 0,
+        })
+    }
+
+    /// Reads all bodies into the robot; `places` gets the line of each segment.
+    pub(crate) fn read(
+        &mut self,
+        robot: &mut Robot,
+        places: &mut Vec<Place>,
+        context: &mut Context<'_>,
+    ) -> Result<(), ReadError> {
+        let worlds: Vec<Element<'t>> = self.model.all("worldbody").collect();
+        self.take_names(&worlds)?;
+        for world in worlds {
+            world.check(&[], &[], &mut context.warnings)?;
+            let items = items(world, 0, self.compiler, self.classes, context)?;
+            self.colliders(robot, 0, &Pose::identity(), &items, context)?;
+            if let Some((joint, ..)) =
+                items.iter().find(|(e, ..)| ["joint", "freejoint", "inertial"].contains(&e.tag()))
+            {
+                return Err(joint.unsupported("the world neither moves nor has a mass"));
+            }
+            // A stack and no recursion: bodies may be nested as deep as the limits allow. The first child is on top, so
+            // that segments come in the file's order, parents before their children.
+            let mut waiting = Self::waiting(0, &items);
+            while let Some(next) = waiting.pop() {
+                let (index, items) = self.body(robot, places, &next, context)?;
+                waiting.extend(Self::waiting(index, &items));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes all names that the file declares, so that no generated one is a name that comes later.
+    fn take_names(&mut self, worlds: &[Element<'t>]) -> Result<(), ReadError> {
+        let mut open = worlds.to_vec();
+        while let Some(element) = open.pop() {
+            let kind = match element.tag() {
+                "body" => Some("body"),
+                "joint" | "freejoint" => Some("joint"),
+                "geom" => Some("geom"),
+                _ => None,
+            };
+            if let Some(kind) = kind {
+                self.names.declare(kind, element)?;
+            }
+            // The last of the stack is the next: children go on it backwards.
+            let children: Vec<_> = element.children().collect();
+            open.extend(children.into_iter().rev());
+        }
+        Ok(())
+    }
+
+    /// The bodies among the items, the first last.
+    fn waiting(parent: usize, items: &[Item<'t>]) -> Vec<Waiting<'t>> {
+        let bodies = items.iter().rev().filter(|(element, ..)| element.tag() == "body");
+        bodies.map(|&(element, within, class)| Waiting { element, parent, class, within }).collect()
+    }
+
+    /// Reads one body and tells its number and items.
+    fn body(
+        &mut self,
+        robot: &mut Robot,
+        places: &mut Vec<Place>,
+        next: &Waiting<'t>,
+        context: &mut Context<'_>,
+    ) -> Result<(usize, Vec<Item<'t>>), ReadError> {
+        let Waiting { element, parent, within, .. } = *next;
+        check_body(element, &mut context.warnings)?;
+        let class = match element.attribute("childclass") {
+            Some(name) => self.classes.find(element, name)?,
+            None => next.class,
+        };
+        let items = items(element, class, self.compiler, self.classes, context)?;
+        let index = self.list.len();
+        let name = element.attribute("name").filter(|name| !name.is_empty()).map(str::to_owned);
+        let name = name.unwrap_or_else(|| self.names.generate("body", format!("body{index}")));
+
+        let (carrying, carrying_frame) = self.frames_of(parent);
+        let placed = within.compose(&self.compiler.pose(Some(element), Some(element))?);
+        let placement = carrying_frame.compose(&placed);
+        let mass = body_mass(element, &items, self.compiler, self.classes, &self.meshes, context)?;
+        let joints = self.joints_of(element, &items, context)?;
+        check_free(element, parent, &joints)?;
+
+        let moves = !joints.is_empty();
+        let piece = Piece { element, name: &name, carrying, placement, mass };
+        let (segment, frame) = if moves {
+            self.jointed(robot, places, &piece, joints, context)
+        } else {
+            let fixed = Segment::new(&name, carrying, Joint::fixed(placement), mass);
+            places.push(element.place());
+            (Some(robot.add_segment(fixed)), Pose::identity())
+        };
+
+        let carrier = if moves { index } else { self.list[parent].carrier };
+        self.list.push(Body { segment, parent, carrier });
+        self.by_name.insert(name.clone(), index);
+        self.frames.push(Frame { name, body: segment, placement: frame });
+        self.colliders(robot, index, &frame, &items, context)?;
+        Ok((index, items))
+    }
+
+    /// Adds a segment for each joint of a body; tells the last, and where the body's frame is in it.
+    ///
+    /// A MuJoCo body may have several joints, which act one after the other; a description has one joint a segment, so
+    /// all but the last joint carry a segment that stands for no body of the file. It gets a small share of the mass,
+    /// because what moves must have one.
+    fn jointed(
+        &mut self,
+        robot: &mut Robot,
+        places: &mut Vec<Place>,
+        piece: &Piece<'_, 't>,
+        joints: Vec<(Joint, [f64; 3])>,
+        context: &mut Context<'_>,
+    ) -> (Option<BodyId>, Pose<f64>) {
+        let Piece { element, name, carrying, placement, mass } = *piece;
+        let (count, share) = (joints.len(), context.options.between);
+        // The body's frame in that of the last segment; before the first joint that is where it stands.
+        let (mut last, mut frame) = (carrying, placement);
+        for (i, (joint, anchor)) in joints.into_iter().enumerate() {
+            // A segment's frame is at its joint: the anchor is the origin, and the body's frame is off by minus the anchor.
+            let at_anchor = frame.compose(&Pose::at(anchor));
+            let joint = Joint { placement: at_anchor.compose(&joint.placement), ..joint };
+            frame = Pose::at(anchor.map(|x| -x));
+            let is_last = i + 1 == count;
+            let (segment, part) = if is_last {
+                (name.to_owned(), 1.0 - share * (count - 1) as f64)
+            } else {
+                (self.names.generate("body", format!("{name}_{}", joint.name)), share)
+            };
+            let part = scaled(&mass, part);
+            let part = MassProperties { centre: [0, 1, 2].map(|k| part.centre[k] - anchor[k]), ..part };
+            let single = joint.kind.is_single().then(|| joint.name.clone());
+            let id = robot.add_segment(Segment::new(&segment, last, joint, part));
+            if let Some(joint) = single {
+                self.joints.insert(joint, JointId(id.0));
+            }
+            places.push(element.place());
+            last = Some(id);
+        }
+        if count > 1 {
+            context.warnings.add(
+                element.place(),
+                "body with several joints",
+                "got segments with a share of its mass between",
+            );
+        }
+        (last, frame)
+    }
+
+    /// The segment of a body and where its frame is in it.
+    fn frames_of(&self, body: usize) -> (Option<BodyId>, Pose<f64>) {
+        match body.checked_sub(1) {
+            None => (None, Pose::identity()),
+            Some(i) => (self.frames[i].body, self.frames[i].placement),
+        }
+    }
+
+    /// The joints of a body, each with its placement from where the last left the frame, and its anchor.
+    fn joints_of(
+        &mut self,
+        body: Element<'t>,
+        items: &[Item<'t>],
+        context: &mut Context<'_>,
+    ) -> Result<Vec<(Joint, [f64; 3])>, ReadError> {
+        let mut joints = Vec::new();
+        for (element, within, class) in items {
+            let number = self.joint_number;
+            let made = match element.tag() {
+                "freejoint" => {
+                    element.check(&["name"], &[("align group", "how MuJoCo computes")], &mut context.warnings)?;
+                    let name = element.attribute("name").unwrap_or_default().to_owned();
+                    (Joint { name, ..Joint::floating(Pose::identity()) }, [0.0; 3])
+                }
+                "joint" => {
+                    check_joint(*element, &mut context.warnings)?;
+                    let classed = self.classes.with(*element, *class)?;
+                    let name = element.attribute("name").filter(|name| !name.is_empty()).map(str::to_owned);
+                    let name = name.unwrap_or_else(|| self.names.generate("joint", format!("joint{number}")));
+                    joint(&classed, &name, within, self.compiler, context)?
+                }
+                _ => continue,
+            };
+            self.joint_number += 1;
+            joints.push(made);
+        }
+        if joints.len() > 6 {
+            return Err(body.unsupported("more than six joints"));
+        }
+        Ok(joints)
+    }
+
+    /// Makes colliders of the geoms of a body, whose frame is at `frame` in its segment's.
+    fn colliders(
+        &mut self,
+        robot: &mut Robot,
+        body: usize,
+        frame: &Pose<f64>,
+        items: &[Item<'t>],
+        context: &mut Context<'_>,
+    ) -> Result<(), ReadError> {
+        for (element, within, class) in items.iter().filter(|(element, ..)| element.tag() == "geom") {
+            check_geom(*element, &mut context.warnings)?;
+            let number = self.geom_number;
+            self.geom_number += 1;
+            let classed = self.classes.with(*element, *class)?;
+            // The checks of a geom's numbers come with its pairs; here any bit will do.
+            let bits = |name| Ok::<_, ReadError>(classed.number(name)?.unwrap_or(1.0) != 0.0);
+            let touches = bits("contype")? | bits("conaffinity")?;
+            let own = element.attribute("name").filter(|name| !name.is_empty());
+            let named = own.is_some_and(|name| self.paired.contains(name));
+            if classed.text("type") == Some("mesh") && !touches && !named {
+                context.warnings.add(element.place(), "geom of a mesh that touches nothing", SHOW);
+                continue;
+            }
+            let Some((solid, at)) = geom(&classed, within, self.compiler, &self.meshes, context)? else { continue };
+            let (shape, inner, why) = solid.shape();
+            if let Some(why) = why {
+                context.warnings.add(element.place(), format!("geom {}", solid.label()), why);
+            }
+            let name = own.map(str::to_owned);
+            let name = name.unwrap_or_else(|| self.names.generate("geom", format!("geom{number}")));
+            let placement = frame.compose(&at).compose(&inner);
+            let segment = self.list[body].segment;
+            let collider = robot.add_collider(Collider::new(&name, segment, shape, placement));
+            self.geoms.push(Geom { classed, body, collider });
+        }
+        Ok(())
+    }
+}
+
+fn check_body(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
+    let read = [&["name", "pos", "childclass"][..], &ROTATIONS].concat();
+    let ignored = [
+        ("mocap", "the body stands fixed"),
+        ("gravcomp", "weights are not compensated"),
+        ("user simple fuse sleep", "how MuJoCo computes"),
+    ];
+    element.check(&read, &ignored, warnings)
+}
+
+/// Refuses a free joint where MuJoCo's format has none: on a body within another, or beside other joints.
+fn check_free(body: Element<'_>, parent: usize, joints: &[(Joint, [f64; 3])]) -> Result<(), ReadError> {
+    if joints.iter().any(|(joint, _)| joint.kind == JointKind::Floating) {
+        if parent != 0 {
+            return Err(body.unsupported("a free joint on a body; only bodies in the world can be free"));
+        }
+        if joints.len() > 1 {
+            return Err(body.unsupported("a free joint beside others"));
+        }
+    }
+    Ok(())
+}

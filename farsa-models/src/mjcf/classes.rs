@@ -1,0 +1,195 @@
+//! MJCF's classes of defaults, and elements that ask them for what they do not say.
+
+use std::collections::BTreeMap;
+
+use crate::error::ReadError;
+use crate::xml::tree::Element;
+
+/// The elements in which a class may give defaults, beside actuators.
+const DEFAULTS: [&str; 12] = [
+    "mesh", "material", "joint", "geom", "site", "camera", "light", "pair", "equality", "tendon", "texture", "default",
+];
+
+/// The actuators of MJCF, which share one set of defaults.
+pub(crate) const ACTUATORS: [&str; 12] = [
+    "general",
+    "motor",
+    "position",
+    "velocity",
+    "intvelocity",
+    "damper",
+    "cylinder",
+    "muscle",
+    "adhesion",
+    "orientation",
+    "pid",
+    "dcmotor",
+];
+
+/// The classes of a model.
+pub(crate) struct Classes<'t> {
+    names: BTreeMap<String, usize>,
+    parents: Vec<Option<usize>>,
+    /// The elements of each.
+    elements: Vec<Vec<Element<'t>>>,
+}
+
+/// An element with the class that completes it.
+#[derive(Clone, Copy)]
+pub(crate) struct Classed<'t, 'c> {
+    pub(crate) element: Element<'t>,
+    classes: &'c Classes<'t>,
+    class: usize,
+}
+
+impl<'t> Classes<'t> {
+    /// The classes in the `default` elements of the model.
+    ///
+    /// Every question is asked of them one after the other: there may be no more than `most` elements in them.
+    pub(crate) fn from_model(model: Element<'t>, most: usize) -> Result<Self, ReadError> {
+        let names = BTreeMap::from([("main".to_owned(), 0)]);
+        let mut classes = Self { names, parents: vec![None], elements: vec![Vec::new()] };
+        let mut waiting: Vec<(Element<'t>, Option<usize>)> =
+            model.all("default").map(|element| (element, None)).collect();
+        waiting.reverse();
+        let mut count = 0;
+        while let Some((element, parent)) = waiting.pop() {
+            let name = element.attribute("class");
+            let class = match (name, parent) {
+                (None, None) => 0,
+                (None, Some(_)) => return Err(element.missing("class")),
+                // The outermost class may be called something else than main.
+                (Some(name), None) => {
+                    classes.names.insert(name.to_owned(), 0);
+                    0
+                }
+                (Some(name), Some(parent)) => {
+                    let next = classes.parents.len();
+                    let class = *classes.names.entry(name.to_owned()).or_insert(next);
+                    if class == next {
+                        classes.parents.push(Some(parent));
+                        classes.elements.push(Vec::new());
+                    }
+                    class
+                }
+            };
+            let nested: Vec<_> = element.all("default").map(|nested| (nested, Some(class))).collect();
+            waiting.extend(nested.into_iter().rev());
+            for child in element.children().filter(|child| child.tag() != "default") {
+                if !DEFAULTS.contains(&child.tag()) && !ACTUATORS.contains(&child.tag()) {
+                    return Err(child.unknown(
+                        "element of default",
+                        child.tag(),
+                        DEFAULTS.into_iter().chain(ACTUATORS),
+                    ));
+                }
+                classes.elements[class].push(child);
+                count += 1;
+                if count > most {
+                    return Err(ReadError::TooMuch { place: child.place(), what: "defaults", limit: most });
+                }
+            }
+        }
+        Ok(classes)
+    }
+
+    /// All elements that give defaults.
+    pub(crate) fn elements(&self) -> impl Iterator<Item = Element<'t>> + '_ {
+        self.elements.iter().flatten().copied()
+    }
+
+    /// The class of a name that stands in an element.
+    pub(crate) fn find(&self, element: Element<'t>, name: &str) -> Result<usize, ReadError> {
+        let known = self.names.get(name).copied();
+        known.ok_or_else(|| element.unknown("class", name, self.names.keys().map(String::as_str)))
+    }
+
+    /// An element with its own class, or that which its body gives to it.
+    pub(crate) fn with<'c>(&'c self, element: Element<'t>, inherited: usize) -> Result<Classed<'t, 'c>, ReadError> {
+        let class = element.attribute("class").map_or(Ok(inherited), |name| self.find(element, name))?;
+        Ok(Classed { element, classes: self, class })
+    }
+}
+
+impl<'t> Classed<'t, '_> {
+    /// The element or default that says the attribute: the element itself, else the nearest class.
+    pub(crate) fn source(&self, attribute: &str) -> Option<Element<'t>> {
+        self.source_of(&[attribute])
+    }
+
+    /// The nearest that says one of the attributes.
+    pub(crate) fn source_of(&self, attributes: &[&str]) -> Option<Element<'t>> {
+        let says = |element: &Element<'t>| attributes.iter().any(|name| element.attribute(name).is_some());
+        if says(&self.element) {
+            return Some(self.element);
+        }
+        let tag = self.element.tag();
+        let alike = |element: &Element<'t>| {
+            element.tag() == tag || (ACTUATORS.contains(&tag) && ACTUATORS.contains(&element.tag()))
+        };
+        let mut class = Some(self.class);
+        // The nearest class that says it; within a class the last element, which overrides those before it.
+        while let Some(current) = class {
+            let found = self.classes.elements[current].iter().rev().find(|element| alike(element) && says(element));
+            if let Some(found) = found {
+                return Some(*found);
+            }
+            class = self.classes.parents[current];
+        }
+        None
+    }
+
+    pub(crate) fn text(&self, attribute: &str) -> Option<&'t str> {
+        self.source(attribute)?.attribute(attribute)
+    }
+
+    pub(crate) fn number(&self, attribute: &'static str) -> Result<Option<f64>, ReadError> {
+        self.source(attribute).map_or(Ok(None), |element| element.number(attribute))
+    }
+
+    pub(crate) fn not_negative(&self, attribute: &'static str) -> Result<Option<f64>, ReadError> {
+        let number = self.number(attribute)?;
+        match (number, self.source(attribute)) {
+            (Some(value), Some(source)) if value < 0.0 => {
+                let text = source.attribute(attribute).unwrap_or_default();
+                Err(source.wrong(attribute, text, "but must not be negative"))
+            }
+            _ => Ok(number),
+        }
+    }
+
+    pub(crate) fn array<const N: usize>(&self, attribute: &'static str) -> Result<Option<[f64; N]>, ReadError> {
+        self.source(attribute).map_or(Ok(None), |element| element.array(attribute))
+    }
+
+    pub(crate) fn list(
+        &self,
+        attribute: &'static str,
+        least: usize,
+        most: usize,
+    ) -> Result<Option<Vec<f64>>, ReadError> {
+        self.source(attribute).map_or(Ok(None), |element| element.list(attribute, least, most))
+    }
+
+    pub(crate) fn word(
+        &self,
+        attribute: &'static str,
+        valid: &[&'static str],
+    ) -> Result<Option<&'static str>, ReadError> {
+        self.source(attribute).map_or(Ok(None), |element| element.word(attribute, valid))
+    }
+
+    /// Whether a range holds: as the attribute `limited` says, else if there is a range and ranges hold of themselves.
+    pub(crate) fn limited(
+        &self,
+        limited: &'static str,
+        range: &'static str,
+        automatic: bool,
+    ) -> Result<bool, ReadError> {
+        Ok(match self.word(limited, &["true", "false", "auto"])? {
+            Some("true") => true,
+            Some("false") => false,
+            _ => automatic && self.source(range).is_some(),
+        })
+    }
+}

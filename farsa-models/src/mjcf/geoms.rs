@@ -1,0 +1,224 @@
+//! The geoms of an MJCF file and the meshes they are of.
+
+use std::collections::BTreeMap;
+
+use farsa_body::{Pose, Shape};
+
+use crate::context::Context;
+use crate::error::ReadError;
+use crate::mesh::principal_axes::rotation_to;
+use crate::mesh::solid::Solid;
+use crate::mesh::triangles::Mesh;
+use crate::mjcf::classes::{Classed, Classes};
+use crate::mjcf::compiler::{Compiler, ROTATIONS, SHOW};
+use crate::options::Meshes;
+use crate::vector::norm;
+use crate::warnings::Warnings;
+use crate::xml::tree::Element;
+
+/// The meshes in `asset` elements, by name.
+pub(crate) struct MeshAssets<'t, 'c> {
+    all: BTreeMap<String, Classed<'t, 'c>>,
+}
+
+impl<'t, 'c> MeshAssets<'t, 'c> {
+    pub(crate) fn from_model(
+        model: Element<'t>,
+        classes: &'c Classes<'t>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ReadError> {
+        let mut all: BTreeMap<String, Classed<'t, 'c>> = BTreeMap::new();
+        for asset in model.all("asset") {
+            let ignored =
+                [("texture material", SHOW), ("hfield skin model", "height fields and skins are not described")];
+            asset.check_children(&["mesh"], &ignored, warnings)?;
+            for element in asset.all("mesh") {
+                let read = ["name", "class", "file", "scale", "vertex", "face", "refpos", "refquat"];
+                let ignored = [
+                    ("material normal texcoord smoothnormal content_type", SHOW),
+                    ("maxhullvert inertia builtin params", "meshes are fitted by rules of our own"),
+                ];
+                element.check(&read, &ignored, warnings)?;
+                let file = element.attribute("file").map(|file| {
+                    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+                    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+                });
+                let name = element.attribute("name").or(file).ok_or_else(|| element.missing("name or file"))?;
+                if let Some(first) = all.insert(name.into(), classes.with(element, 0)?) {
+                    let (place, first) = (element.place(), first.element.place().line);
+                    return Err(ReadError::Twice { place, what: "mesh".into(), name: name.into(), first });
+                }
+            }
+        }
+        Ok(Self { all })
+    }
+
+    /// The mesh that a geom names, in the frame of its file.
+    fn load(
+        &self,
+        geom: Element<'t>,
+        name: &str,
+        compiler: &Compiler,
+        context: &mut Context<'_>,
+    ) -> Result<Mesh, ReadError> {
+        let known = self.all.get(name);
+        let classed = known.ok_or_else(|| geom.unknown("mesh", name, self.all.keys().map(String::as_str)))?;
+        let element = classed.element;
+        let place = element.place();
+        let mesh = if let Some(file) = element.attribute("file") {
+            let last = file.rsplit(['/', '\\']).next().unwrap_or(file);
+            let file = if compiler.strip_path { last } else { file };
+            let folder = compiler.mesh_folder.trim_end_matches('/');
+            let path = if folder.is_empty() { file.into() } else { format!("{folder}/{file}") };
+            let bytes = context.files.content(&place, &path)?;
+            Mesh::parse(&path, &bytes).map_err(|why| ReadError::Mesh { place, path, why })?
+        } else {
+            let limit = context.options.limits.bytes;
+            let numbers = |name| Ok::<_, ReadError>(element.list(name, 3, limit)?.unwrap_or_default());
+            let points: Vec<[f64; 3]> = numbers("vertex")?.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
+            if points.is_empty() {
+                return Err(element.unsupported("a mesh without file or vertices"));
+            }
+            if points.iter().flatten().any(|x| x.abs() >= 1e9) {
+                return Err(element.wrong("vertex", "...", "but must be of numbers below 1e9"));
+            }
+            let corner = |x: f64| x as usize;
+            let triangles =
+                numbers("face")?.chunks_exact(3).map(|f| [corner(f[0]), corner(f[1]), corner(f[2])]).collect();
+            Mesh { points, triangles }
+        };
+        // `refpos` and `refquat` say where the origin of the mesh is in its file: what is subtracted, before it is scaled.
+        let from = element.array::<3>("refpos")?.unwrap_or([0.0; 3]);
+        let turn = match element.array::<4>("refquat")? {
+            Some([w, x, y, z]) if norm(&[w, x, y, z]) > 1e-10 => {
+                let n = norm(&[w, x, y, z]);
+                Pose { position: from, rotation: [x / n, y / n, z / n, w / n] }
+            }
+            _ => Pose::at(from),
+        };
+        let scale = classed.array::<3>("scale")?.unwrap_or([1.0; 3]);
+        Ok(mesh.map(|point| {
+            let point = turn.transform_back(point);
+            [0, 1, 2].map(|k| point[k] * scale[k])
+        }))
+    }
+}
+
+pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
+    let read = [
+        &[
+            "name",
+            "class",
+            "type",
+            "size",
+            "fromto",
+            "pos",
+            "mesh",
+            "mass",
+            "density",
+            "group",
+            "shellinertia",
+            "contype",
+            "conaffinity",
+            "condim",
+            "priority",
+            "friction",
+            "solref",
+            "solimp",
+            "solmix",
+        ][..],
+        &ROTATIONS,
+    ]
+    .concat();
+    let ignored = [
+        ("rgba material castshadow user", SHOW),
+        ("hfield", "height fields are not described"),
+        ("margin gap adhesion surfacevel", "contacts begin where surfaces meet, and do not pull or move"),
+        ("fluidshape fluidcoef", "a description has no fluid"),
+        ("fitscale", "meshes are fitted by rules of our own"),
+    ];
+    element.check(&read, &ignored, warnings)
+}
+
+/// The solid of a geom and its place in the body; `None` if it is left out.
+pub(crate) fn geom<'t>(
+    classed: &Classed<'t, '_>,
+    within: &Pose<f64>,
+    compiler: &Compiler,
+    meshes: &MeshAssets<'t, '_>,
+    context: &mut Context<'_>,
+) -> Result<Option<(Solid, Pose<f64>)>, ReadError> {
+    let element = classed.element;
+    let kinds = ["plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"];
+    let kind = classed.word("type", &kinds)?.unwrap_or("sphere");
+    if kind == "hfield" || kind == "sdf" {
+        context.warnings.add(element.place(), format!("geom {kind}"), "left out: there is no such shape");
+        return Ok(None);
+    }
+    let mut pose = compiler.pose(classed.source("pos"), classed.source_of(&ROTATIONS))?;
+    let mesh = match classed.text("mesh") {
+        Some(_) if context.options.meshes == Meshes::Leave => {
+            context.warnings.add(element.place(), "geom of a mesh", "left out, as asked for");
+            return Ok(None);
+        }
+        Some(name) => Some(meshes.load(element, name, compiler, context)?),
+        None if kind == "mesh" => return Err(element.missing("mesh")),
+        None => None,
+    };
+    if let Some(mesh) = mesh {
+        if kind != "mesh" {
+            context.warnings.add(element.place(), format!("geom {kind} around a mesh"), "fitted by rules of our own");
+        }
+        return Ok(Some((Solid::Mesh(mesh), within.compose(&pose))));
+    }
+    let mut sizes = classed.list("size", 1, 3)?.unwrap_or_default();
+    let source = classed.source("size").unwrap_or(element);
+    if let Some([a, b, c, d, e, f]) = classed.array::<6>("fromto")?.filter(|_| !["sphere", "plane"].contains(&kind)) {
+        // MuJoCo turns z from the second point to the first. It matters for boxes, whose x and y follow from the turn.
+        let along = [a - d, b - e, c - f];
+        let length = norm(&along);
+        if !(length > 1e-14 && length.is_finite()) {
+            let source = classed.source("fromto").unwrap_or(element);
+            let text = source.attribute("fromto").unwrap_or_default();
+            return Err(source.wrong("fromto", text, "but must be two points"));
+        }
+        let position = [f64::midpoint(a, d), f64::midpoint(b, e), f64::midpoint(c, f)];
+        pose = Pose { position, rotation: rotation_to(along) };
+        sizes.truncate(1);
+        if kind == "box" || kind == "ellipsoid" {
+            sizes.extend(sizes.first().copied());
+        }
+        sizes.push(length / 2.0);
+    }
+    // How many of `size` each kind uses; a plane's are only how it is drawn.
+    let needed = match kind {
+        "plane" => 0,
+        "sphere" => 1,
+        "capsule" | "cylinder" => 2,
+        _ => 3,
+    };
+    if sizes.len() < needed {
+        return Err(match classed.text("size") {
+            None => element.missing("size"),
+            Some(text) => source.wrong("size", text, format!("but a {kind} has {needed}")),
+        });
+    }
+    // A capsule without length is a ball.
+    let least = if kind == "capsule" { 1 } else { needed };
+    if !sizes[..needed].iter().enumerate().all(|(i, x)| (*x > 0.0 || (i >= least && *x == 0.0)) && *x < 1e9) {
+        return Err(source.wrong(
+            "size",
+            source.attribute("size").unwrap_or_default(),
+            "but must be positive, below 1e9",
+        ));
+    }
+    let solid = match kind {
+        "plane" => Solid::Native(Shape::Plane),
+        "sphere" => Solid::Native(Shape::Sphere { radius: sizes[0] }),
+        "capsule" => Solid::Native(Shape::Capsule { radius: sizes[0], half_length: sizes[1] }),
+        "cylinder" => Solid::Cylinder { radius: sizes[0], half_length: sizes[1] },
+        "box" => Solid::Native(Shape::Box { half: [sizes[0], sizes[1], sizes[2]] }),
+        _ => Solid::Ellipsoid([sizes[0], sizes[1], sizes[2]]),
+    };
+    Ok(Some((solid, within.compose(&pose))))
+}

@@ -1,0 +1,114 @@
+//! The joints of an MJCF file.
+
+use farsa_body::{Joint, JointKind, Pose};
+
+use crate::context::Context;
+use crate::error::ReadError;
+use crate::mjcf::classes::Classed;
+use crate::mjcf::compiler::{Compiler, SHOW};
+use crate::vector::norm;
+use crate::warnings::Warnings;
+use crate::xml::tree::Element;
+
+/// From here on a limit is none [rad or m]: what `mjcf::write` puts for infinite ones.
+const ENDLESS: f64 = 1e10;
+
+pub(crate) fn check_joint(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
+    let read = [
+        "name",
+        "class",
+        "type",
+        "pos",
+        "axis",
+        "range",
+        "limited",
+        "ref",
+        "armature",
+        "damping",
+        "stiffness",
+        "frictionloss",
+    ];
+    let ignored = [
+        ("group", SHOW),
+        ("springref springyield", "a joint's spring is not described"),
+        ("springdamper", "a joint's spring is not described, nor the damping that follows from it"),
+        ("solreflimit solimplimit solreffriction solimpfriction margin", "stops are the world's"),
+        ("actuatorfrcrange actuatorfrclimited", "actuators have a limit each"),
+        ("actuatorgravcomp", "weights are not compensated"),
+        ("user", "a user's own"),
+    ];
+    element.check(&read, &ignored, warnings)
+}
+
+/// A joint with its placement relative to its anchor, which is beside it.
+pub(crate) fn joint(
+    classed: &Classed<'_, '_>,
+    name: &str,
+    within: &Pose<f64>,
+    compiler: &Compiler,
+    context: &mut Context<'_>,
+) -> Result<(Joint, [f64; 3]), ReadError> {
+    let element = classed.element;
+    let kind = match classed.word("type", &["hinge", "slide", "ball", "free"])? {
+        Some("slide") => JointKind::Prismatic,
+        Some("ball") => return Err(element.unsupported("ball joints cannot be described; three hinges can")),
+        Some("free") => {
+            let own = element.attribute("name").unwrap_or_default();
+            return Ok((Joint { name: own.into(), ..Joint::floating(Pose::identity()) }, [0.0; 3]));
+        }
+        _ => JointKind::Revolute,
+    };
+    let unit = if kind == JointKind::Revolute { compiler.angle } else { 1.0 };
+    let anchor = within.transform(classed.array::<3>("pos")?.unwrap_or([0.0; 3]));
+    let axis = within.rotate(classed.array::<3>("axis")?.unwrap_or([0.0, 0.0, 1.0]));
+    if norm(&axis) <= 1e-6 {
+        let source = classed.source("axis").unwrap_or(element);
+        return Err(source.wrong("axis", source.attribute("axis").unwrap_or_default(), "but must be a direction"));
+    }
+    let mut range = [f64::NEG_INFINITY, f64::INFINITY];
+    if classed.limited("limited", "range", compiler.automatic_limits)? {
+        let source = classed.source("range").ok_or_else(|| element.missing("range"))?;
+        let list = classed.list("range", 2, 2)?.unwrap_or_default();
+        let [low, high] = [list[0] * unit, list[1] * unit];
+        if low > high {
+            let text = source.attribute("range").unwrap_or_default();
+            return Err(source.wrong("range", text, "but must not end before it begins"));
+        }
+        range =
+            [if low <= -ENDLESS { f64::NEG_INFINITY } else { low }, if high >= ENDLESS { f64::INFINITY } else { high }];
+    }
+    for (name, why) in
+        [("stiffness", "a joint's spring is not described"), ("frictionloss", "a joint's friction is not described")]
+    {
+        if classed.list(name, 1, 3)?.is_some_and(|list| list.iter().any(|x| *x != 0.0)) {
+            context.warnings.add(element.place(), format!("joint `{name}`"), why);
+        }
+    }
+    // What follows the first number is of the higher powers of the speed.
+    let damping = classed.list("damping", 1, 3)?.unwrap_or_else(|| vec![0.0]);
+    if damping.iter().skip(1).any(|x| *x != 0.0) {
+        context.warnings.add(element.place(), "joint `damping`", "only what is proportional to the speed is described");
+    }
+    let damping = damping[0];
+    if !(damping >= 0.0 && damping.is_finite()) {
+        return Err(element.wrong("damping", &damping.to_string(), "but must not be negative or endless"));
+    }
+    let mut joint = Joint::revolute(name, axis, Pose::identity(), range).with_damping(damping);
+    joint.kind = kind;
+    joint.armature = classed.not_negative("armature")?.unwrap_or(0.0);
+    // `ref` is the joint's position in the configuration that the file describes. Positions mean the same here, so at
+    // position 0 the segment stands back from there by `ref`, about or along the axis.
+    let reference = classed.number("ref")?.unwrap_or(0.0) * unit;
+    if reference != 0.0 {
+        let length = norm(&axis);
+        let axis = axis.map(|x| x / length);
+        joint.placement = if kind == JointKind::Revolute {
+            let (sine, cosine) = farsa_num::sin_cos(-reference / 2.0);
+            let [x, y, z] = axis.map(|part| part * sine);
+            Pose { rotation: [x, y, z, cosine], ..Pose::identity() }
+        } else {
+            Pose::at(axis.map(|part| -part * reference))
+        };
+    }
+    Ok((joint, anchor))
+}

@@ -1,0 +1,47 @@
+//! MJCF, MuJoCo's own format: [`write`](write()) makes it; [`Imported`](crate::Imported) reads it.
+//!
+//! A model is read in this order, a file each.
+
+/// The entry: the sections of a model, one after the other.
+pub(crate) mod read;
+
+/// The settings of `compiler` elements, and the places and rotations that depend on them.
+mod compiler;
+
+/// The classes of defaults, and elements that ask them for what they do not say.
+mod classes;
+
+/// The names that bodies, joints and geoms have or get.
+mod names;
+
+/// Bodies and the segments that they become.
+mod bodies;
+
+/// The elements of a body, those of its `frame`s among them.
+mod items;
+
+/// The masses of bodies.
+mod inertials;
+
+/// Joints.
+mod joints;
+
+/// Geoms and meshes.
+mod geoms;
+
+/// Actuators.
+mod actuators;
+
+/// Which colliders may touch.
+mod contacts;
+
+/// How two surfaces act on each other.
+mod surface;
+
+/// How easily a force moves each body, which contact parameters are relative to.
+mod inverse_weight;
+
+/// From a robot to the text of a file.
+mod write;
+
+pub use write::{Keyframe, MjcfOptions, write};

@@ -1,0 +1,137 @@
+//! How two surfaces act on each other: from MuJoCo's numbers of geoms and pairs to springs and dampers.
+
+use farsa_body::Surface;
+
+use crate::error::ReadError;
+use crate::mjcf::bodies::Geom;
+use crate::mjcf::classes::Classed;
+
+/// What MuJoCo knows of a contact.
+#[derive(Clone, Copy)]
+pub(crate) struct Contact {
+    /// Friction along the surface, about its normal, and against rolling.
+    friction: [f64; 3],
+    /// `condim`.
+    pub(crate) dimensions: f64,
+    solref: [f64; 2],
+    /// The impedance of a deep contact.
+    impedance: f64,
+    priority: f64,
+    mix: f64,
+}
+
+/// The numbers of one geom, MuJoCo's defaults where it says nothing.
+pub(crate) fn contact_of(geom: &Geom<'_, '_>) -> Result<Contact, ReadError> {
+    let start = Contact {
+        friction: [1.0, 0.005, 0.0001],
+        dimensions: 3.0,
+        solref: [0.02, 1.0],
+        impedance: 0.95,
+        priority: 0.0,
+        mix: 1.0,
+    };
+    let classed = &geom.classed;
+    let mut contact = solver_numbers(classed, start)?;
+    if let Some(friction) = friction(classed, 3)? {
+        for (to, from) in contact.friction.iter_mut().zip(friction) {
+            *to = from;
+        }
+    }
+    contact.priority = classed.number("priority")?.unwrap_or(0.0);
+    contact.mix = classed.not_negative("solmix")?.unwrap_or(1.0);
+    Ok(contact)
+}
+
+/// The list `friction`, of at most so many.
+fn friction(classed: &Classed<'_, '_>, most: usize) -> Result<Option<Vec<f64>>, ReadError> {
+    let list = classed.list("friction", 1, most)?;
+    match (&list, classed.source("friction")) {
+        (Some(list), Some(source)) if list.iter().any(|x| !(*x >= 0.0 && x.is_finite())) => {
+            let text = source.attribute("friction").unwrap_or_default();
+            Err(source.wrong("friction", text, "but must not be negative or endless"))
+        }
+        _ => Ok(list),
+    }
+}
+
+/// A pair's own numbers where it has some, those of its geoms where not.
+pub(crate) fn overridden(classed: &Classed<'_, '_>, geoms: &Contact) -> Result<Contact, ReadError> {
+    let mut contact = solver_numbers(classed, *geoms)?;
+    // Two along the surface, one about the normal, two of rolling.
+    if let Some(friction) = friction(classed, 5)? {
+        for (part, at) in [0, 2, 3].into_iter().enumerate() {
+            contact.friction[part] = friction.get(at).copied().unwrap_or(contact.friction[part]);
+        }
+    }
+    Ok(contact)
+}
+
+/// `condim`, `solref` and `solimp` where an element gives them, else those of `contact`.
+fn solver_numbers(classed: &Classed<'_, '_>, mut contact: Contact) -> Result<Contact, ReadError> {
+    contact.dimensions = classed.number("condim")?.unwrap_or(contact.dimensions);
+    if let Some(list) = classed.list("solref", 1, 2)? {
+        contact.solref = [list[0], list.get(1).copied().unwrap_or(contact.solref[1])];
+        if contact.solref.iter().any(|x| !x.is_finite()) {
+            let source = classed.source("solref").unwrap_or(classed.element);
+            return Err(source.wrong("solref", source.attribute("solref").unwrap_or_default(), "but must be finite"));
+        }
+    }
+    if let Some(list) = classed.list("solimp", 1, 5)? {
+        // `solimp` is dmin, dmax, width, midpoint, power: at rest a contact is deeper than the width, where d is dmax.
+        contact.impedance = list.get(1).copied().unwrap_or(contact.impedance);
+    }
+    Ok(contact)
+}
+
+/// MuJoCo's rules for two geoms: the higher priority, else the larger friction and the weighted mean of the rest.
+///
+/// "Computation, Collision detection, Contact parameters" in its documentation. A `solref` of negative numbers (a
+/// stiffness and a damping) has no mean with one of positive numbers (a time constant and a damping ratio): the smaller
+/// of each number is taken.
+pub(crate) fn mixed(a: &Contact, b: &Contact) -> Contact {
+    if a.priority != b.priority {
+        return if a.priority > b.priority { *a } else { *b };
+    }
+    // Two weights of 0 share equally.
+    let sum = a.mix + b.mix;
+    let share = if sum > 0.0 { a.mix / sum } else { 0.5 };
+    let mean = |a: f64, b: f64| share * a + (1.0 - share) * b;
+    let usual = a.solref[0] > 0.0 && b.solref[0] > 0.0;
+    let solref = [0, 1].map(|k| if usual { mean(a.solref[k], b.solref[k]) } else { a.solref[k].min(b.solref[k]) });
+    Contact {
+        friction: [0, 1, 2].map(|k| a.friction[k].max(b.friction[k])),
+        dimensions: a.dimensions.max(b.dimensions),
+        solref,
+        impedance: mean(a.impedance, b.impedance),
+        ..*a
+    }
+}
+
+impl Contact {
+    /// The spring and damper that the contact is at rest, between bodies whose inverse weights have the sum `w` [1/kg].
+    ///
+    /// The force is `(aref - a) d / ((1 - d) w)`, `aref = -b v - k d x`, with `k = 1 / (d tau ratio)^2` and
+    /// `b = 2 / (d tau)`, or with `k = K / d^2` and `b = B / d` for the numbers -K, -B.
+    pub(crate) fn surface(&self, w: f64) -> Surface {
+        // mjMINIMP and mjMAXIMP.
+        let d = self.impedance.clamp(0.0001, 0.9999);
+        let [tau, ratio] = self.solref;
+        // What stands over (1 - d) w in the force, with d in k and b cancelled: x times the first, v times the second.
+        let (stiffness, damping) = if tau > 0.0 && ratio > 0.0 {
+            (1.0 / (tau * tau * ratio * ratio), 2.0 / tau)
+        } else {
+            (tau.abs().max(1e-6), ratio.abs())
+        };
+        // Two fixed bodies have no weight: never a pair.
+        let yielding = ((1.0 - d) * w).max(1e-9);
+        let [friction, _, rolling] = self.friction;
+        let finite = |x: f64| x.clamp(0.0, 1e15);
+        // `condim`: 1 has no friction, 3 along the surface, 4 also about the normal, 6 also against rolling.
+        Surface {
+            friction: if self.dimensions >= 3.0 { friction } else { 0.0 },
+            rolling_friction: if self.dimensions >= 6.0 { rolling } else { 0.0 },
+            stiffness: finite(stiffness / yielding).max(1e-6),
+            damping: finite(damping / yielding),
+        }
+    }
+}

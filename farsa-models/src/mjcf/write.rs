@@ -1,0 +1,334 @@
+//! A robot as a model file of MuJoCo.
+
+use std::fmt::Write as _;
+
+use farsa_body::{Actuator, BodyId, Collider, JointKind, Law, Pair, Pose, Robot, RobotError, Segment, Shape};
+use farsa_num::Scalar;
+
+use crate::mjcf::inverse_weight::inverse_weights;
+use crate::xml::write::{Lines, numbers, quoted, segment_names};
+
+/// What a MuJoCo model says beside the robot.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+pub struct MjcfOptions {
+    /// The step that MuJoCo shall take, which its contact parameters depend on [s].
+    pub time_step: f64,
+    /// Gravity [m/s2].
+    pub gravity: [f64; 3],
+    /// How much stiffer friction is than the normal: what creeps is inversely proportional to it.
+    pub impedance_ratio: f64,
+    /// Postures to start from.
+    pub keyframes: Vec<Keyframe>,
+}
+
+impl Default for MjcfOptions {
+    fn default() -> Self {
+        Self { time_step: 0.0025, gravity: [0.0, 0.0, -9.81], impedance_ratio: 10.0, keyframes: Vec::new() }
+    }
+}
+
+/// A named state at rest.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Keyframe {
+    /// Its name.
+    pub name: String,
+    /// Joint positions in the order of [`Robot::joints`]; what is missing is 0 [rad or m].
+    pub joints: Vec<f64>,
+    /// Where floating segments are; the others are where their joint places them.
+    pub bodies: Vec<(BodyId, Pose<f64>)>,
+}
+
+/// The largest impedance that MuJoCo allows.
+const STIFFEST: f64 = 0.9999;
+
+/// Time constant [s] and impedance of a contact that yields by force / `stiffness` at rest, for a step of `h` [s].
+///
+/// MuJoCo's contact force is `(aref - a) d / ((1 - d) w)` with `aref = -b v - k d x`, `k = 1 / (d tau)^2`: at rest a spring
+/// of `1 / (tau^2 (1 - d) w)`, in motion one that also acts like a mass of `d / ((1 - d) w)`. `w` is the sum of the two
+/// bodies' inverse weights. The time constant is the shortest that MuJoCo accepts; the impedance then makes the spring
+/// ours. Where a time constant so short asks for less than 0.5, it is lengthened instead.
+fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
+    let kw = stiffness * w;
+    if kw <= 0.0 {
+        return (2.0 * h, STIFFEST);
+    }
+    let tau = (2.0 * h).max(Scalar::sqrt(2.0 / kw));
+    (tau, (1.0 - 1.0 / (tau * tau * kw)).min(STIFFEST))
+}
+
+/// The robot as a model in MuJoCo's own format, MJCF.
+///
+/// Segments, joints, inertias and shapes are the description's to the last digit. Only the pairs of the description
+/// may touch. What MuJoCo does not have is replaced:
+/// - muscle pairs and laws of a user's own are `motor`s that exert what they are told: the law is the caller's;
+/// - position servos are position actuators with a force range, torque motors motors with a control range;
+/// - a contact point's stiffness is ours at rest; its damping is critical instead of ours, and it moves as if the
+///   touching bodies were heavier: MuJoCo's contacts are stable at steps of this size only so;
+/// - friction is elliptic and creeps by force / (2 tau stiffness impedance ratio);
+/// - joint stops are MuJoCo's, as stiff as the step allows.
+///
+/// A plane on a segment that moves is written, and refused by MuJoCo. A segment called `world` gets a `_` appended.
+///
+/// # Errors
+/// What [`Robot::validate`] finds, and [`RobotError::Value`] for options that are not finite, a step or ratio <= 0.
+pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError> {
+    check(options)?;
+    let weights = inverse_weights(robot)?;
+    let mut out = Lines::default();
+    out.open(&format!("mujoco model={}", quoted(&robot.name)));
+    head(robot, &mut out, options);
+    out.open("worldbody");
+    for collider in robot.colliders.iter().filter(|collider| collider.body.is_none()) {
+        out.line(&geom(collider));
+    }
+    bodies(robot, &mut out);
+    out.close("worldbody");
+    out.open("contact");
+    for pair in &robot.pairs {
+        out.line(&pair_line(robot, pair, &weights, options.time_step));
+    }
+    out.close("contact");
+    out.open("actuator");
+    for actuator in &robot.actuators {
+        out.line(&actuator_line(robot, actuator));
+    }
+    out.close("actuator");
+    if !options.keyframes.is_empty() {
+        out.open("keyframe");
+        for keyframe in &options.keyframes {
+            let state = numbers(&state(robot, keyframe));
+            out.line(&format!("<key name={} qpos=\"{state}\"/>", quoted(&keyframe.name)));
+        }
+        out.close("keyframe");
+    }
+    out.close("mujoco");
+    Ok(out.text)
+}
+
+fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
+    if robot.actuators.iter().any(|actuator| matches!(actuator.law, Law::MusclePair(_) | Law::Held(_))) {
+        out.line(
+            "<!-- MuJoCo has no such muscles: the motors of their joints exert the torque that they are told; leave \
+             them at 0 and use qfrc_applied, with stiffness and damping in dof_damping, for implicit muscles. -->",
+        );
+    }
+    out.line("<compiler angle=\"radian\" autolimits=\"false\" inertiafromgeom=\"false\" fusestatic=\"false\"/>");
+    let (h, ratio, gravity) = (options.time_step, options.impedance_ratio, numbers(&options.gravity));
+    out.line(&format!(
+        "<option timestep=\"{h:?}\" gravity=\"{gravity}\" integrator=\"implicitfast\" cone=\"elliptic\" \
+         impratio=\"{ratio:?}\"/>"
+    ));
+    // A stop reacts as fast as MuJoCo allows and yields by a hundredth of what a free joint would.
+    let stop = format!("solreflimit=\"{:?} 1.0\" solimplimit=\"0.99 0.99 0.001 0.5 2.0\"", 2.0 * h);
+    out.open("default");
+    out.line(&format!("<joint {stop}/>"));
+    out.line("<geom contype=\"0\" conaffinity=\"0\"/>");
+    out.close("default");
+}
+
+fn bodies(robot: &Robot, out: &mut Lines) {
+    let names = segment_names(robot, "world");
+    let mut open = 0;
+    for (i, depth) in nested(robot) {
+        while open > depth {
+            out.close("body");
+            open -= 1;
+        }
+        open += 1;
+        let segment = &robot.segments[i];
+        out.open(&format!("body name={}{}", quoted(&names[i]), placed(&segment.joint.placement)));
+        if let Some(joint) = joint(segment) {
+            out.line(&joint);
+        }
+        if let Some(inertial) = inertial(segment) {
+            out.line(&inertial);
+        }
+        for collider in robot.colliders.iter().filter(|collider| collider.body == Some(BodyId(i as u16))) {
+            out.line(&geom(collider));
+        }
+    }
+    for _ in 0..open {
+        out.close("body");
+    }
+}
+
+fn pair_line(robot: &Robot, pair: &Pair, weights: &[f64], h: f64) -> String {
+    let [a, b] = pair.colliders.map(|i| &robot.colliders[i]);
+    let weight = |collider: &Collider| collider.body.map_or(0.0, |body| weights[body.index()]);
+    let surface = &pair.surface;
+    let (tau, d) = impedance(surface.stiffness, weight(a) + weight(b), h);
+    let (dimensions, rolling) = if surface.rolling_friction > 0.0 { (6, surface.rolling_friction) } else { (3, 0.0) };
+    let friction = numbers(&[surface.friction, surface.friction, rolling, rolling, rolling]);
+    let (solref, solimp) = (numbers(&[tau, 1.0]), numbers(&[d, d, 0.001, 0.5, 2.0]));
+    format!(
+        "<pair geom1={} geom2={} condim=\"{dimensions}\" friction=\"{friction}\" solref=\"{solref}\" \
+         solimp=\"{solimp}\"/>",
+        quoted(&a.name),
+        quoted(&b.name)
+    )
+}
+
+fn actuator_line(robot: &Robot, actuator: &Actuator) -> String {
+    let joint = &robot.segments[actuator.joint.index()].joint;
+    let head = format!("name={} joint={}", quoted(&actuator.name), quoted(&joint.name));
+    match actuator.law {
+        Law::Servo(servo) => format!(
+            "<position {head} kp=\"{:?}\" kv=\"{:?}\"{}/>",
+            servo.stiffness,
+            servo.damping,
+            limited("force", servo.limit)
+        ),
+        Law::Torque(motor) => format!("<motor {head}{}/>", limited("ctrl", motor.limit)),
+        Law::MusclePair(_) | Law::Held(_) => format!("<motor {head}/>"),
+    }
+}
+
+/// MuJoCo's `qpos`: the joints in the order in which the bodies are nested.
+fn state(robot: &Robot, keyframe: &Keyframe) -> Vec<f64> {
+    let mut joints = vec![0.0; robot.segments.len()];
+    for (joint, q) in robot.joints().zip(&keyframe.joints) {
+        joints[joint.index()] = *q;
+    }
+    let mut state = Vec::new();
+    for (i, _) in nested(robot) {
+        let joint = &robot.segments[i].joint;
+        match joint.kind {
+            JointKind::Revolute | JointKind::Prismatic => state.push(joints[i]),
+            JointKind::Fixed => {}
+            JointKind::Floating => {
+                let given = keyframe.bodies.iter().find(|(body, _)| body.index() == i);
+                let Pose { position, rotation: [x, y, z, w] } = given.map_or(joint.placement, |(_, pose)| *pose);
+                state.extend(position.into_iter().chain([w, x, y, z]));
+            }
+        }
+    }
+    state
+}
+
+/// The segments with how deep they are nested, in depth-first order, in which MuJoCo counts bodies.
+fn nested(robot: &Robot) -> Vec<(usize, usize)> {
+    let mut order = Vec::with_capacity(robot.segments.len());
+    let children = |of: Option<usize>, depth: usize| {
+        let all = robot.segments.iter().enumerate().rev();
+        all.filter(move |(_, segment)| segment.parent.map(BodyId::index) == of).map(move |(i, _)| (i, depth))
+    };
+    let mut open: Vec<(usize, usize)> = children(None, 0).collect();
+    while let Some((i, depth)) = open.pop() {
+        order.push((i, depth));
+        open.extend(children(Some(i), depth + 1));
+    }
+    order
+}
+
+fn check(options: &MjcfOptions) -> Result<(), RobotError> {
+    let wrong = |field, value| RobotError::Value { part: "MJCF".into(), field, value };
+    for (field, value) in [("time step", options.time_step), ("impedance ratio", options.impedance_ratio)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(wrong(field, value));
+        }
+    }
+    let states = options.keyframes.iter().flat_map(|keyframe| &keyframe.joints);
+    match options.gravity.iter().chain(states).find(|x| !x.is_finite()) {
+        Some(value) => Err(wrong("gravity or keyframe", *value)),
+        None => Ok(()),
+    }
+}
+
+/// The attributes of a limit, none for an infinite one.
+fn limited(what: &str, limit: f64) -> String {
+    if limit.is_infinite() {
+        return String::new();
+    }
+    format!(" {what}limited=\"true\" {what}range=\"{}\"", numbers(&[-limit, limit]))
+}
+
+/// The attributes of a place, none for the identity.
+fn placed(pose: &Pose<f64>) -> String {
+    let mut text = String::new();
+    // Writing into a string cannot fail.
+    if pose.position != [0.0; 3] {
+        let _ = write!(text, " pos=\"{}\"", numbers(&pose.position));
+    }
+    if pose.rotation != Pose::identity().rotation {
+        let [x, y, z, w] = pose.rotation;
+        let _ = write!(text, " quat=\"{}\"", numbers(&[w, x, y, z]));
+    }
+    text
+}
+
+fn joint(segment: &Segment) -> Option<String> {
+    let joint = &segment.joint;
+    let name = if joint.name.is_empty() { String::new() } else { format!(" name={}", quoted(&joint.name)) };
+    let kind = match joint.kind {
+        JointKind::Fixed => return None,
+        JointKind::Floating => return Some(format!("<freejoint{name}/>")),
+        JointKind::Revolute => "hinge",
+        JointKind::Prismatic => "slide",
+    };
+    let [low, high] = joint.range;
+    let range = if low.is_infinite() && high.is_infinite() {
+        " limited=\"false\"".into()
+    } else {
+        // MuJoCo's limits have two ends.
+        format!(" limited=\"true\" range=\"{}\"", numbers(&[low.max(-1e10), high.min(1e10)]))
+    };
+    let (axis, armature, damping) = (numbers(&joint.axis), joint.armature, joint.damping);
+    Some(format!(
+        "<joint{name} type=\"{kind}\" axis=\"{axis}\"{range} armature=\"{armature:?}\" damping=\"{damping:?}\"/>"
+    ))
+}
+
+fn inertial(segment: &Segment) -> Option<String> {
+    if segment.mass <= 0.0 {
+        return None;
+    }
+    let [xx, yy, zz, crossed @ ..] = segment.inertia;
+    let inertia = if crossed == [0.0; 3] {
+        format!("diaginertia=\"{}\"", numbers(&[xx, yy, zz]))
+    } else {
+        format!("fullinertia=\"{}\"", numbers(&segment.inertia))
+    };
+    Some(format!("<inertial pos=\"{}\" mass=\"{:?}\" {inertia}/>", numbers(&segment.centre), segment.mass))
+}
+
+fn geom(collider: &Collider) -> String {
+    let (kind, size) = match collider.shape {
+        Shape::Sphere { radius } => ("sphere", vec![radius]),
+        Shape::Capsule { radius, half_length } => ("capsule", vec![radius, half_length]),
+        Shape::Box { half } => ("box", half.to_vec()),
+        // Infinite; the third number is the distance of the lines drawn on it.
+        Shape::Plane => ("plane", vec![0.0, 0.0, 1.0]),
+    };
+    let at = placed(&collider.placement);
+    format!("<geom name={} type=\"{kind}\" size=\"{}\"{at}/>", quoted(&collider.name), numbers(&size))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_body::ArmAndHand;
+
+    #[test]
+    fn contacts_yield_as_ours_at_rest() {
+        for (stiffness, w, h) in [(2e5, 22.0, 0.01), (2e5, 0.3, 0.0025), (100.0, 1.0, 1e-4)] {
+            let (tau, d) = impedance(stiffness, w, h);
+            assert!(tau >= 2.0 * h && (0.5..=STIFFEST).contains(&d), "{tau} {d}");
+            let spring = 1.0 / (tau * tau * (1.0 - d) * w);
+            assert!((spring / stiffness - 1.0).abs() < 1e-9, "{spring} instead of {stiffness}");
+        }
+        assert_eq!(impedance(1e9, 100.0, 0.01).1, STIFFEST);
+        assert_eq!(impedance(1e5, 0.0, 0.01), (0.02, STIFFEST));
+    }
+
+    #[test]
+    fn impossible_options_are_refused() {
+        let robot = ArmAndHand::default().robot().expect("a valid robot");
+        let refused = |options: MjcfOptions| assert!(write(&robot, &options).is_err(), "{options:?}");
+        refused(MjcfOptions { time_step: 0.0, ..MjcfOptions::default() });
+        refused(MjcfOptions { impedance_ratio: f64::NAN, ..MjcfOptions::default() });
+        refused(MjcfOptions { gravity: [f64::INFINITY, 0.0, 0.0], ..MjcfOptions::default() });
+        assert!(write(&robot, &MjcfOptions::default()).is_ok());
+    }
+}

@@ -1,0 +1,8 @@
+//! URDF, the format of ROS: [`write`](write()) makes it; [`Imported`](crate::Imported) reads it.
+
+/// From a file's links and joints to a robot.
+pub(crate) mod read;
+/// From a robot to the text of a file.
+mod write;
+
+pub use write::write;

@@ -1,0 +1,429 @@
+//! A robot from a URDF file.
+
+use std::collections::BTreeMap;
+
+use farsa_body::{
+    BodyId, Collider, Joint, JointId, JointKind, Law, MassProperties, Pose, Robot, Segment, Shape, Torque,
+};
+use farsa_num::sin_cos;
+
+use crate::context::Context;
+use crate::error::{Place, ReadError};
+use crate::frame::Frame;
+use crate::mesh::solid::Solid;
+use crate::mesh::triangles::Mesh;
+use crate::options::Meshes;
+use crate::repair::repair_masses;
+use crate::vector::norm;
+use crate::xml::tree::{Element, Tree};
+
+/// The root link that stands for the world itself.
+const WORLD: &str = "world";
+
+/// As far as this or further is without end [rad, m, N m, N]: what `urdf::write` puts for infinite ones.
+const ENDLESS: f64 = 1e9;
+
+/// Why elements of a URDF are not read.
+const NOTED: [(&str, &str); 3] = [
+    ("material", "only for show"),
+    ("transmission", "joints with an effort limit have a motor each instead"),
+    ("gazebo", "another simulator's"),
+];
+
+/// The joint that carries each link, and the order in which links are made.
+struct Links<'t> {
+    names: BTreeMap<&'t str, usize>,
+    elements: Vec<Element<'t>>,
+    /// Of every link.
+    joints: Vec<Option<Element<'t>>>,
+    parents: Vec<Option<usize>>,
+}
+
+pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec<Frame>), ReadError> {
+    let root = tree.root();
+    root.check_open(&["name", "version"], &mut context.warnings)?;
+    root.check_children(&["link", "joint"], &NOTED, &mut context.warnings)?;
+    let links = Links::from_model(root)?;
+    let order = links.order()?;
+    let mut robot = Robot::new(root.attribute("name").unwrap_or_default());
+    let mut places = Vec::new();
+    let mut frames = Vec::new();
+    let mut bodies: Vec<Option<BodyId>> = vec![None; links.elements.len()];
+    for index in order {
+        let link = links.elements[index];
+        let name = link.needed("name")?;
+        let (mass, given) = inertial(link, context)?;
+        let joint = match (links.joints[index], links.parents[index]) {
+            (Some(element), Some(parent)) => Some((joint(element, context)?, bodies[parent])),
+            _ if name == WORLD && !given => None,
+            _ if context.options.floating => Some((Joint::floating(Pose::identity()), None)),
+            _ => Some((Joint::fixed(Pose::identity()), None)),
+        };
+        if let Some((joint, parent)) = joint {
+            if joint.kind == JointKind::Floating && parent.is_some() {
+                let element = links.joints[index].unwrap_or(link);
+                return Err(element.unsupported("a floating joint on a link; only links on the world can float"));
+            }
+            bodies[index] = Some(robot.add_segment(Segment::new(name, parent, joint, mass)));
+            places.push(link.place());
+            if let Some(id) = bodies[index] {
+                motor(&mut robot, id, links.joints[index])?;
+            }
+        }
+        frames.push(Frame { name: name.into(), body: bodies[index], placement: Pose::identity() });
+        collisions(&mut robot, bodies[index], link, context)?;
+    }
+    names(&mut robot);
+    let repair = context.options.repair;
+    repair_masses(&mut robot, &places, &repair, &mut context.warnings)?;
+    Ok((robot, frames))
+}
+
+impl<'t> Links<'t> {
+    fn from_model(root: Element<'t>) -> Result<Self, ReadError> {
+        let links: Vec<Element<'t>> = root.all("link").collect();
+        if links.is_empty() {
+            return Err(root.missing("link"));
+        }
+        let mut names: BTreeMap<&str, usize> = BTreeMap::new();
+        for (i, link) in links.iter().enumerate() {
+            if let Some(first) = names.insert(link.needed("name")?, i) {
+                return Err(twice("link", link, &links[first]));
+            }
+        }
+        let mut joints: Vec<Option<Element<'t>>> = vec![None; links.len()];
+        let mut parents = vec![None; links.len()];
+        let mut known: BTreeMap<&str, Element<'t>> = BTreeMap::new();
+        for joint in root.all("joint") {
+            if let Some(first) = known.insert(joint.needed("name")?, joint) {
+                return Err(twice("joint", &joint, &first));
+            }
+            let [parent, child] = ["parent", "child"].map(|end| -> Result<usize, ReadError> {
+                let element = joint.one(end)?.ok_or_else(|| joint.missing(end))?;
+                let name = element.needed("link")?;
+                names.get(name).copied().ok_or_else(|| element.unknown("link", name, names.keys().copied()))
+            });
+            let (parent, child) = (parent?, child?);
+            if let Some(first) = joints[child].replace(joint) {
+                return Err(twice("joint that carries the same link as", &joint, &first));
+            }
+            parents[child] = Some(parent);
+        }
+        let roots: Vec<usize> = (0..links.len()).filter(|link| parents[*link].is_none()).collect();
+        let all = Self { names, elements: links, joints, parents };
+        match roots.as_slice() {
+            [] => Err(all.cycle(0)),
+            [_] => Ok(all),
+            [_, second, ..] => {
+                let names = roots.iter().map(|root| all.name(*root)).collect();
+                Err(ReadError::Roots { place: all.elements[*second].place(), names })
+            }
+        }
+    }
+
+    fn name(&self, link: usize) -> String {
+        self.elements[link].attribute("name").unwrap_or_default().into()
+    }
+
+    /// The loop that going from a link to its parents ends in.
+    fn cycle(&self, from: usize) -> ReadError {
+        let mut seen = vec![false; self.elements.len()];
+        let mut link = from;
+        while !seen[link] {
+            seen[link] = true;
+            link = self.parents[link].unwrap_or(link);
+        }
+        let first = link;
+        let mut names = vec![self.name(first)];
+        while let Some(parent) = self.parents[link].filter(|parent| *parent != first) {
+            names.push(self.name(parent));
+            link = parent;
+        }
+        ReadError::Cycle { place: self.elements[first].place(), names }
+    }
+
+    /// The links in the file's order, but parents before their children.
+    fn order(&self) -> Result<Vec<usize>, ReadError> {
+        debug_assert_eq!(self.names.len(), self.elements.len());
+        let mut order = Vec::with_capacity(self.elements.len());
+        let mut placed = vec![false; self.elements.len()];
+        let mut path = Vec::new();
+        for link in 0..self.elements.len() {
+            let mut next = Some(link).filter(|link| !placed[*link]);
+            while let Some(current) = next {
+                // More links on the way up than there are: some came twice.
+                if path.len() > self.elements.len() {
+                    return Err(self.cycle(link));
+                }
+                path.push(current);
+                next = self.parents[current].filter(|parent| !placed[*parent]);
+            }
+            while let Some(current) = path.pop() {
+                placed[current] = true;
+                order.push(current);
+            }
+        }
+        Ok(order)
+    }
+}
+
+fn twice(what: &str, second: &Element<'_>, first: &Element<'_>) -> ReadError {
+    let name = first.attribute("name").unwrap_or_default().to_owned();
+    ReadError::Twice { place: second.place(), what: what.into(), name, first: first.place().line }
+}
+
+/// The place in an `origin` element.
+fn origin(within: Element<'_>, context: &mut Context<'_>) -> Result<Pose<f64>, ReadError> {
+    let Some(origin) = within.one("origin")? else { return Ok(Pose::identity()) };
+    origin.check_open(&["xyz", "rpy"], &mut context.warnings)?;
+    let position = origin.array::<3>("xyz")?.unwrap_or([0.0; 3]);
+    let [roll, pitch, yaw] = origin.array::<3>("rpy")?.unwrap_or([0.0; 3]);
+    let about = |axis: usize, angle: f64| {
+        let (sine, cosine) = sin_cos(angle / 2.0);
+        let mut rotation = [0.0, 0.0, 0.0, cosine];
+        rotation[axis] = sine;
+        Pose { rotation, ..Pose::identity() }
+    };
+    // Angles about the fixed axes, x first: the matrix is Rz Ry Rx.
+    let turn = about(2, yaw).compose(&about(1, pitch)).compose(&about(0, roll));
+    let length = norm(&turn.rotation);
+    Ok(Pose { position, rotation: turn.rotation.map(|x| x / length) })
+}
+
+/// A link's mass in its frame, and whether it says any.
+fn inertial(link: Element<'_>, context: &mut Context<'_>) -> Result<(MassProperties, bool), ReadError> {
+    link.check_open(&["name"], &mut context.warnings)?;
+    link.check_children(&["inertial", "collision"], &[("visual", "only for show")], &mut context.warnings)?;
+    let Some(inertial) = link.one("inertial")? else {
+        return Ok((MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] }, false));
+    };
+    inertial.check_children(&["origin", "mass", "inertia"], &[], &mut context.warnings)?;
+    let element = inertial.one("mass")?.ok_or_else(|| inertial.missing("mass"))?;
+    element.check_open(&["value"], &mut context.warnings)?;
+    let mass = element.number("value")?.ok_or_else(|| element.missing("value"))?;
+    if mass < 0.0 {
+        return Err(element.wrong("value", element.needed("value")?, "but must not be negative"));
+    }
+    let element = inertial.one("inertia")?.ok_or_else(|| inertial.missing("inertia"))?;
+    let parts = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+    element.check_open(&parts, &mut context.warnings)?;
+    let mut inertia = [0.0; 6];
+    for (to, part) in inertia.iter_mut().zip(parts) {
+        *to = element.number(part)?.ok_or_else(|| element.missing(part))?;
+    }
+    let body = MassProperties { mass, centre: [0.0; 3], inertia };
+    let origin = origin(inertial, context)?;
+    // Without a turn the numbers stay as they are.
+    let turned = origin.rotation != Pose::identity().rotation;
+    let placed = if turned { body.placed(&origin) } else { MassProperties { centre: origin.position, ..body } };
+    Ok((placed, mass > 0.0))
+}
+
+fn joint(element: Element<'_>, context: &mut Context<'_>) -> Result<Joint, ReadError> {
+    element.check_open(&["name", "type"], &mut context.warnings)?;
+    let ignored = [
+        ("mimic", "joints do not follow each other: it moves on its own"),
+        ("calibration", "of a real robot"),
+        ("safety_controller", "of a real robot"),
+    ];
+    let read = ["origin", "parent", "child", "axis", "limit", "dynamics"];
+    element.check_children(&read, &ignored, &mut context.warnings)?;
+    let placement = origin(element, context)?;
+    let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
+    let kind = element.word("type", &kinds)?.ok_or_else(|| element.missing("type"))?;
+    let name = element.needed("name")?;
+    let single = match kind {
+        "revolute" | "continuous" => JointKind::Revolute,
+        "prismatic" => JointKind::Prismatic,
+        "fixed" => return Ok(Joint { name: name.into(), ..Joint::fixed(placement) }),
+        "floating" => return Ok(Joint { name: name.into(), ..Joint::floating(placement) }),
+        _ => return Err(element.unsupported(format!("{kind} joints cannot be described; two or three joints can"))),
+    };
+    let mut axis = [1.0, 0.0, 0.0];
+    if let Some(given) = element.one("axis")? {
+        given.check_open(&["xyz"], &mut context.warnings)?;
+        axis = given.array::<3>("xyz")?.ok_or_else(|| given.missing("xyz"))?;
+        if norm(&axis) <= 1e-6 {
+            return Err(given.wrong("xyz", given.needed("xyz")?, "but must be a direction"));
+        }
+    }
+    let mut range = [f64::NEG_INFINITY, f64::INFINITY];
+    if let Some(limit) = element.one("limit")? {
+        let read = ["lower", "upper", "effort", "velocity"];
+        limit.check_open(&read, &mut context.warnings)?;
+        if limit.attribute("velocity").is_some() {
+            context.warnings.add(limit.place(), "limit `velocity`", "a description has no largest speed");
+        }
+        if kind != "continuous" {
+            let end = |name| Ok(limit.list(name, 1, 1)?.map_or(0.0, |list| list[0]));
+            let [low, high] = [end("lower")?, end("upper")?];
+            range = [
+                if low <= -ENDLESS { f64::NEG_INFINITY } else { low },
+                if high >= ENDLESS { f64::INFINITY } else { high },
+            ];
+            if low > high {
+                return Err(limit.wrong(
+                    "upper",
+                    limit.attribute("upper").unwrap_or("0"),
+                    "but must not be below lower",
+                ));
+            }
+        }
+    } else if kind != "continuous" {
+        return Err(element.missing("limit"));
+    }
+    let mut made = Joint { range, ..Joint::revolute(name, axis, placement, range) };
+    made.kind = single;
+    if let Some(dynamics) = element.one("dynamics")? {
+        dynamics.check_open(&["damping", "friction"], &mut context.warnings)?;
+        made.damping = dynamics.number("damping")?.unwrap_or(0.0);
+        if made.damping < 0.0 {
+            let value = dynamics.attribute("damping").unwrap_or_default();
+            return Err(dynamics.wrong("damping", value, "but must not be negative"));
+        }
+        if dynamics.number("friction")?.is_some_and(|friction| friction != 0.0) {
+            context.warnings.add(dynamics.place(), "dynamics `friction`", "a joint's friction is not described");
+        }
+    }
+    Ok(made)
+}
+
+/// A motor for a joint that has a largest effort.
+fn motor(robot: &mut Robot, body: BodyId, element: Option<Element<'_>>) -> Result<(), ReadError> {
+    let joint = &robot.segments[body.index()].joint;
+    let Some(limit) = element.map(|joint| joint.one("limit")).transpose()?.flatten() else { return Ok(()) };
+    let effort = limit.list("effort", 1, 1)?.map_or(0.0, |list| list[0]);
+    if effort < 0.0 {
+        return Err(limit.wrong("effort", limit.attribute("effort").unwrap_or_default(), "but must not be negative"));
+    }
+    if joint.kind.is_single() && effort > 0.0 {
+        let name = joint.name.clone();
+        let limit = if effort >= ENDLESS { f64::INFINITY } else { effort };
+        robot.add_actuator(&name, JointId(body.0), Law::Torque(Torque { limit }));
+    }
+    Ok(())
+}
+
+fn collisions(
+    robot: &mut Robot,
+    body: Option<BodyId>,
+    link: Element<'_>,
+    context: &mut Context<'_>,
+) -> Result<(), ReadError> {
+    let mut solids: Vec<(String, Solid, Pose<f64>, Place)> = Vec::new();
+    for collision in link.all("collision") {
+        collision.check_open(&["name"], &mut context.warnings)?;
+        collision.check_children(&["origin", "geometry"], &NOTED, &mut context.warnings)?;
+        let placement = origin(collision, context)?;
+        let geometry = collision.one("geometry")?.ok_or_else(|| collision.missing("geometry"))?;
+        if let Some(solid) = solid(geometry, context)? {
+            let name = collision.attribute("name").unwrap_or_default().to_owned();
+            solids.push((name, solid, placement, collision.place()));
+        }
+    }
+    let mut rest = solids.as_slice();
+    while let Some((name, solid, placement, place)) = rest.first() {
+        let capsule = rest.get(1..3).and_then(|ends| capsule(solid, placement, &ends[0], &ends[1]));
+        rest = &rest[if capsule.is_some() { 3 } else { 1 }..];
+        let (shape, at, why) = capsule.map_or_else(|| solid.shape(), |shape| (shape, Pose::identity(), None));
+        if let Some(why) = why {
+            context.warnings.add(place.clone(), format!("{} in collision", solid.label()), why);
+        }
+        robot.add_collider(Collider::new(name, body, shape, placement.compose(&at)));
+    }
+    Ok(())
+}
+
+/// The capsule that a cylinder makes with two balls at its ends.
+fn capsule(
+    tube: &Solid,
+    at: &Pose<f64>,
+    a: &(String, Solid, Pose<f64>, Place),
+    b: &(String, Solid, Pose<f64>, Place),
+) -> Option<Shape> {
+    let Solid::Cylinder { radius, half_length } = *tube else { return None };
+    let end = |(_, solid, place, _): &(String, Solid, Pose<f64>, Place), z: f64| {
+        let point = at.transform_back(place.position);
+        let off = norm(&[point[0], point[1], point[2] - z]);
+        *solid == Solid::Native(Shape::Sphere { radius }) && off <= 1e-9 * (1.0 + half_length)
+    };
+    let pair = (end(a, -half_length) && end(b, half_length)) || (end(a, half_length) && end(b, -half_length));
+    pair.then_some(Shape::Capsule { radius, half_length })
+}
+
+/// The shape in a `geometry` element; `None` if it is left out.
+fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Solid>, ReadError> {
+    let kinds = ["box", "cylinder", "capsule", "sphere", "mesh"];
+    let mut shapes = geometry.children();
+    let (Some(shape), None) = (shapes.next(), shapes.next()) else {
+        return Err(geometry.missing("shape, or has several"));
+    };
+    let positive = |name: &'static str| -> Result<f64, ReadError> {
+        let value = shape.number(name)?.ok_or_else(|| shape.missing(name))?;
+        let wrong = || shape.wrong(name, shape.attribute(name).unwrap_or_default(), "but must be positive");
+        if value > 0.0 { Ok(value) } else { Err(wrong()) }
+    };
+    let solid = match shape.tag() {
+        "sphere" => {
+            shape.check_open(&["radius"], &mut context.warnings)?;
+            Solid::Native(Shape::Sphere { radius: positive("radius")? })
+        }
+        "box" => {
+            shape.check_open(&["size"], &mut context.warnings)?;
+            let size = shape.array::<3>("size")?.ok_or_else(|| shape.missing("size"))?;
+            if size.iter().any(|x| *x <= 0.0) {
+                return Err(shape.wrong("size", shape.needed("size")?, "but must be positive"));
+            }
+            Solid::Native(Shape::Box { half: size.map(|x| x / 2.0) })
+        }
+        kind @ ("cylinder" | "capsule") => {
+            shape.check_open(&["radius", "length"], &mut context.warnings)?;
+            let (radius, length) =
+                (positive("radius")?, shape.number("length")?.ok_or_else(|| shape.missing("length"))?);
+            let half_length = length / 2.0;
+            if half_length < 0.0 {
+                return Err(shape.wrong("length", shape.needed("length")?, "but must not be negative"));
+            }
+            match kind {
+                "capsule" => Solid::Native(Shape::Capsule { radius, half_length }),
+                _ => Solid::Cylinder { radius, half_length },
+            }
+        }
+        "mesh" => {
+            shape.check_open(&["filename", "scale"], &mut context.warnings)?;
+            let name = shape.needed("filename")?;
+            if context.options.meshes == Meshes::Leave {
+                context.warnings.add(shape.place(), "mesh", "left out, as asked for");
+                return Ok(None);
+            }
+            let scale = shape.array::<3>("scale")?.unwrap_or([1.0; 3]);
+            let place = shape.place();
+            let mesh = Mesh::parse(name, &context.files.content(&place, name)?);
+            let mesh = mesh.map_err(|why| ReadError::Mesh { place, path: name.into(), why })?;
+            Solid::Mesh(mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k])))
+        }
+        other => return Err(shape.unknown("shape", other, kinds)),
+    };
+    Ok(Some(solid))
+}
+
+/// Gives colliders without name, or with one that another has, a name of their own.
+fn names(robot: &mut Robot) {
+    // Each with how often it was wanted.
+    let mut taken: BTreeMap<String, usize> = BTreeMap::new();
+    for i in 0..robot.colliders.len() {
+        let collider = &robot.colliders[i];
+        let segment = collider.body.map_or(WORLD, |body| robot.segments[body.index()].name.as_str());
+        let wanted = if collider.name.is_empty() { format!("{segment}_collision") } else { collider.name.clone() };
+        let mut name = wanted.clone();
+        if let Some(count) = taken.get_mut(&wanted) {
+            *count += 1;
+            name = format!("{wanted}_{count}");
+            while taken.contains_key(&name) {
+                name.push('_');
+            }
+        }
+        taken.insert(name.clone(), 1);
+        robot.colliders[i].name = name;
+    }
+}

@@ -1,0 +1,211 @@
+//! A robot as a URDF file.
+
+use farsa_body::{BodyId, Collider, JointId, JointKind, Law, Pose, Robot, RobotError, Segment, Shape};
+use farsa_num::{atan2, sin_cos};
+
+use crate::vector::norm;
+use crate::xml::write::{Lines, numbers, quoted, segment_names, unused};
+
+/// The name of the link that stands for the world.
+const WORLD: &str = "world";
+
+/// URDF wants a largest speed, and a description has none [rad/s or m/s].
+const FASTEST: f64 = 1000.0;
+
+/// Stands for no limit where URDF wants one [rad, m, N m or N].
+const ENDLESS: f64 = 1e9;
+
+/// Half the edge length of the block that stands for a plane [m].
+const PLANE: f64 = 50.0;
+
+/// The robot as a URDF file: links, inertias, joints, collision shapes.
+///
+/// One link, `world`, is the root of everything (a segment of that name gets a `_` appended); what floats hangs on it by a
+/// joint of type `floating`, which some readers do not know. A capsule is a cylinder with a sphere at either end, a
+/// plane a block of 100 m. A joint without name is called after its segment. Lost are armatures, pairs, surfaces,
+/// and the laws of actuators but for their largest effort (of a muscle pair: moment arm times largest active
+/// tension); a largest speed, which URDF wants, is 1000.
+///
+/// # Errors
+/// What [`Robot::validate`] finds.
+pub fn write(robot: &Robot) -> Result<String, RobotError> {
+    robot.validate()?;
+    let mut out = Lines::default();
+    out.line("<?xml version=\"1.0\"?>");
+    out.open(&format!("robot name={}", quoted(&robot.name)));
+    let names = segment_names(robot, WORLD);
+    link(robot, &mut out, WORLD, None);
+    for (i, name) in names.iter().enumerate() {
+        link(robot, &mut out, name, Some(i));
+    }
+    let joints = joint_names(robot, &names);
+    for (i, segment) in robot.segments.iter().enumerate() {
+        let parent = segment.parent.map_or(WORLD, |parent| names[parent.index()].as_str());
+        joint(robot, &mut out, &joints[i], parent, &names[i], JointId(i as u16));
+    }
+    out.close("robot");
+    Ok(out.text)
+}
+
+/// A link with its mass and shapes; the world's without segment.
+fn link(robot: &Robot, out: &mut Lines, name: &str, segment: Option<usize>) {
+    out.open(&format!("link name={}", quoted(name)));
+    if let Some(Segment { mass, centre, inertia: [xx, yy, zz, xy, xz, yz], .. }) =
+        segment.map(|i| &robot.segments[i]).filter(|segment| segment.mass > 0.0)
+    {
+        out.open("inertial");
+        out.line(&format!("<origin xyz=\"{}\" rpy=\"0.0 0.0 0.0\"/>", numbers(centre)));
+        out.line(&format!("<mass value=\"{mass:?}\"/>"));
+        let upper = [("ixx", xx), ("ixy", xy), ("ixz", xz), ("iyy", yy), ("iyz", yz), ("izz", zz)];
+        let upper: Vec<String> = upper.iter().map(|(name, x)| format!("{name}=\"{}\"", numbers(&[**x]))).collect();
+        out.line(&format!("<inertia {}/>", upper.join(" ")));
+        out.close("inertial");
+    }
+    let body = segment.map(|i| BodyId(i as u16));
+    for collider in robot.colliders.iter().filter(|collider| collider.body == body) {
+        collisions(out, collider);
+    }
+    out.close("link");
+}
+
+/// The joints' names, the nameless ones' made of their segments'.
+fn joint_names(robot: &Robot, segments: &[String]) -> Vec<String> {
+    let mut names: Vec<String> = robot.segments.iter().map(|segment| segment.joint.name.clone()).collect();
+    for i in 0..names.len() {
+        if names[i].is_empty() {
+            names[i] = unused(&format!("{}_joint", segments[i]), &names.iter().map(String::as_str));
+        }
+    }
+    names
+}
+
+fn joint(robot: &Robot, out: &mut Lines, name: &str, parent: &str, child: &str, id: JointId) {
+    let joint = &robot.segments[id.index()].joint;
+    let [low, high] = joint.range;
+    let endless = low.is_infinite() && high.is_infinite();
+    let kind = match joint.kind {
+        JointKind::Revolute if endless => "continuous",
+        JointKind::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+        JointKind::Fixed => "fixed",
+        JointKind::Floating => "floating",
+    };
+    out.open(&format!("joint name={} type=\"{kind}\"", quoted(name)));
+    out.line(&origin(&joint.placement));
+    out.line(&format!("<parent link={}/>", quoted(parent)));
+    out.line(&format!("<child link={}/>", quoted(child)));
+    if joint.kind.is_single() {
+        let length = norm(&joint.axis);
+        out.line(&format!("<axis xyz=\"{}\"/>", numbers(&joint.axis.map(|x| x / length))));
+        let range = if kind == "continuous" {
+            String::new()
+        } else {
+            format!("lower=\"{:?}\" upper=\"{:?}\" ", low.max(-ENDLESS) + 0.0, high.min(ENDLESS) + 0.0)
+        };
+        out.line(&format!("<limit {range}effort=\"{:?}\" velocity=\"{FASTEST:?}\"/>", effort(robot, id)));
+        out.line(&format!("<dynamics damping=\"{:?}\" friction=\"0.0\"/>", joint.damping));
+    }
+    out.close("joint");
+}
+
+/// The sum of what the actuators of a joint may exert.
+fn effort(robot: &Robot, joint: JointId) -> f64 {
+    let own = robot.actuators.iter().filter(|actuator| actuator.joint == joint);
+    let sum = own.fold(0.0, |sum, actuator| {
+        sum + match actuator.law {
+            Law::MusclePair(pair) => pair.moment_arm * pair.tension,
+            Law::Servo(servo) => servo.limit,
+            Law::Torque(motor) => motor.limit,
+            Law::Held(_) => ENDLESS,
+        }
+    });
+    sum.min(ENDLESS)
+}
+
+/// The collision elements of one shape.
+fn collisions(out: &mut Lines, collider: &Collider) {
+    let mut element = |name: &str, along: f64, geometry: &str| {
+        let placement = collider.placement.compose(&Pose::at([0.0, 0.0, along]));
+        out.open(&format!("collision name={}", quoted(name)));
+        out.line(&origin(&placement));
+        out.line(&format!("<geometry>{geometry}</geometry>"));
+        out.close("collision");
+    };
+    let ball = |radius: f64| format!("<sphere radius=\"{radius:?}\"/>");
+    let block = |half: [f64; 3]| format!("<box size=\"{}\"/>", numbers(&half.map(|x| 2.0 * x)));
+    let name = collider.name.as_str();
+    match collider.shape {
+        Shape::Sphere { radius } => element(name, 0.0, &ball(radius)),
+        Shape::Box { half } => element(name, 0.0, &block(half)),
+        Shape::Plane => element(name, -PLANE, &block([PLANE; 3])),
+        Shape::Capsule { radius, half_length } => {
+            let tube = format!("<cylinder radius=\"{radius:?}\" length=\"{:?}\"/>", 2.0 * half_length);
+            element(name, 0.0, &tube);
+            element(&format!("{name}_start"), -half_length, &ball(radius));
+            element(&format!("{name}_end"), half_length, &ball(radius));
+        }
+    }
+}
+
+fn origin(pose: &Pose<f64>) -> String {
+    format!("<origin xyz=\"{}\" rpy=\"{}\"/>", numbers(&pose.position), numbers(&roll_pitch_yaw(pose)))
+}
+
+/// The angles about the fixed axes x, then y, then z that make a pose's rotation [rad].
+///
+/// Yaw is measured after roll is undone: where the pitch is upright roll and yaw are one turn, and whatever was found for
+/// roll, their composition stays right.
+fn roll_pitch_yaw(pose: &Pose<f64>) -> [f64; 3] {
+    let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| pose.rotate(axis));
+    let roll = atan2(y[2], z[2]);
+    let pitch = atan2(-x[2], norm(&[y[2], z[2]]));
+    let (s, c) = sin_cos(roll);
+    let yaw = atan2(s * z[0] - c * y[0], c * y[1] - s * z[1]);
+    [roll, pitch, yaw]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_compose_to_the_rotation() {
+        let h = std::f64::consts::FRAC_1_SQRT_2;
+        let upright = [[0.0, h, 0.0, h], [0.0, -h, 0.0, h], [0.5, 0.5, 0.5, 0.5], [0.5, -0.5, -0.5, 0.5]];
+        let near = [[1e-9, h, 0.0, h], [0.3, 0.4, -0.3, 0.4 + 1e-8]];
+        let other = [[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0], [0.1, -0.7, 0.3, 0.2], [-0.3, 0.1, 0.9, -0.4]];
+        for q in upright.into_iter().chain(near).chain(other) {
+            let rotation = q.map(|x| x / norm(&q));
+            let pose = Pose { rotation, ..Pose::identity() };
+            let [roll, pitch, yaw] = roll_pitch_yaw(&pose);
+            let about = |axis: usize, angle: f64| {
+                let (s, c) = sin_cos(angle / 2.0);
+                let mut rotation = [0.0, 0.0, 0.0, c];
+                rotation[axis] = s;
+                Pose { rotation, ..Pose::identity() }
+            };
+            let made = about(2, yaw).compose(&about(1, pitch)).compose(&about(0, roll));
+            for v in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+                let (a, b) = (made.rotate(v), pose.rotate(v));
+                assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-15), "{q:?}: {a:?} {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_unique() {
+        use farsa_body::{Joint, MassProperties};
+        let mut robot = Robot::new("two");
+        let ball = MassProperties::sphere(1.0, 0.1);
+        let first =
+            Joint::revolute("world_joint", [0.0, 0.0, 2.0], Pose::identity(), [f64::NEG_INFINITY, f64::INFINITY]);
+        robot.add_segment(Segment::new("arm", None, first, ball));
+        robot.add_segment(Segment::new("world", None, Joint::fixed(Pose::identity()), ball));
+        let text = write(&robot).expect("a valid robot");
+        assert!(
+            text.contains("<link name=\"world_\">") && text.contains("<joint name=\"world__joint\" type=\"fixed\">")
+        );
+        assert!(text.contains("type=\"continuous\"") && text.contains("<axis xyz=\"0.0 0.0 1.0\"/>"), "{text}");
+        assert!(!text.contains("lower"));
+    }
+}

@@ -1,0 +1,47 @@
+//! What the file says and the robot does not.
+
+use std::collections::BTreeMap;
+
+use crate::error::Place;
+
+/// Something that the file says and the robot does not.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Warning {
+    /// Where it stands first.
+    pub place: Place,
+    /// The element, with the attribute if that alone is meant.
+    pub what: String,
+    /// What became of it and why.
+    pub why: String,
+    /// How often.
+    pub count: usize,
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { place, what, why, count } = self;
+        match count {
+            1 => write!(f, "{place}: {what}: {why}"),
+            _ => write!(f, "{place} and {} more: {what}: {why}", count - 1),
+        }
+    }
+}
+
+/// Warnings, equal ones counted.
+#[derive(Default)]
+pub(crate) struct Warnings {
+    all: BTreeMap<(String, String), (Place, usize)>,
+}
+
+impl Warnings {
+    pub(crate) fn add(&mut self, place: Place, what: impl Into<String>, why: impl Into<String>) {
+        self.all.entry((what.into(), why.into())).or_insert((place, 0)).1 += 1;
+    }
+
+    /// All of them, in alphabetical order.
+    pub(crate) fn list(self) -> Vec<Warning> {
+        let warning = |((what, why), (place, count))| Warning { place, what, why, count };
+        self.all.into_iter().map(warning).collect()
+    }
+}

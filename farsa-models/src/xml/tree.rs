@@ -1,0 +1,325 @@
+//! A model's elements as a tree, included files in their places, and how to ask them for names and numbers.
+
+use std::path::PathBuf;
+
+use roxmltree::{Document, ParsingOptions};
+
+use crate::context::Context;
+use crate::error::{Place, ReadError, nearest};
+use crate::warnings::Warnings;
+use crate::xml::check::check;
+
+/// The elements of a model, the root first.
+pub(crate) struct Tree {
+    files: Vec<String>,
+    nodes: Vec<Node>,
+}
+
+struct Node {
+    tag: String,
+    attributes: Vec<(String, String)>,
+    children: Vec<usize>,
+    file: usize,
+    line: usize,
+}
+
+/// One element.
+#[derive(Clone, Copy)]
+pub(crate) struct Element<'t> {
+    tree: &'t Tree,
+    index: usize,
+}
+
+impl Tree {
+    /// Parses a model and, if it is MJCF, the files that it includes.
+    pub(crate) fn parse(file: &str, text: &str, context: &mut Context<'_>) -> Result<Self, ReadError> {
+        let mut tree = Self { files: Vec::new(), nodes: Vec::new() };
+        let root = tree.add(file, text, context)?;
+        let mut included: Vec<(PathBuf, usize)> = Vec::new();
+        if tree.nodes[root].tag == "mujoco" {
+            tree.include(root, context, &mut included)?;
+        }
+        Ok(tree)
+    }
+
+    /// Appends the elements of a text and tells the root's index.
+    fn add(&mut self, file: &str, text: &str, context: &mut Context<'_>) -> Result<usize, ReadError> {
+        let limits = &context.options.limits;
+        check(file, text, &mut context.elements, limits)?;
+        // Elements have been counted; the rest are comments and the text between them.
+        let nodes_limit = u32::try_from(limits.elements.saturating_mul(8)).unwrap_or(u32::MAX);
+        let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
+        let document = Document::parse_with_options(text, options).map_err(|error| {
+            let place = Place { file: file.into(), line: error.pos().row as usize };
+            // The parser's message ends with its own place, which ours already has.
+            let message = error.to_string();
+            let why = message.rsplit_once(" at ").map_or(message.as_str(), |(why, _)| why).to_owned();
+            ReadError::Malformed { place, why }
+        })?;
+        let starts: Vec<usize> = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i).collect();
+        let line = |at: usize| 1 + starts.partition_point(|start| *start < at);
+        let number = self.files.len();
+        self.files.push(file.into());
+        let root = self.nodes.len();
+        let space = document.root_element().tag_name().namespace();
+        // Document order: parents come before their children.
+        let mut index = vec![0; document.descendants().count() + 1];
+        for node in document.descendants().filter(roxmltree::Node::is_element) {
+            let name = node.tag_name();
+            let prefixed = |space: Option<&str>, name: &str| match space.map(|uri| node.lookup_prefix(uri)) {
+                None => name.to_owned(),
+                Some(prefix) => format!("{}:{name}", prefix.unwrap_or("other")),
+            };
+            let tag = prefixed(name.namespace().filter(|own| Some(*own) != space), name.name());
+            let attributes = node.attributes().map(|a| (prefixed(a.namespace(), a.name()), a.value().to_owned()));
+            let own = self.nodes.len();
+            self.nodes.push(Node {
+                tag,
+                attributes: attributes.collect(),
+                children: Vec::new(),
+                file: number,
+                line: line(node.range().start),
+            });
+            index[node.id().get_usize()] = own;
+            if let Some(parent) = node.parent().filter(roxmltree::Node::is_element) {
+                self.nodes[index[parent.id().get_usize()]].children.push(own);
+            }
+        }
+        Ok(root)
+    }
+
+    /// Puts the content of included files in the places of the `include` elements below `from`.
+    fn include(
+        &mut self,
+        from: usize,
+        context: &mut Context<'_>,
+        included: &mut Vec<(PathBuf, usize)>,
+    ) -> Result<(), ReadError> {
+        let mut open = vec![from];
+        while let Some(parent) = open.pop() {
+            let mut children = Vec::new();
+            let mut waiting: Vec<usize> = self.nodes[parent].children.iter().rev().copied().collect();
+            while let Some(child) = waiting.pop() {
+                if self.nodes[child].tag != "include" {
+                    children.push(child);
+                    continue;
+                }
+                let element = self.element(child);
+                let place = element.place();
+                element.check(&["file"], &[], &mut context.warnings)?;
+                let file = element.needed("file")?.to_owned();
+                let (path, text) = context.files.text(&place, &file)?;
+                if let Some((_, line)) = included.iter().find(|(other, _)| *other == path) {
+                    return Err(ReadError::Twice { place, what: "include of".into(), name: file, first: *line });
+                }
+                included.push((path, place.line));
+                let root = self.add(&file, &text, context)?;
+                let element = self.element(root);
+                if !["mujoco", "mujocoinclude"].contains(&element.tag()) {
+                    return Err(element.unknown("root of an included file", element.tag(), ["mujocoinclude"]));
+                }
+                waiting.extend(self.nodes[root].children.iter().rev());
+            }
+            open.extend(children.iter());
+            self.nodes[parent].children = children;
+        }
+        Ok(())
+    }
+
+    fn element(&self, index: usize) -> Element<'_> {
+        Element { tree: self, index }
+    }
+
+    /// The model's element.
+    pub(crate) fn root(&self) -> Element<'_> {
+        self.element(0)
+    }
+}
+
+impl<'t> Element<'t> {
+    fn node(&self) -> &'t Node {
+        &self.tree.nodes[self.index]
+    }
+
+    pub(crate) fn tag(&self) -> &'t str {
+        &self.node().tag
+    }
+
+    pub(crate) fn place(&self) -> Place {
+        Place { file: self.tree.files[self.node().file].clone(), line: self.node().line }
+    }
+
+    pub(crate) fn children(&self) -> impl Iterator<Item = Self> + use<'t> {
+        let tree = self.tree;
+        self.node().children.iter().map(move |index| Self { tree, index: *index })
+    }
+
+    /// The children with this tag.
+    pub(crate) fn all(&self, tag: &'t str) -> impl Iterator<Item = Self> + use<'t> {
+        self.children().filter(move |child| child.tag() == tag)
+    }
+
+    /// The child with this tag, of which there may be one.
+    pub(crate) fn one(&self, tag: &'t str) -> Result<Option<Self>, ReadError> {
+        let mut found = self.all(tag);
+        let first = found.next();
+        match (first, found.next()) {
+            (Some(first), Some(second)) => {
+                let name = self.label();
+                let (what, first) = (format!("{tag} of"), first.node().line);
+                Err(ReadError::Twice { place: second.place(), what, name, first })
+            }
+            _ => Ok(first),
+        }
+    }
+
+    pub(crate) fn attribute(&self, name: &str) -> Option<&'t str> {
+        self.node().attributes.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
+    }
+
+    /// The value of an attribute that must be there.
+    pub(crate) fn needed(&self, name: &str) -> Result<&'t str, ReadError> {
+        self.attribute(name).ok_or_else(|| self.missing(name))
+    }
+
+    /// What to call the element in messages.
+    pub(crate) fn label(&self) -> String {
+        match self.attribute("name") {
+            Some(name) => format!("{} `{name}`", self.tag()),
+            None => self.tag().to_owned(),
+        }
+    }
+
+    pub(crate) fn missing(&self, what: &str) -> ReadError {
+        ReadError::Missing { place: self.place(), element: self.label(), what: what.into() }
+    }
+
+    pub(crate) fn unsupported(&self, why: impl Into<String>) -> ReadError {
+        ReadError::Unsupported { place: self.place(), element: self.label(), why: why.into() }
+    }
+
+    pub(crate) fn wrong(&self, attribute: &'static str, value: &str, why: impl Into<String>) -> ReadError {
+        let (place, element) = (self.place(), self.label());
+        ReadError::Value { place, element, attribute, value: value.into(), why: why.into() }
+    }
+
+    pub(crate) fn unknown<'a>(
+        &self,
+        what: impl Into<String>,
+        name: &str,
+        valid: impl IntoIterator<Item = &'a str>,
+    ) -> ReadError {
+        let nearest = nearest(name, valid).map(|(name, _)| name.to_owned());
+        ReadError::Unknown { place: self.place(), what: what.into(), name: name.into(), nearest }
+    }
+
+    /// Refuses attributes that the format does not have and warns of those that are not read, each with its reason.
+    pub(crate) fn check(
+        &self,
+        read: &[&str],
+        ignored: &[(&str, &str)],
+        warnings: &mut Warnings,
+    ) -> Result<(), ReadError> {
+        for (name, _) in &self.node().attributes {
+            if read.contains(&name.as_str()) {
+                continue;
+            }
+            if let Some((_, why)) = ignored.iter().find(|(other, _)| other.split(' ').any(|other| other == name)) {
+                warnings.add(self.place(), format!("{} `{name}`", self.tag()), *why);
+                continue;
+            }
+            let valid = read.iter().copied().chain(ignored.iter().flat_map(|(names, _)| names.split(' ')));
+            return Err(self.unknown(format!("attribute of {}", self.tag()), name, valid));
+        }
+        Ok(())
+    }
+
+    /// [`Element::check`] for formats that others extend: only what looks like a slip of the pen is refused.
+    pub(crate) fn check_open(&self, read: &[&str], warnings: &mut Warnings) -> Result<(), ReadError> {
+        for (name, _) in &self.node().attributes {
+            if !read.contains(&name.as_str()) {
+                if nearest(name, read.iter().copied()).is_some_and(|(_, distance)| slip(name, distance)) {
+                    return Err(self.unknown(format!("attribute of {}", self.tag()), name, read.iter().copied()));
+                }
+                warnings.add(self.place(), format!("{} `{name}`", self.tag()), "is no attribute of the format");
+            }
+        }
+        Ok(())
+    }
+
+    /// The same for the elements within.
+    pub(crate) fn check_children(
+        &self,
+        read: &[&str],
+        ignored: &[(&str, &str)],
+        warnings: &mut Warnings,
+    ) -> Result<(), ReadError> {
+        for child in self.children() {
+            let tag = child.tag();
+            if read.contains(&tag) {
+                continue;
+            }
+            if let Some((_, why)) = ignored.iter().find(|(names, _)| names.split(' ').any(|other| other == tag)) {
+                warnings.add(child.place(), tag, *why);
+                continue;
+            }
+            let valid = read.iter().copied().chain(ignored.iter().flat_map(|(names, _)| names.split(' ')));
+            if nearest(tag, valid.clone()).is_some_and(|(_, distance)| slip(tag, distance)) {
+                return Err(child.unknown(format!("element of {}", self.tag()), tag, valid));
+            }
+            warnings.add(child.place(), tag, format!("is no element of {} in the format", self.tag()));
+        }
+        Ok(())
+    }
+
+    /// The numbers of an attribute, at least `least` and at most `most`.
+    pub(crate) fn list(&self, name: &'static str, least: usize, most: usize) -> Result<Option<Vec<f64>>, ReadError> {
+        self.attribute(name).map(|text| self.parsed(name, text, least, most)).transpose()
+    }
+
+    fn parsed(&self, name: &'static str, text: &str, least: usize, most: usize) -> Result<Vec<f64>, ReadError> {
+        let mut numbers = Vec::new();
+        for word in text.split_whitespace() {
+            let number = word.parse::<f64>().ok().filter(|number| !number.is_nan());
+            numbers.push(number.ok_or_else(|| self.wrong(name, text, "but must be of numbers"))?);
+            if numbers.len() > most {
+                break;
+            }
+        }
+        if (least..=most).contains(&numbers.len()) {
+            return Ok(numbers);
+        }
+        let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
+        Err(self.wrong(name, text, format!("but must be {wanted} numbers")))
+    }
+
+    /// So many finite numbers of an attribute.
+    pub(crate) fn array<const N: usize>(&self, name: &'static str) -> Result<Option<[f64; N]>, ReadError> {
+        let Some(list) = self.list(name, N, N)? else { return Ok(None) };
+        let mut array = [0.0; N];
+        for (to, from) in array.iter_mut().zip(list) {
+            if !from.is_finite() {
+                return Err(self.wrong(name, self.attribute(name).unwrap_or_default(), "but must be finite"));
+            }
+            *to = from;
+        }
+        Ok(Some(array))
+    }
+
+    /// The finite number of an attribute.
+    pub(crate) fn number(&self, name: &'static str) -> Result<Option<f64>, ReadError> {
+        Ok(self.array::<1>(name)?.map(|[number]| number))
+    }
+
+    /// One of some words.
+    pub(crate) fn word(&self, name: &'static str, valid: &[&'static str]) -> Result<Option<&'static str>, ReadError> {
+        let Some(text) = self.attribute(name) else { return Ok(None) };
+        let found = valid.iter().find(|word| **word == text);
+        found.map(|word| Some(*word)).ok_or_else(|| self.unknown(name, text, valid.iter().copied()))
+    }
+}
+
+/// Whether a name that is so far from a valid one is likely meant to be it.
+fn slip(name: &str, distance: usize) -> bool {
+    distance <= 2 && name.chars().count() > 2 * distance
+}
