@@ -2,8 +2,15 @@
 
 use alloc::vec::Vec;
 
-use crate::strategy::next_generation;
-use crate::{EvoError, Fitness, GaConfig, Lineage, Population, Strategy, TruncationGa};
+use crate::config::GaConfig;
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::lineage::Lineage;
+use crate::population::Population;
+#[cfg(feature = "serde")]
+use crate::saved::Saved;
+use crate::strategy::{Strategy, next_generation};
+use crate::truncation::TruncationGa;
 
 /// Two or more populations of the same size, each evolving as a [`TruncationGa`] by the fitness of its own individuals.
 ///
@@ -213,15 +220,15 @@ impl TryFrom<Vec<Lineage>> for Lineages {
 #[cfg(feature = "serde")]
 impl serde::Serialize for Coevolution {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        crate::saved::Saved::new(self.lineages(), &self.population).serialize(serializer)
+        Saved::new(self.lineages(), &self.population).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<crate::saved::Saved<Lineages>> for Coevolution {
+impl TryFrom<Saved<Lineages>> for Coevolution {
     type Error = EvoError;
 
-    fn try_from(saved: crate::saved::Saved<Lineages>) -> Result<Self, EvoError> {
+    fn try_from(saved: Saved<Lineages>) -> Result<Self, EvoError> {
         let rebuilt = Self::resume(saved.state.clone())?;
         saved.check(&rebuilt.population)?;
         Ok(rebuilt)

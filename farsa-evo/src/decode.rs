@@ -1,6 +1,6 @@
 //! From genes to the numbers they stand for.
 
-use crate::EvoError;
+use crate::error::EvoError;
 
 /// What a run of neighbouring genes stands for: gene 0 is the low end, gene 65535 the high end, linear between.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,10 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::mutation::randomize_bits;
-use crate::{BitMutation, EvoError, GaConfig, Population};
+use crate::config::GaConfig;
+use crate::error::EvoError;
+use crate::mutation::{BitMutation, randomize_bits};
+use crate::population::Population;
 
 /// The configuration, the seed and the selected parents of every generation of a [`TruncationGa`](crate::TruncationGa).
 ///

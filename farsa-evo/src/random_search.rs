@@ -5,8 +5,13 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::strategy::next_generation;
-use crate::{EvoError, Fitness, Population, Strategy, randomize};
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::mutation::randomize;
+use crate::population::Population;
+#[cfg(feature = "serde")]
+use crate::saved::Saved;
+use crate::strategy::{Strategy, next_generation};
 
 /// Random search: every genome of every generation is drawn anew, and the best of all is remembered.
 ///
@@ -132,15 +137,15 @@ impl serde::Serialize for RandomSearch {
             generation: self.generation,
             best: self.best,
         };
-        crate::saved::Saved::new(state, &self.population).serialize(serializer)
+        Saved::new(state, &self.population).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<crate::saved::Saved<SearchState>> for RandomSearch {
+impl TryFrom<Saved<SearchState>> for RandomSearch {
     type Error = EvoError;
 
-    fn try_from(saved: crate::saved::Saved<SearchState>) -> Result<Self, EvoError> {
+    fn try_from(saved: Saved<SearchState>) -> Result<Self, EvoError> {
         let state = &saved.state;
         let mut search = Self::new(state.genes, state.population, state.seed)?;
         search.generation = state.generation;

@@ -1,6 +1,6 @@
 //! What a log says about a generation.
 
-use crate::Fitness;
+use crate::fitness::Fitness;
 
 /// The summary of one generation's fitness, in the experiment's own unit.
 ///

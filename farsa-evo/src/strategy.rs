@@ -2,7 +2,9 @@
 
 use alloc::vec::Vec;
 
-use crate::{EvoError, Fitness, Population};
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
 
 /// A search over genomes of 16-bit genes that is asked for a generation and told how well it did.
 ///

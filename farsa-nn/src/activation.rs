@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use farsa_num::{Scalar, logistic, tanh};
 
-use crate::Error;
+use crate::error::Error;
 use crate::name::same_letters;
 
 /// The function of a neuron; a slope (or gain) multiplies its argument before.

@@ -1,6 +1,8 @@
 //! The usual architectures as blocks.
 
-use crate::{Activation, Block, BlockLayout, Group, Span};
+use crate::activation::Activation;
+use crate::block::description::{Block, Group, Span};
+use crate::block::layout::BlockLayout;
 
 /// What connects inputs, hidden neurons and outputs: the named architectures, and each of their connections by itself.
 ///

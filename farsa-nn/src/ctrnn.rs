@@ -2,9 +2,13 @@
 
 use farsa_num::fearless_simd::Level;
 
+use crate::controller::Controller;
+use crate::ctrnn_layout::{CtrnnLayout, CtrnnParameter};
 use crate::dynamics::{Dynamics, rate};
+use crate::error::Error;
+use crate::integrator::Integrator;
 use crate::kernel::{self, level};
-use crate::{Controller, CtrnnLayout, CtrnnParameter, Error, Integrator, Lesion, Neurons};
+use crate::lesion::{Lesion, Neurons};
 
 /// A continuous-time recurrent neural network, over parameters and state that are the caller's.
 ///

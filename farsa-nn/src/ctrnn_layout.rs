@@ -2,7 +2,8 @@
 
 use core::ops::Range;
 
-use crate::{Activation, Integrator};
+use crate::activation::Activation;
+use crate::integrator::Integrator;
 
 /// What one parameter of a [`CtrnnLayout`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

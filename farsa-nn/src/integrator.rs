@@ -3,7 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
-use crate::Error;
+use crate::error::Error;
 use crate::name::same_letters;
 
 /// How a [`Ctrnn`](crate::Ctrnn) goes from `t` to `t + dt`; external inputs are held over the step.

@@ -7,7 +7,8 @@
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Real, Scalar, logistic};
 
-use crate::wide_layer::WIDE;
+/// Number of targets from which on sums are faster source by source, with SSE2 and with AVX2.
+pub(crate) const WIDE: usize = 128;
 
 /// The instructions of this processor where `fearless_simd` was built with `std` and can ask, else those that the
 /// program is compiled for.

@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use farsa_num::{exp, ln, tanh};
 
-use crate::Error;
+use crate::error::Error;
 use crate::name::same_letters;
 
 /// How a hidden neuron with leak `d` [0..1] forms its activation `H(t)` from its response `y(t) = sigma(net(t))`.

@@ -1,6 +1,6 @@
 //! Lesions: what a network does without a neuron.
 
-use crate::Controller;
+use crate::controller::Controller;
 
 /// A neuron that is held at an activation, whatever drives it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,9 +2,12 @@
 
 use farsa_num::fearless_simd::Level;
 
+use crate::controller::Controller;
+use crate::error::Error;
 use crate::kernel::{Layer, head, level};
-use crate::lesion::hold;
-use crate::{Controller, Error, Layout, Leak, Lesion, Neurons, ParameterKind};
+use crate::layout::{Layout, ParameterKind};
+use crate::leak::Leak;
+use crate::lesion::{Lesion, Neurons, hold};
 
 /// A network of one recurrent hidden layer with leaks, over parameters and state that are the caller's.
 ///

@@ -2,8 +2,9 @@
 
 use farsa_num::fearless_simd::Level;
 
+use crate::controller::Controller;
+use crate::error::Error;
 use crate::kernel::{Layer, level};
-use crate::{Controller, Error};
 
 /// One layer of logistic units without memory: `O_i = sigma( beta_i + sum_j w_ji I_j )`,
 /// `sigma(x) = 1/(1 + exp(-slope*x))`.

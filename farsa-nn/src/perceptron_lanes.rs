@@ -3,8 +3,9 @@
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Scalar, logistic};
 
+use crate::error::Error;
 use crate::kernel::level;
-use crate::{Error, Perceptron};
+use crate::perceptron::Perceptron;
 
 /// [`Perceptron`]s of one shape and slope, each with parameters of its own, that step together.
 ///

@@ -8,9 +8,6 @@ use farsa_num::{Real, Scalar};
 
 use crate::kernel::Layer;
 
-/// Number of targets from which on this way is the faster one, with SSE2 and with AVX2.
-pub(crate) const WIDE: usize = 128;
-
 /// Number of sources that are added together. With fewer, sums are loaded and stored more often; with more, registers run out.
 const ROWS: usize = 8;
 
@@ -121,7 +118,7 @@ mod tests {
     use farsa_num::{Domain, Stream, levels, logistic};
 
     use super::*;
-    use crate::kernel::{Lanes, step};
+    use crate::kernel::{Lanes, WIDE, step};
 
     /// A layer's sums as a step, so that they are made at a level.
     struct Sums<'a>(Layer<'a>, &'a mut [f32]);

@@ -4,8 +4,7 @@
 #[cfg(test)]
 extern crate std;
 
-mod angle;
-mod arc;
+mod atan;
 mod digest;
 mod exp;
 mod lanes;
@@ -13,9 +12,9 @@ mod logarithm;
 mod philox;
 mod polynomial;
 mod scalar;
+mod sin_cos;
 
-pub use angle::sin_cos;
-pub use arc::{acos, asin, atan2};
+pub use atan::{acos, asin, atan2};
 pub use digest::{Digest, crc32};
 pub use exp::{exp, logistic, tanh};
 pub use fearless_simd;
@@ -23,3 +22,4 @@ pub use lanes::levels;
 pub use logarithm::ln;
 pub use philox::{Domain, Stream, philox};
 pub use scalar::{Mask, Real, Scalar};
+pub use sin_cos::sin_cos;

@@ -1,7 +1,7 @@
 //! The one random generator: streams addressed by what they are for, not by who draws first.
 
-use crate::angle::sin_cos;
 use crate::logarithm::ln;
+use crate::sin_cos::sin_cos;
 
 /// What a stream's numbers are for; the number of each is part of every recorded run and never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,9 +2,10 @@
 
 use farsa_num::Scalar;
 
-use crate::fixed_logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
+use crate::error::Error;
+use crate::layout::{Layout, ParameterKind};
 use crate::network::check;
-use crate::{Error, Layout, ParameterKind};
+use crate::quantized::logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
 
 /// Fraction bits of leaks: 2^14 stands for 1, which so is exact.
 pub(crate) const LEAK_BITS: u32 = 14;

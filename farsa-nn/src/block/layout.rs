@@ -2,7 +2,8 @@
 
 use core::ops::Range;
 
-use crate::{Block, Error, Group, Span};
+use crate::block::description::{Block, Group, Span};
+use crate::error::Error;
 
 /// What one parameter of a [`BlockLayout`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,6 +1,6 @@
 //! What a block-wise network is described by: groups of alike neurons, and blocks that are worked through in their order.
 
-use crate::Activation;
+use crate::activation::Activation;
 
 /// Neurons `first` to `first + count - 1`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -2,9 +2,13 @@
 
 use farsa_num::fearless_simd::Level;
 
-use crate::block_kernel::Blocks;
+use crate::block::kernel::Blocks;
+use crate::block::layout::{BlockLayout, BlockParameter};
+use crate::controller::Controller;
+use crate::error::Error;
 use crate::kernel::{self, level};
-use crate::{BlockLayout, BlockParameter, Controller, Error, Leak, Lesion, Neurons};
+use crate::leak::Leak;
+use crate::lesion::{Lesion, Neurons};
 
 /// A network of connections, updates and gains in any order, over parameters and state that are the caller's.
 ///

@@ -2,7 +2,10 @@
 
 use alloc::vec::Vec;
 
-use crate::{Activation, Block, BlockLayout, Group, Plan, Span};
+use crate::activation::Activation;
+use crate::architecture::Plan;
+use crate::block::description::{Block, Group, Span};
+use crate::block::layout::BlockLayout;
 
 /// Groups and blocks that a [`BlockLayout`] borrows, on the heap; with feature `alloc`.
 ///
