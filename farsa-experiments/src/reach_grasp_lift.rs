@@ -288,7 +288,7 @@ where
         self.together = None;
         let Some(model) = &self.model else { return Ok(Lanes::one()) };
         if lanes.count() > 1 {
-            let batch = Batch::new(model.clone(), lanes.count(), lanes.level());
+            let batch = Batch::new(model.clone(), lanes.count(), lanes.instructions());
             let batch = batch.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
             let lives = (0..lanes.count()).map(|_| Numbered { life: self.life.clone(), number: 0 }).collect();
             self.together = Some(Together { batch, lives });

@@ -1,5 +1,6 @@
 //! The continuous-time recurrent network.
 
+use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
 use crate::controller::Controller;
@@ -148,9 +149,9 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ctrnn<P, S> {
 }
 
 impl<P, S> Ctrnn<P, S> {
-    /// The same network over the instructions of this level, as [`Network::with_level`](crate::Network::with_level).
-    pub fn with_level(self, level: Level) -> Self {
-        Self { level, ..self }
+    /// The same network over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { level: instructions.level(), ..self }
     }
 
     /// The layout.

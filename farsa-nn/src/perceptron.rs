@@ -1,5 +1,6 @@
 //! A single layer of logistic units, for reflexes.
 
+use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
 use crate::controller::Controller;
@@ -71,9 +72,9 @@ impl<P: AsRef<[f32]>> Perceptron<P> {
 }
 
 impl<P> Perceptron<P> {
-    /// The same layer over the instructions of this level, as [`Network::with_level`](crate::Network::with_level).
-    pub fn with_level(self, level: Level) -> Self {
-        Self { level, ..self }
+    /// The same layer over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { level: instructions.level(), ..self }
     }
 }
 

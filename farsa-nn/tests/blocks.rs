@@ -4,8 +4,7 @@ use farsa_nn::{
     Activation, Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, Controller, Error, EvonetRanges, Group,
     Layout, Leak, Lesion, Lesioned, Network, Neurons, ParameterKind, Plan, Span,
 };
-use farsa_num::fearless_simd::Level;
-use farsa_num::{Domain, Stream, levels};
+use farsa_num::{Domain, Instructions, Stream};
 use proptest::prelude::*;
 
 /// What a neuron is, and its own parameters.
@@ -150,9 +149,9 @@ proptest! {
         let parameters = drawn(layout, seed);
         let mut stream = Stream::new(seed, Domain::Sensor, 0, 0, 0);
         let xs: Vec<Vec<f32>> = (0..6).map(|_| (0..inputs).map(|_| stream.range(-2.0, 2.0)).collect()).collect();
-        for (leak, level) in Leak::ALL.into_iter().flat_map(|leak| levels(Level::new()).map(move |level| (leak, level))) {
+        for (leak, instructions) in Leak::ALL.into_iter().flat_map(|leak| Instructions::available().map(move |instructions| (leak, instructions))) {
             let network = BlockNetwork::new(layout, leak, &parameters, state(layout));
-            let mut network = network?.with_level(level);
+            let mut network = network?.with_instructions(instructions);
             let mut oracle = Oracle::new(layout, leak, &parameters);
             let mut y = vec![f32::NAN; outputs];
             for x in &xs {
@@ -162,7 +161,7 @@ proptest! {
                 if oracle.activations.iter().any(|a| a.is_nan()) {
                     break;
                 }
-                prop_assert_eq!(bits(network.activations()), bits(&oracle.activations), "{:?} {:?}", leak, level);
+                prop_assert_eq!(bits(network.activations()), bits(&oracle.activations), "{:?} {:?}", leak, instructions);
                 prop_assert_eq!(bits(&y), bits(&expected));
             }
         }

@@ -1,5 +1,6 @@
 //! The network of blocks.
 
+use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
 use crate::block::kernel::Blocks;
@@ -104,9 +105,9 @@ impl<'a, P: AsRef<[f32]>, S: AsMut<[f32]>> BlockNetwork<'a, P, S> {
 }
 
 impl<'a, P, S> BlockNetwork<'a, P, S> {
-    /// The same network over the instructions of this level, as [`Network::with_level`](crate::Network::with_level).
-    pub fn with_level(self, level: Level) -> Self {
-        Self { level, ..self }
+    /// The same network over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { level: instructions.level(), ..self }
     }
 
     /// The layout.
