@@ -12,6 +12,8 @@ mod lanes;
 mod logarithm;
 mod philox;
 mod polynomial;
+#[cfg(feature = "rand_core")]
+mod rng;
 mod scalar;
 mod sin_cos;
 
