@@ -21,6 +21,25 @@ use crate::truncation::TruncationGa;
 /// Population `p` draws from the streams of a `TruncationGa` with trial `p` in the place of trial 0, so that population 0
 /// draws what a `TruncationGa` of the same seed draws.
 ///
+/// ```
+/// use farsa_evo::{Coevolution, GaConfig, Strategy};
+///
+/// // Predators of five genes, prey of three, each judged against the first of the others.
+/// let config = |genes| GaConfig { population: 20, parents: 4, ..GaConfig::new(genes) };
+/// let mut search = Coevolution::new(&[config(5), config(3)], 11)?;
+/// for _ in 0..10 {
+///     let (population, size) = (search.ask(), search.size());
+///     let [predator, prey] = [0, size].map(|first| population.get(first).expect("an individual")[0]);
+///     let catch = |genes: &[u16]| -f64::from(genes[0].abs_diff(prey));
+///     let flee = |genes: &[u16]| f64::from(genes[0].abs_diff(predator));
+///     let values: Vec<f64> =
+///         population.iter().enumerate().map(|(i, genes)| if i < size { catch(genes) } else { flee(genes) }).collect();
+///     search.tell_values(&values)?;
+/// }
+/// assert_eq!((search.generation(), search.populations(), search.ask().genome_len()), (10, 2, 5));
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+///
 /// Under the feature `serde` it is saved as its lineages and a digest of the current genomes, which are rebuilt when it
 /// is read.
 #[derive(Clone, Debug, PartialEq)]

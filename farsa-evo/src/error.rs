@@ -83,7 +83,7 @@ pub enum EvoError {
     Range {
         /// Value of gene 0.
         low: f32,
-        /// Value of gene 65535.
+        /// Value of the largest gene.
         high: f32,
     },
     /// Genes, ranges and decoded values differ in number.
@@ -132,7 +132,7 @@ pub enum EvoError {
         /// The parent named twice.
         individual: usize,
     },
-    /// A saved search that has told generations but remembers no best individual.
+    /// No best individual: of no generations, or in a saved search that was told some.
     NoBest {
         /// The generation that it waits for.
         generation: u32,

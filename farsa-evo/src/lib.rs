@@ -4,6 +4,7 @@
 
 extern crate alloc;
 
+mod champion;
 mod coevolution;
 mod config;
 mod decode;
@@ -21,6 +22,7 @@ mod steady_state;
 mod strategy;
 mod truncation;
 
+pub use champion::Champion;
 pub use coevolution::{Coevolution, Lineages};
 pub use config::{GaConfig, SteadyStateConfig};
 pub use decode::{GeneRange, decode};

@@ -19,6 +19,16 @@ use crate::strategy::{Strategy, next_generation};
 /// [`TruncationGa`](crate::TruncationGa) of the same seed. (For random search that keeps its best in the population,
 /// take a `TruncationGa` of one parent, rate 1 and [`Mutation::Resample`](crate::Mutation::Resample).)
 ///
+/// ```
+/// use farsa_evo::{RandomSearch, Strategy};
+///
+/// let mut search = RandomSearch::new(2, 50, 1)?;
+/// let champion = search.maximize(20, |genes| f64::from(genes[0]))?;
+/// assert_eq!(search.best().map(|best| best.fitness), Some(champion.fitness));
+/// assert!(champion.genome[0] > 65_000);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+///
 /// Individual `i` of generation `g` is drawn from the stream (seed, [`Domain::InitialGenome`], trial 0, `i`, `g`).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]

@@ -21,6 +21,16 @@ use crate::strategy::{Strategy, next_generation};
 /// Source: the steady-state algorithm of \[FARSA2\] with one individual, whose fitness is averaged over generations.
 /// Deviation: the random numbers are ours.
 ///
+/// ```
+/// use farsa_evo::{SteadyState, SteadyStateConfig, Strategy};
+///
+/// let mut search = SteadyState::new(SteadyStateConfig::new(4), 3)?;
+/// let champion = search.maximize(400, |genes| genes.iter().map(|gene| f64::from(*gene)).sum())?;
+/// assert!(champion.fitness.get() > 4.0 * 250.0);
+/// assert_eq!(search.parent_fitness().map(|(fitness, _)| fitness), Some(champion.fitness));
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+///
 /// Under the feature `serde` it is saved as its history, the parent's summed fitness and a digest of the current genomes,
 /// which are rebuilt when it is read.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,7 +11,8 @@ use crate::population::Population;
 use crate::saved::Saved;
 use crate::strategy::{Strategy, next_generation};
 
-/// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover.
+/// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover. Its population is a
+/// multiple of its parents.
 ///
 /// Each generation the `parents` best individuals make `population / parents` copies each: the first unchanged, the
 /// others mutated. Parents are ranked by fitness, equals by index, the lower first; failed individuals are selected
@@ -21,6 +22,19 @@ use crate::strategy::{Strategy, next_generation};
 /// Source: \[Ferrauto2010\] chapter 2, truncation selection in the terms of \[Muhlenbein1993\]. Deviations: everyone is
 /// evaluated again in every generation, the unchanged copies too, and ties go to the lower index; the source says
 /// neither.
+///
+/// ```
+/// use farsa_evo::{GaConfig, Strategy, TruncationGa};
+///
+/// let mut evolution = TruncationGa::new(GaConfig { population: 40, parents: 8, ..GaConfig::new(3) }, 7)?;
+/// while evolution.generation() < 20 {
+///     let values: Vec<f64> = evolution.ask().iter().map(|genes| -f64::from(genes[0].abs_diff(20_000))).collect();
+///     evolution.tell_values(&values)?;
+/// }
+/// // The first copy of the best is unchanged.
+/// assert!(evolution.ask().iter().next().is_some_and(|genes| genes[0].abs_diff(20_000) < 200));
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
 ///
 /// Under the feature `serde` it is saved as its lineage and a digest of the current genomes, which are rebuilt when it
 /// is read.
