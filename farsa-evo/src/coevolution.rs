@@ -275,6 +275,7 @@ mod tests {
         for generation in 0..12 {
             for (individual, genome) in all.ask().iter().enumerate() {
                 assert_eq!(all.genome_of(generation, individual).unwrap(), genome);
+                assert_eq!(all.lineages().genome_of(generation, individual).unwrap(), genome);
                 let own = alone[individual / 6].ask().get(individual % 6).unwrap();
                 assert_eq!(&genome[..own.len()] == own, individual < 6, "{individual} of {generation}");
                 assert!(genome[configs()[individual / 6].genes..].iter().all(|&gene| gene == 0));
@@ -283,6 +284,8 @@ mod tests {
             all.tell(&fitness).unwrap();
             alone.iter_mut().zip(fitness.chunks(6)).for_each(|(ga, fitness)| ga.tell(fitness).unwrap());
             let lineages = all.lineages();
+            assert_eq!((all.generation(), lineages.latest()), (generation + 1, generation + 1));
+            assert_eq!((lineages.populations(), lineages.size()), (3, 6));
             for (population, ga) in alone.iter().enumerate() {
                 assert_eq!(lineages.selected(population, generation), ga.lineage().selected(generation));
                 let parent = ga.lineage().parent_of(generation + 1, 4).unwrap();
@@ -291,6 +294,10 @@ mod tests {
         }
         let lineages = all.lineages();
         assert_eq!((lineages.selected(3, 0), lineages.parent_of(1, 18)), (None, None));
+        let beyond = EvoError::NoSuchIndividual { individual: 18, population: 18 };
+        assert_eq!(lineages.genome_of(1, 18), Err(beyond));
+        let ahead = EvoError::NoSuchGeneration { generation: 13, latest: 12 };
+        assert_eq!(lineages.genome_of(13, 7), Err(ahead));
         assert_eq!(Coevolution::resume(lineages).unwrap(), all);
     }
 

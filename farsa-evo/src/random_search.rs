@@ -185,7 +185,8 @@ mod tests {
     fn the_first_of_the_best_is_remembered() {
         let mut search = RandomSearch::new(3, 2, 1).unwrap();
         assert_eq!(search.best(), None);
-        for fitness in [[0.0, 1.0], [3.0, 3.0], [3.0, f64::NAN]] {
+        for (generation, fitness) in [[0.0, 1.0], [3.0, 3.0], [3.0, f64::NAN]].into_iter().enumerate() {
+            assert_eq!(search.generation(), generation as u32);
             search.tell(&fitness.map(Fitness::nan_as_failed)).unwrap();
         }
         let fitness = Fitness::nan_as_failed(3.0);

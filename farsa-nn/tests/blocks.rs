@@ -371,6 +371,55 @@ fn a_lesion_holds_what_it_is_told() -> Result<(), Error> {
 }
 
 #[test]
+fn an_architecture_has_what_it_is_asked_for() {
+    // Weights, biases, gains, leaks.
+    let counts = |architecture: Architecture| {
+        let plan = architecture.plan();
+        [BlockParameter::Weight, BlockParameter::Bias, BlockParameter::Gain, BlockParameter::Leak]
+            .map(|kind| plan.layout().range(kind).len())
+    };
+    let plain = Architecture::elman(3, 4, 2);
+    assert_eq!(counts(plain), [12 + 16 + 8, 6, 0, 0]);
+    assert_eq!(counts(plain.with_leaks()), [36, 6, 0, 4]);
+    assert_eq!(counts(plain.with_output_leaks()), [36, 6, 0, 2]);
+    assert_eq!(counts(plain.with_gains()), [36, 6, 4, 0]);
+    assert_eq!(counts(plain.without_hidden_biases()), [36, 2, 0, 0]);
+    assert_eq!(counts(plain.without_output_biases()), [36, 4, 0, 0]);
+    assert_eq!(counts(plain.with_inputs_to_outputs()), [36 + 6, 6, 0, 0]);
+    assert_eq!(counts(plain.with_recurrent_outputs()), [36 + 4, 6, 0, 0]);
+    assert_eq!(counts(Architecture::jordan(3, 4, 2)), [12 + 8 + 8, 6, 0, 0]);
+    assert_eq!(counts(Architecture::feed_forward(3, 4, 2)), [12 + 8, 6, 0, 0]);
+    assert_eq!(counts(Architecture::fully_recurrent(3, 4, 2)), [18 + 36, 6, 0, 0]);
+    // Of whom: a plan's groups are inputs, hidden neurons, outputs.
+    let has = |architecture: Architecture, has: fn(&Group) -> bool| {
+        let plan = architecture.plan();
+        plan.layout().groups().iter().map(has).collect::<Vec<_>>()
+    };
+    assert_eq!(has(plain.with_output_leaks(), |group| group.leak), [false, false, true]);
+    assert_eq!(has(plain.without_hidden_biases(), |group| group.bias), [false, false, true]);
+    assert_eq!(has(plain.with_slope(0.3), |group| group.slope == 0.3), [false, true, true]);
+}
+
+#[test]
+fn hidden_neurons_and_outputs_have_the_functions_they_are_given() -> Result<(), Error> {
+    for (hidden, output) in [
+        (Activation::Tanh, Activation::Linear),
+        (Activation::Linear, Activation::Tanh),
+        (Activation::Rectified, Activation::Step),
+    ] {
+        let plan = Architecture::feed_forward(1, 1, 1).with_activations(hidden, output).plan();
+        let mut network = BlockNetwork::new(plan.layout(), Leak::Filter, [0.5; 4], state(plan.layout()))?;
+        for x in [-3.0_f32, -1.0, 0.25, 2.0] {
+            let mut y = [f32::NAN];
+            network.step(&[x], &mut y);
+            let expected = output.of(0.5 + 0.5 * hidden.of(0.5 + 0.5 * x));
+            assert_eq!(y, [expected], "{hidden} and {output} of {x}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
 fn the_originals_order_takes_each_parameter_once() {
     let plans = [
         Architecture::feed_forward(6, 0, 2).plan(),
