@@ -7,6 +7,8 @@ use crate::mutation::check_gene_bits;
 ///
 /// The largest gene is 65535, of genes of fewer bits 2^bits - 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "SavedRange", into = "SavedRange"))]
 pub struct GeneRange {
     count: usize,
     low: f32,
@@ -66,6 +68,34 @@ impl GeneRange {
         } else {
             value
         }
+    }
+}
+
+/// A range as it is saved.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "GeneRange")]
+struct SavedRange {
+    count: usize,
+    low: f32,
+    high: f32,
+    gene_bits: u32,
+}
+
+#[cfg(feature = "serde")]
+impl From<GeneRange> for SavedRange {
+    fn from(range: GeneRange) -> Self {
+        let GeneRange { count, low, high, largest } = range;
+        Self { count, low, high, gene_bits: largest.count_ones() }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<SavedRange> for GeneRange {
+    type Error = EvoError;
+
+    fn try_from(saved: SavedRange) -> Result<Self, EvoError> {
+        Self::new(saved.count, saved.low, saved.high)?.with_gene_bits(saved.gene_bits)
     }
 }
 

@@ -14,6 +14,7 @@ use crate::fitness::Fitness;
 /// assert_eq!((summary.best_index, summary.best, summary.mean, summary.failed), (2, 3.0, 2.0, 1));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
     /// Index of the best individual, the lowest among equals.
     pub best_index: usize,

@@ -16,6 +16,7 @@ use crate::block::layout::BlockLayout;
 /// assert_eq!(PLAN.layout().parameter_count(), Layout::new(29, 12, 23).parameter_count());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::struct_excessive_bools, reason = "each is a connection that is there or is not")]
 pub struct Architecture {
     inputs: usize,

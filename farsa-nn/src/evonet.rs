@@ -8,6 +8,7 @@ use crate::error::Error;
 ///
 /// Source: `[FARSA2]`, where they are `weightRange`, `biasRange` and `gainRange`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EvonetRanges {
     /// The largest weight.
     pub weight: f32,

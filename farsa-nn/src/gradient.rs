@@ -11,6 +11,8 @@ use crate::leak::Leak;
 
 /// What a motor value `O` costs where `T` is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Loss {
     /// `(O - T)^2`.
     #[default]

@@ -22,6 +22,7 @@ use crate::block::layout::BlockLayout;
 /// # Ok::<(), farsa_nn::Error>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BlockLayoutBuf {
     /// Number of inputs.
     pub inputs: usize,
