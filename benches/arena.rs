@@ -11,7 +11,6 @@ use farsa::body::{
     Planar, Pose, Sensor as _, Twist, WheelVelocity, World as _,
 };
 use farsa::nn::{Controller, Perceptron, PerceptronLanes};
-use farsa::num::fearless_simd::Level;
 use farsa::num::{Domain, Stream};
 use farsa::physics::arena::{Arena, ArenaError, Batch, Cylinder, World};
 
@@ -108,8 +107,10 @@ where
 /// As many worlds as there are lanes, each with a network of its own: ring, network, wheels, step.
 fn lanes(c: &mut Criterion) -> Result<(), ArenaError> {
     let mut group = c.benchmark_group("arena");
-    for (level, lanes) in Batch::levels(Level::new()).flat_map(|level| [8, 16].map(|lanes| (level, lanes))) {
-        let mut batch = Batch::new(&arena(), lanes, level)?;
+    for (instructions, lanes) in
+        Batch::instructions().flat_map(|instructions| [8, 16].map(|lanes| (instructions, lanes)))
+    {
+        let mut batch = Batch::new(&arena(), lanes, instructions)?;
         let genome = parameters();
         let mut network = PerceptronLanes::new(6, 2, 1.0, lanes, vec![0.0; genome.len() * lanes]).expect("finite");
         let mut stream = Stream::new(1, Domain::Start, 0, 0, 0);
@@ -120,11 +121,10 @@ fn lanes(c: &mut Criterion) -> Result<(), ArenaError> {
             batch.lane(lane).place_body(BodyId(0), Pose::planar(at, stream.range(-3.0, 3.0)), Twist::default());
             batch.lane(lane).arranged();
         }
-        let network = network.with_level(level);
+        let network = network.with_instructions(instructions);
         let parts = batch.parts(0);
         let (mut x, mut y) = (vec![0.0; 8 * lanes], vec![0.0; 2 * lanes]);
-        let set = format!("{level:?}");
-        let set = set.split('(').next().unwrap_or_default();
+        let set = format!("{instructions:?}");
         group.throughput(Throughput::Elements(lanes as u64));
         group.bench_function(format!("{lanes} lanes/{set}"), |b| {
             b.iter(|| {

@@ -8,7 +8,6 @@ mod scene;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use farsa::num::fearless_simd::Level;
 use farsa::physics::articulated::{Batch, LANES};
 use scene::{Aba, Lanes, Loop, Step};
 
@@ -20,10 +19,11 @@ fn whole_loop(c: &mut Criterion) {
         group.throughput(Throughput::Elements(1));
         group.bench_function(name, |b| b.iter(|| whole.control_step()));
         let made = if name == "free" { Loop::free } else { Loop::grasp };
-        for (level, lanes) in Batch::levels(Level::new()).flat_map(|level| LANES.map(|lanes| (level, lanes))) {
-            let set = format!("{level:?}");
-            let set = set.split('(').next().unwrap_or_default();
-            let mut together = Lanes::new(made, lanes, level).expect("the default scene");
+        for (instructions, lanes) in
+            Batch::instructions().flat_map(|instructions| LANES.map(|lanes| (instructions, lanes)))
+        {
+            let set = format!("{instructions:?}");
+            let mut together = Lanes::new(made, lanes, instructions).expect("the default scene");
             // The elements are worlds: thousands of them a second.
             group.throughput(Throughput::Elements(lanes as u64));
             group.bench_function(format!("{name}/{lanes} lanes/{set}"), |b| b.iter(|| together.control_step()));

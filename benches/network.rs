@@ -8,8 +8,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use farsa::nn::{Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Integrator, Layout, Leak, Network, ParameterKind};
-use farsa::num::fearless_simd::Level;
-use farsa::num::{Domain, Stream, levels};
+use farsa::num::{Domain, Instructions, Stream};
 
 /// Different inputs, one a step, so that nothing is learnt from repetition.
 const INPUTS: usize = 64;
@@ -26,10 +25,10 @@ fn steps(c: &mut Criterion) {
         let inputs: Vec<f32> = (0..INPUTS * sensors).map(|_| stream.range(-1.0, 1.0)).collect();
         let (mut state, mut y) = (vec![0.0; layout.state_len()], vec![0.0; outputs]);
         group.throughput(Throughput::Elements(layout.parameter_count() as u64));
-        for level in levels(Level::new()) {
+        for instructions in Instructions::available() {
             let network = Network::new(layout, Leak::Filter, &parameters[..], &mut state[..]);
-            let mut network = network.expect("finite parameters").with_level(level);
-            let name = format!("{level:?}").split('(').next().unwrap_or_default().to_lowercase();
+            let mut network = network.expect("finite parameters").with_instructions(instructions);
+            let name = instructions.to_string();
             let size = format!("{sensors}-{hidden}-{outputs}");
             group.bench_function(BenchmarkId::new(name, size), |b| {
                 let mut x = inputs.chunks_exact(sensors).cycle();
@@ -96,12 +95,14 @@ fn continuous(c: &mut Criterion) {
         let inputs: Vec<f32> = (0..INPUTS * neurons).map(|_| stream.range(-1.0, 1.0)).collect();
         let mut y = vec![0.0; neurons];
         group.throughput(Throughput::Elements(layout.parameter_count() as u64));
-        for (level, integrator) in levels(Level::new()).flat_map(|level| Integrator::ALL.map(|one| (level, one))) {
+        for (instructions, integrator) in
+            Instructions::available().flat_map(|instructions| Integrator::ALL.map(|one| (instructions, one)))
+        {
             let layout = layout.with_integrator(integrator);
             let network = Ctrnn::new(layout, 0.01, &parameters[..], vec![0.0; layout.state_len()]);
-            let mut network = network.expect("finite parameters").with_level(level);
-            let level = format!("{level:?}").split('(').next().unwrap_or_default().to_lowercase();
-            group.bench_function(BenchmarkId::new(format!("{integrator} {level}"), neurons), |b| {
+            let mut network = network.expect("finite parameters").with_instructions(instructions);
+            let name = instructions.to_string();
+            group.bench_function(BenchmarkId::new(format!("{integrator} {name}"), neurons), |b| {
                 let mut x = inputs.chunks_exact(neurons).cycle();
                 b.iter(|| network.step(black_box(x.next().unwrap_or_default()), black_box(&mut y)));
             });

@@ -9,7 +9,6 @@ use std::error::Error;
 use std::hint::black_box;
 
 use farsa::nn::{Controller, Layout};
-use farsa::num::fearless_simd::Level;
 use farsa::physics::articulated::Batch;
 use farsa_experiments::reach_grasp_lift::{Config, Lives};
 use farsa_experiments::{Job, Recording, Setup as _, Tape};
@@ -42,9 +41,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         "free8" | "grasp8" => {
             // valgrind runs AVX2, not AVX-512.
-            let level = Batch::levels(Level::new()).take(2).last().ok_or("no instructions")?;
+            let instructions = Batch::instructions().take(2).last().ok_or("no instructions")?;
             let made = if case == "free8" { Loop::free } else { Loop::grasp };
-            let mut together = Lanes::new(made, 8, level)?;
+            let mut together = Lanes::new(made, 8, instructions)?;
             measured(|| together.control_step());
         }
         "aba7" | "aba27" => {

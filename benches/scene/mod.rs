@@ -9,8 +9,7 @@ use farsa::body::{
     World as _,
 };
 use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
-use farsa::num::fearless_simd::Level;
-use farsa::num::{Domain, Stream};
+use farsa::num::{Domain, Instructions, Stream};
 use farsa::physics::articulated::{Batch, Model, Options, Scratch, World, accelerations};
 use farsa_experiments::reach_grasp_lift::{Config, Motors, Scene, ScriptLife, Senses, Statics, Timetable};
 use farsa_experiments::{Job, Life};
@@ -28,7 +27,7 @@ pub(crate) fn network(layout: Layout) -> Result<Network<Vec<f32>, Vec<f32>>, Fai
     let draw = |kind| if leaks(kind) { stream.uniform() } else { stream.range(-6.0, 6.0) };
     let parameters = layout.kinds().map(draw).collect();
     let network = Network::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?;
-    Ok(network.with_level(Level::baseline()))
+    Ok(network.with_instructions(Instructions::baseline()))
 }
 
 /// The whole loop of `reach-grasp-lift` with the network in it; held commands keep the state what it is.
@@ -190,10 +189,14 @@ pub(crate) struct Lanes {
 }
 
 impl Lanes {
-    /// So many lanes, stepped by the instructions of a level.
-    pub(crate) fn new(made: impl Fn() -> Result<Loop, Failure>, lanes: usize, level: Level) -> Result<Self, Failure> {
+    /// So many lanes, stepped by these instructions.
+    pub(crate) fn new(
+        made: impl Fn() -> Result<Loop, Failure>,
+        lanes: usize,
+        instructions: Instructions,
+    ) -> Result<Self, Failure> {
         let mut loops = (0..lanes).map(|_| made()).collect::<Result<Vec<_>, _>>()?;
-        let mut batch = Batch::new(loops[0].world.model().clone(), lanes, level)?;
+        let mut batch = Batch::new(loops[0].world.model().clone(), lanes, instructions)?;
         for (lane, alone) in loops.iter_mut().enumerate() {
             (0..3 * lane).for_each(|_| alone.control_step());
             let mut state = vec![0.0; alone.world.snapshot_len()];

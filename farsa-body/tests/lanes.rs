@@ -3,8 +3,8 @@
 #![allow(missing_docs)]
 
 use farsa_body::{Effort, Held, Law, MusclePair, Servo, Torque};
-use farsa_num::fearless_simd::{Level, dispatch, f32x8, f32x16};
-use farsa_num::{Scalar, levels};
+use farsa_num::fearless_simd::{dispatch, f32x8, f32x16};
+use farsa_num::{Instructions, Scalar};
 
 /// Position, speed, two commands.
 type Input = [f32; 4];
@@ -54,18 +54,21 @@ fn run<S: Scalar<Real = f32>>(simd: S::Simd, law: &Law<f32>, inputs: &[Input]) -
 #[test]
 fn a_lane_is_the_law_alone() {
     let inputs = inputs();
-    let all: Vec<Level> = levels(Level::new()).collect();
-    println!("levels that ran: {all:?}");
+    let all: Vec<Instructions> = Instructions::available().collect();
+    println!("instructions that ran: {all:?}");
     for law in laws() {
         let alone = run::<f32>((), &law, &inputs);
-        for level in &all {
-            let eight = dispatch!(*level, simd => run::<f32x8<_>>(simd, &law, &inputs));
-            let sixteen = dispatch!(*level, simd => run::<f32x16<_>>(simd, &law, &inputs));
+        for instructions in &all {
+            let eight = dispatch!(instructions.level(), simd => run::<f32x8<_>>(simd, &law, &inputs));
+            let sixteen = dispatch!(instructions.level(), simd => run::<f32x16<_>>(simd, &law, &inputs));
             for (width, lanes) in [(8, eight), (16, sixteen)] {
                 for ((input, want), got) in inputs.iter().zip(&alone).zip(&lanes) {
                     let same = |w: &f32, g: &f32| w.to_bits() == g.to_bits() || w.is_nan() && g.is_nan();
                     let equal = want.iter().zip(got).all(|(w, g)| same(w, g));
-                    assert!(equal, "{law:?} of {input:?}: {want:?} alone, {got:?} in {width} lanes at {level:?}");
+                    assert!(
+                        equal,
+                        "{law:?} of {input:?}: {want:?} alone, {got:?} in {width} lanes at {instructions:?}"
+                    );
                 }
             }
         }

@@ -2,8 +2,15 @@
 
 use alloc::vec::Vec;
 
-use crate::strategy::next_generation;
-use crate::{EvoError, Fitness, GaConfig, Lineage, Population, Strategy, TruncationGa};
+use crate::config::GaConfig;
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::lineage::Lineage;
+use crate::population::Population;
+#[cfg(feature = "serde")]
+use crate::saved::Saved;
+use crate::strategy::{Strategy, next_generation};
+use crate::truncation::TruncationGa;
 
 /// Two or more populations of the same size, each evolving as a [`TruncationGa`] by the fitness of its own individuals.
 ///
@@ -13,6 +20,25 @@ use crate::{EvoError, Fitness, GaConfig, Lineage, Population, Strategy, Truncati
 ///
 /// Population `p` draws from the streams of a `TruncationGa` with trial `p` in the place of trial 0, so that population 0
 /// draws what a `TruncationGa` of the same seed draws.
+///
+/// ```
+/// use farsa_evo::{Coevolution, GaConfig, Strategy};
+///
+/// // Predators of five genes, prey of three, each judged against the first of the others.
+/// let config = |genes| GaConfig { population: 20, parents: 4, ..GaConfig::new(genes) };
+/// let mut search = Coevolution::new(&[config(5), config(3)], 11)?;
+/// for _ in 0..10 {
+///     let (population, size) = (search.ask(), search.size());
+///     let [predator, prey] = [0, size].map(|first| population.get(first).expect("an individual")[0]);
+///     let catch = |genes: &[u16]| -f64::from(genes[0].abs_diff(prey));
+///     let flee = |genes: &[u16]| f64::from(genes[0].abs_diff(predator));
+///     let values: Vec<f64> =
+///         population.iter().enumerate().map(|(i, genes)| if i < size { catch(genes) } else { flee(genes) }).collect();
+///     search.tell_values(&values)?;
+/// }
+/// assert_eq!((search.generation(), search.populations(), search.ask().genome_len()), (10, 2, 5));
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
 ///
 /// Under the feature `serde` it is saved as its lineages and a digest of the current genomes, which are rebuilt when it
 /// is read.
@@ -213,15 +239,15 @@ impl TryFrom<Vec<Lineage>> for Lineages {
 #[cfg(feature = "serde")]
 impl serde::Serialize for Coevolution {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        crate::saved::Saved::new(self.lineages(), &self.population).serialize(serializer)
+        Saved::new(self.lineages(), &self.population).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<crate::saved::Saved<Lineages>> for Coevolution {
+impl TryFrom<Saved<Lineages>> for Coevolution {
     type Error = EvoError;
 
-    fn try_from(saved: crate::saved::Saved<Lineages>) -> Result<Self, EvoError> {
+    fn try_from(saved: Saved<Lineages>) -> Result<Self, EvoError> {
         let rebuilt = Self::resume(saved.state.clone())?;
         saved.check(&rebuilt.population)?;
         Ok(rebuilt)
@@ -249,6 +275,7 @@ mod tests {
         for generation in 0..12 {
             for (individual, genome) in all.ask().iter().enumerate() {
                 assert_eq!(all.genome_of(generation, individual).unwrap(), genome);
+                assert_eq!(all.lineages().genome_of(generation, individual).unwrap(), genome);
                 let own = alone[individual / 6].ask().get(individual % 6).unwrap();
                 assert_eq!(&genome[..own.len()] == own, individual < 6, "{individual} of {generation}");
                 assert!(genome[configs()[individual / 6].genes..].iter().all(|&gene| gene == 0));
@@ -257,6 +284,8 @@ mod tests {
             all.tell(&fitness).unwrap();
             alone.iter_mut().zip(fitness.chunks(6)).for_each(|(ga, fitness)| ga.tell(fitness).unwrap());
             let lineages = all.lineages();
+            assert_eq!((all.generation(), lineages.latest()), (generation + 1, generation + 1));
+            assert_eq!((lineages.populations(), lineages.size()), (3, 6));
             for (population, ga) in alone.iter().enumerate() {
                 assert_eq!(lineages.selected(population, generation), ga.lineage().selected(generation));
                 let parent = ga.lineage().parent_of(generation + 1, 4).unwrap();
@@ -265,6 +294,10 @@ mod tests {
         }
         let lineages = all.lineages();
         assert_eq!((lineages.selected(3, 0), lineages.parent_of(1, 18)), (None, None));
+        let beyond = EvoError::NoSuchIndividual { individual: 18, population: 18 };
+        assert_eq!(lineages.genome_of(1, 18), Err(beyond));
+        let ahead = EvoError::NoSuchGeneration { generation: 13, latest: 12 };
+        assert_eq!(lineages.genome_of(13, 7), Err(ahead));
         assert_eq!(Coevolution::resume(lineages).unwrap(), all);
     }
 

@@ -1,13 +1,20 @@
 //! From genes to the numbers they stand for.
 
-use crate::EvoError;
+use crate::error::EvoError;
+use crate::mutation::check_gene_bits;
 
-/// What a run of neighbouring genes stands for: gene 0 is the low end, gene 65535 the high end, linear between.
+/// What a run of neighbouring genes stands for: gene 0 is the low end, the largest gene the high end, linear between.
+///
+/// The largest gene is 65535, of genes of fewer bits 2^bits - 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "SavedRange", into = "SavedRange"))]
 pub struct GeneRange {
     count: usize,
     low: f32,
     high: f32,
+    /// The largest gene.
+    largest: u16,
 }
 
 impl GeneRange {
@@ -17,9 +24,28 @@ impl GeneRange {
     /// [`EvoError::Range`] when an end is not finite or `low > high`.
     pub const fn new(count: usize, low: f32, high: f32) -> Result<Self, EvoError> {
         if low.is_finite() && high.is_finite() && low <= high {
-            Ok(Self { count, low, high })
+            Ok(Self { count, low, high, largest: u16::MAX })
         } else {
             Err(EvoError::Range { low, high })
+        }
+    }
+
+    /// The same range of genes that have only so many bits, 1 to 16.
+    ///
+    /// ```
+    /// use farsa_evo::GeneRange;
+    ///
+    /// let range = GeneRange::new(3, -5.0, 5.0)?.with_gene_bits(8)?;
+    /// assert_eq!([0, 51, 255].map(|gene| range.decode(gene)), [-5.0, -3.0, 5.0]);
+    /// # Ok::<(), farsa_evo::EvoError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EvoError::GeneBits`].
+    pub const fn with_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
+        match check_gene_bits(bits) {
+            Ok(()) => Ok(Self { largest: u16::MAX >> (u16::BITS - bits), ..self }),
+            Err(error) => Err(error),
         }
     }
 
@@ -28,14 +54,14 @@ impl GeneRange {
         self.count
     }
 
-    /// The value of one gene, `low + (high - low) * gene / 65535`, computed in f64 and rounded to f32 at the end.
+    /// The value of one gene, `low + (high - low) * gene / largest`, computed in f64 and rounded to f32 at the end.
     ///
-    /// Never outside the range, exact at both ends, and never falling with the gene.
+    /// Never outside the range, exact at both ends, and never falling with the gene; the high end for genes of more bits.
     pub fn decode(self, gene: u16) -> f32 {
         let (low, high) = (f64::from(self.low), f64::from(self.high));
-        let value = (low + (high - low) * f64::from(gene) / f64::from(u16::MAX)) as f32;
+        let value = (low + (high - low) * f64::from(gene) / f64::from(self.largest)) as f32;
         // The sum may round one f32 beyond an end, or short of the high end when the low end is far larger.
-        if gene == u16::MAX || value > self.high {
+        if gene >= self.largest || value > self.high {
             self.high
         } else if value < self.low {
             self.low
@@ -45,10 +71,49 @@ impl GeneRange {
     }
 }
 
+/// A range as it is saved.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "GeneRange")]
+struct SavedRange {
+    count: usize,
+    low: f32,
+    high: f32,
+    gene_bits: u32,
+}
+
+#[cfg(feature = "serde")]
+impl From<GeneRange> for SavedRange {
+    fn from(range: GeneRange) -> Self {
+        let GeneRange { count, low, high, largest } = range;
+        Self { count, low, high, gene_bits: largest.count_ones() }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<SavedRange> for GeneRange {
+    type Error = EvoError;
+
+    fn try_from(saved: SavedRange) -> Result<Self, EvoError> {
+        Self::new(saved.count, saved.low, saved.high)?.with_gene_bits(saved.gene_bits)
+    }
+}
+
 /// Decodes `genes` \[parameters\] into `out` \[parameters\], range after range, without allocating.
 ///
-/// 16 bits a parameter, linear as in \[Ferrauto2010\]. Deviation: the source does not say whether the high end is
+/// 16 bits a parameter unless a range says otherwise, linear as in \[Ferrauto2010\]. Deviation: the source does not say whether the high end is
 /// reached; here it is (65535 steps, not 65536).
+///
+/// ```
+/// use farsa_evo::{GeneRange, decode};
+///
+/// // Two weights in [-6, 6], then a time constant in [0.1, 2] s.
+/// let ranges = [GeneRange::new(2, -6.0, 6.0)?, GeneRange::new(1, 0.1, 2.0)?];
+/// let mut parameters = [0.0; 3];
+/// decode(&[0, 65535, 65535], &ranges, &mut parameters)?;
+/// assert_eq!(parameters, [-6.0, 6.0, 2.0]);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
 ///
 /// # Errors
 /// [`EvoError::Lengths`] when the ranges do not describe exactly the genes or `out` has another length; `out` is then
@@ -79,6 +144,28 @@ mod tests {
         let mut out = [9.0; 5];
         decode(&[0, u16::MAX, 0, 32768, u16::MAX], &ranges, &mut out).unwrap();
         assert_eq!(out, [-6.0, 6.0, 0.0, (32768.0_f64 / 65535.0) as f32, 1.0]);
+    }
+
+    #[test]
+    fn a_value_within_lies_where_its_gene_does() {
+        // From ends of which low + high is not high - low.
+        let range = GeneRange::new(1, -2.0, 6.0).unwrap();
+        assert_eq!([0, 13107, 26214, 52428, 65535].map(|gene| range.decode(gene)), [-2.0, -0.4, 1.2, 4.4, 6.0]);
+        let range = GeneRange::new(1, 10.0, 12.0).unwrap();
+        assert_eq!([13107, 52428].map(|gene| range.decode(gene)), [10.4, 11.6]);
+    }
+
+    #[test]
+    fn genes_of_fewer_bits_reach_both_ends() {
+        let range = GeneRange::new(1, -2.0, 6.0).unwrap();
+        let eight = range.with_gene_bits(8).unwrap();
+        assert_eq!([0, 51, 204, 255, 256, 65535].map(|gene| eight.decode(gene)), [-2.0, -0.4, 4.4, 6.0, 6.0, 6.0]);
+        let one = range.with_gene_bits(1).unwrap();
+        assert_eq!([0, 1].map(|gene| one.decode(gene)), [-2.0, 6.0]);
+        assert_eq!(range.with_gene_bits(16).unwrap(), range);
+        for bits in [0, 17] {
+            assert_eq!(range.with_gene_bits(bits), Err(EvoError::GeneBits { bits }));
+        }
     }
 
     #[test]

@@ -2,6 +2,9 @@
 
 use core::fmt;
 
+/// The most genes of a population, 2^28 (512 MiB).
+pub(crate) const MAX_GENES: usize = 1 << 28;
+
 /// Why a value of this crate was refused; the variants carry the numbers that were wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -80,7 +83,7 @@ pub enum EvoError {
     Range {
         /// Value of gene 0.
         low: f32,
-        /// Value of gene 65535.
+        /// Value of the largest gene.
         high: f32,
     },
     /// Genes, ranges and decoded values differ in number.
@@ -129,7 +132,7 @@ pub enum EvoError {
         /// The parent named twice.
         individual: usize,
     },
-    /// A saved search that has told generations but remembers no best individual.
+    /// No best individual: of no generations, or in a saved search that was told some.
     NoBest {
         /// The generation that it waits for.
         generation: u32,
@@ -171,7 +174,7 @@ impl fmt::Display for EvoError {
                 write!(f, "{bytes} bytes are not the history of {generations} generations")
             }
             Self::TooLarge { population, genes } => {
-                let limit = crate::Population::MAX_GENES;
+                let limit = MAX_GENES;
                 write!(f, "{population} genomes of {genes} genes are more than {limit} genes")
             }
             Self::Range { low, high } => write!(f, "genes cannot range from {low} to {high}"),

@@ -2,7 +2,7 @@
 
 use core::cmp::Ordering;
 
-use crate::EvoError;
+use crate::error::EvoError;
 
 /// How well an individual did, in the experiment's own unit; larger is better, and never NaN.
 ///

@@ -4,7 +4,9 @@
 
 extern crate alloc;
 
+mod champion;
 mod coevolution;
+mod config;
 mod decode;
 mod error;
 mod fitness;
@@ -20,7 +22,9 @@ mod steady_state;
 mod strategy;
 mod truncation;
 
+pub use champion::Champion;
 pub use coevolution::{Coevolution, Lineages};
+pub use config::{GaConfig, SteadyStateConfig};
 pub use decode::{GeneRange, decode};
 pub use error::EvoError;
 pub use fitness::Fitness;
@@ -30,6 +34,6 @@ pub use population::Population;
 pub use random_search::{Found, RandomSearch};
 pub use statistics::Statistics;
 pub use steady_history::SteadyHistory;
-pub use steady_state::{SteadyState, SteadyStateConfig};
+pub use steady_state::SteadyState;
 pub use strategy::Strategy;
-pub use truncation::{GaConfig, TruncationGa};
+pub use truncation::TruncationGa;

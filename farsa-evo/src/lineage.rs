@@ -6,8 +6,10 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::mutation::randomize_bits;
-use crate::{BitMutation, EvoError, GaConfig, Population};
+use crate::config::GaConfig;
+use crate::error::EvoError;
+use crate::mutation::{BitMutation, randomize_bits};
+use crate::population::Population;
 
 /// The configuration, the seed and the selected parents of every generation of a [`TruncationGa`](crate::TruncationGa).
 ///
@@ -18,6 +20,19 @@ use crate::{BitMutation, EvoError, GaConfig, Population};
 /// population / parents; it is unchanged when `i % copies == 0` and mutated otherwise, with the numbers of the stream
 /// (seed, [`Domain::Mutation`], trial 0, individual `i`, generation of the child). Individual `i` of generation 0 is
 /// drawn from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+///
+/// ```
+/// use farsa_evo::{GaConfig, Lineage, Strategy, TruncationGa};
+///
+/// let mut evolution = TruncationGa::new(GaConfig { population: 6, parents: 2, ..GaConfig::new(3) }, 5)?;
+/// let first = evolution.ask().clone();
+/// evolution.tell_values(&[0.0, 3.0, 1.0, 9.0, 2.0, 2.0])?;
+/// let lineage: &Lineage = evolution.lineage();
+/// assert_eq!(lineage.selected(0), Some(&[3, 1][..]));
+/// assert_eq!((lineage.parent_of(1, 0), lineage.parent_of(1, 5)), (Some(3), Some(1)));
+/// assert_eq!(lineage.genome_of(1, 0)?, first.get(3).expect("of six"));
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawLineage"))]

@@ -2,7 +2,7 @@
 
 use farsa_num::{Stream, ln};
 
-use crate::EvoError;
+use crate::error::EvoError;
 
 /// Whether genes can have so many bits.
 ///

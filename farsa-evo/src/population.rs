@@ -6,7 +6,7 @@ use core::slice::{ChunksExact, ChunksExactMut};
 
 use farsa_num::Digest;
 
-use crate::EvoError;
+use crate::error::{EvoError, MAX_GENES};
 
 /// The genomes of one generation, one after the other in one piece of memory [individuals x genes].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub struct Population {
 impl Population {
     /// The most genes a population may have together, 2^28 (512 MiB), so that a damaged configuration is refused
     /// before it is allocated.
-    pub const MAX_GENES: usize = 1 << 28;
+    pub const MAX_GENES: usize = MAX_GENES;
 
     /// `individuals` genomes of `genome_len` genes, all zero.
     ///

@@ -5,14 +5,29 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::strategy::next_generation;
-use crate::{EvoError, Fitness, Population, Strategy, randomize};
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::mutation::randomize;
+use crate::population::Population;
+#[cfg(feature = "serde")]
+use crate::saved::Saved;
+use crate::strategy::{Strategy, next_generation};
 
 /// Random search: every genome of every generation is drawn anew, and the best of all is remembered.
 ///
 /// What an evolution finds beyond this, with the same number of lives, is owed to selection. Generation 0 is that of a
 /// [`TruncationGa`](crate::TruncationGa) of the same seed. (For random search that keeps its best in the population,
 /// take a `TruncationGa` of one parent, rate 1 and [`Mutation::Resample`](crate::Mutation::Resample).)
+///
+/// ```
+/// use farsa_evo::{RandomSearch, Strategy};
+///
+/// let mut search = RandomSearch::new(2, 50, 1)?;
+/// let champion = search.maximize(20, |genes| f64::from(genes[0]))?;
+/// assert_eq!(search.best().map(|best| best.fitness), Some(champion.fitness));
+/// assert!(champion.genome[0] > 65_000);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
 ///
 /// Individual `i` of generation `g` is drawn from the stream (seed, [`Domain::InitialGenome`], trial 0, `i`, `g`).
 #[derive(Clone, Debug, PartialEq)]
@@ -132,15 +147,15 @@ impl serde::Serialize for RandomSearch {
             generation: self.generation,
             best: self.best,
         };
-        crate::saved::Saved::new(state, &self.population).serialize(serializer)
+        Saved::new(state, &self.population).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<crate::saved::Saved<SearchState>> for RandomSearch {
+impl TryFrom<Saved<SearchState>> for RandomSearch {
     type Error = EvoError;
 
-    fn try_from(saved: crate::saved::Saved<SearchState>) -> Result<Self, EvoError> {
+    fn try_from(saved: Saved<SearchState>) -> Result<Self, EvoError> {
         let state = &saved.state;
         let mut search = Self::new(state.genes, state.population, state.seed)?;
         search.generation = state.generation;
@@ -170,7 +185,8 @@ mod tests {
     fn the_first_of_the_best_is_remembered() {
         let mut search = RandomSearch::new(3, 2, 1).unwrap();
         assert_eq!(search.best(), None);
-        for fitness in [[0.0, 1.0], [3.0, 3.0], [3.0, f64::NAN]] {
+        for (generation, fitness) in [[0.0, 1.0], [3.0, 3.0], [3.0, f64::NAN]].into_iter().enumerate() {
+            assert_eq!(search.generation(), generation as u32);
             search.tell(&fitness.map(Fitness::nan_as_failed)).unwrap();
         }
         let fitness = Fitness::nan_as_failed(3.0);

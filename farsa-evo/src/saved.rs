@@ -1,6 +1,8 @@
 //! Saved strategies: their genomes are rebuilt, so only a digest of them is kept.
 
-use crate::{EvoError, Mutation, Population};
+use crate::error::EvoError;
+use crate::mutation::Mutation;
+use crate::population::Population;
 
 /// A state and the digest of the genomes that it stands for.
 #[derive(serde::Serialize, serde::Deserialize)]

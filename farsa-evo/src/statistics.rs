@@ -1,11 +1,20 @@
 //! What a log says about a generation.
 
-use crate::Fitness;
+use crate::fitness::Fitness;
 
 /// The summary of one generation's fitness, in the experiment's own unit.
 ///
 /// Failed lives count in [`Statistics::failed`] only; when all failed, best, mean and worst are minus infinity.
+///
+/// ```
+/// use farsa_evo::{Fitness, Statistics};
+///
+/// let fitness = [1.0, f64::NAN, 3.0].map(Fitness::nan_as_failed);
+/// let summary = Statistics::of(&fitness).expect("three lives");
+/// assert_eq!((summary.best_index, summary.best, summary.mean, summary.failed), (2, 3.0, 2.0, 1));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
     /// Index of the best individual, the lowest among equals.
     pub best_index: usize,

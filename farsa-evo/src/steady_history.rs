@@ -5,8 +5,10 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
+use crate::config::{PARENT_AND_MUTANT, SteadyStateConfig};
+use crate::error::EvoError;
 use crate::mutation::randomize_bits;
-use crate::{EvoError, Population, SteadyStateConfig};
+use crate::population::Population;
 
 /// The configuration, the seed and, for every generation, whether the mutant took its parent's place: one bit.
 ///
@@ -28,7 +30,7 @@ pub struct SteadyHistory {
 
 impl SteadyHistory {
     /// Number of individuals of a generation: a parent and its mutant.
-    pub const INDIVIDUALS: usize = 2;
+    pub const INDIVIDUALS: usize = PARENT_AND_MUTANT;
 
     /// The history of a search that has only its initial generation.
     ///

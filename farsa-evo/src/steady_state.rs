@@ -2,62 +2,14 @@
 
 use alloc::vec::Vec;
 
-use crate::mutation::check_gene_bits;
-use crate::strategy::next_generation;
-use crate::{BitMutation, EvoError, Fitness, Mutation, Population, SteadyHistory, Strategy};
-
-/// What a [`SteadyState`] needs to know; a plain value that is checked where it is used.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct SteadyStateConfig {
-    /// Number of genes of a genome.
-    pub genes: usize,
-    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
-    pub gene_bits: u32,
-    /// Probability, 0 to 1, that mutation hits a bit of the mutant of generation 0.
-    pub first_rate: f64,
-    /// What the probability falls by from generation to generation, 0 to 1.
-    pub rate_step: f64,
-    /// The probability below which it does not fall, 0 to the first.
-    pub last_rate: f64,
-    /// What happens to a bit that is hit.
-    pub mutation: Mutation,
-}
-
-impl SteadyStateConfig {
-    /// The search of the discrimination experiment of \[FARSA2\] for genomes of this many genes of 8 bits: half of all
-    /// bits flip at first, 1 % fewer every generation, down to 2 %.
-    pub const fn new(genes: usize) -> Self {
-        Self { genes, gene_bits: 8, first_rate: 0.5, rate_step: 0.01, last_rate: 0.02, mutation: Mutation::Flip }
-    }
-
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::GeneBits`], [`EvoError::Rate`] or
-    /// [`EvoError::RisingRate`].
-    pub fn validate(&self) -> Result<(), EvoError> {
-        let Self { genes, gene_bits, first_rate, rate_step, last_rate, .. } = *self;
-        Population::check(SteadyHistory::INDIVIDUALS, genes)?;
-        check_gene_bits(gene_bits)?;
-        for rate in [first_rate, rate_step, last_rate] {
-            BitMutation::new(self.mutation, rate)?;
-        }
-        if last_rate > first_rate {
-            return Err(EvoError::RisingRate { first: first_rate, last: last_rate });
-        }
-        Ok(())
-    }
-
-    /// The probability, 0 to 1, that mutation hits a bit of the mutant of a generation.
-    pub fn rate(&self, generation: u32) -> f64 {
-        (self.first_rate - self.rate_step * f64::from(generation)).max(self.last_rate)
-    }
-
-    pub(crate) fn bit_mutation(&self, generation: u32) -> Result<BitMutation, EvoError> {
-        BitMutation::new(self.mutation, self.rate(generation))?.of_gene_bits(self.gene_bits)
-    }
-}
+use crate::config::SteadyStateConfig;
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+#[cfg(feature = "serde")]
+use crate::saved::Saved;
+use crate::steady_history::SteadyHistory;
+use crate::strategy::{Strategy, next_generation};
 
 /// A search in which one parent makes one mutant a generation, and the better of the two stays.
 ///
@@ -68,6 +20,16 @@ impl SteadyStateConfig {
 ///
 /// Source: the steady-state algorithm of \[FARSA2\] with one individual, whose fitness is averaged over generations.
 /// Deviation: the random numbers are ours.
+///
+/// ```
+/// use farsa_evo::{SteadyState, SteadyStateConfig, Strategy};
+///
+/// let mut search = SteadyState::new(SteadyStateConfig::new(4), 3)?;
+/// let champion = search.maximize(400, |genes| genes.iter().map(|gene| f64::from(*gene)).sum())?;
+/// assert!(champion.fitness.get() > 4.0 * 250.0);
+/// assert_eq!(search.parent_fitness().map(|(fitness, _)| fitness), Some(champion.fitness));
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
 ///
 /// Under the feature `serde` it is saved as its history, the parent's summed fitness and a digest of the current genomes,
 /// which are rebuilt when it is read.
@@ -181,15 +143,15 @@ pub(crate) struct SteadySaved {
 impl serde::Serialize for SteadyState {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let state = SteadySaved { history: self.history.clone(), sum: self.sum };
-        crate::saved::Saved::new(state, &self.population).serialize(serializer)
+        Saved::new(state, &self.population).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<crate::saved::Saved<SteadySaved>> for SteadyState {
+impl TryFrom<Saved<SteadySaved>> for SteadyState {
     type Error = EvoError;
 
-    fn try_from(saved: crate::saved::Saved<SteadySaved>) -> Result<Self, EvoError> {
+    fn try_from(saved: Saved<SteadySaved>) -> Result<Self, EvoError> {
         let SteadySaved { history, sum } = &saved.state;
         let latest = history.latest();
         let population = history.genomes_at(latest)?;

@@ -2,7 +2,10 @@
 
 use alloc::vec::Vec;
 
-use crate::{EvoError, Fitness, Population};
+use crate::champion::Champion;
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
 
 /// A search over genomes of 16-bit genes that is asked for a generation and told how well it did.
 ///
@@ -21,6 +24,44 @@ pub trait Strategy {
     /// # Errors
     /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`]; the strategy is then unchanged.
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError>;
+
+    /// The same with plain values \[individuals\]; a NaN is a failed life.
+    ///
+    /// # Errors
+    /// Those of [`tell`](Strategy::tell).
+    fn tell_values(&mut self, values: &[f64]) -> Result<(), EvoError> {
+        let fitness: Vec<Fitness> = values.iter().copied().map(Fitness::nan_as_failed).collect();
+        self.tell(&fitness)
+    }
+
+    /// Lives so many generations, in which `evaluate` says how good a genome \[genes\] is, and returns the best individual
+    /// of them; a NaN is a failed life.
+    ///
+    /// ```
+    /// use farsa_evo::{GaConfig, Strategy, TruncationGa};
+    ///
+    /// let mut evolution = TruncationGa::new(GaConfig::new(2), 1)?;
+    /// let ones = |genes: &[u16]| genes.iter().map(|gene| f64::from(gene.count_ones())).sum();
+    /// let champion = evolution.maximize(40, ones)?;
+    /// assert_eq!(champion.genome, [u16::MAX; 2]);
+    /// # Ok::<(), farsa_evo::EvoError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EvoError::NoBest`] for no generations, [`EvoError::LastGeneration`].
+    fn maximize(&mut self, generations: u32, mut evaluate: impl FnMut(&[u16]) -> f64) -> Result<Champion, EvoError>
+    where
+        Self: Sized,
+    {
+        let mut champion = None;
+        for _ in 0..generations {
+            let fitness: Vec<Fitness> =
+                self.ask().iter().map(|genes| Fitness::nan_as_failed(evaluate(genes))).collect();
+            Champion::keep(&mut champion, self.generation(), self.ask(), &fitness)?;
+            self.tell(&fitness)?;
+        }
+        champion.ok_or(EvoError::NoBest { generation: self.generation() })
+    }
 
     /// The genomes of this or an earlier generation [individuals x genes], bit for bit as they were evaluated.
     ///

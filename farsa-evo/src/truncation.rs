@@ -2,101 +2,17 @@
 
 use alloc::vec::Vec;
 
-use crate::mutation::check_gene_bits;
-use crate::strategy::next_generation;
-use crate::{BitMutation, EvoError, Fitness, Lineage, Mutation, Population, Strategy};
-
-/// What a [`TruncationGa`] needs to know; a plain value that is checked where it is used.
-///
-/// Under the feature `serde` the number of bits of a gene is saved only where it is not 16, within the word for the
-/// mutation: what was saved before there was a choice is still read, and written as before.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "SavedConfig", into = "SavedConfig"))]
-pub struct GaConfig {
-    /// Number of genes of a genome.
-    pub genes: usize,
-    /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
-    pub gene_bits: u32,
-    /// Number of individuals of a generation.
-    pub population: usize,
-    /// Number of individuals that are selected; each makes population / parents copies.
-    pub parents: usize,
-    /// Probability, 0 to 1, that mutation hits a bit.
-    pub mutation_rate: f64,
-    /// What happens to a bit that is hit.
-    pub mutation: Mutation,
-}
-
-impl GaConfig {
-    /// The evolution of \[Ferrauto2010\] for genomes of this many genes of 16 bits: the best 20 of 100 make five copies each, one
-    /// unchanged and four mutated with 1.5 % a bit, [`Mutation::Resample`].
-    pub const fn new(genes: usize) -> Self {
-        let (gene_bits, mutation) = (u16::BITS, Mutation::Resample);
-        Self { genes, gene_bits, population: 100, parents: 20, mutation_rate: 0.015, mutation }
-    }
-
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`], [`EvoError::NoParents`],
-    /// [`EvoError::TooManyParents`], [`EvoError::UnevenCopies`], [`EvoError::Rate`] or [`EvoError::GeneBits`].
-    pub fn validate(&self) -> Result<(), EvoError> {
-        let Self { genes, population, parents, .. } = *self;
-        Population::check(population, genes)?;
-        if parents == 0 {
-            return Err(EvoError::NoParents);
-        }
-        if parents > population {
-            return Err(EvoError::TooManyParents { population, parents });
-        }
-        if !population.is_multiple_of(parents) {
-            return Err(EvoError::UnevenCopies { population, parents });
-        }
-        check_gene_bits(self.gene_bits)?;
-        self.bit_mutation().map(|_| ())
-    }
-
-    /// Copies that each parent makes; of a valid configuration only.
-    pub(crate) fn copies(&self) -> usize {
-        self.population / self.parents
-    }
-
-    pub(crate) fn bit_mutation(&self) -> Result<BitMutation, EvoError> {
-        BitMutation::new(self.mutation, self.mutation_rate)?.of_gene_bits(self.gene_bits)
-    }
-}
-
-/// A configuration as it is saved.
+use crate::config::GaConfig;
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::lineage::Lineage;
+use crate::population::Population;
 #[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(rename = "GaConfig")]
-struct SavedConfig {
-    genes: usize,
-    population: usize,
-    parents: usize,
-    mutation_rate: f64,
-    mutation: crate::saved::SavedMutation,
-}
+use crate::saved::Saved;
+use crate::strategy::{Strategy, next_generation};
 
-#[cfg(feature = "serde")]
-impl From<SavedConfig> for GaConfig {
-    fn from(saved: SavedConfig) -> Self {
-        let SavedConfig { genes, population, parents, mutation_rate, mutation } = saved;
-        let (mutation, gene_bits) = mutation.into();
-        Self { genes, gene_bits, population, parents, mutation_rate, mutation }
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<GaConfig> for SavedConfig {
-    fn from(config: GaConfig) -> Self {
-        let GaConfig { genes, gene_bits, population, parents, mutation_rate, mutation } = config;
-        Self { genes, population, parents, mutation_rate, mutation: (mutation, gene_bits).into() }
-    }
-}
-
-/// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover.
+/// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover. Its population is a
+/// multiple of its parents.
 ///
 /// Each generation the `parents` best individuals make `population / parents` copies each: the first unchanged, the
 /// others mutated. Parents are ranked by fitness, equals by index, the lower first; failed individuals are selected
@@ -106,6 +22,19 @@ impl From<GaConfig> for SavedConfig {
 /// Source: \[Ferrauto2010\] chapter 2, truncation selection in the terms of \[Muhlenbein1993\]. Deviations: everyone is
 /// evaluated again in every generation, the unchanged copies too, and ties go to the lower index; the source says
 /// neither.
+///
+/// ```
+/// use farsa_evo::{GaConfig, Strategy, TruncationGa};
+///
+/// let mut evolution = TruncationGa::new(GaConfig { population: 40, parents: 8, ..GaConfig::new(3) }, 7)?;
+/// while evolution.generation() < 20 {
+///     let values: Vec<f64> = evolution.ask().iter().map(|genes| -f64::from(genes[0].abs_diff(20_000))).collect();
+///     evolution.tell_values(&values)?;
+/// }
+/// // The first copy of the best is unchanged.
+/// assert!(evolution.ask().iter().next().is_some_and(|genes| genes[0].abs_diff(20_000) < 200));
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
 ///
 /// Under the feature `serde` it is saved as its lineage and a digest of the current genomes, which are rebuilt when it
 /// is read.
@@ -184,15 +113,15 @@ impl Strategy for TruncationGa {
 #[cfg(feature = "serde")]
 impl serde::Serialize for TruncationGa {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        crate::saved::Saved::new(&self.lineage, &self.population).serialize(serializer)
+        Saved::new(&self.lineage, &self.population).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<crate::saved::Saved<Lineage>> for TruncationGa {
+impl TryFrom<Saved<Lineage>> for TruncationGa {
     type Error = EvoError;
 
-    fn try_from(saved: crate::saved::Saved<Lineage>) -> Result<Self, EvoError> {
+    fn try_from(saved: Saved<Lineage>) -> Result<Self, EvoError> {
         let population = saved.state.genomes_at(saved.state.latest())?;
         saved.check(&population)?;
         Ok(Self { lineage: saved.state, population })

@@ -5,7 +5,7 @@
 use std::time::Instant;
 
 use farsa_evo::{
-    Coevolution, EvoError, Fitness, GaConfig, Mutation, Population, RandomSearch, Statistics, SteadyState,
+    Champion, Coevolution, EvoError, Fitness, GaConfig, Mutation, Population, RandomSearch, Statistics, SteadyState,
     SteadyStateConfig, Strategy, TruncationGa,
 };
 use proptest::prelude::*;
@@ -195,4 +195,43 @@ proptest! {
         let genomes = |seed| TruncationGa::new(GaConfig::new(4), seed).unwrap().ask().clone();
         prop_assert_ne!(genomes(seed), genomes(seed ^ 1));
     }
+}
+
+#[test]
+fn values_are_told_as_fitness() {
+    let config = GaConfig { population: 6, parents: 2, ..GaConfig::new(3) };
+    let mut by_fitness = TruncationGa::new(config, 4).unwrap();
+    let mut by_values = by_fitness.clone();
+    let values = [1.0, f64::NAN, 5.0, -2.0, 5.0, f64::NEG_INFINITY];
+    by_values.tell_values(&values).unwrap();
+    by_fitness.tell(&values.map(Fitness::nan_as_failed)).unwrap();
+    assert_eq!(by_values, by_fitness);
+    assert_eq!(by_values.lineage().selected(0), Some(&[2, 4][..]));
+    assert_eq!(by_values.tell_values(&values[1..]), Err(EvoError::FitnessCount { expected: 6, found: 5 }));
+}
+
+/// With fitness that falls from generation to generation, so that the best so far is an early one.
+#[test]
+fn the_champion_is_the_earliest_best_of_all_generations() {
+    let config = GaConfig { population: 6, parents: 2, ..GaConfig::new(3) };
+    let (mut evolution, mut lives) = (TruncationGa::new(config, 4).unwrap(), 0);
+    let champion = evolution.maximize(5, |_| {
+        lives += 1;
+        [0.0, 3.0, 7.0, 7.0, f64::NAN, 1.0][(lives - 1) % 6] - f64::from((lives as u32 - 1) / 6 % 4)
+    });
+    let champion = champion.unwrap();
+    assert_eq!((lives, evolution.generation()), (30, 5));
+    assert_eq!((champion.generation, champion.individual, champion.fitness.get()), (0, 2, 7.0));
+    assert_eq!(champion.genome, evolution.genome_of(0, 2).unwrap());
+    assert_eq!(evolution.maximize(0, |_| 1.0), Err(EvoError::NoBest { generation: 5 }));
+
+    let mut best = Some(champion.clone());
+    let none = [Fitness::WORST; 5];
+    let refused = Champion::keep(&mut best, 5, evolution.ask(), &none);
+    assert_eq!(refused, Err(EvoError::FitnessCount { expected: 6, found: 5 }));
+    let fitness = [0.0, 0.0, 0.0, 0.0, 0.0, 8.0].map(Fitness::nan_as_failed);
+    Champion::keep(&mut best, 5, evolution.ask(), &fitness).unwrap();
+    let better = best.unwrap();
+    assert_eq!((better.generation, better.individual, better.fitness.get()), (5, 5, 8.0));
+    assert_eq!(Some(&better.genome[..]), evolution.ask().get(5));
 }

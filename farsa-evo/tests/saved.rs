@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 use farsa_evo::{
-    Coevolution, Fitness, GaConfig, Lineage, Lineages, Mutation, RandomSearch, SteadyHistory, SteadyState,
-    SteadyStateConfig, Strategy, TruncationGa,
+    Champion, Coevolution, Fitness, GaConfig, GeneRange, Lineage, Lineages, Mutation, RandomSearch, Statistics,
+    SteadyHistory, SteadyState, SteadyStateConfig, Strategy, TruncationGa,
 };
 use postcard::{from_bytes, to_allocvec};
 use serde::{Serialize, de::DeserializeOwned};
@@ -220,4 +220,23 @@ fn torn_bytes_are_refused() {
             live(&mut read, 2);
         }
     }
+}
+
+#[test]
+fn ranges_and_summaries_come_back_and_are_checked() {
+    let range = GeneRange::new(3, -6.0, 6.0).unwrap();
+    for range in [range, range.with_gene_bits(8).unwrap()] {
+        assert_eq!(from_bytes::<GeneRange>(&to_allocvec(&range).unwrap()).unwrap(), range);
+    }
+    // Its fields, with the ends exchanged and with too many bits.
+    for (low, high, bits) in [(6.0_f32, -6.0_f32, 16_u32), (-6.0, 6.0, 17), (-6.0, f32::NAN, 16)] {
+        assert!(from_bytes::<GeneRange>(&to_allocvec(&(3_usize, low, high, bits)).unwrap()).is_err());
+    }
+    assert_eq!(to_allocvec(&(3_usize, -6.0_f32, 6.0_f32, 16_u32)).unwrap(), to_allocvec(&range).unwrap());
+    let summary = Statistics::of(&[1.0, f64::NAN, 3.0].map(Fitness::nan_as_failed)).unwrap();
+    assert_eq!(from_bytes::<Statistics>(&to_allocvec(&summary).unwrap()).unwrap(), summary);
+    let failed = Statistics::of(&[Fitness::WORST]).unwrap();
+    assert_eq!(from_bytes::<Statistics>(&to_allocvec(&failed).unwrap()).unwrap(), failed);
+    let champion = Champion { generation: 3, individual: 2, fitness: Fitness::WORST, genome: vec![1, 2, 3] };
+    assert_eq!(from_bytes::<Champion>(&to_allocvec(&champion).unwrap()).unwrap(), champion);
 }

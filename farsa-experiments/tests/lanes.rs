@@ -5,13 +5,12 @@ use std::sync::Arc;
 
 use farsa_experiments::reach_grasp_lift::{Config, Lives, Scene, ScriptLife, TRIALS, Timetable, Trial};
 use farsa_experiments::{Job, Lanes, Life, Outcome, Setup, Tape, Task, live, live_in_lanes};
-use farsa_num::fearless_simd::Level;
-use farsa_num::{Domain, Stream};
+use farsa_num::{Domain, Instructions, Stream};
 use farsa_physics::articulated::{Batch, LANES, Lane, Model, World};
 
 /// Every number of lanes at every instruction set of this machine.
-fn every_batch() -> impl Iterator<Item = (usize, Level)> {
-    Batch::levels(Level::new()).flat_map(|level| LANES.map(|lanes| (lanes, level)))
+fn every_batch() -> impl Iterator<Item = (usize, Instructions)> {
+    Batch::instructions().flat_map(|instructions| LANES.map(|lanes| (lanes, instructions)))
 }
 
 /// A script with a number, and what came of the jobs.
@@ -44,8 +43,8 @@ fn scripted_grasps_in_lanes_are_those_alone() {
         })
         .collect();
     assert!(alone.iter().filter(|(_, trial)| trial.held > 0).count() > 15);
-    for (lanes, level) in every_batch() {
-        let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
+    for (lanes, instructions) in every_batch() {
+        let mut batch = Batch::new(model.clone(), lanes, instructions).unwrap();
         // In some lanes only: the others stay empty.
         let mut lives: Vec<_> = (0..lanes - 1).map(|_| Numbered { life: script.clone(), number: 0 }).collect();
         let (mut next, mut ended) = (0, vec![None; alone.len()]);
@@ -59,7 +58,7 @@ fn scripted_grasps_in_lanes_are_those_alone() {
         };
         live_in_lanes(&mut lives, &mut batch, begin, end);
         let ended: Vec<_> = ended.into_iter().flatten().collect();
-        assert_eq!(ended, alone, "{lanes} lanes, {level:?}");
+        assert_eq!(ended, alone, "{lanes} lanes, {instructions:?}");
     }
 }
 
@@ -80,8 +79,8 @@ fn lives_of_networks_in_lanes_are_those_alone() {
     let alone: Vec<Outcome> =
         (0..).map_while(task).map(|Task { genes, job, .. }| setup.live(genes, job, &mut Tape::off())).collect();
     println!("steps: {:?}", alone.iter().map(|outcome| outcome.steps).collect::<Vec<_>>());
-    for (count, level) in every_batch().chain([(1, Level::new())]) {
-        assert_eq!(setup.use_lanes(Lanes::new(count, level).unwrap()).unwrap().count(), count);
+    for (count, instructions) in every_batch().chain([(1, Instructions::detect())]) {
+        assert_eq!(setup.use_lanes(Lanes::new(count, instructions).unwrap()).unwrap().count(), count);
         // Twice: nothing of the first time is left.
         for _ in 0..2 {
             let (mut next, mut ended) = (0, vec![Outcome::default(); alone.len()]);
@@ -90,7 +89,7 @@ fn lives_of_networks_in_lanes_are_those_alone() {
                 task(next - 1)
             };
             setup.live_many(&mut draw, &mut |number, outcome| ended[number] = outcome);
-            assert!(ended == alone, "{count} lanes, {level:?}");
+            assert!(ended == alone, "{count} lanes, {instructions:?}");
         }
     }
 }

@@ -13,8 +13,7 @@ use farsa_experiments::{
     BodyEvolution, Error, Experiment, Job, Life, Outcome, PassiveWalker, Settings, Setup, Tape, Value, live,
     live_in_lanes,
 };
-use farsa_num::fearless_simd::Level;
-use farsa_num::{Domain, Stream};
+use farsa_num::{Domain, Instructions, Stream};
 use farsa_physics::articulated::{Batch, Lane, Model, World};
 
 /// Two different pairs of legs.
@@ -220,7 +219,7 @@ fn walks_in_lanes_are_those_alone() {
         })
         .collect();
     assert!(steps > 10, "{steps} steps in all: feet should change places");
-    let mut batch = Batch::new(model, 8, Level::new()).unwrap();
+    let mut batch = Batch::new(model, 8, Instructions::detect()).unwrap();
     let mut lives: Vec<Numbered> = (0..8).map(|_| Numbered(life(), 0)).collect();
     let (mut next, mut found) = (0..20, vec![0; 20]);
     live_in_lanes(

@@ -5,13 +5,15 @@ use core::str::FromStr;
 
 use farsa_num::{Scalar, logistic, tanh};
 
-use crate::Error;
+use crate::error::Error;
 use crate::name::same_letters;
 
 /// The function of a neuron; a slope (or gain) multiplies its argument before.
 ///
 /// Every one is finite for finite numbers and never falls where its argument rises.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Activation {
     /// `1/(1 + exp(-x))`, in [0, 1].
     #[default]

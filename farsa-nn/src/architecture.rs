@@ -1,6 +1,8 @@
 //! The usual architectures as blocks.
 
-use crate::{Activation, Block, BlockLayout, Group, Span};
+use crate::activation::Activation;
+use crate::block::description::{Block, Group, Span};
+use crate::block::layout::BlockLayout;
 
 /// What connects inputs, hidden neurons and outputs: the named architectures, and each of their connections by itself.
 ///
@@ -14,6 +16,7 @@ use crate::{Activation, Block, BlockLayout, Group, Span};
 /// assert_eq!(PLAN.layout().parameter_count(), Layout::new(29, 12, 23).parameter_count());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::struct_excessive_bools, reason = "each is a connection that is there or is not")]
 pub struct Architecture {
     inputs: usize,

@@ -2,7 +2,8 @@
 
 use farsa_num::Stream;
 
-use crate::{CtrnnLayout, CtrnnParameter, Error};
+use crate::ctrnn_layout::{CtrnnLayout, CtrnnParameter};
+use crate::error::Error;
 
 impl CtrnnLayout {
     /// Sets the biases to `theta_i = - sum_j w_ji / 2`: the nullclines of all neurons cross at the centres of their

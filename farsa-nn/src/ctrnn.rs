@@ -1,10 +1,15 @@
 //! The continuous-time recurrent network.
 
+use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
+use crate::controller::Controller;
+use crate::ctrnn_layout::{CtrnnLayout, CtrnnParameter};
 use crate::dynamics::{Dynamics, rate};
+use crate::error::Error;
+use crate::integrator::Integrator;
 use crate::kernel::{self, level};
-use crate::{Controller, CtrnnLayout, CtrnnParameter, Error, Integrator, Lesion, Neurons};
+use crate::lesion::{Lesion, Neurons};
 
 /// A continuous-time recurrent neural network, over parameters and state that are the caller's.
 ///
@@ -144,9 +149,9 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ctrnn<P, S> {
 }
 
 impl<P, S> Ctrnn<P, S> {
-    /// The same network over the instructions of this level, as [`Network::with_level`](crate::Network::with_level).
-    pub fn with_level(self, level: Level) -> Self {
-        Self { level, ..self }
+    /// The same network over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { level: instructions.level(), ..self }
     }
 
     /// The layout.

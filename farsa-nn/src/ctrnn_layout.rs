@@ -2,10 +2,13 @@
 
 use core::ops::Range;
 
-use crate::{Activation, Integrator};
+use crate::activation::Activation;
+use crate::integrator::Integrator;
 
 /// What one parameter of a [`CtrnnLayout`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum CtrnnParameter {
     /// `s_ki`: from input `k` to neuron `i`.
@@ -52,6 +55,7 @@ impl CtrnnParameter {
 /// assert_eq!(AGENT.output_neurons(), 12..14);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CtrnnLayout {
     inputs: usize,
     neurons: usize,

@@ -7,8 +7,10 @@ use core::f64::consts::LN_2;
 
 use farsa_num::{Real, Scalar, exp, tanh};
 
+use crate::activation::Activation;
+use crate::integrator::Integrator;
 use crate::kernel::{Lanes, Layer};
-use crate::{Activation, Integrator, Lesion};
+use crate::lesion::Lesion;
 
 /// What a step reads and writes; all but the weights and inputs are `[neurons]`.
 pub(crate) struct Dynamics<'a, R = f32> {

@@ -1,11 +1,14 @@
 //! The order in which the original's Evonet keeps its parameters, and what it reads in them.
 
-use crate::{Block, BlockLayout, BlockParameter, Error};
+use crate::block::description::Block;
+use crate::block::layout::{BlockLayout, BlockParameter};
+use crate::error::Error;
 
 /// The ranges of Evonet's parameters: each is kept as a number `p` in [-weight, weight].
 ///
 /// Source: `[FARSA2]`, where they are `weightRange`, `biasRange` and `gainRange`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EvonetRanges {
     /// The largest weight.
     pub weight: f32,

@@ -4,7 +4,11 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::str::FromStr;
 
-use crate::{Activation, Block, BlockLayoutBuf, Error, EvonetRanges, Group, Span};
+use crate::activation::Activation;
+use crate::block::description::{Block, Group, Span};
+use crate::block::layout_buf::BlockLayoutBuf;
+use crate::error::Error;
+use crate::evonet::EvonetRanges;
 
 /// A network of the original FARSA, read from its text; with feature `alloc`.
 ///

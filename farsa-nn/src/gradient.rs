@@ -5,10 +5,14 @@ use alloc::vec::Vec;
 
 use farsa_num::{Real, logistic};
 
-use crate::{Error, Layout, Leak, ParameterKind};
+use crate::error::Error;
+use crate::layout::{Layout, ParameterKind};
+use crate::leak::Leak;
 
 /// What a motor value `O` costs where `T` is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Loss {
     /// `(O - T)^2`.
     #[default]

@@ -3,13 +3,15 @@
 use core::fmt;
 use core::str::FromStr;
 
-use crate::Error;
+use crate::error::Error;
 use crate::name::same_letters;
 
 /// How a [`Ctrnn`](crate::Ctrnn) goes from `t` to `t + dt`; external inputs are held over the step.
 ///
 /// With `f_i(y) = ( -y_i + net_i(y) ) / tau_i`, where `net_i` is what a neuron is driven to:
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Integrator {
     /// `y(t+dt) = y + dt f(y)`: first order, unstable where `tau < dt/2`.
     #[default]
@@ -17,6 +19,7 @@ pub enum Integrator {
     /// `y_i(t+dt) = net_i + (y_i - net_i) exp(-dt/tau_i)`: first order, exact while `net` is constant, stable for every `tau`.
     ExponentialEuler,
     /// The classical method of fourth order with four evaluations a step, unstable where `tau < dt/2.785`.
+    #[cfg_attr(feature = "serde", serde(rename = "runge-kutta-4"))]
     RungeKutta4,
 }
 

@@ -7,10 +7,10 @@
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
 use farsa_num::{Real, Scalar, logistic};
 
-use crate::wide_layer::WIDE;
+/// Number of targets from which on sums are faster source by source, with SSE2 and with AVX2.
+pub(crate) const WIDE: usize = 128;
 
-/// The instructions of this processor where `fearless_simd` was built with `std` and can ask, else those that the
-/// program is compiled for.
+/// The instructions of [`Instructions::detect`](farsa_num::Instructions::detect), as the loops take them.
 pub(crate) fn level() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
 }
@@ -259,7 +259,7 @@ mod tests {
 
     use std::vec::Vec;
 
-    use farsa_num::{Domain, Stream, levels};
+    use farsa_num::{Domain, Instructions, Stream};
 
     use super::*;
 
@@ -274,10 +274,13 @@ mod tests {
             let layer = Layer { targets, slope: 0.2, biases: &biases, sources };
             let mut alone = std::vec![f32::NAN; targets];
             layer.one_by_one(&mut alone);
-            for level in levels(Level::new()) {
+            for instructions in Instructions::available() {
                 let mut together = std::vec![f32::NAN; targets];
-                layer.respond(level, &mut together);
-                assert!(alone.iter().zip(&together).all(|(a, b)| a.to_bits() == b.to_bits()), "{targets} at {level:?}");
+                layer.respond(instructions.level(), &mut together);
+                assert!(
+                    alone.iter().zip(&together).all(|(a, b)| a.to_bits() == b.to_bits()),
+                    "{targets} at {instructions}"
+                );
             }
         }
     }

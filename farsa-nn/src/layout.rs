@@ -4,6 +4,8 @@ use core::ops::Range;
 
 /// What one parameter of a [`Layout`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum ParameterKind {
     /// `w_ji`: from sensor `j` to hidden neuron `i`.
@@ -52,6 +54,7 @@ impl ParameterKind {
 // Source-major, because then a vector of targets reads neighbouring weights, and every target adds its sources in the
 // same order whether it is computed alone or beside others: the width of the vectors does not show in the bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Layout {
     sensors: usize,
     hidden: usize,

@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use farsa_num::{exp, ln, tanh};
 
-use crate::Error;
+use crate::error::Error;
 use crate::name::same_letters;
 
 /// How a hidden neuron with leak `d` [0..1] forms its activation `H(t)` from its response `y(t) = sigma(net(t))`.
@@ -15,6 +15,8 @@ use crate::name::same_letters;
 ///
 /// Source: `[Ferrauto2010]` chapter 2. Deviation: the default is [`Leak::Filter`], not the printed equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Leak {
     /// `H(t) = d*y(t) + (1-d)*H(t-1)`: the low-pass filter that the source's words describe.
     // The source calls d the time constant of leaky-integrator neurons; the printed equation has no integrator.

@@ -5,7 +5,12 @@ use alloc::vec::Vec;
 
 use farsa_num::Real;
 
-use crate::{Demonstration, Error, Gradient, Layout, Leak, Loss, Optimizer, ParameterKind};
+use crate::error::Error;
+use crate::gradient::{Demonstration, Gradient, Loss};
+use crate::layout::{Layout, ParameterKind};
+use crate::leak::Leak;
+use crate::network::check;
+use crate::optimizer::Optimizer;
 
 /// Parameters of a [`Network`](crate::Network) that follow the [`Gradient`] of what demonstrations cost.
 ///
@@ -69,7 +74,7 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
     pub fn new(layout: Layout, leak: Leak, loss: Loss, parameters: Vec<R>, optimizer: O) -> Result<Self, Error> {
         let gradient = Gradient::new(layout, leak, loss)?;
         let single: Vec<f32> = parameters.iter().map(|p| p.to_f64() as f32).collect();
-        crate::network::check(&layout, &single)?;
+        check(&layout, &single)?;
         let memory = vec![R::default(); optimizer.memory_len(parameters.len())];
         Ok(Self { gradient, optimizer, parameters, memory, limit: None, longest: None, mean: None })
     }

@@ -1,9 +1,10 @@
 //! Lesions: what a network does without a neuron.
 
-use crate::Controller;
+use crate::controller::Controller;
 
 /// A neuron that is held at an activation, whatever drives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lesion {
     /// The neuron's number.
     pub neuron: usize,

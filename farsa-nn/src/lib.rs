@@ -7,16 +7,7 @@ extern crate alloc;
 mod activation;
 mod architecture;
 mod block;
-mod block_kernel;
-mod block_layout;
-#[cfg(feature = "alloc")]
-mod block_layout_buf;
-mod block_network;
 mod bytes;
-mod bytes_ctrnn;
-mod bytes_error;
-mod bytes_fixed;
-mod bytes_frame;
 mod centre_crossing;
 mod controller;
 mod ctrnn;
@@ -26,9 +17,6 @@ mod error;
 mod evonet;
 #[cfg(feature = "alloc")]
 mod evonet_text;
-mod fixed_logistic;
-mod fixed_network;
-mod fixed_scale;
 #[cfg(feature = "alloc")]
 mod gradient;
 mod integrator;
@@ -43,20 +31,16 @@ mod network;
 mod optimizer;
 mod perceptron;
 mod perceptron_lanes;
+mod quantized;
 mod symmetry;
 mod wide_layer;
 
 pub use activation::Activation;
 pub use architecture::{Architecture, Plan};
-pub use block::{Block, Group, Span};
-pub use block_layout::{BlockLayout, BlockParameter};
 #[cfg(feature = "alloc")]
-pub use block_layout_buf::BlockLayoutBuf;
-pub use block_network::BlockNetwork;
-pub use bytes::{Aligned, NetworkBytes, channel_hash};
-pub use bytes_ctrnn::CtrnnBytes;
-pub use bytes_error::BytesError;
-pub use bytes_fixed::FixedNetworkBytes;
+pub use block::BlockLayoutBuf;
+pub use block::{Block, BlockLayout, BlockNetwork, BlockParameter, Group, Span};
+pub use bytes::{Aligned, BytesError, CtrnnBytes, FixedNetworkBytes, NetworkBytes, channel_hash};
 pub use controller::Controller;
 pub use ctrnn::Ctrnn;
 pub use ctrnn_layout::{CtrnnLayout, CtrnnParameter, CtrnnParts};
@@ -64,8 +48,6 @@ pub use error::Error;
 pub use evonet::EvonetRanges;
 #[cfg(feature = "alloc")]
 pub use evonet_text::Evonet;
-pub use fixed_network::FixedNetwork;
-pub use fixed_scale::FixedScale;
 #[cfg(feature = "alloc")]
 pub use gradient::{Demonstration, Gradient, Loss};
 pub use integrator::Integrator;
@@ -78,4 +60,5 @@ pub use network::Network;
 pub use optimizer::{Adam, Momentum, Optimizer};
 pub use perceptron::Perceptron;
 pub use perceptron_lanes::PerceptronLanes;
+pub use quantized::{FixedNetwork, FixedScale};
 pub use symmetry::CtrnnSymmetry;

@@ -1,10 +1,14 @@
 //! The leaky recurrent network of the manipulation experiment.
 
+use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
+use crate::controller::Controller;
+use crate::error::Error;
 use crate::kernel::{Layer, head, level};
-use crate::lesion::hold;
-use crate::{Controller, Error, Layout, Leak, Lesion, Neurons, ParameterKind};
+use crate::layout::{Layout, ParameterKind};
+use crate::leak::Leak;
+use crate::lesion::{Lesion, Neurons, hold};
 
 /// A network of one recurrent hidden layer with leaks, over parameters and state that are the caller's.
 ///
@@ -103,12 +107,11 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
 }
 
 impl<P, S> Network<P, S> {
-    /// The same network over the instructions of this level, with the same bits.
+    /// The same network over these instructions, with the same bits.
     ///
-    /// By default those of the processor if the program has `fearless_simd` with its feature `std`, else those that the
-    /// program is compiled for.
-    pub fn with_level(self, level: Level) -> Self {
-        Self { level, ..self }
+    /// By default those of [`Instructions::detect`]; of what the processor lacks, the best that it has.
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { level: instructions.level(), ..self }
     }
 
     /// The layout.

@@ -22,6 +22,7 @@ pub trait Optimizer<R: Real> {
 ///
 /// Source: `[Rumelhart1986]` eq. 9, for single steps; with momentum 0 it is plain descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Momentum {
     /// Factor on the gradient.
     pub rate: f64,
@@ -48,6 +49,7 @@ impl<R: Real> Optimizer<R> for Momentum {
 /// Source: `[Kingma2015]` algorithm 1. Deviation: the powers of the decays are kept as `1 - beta^t`, by repeated products, so
 /// that a memory of zeros is the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Adam {
     /// Size of a step.
     pub rate: f64,

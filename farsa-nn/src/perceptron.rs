@@ -1,9 +1,11 @@
 //! A single layer of logistic units, for reflexes.
 
+use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
+use crate::controller::Controller;
+use crate::error::Error;
 use crate::kernel::{Layer, level};
-use crate::{Controller, Error};
 
 /// One layer of logistic units without memory: `O_i = sigma( beta_i + sum_j w_ji I_j )`,
 /// `sigma(x) = 1/(1 + exp(-slope*x))`.
@@ -70,9 +72,9 @@ impl<P: AsRef<[f32]>> Perceptron<P> {
 }
 
 impl<P> Perceptron<P> {
-    /// The same layer over the instructions of this level, as [`Network::with_level`](crate::Network::with_level).
-    pub fn with_level(self, level: Level) -> Self {
-        Self { level, ..self }
+    /// The same layer over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { level: instructions.level(), ..self }
     }
 }
 

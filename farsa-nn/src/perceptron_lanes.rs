@@ -1,10 +1,11 @@
 //! Many single layers side by side, one in each lane: for the lanes of a batch of worlds.
 
 use farsa_num::fearless_simd::{Level, Simd, f32x8};
-use farsa_num::{Scalar, logistic};
+use farsa_num::{Instructions, Scalar, logistic};
 
+use crate::error::Error;
 use crate::kernel::level;
-use crate::{Error, Perceptron};
+use crate::perceptron::Perceptron;
 
 /// [`Perceptron`]s of one shape and slope, each with parameters of its own, that step together.
 ///
@@ -55,9 +56,9 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
         }
     }
 
-    /// The same layers over the instructions of this level.
-    pub fn with_level(self, level: Level) -> Self {
-        Self { level, ..self }
+    /// The same layers over these instructions, with the same bits.
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { level: instructions.level(), ..self }
     }
 
     /// Number of layers.

@@ -1,6 +1,8 @@
 //! Bilateral symmetry: few genes, of which each fills every parameter that must be the same.
 
-use crate::{CtrnnLayout, CtrnnParameter, Error, Span};
+use crate::block::description::Span;
+use crate::ctrnn_layout::{CtrnnLayout, CtrnnParameter};
+use crate::error::Error;
 
 /// Which parameters of a [`Ctrnn`](crate::Ctrnn) are one gene, because the network is its own mirror image, because neurons
 /// are alike, or not at all, because a link does not exist.

@@ -8,9 +8,6 @@ use farsa_num::{Real, Scalar};
 
 use crate::kernel::Layer;
 
-/// Number of targets from which on this way is the faster one, with SSE2 and with AVX2.
-pub(crate) const WIDE: usize = 128;
-
 /// Number of sources that are added together. With fewer, sums are loaded and stored more often; with more, registers run out.
 const ROWS: usize = 8;
 
@@ -117,13 +114,12 @@ mod tests {
 
     use std::vec::Vec;
 
-    use farsa_num::fearless_simd::Level;
-    use farsa_num::{Domain, Stream, levels, logistic};
+    use farsa_num::{Domain, Instructions, Stream, logistic};
 
     use super::*;
-    use crate::kernel::{Lanes, step};
+    use crate::kernel::{Lanes, WIDE, step};
 
-    /// A layer's sums as a step, so that they are made at a level.
+    /// A layer's sums as a step, so that they are made by chosen instructions.
     struct Sums<'a>(Layer<'a>, &'a mut [f32]);
 
     impl Lanes for Sums<'_> {
@@ -140,7 +136,7 @@ mod tests {
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
     }
 
-    /// Compares sums and responses of the first `wanted` targets at each level with plain loops.
+    /// Compares sums and responses of the first `wanted` targets by each instruction set with plain loops.
     fn check(targets: usize, wanted: usize, biases: &[f32], sources: [(&[f32], &[f32]); 2]) {
         let sums: Vec<f32> = (0..wanted)
             .map(|i| {
@@ -154,9 +150,10 @@ mod tests {
             })
             .collect();
         let responses: Vec<f32> = sums.iter().map(|sum| logistic(0.2 * sum)).collect();
-        for level in levels(Level::new()) {
+        for instructions in Instructions::available() {
+            let level = instructions.level();
             let case = std::format!(
-                "{wanted} of {targets} targets, {} biases, {:?} sources at {level:?}",
+                "{wanted} of {targets} targets, {} biases, {:?} sources at {instructions:?}",
                 biases.len(),
                 sources.map(|(x, _)| x.len()),
             );

@@ -2,39 +2,74 @@
 
 use farsa_nn::Activation;
 
-/// The finite floats in ascending order, every `stride`-th and the greatest.
+/// The finite floats in ascending order: pairs of neighbours, every `stride`-th pair, so that `1 / stride` of all floats are
+/// visited, and both ends.
+///
+/// Neighbours, because a fall of one unit between two of them is lost in the rise between floats farther apart.
 fn each(stride: usize, mut visit: impl FnMut(f32)) {
-    let most = f32::MAX.to_bits();
+    let pairs = || (0..f32::INFINITY.to_bits()).step_by(2 * stride);
     visit(f32::MIN);
-    (0..=most).rev().step_by(stride).for_each(|bits| visit(-f32::from_bits(bits)));
-    (0..=most).step_by(stride).for_each(|bits| visit(f32::from_bits(bits)));
+    pairs().rev().for_each(|bits| [bits + 1, bits].into_iter().for_each(|bits| visit(-f32::from_bits(bits))));
+    pairs().for_each(|bits| [bits, bits + 1].into_iter().for_each(|bits| visit(f32::from_bits(bits))));
     visit(f32::MAX);
+}
+
+/// Where a function first falls, or leaves its range, over the floats that [`each`] visits.
+fn first_miss(stride: usize, of: impl Fn(f32) -> f32, [low, high]: [f32; 2]) -> Option<f32> {
+    let (mut most, mut last, mut miss) = (f32::NEG_INFINITY, f32::NEG_INFINITY, None);
+    each(stride, |x| {
+        assert!(last <= x, "{x} after {last}");
+        last = x;
+        let y = of(x);
+        let holds = low <= y && y <= high && most <= y;
+        if !holds && miss.is_none() {
+            miss = Some(x);
+        }
+        most = y;
+    });
+    miss
 }
 
 fn holds(stride: usize) {
     for activation in Activation::ALL {
-        let (low, high) = match activation {
-            Activation::Logistic | Activation::Step => (0.0, 1.0),
-            Activation::Tanh => (-1.0, 1.0),
-            Activation::Linear => (f32::MIN, f32::MAX),
-            Activation::Rectified => (0.0, f32::MAX),
+        let range = match activation {
+            Activation::Logistic | Activation::Step => [0.0, 1.0],
+            Activation::Tanh => [-1.0, 1.0],
+            Activation::Linear => [f32::MIN, f32::MAX],
+            Activation::Rectified => [0.0, f32::MAX],
         };
-        let (mut most, mut last) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
-        each(stride, |x| {
-            assert!(last <= x, "{x} after {last}");
-            last = x;
-            let y = activation.of(x);
-            assert!(low <= y && y <= high, "{activation} of {x} is {y}");
-            assert!(most <= y, "{activation} of {x} is {y}, and was {most} before");
-            most = y;
-        });
-        assert_eq!(most, activation.of(f32::MAX));
+        if let Some(x) = first_miss(stride, |x| activation.of(x), range) {
+            panic!(
+                "{activation} of {x} is {}, and {} of the float before",
+                activation.of(x),
+                activation.of(x.next_down())
+            );
+        }
     }
 }
 
 #[test]
-fn every_64th_float() {
+fn every_64th_pair_of_floats() {
     holds(64);
+}
+
+#[test]
+fn a_fall_between_neighbours_is_seen() {
+    // The logistic function of values 2, which falls by a unit at one of 20 000 floats.
+    let logistic = |x: f32| {
+        let e = farsa_num::exp(-x.abs());
+        if x < 0.0 { e / (1.0 + e) } else { 1.0 / (1.0 + e) }
+    };
+    let x = first_miss(64, logistic, [0.0, 1.0]).expect("it falls");
+    assert_eq!(logistic(x), logistic(x.next_down()).next_down());
+
+    // One fall, by a unit, between a float that is visited and the next.
+    let place = f32::from_bits(2 * 64 * 8_000_000);
+    let falling = |x: f32| if x == place.next_up() { place.next_down() } else { x };
+    let range = [f32::MIN, f32::MAX];
+    assert_eq!(first_miss(64, falling, range), Some(place.next_up()));
+    assert_eq!(first_miss(64, |x| -falling(-x), range), Some(-place));
+    assert_eq!(first_miss(64, |x| x, [f32::MIN, 1.0]), Some(1.0_f32.next_up()));
 }
 
 #[test]

@@ -4,8 +4,7 @@ use farsa_nn::{
     Activation, Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, Controller, Error, EvonetRanges, Group,
     Layout, Leak, Lesion, Lesioned, Network, Neurons, ParameterKind, Plan, Span,
 };
-use farsa_num::fearless_simd::Level;
-use farsa_num::{Domain, Stream, levels};
+use farsa_num::{Domain, Instructions, Stream};
 use proptest::prelude::*;
 
 /// What a neuron is, and its own parameters.
@@ -150,9 +149,9 @@ proptest! {
         let parameters = drawn(layout, seed);
         let mut stream = Stream::new(seed, Domain::Sensor, 0, 0, 0);
         let xs: Vec<Vec<f32>> = (0..6).map(|_| (0..inputs).map(|_| stream.range(-2.0, 2.0)).collect()).collect();
-        for (leak, level) in Leak::ALL.into_iter().flat_map(|leak| levels(Level::new()).map(move |level| (leak, level))) {
+        for (leak, instructions) in Leak::ALL.into_iter().flat_map(|leak| Instructions::available().map(move |instructions| (leak, instructions))) {
             let network = BlockNetwork::new(layout, leak, &parameters, state(layout));
-            let mut network = network?.with_level(level);
+            let mut network = network?.with_instructions(instructions);
             let mut oracle = Oracle::new(layout, leak, &parameters);
             let mut y = vec![f32::NAN; outputs];
             for x in &xs {
@@ -162,7 +161,7 @@ proptest! {
                 if oracle.activations.iter().any(|a| a.is_nan()) {
                     break;
                 }
-                prop_assert_eq!(bits(network.activations()), bits(&oracle.activations), "{:?} {:?}", leak, level);
+                prop_assert_eq!(bits(network.activations()), bits(&oracle.activations), "{:?} {:?}", leak, instructions);
                 prop_assert_eq!(bits(&y), bits(&expected));
             }
         }
@@ -368,6 +367,55 @@ fn a_lesion_holds_what_it_is_told() -> Result<(), Error> {
     whole.step(&[1.0], &mut z);
     assert_eq!((y, without.network().hidden()), (z, whole.hidden()));
     assert_eq!(without.into_network().hidden().len(), 9);
+    Ok(())
+}
+
+#[test]
+fn an_architecture_has_what_it_is_asked_for() {
+    // Weights, biases, gains, leaks.
+    let counts = |architecture: Architecture| {
+        let plan = architecture.plan();
+        [BlockParameter::Weight, BlockParameter::Bias, BlockParameter::Gain, BlockParameter::Leak]
+            .map(|kind| plan.layout().range(kind).len())
+    };
+    let plain = Architecture::elman(3, 4, 2);
+    assert_eq!(counts(plain), [12 + 16 + 8, 6, 0, 0]);
+    assert_eq!(counts(plain.with_leaks()), [36, 6, 0, 4]);
+    assert_eq!(counts(plain.with_output_leaks()), [36, 6, 0, 2]);
+    assert_eq!(counts(plain.with_gains()), [36, 6, 4, 0]);
+    assert_eq!(counts(plain.without_hidden_biases()), [36, 2, 0, 0]);
+    assert_eq!(counts(plain.without_output_biases()), [36, 4, 0, 0]);
+    assert_eq!(counts(plain.with_inputs_to_outputs()), [36 + 6, 6, 0, 0]);
+    assert_eq!(counts(plain.with_recurrent_outputs()), [36 + 4, 6, 0, 0]);
+    assert_eq!(counts(Architecture::jordan(3, 4, 2)), [12 + 8 + 8, 6, 0, 0]);
+    assert_eq!(counts(Architecture::feed_forward(3, 4, 2)), [12 + 8, 6, 0, 0]);
+    assert_eq!(counts(Architecture::fully_recurrent(3, 4, 2)), [18 + 36, 6, 0, 0]);
+    // Of whom: a plan's groups are inputs, hidden neurons, outputs.
+    let has = |architecture: Architecture, has: fn(&Group) -> bool| {
+        let plan = architecture.plan();
+        plan.layout().groups().iter().map(has).collect::<Vec<_>>()
+    };
+    assert_eq!(has(plain.with_output_leaks(), |group| group.leak), [false, false, true]);
+    assert_eq!(has(plain.without_hidden_biases(), |group| group.bias), [false, false, true]);
+    assert_eq!(has(plain.with_slope(0.3), |group| group.slope == 0.3), [false, true, true]);
+}
+
+#[test]
+fn hidden_neurons_and_outputs_have_the_functions_they_are_given() -> Result<(), Error> {
+    for (hidden, output) in [
+        (Activation::Tanh, Activation::Linear),
+        (Activation::Linear, Activation::Tanh),
+        (Activation::Rectified, Activation::Step),
+    ] {
+        let plan = Architecture::feed_forward(1, 1, 1).with_activations(hidden, output).plan();
+        let mut network = BlockNetwork::new(plan.layout(), Leak::Filter, [0.5; 4], state(plan.layout()))?;
+        for x in [-3.0_f32, -1.0, 0.25, 2.0] {
+            let mut y = [f32::NAN];
+            network.step(&[x], &mut y);
+            let expected = output.of(0.5 + 0.5 * hidden.of(0.5 + 0.5 * x));
+            assert_eq!(y, [expected], "{hidden} and {output} of {x}");
+        }
+    }
     Ok(())
 }
 

@@ -1,8 +1,7 @@
 //! The continuous-time network against loops written from its equations, cases known in closed form, and properties.
 
 use farsa_nn::{Activation, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Error, Integrator, Lesion, Lesioned};
-use farsa_num::fearless_simd::Level;
-use farsa_num::{Domain, Stream, levels};
+use farsa_num::{Domain, Instructions, Stream};
 use proptest::prelude::*;
 
 /// The equations of the source, index by index, with vectors of their own.
@@ -136,15 +135,15 @@ prop_compose! {
 proptest! {
     #[test]
     fn equals_the_oracle_bit_for_bit((layout, time_step, parameters, inputs) in any_case()) {
-        for level in levels(Level::new()) {
-            let mut network = Ctrnn::new(layout, time_step, &parameters, state(layout))?.with_level(level);
+        for instructions in Instructions::available() {
+            let mut network = Ctrnn::new(layout, time_step, &parameters, state(layout))?.with_instructions(instructions);
             let mut oracle = Oracle::new(layout, time_step, &parameters);
             let mut y = vec![f32::NAN; layout.outputs()];
             for x in &inputs {
                 network.step(x, &mut y);
-                prop_assert_eq!(bits(&y), bits(&oracle.step(x)), "{:?}", level);
-                prop_assert_eq!(bits(network.states()), bits(&oracle.y), "{:?}", level);
-                prop_assert_eq!(bits(network.neuron_outputs()), bits(&oracle.outputs(&oracle.y)), "{:?}", level);
+                prop_assert_eq!(bits(&y), bits(&oracle.step(x)), "{:?}", instructions);
+                prop_assert_eq!(bits(network.states()), bits(&oracle.y), "{:?}", instructions);
+                prop_assert_eq!(bits(network.neuron_outputs()), bits(&oracle.outputs(&oracle.y)), "{:?}", instructions);
             }
         }
     }
@@ -289,14 +288,18 @@ fn every_remainder_equals_the_oracle() -> Result<(), Error> {
         for integrator in Integrator::ALL {
             let layout = CtrnnLayout::new(3, n, n.min(5)).with_integrator(integrator);
             let parameters = drawn(layout, n as u64);
-            for level in levels(Level::new()) {
-                let mut network = Ctrnn::new(layout, 0.1, &parameters, state(layout))?.with_level(level);
+            for instructions in Instructions::available() {
+                let mut network = Ctrnn::new(layout, 0.1, &parameters, state(layout))?.with_instructions(instructions);
                 let mut oracle = Oracle::new(layout, 0.1, &parameters);
                 let mut y = vec![f32::NAN; n.min(5)];
                 for x in [[1.0, -4.0, 0.3], [0.0, 9.0, -2.0]] {
                     network.step(&x, &mut y);
-                    assert_eq!(bits(&y), bits(&oracle.step(&x)), "{n} neurons, {integrator} at {level:?}");
-                    assert_eq!(bits(network.states()), bits(&oracle.y), "{n} neurons, {integrator} at {level:?}");
+                    assert_eq!(bits(&y), bits(&oracle.step(&x)), "{n} neurons, {integrator} at {instructions:?}");
+                    assert_eq!(
+                        bits(network.states()),
+                        bits(&oracle.y),
+                        "{n} neurons, {integrator} at {instructions:?}"
+                    );
                 }
             }
         }

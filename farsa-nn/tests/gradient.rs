@@ -162,7 +162,6 @@ fn a_memory_is_learned_by_every_reading_and_both_optimizers() {
         // The network itself does it, from the rounded parameters.
         let single: Vec<f32> = adam.parameters().iter().map(|p| *p as f32).collect();
         let layout = Layout::new(2, 5, 1).with_slope(1.0);
-        assert!(single[..layout.range(ParameterKind::Leak).start].iter().all(|w| w.abs() <= 8.0));
         let mut network = Network::new(layout, leak, single, vec![0.0; layout.state_len()]).expect("leaks in [0, 1]");
         for (x, wanted) in flags() {
             network.reset();
@@ -171,6 +170,46 @@ fn a_memory_is_learned_by_every_reading_and_both_optimizers() {
             assert!((y[0] - wanted[0]).abs() < 0.2, "{leak}: {} for {}", y[0], wanted[0]);
         }
     }
+}
+
+#[test]
+fn weights_and_biases_reach_their_limit_and_stay_within() {
+    let largest = |learner: &Learner<f64, Adam>| {
+        let leaks = Layout::new(2, 5, 1).range(ParameterKind::Leak).start;
+        learner.parameters()[..leaks].iter().fold(0.0, |most: f64, w| most.max(w.abs()))
+    };
+    for limit in [1.5, 3.0] {
+        let mut free = learner(Leak::Filter, Adam::new(0.1));
+        let mut kept = free.clone().with_limit(limit);
+        let mut reached = false;
+        for _ in 0..200 {
+            learn(&mut kept, 1);
+            assert!(largest(&kept) <= limit, "{} of {limit}", largest(&kept));
+            reached |= largest(&kept) == limit;
+        }
+        learn(&mut free, 200);
+        assert!(reached && largest(&free) > limit, "{limit}: {reached}, without it {}", largest(&free));
+    }
+}
+
+/// A step of plain descent is the gradient itself.
+#[test]
+fn long_gradients_are_shortened_and_short_ones_are_not() {
+    let descent = Momentum { rate: 1.0, momentum: 0.0 };
+    let start = learner(Leak::Filter, descent);
+    let step = |mut learner: Learner<f64, Momentum>| -> Vec<f64> {
+        learn(&mut learner, 1);
+        learner.parameters().iter().zip(start.parameters()).map(|(p, start)| p - start).collect()
+    };
+    let length = |step: &[f64]| step.iter().map(|d| d * d).sum::<f64>().sqrt();
+    let free = step(start.clone());
+    assert!(length(&free) > 0.02, "{}", length(&free));
+    let shortened = step(start.clone().with_longest(0.01));
+    assert!((length(&shortened) - 0.01).abs() < 1e-12, "{}", length(&shortened));
+    for (short, long) in shortened.iter().zip(&free) {
+        assert!((short - long * 0.01 / length(&free)).abs() < 1e-12, "{short} of {long}");
+    }
+    assert_eq!(step(start.clone().with_longest(1.01 * length(&free))), free);
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! The network against loops written from its equations, hand-computed cases and properties.
 
 use farsa_nn::{Controller, Error, Layout, Leak, Network, ParameterKind};
-use farsa_num::fearless_simd::Level;
-use farsa_num::levels;
+use farsa_num::Instructions;
 use proptest::prelude::*;
 
 const LABELS: Layout = Layout::new(29, 12, 23);
@@ -91,14 +90,14 @@ prop_compose! {
 proptest! {
     #[test]
     fn equals_the_oracle_bit_for_bit((layout, parameters, inputs) in any_case()) {
-        for (leak, level) in Leak::ALL.into_iter().flat_map(|leak| levels(Level::new()).map(move |level| (leak, level))) {
-            let mut network = Network::new(layout, leak, &parameters, state(layout))?.with_level(level);
+        for (leak, instructions) in Leak::ALL.into_iter().flat_map(|leak| Instructions::available().map(move |instructions| (leak, instructions))) {
+            let mut network = Network::new(layout, leak, &parameters, state(layout))?.with_instructions(instructions);
             let mut oracle = Oracle::new(layout, leak, &parameters);
             let mut y = vec![f32::NAN; layout.outputs()];
             for x in &inputs {
                 network.step(x, &mut y);
-                prop_assert_eq!(bits(&y), bits(&oracle.step(x)), "{:?}", level);
-                prop_assert_eq!(bits(network.hidden()), bits(&oracle.hidden), "{:?}", level);
+                prop_assert_eq!(bits(&y), bits(&oracle.step(x)), "{:?}", instructions);
+                prop_assert_eq!(bits(network.hidden()), bits(&oracle.hidden), "{:?}", instructions);
                 prop_assert!(y.iter().chain(network.hidden()).all(|v| (0.0..=1.0).contains(v)));
             }
         }
@@ -182,19 +181,20 @@ proptest! {
 #[test]
 fn every_remainder_equals_the_oracle() -> Result<(), Error> {
     const SIZES: [usize; 14] = [0, 1, 2, 7, 8, 9, 15, 16, 17, 24, 31, 33, 47, 1000];
-    println!("levels that ran: {:?}", levels(Level::new()).collect::<Vec<_>>());
+    println!("instructions that ran: {:?}", Instructions::available().collect::<Vec<_>>());
     for (hidden, outputs) in SIZES.into_iter().flat_map(|h| SIZES.map(|o| (h, o))) {
         let layout = Layout::new(3, hidden, outputs);
         let genes: Vec<f32> = (0..layout.parameter_count()).map(|i| (i * 7919 % 1009) as f32 / 1008.0).collect();
         let parameters = decode(layout, &genes);
-        for level in levels(Level::new()) {
-            let mut network = Network::new(layout, Leak::Filter, &parameters, state(layout))?.with_level(level);
+        for instructions in Instructions::available() {
+            let mut network =
+                Network::new(layout, Leak::Filter, &parameters, state(layout))?.with_instructions(instructions);
             let mut oracle = Oracle::new(layout, Leak::Filter, &parameters);
             let mut y = vec![f32::NAN; outputs];
             for x in [[1.0, -40.0, 0.3], [0.0, 9.0, -2.0]] {
                 network.step(&x, &mut y);
-                assert_eq!(bits(&y), bits(&oracle.step(&x)), "3-{hidden}-{outputs} at {level:?}");
-                assert_eq!(bits(network.hidden()), bits(&oracle.hidden), "3-{hidden}-{outputs} at {level:?}");
+                assert_eq!(bits(&y), bits(&oracle.step(&x)), "3-{hidden}-{outputs} at {instructions:?}");
+                assert_eq!(bits(network.hidden()), bits(&oracle.hidden), "3-{hidden}-{outputs} at {instructions:?}");
             }
         }
     }

@@ -1,8 +1,7 @@
 //! The single layer against its equation, and through the trait.
 
 use farsa_nn::{Controller, Error, Perceptron, PerceptronLanes};
-use farsa_num::fearless_simd::Level;
-use farsa_num::levels;
+use farsa_num::Instructions;
 use proptest::prelude::*;
 
 proptest! {
@@ -16,8 +15,8 @@ proptest! {
         )),
         slope in 0.1_f32..2.0,
     ) {
-        for level in levels(Level::new()) {
-            let mut layer = Perceptron::new(inputs, outputs, slope, &parameters[..])?.with_level(level);
+        for instructions in Instructions::available() {
+            let mut layer = Perceptron::new(inputs, outputs, slope, &parameters[..])?.with_instructions(instructions);
             let mut y = vec![f32::NAN; outputs];
             layer.step(&x, &mut y);
             for i in 0..outputs {
@@ -25,7 +24,7 @@ proptest! {
                 for j in 0..inputs {
                     net += parameters[j * outputs + i] * x[j];
                 }
-                prop_assert_eq!(y[i].to_bits(), farsa_num::logistic(slope * net).to_bits(), "{:?}", level);
+                prop_assert_eq!(y[i].to_bits(), farsa_num::logistic(slope * net).to_bits(), "{:?}", instructions);
             }
         }
     }
@@ -41,8 +40,8 @@ proptest! {
         let mut draw = |len: usize| (0..len).map(|_| stream.range(-6.0, 6.0)).collect::<Vec<f32>>();
         let genomes: Vec<Vec<f32>> = (0..lanes).map(|_| draw(count)).collect();
         let x = draw(inputs * lanes);
-        for level in levels(Level::new()) {
-            let mut together = PerceptronLanes::new(inputs, outputs, 0.7, lanes, vec![0.0; count * lanes])?.with_level(level);
+        for instructions in Instructions::available() {
+            let mut together = PerceptronLanes::new(inputs, outputs, 0.7, lanes, vec![0.0; count * lanes])?.with_instructions(instructions);
             for (lane, genome) in genomes.iter().enumerate() {
                 together.set_lane(lane, genome)?;
             }
@@ -53,7 +52,7 @@ proptest! {
                 let mut alone = vec![f32::NAN; outputs];
                 Perceptron::new(inputs, outputs, 0.7, genome)?.step(&own, &mut alone);
                 for (i, y_alone) in alone.iter().enumerate() {
-                    prop_assert_eq!(y[i * lanes + lane].to_bits(), y_alone.to_bits(), "{:?}", level);
+                    prop_assert_eq!(y[i * lanes + lane].to_bits(), y_alone.to_bits(), "{:?}", instructions);
                 }
             }
         }

@@ -7,6 +7,11 @@ use crate::scalar::{Real, Scalar};
 ///
 /// Infinity above ln of the largest number, 0 below ln of the smallest, NaN for NaN.
 ///
+/// ```
+/// assert!((farsa_num::exp(1.0_f64) - core::f64::consts::E).abs() < 1e-15);
+/// assert_eq!([-104.0_f32, 89.0].map(farsa_num::exp), [0.0, f32::INFINITY]);
+/// ```
+///
 /// Source: \[Tang1989\] in outline (x = k ln 2 + r by \[Cody1980\], a polynomial, 2^k). Deviations: no table; the polynomial
 /// is our own minimax fit on |r| <= 0.347; 2^k is applied as two factors, so that neither leaves the normal exponents.
 #[inline(always)]
@@ -47,6 +52,13 @@ pub fn exp<S: Scalar>(x: S) -> S {
 ///
 /// In [0, 1] for every number, NaN for NaN; in `f32` never falling. Below -ln of the largest number, where it would be
 /// subnormal, it is 0.
+///
+/// ```
+/// use farsa_num::logistic;
+///
+/// assert_eq!([-100.0_f32, 0.0, 100.0].map(logistic), [0.0, 0.5, 1.0]);
+/// assert_eq!(logistic(-2.0_f32), 0.11920292);
+/// ```
 #[inline(always)]
 pub fn logistic<S: Scalar>(x: S) -> S {
     let one = x.constant(1.0);

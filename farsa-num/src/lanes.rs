@@ -1,8 +1,6 @@
 //! The lane scalars: eight or sixteen worlds in one value.
 
-use fearless_simd::{
-    Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, mask32x8, mask32x16, u32x8, u32x16,
-};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, mask32x8, mask32x16, u32x8, u32x16};
 
 use crate::scalar::{Mask, Scalar};
 
@@ -92,21 +90,3 @@ macro_rules! lanes {
 
 lanes!(f32x8, mask32x8, u32x8, 8);
 lanes!(f32x16, mask32x16, u32x16, 16);
-
-/// Every instruction set that a processor with `best` runs, narrowest first, `best` last.
-///
-/// For tests of equality and for choosing a narrower one. `best` is `Level::new()` with `fearless_simd`'s feature `std`,
-/// else `Level::baseline()`; `fearless_simd::dispatch!` runs code at a level.
-pub fn levels(best: Level) -> impl Iterator<Item = Level> {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    let all = [
-        best.is_fallback().then_some(best),
-        best.as_sse2().map(Simd::level),
-        best.as_sse4_2().map(Simd::level),
-        best.as_avx2().map(Simd::level),
-        best.as_avx512().map(Simd::level),
-    ];
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    let all = [Some(best)];
-    all.into_iter().flatten()
-}

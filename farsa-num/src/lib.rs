@@ -4,22 +4,25 @@
 #[cfg(test)]
 extern crate std;
 
-mod angle;
-mod arc;
+mod atan;
 mod digest;
 mod exp;
+mod instructions;
 mod lanes;
 mod logarithm;
 mod philox;
 mod polynomial;
+#[cfg(feature = "rand_core")]
+mod rng;
 mod scalar;
+mod sin_cos;
 
-pub use angle::sin_cos;
-pub use arc::{acos, asin, atan2};
+pub use atan::{acos, asin, atan2};
 pub use digest::{Digest, crc32};
 pub use exp::{exp, logistic, tanh};
 pub use fearless_simd;
-pub use lanes::levels;
+pub use instructions::Instructions;
 pub use logarithm::ln;
 pub use philox::{Domain, Stream, philox};
 pub use scalar::{Mask, Real, Scalar};
+pub use sin_cos::sin_cos;

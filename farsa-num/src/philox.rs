@@ -1,7 +1,7 @@
 //! The one random generator: streams addressed by what they are for, not by who draws first.
 
-use crate::angle::sin_cos;
 use crate::logarithm::ln;
+use crate::sin_cos::sin_cos;
 
 /// What a stream's numbers are for; the number of each is part of every recorded run and never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,6 +19,8 @@ pub enum Domain {
     Mutation = 4,
     /// Initial states and noise of networks.
     Network = 5,
+    /// Everything else that a program draws: the stream of [`Stream::from_seed`].
+    General = 6,
 }
 
 /// Four 32-bit random words from a counter and a key: Philox4x32-10.
@@ -44,6 +46,17 @@ pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
 /// no block. It repeats after 2^34 words.
 ///
 /// The key is the seed's two halves (low first); the counter is (block, domain << 24 | trial, individual, generation).
+///
+/// ```
+/// use farsa_num::{Domain, Stream};
+///
+/// // Sensor noise of trial 3 of individual 17 in generation 120, whoever asks for it and in which order.
+/// let mut noise = Stream::new(42, Domain::Sensor, 3, 17, 120);
+/// let first = [noise.normal(), noise.normal()];
+/// assert_eq!(noise.position(), 4);
+/// noise.seek(0);
+/// assert_eq!(first, [noise.normal(), noise.normal()]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stream {
     key: [u32; 2],
@@ -68,6 +81,22 @@ impl Stream {
             words: [0; 4],
             drawn: 4,
         }
+    }
+
+    /// The stream of a seed for whatever has no place in a run, at its first word.
+    ///
+    /// It is `Stream::new(seed, Domain::General, 0, 0, 0)` and shares no block with the streams of a run of the same seed.
+    ///
+    /// ```
+    /// use farsa_num::Stream;
+    ///
+    /// let mut dice = Stream::from_seed(7);
+    /// let throws = [(); 6].map(|()| 1 + dice.below(6));
+    /// assert_eq!(throws, [2, 6, 4, 6, 3, 4]);
+    /// ```
+    #[inline]
+    pub const fn from_seed(seed: u64) -> Self {
+        Self::new(seed, Domain::General, 0, 0, 0)
     }
 
     /// Number of 32-bit words drawn so far, modulo 2^34.

@@ -30,6 +30,26 @@ pub trait Real: Scalar<Real = Self, Mask = bool, Simd = ()> + PartialOrd + Defau
 /// value: it compares to a [`Mask`] and selects. Every operation is one rounded IEEE operation per lane;
 /// nothing is fused or approximated. Functions over it are `#[inline(always)]`, so that they inherit the target
 /// features of the dispatch they are called from.
+///
+/// ```
+/// use farsa_num::Scalar;
+/// use farsa_num::fearless_simd::{Level, dispatch, f32x8};
+///
+/// /// The distance to a wall at 0, none behind it.
+/// #[inline(always)]
+/// fn distance<S: Scalar>(x: S) -> S {
+///     let wall = x.constant(0.0);
+///     S::select(x.lt(wall), wall, x)
+/// }
+///
+/// assert_eq!(distance(-0.5_f32), 0.0);
+/// dispatch!(Level::baseline(), simd => {
+///     let places = [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, -6.0];
+///     let mut distances = [0.0; 8];
+///     distance(f32x8::load(simd, &places)).store(&mut distances);
+///     assert_eq!(distances, [0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0]);
+/// });
+/// ```
 pub trait Scalar:
     Copy
     + Debug

@@ -1,7 +1,7 @@
 //! A lane computes what one lane alone computes, bit for bit, at every instruction set of this machine.
 
-use farsa_num::fearless_simd::{Level, dispatch, f32x8, f32x16};
-use farsa_num::{Mask, Scalar, exp, levels, logistic, sin_cos, tanh};
+use farsa_num::fearless_simd::{dispatch, f32x8, f32x16};
+use farsa_num::{Instructions, Mask, Scalar, exp, logistic, sin_cos, tanh};
 use proptest::prelude::*;
 
 /// Everything the crate computes of three numbers, in one order.
@@ -70,21 +70,16 @@ fn run<S: Scalar<Real = f32>>(simd: S::Simd, numbers: &[[f32; 3]]) -> Vec<[f32; 
     results
 }
 
-/// The levels of this machine; the emulated one of machines that have none takes the compiler many minutes.
-fn all_levels() -> Vec<Level> {
-    levels(Level::new()).collect()
-}
-
 fn assert_same(numbers: &[[f32; 3]]) {
     let alone = run::<f32>((), numbers);
-    for level in all_levels() {
-        let eight = dispatch!(level, simd => run::<f32x8<_>>(simd, numbers));
-        let sixteen = dispatch!(level, simd => run::<f32x16<_>>(simd, numbers));
+    for instructions in Instructions::available() {
+        let eight = dispatch!(instructions.level(), simd => run::<f32x8<_>>(simd, numbers));
+        let sixteen = dispatch!(instructions.level(), simd => run::<f32x16<_>>(simd, numbers));
         for (width, lanes) in [(8, eight), (16, sixteen)] {
             for ((abc, want), got) in numbers.iter().zip(&alone).zip(&lanes) {
                 for (i, (w, g)) in want.iter().zip(got).enumerate() {
                     let same = w.to_bits() == g.to_bits() || w.is_nan() && g.is_nan();
-                    assert!(same, "value {i} of {abc:?}: {w:?} alone, {g:?} in {width} lanes at {level:?}");
+                    assert!(same, "value {i} of {abc:?}: {w:?} alone, {g:?} in {width} lanes at {instructions:?}");
                 }
             }
         }
@@ -127,7 +122,7 @@ fn lanes_equal_one_lane_on_edges() {
             numbers.push([a, b, edges[numbers.len() * 7 % edges.len()]]);
         }
     }
-    println!("levels that ran: {:?}", all_levels());
+    println!("instructions that ran: {:?}", Instructions::available().collect::<Vec<_>>());
     assert_same(&numbers);
 }
 
@@ -166,23 +161,23 @@ fn lanes_come_from_a_slice_and_go_back() {
         assert!((0..20).all(|i| to[i] == if i < lanes { 2.0 * from[i] } else { -1.0 }));
     };
     check(1, &|to| round::<f32>((), &from, to));
-    for level in all_levels() {
-        check(8, &|to| dispatch!(level, simd => round::<f32x8<_>>(simd, &from, to)));
-        check(16, &|to| dispatch!(level, simd => round::<f32x16<_>>(simd, &from, to)));
+    for instructions in Instructions::available() {
+        check(8, &|to| dispatch!(instructions.level(), simd => round::<f32x8<_>>(simd, &from, to)));
+        check(16, &|to| dispatch!(instructions.level(), simd => round::<f32x16<_>>(simd, &from, to)));
     }
 }
 
 #[test]
 fn masks_tell_any_all_and_which() {
-    for level in all_levels() {
-        dispatch!(level, simd => {
+    for instructions in Instructions::available() {
+        dispatch!(instructions.level(), simd => {
             let mut x = f32x8::splat(simd, 1.0);
             let one = x;
             assert!(x.le(one).all() && x.le(one).any() && !x.lt(one).any() && !x.lt(one).all());
             x.set_lane(5, 0.0);
             let mask = x.lt(one);
             assert!(mask.any() && !mask.all());
-            assert!((0..20).all(|i| Mask::lane(mask, i) == (i == 5)), "{level:?}");
+            assert!((0..20).all(|i| Mask::lane(mask, i) == (i == 5)), "{instructions:?}");
         });
     }
     assert!(Mask::lane(true, 0) && !Mask::lane(true, 1) && !Mask::lane(false, 0));

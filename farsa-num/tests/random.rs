@@ -36,6 +36,7 @@ fn a_stream_is_philox_of_its_address() {
         (Domain::InitialGenome, 3),
         (Domain::Mutation, 4),
         (Domain::Network, 5),
+        (Domain::General, 6),
     ];
     for (domain, number) in domains {
         let mut stream = Stream::new(0x1111_2222_3333_4444, domain, 0xAB_CDEF, 55, 66);
@@ -44,6 +45,49 @@ fn a_stream_is_philox_of_its_address() {
             assert_eq!(words, [(); 4].map(|()| stream.next_u32()));
         }
     }
+}
+
+#[test]
+fn a_seed_alone_is_a_stream_of_its_own() {
+    let mut stream = Stream::from_seed(0x1111_2222_3333_4444);
+    assert_eq!(stream, Stream::new(0x1111_2222_3333_4444, Domain::General, 0, 0, 0));
+    let words = philox([0, 6 << 24, 0, 0], [0x3333_4444, 0x1111_2222]);
+    assert_eq!([(); 4].map(|()| stream.next_u32()), words);
+    // Known answers: they never change.
+    let mut stream = Stream::from_seed(2007);
+    assert_eq!([(); 4].map(|()| stream.next_u32()), [1458365785, 247510452, 2115945908, 3279009575]);
+}
+
+/// Algorithm 5 of \[Lemire2019\] by division, over the words of a stream: the number, and how many words it took.
+fn below_by_division(stream: &mut Stream, n: u32) -> (u32, u32) {
+    let unbiased = u64::from(n) * ((1 << 32) / u64::from(n));
+    for words in 1.. {
+        let product = u64::from(stream.next_u32()) * u64::from(n);
+        // The low half of the product is refused below 2^32 mod n.
+        if u64::from(product as u32) >= (1 << 32) - unbiased {
+            return ((product >> 32) as u32, words);
+        }
+    }
+    unreachable!()
+}
+
+#[test]
+fn below_refuses_what_would_be_drawn_too_often() {
+    // Of 2^32 words a quarter is refused.
+    let n = 3 << 30;
+    let (mut stream, mut refused) = (stream(), 0);
+    for _ in 0..1000 {
+        let mut same = stream;
+        let (expected, words) = below_by_division(&mut same, n);
+        assert_eq!(stream.below(n), expected);
+        assert_eq!(stream, same, "{words} words");
+        refused += words - 1;
+    }
+    assert!((200..500).contains(&refused), "{refused} of a thousand");
+    // Known answers; a word is refused before the second number.
+    let mut stream = Stream::from_seed(1);
+    let drawn = [(); 4].map(|()| (stream.below(n), stream.position()));
+    assert_eq!(drawn, [(1794326589, 1), (1116488581, 3), (2470284264, 4), (291767875, 5)]);
 }
 
 #[test]

@@ -10,8 +10,7 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileRobot,
     Near, PairContact, PairId, Planar, Pose, Rays, Sight, Snapshot, Twist, World as _,
 };
-use farsa_num::fearless_simd::Level;
-use farsa_num::{Digest, Domain, Stream};
+use farsa_num::{Digest, Domain, Instructions, Stream};
 use farsa_physics::arena::{
     Area, Arena, ArenaError, Batch, CollisionRule, Convex, Cylinder, FreePlace, Lane, Wall, World,
 };
@@ -144,9 +143,9 @@ fn equal(name: &str, arena: &Arena, steps: usize, holds: bool) {
     }
     println!("{name}: {touches} touches, {held} held in {WORLDS} x {steps} steps");
     assert!(touches > steps / 2 && (held > 0) == holds);
-    for level in Batch::levels(Level::new()) {
+    for instructions in Batch::instructions() {
         for lanes in [8, 16] {
-            let mut batch = Batch::new(arena, lanes, level).unwrap();
+            let mut batch = Batch::new(arena, lanes, instructions).unwrap();
             let mut scripts: Vec<Script> = (0..lanes).map(|lane| Script::new(arena, lane, holds)).collect();
             let mut own = truths[0].1.clone();
             for t in 0..steps {
@@ -156,7 +155,7 @@ fn equal(name: &str, arena: &Arena, steps: usize, holds: bool) {
                 batch.step();
                 for (lane, truth) in truths.iter().enumerate().take(lanes) {
                     let same = digest(&batch.lane(lane), &mut own) == truth.0[t];
-                    assert!(same, "{name}, {lanes} lanes, {level:?}: lane {lane} differs after step {t}");
+                    assert!(same, "{name}, {lanes} lanes, {instructions:?}: lane {lane} differs after step {t}");
                 }
             }
             for (robot, placed) in arena.robots.iter().enumerate() {
@@ -165,11 +164,15 @@ fn equal(name: &str, arena: &Arena, steps: usize, holds: bool) {
                 batch.infrared(robot, &mut ring);
                 for (lane, truth) in truths.iter().enumerate().take(lanes) {
                     for k in 0..sensors {
-                        assert_eq!(ring[k * lanes + lane].to_bits(), truth.2[robot][k].to_bits(), "{name} {level:?}");
+                        assert_eq!(
+                            ring[k * lanes + lane].to_bits(),
+                            truth.2[robot][k].to_bits(),
+                            "{name} {instructions:?}"
+                        );
                     }
                 }
             }
-            println!("{name}: {lanes} lanes of {level:?}, equal bits");
+            println!("{name}: {lanes} lanes of {instructions:?}, equal bits");
         }
     }
 }
@@ -230,7 +233,7 @@ fn readings_of_the_ring_are_the_models() {
 #[test]
 fn a_command_for_all_lanes_is_one_for_each() {
     let arena = khepera();
-    let [mut all, mut each] = [(); 2].map(|()| Batch::new(&arena, 8, Level::new()).unwrap());
+    let [mut all, mut each] = [(); 2].map(|()| Batch::new(&arena, 8, Instructions::detect()).unwrap());
     let values: Vec<f32> = (0..8).map(|i| i as f32 - 2.0).collect();
     all.command(ActuatorId(1), &values);
     all.command(ActuatorId(2), &values);
@@ -240,7 +243,7 @@ fn a_command_for_all_lanes_is_one_for_each() {
     all.step();
     each.step();
     assert_eq!(format!("{all:?}"), format!("{each:?}"));
-    assert_eq!(Batch::new(&arena, 12, Level::new()).err(), Some(ArenaError::Lanes { lanes: 12, nearest: 8 }));
+    assert_eq!(Batch::new(&arena, 12, Instructions::detect()).err(), Some(ArenaError::Lanes { lanes: 12, nearest: 8 }));
 }
 
 /// One lane of a batch as a world; its neighbours do something else.
@@ -366,7 +369,7 @@ fn a_lane_conforms() {
         bodies,
         ..Probe::numbered(0, [[0.0; 2]; 2])
     };
-    let make = || InLane(std::cell::RefCell::new(Batch::new(&arena, 8, Level::new()).unwrap()));
+    let make = || InLane(std::cell::RefCell::new(Batch::new(&arena, 8, Instructions::detect()).unwrap()));
     assert_eq!(check_world(make, &probe), Ok(()));
     assert_eq!(check_arrange(make, &probe), Ok(()));
     assert_eq!(check_rays(&make(), &probe.bodies, &[[0.1, 0.4, 0.05]], 1.0), Ok(()));
@@ -411,9 +414,9 @@ const STIRS: usize = 60;
 fn sensors_and_motors_conform_in_a_lane() {
     let arena = lively();
     let (robot, parts) = (&arena.robots[1].robot, arena.parts(1));
-    for level in Batch::levels(Level::new()) {
+    for instructions in Batch::instructions() {
         for lanes in [8, 16] {
-            let make = || InLane(std::cell::RefCell::new(Batch::new(&arena, lanes, level).unwrap()));
+            let make = || InLane(std::cell::RefCell::new(Batch::new(&arena, lanes, instructions).unwrap()));
             let (mut lane, mut alone) = (make(), World::new(&arena).unwrap());
             let mut here = every_sensor::<InLane>(robot, &parts);
             let mut there = every_sensor::<World>(robot, &parts);
@@ -423,7 +426,7 @@ fn sensors_and_motors_conform_in_a_lane() {
                 alone.step();
                 lane.step();
                 for (((name, _, here), (_, _, there)), awake) in here.iter_mut().zip(&mut there).zip(&mut awake) {
-                    let what = format!("{name}, {lanes} lanes of {level:?}, step {t}");
+                    let what = format!("{name}, {lanes} lanes of {instructions:?}, step {t}");
                     let [mut a, mut b] = [(); 2].map(|()| vec![f32::NAN; here.channels()]);
                     here.read(&lane, &mut a);
                     there.read(&alone, &mut b);
@@ -434,14 +437,14 @@ fn sensors_and_motors_conform_in_a_lane() {
                     }
                 }
             }
-            assert_eq!(awake, vec![true; here.len()], "{lanes} lanes of {level:?}");
+            assert_eq!(awake, vec![true; here.len()], "{lanes} lanes of {instructions:?}");
             let bodies: Vec<BodyId> = (0..5).map(BodyId).collect();
             for range in [0.2, 2.0] {
                 let places = [[0.1, 0.4], [0.45, 0.45], [0.3, 0.1], [0.6, 0.5]];
-                assert_eq!(check_planar(&lane, &bodies, &places, range), Ok(()), "{lanes} lanes of {level:?}");
+                assert_eq!(check_planar(&lane, &bodies, &places, range), Ok(()), "{lanes} lanes of {instructions:?}");
             }
             for (i, motor) in every_motor::<InLane>(robot, &parts).iter_mut().enumerate() {
-                assert_eq!(check_motor(motor.as_mut(), make), Ok(()), "motor {i}, {lanes} lanes of {level:?}");
+                assert_eq!(check_motor(motor.as_mut(), make), Ok(()), "motor {i}, {lanes} lanes of {instructions:?}");
             }
         }
     }

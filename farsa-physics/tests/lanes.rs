@@ -15,8 +15,7 @@ use farsa_body::{
     Kinematics, MassProperties, PairContact, PairId, Pose, Rays, Robot, Segment, ServoRange, Shape, Snapshot, Surface,
     Twist, World as _,
 };
-use farsa_num::fearless_simd::Level;
-use farsa_num::{Digest, Domain, Stream, sin_cos};
+use farsa_num::{Digest, Domain, Instructions, Stream, sin_cos};
 use farsa_physics::articulated::{Batch, LANES, Lane, Model, ModelError, Options, World};
 
 /// Control steps of every lane; ten times as many with `FARSA_LONG=1`.
@@ -145,16 +144,16 @@ fn every_lane_has_the_bits_of_the_world_alone() {
     // The lost lane forgets when it is refilled.
     assert!(truths[LOST.0].last.iter().all(|x| x.is_finite()));
     let mut ran = 0;
-    for level in Batch::levels(Level::new()) {
+    for instructions in Batch::instructions() {
         for lanes in LANES {
-            let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
-            let name = format!("{level:?}").split('(').next().unwrap().to_owned();
+            let mut batch = Batch::new(model.clone(), lanes, instructions).unwrap();
+            let name = format!("{instructions:?}").split('(').next().unwrap().to_owned();
             together(&name, &robot, &mut batch, &groups, &truths);
             ran += lanes * steps();
         }
     }
     println!("{ran} control steps in lanes");
-    assert!(ran >= 100_000 || Batch::levels(Level::new()).count() < 3);
+    assert!(ran >= 100_000 || Batch::instructions().count() < 3);
 }
 
 /// A small box over the edge of a large one, with friction against rolling.
@@ -194,7 +193,7 @@ fn a_box_moved_off_an_edge_forgets_how_it_rolled_there() {
     world.arranged();
     world.step();
     assert!(edges(world.state()).iter().all(|x| *x == 0.0), "rolling impulses left: {:?}", edges(world.state()));
-    for level in Batch::levels(Level::new()) {
+    for level in Batch::instructions() {
         for lanes in LANES {
             let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
             for lane in 0..lanes {
@@ -223,7 +222,7 @@ fn a_box_moved_off_an_edge_forgets_how_it_rolled_there() {
 fn a_number_of_lanes_that_there_is_not_is_refused() {
     let model = model(&scene(), Options::default());
     for (lanes, nearest) in [(0, 8), (1, 8), (9, 8), (13, 16), (64, 16)] {
-        let error = Batch::new(model.clone(), lanes, Level::baseline()).unwrap_err();
+        let error = Batch::new(model.clone(), lanes, Instructions::baseline()).unwrap_err();
         assert_eq!(error, ModelError::Lanes { lanes, nearest });
     }
 }
@@ -236,7 +235,7 @@ struct Alone {
 
 impl Alone {
     fn new(model: &Model<f32>, lane: usize) -> Self {
-        Self { batch: RefCell::new(Batch::new(model.clone(), LANES[0], Level::new()).unwrap()), lane }
+        Self { batch: RefCell::new(Batch::new(model.clone(), LANES[0], Instructions::detect()).unwrap()), lane }
     }
     fn with<T>(&self, ask: impl FnOnce(&mut Lane<'_>) -> T) -> T {
         ask(&mut self.batch.borrow_mut().lane(self.lane))
@@ -357,7 +356,7 @@ fn a_lane_conforms() {
 #[test]
 fn a_cloned_batch_goes_on_with_the_same_bits() {
     let robot = scene();
-    let mut batch = Batch::new(model(&robot, Options::default()), 8, Level::new()).unwrap();
+    let mut batch = Batch::new(model(&robot, Options::default()), 8, Instructions::detect()).unwrap();
     for _ in 0..20 {
         batch.step();
     }

@@ -104,7 +104,7 @@ pub fn evaluator(config: Config) -> Result<InWorld<World, VehicleLife>, Error> {
     let arena = config.arena();
     let world = World::new(&arena).map_err(|error| Error::Other(format!("braitenberg: {error}")))?;
     let batch = move |lanes: Lanes| {
-        Batch::new(&arena, lanes.count(), lanes.level()).map_err(|error| Error::Other(error.to_string()))
+        Batch::new(&arena, lanes.count(), lanes.instructions()).map_err(|error| Error::Other(error.to_string()))
     };
     Ok(InWorld::new(world, VehicleLife::new(config)?).with_lanes(batch))
 }

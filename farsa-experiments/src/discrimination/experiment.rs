@@ -84,7 +84,7 @@ pub fn evaluator(config: Config) -> Result<InWorld<World, CylinderLife<Layer>>, 
     let (mut world, parked) = (config.world()?, config.parked());
     let life = life(config, &mut world)?;
     let batch = move |lanes: Lanes| {
-        Batch::new(&parked, lanes.count(), lanes.level()).map_err(|error| Error::Other(error.to_string()))
+        Batch::new(&parked, lanes.count(), lanes.instructions()).map_err(|error| Error::Other(error.to_string()))
     };
     Ok(InWorld::new(world, life).with_lanes(batch))
 }

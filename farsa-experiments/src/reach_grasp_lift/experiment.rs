@@ -62,8 +62,9 @@ pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, ReachTask>, Error
     let scene = Scene::new(config)?;
     let model = Model::new(&scene.robot, &scene.config.options()).map_err(|error| wrong(&error))?;
     let world = World::new(model.clone());
-    let batch =
-        move |lanes: Lanes| Batch::new(model.clone(), lanes.count(), lanes.level()).map_err(|error| wrong(&error));
+    let batch = move |lanes: Lanes| {
+        Batch::new(model.clone(), lanes.count(), lanes.instructions()).map_err(|error| wrong(&error))
+    };
     Ok(InWorld::new(world, ReachTask::new(scene)?).with_lanes(batch))
 }
 

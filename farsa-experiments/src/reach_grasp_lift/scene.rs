@@ -1,12 +1,12 @@
 //! The scene of `reach-grasp-lift`: how a trial starts in it, what the robot senses and does, and what the judge sees.
 
-use farsa_models::{Keyframe, MjcfOptions};
 use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, ChannelError, Channels, Contacts, Finger, Handles, JointId,
-    JointPosition, Joints, Kinematics, Motor, Muscles, PairId, Point, Pose, Robot, RobotError,
-    Sensor, ServoGroup, ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
+    JointPosition, Joints, Kinematics, Motor, Muscles, PairId, Point, Pose, Robot, RobotError, Sensor, ServoGroup,
+    ServoRange, Signal, Tabletop, TargetPosition, Touch, Twist,
 };
 use farsa_lab::{EpisodeId, Error};
+use farsa_models::{Keyframe, MjcfOptions};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::reach_grasp_lift::{config::Config, config::Displacement, config::TRIALS};

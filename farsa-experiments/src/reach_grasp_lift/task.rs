@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Recorder,
-};
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Recorder};
 use farsa_models::MjcfOptions;
 use farsa_nn::Network;
 

@@ -54,7 +54,7 @@ pub(crate) fn evaluator<M: Mission + Clone + 'static>(mission: M) -> Result<InWo
     }
     let batch = move |lanes: Lanes| {
         let arena = parked(arena.clone());
-        Batch::new(&arena, lanes.count(), lanes.level()).map_err(|error| Error::Other(error.to_string()))
+        Batch::new(&arena, lanes.count(), lanes.instructions()).map_err(|error| Error::Other(error.to_string()))
     };
     Ok(InWorld::new(world, TeamTask { life, layout, own: 0, bodies }).with_lanes(batch))
 }

@@ -1,7 +1,7 @@
 //! The settings that all experiments with walkers have, and how a walk is lived and told.
 
-use farsa_models::MjcfOptions;
 use farsa_lab::{ENGINE, Error, Note, Outcome, Setting, Settings};
+use farsa_models::MjcfOptions;
 
 use crate::walking::gait::End;
 use crate::walking::walker::Walker;

@@ -6,7 +6,7 @@ use std::process::{Child, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use farsa_num::fearless_simd::Level;
+use farsa_num::Instructions;
 
 use crate::tool::{Said, command, content, ok, own, results, say, scratch};
 
@@ -148,13 +148,8 @@ fn lanes() {
 }
 
 /// Whether the processor has AVX2 and AVX-512.
-#[cfg(target_arch = "x86_64")]
 fn wide() -> [bool; 2] {
-    [Level::new().as_avx2().is_some(), Level::new().as_avx512().is_some()]
-}
-#[cfg(not(target_arch = "x86_64"))]
-fn wide() -> [bool; 2] {
-    [false; 2]
+    [Instructions::Avx2, Instructions::Avx512].map(|wide| Instructions::available().any(|one| one == wide))
 }
 
 #[test]

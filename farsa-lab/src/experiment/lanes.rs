@@ -1,6 +1,6 @@
 //! How many lives a thread lives side by side, and by which instructions.
 
-use farsa_num::fearless_simd::Level;
+use farsa_num::Instructions;
 use farsa_physics::articulated::{Batch, LANES};
 use serde::{Deserialize, Serialize};
 
@@ -10,32 +10,32 @@ use crate::error::Error;
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes {
     count: usize,
-    level: Level,
+    instructions: Instructions,
 }
 
 impl Lanes {
     /// One life after the other.
     pub fn one() -> Self {
-        Self { count: 1, level: Level::baseline() }
+        Self { count: 1, instructions: Instructions::baseline() }
     }
 
-    /// So many lives side by side, 1 or one of [`LANES`], by the instructions of a level.
+    /// So many lives side by side, 1 or one of [`LANES`], by these instructions.
     ///
     /// # Errors
     /// [`Error::Usage`] for another number.
-    pub fn new(count: usize, level: Level) -> Result<Self, Error> {
+    pub fn new(count: usize, instructions: Instructions) -> Result<Self, Error> {
         let known = [1, LANES[0], LANES[1]];
         if !known.contains(&count) {
             let nearest = known.into_iter().min_by_key(|known| known.abs_diff(count)).unwrap_or(1);
             return Err(Error::Usage(format!("{count} lanes; the nearest number is {nearest}")));
         }
-        Ok(Self { count, level })
+        Ok(Self { count, instructions })
     }
 
     /// The most that pays on this machine.
     pub fn best() -> Self {
-        let level = Level::new();
-        Self { count: usual(level), level }
+        let instructions = Instructions::detect();
+        Self { count: usual(instructions), instructions }
     }
 
     /// Lives side by side.
@@ -44,13 +44,13 @@ impl Lanes {
     }
 
     /// The instruction set, where there is more than one life.
-    pub fn level(&self) -> Level {
-        self.level
+    pub fn instructions(&self) -> Instructions {
+        self.instructions
     }
 
     /// What was chosen, as the manifest tells it.
     pub(crate) fn told(&self) -> Told {
-        let simd = if self.count == 1 { "none" } else { name(self.level) };
+        let simd = if self.count == 1 { "none" } else { name(self.instructions) };
         Told { lanes: self.count, simd: simd.into() }
     }
 }
@@ -83,23 +83,17 @@ pub(crate) struct Wanted {
 pub(crate) const SIMD: [&str; 3] = ["baseline", "avx2", "avx512"];
 
 /// The name of an instruction set.
-fn name(level: Level) -> &'static str {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        if level.as_avx512().is_some() {
-            return SIMD[2];
-        }
-        if level.as_avx2().is_some() {
-            return SIMD[1];
-        }
+fn name(instructions: Instructions) -> &'static str {
+    match instructions {
+        Instructions::Avx512 => SIMD[2],
+        Instructions::Avx2 => SIMD[1],
+        _ => SIMD[0],
     }
-    let _ = level;
-    SIMD[0]
 }
 
-/// How many worlds a level steps at the least cost for each.
-fn usual(level: Level) -> usize {
-    if name(level) == SIMD[2] { LANES[1] } else { LANES[0] }
+/// How many worlds an instruction set steps at the least cost for each.
+fn usual(instructions: Instructions) -> usize {
+    if name(instructions) == SIMD[2] { LANES[1] } else { LANES[0] }
 }
 
 impl Wanted {
@@ -112,17 +106,17 @@ impl Wanted {
     /// # Errors
     /// [`Error::Usage`] for instructions that it lacks.
     pub(crate) fn on_this_machine(self) -> Result<Lanes, Error> {
-        let levels: Vec<Level> = Batch::levels(Level::new()).collect();
+        let available: Vec<Instructions> = Batch::instructions().collect();
         let found = match self.simd {
-            None => levels.last(),
-            Some(wanted) => levels.iter().find(|level| name(**level) == wanted),
+            None => available.last(),
+            Some(wanted) => available.iter().find(|one| name(**one) == wanted),
         };
-        let Some(&level) = found else {
-            let names: Vec<&str> = levels.iter().map(|level| name(*level)).collect();
+        let Some(&instructions) = found else {
+            let names: Vec<&str> = available.iter().map(|one| name(*one)).collect();
             let wanted = self.simd.unwrap_or_default();
             return Err(Error::Usage(format!("--simd {wanted}: this processor has {} only", names.join(", "))));
         };
-        Ok(Lanes { count: self.count.unwrap_or_else(|| usual(level)), level })
+        Ok(Lanes { count: self.count.unwrap_or_else(|| usual(instructions)), instructions })
     }
 }
 
@@ -139,7 +133,7 @@ mod tests {
         assert_eq!(Wanted::ONE.on_this_machine().unwrap().told(), Told::default());
         let error = Wanted { count: None, simd: Some("neon") }.on_this_machine().unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        let odd = Lanes::new(13, Level::new()).unwrap_err().to_string();
+        let odd = Lanes::new(13, Instructions::detect()).unwrap_err().to_string();
         assert_eq!(odd, "13 lanes; the nearest number is 16");
         assert!(error.to_string().starts_with("--simd neon: this processor has baseline"), "{error}");
     }

@@ -4,12 +4,12 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
+use farsa_num::Instructions;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileParts,
     Near, PairContact, PairId, Planar, Pose, Rays, Sight, Snapshot, Twist, World as _,
 };
-use farsa_num::fearless_simd::Level;
 
 use crate::arena::description::Arena;
 use crate::arena::error::ArenaError;
@@ -28,12 +28,12 @@ use crate::articulated::lockstep::LANES;
 ///
 /// ```
 /// use farsa_body::{Actuated, Kinematics, MobileRobot};
-/// use farsa_num::fearless_simd::Level;
+/// use farsa_num::Instructions;
 /// use farsa_physics::arena::{Arena, Batch};
 ///
 /// let mut arena = Arena::walled(0.4, 0.4);
 /// arena.add_robot(MobileRobot::khepera(), [0.1, 0.2], 0.0);
-/// let mut batch = Batch::new(&arena, 8, Level::baseline())?;
+/// let mut batch = Batch::new(&arena, 8, Instructions::baseline())?;
 /// let parts = batch.parts(0);
 /// for i in 0..8 {
 ///     parts.motors.map(|motor| batch.lane(i).command(motor, [i as f32, 0.0]));
@@ -54,11 +54,11 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// So many worlds, 8 or 16, stepped by the instructions of `level`; see [`levels`](crate::articulated::Batch::levels).
+    /// So many worlds, 8 or 16, stepped by these instructions; see [`instructions`](crate::articulated::Batch::instructions).
     ///
     /// # Errors
     /// What is wrong with the description, or [`ArenaError::Lanes`] for another number of worlds.
-    pub fn new(arena: &Arena, lanes: usize, level: Level) -> Result<Self, ArenaError> {
+    pub fn new(arena: &Arena, lanes: usize, instructions: Instructions) -> Result<Self, ArenaError> {
         if !LANES.contains(&lanes) {
             let nearest = LANES.into_iter().min_by_key(|known| known.abs_diff(lanes)).unwrap_or(LANES[0]);
             return Err(ArenaError::Lanes { lanes, nearest });
@@ -67,12 +67,12 @@ impl Batch {
         let model = alone.model();
         let words = model.initial.iter().flat_map(|x| core::iter::repeat_n(*x, lanes)).collect();
         let work = vec![0.0; WORK_WORDS * model.robots.len() * lanes];
-        Ok(Self { lanes, words, work, lockstep: lockstep::lockstep(lanes, level), alone })
+        Ok(Self { lanes, words, work, lockstep: lockstep::lockstep(lanes, instructions), alone })
     }
 
-    /// Of the instruction sets up to `best` those that there are steps for, narrowest first.
-    pub fn levels(best: Level) -> impl Iterator<Item = Level> {
-        crate::articulated::lockstep::levels(best)
+    /// The instruction sets of this machine that there are steps for, narrowest first.
+    pub fn instructions() -> impl Iterator<Item = Instructions> {
+        crate::articulated::lockstep::instructions()
     }
 
     /// Number of worlds.

@@ -3,8 +3,8 @@
 use alloc::boxed::Box;
 use core::marker::PhantomData;
 
-use farsa_num::Scalar;
-use farsa_num::fearless_simd::{Level, Simd, f32x8, f32x16};
+use farsa_num::fearless_simd::{Simd, f32x8, f32x16};
+use farsa_num::{Instructions, Scalar};
 
 use crate::arena::infrared::ring;
 use crate::arena::model::Model;
@@ -53,8 +53,8 @@ where
     }
 }
 
-/// The steps of so many lanes, one of [`LANES`], at the widest instruction set up to `level` that there are steps for.
-pub(crate) fn lockstep(lanes: usize, level: Level) -> Box<dyn Lockstep> {
+/// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for.
+pub(crate) fn lockstep(lanes: usize, instructions: Instructions) -> Box<dyn Lockstep> {
     fn of<S: Simd>(simd: S, lanes: usize) -> Box<dyn Lockstep> {
         if lanes == LANES[0] {
             Box::new(Vectors::<f32x8<S>> { simd, scalar: PhantomData })
@@ -62,6 +62,7 @@ pub(crate) fn lockstep(lanes: usize, level: Level) -> Box<dyn Lockstep> {
             Box::new(Vectors::<f32x16<S>> { simd, scalar: PhantomData })
         }
     }
+    let level = instructions.level();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if let Some(simd) = level.as_avx512() {

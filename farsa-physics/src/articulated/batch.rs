@@ -2,8 +2,7 @@
 
 use alloc::boxed::Box;
 use core::fmt;
-
-use farsa_num::fearless_simd::Level;
+use farsa_num::Instructions;
 
 use crate::articulated::lane::{Lane, Words};
 use crate::articulated::lockstep::{self, LANES, Lockstep};
@@ -16,14 +15,14 @@ use crate::articulated::model::{Model, ModelError};
 ///
 /// ```
 /// use farsa_body::{Arrange, Joint, JointId, Joints, MassProperties, Pose, Robot, Segment};
-/// use farsa_num::fearless_simd::Level;
+/// use farsa_num::Instructions;
 /// use farsa_physics::articulated::{Batch, Model, Options};
 ///
 /// let mut pendulum = Robot::new("pendulum");
 /// let joint = Joint::revolute("pivot", [0.0, 1.0, 0.0], Pose::identity(), [-4.0, 4.0]);
 /// let rod = MassProperties { centre: [0.0, 0.0, -0.5], ..MassProperties::sphere(1.0, 0.1) };
 /// pendulum.add_segment(Segment::new("rod", None, joint, rod));
-/// let mut batch = Batch::new(Model::new(&pendulum, &Options::default())?, 8, Level::baseline())?;
+/// let mut batch = Batch::new(Model::new(&pendulum, &Options::default())?, 8, Instructions::baseline())?;
 /// for i in 0..8 {
 ///     let mut lane = batch.lane(i);
 ///     lane.place_joint(JointId(0), 0.1 * i as f32, 0.0);
@@ -41,28 +40,27 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// So many worlds, one of [`LANES`], stepped by the instructions of `level`.
+    /// So many worlds, one of [`LANES`], stepped by these instructions.
     ///
-    /// A level that is none of [`Batch::levels`] takes the next lower one.
+    /// For what is none of [`Batch::instructions`] the best below it is taken.
     ///
     /// # Errors
     /// [`ModelError::Lanes`] for another number of worlds.
-    pub fn new(model: Model<f32>, lanes: usize, level: Level) -> Result<Self, ModelError> {
+    pub fn new(model: Model<f32>, lanes: usize, instructions: Instructions) -> Result<Self, ModelError> {
         if !LANES.contains(&lanes) {
             let nearest = LANES.into_iter().min_by_key(|known| known.abs_diff(lanes)).unwrap_or(LANES[0]);
             return Err(ModelError::Lanes { lanes, nearest });
         }
         let words = Words::new(&model, lanes);
-        let lockstep = lockstep::lockstep(&model, lanes, level);
+        let lockstep = lockstep::lockstep(&model, lanes, instructions);
         Ok(Self { model, words, lockstep })
     }
 
-    /// Of the instruction sets up to `best` those that there are steps for, narrowest first.
+    /// The instruction sets of this machine that there are steps for, narrowest first.
     ///
-    /// On x86-64 SSE2, AVX2 and AVX-512, elsewhere `best` itself. `Level::new()`, with `fearless_simd`'s feature `std`, is
-    /// the best of this machine.
-    pub fn levels(best: Level) -> impl Iterator<Item = Level> {
-        lockstep::levels(best)
+    /// On x86-64 SSE2, AVX2 and AVX-512, as far as [`Instructions::available`] has them.
+    pub fn instructions() -> impl Iterator<Item = Instructions> {
+        lockstep::instructions()
     }
 
     /// Number of worlds.

@@ -6,8 +6,8 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::Scalar;
-use farsa_num::fearless_simd::{Level, Simd, f32x8, f32x16};
+use farsa_num::fearless_simd::{Simd, f32x8, f32x16};
+use farsa_num::{Instructions, Scalar};
 
 use crate::articulated::lane::{LINK_WORDS, Words};
 use crate::articulated::model::Model;
@@ -88,22 +88,14 @@ where
     }
 }
 
-/// Of the instruction sets up to `best` those that there are steps for, narrowest first.
-pub(crate) fn levels(best: Level) -> impl Iterator<Item = Level> {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    let known = [
-        best.is_fallback().then_some(best),
-        best.as_sse2().map(Simd::level),
-        best.as_avx2().map(Simd::level),
-        best.as_avx512().map(Simd::level),
-    ];
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    let known = [Some(best)];
-    known.into_iter().flatten()
+/// The instruction sets of this machine that there are steps for, narrowest first.
+pub(crate) fn instructions() -> impl Iterator<Item = Instructions> {
+    // SSE4.2 has nothing that the steps use.
+    Instructions::available().filter(|one| *one != Instructions::Sse4_2)
 }
 
-/// The steps of so many lanes, one of [`LANES`], at the widest instruction set up to `level` that there are steps for.
-pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, level: Level) -> Box<dyn Lockstep> {
+/// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for.
+pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, instructions: Instructions) -> Box<dyn Lockstep> {
     fn of<S: Simd>(simd: S, model: &Model<f32>, lanes: usize) -> Box<dyn Lockstep> {
         if lanes == LANES[0] {
             Box::new(Vectors::<f32x8<S>>::new(simd, model))
@@ -111,6 +103,7 @@ pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, level: Level) -> Box<dy
             Box::new(Vectors::<f32x16<S>>::new(simd, model))
         }
     }
+    let level = instructions.level();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if let Some(simd) = level.as_avx512() {

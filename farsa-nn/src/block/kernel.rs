@@ -2,9 +2,12 @@
 
 use farsa_num::{Scalar, logistic};
 
+use crate::activation::Activation;
+use crate::block::description::{Block, Span};
+use crate::block::layout::{BlockLayout, BlockParameter};
 use crate::kernel::{Lanes, Layer, head};
-use crate::lesion::hold;
-use crate::{Activation, Block, BlockLayout, BlockParameter, Leak, Lesion, Span};
+use crate::leak::Leak;
+use crate::lesion::{Lesion, hold};
 
 /// What a step reads and writes; all but parameters, inputs and delays are `[neurons]`.
 pub(crate) struct Blocks<'a> {

@@ -1,9 +1,10 @@
 //! What a block-wise network is described by: groups of alike neurons, and blocks that are worked through in their order.
 
-use crate::Activation;
+use crate::activation::Activation;
 
 /// Neurons `first` to `first + count - 1`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Span {
     /// The first neuron.
     pub first: usize,
@@ -31,6 +32,7 @@ impl Span {
 /// Neurons that follow each other and are alike: one activation function, and each of bias, gain and leak as a parameter for
 /// all of them or for none.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Group {
     /// How many neurons there are.
     pub neurons: usize,
@@ -78,6 +80,8 @@ impl Group {
 /// A connection from neurons that are updated further on reads their activation of the step before: so the order of the
 /// blocks says which connections are recurrent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Block {
     /// Adds the activations of all neurons of one span, times their gains and the weights, to the net inputs of another.

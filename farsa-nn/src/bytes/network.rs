@@ -1,27 +1,13 @@
 //! A trained network as bytes: in flash, in a file, over a wire.
 
-use farsa_num::Digest;
-
-use crate::bytes_frame::{Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, word};
+use crate::bytes::error::BytesError;
+use crate::bytes::frame::{
+    Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, values, word,
+};
+use crate::error::Error;
+use crate::layout::Layout;
+use crate::leak::Leak;
 use crate::network::{check, check_values};
-use crate::{BytesError, Error, Layout, Leak};
-
-/// Bytes that lie where numbers may lie, for [`include_bytes!`].
-///
-/// ```
-/// # const LAYOUT: farsa_nn::Layout = farsa_nn::Layout::new(1, 1, 1);
-/// # macro_rules! include_bytes { ($name:literal) => { &[0; farsa_nn::NetworkBytes::byte_count(LAYOUT)] } }
-/// use farsa_nn::{Aligned, NetworkBytes};
-///
-/// // Does not compile when the file has another length.
-/// static CHAMPION: Aligned<[u8; NetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("champion.farsa"));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(C, align(8))]
-pub struct Aligned<B>(
-    /// The bytes.
-    pub B,
-);
 
 /// A [`Network`](crate::Network) of somebody's bytes: checked, and used where it lies.
 ///
@@ -165,37 +151,7 @@ impl<'a> NetworkBytes<'a> {
     }
 }
 
-/// A fingerprint of what inputs and outputs are, by their names in their order.
-///
-/// A controller for another body, or for the same with its sensors in another order, has another.
-///
-/// ```
-/// use farsa_nn::channel_hash;
-///
-/// assert_ne!(channel_hash(["left", "right"], ["wheel"]), channel_hash(["right", "left"], ["wheel"]));
-/// ```
-pub fn channel_hash<N: AsRef<str>>(
-    inputs: impl IntoIterator<Item = N>,
-    outputs: impl IntoIterator<Item = impl AsRef<str>>,
-) -> u64 {
-    let mut digest = Digest::new();
-    // No text holds such bytes: they end a name, and all names of a side.
-    let mut add = |name: &str| {
-        digest.add_bytes(name.as_bytes());
-        digest.add_bytes(&[0xFF]);
-    };
-    inputs.into_iter().for_each(|name| add(name.as_ref()));
-    add("");
-    outputs.into_iter().for_each(|name| add(name.as_ref()));
-    digest.finish()
-}
-
 fn shape_of(layout: Layout, leak: Leak) -> [u32; SHAPE] {
     let [sensors, hidden, outputs] = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
     [sensors, hidden, outputs, layout.slope().to_bits(), leak as u32, 0, 0, 0]
-}
-
-/// Parameters that are `f32` as numbers, wherever they lie.
-pub(crate) fn values(parameters: &[u8]) -> impl ExactSizeIterator<Item = f32> + Clone + '_ {
-    parameters.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes))
 }

@@ -8,6 +8,11 @@ use crate::scalar::{Real, Scalar};
 /// Beyond, the error grows to about the distance between neighbouring arguments; NaN above 2^22 (`f32`) or 2^45 (`f64`),
 /// for infinities and for NaN. sin(-0.0) is 0.0.
 ///
+/// ```
+/// let (sine, cosine) = farsa_num::sin_cos(core::f64::consts::FRAC_PI_6);
+/// assert!((sine - 0.5).abs() < 1e-15 && (cosine - 0.75_f64.sqrt()).abs() < 1e-15);
+/// ```
+///
 /// Source: \[Cody1980\] (x = k pi/2 + r with pi/2 in several short parts), own minimax polynomials on |r| <= pi/4.
 #[inline(always)]
 pub fn sin_cos<S: Scalar>(x: S) -> (S, S) {

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::Error;
+use crate::error::Error;
 
 /// Why bytes are not the controller that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,9 +2,10 @@
 
 use farsa_num::Scalar;
 
-use crate::fixed_logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
+use crate::error::Error;
+use crate::layout::{Layout, ParameterKind};
 use crate::network::check;
-use crate::{Error, Layout, ParameterKind};
+use crate::quantized::logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
 
 /// Fraction bits of leaks: 2^14 stands for 1, which so is exact.
 pub(crate) const LEAK_BITS: u32 = 14;
@@ -21,10 +22,31 @@ pub(crate) const LEAK_BITS: u32 = 14;
 /// | motor values, `i16`; responses | 15; the largest motor value is 32767, where a response may be 32768 |
 /// | activations between steps, `i32` | 30 |
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "SavedScale"))]
 pub struct FixedScale {
     inputs: u8,
     weights: u8,
     sums: u8,
+}
+
+/// A scale as it is read, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename = "FixedScale")]
+struct SavedScale {
+    inputs: u8,
+    weights: u8,
+    sums: u8,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<SavedScale> for FixedScale {
+    type Error = Error;
+
+    fn try_from(saved: SavedScale) -> Result<Self, Error> {
+        Self::new(saved.inputs.into(), saved.weights.into(), saved.sums.into())
+    }
 }
 
 impl FixedScale {

@@ -2,7 +2,10 @@
 
 use alloc::vec::Vec;
 
-use crate::{Activation, Block, BlockLayout, Group, Plan, Span};
+use crate::activation::Activation;
+use crate::architecture::Plan;
+use crate::block::description::{Block, Group, Span};
+use crate::block::layout::BlockLayout;
 
 /// Groups and blocks that a [`BlockLayout`] borrows, on the heap; with feature `alloc`.
 ///
@@ -19,6 +22,7 @@ use crate::{Activation, Block, BlockLayout, Group, Plan, Span};
 /// # Ok::<(), farsa_nn::Error>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BlockLayoutBuf {
     /// Number of inputs.
     pub inputs: usize,

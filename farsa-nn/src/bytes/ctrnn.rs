@@ -1,9 +1,13 @@
 //! A trained continuous-time network as bytes.
 
-use crate::bytes::values;
-use crate::bytes_frame::{Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, word};
+use crate::activation::Activation;
+use crate::bytes::error::BytesError;
+use crate::bytes::frame::{
+    Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, values, word,
+};
 use crate::ctrnn::{check, check_layout, check_values};
-use crate::{Activation, BytesError, CtrnnLayout, Integrator};
+use crate::ctrnn_layout::CtrnnLayout;
+use crate::integrator::Integrator;
 
 /// A [`Ctrnn`](crate::Ctrnn) of somebody's bytes, as [`NetworkBytes`](crate::NetworkBytes) are a `Network`: checked, and used
 /// where it lies.

@@ -2,10 +2,13 @@
 
 use core::ops::Range;
 
-use crate::{Block, Error, Group, Span};
+use crate::block::description::{Block, Group, Span};
+use crate::error::Error;
 
 /// What one parameter of a [`BlockLayout`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum BlockParameter {
     /// A weight of a connection.

@@ -1,10 +1,15 @@
 //! The network of blocks.
 
+use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
-use crate::block_kernel::Blocks;
+use crate::block::kernel::Blocks;
+use crate::block::layout::{BlockLayout, BlockParameter};
+use crate::controller::Controller;
+use crate::error::Error;
 use crate::kernel::{self, level};
-use crate::{BlockLayout, BlockParameter, Controller, Error, Leak, Lesion, Neurons};
+use crate::leak::Leak;
+use crate::lesion::{Lesion, Neurons};
 
 /// A network of connections, updates and gains in any order, over parameters and state that are the caller's.
 ///
@@ -100,9 +105,9 @@ impl<'a, P: AsRef<[f32]>, S: AsMut<[f32]>> BlockNetwork<'a, P, S> {
 }
 
 impl<'a, P, S> BlockNetwork<'a, P, S> {
-    /// The same network over the instructions of this level, as [`Network::with_level`](crate::Network::with_level).
-    pub fn with_level(self, level: Level) -> Self {
-        Self { level, ..self }
+    /// The same network over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { level: instructions.level(), ..self }
     }
 
     /// The layout.

@@ -1,8 +1,11 @@
 //! A trained network of integers as bytes.
 
-use crate::bytes_frame::{Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, word};
-use crate::fixed_network::check;
-use crate::{BytesError, FixedScale, Layout, Leak};
+use crate::bytes::error::BytesError;
+use crate::bytes::frame::{Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, word};
+use crate::layout::Layout;
+use crate::leak::Leak;
+use crate::quantized::network::check;
+use crate::quantized::scale::FixedScale;
 
 /// A [`FixedNetwork`](crate::FixedNetwork) of somebody's bytes, as [`NetworkBytes`](crate::NetworkBytes) are a `Network`:
 /// checked, and used where it lies.

@@ -1,9 +1,12 @@
 //! The leaky recurrent network in integers, for processors without floating-point arithmetic.
 
-use crate::fixed_logistic::{ACTIVATION_BITS, logistic};
-use crate::fixed_scale::LEAK_BITS;
+use crate::controller::Controller;
+use crate::error::Error;
 use crate::kernel::head;
-use crate::{Controller, Error, FixedScale, Layout, Leak, ParameterKind};
+use crate::layout::{Layout, ParameterKind};
+use crate::leak::Leak;
+use crate::quantized::logistic::{ACTIVATION_BITS, logistic};
+use crate::quantized::scale::{FixedScale, LEAK_BITS};
 
 /// Outputs whose sums are added side by side.
 const BLOCK: usize = 8;

@@ -13,6 +13,13 @@ const FRAC_PI_2_REST: f64 = 6.123_233_995_736_766e-17;
 /// Signs of zero and infinities as in IEEE 754 section 9.2.1; NaN with a NaN. `f32` is computed in `f64` and rounded.
 ///
 /// Source: own (one reduction by pi / 4, minimax polynomial on |tan| <= sqrt(2) - 1).
+///
+/// ```
+/// use farsa_num::{atan2, sin_cos};
+///
+/// let (sine, cosine) = sin_cos(2.5_f64);
+/// assert!((atan2(3.0 * sine, 3.0 * cosine) - 2.5).abs() < 1e-15);
+/// ```
 #[inline(always)]
 pub fn atan2<R: Real>(y: R, x: R) -> R {
     R::of(atan2_f64(y.to_f64(), x.to_f64()))

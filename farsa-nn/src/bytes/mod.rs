@@ -1,0 +1,18 @@
+//! Trained networks as bytes: in flash, in a file, over a wire. The format is `docs/controller-format.md`.
+
+/// Of a continuous-time network.
+mod ctrnn;
+/// What can be wrong with bytes.
+mod error;
+/// What the bytes of all kinds have in common: head, channels, parameters, checksum.
+mod frame;
+/// Of the leaky network.
+mod network;
+/// Of the leaky network in integers.
+mod quantized;
+
+pub use ctrnn::CtrnnBytes;
+pub use error::BytesError;
+pub use frame::{Aligned, channel_hash};
+pub use network::NetworkBytes;
+pub use quantized::FixedNetworkBytes;
