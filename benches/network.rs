@@ -7,7 +7,9 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use farsa::nn::{Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Integrator, Layout, Leak, Network, ParameterKind};
+use farsa::nn::{
+    Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Integrator, Leak, LeakyLayout, LeakyNetwork, LeakyParameter,
+};
 use farsa::num::{Domain, Instructions, Stream};
 
 /// Different inputs, one a step, so that nothing is learnt from repetition.
@@ -17,16 +19,16 @@ fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("network");
     let layouts = [(29, 12, 23), (29, 10, 23), (29, 30, 23), (29, 100, 23), (29, 300, 23), (29, 1000, 23)];
     for (sensors, hidden, outputs) in layouts {
-        let layout = Layout::new(sensors, hidden, outputs);
+        let layout = LeakyLayout::new(sensors, hidden, outputs);
         let mut stream = Stream::new(1, Domain::InitialGenome, 0, 0, 0);
-        let leaks = |kind| kind == ParameterKind::Leak;
+        let leaks = |kind| kind == LeakyParameter::Leak;
         let draw = |kind| if leaks(kind) { stream.uniform() } else { stream.range(-6.0, 6.0) };
         let parameters: Vec<f32> = layout.kinds().map(draw).collect();
         let inputs: Vec<f32> = (0..INPUTS * sensors).map(|_| stream.range(-1.0, 1.0)).collect();
         let (mut state, mut y) = (vec![0.0; layout.state_len()], vec![0.0; outputs]);
         group.throughput(Throughput::Elements(layout.parameter_count() as u64));
         for instructions in Instructions::available() {
-            let network = Network::new(layout, Leak::Filter, &parameters[..], &mut state[..]);
+            let network = LeakyNetwork::new(layout, Leak::Filter, &parameters[..], &mut state[..]);
             let mut network = network.expect("finite parameters").with_instructions(instructions);
             let name = instructions.to_string();
             let size = format!("{sensors}-{hidden}-{outputs}");

@@ -4,10 +4,10 @@
 
 use std::error::Error;
 
-use farsa::nn::{Controller, Layout, Leak, Network};
+use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 
 /// One sensor, one hidden neuron, one output.
-const LAYOUT: Layout = Layout::new(1, 1, 1);
+const LAYOUT: LeakyLayout = LeakyLayout::new(1, 1, 1);
 
 /// Weight of the sensor, of the neuron on itself and on the output, bias, and the leak, which weights the new value.
 static PARAMETERS: [f32; LAYOUT.parameter_count()] = [6.0, 0.0, 6.0, 0.0, 0.1];
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ticks: usize = std::env::args().nth(1).map_or(Ok(60), |text| text.parse())?;
     let mut responses = Vec::new();
     for leak in Leak::ALL {
-        let mut neuron = Network::new(LAYOUT, leak, &PARAMETERS, [0.0; LAYOUT.state_len()])?;
+        let mut neuron = LeakyNetwork::new(LAYOUT, leak, &PARAMETERS, [0.0; LAYOUT.state_len()])?;
         let mut output = [0.0];
         let response: Vec<f32> = (0..ticks)
             .map(|_| {

@@ -5,11 +5,11 @@
 use std::error::Error;
 
 use farsa::evo::{GeneRange, decode, randomize};
-use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
+use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Domain, Stream};
 
 /// 29 sensors, 12 hidden neurons, 23 motors.
-const LAYOUT: Layout = Layout::new(29, 12, 23);
+const LAYOUT: LeakyLayout = LeakyLayout::new(29, 12, 23);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let seed: u64 = std::env::args().nth(1).map_or(Ok(1), |text| text.parse())?;
@@ -20,8 +20,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // What the genes stand for: weights and biases in [-6, 6], leaks in [0, 1].
     let mut ranges = Vec::new();
-    for kind in ParameterKind::ALL {
-        let (low, high) = if kind == ParameterKind::Leak { (0.0, 1.0) } else { (-6.0, 6.0) };
+    for kind in LeakyParameter::ALL {
+        let (low, high) = if kind == LeakyParameter::Leak { (0.0, 1.0) } else { (-6.0, 6.0) };
         let count = LAYOUT.range(kind).len();
         println!("{count:>4} x {kind:?} in [{low}, {high}]");
         ranges.push(GeneRange::new(count, low, high)?);
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} parameters, {} bits, seed {seed}", parameters.len(), 16 * genome.len());
 
     // Parameters and state stay ours; the network borrows the one and owns no heap.
-    let mut network = Network::new(LAYOUT, Leak::Filter, &parameters[..], [0.0; LAYOUT.state_len()])?;
+    let mut network = LeakyNetwork::new(LAYOUT, Leak::Filter, &parameters[..], [0.0; LAYOUT.state_len()])?;
     let mut x = [0.5; 29];
     let mut y = [0.0; 23];
     let (mut low, mut high) = (y, [0.0_f32; 23]);

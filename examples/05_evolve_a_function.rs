@@ -40,8 +40,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         evolution.tell(&values)?;
         let random = evaluate(guesses.ask(), &ranges)?;
         guesses.tell(&random)?;
-        let summary = Statistics::of(&values).ok_or(EvoError::NoIndividuals)?;
-        guessed = Statistics::of(&random).map_or(guessed, |random| guessed.max(random.best));
+        let summary = Statistics::from_fitness(&values).ok_or(EvoError::NoIndividuals)?;
+        guessed = Statistics::from_fitness(&random).map_or(guessed, |random| guessed.max(random.best));
         if generation % generations.div_ceil(10) == 0 || generation + 1 == generations {
             println!(
                 "generation {generation:>4}: best {:>8.3}, mean {:>8.3}; best of as many guesses {guessed:>8.3}",

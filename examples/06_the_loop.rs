@@ -9,7 +9,7 @@ use farsa::body::{
     Robot, Sensor, ServoGroup, Signal, Tabletop, TargetPosition, Touch, World as _,
 };
 use farsa::evo::{GeneRange, decode, randomize};
-use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
+use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::{Model, Options, World};
 
@@ -58,14 +58,14 @@ pub(crate) fn live(ticks: u32) -> Result<u64, Box<dyn Error>> {
 
     // A random network between the two.
     let (inputs, outputs) = (sensors.channels(), motors.channels());
-    let layout = Layout::new(inputs, 12, outputs);
+    let layout = LeakyLayout::new(inputs, 12, outputs);
     let mut genome = vec![0; layout.parameter_count()];
     randomize(&mut genome, &mut Stream::new(1, Domain::InitialGenome, 0, 0, 0));
-    let leaks = layout.range(ParameterKind::Leak);
+    let leaks = layout.range(LeakyParameter::Leak);
     let ranges = [GeneRange::new(leaks.start, -6.0, 6.0)?, GeneRange::new(leaks.len(), 0.0, 1.0)?];
     let mut parameters = vec![0.0; layout.parameter_count()];
     decode(&genome, &ranges, &mut parameters)?;
-    let mut net = Network::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?;
+    let mut net = LeakyNetwork::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?;
     println!("{inputs} sensors, {} parameters, {outputs} motors", layout.parameter_count());
 
     let (mut x, mut y) = (vec![0.0; inputs], vec![0.0; outputs]);

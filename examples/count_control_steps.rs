@@ -8,7 +8,7 @@ mod scene;
 use std::error::Error;
 use std::hint::black_box;
 
-use farsa::nn::{Controller, Layout};
+use farsa::nn::{Controller, LeakyLayout};
 use farsa::physics::articulated::Batch;
 use farsa_experiments::reach_grasp_lift::{Config, Lives};
 use farsa_experiments::{Job, Recording, Setup as _, Tape};
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             assert_eq!(recording.times().len(), if recorded { 6 * TIMES } else { 0 });
         }
         "network" => {
-            let mut network = scene::network(Layout::new(29, 12, 23))?;
+            let mut network = scene::network(LeakyLayout::new(29, 12, 23))?;
             let (x, mut y) = ([0.5; 29], [0.0; 23]);
             measured(|| network.step(black_box(&x), &mut y));
         }

@@ -8,7 +8,7 @@ use farsa::body::{
     ArmAndHand, BodyId, Channels, Contacts, Law, Motor, MusclePair, PairId, Robot, Sensor, Snapshot, Tabletop,
     World as _,
 };
-use farsa::nn::{Controller, Layout, Leak, Network, ParameterKind};
+use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Domain, Instructions, Stream};
 use farsa::physics::articulated::{Batch, Model, Options, Scratch, World, accelerations};
 use farsa_experiments::reach_grasp_lift::{Config, Motors, Scene, ScriptLife, Senses, Statics, Timetable};
@@ -21,12 +21,12 @@ const WINDOW: usize = 50;
 
 /// A network of this layout with weights in [-6, 6] and leaks in [0, 1], over the instructions that the program is compiled
 /// for: they count the same on every machine.
-pub(crate) fn network(layout: Layout) -> Result<Network<Vec<f32>, Vec<f32>>, Failure> {
+pub(crate) fn network(layout: LeakyLayout) -> Result<LeakyNetwork<Vec<f32>, Vec<f32>>, Failure> {
     let mut stream = Stream::new(1, Domain::InitialGenome, 0, 0, 0);
-    let leaks = |kind| kind == ParameterKind::Leak;
+    let leaks = |kind| kind == LeakyParameter::Leak;
     let draw = |kind| if leaks(kind) { stream.uniform() } else { stream.range(-6.0, 6.0) };
     let parameters = layout.kinds().map(draw).collect();
-    let network = Network::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?;
+    let network = LeakyNetwork::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])?;
     Ok(network.with_instructions(Instructions::baseline()))
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn network(layout: Layout) -> Result<Network<Vec<f32>, Vec<f32>>, Fai
 pub(crate) struct Loop {
     world: World<f32>,
     senses: Senses,
-    network: Network<Vec<f32>, Vec<f32>>,
+    network: LeakyNetwork<Vec<f32>, Vec<f32>>,
     motors: Motors,
     x: Vec<f32>,
     y: Vec<f32>,

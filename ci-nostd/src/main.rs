@@ -18,7 +18,7 @@ use core::hint::black_box;
 use farsa::body::{
     Actuated, ActuatorId, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor,
 };
-use farsa::nn::{Architecture, BlockLayout, BlockNetwork, Controller, Ctrnn, CtrnnLayout, Layout, Leak, Network, Plan};
+use farsa::nn::{Architecture, BlockLayout, BlockNetwork, Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork, Plan};
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::Spatial;
 
@@ -71,7 +71,7 @@ impl Actuated for Board {
     }
 }
 
-const LAYOUT: Layout = Layout::new(1, 2, 1);
+const LAYOUT: LeakyLayout = LeakyLayout::new(1, 2, 1);
 static PARAMETERS: [f32; LAYOUT.parameter_count()] = [1.0, -1.0, 0.5, 0.0, 0.0, 0.5, 2.0, -2.0, 0.1, 0.1, 0.5, 0.5];
 
 const PLAN: Plan = Architecture::elman(1, 2, 1).plan();
@@ -98,7 +98,7 @@ fn other_networks() -> Result<(), i32> {
 fn on_a_board() -> Result<(), i32> {
     let mut sensor = JointPosition::new(JointId(0), -1.0, 1.0).map_err(|_| 1)?;
     let mut motor = TorqueMotor::new(ActuatorId(0), 1.0).map_err(|_| 2)?;
-    let mut net = Network::new(LAYOUT, Leak::Filter, &PARAMETERS, [0.0; LAYOUT.state_len()]).map_err(|_| 3)?;
+    let mut net = LeakyNetwork::new(LAYOUT, Leak::Filter, &PARAMETERS, [0.0; LAYOUT.state_len()]).map_err(|_| 3)?;
     let mut board = Board { angle: 0.0, torque: 0.0 };
     let mut noise = Stream::new(1, Domain::Sensor, 0, 0, 0);
     let mut digest = Digest::new();

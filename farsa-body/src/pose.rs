@@ -31,13 +31,13 @@ pub(crate) fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
 #[cfg(any(feature = "alloc", test))]
 #[inline(always)]
 pub(crate) fn norm<R: Real>(v: &[R]) -> R {
-    v.iter().fold(R::of(0.0), |sum, x| sum + *x * *x).sqrt()
+    v.iter().fold(R::from_f64(0.0), |sum, x| sum + *x * *x).sqrt()
 }
 
 impl<R: Real> Pose<R> {
     /// The pose of the reference frame itself.
     pub fn identity() -> Self {
-        let (o, l) = (R::of(0.0), R::of(1.0));
+        let (o, l) = (R::from_f64(0.0), R::from_f64(1.0));
         Self { position: [o, o, o], rotation: [o, o, o, l] }
     }
 
@@ -48,15 +48,15 @@ impl<R: Real> Pose<R> {
 
     /// A pose on the ground, at `place` [m], turned counter-clockwise by `heading` [rad] about the vertical.
     pub fn planar([x, y]: [R; 2], heading: R) -> Self {
-        let o = R::of(0.0);
-        let (sine, cosine) = farsa_num::sin_cos(R::of(0.5) * heading);
+        let o = R::from_f64(0.0);
+        let (sine, cosine) = farsa_num::sin_cos(R::from_f64(0.5) * heading);
         Self { position: [x, y, o], rotation: [o, o, sine, cosine] }
     }
 
     /// Where the frame's x axis points to, seen from above, counter-clockwise from that of the reference frame [rad].
     pub fn heading(&self) -> R {
         let [x, y, z, w] = self.rotation;
-        let (one, two) = (R::of(1.0), R::of(2.0));
+        let (one, two) = (R::from_f64(1.0), R::from_f64(2.0));
         farsa_num::atan2(two * (w * z + x * y), one - two * (y * y + z * z))
     }
 
@@ -105,7 +105,10 @@ impl<R: Real> Pose<R> {
 
     /// The same pose in another precision, each number rounded once.
     pub fn cast<Q: Real>(&self) -> Pose<Q> {
-        Pose { position: self.position.map(|x| Q::of(x.to_f64())), rotation: self.rotation.map(|x| Q::of(x.to_f64())) }
+        Pose {
+            position: self.position.map(|x| Q::from_f64(x.to_f64())),
+            rotation: self.rotation.map(|x| Q::from_f64(x.to_f64())),
+        }
     }
 }
 

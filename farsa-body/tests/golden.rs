@@ -6,16 +6,16 @@ use farsa_body::{ArmAndHand, Goal, InverseKinematics, KinematicTree, Law, Muscle
 use farsa_num::{Digest, Real};
 
 fn efforts<R: Real>(digest: &mut Digest) {
-    let range = [R::of(-1.9), R::of(1.6)];
+    let range = [R::from_f64(-1.9), R::from_f64(1.6)];
     let laws = [
-        Law::MusclePair(MusclePair::thesis(R::of(3000.0), R::of(0.01), range)),
-        Law::MusclePair(MusclePair::original(R::of(300.0), R::of(0.01), range, R::of(0.7))),
-        Law::Servo(Servo { stiffness: R::of(1.0), damping: R::of(0.04), limit: R::of(0.3) }),
+        Law::MusclePair(MusclePair::thesis(R::from_f64(3000.0), R::from_f64(0.01), range)),
+        Law::MusclePair(MusclePair::original(R::from_f64(300.0), R::from_f64(0.01), range, R::from_f64(0.7))),
+        Law::Servo(Servo { stiffness: R::from_f64(1.0), damping: R::from_f64(0.04), limit: R::from_f64(0.3) }),
     ];
     for law in laws {
         for i in 0..2000 {
             let x = f64::from(i) * 0.001;
-            let of = |x: f64| R::of(x);
+            let of = |x: f64| R::from_f64(x);
             let effort = law.effort(of(2.0 * x - 2.0), of(3.0 - 4.0 * x), [of(0.5 * x), of(1.0 - 0.3 * x)]);
             for part in [effort.torque, effort.stiffness, effort.damping] {
                 digest.add_f64(part.to_f64());

@@ -57,7 +57,7 @@ impl Champion {
         if fitness.len() != population.len() {
             return Err(counts);
         }
-        let individual = Statistics::of(fitness).map_or(0, |summary| summary.best_index);
+        let individual = Statistics::from_fitness(fitness).map_or(0, |summary| summary.best_index);
         let (Some(&fitness), Some(genome)) = (fitness.get(individual), population.get(individual)) else {
             return Err(counts);
         };

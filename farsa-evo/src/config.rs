@@ -66,14 +66,14 @@ impl GaConfig {
     }
 
     pub(crate) fn bit_mutation(&self) -> Result<BitMutation, EvoError> {
-        BitMutation::new(self.mutation, self.mutation_rate)?.of_gene_bits(self.gene_bits)
+        BitMutation::new(self.mutation, self.mutation_rate)?.with_gene_bits(self.gene_bits)
     }
 }
 
-/// What a [`SteadyState`](crate::SteadyState) needs to know; a plain value that is checked where it is used.
+/// What a [`OnePlusOne`](crate::OnePlusOne) needs to know; a plain value that is checked where it is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct SteadyStateConfig {
+pub struct OnePlusOneConfig {
     /// Number of genes of a genome.
     pub genes: usize,
     /// Bits of a gene, 1 to 16: genes are 0 to 2^bits - 1.
@@ -88,7 +88,7 @@ pub struct SteadyStateConfig {
     pub mutation: Mutation,
 }
 
-impl SteadyStateConfig {
+impl OnePlusOneConfig {
     /// The search of the discrimination experiment of \[FARSA2\] for genomes of this many genes of 8 bits: half of all
     /// bits flip at first, 1 % fewer every generation, down to 2 %.
     pub const fn new(genes: usize) -> Self {
@@ -119,7 +119,7 @@ impl SteadyStateConfig {
     }
 
     pub(crate) fn bit_mutation(&self, generation: u32) -> Result<BitMutation, EvoError> {
-        BitMutation::new(self.mutation, self.rate(generation))?.of_gene_bits(self.gene_bits)
+        BitMutation::new(self.mutation, self.rate(generation))?.with_gene_bits(self.gene_bits)
     }
 }
 

@@ -58,7 +58,7 @@ impl BitMutation {
     ///
     /// # Errors
     /// [`EvoError::GeneBits`].
-    pub fn of_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
+    pub fn with_gene_bits(self, bits: u32) -> Result<Self, EvoError> {
         check_gene_bits(bits)?;
         Ok(Self { gene_bits: u64::from(bits), ..self })
     }
@@ -192,7 +192,7 @@ mod tests {
         const RUNS: u32 = 20_000;
         let (n, p) = (f64::from(RUNS), 0.3);
         for bits in [1, 5, 8, 15] {
-            let mutation = BitMutation::new(Mutation::Flip, p).unwrap().of_gene_bits(bits).unwrap();
+            let mutation = BitMutation::new(Mutation::Flip, p).unwrap().with_gene_bits(bits).unwrap();
             let mut counts = vec![0.0; 3 * bits as usize];
             for run in 0..RUNS {
                 let mut genes = [0_u16; 3];
@@ -213,9 +213,9 @@ mod tests {
             assert!(wide.iter().zip(&narrow).all(|(wide, narrow)| wide >> (16 - bits) == *narrow));
         }
         let mutation = BitMutation::new(Mutation::Flip, p).unwrap();
-        assert_eq!(mutation.of_gene_bits(16).unwrap(), mutation);
+        assert_eq!(mutation.with_gene_bits(16).unwrap(), mutation);
         for bits in [0, 17, u32::MAX] {
-            assert_eq!(mutation.of_gene_bits(bits), Err(EvoError::GeneBits { bits }));
+            assert_eq!(mutation.with_gene_bits(bits), Err(EvoError::GeneBits { bits }));
         }
     }
 

@@ -10,7 +10,7 @@ use crate::fitness::Fitness;
 /// use farsa_evo::{Fitness, Statistics};
 ///
 /// let fitness = [1.0, f64::NAN, 3.0].map(Fitness::nan_as_failed);
-/// let summary = Statistics::of(&fitness).expect("three lives");
+/// let summary = Statistics::from_fitness(&fitness).expect("three lives");
 /// assert_eq!((summary.best_index, summary.best, summary.mean, summary.failed), (2, 3.0, 2.0, 1));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Summarises `fitness` \[individuals\]; none when it is empty.
-    pub fn of(fitness: &[Fitness]) -> Option<Self> {
+    pub fn from_fitness(fitness: &[Fitness]) -> Option<Self> {
         let mut best = *fitness.first()?;
         let mut worst = Fitness::WORST;
         let (mut best_index, mut lived, mut sum) = (0, 0_usize, 0.0);
@@ -55,7 +55,7 @@ mod tests {
     use alloc::vec::Vec;
 
     fn summary(values: &[f64]) -> Option<Statistics> {
-        Statistics::of(&values.iter().map(|&v| Fitness::nan_as_failed(v)).collect::<Vec<_>>())
+        Statistics::from_fitness(&values.iter().map(|&v| Fitness::nan_as_failed(v)).collect::<Vec<_>>())
     }
 
     #[test]

@@ -5,8 +5,8 @@
 use std::time::Instant;
 
 use farsa_evo::{
-    Champion, Coevolution, EvoError, Fitness, GaConfig, Mutation, Population, RandomSearch, Statistics, SteadyState,
-    SteadyStateConfig, Strategy, TruncationGa,
+    Champion, Coevolution, EvoError, Fitness, GaConfig, Mutation, OnePlusOne, OnePlusOneConfig, Population,
+    RandomSearch, Statistics, Strategy, TruncationGa,
 };
 use proptest::prelude::*;
 use proptest::strategy::Strategy as _;
@@ -30,7 +30,7 @@ fn evolve<S: Strategy>(
     let mut summary = None;
     for _ in 0..generations {
         let told = judge(strategy.ask(), &fitness);
-        summary = Statistics::of(&told);
+        summary = Statistics::from_fitness(&told);
         lived.push(strategy.ask().clone());
         strategy.tell(&told).unwrap();
     }
@@ -64,7 +64,7 @@ fn every_generation_is_rebuilt_bit_for_bit() {
     rebuilds(TruncationGa::new(GaConfig { population: 12, parents: 12, ..GaConfig::new(5) }, 17).unwrap());
     rebuilds(RandomSearch::new(9, 30, 17).unwrap());
     rebuilds(TruncationGa::new(GaConfig { gene_bits: 5, ..GaConfig::new(9) }, 17).unwrap());
-    rebuilds(SteadyState::new(SteadyStateConfig::new(14), 17).unwrap());
+    rebuilds(OnePlusOne::new(OnePlusOneConfig::new(14), 17).unwrap());
     rebuilds(Coevolution::new(&[GaConfig::new(9), GaConfig { gene_bits: 8, ..GaConfig::new(12) }], 17).unwrap());
 }
 
@@ -80,7 +80,7 @@ fn onemax_converges_and_random_search_does_not() {
 
 #[test]
 fn a_steady_state_climbs_and_keeps_its_genes_narrow() {
-    let mut search = SteadyState::new(SteadyStateConfig::new(14), 1).unwrap();
+    let mut search = OnePlusOne::new(OnePlusOneConfig::new(14), 1).unwrap();
     let (lived, _) = evolve(&mut search, 500, ones);
     assert!(lived.iter().all(|pair| pair.as_slice().iter().all(|&gene| gene < 256)));
     let (fitness, evaluations) = search.parent_fitness().unwrap();
@@ -162,7 +162,7 @@ proptest! {
                 .collect();
             ga.tell(&told).unwrap();
             let selected = ga.lineage().selected(generation).unwrap();
-            prop_assert_eq!(selected[0] as usize, Statistics::of(&told).unwrap().best_index);
+            prop_assert_eq!(selected[0] as usize, Statistics::from_fitness(&told).unwrap().best_index);
             let ahead = |a: usize, b: usize| told[a] > told[b] || told[a] == told[b] && a < b;
             for pair in selected.windows(2) {
                 prop_assert!(ahead(pair[0] as usize, pair[1] as usize));

@@ -2,7 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use farsa_evo::{
-    Coevolution, Fitness, GaConfig, GeneRange, Mutation, RandomSearch, SteadyState, SteadyStateConfig, Strategy,
+    Coevolution, Fitness, GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, Strategy,
     TruncationGa, decode,
 };
 use farsa_num::Digest;
@@ -57,7 +57,7 @@ fn evolution_keeps_its_bits() {
 
 #[test]
 fn a_steady_state_keeps_its_bits() {
-    let mut search = SteadyState::new(SteadyStateConfig::new(14), 2010).unwrap();
+    let mut search = OnePlusOne::new(OnePlusOneConfig::new(14), 2010).unwrap();
     let initial = search.ask().digest();
     evolve(&mut search, 50);
     let accepted = (0..50).filter(|&generation| search.history().accepted(generation) == Some(true)).count();

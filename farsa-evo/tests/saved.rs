@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 use farsa_evo::{
-    Champion, Coevolution, Fitness, GaConfig, GeneRange, Lineage, Lineages, Mutation, RandomSearch, Statistics,
-    SteadyHistory, SteadyState, SteadyStateConfig, Strategy, TruncationGa,
+    Champion, Coevolution, Fitness, GaConfig, GeneRange, Lineage, Lineages, Mutation, OnePlusOne, OnePlusOneConfig,
+    OnePlusOneHistory, RandomSearch, Statistics, Strategy, TruncationGa,
 };
 use postcard::{from_bytes, to_allocvec};
 use serde::{Serialize, de::DeserializeOwned};
@@ -35,7 +35,7 @@ fn interrupted_is_uninterrupted<S: Strategy + Serialize + DeserializeOwned + Par
 fn interrupted_evolution_gives_the_same_bits() {
     interrupted_is_uninterrupted(|| TruncationGa::new(GaConfig::new(12), 6).unwrap());
     interrupted_is_uninterrupted(|| RandomSearch::new(12, 20, 6).unwrap());
-    interrupted_is_uninterrupted(|| SteadyState::new(SteadyStateConfig::new(12), 6).unwrap());
+    interrupted_is_uninterrupted(|| OnePlusOne::new(OnePlusOneConfig::new(12), 6).unwrap());
     let narrow = GaConfig { gene_bits: 8, ..GaConfig::new(12) };
     interrupted_is_uninterrupted(|| TruncationGa::new(narrow, 6).unwrap());
     interrupted_is_uninterrupted(|| Coevolution::new(&[GaConfig::new(12), narrow], 6).unwrap());
@@ -66,29 +66,29 @@ fn a_configuration_of_16_bits_is_saved_as_ever() {
 
 #[test]
 fn a_forged_history_is_refused() {
-    let mut search = SteadyState::new(SteadyStateConfig::new(5), 6).unwrap();
+    let mut search = OnePlusOne::new(OnePlusOneConfig::new(5), 6).unwrap();
     live(&mut search, 11);
-    assert_eq!(&from_bytes::<SteadyHistory>(&to_allocvec(search.history()).unwrap()).unwrap(), search.history());
+    assert_eq!(&from_bytes::<OnePlusOneHistory>(&to_allocvec(search.history()).unwrap()).unwrap(), search.history());
     let config = *search.config();
-    let read = |config: SteadyStateConfig, generations: u32, accepted: &[u8]| {
-        from_bytes::<SteadyHistory>(&to_allocvec(&(config, 6_u64, generations, accepted.to_vec())).unwrap())
+    let read = |config: OnePlusOneConfig, generations: u32, accepted: &[u8]| {
+        from_bytes::<OnePlusOneHistory>(&to_allocvec(&(config, 6_u64, generations, accepted.to_vec())).unwrap())
     };
     assert_eq!(read(config, 11, &[3, 4]).unwrap().latest(), 11);
     assert!(read(config, 16, &[3, 255]).is_ok());
     for (generations, accepted) in [(11, &[3][..]), (11, &[3, 8]), (11, &[3, 4, 0]), (8, &[3, 0]), (0, &[0])] {
         assert!(read(config, generations, accepted).is_err(), "{generations} {accepted:?}");
     }
-    assert!(read(SteadyStateConfig { gene_bits: 0, ..config }, 3, &[3]).is_err());
-    assert!(read(SteadyStateConfig { last_rate: 0.9, ..config }, 3, &[3]).is_err());
+    assert!(read(OnePlusOneConfig { gene_bits: 0, ..config }, 3, &[3]).is_err());
+    assert!(read(OnePlusOneConfig { last_rate: 0.9, ..config }, 3, &[3]).is_err());
     // Another seed or history, with the digest of these genomes.
     let bytes = |seed: u64, accepted: bool| {
-        let mut history = SteadyHistory::new(config, seed).unwrap();
+        let mut history = OnePlusOneHistory::new(config, seed).unwrap();
         (0..11).for_each(|g| history.record(accepted ^ search.history().accepted(g).unwrap()).unwrap());
         to_allocvec(&((history, Fitness::WORST), search.ask().digest())).unwrap()
     };
-    assert!(from_bytes::<SteadyState>(&bytes(6, false)).is_ok());
-    assert!(from_bytes::<SteadyState>(&bytes(7, false)).is_err());
-    assert!(from_bytes::<SteadyState>(&bytes(6, true)).is_err());
+    assert!(from_bytes::<OnePlusOne>(&bytes(6, false)).is_ok());
+    assert!(from_bytes::<OnePlusOne>(&bytes(7, false)).is_err());
+    assert!(from_bytes::<OnePlusOne>(&bytes(6, true)).is_err());
 }
 
 #[test]
@@ -233,9 +233,9 @@ fn ranges_and_summaries_come_back_and_are_checked() {
         assert!(from_bytes::<GeneRange>(&to_allocvec(&(3_usize, low, high, bits)).unwrap()).is_err());
     }
     assert_eq!(to_allocvec(&(3_usize, -6.0_f32, 6.0_f32, 16_u32)).unwrap(), to_allocvec(&range).unwrap());
-    let summary = Statistics::of(&[1.0, f64::NAN, 3.0].map(Fitness::nan_as_failed)).unwrap();
+    let summary = Statistics::from_fitness(&[1.0, f64::NAN, 3.0].map(Fitness::nan_as_failed)).unwrap();
     assert_eq!(from_bytes::<Statistics>(&to_allocvec(&summary).unwrap()).unwrap(), summary);
-    let failed = Statistics::of(&[Fitness::WORST]).unwrap();
+    let failed = Statistics::from_fitness(&[Fitness::WORST]).unwrap();
     assert_eq!(from_bytes::<Statistics>(&to_allocvec(&failed).unwrap()).unwrap(), failed);
     let champion = Champion { generation: 3, individual: 2, fitness: Fitness::WORST, genome: vec![1, 2, 3] };
     assert_eq!(from_bytes::<Champion>(&to_allocvec(&champion).unwrap()).unwrap(), champion);

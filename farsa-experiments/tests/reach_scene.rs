@@ -9,7 +9,7 @@ use farsa_body::{
 };
 use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, OUTPUTS, Phase, ReachLife, Scene};
 use farsa_experiments::{Job, Life, live};
-use farsa_nn::{Controller, Network};
+use farsa_nn::{Controller, LeakyNetwork};
 use farsa_physics::articulated::{Model, World};
 
 fn scene(config: Config) -> Arc<Scene> {
@@ -337,7 +337,8 @@ fn a_life_thinks_once_a_step_and_hears_reach_first() {
 #[test]
 fn a_network_of_another_shape_is_refused() {
     let layout = Config::of_condition(false).layout();
-    let network = Network::new(layout, farsa_nn::Leak::Filter, vec![0.0; 756], vec![0.0; layout.state_len()]).unwrap();
+    let network =
+        LeakyNetwork::new(layout, farsa_nn::Leak::Filter, vec![0.0; 756], vec![0.0; layout.state_len()]).unwrap();
     let error = ReachLife::new(scene(Config::default()), network).unwrap_err().to_string();
     assert_eq!(error, "reach-grasp-lift: a controller of 26 inputs and 23 outputs for 29 sensors and 23 motors");
 }

@@ -9,11 +9,11 @@ use crate::block::layout::BlockLayout;
 /// Neurons are logistic with slope 1 and biases, without gains and leaks, unless something else is asked for.
 ///
 /// ```
-/// use farsa_nn::{Architecture, Layout, Plan};
+/// use farsa_nn::{Architecture, LeakyLayout, Plan};
 ///
 /// // The network of the manipulation experiment.
 /// const PLAN: Plan = Architecture::elman(29, 12, 23).with_slope(0.2).with_leaks().without_output_biases().plan();
-/// assert_eq!(PLAN.layout().parameter_count(), Layout::new(29, 12, 23).parameter_count());
+/// assert_eq!(PLAN.layout().parameter_count(), LeakyLayout::new(29, 12, 23).parameter_count());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

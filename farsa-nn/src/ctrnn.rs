@@ -149,7 +149,8 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ctrnn<P, S> {
 }
 
 impl<P, S> Ctrnn<P, S> {
-    /// The same network over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    /// The same network over these instructions, as
+    /// [`LeakyNetwork::with_instructions`](crate::LeakyNetwork::with_instructions).
     pub fn with_instructions(self, instructions: Instructions) -> Self {
         Self { level: instructions.level(), ..self }
     }

@@ -44,7 +44,7 @@ impl CtrnnParameter {
 /// | [`Gain`](CtrnnParameter::Gain) | `n` | `m*n + n*n + n + i` |
 /// | [`TimeConstant`](CtrnnParameter::TimeConstant) | `n` | `m*n + n*n + 2*n + i` |
 ///
-/// Counts saturate, as those of a [`Layout`](crate::Layout).
+/// Counts saturate, as those of a [`LeakyLayout`](crate::LeakyLayout).
 ///
 /// ```
 /// use farsa_nn::{CtrnnLayout, Integrator};

@@ -85,7 +85,7 @@ impl<R: Real> Dynamics<'_, R> {
         let stages = if self.integrator == Integrator::RungeKutta4 { 4 } else { 1 };
         for stage in 0..stages {
             let sources = [self.inputs, (&*self.o, self.weights)];
-            let layer = Layer { targets: neurons, slope: R::of(1.0), biases: self.external, sources };
+            let layer = Layer { targets: neurons, slope: R::from_f64(1.0), biases: self.external, sources };
             layer.all_sums::<S>(simd, self.net);
             // What is left over is a vector that overlaps the one before it. It is computed first, of what that one will
             // overwrite, and stored last, with the same values where both have been.
@@ -104,7 +104,7 @@ impl<R: Real> Dynamics<'_, R> {
     fn hold(&mut self) {
         for lesion in self.lesions {
             if let Some(o) = self.o.get_mut(lesion.neuron) {
-                *o = R::of(f64::from(lesion.activation));
+                *o = R::from_f64(f64::from(lesion.activation));
             }
         }
     }

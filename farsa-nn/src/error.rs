@@ -49,7 +49,7 @@ pub enum Error {
         outputs: usize,
     },
     /// Integers of a fixed-point network are to have so many fraction bits.
-    FixedBits {
+    FractionBits {
         /// Which integers: inputs, weights or sums.
         of: &'static str,
         /// The number of fraction bits.
@@ -169,7 +169,7 @@ impl fmt::Display for Error {
                 f,
                 "{values} sensor values and {wanted} wanted motor values: not whole ticks of {sensors} and {outputs}"
             ),
-            Self::FixedBits { of, found, least, most } => {
+            Self::FractionBits { of, found, least, most } => {
                 write!(f, "{found} fraction bits of {of}: outside [{least}, {most}]")
             }
             Self::WeightRange { index, value } => {

@@ -6,8 +6,8 @@ use alloc::vec::Vec;
 use farsa_num::{Real, logistic};
 
 use crate::error::Error;
-use crate::layout::{Layout, ParameterKind};
 use crate::leak::Leak;
+use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 
 /// What a motor value `O` costs where `T` is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -30,7 +30,8 @@ pub struct Demonstration<'a> {
     pub wanted: &'a [f32],
 }
 
-/// The gradient of what demonstrations cost by the parameters of a [`Network`](crate::Network), summed over them.
+/// The gradient of what demonstrations cost by the parameters of a [`LeakyNetwork`](crate::LeakyNetwork), summed over
+/// them.
 ///
 /// The network is run over each demonstration from its start at rest, then the costs are followed back through all its
 /// ticks, to the first. A demonstration of one tick is an example for a network without memory: recurrent weights then have
@@ -39,12 +40,12 @@ pub struct Demonstration<'a> {
 /// `f64` is meant for learning, `f32` costs half the memory. Every sum has a fixed order: the same bits on every machine.
 ///
 /// Source: `[Rumelhart1986]` for back-propagation, `[Werbos1990]` through time; the equations are those of
-/// [`Network`](crate::Network), with the leak's own derivative.
+/// [`LeakyNetwork`](crate::LeakyNetwork), with the leak's own derivative.
 ///
 /// ```
-/// use farsa_nn::{Demonstration, Gradient, Layout, Leak, Loss};
+/// use farsa_nn::{Demonstration, Gradient, Leak, LeakyLayout, Loss};
 ///
-/// const LAYOUT: Layout = Layout::new(1, 1, 1);
+/// const LAYOUT: LeakyLayout = LeakyLayout::new(1, 1, 1);
 /// let mut gradient = Gradient::<f64>::new(LAYOUT, Leak::Filter, Loss::SquaredError)?;
 /// let parameters = [1.0, 0.0, 0.0, 0.0, 1.0];
 /// // The output is 0.5, its wish 1: more of any weight of the output helps.
@@ -56,7 +57,7 @@ pub struct Demonstration<'a> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Gradient<R> {
-    layout: Layout,
+    layout: LeakyLayout,
     leak: Leak,
     loss: Loss,
     sum: Vec<R>,
@@ -75,7 +76,7 @@ impl<R: Real> Gradient<R> {
     ///
     /// # Errors
     /// [`Error::Slope`].
-    pub fn new(layout: Layout, leak: Leak, loss: Loss) -> Result<Self, Error> {
+    pub fn new(layout: LeakyLayout, leak: Leak, loss: Loss) -> Result<Self, Error> {
         if !layout.slope().is_finite() {
             return Err(Error::Slope { value: layout.slope() });
         }
@@ -86,7 +87,7 @@ impl<R: Real> Gradient<R> {
     }
 
     /// The layout.
-    pub fn layout(&self) -> Layout {
+    pub fn layout(&self) -> LeakyLayout {
         self.layout
     }
 
@@ -95,7 +96,8 @@ impl<R: Real> Gradient<R> {
         self.leak
     }
 
-    /// The sum over the demonstrations since [`clear`](Self::clear) [[`parameter_count`](Layout::parameter_count)].
+    /// The sum over the demonstrations since [`clear`](Self::clear)
+    /// [[`parameter_count`](LeakyLayout::parameter_count)].
     pub fn sum(&self) -> &[R] {
         &self.sum
     }
@@ -108,7 +110,7 @@ impl<R: Real> Gradient<R> {
     /// What the demonstrations since [`clear`](Self::clear) cost, per motor value.
     pub fn mean_cost(&self) -> R {
         let values = self.ticks.saturating_mul(self.layout.outputs());
-        if values == 0 { R::default() } else { self.cost / R::of(values as f64) }
+        if values == 0 { R::default() } else { self.cost / R::from_f64(values as f64) }
     }
 
     /// Ticks of the demonstrations since [`clear`](Self::clear).
@@ -122,8 +124,8 @@ impl<R: Real> Gradient<R> {
         (self.cost, self.ticks) = (R::default(), 0);
     }
 
-    /// What a demonstration costs under these parameters [[`parameter_count`](Layout::parameter_count)], a sum over its
-    /// ticks and motor values; nothing is added.
+    /// What a demonstration costs under these parameters [[`parameter_count`](LeakyLayout::parameter_count)], a sum
+    /// over its ticks and motor values; nothing is added.
     ///
     /// # Errors
     /// [`Error::ParameterCount`], [`Error::Demonstration`].
@@ -133,7 +135,7 @@ impl<R: Real> Gradient<R> {
     }
 
     /// Adds the gradient of what a demonstration costs under these parameters
-    /// [[`parameter_count`](Layout::parameter_count)] and returns the cost, a sum over its ticks and motor values.
+    /// [[`parameter_count`](LeakyLayout::parameter_count)] and returns the cost, a sum over its ticks and motor values.
     ///
     /// # Errors
     /// [`Error::ParameterCount`], [`Error::Demonstration`]; nothing is added then.
@@ -166,7 +168,7 @@ impl<R: Real> Gradient<R> {
         let Self { layout, leak, loss, trace, .. } = self;
         let (n, h, o) = (layout.sensors(), layout.hidden(), layout.outputs());
         let part = |kind| &parameters[layout.range(kind)];
-        let (slope, one) = (R::of(f64::from(layout.slope())), R::of(1.0));
+        let (slope, one) = (R::from_f64(f64::from(layout.slope())), R::from_f64(1.0));
         let ticks = wanted.len().checked_div(o).or(x.len().checked_div(n)).unwrap_or(0);
         trace.clear();
         trace.resize((ticks + 1) * (2 * h + o), R::default());
@@ -177,12 +179,12 @@ impl<R: Real> Gradient<R> {
             let (response, left) = now.split_at_mut(h);
             let (hidden, motors) = left.split_at_mut(h);
             let (response_before, hidden_before) = before[..2 * h].split_at(h);
-            response.copy_from_slice(part(ParameterKind::Bias));
+            response.copy_from_slice(part(LeakyParameter::Bias));
             let x = &x[tick * n..(tick + 1) * n];
-            add_rows(response, x.iter().map(|x| R::of(f64::from(*x))), part(ParameterKind::SensorWeight));
-            add_rows(response, hidden_before.iter().copied(), part(ParameterKind::RecurrentWeight));
+            add_rows(response, x.iter().map(|x| R::from_f64(f64::from(*x))), part(LeakyParameter::SensorWeight));
+            add_rows(response, hidden_before.iter().copied(), part(LeakyParameter::RecurrentWeight));
             for i in 0..h {
-                let d = part(ParameterKind::Leak)[i];
+                let d = part(LeakyParameter::Leak)[i];
                 let y = logistic(slope * response[i]);
                 response[i] = y;
                 hidden[i] = match leak {
@@ -191,9 +193,9 @@ impl<R: Real> Gradient<R> {
                     Leak::Evonet => d * hidden_before[i] + (one - d) * y,
                 };
             }
-            add_rows(motors, hidden.iter().copied(), part(ParameterKind::OutputWeight));
+            add_rows(motors, hidden.iter().copied(), part(LeakyParameter::OutputWeight));
             for (motor, wanted) in motors.iter_mut().zip(&wanted[tick * o..(tick + 1) * o]) {
-                let (net, wanted) = (slope * *motor, R::of(f64::from(*wanted)));
+                let (net, wanted) = (slope * *motor, R::from_f64(f64::from(*wanted)));
                 *motor = logistic(net);
                 cost += loss.cost(net, *motor, wanted);
             }
@@ -207,7 +209,7 @@ impl<R: Real> Gradient<R> {
         let Self { layout, leak, loss, sum, trace, back, .. } = self;
         let (n, h, o) = (layout.sensors(), layout.hidden(), layout.outputs());
         let part = |kind| &parameters[layout.range(kind)];
-        let (slope, one) = (R::of(f64::from(layout.slope())), R::of(1.0));
+        let (slope, one) = (R::from_f64(f64::from(layout.slope())), R::from_f64(1.0));
         let [to_hidden, to_response, through] = back;
         to_hidden.fill(R::default());
         to_response.fill(R::default());
@@ -220,12 +222,12 @@ impl<R: Real> Gradient<R> {
             let (response_before, hidden_before) = before[..2 * h].split_at(h);
 
             for ((through, motor), wanted) in through.iter_mut().zip(motors).zip(&wanted[tick * o..]) {
-                *through = slope * loss.slope(*motor, R::of(f64::from(*wanted)));
+                *through = slope * loss.slope(*motor, R::from_f64(f64::from(*wanted)));
             }
-            add_products(&mut sum[layout.range(ParameterKind::OutputWeight)], hidden.iter().copied(), &through[..o]);
-            add_transposed(to_hidden, part(ParameterKind::OutputWeight), &through[..o]);
+            add_products(&mut sum[layout.range(LeakyParameter::OutputWeight)], hidden.iter().copied(), &through[..o]);
+            add_transposed(to_hidden, part(LeakyParameter::OutputWeight), &through[..o]);
 
-            let leaks = layout.range(ParameterKind::Leak);
+            let leaks = layout.range(LeakyParameter::Leak);
             for i in 0..h {
                 let (d, y, flow) = (parameters[leaks.start + i], response[i], to_hidden[i]);
                 // How much of the flow reaches the response, the activation before and the response before.
@@ -241,14 +243,14 @@ impl<R: Real> Gradient<R> {
                 (to_hidden[i], to_response[i]) = if stays { (kept, R::default()) } else { (R::default(), kept) };
             }
             let through = &through[..h];
-            for (sum, through) in sum[layout.range(ParameterKind::Bias)].iter_mut().zip(through) {
+            for (sum, through) in sum[layout.range(LeakyParameter::Bias)].iter_mut().zip(through) {
                 *sum += *through;
             }
-            let x = x[tick * n..(tick + 1) * n].iter().map(|x| R::of(f64::from(*x)));
-            add_products(&mut sum[layout.range(ParameterKind::SensorWeight)], x, through);
+            let x = x[tick * n..(tick + 1) * n].iter().map(|x| R::from_f64(f64::from(*x)));
+            add_products(&mut sum[layout.range(LeakyParameter::SensorWeight)], x, through);
             let sources = hidden_before.iter().copied();
-            add_products(&mut sum[layout.range(ParameterKind::RecurrentWeight)], sources, through);
-            add_transposed(to_hidden, part(ParameterKind::RecurrentWeight), through);
+            add_products(&mut sum[layout.range(LeakyParameter::RecurrentWeight)], sources, through);
+            add_transposed(to_hidden, part(LeakyParameter::RecurrentWeight), through);
         }
     }
 }
@@ -260,12 +262,12 @@ impl Loss {
             Self::SquaredError => (motor - wanted) * (motor - wanted),
             Self::CrossEntropy => {
                 // -ln O = ln(1 + exp(-net)), and ln(1 - O) = ln O - net.
-                let log = |size: R| farsa_num::ln(R::of(1.0) + farsa_num::exp(-size));
+                let log = |size: R| farsa_num::ln(R::from_f64(1.0) + farsa_num::exp(-size));
                 let small = if net < R::default() { -net } else { R::default() };
                 let log_motor = small + log(net.abs());
                 let entropy = |p: R| if p > R::default() { p * farsa_num::ln(p) } else { R::default() };
-                let least = entropy(wanted) + entropy(R::of(1.0) - wanted);
-                log_motor + (R::of(1.0) - wanted) * net + least
+                let least = entropy(wanted) + entropy(R::from_f64(1.0) - wanted);
+                log_motor + (R::from_f64(1.0) - wanted) * net + least
             }
         }
     }
@@ -273,7 +275,7 @@ impl Loss {
     /// Its derivative by that argument.
     fn slope<R: Real>(self, motor: R, wanted: R) -> R {
         match self {
-            Self::SquaredError => R::of(2.0) * (motor - wanted) * motor * (R::of(1.0) - motor),
+            Self::SquaredError => R::from_f64(2.0) * (motor - wanted) * motor * (R::from_f64(1.0) - motor),
             Self::CrossEntropy => motor - wanted,
         }
     }

@@ -187,7 +187,7 @@ impl<R: Real> Layer<'_, R> {
             return Some(S::load(simd, &y[last..]));
         }
         // Side by side, because a sum waits longer for its own last addition than for the next weight.
-        let (mut first, mut end) = (0, S::splat(simd, R::of(0.0)));
+        let (mut first, mut end) = (0, S::splat(simd, R::from_f64(0.0)));
         while first < y.len() {
             let vectors = (y.len() - first).div_ceil(S::LANES);
             (end, first) = match vectors {
@@ -216,7 +216,7 @@ impl<R: Real> Layer<'_, R> {
     #[inline(always)]
     fn sum<S: Scalar<Real = R>, const G: usize>(&self, simd: S::Simd, first: usize, last: usize, y: &mut [R]) -> S {
         let mut at = [last; G];
-        let mut sums = [S::splat(simd, R::of(0.0)); G];
+        let mut sums = [S::splat(simd, R::from_f64(0.0)); G];
         for k in 0..G {
             at[k] = last.min(first + k * S::LANES);
             // Never so; but said here, the compiler need not ask in every row below.

@@ -54,7 +54,7 @@ impl Leak {
     /// // Half of it is left after a step of 10 ms.
     /// let tau = Leak::Filter.time_constant(0.5, 0.01).unwrap_or_default();
     /// assert!((tau - 0.0144270).abs() < 1e-7);
-    /// assert_eq!(Leak::Filter.of_time_constant(tau, 0.01), Some(0.5));
+    /// assert_eq!(Leak::Filter.for_time_constant(tau, 0.01), Some(0.5));
     /// ```
     pub fn time_constant(self, leak: f32, time_step: f32) -> Option<f32> {
         let d = f64::from(leak);
@@ -72,7 +72,7 @@ impl Leak {
     /// [`time_constant`](Self::time_constant).
     ///
     /// `None` for [`Leak::TwoTap`] and for a time constant below zero.
-    pub fn of_time_constant(self, time_constant: f32, time_step: f32) -> Option<f32> {
+    pub fn for_time_constant(self, time_constant: f32, time_step: f32) -> Option<f32> {
         if time_constant.is_nan() || time_constant < 0.0 {
             return None;
         }

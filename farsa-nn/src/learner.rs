@@ -7,23 +7,23 @@ use farsa_num::Real;
 
 use crate::error::Error;
 use crate::gradient::{Demonstration, Gradient, Loss};
-use crate::layout::{Layout, ParameterKind};
 use crate::leak::Leak;
-use crate::network::check;
+use crate::leaky_layout::{LeakyLayout, LeakyParameter};
+use crate::leaky_network::check;
 use crate::optimizer::Optimizer;
 
-/// Parameters of a [`Network`](crate::Network) that follow the [`Gradient`] of what demonstrations cost.
+/// Parameters of a [`LeakyNetwork`](crate::LeakyNetwork) that follow the [`Gradient`] of what demonstrations cost.
 ///
 /// After each step leaks are brought back into [0, 1], and weights and biases into plus and minus
 /// [`limit`](Self::with_limit): a leak at an end stays there until the gradient points inwards.
 ///
 /// ```
-/// use farsa_nn::{Adam, Demonstration, Layout, Leak, Learner, Loss};
+/// use farsa_nn::{Adam, Demonstration, Leak, LeakyLayout, Learner, Loss};
 ///
 /// // One output that shall be the exclusive or of two inputs: examples of one tick each.
-/// const LAYOUT: Layout = Layout::new(2, 4, 1).with_slope(1.0);
+/// const LAYOUT: LeakyLayout = LeakyLayout::new(2, 4, 1).with_slope(1.0);
 /// let start = (0..LAYOUT.parameter_count()).map(|i| (i * 29 % 17) as f64 / 4.0 - 2.0);
-/// let start = start.zip(LAYOUT.kinds()).map(|(p, kind)| if kind == farsa_nn::ParameterKind::Leak { 1.0 } else { p });
+/// let start = start.zip(LAYOUT.kinds()).map(|(p, kind)| if kind == farsa_nn::LeakyParameter::Leak { 1.0 } else { p });
 /// let mut learner = Learner::new(LAYOUT, Leak::Filter, Loss::CrossEntropy, start.collect(), Adam::new(0.1))?;
 /// let examples = [([0.0, 0.0], [0.0]), ([0.0, 1.0], [1.0]), ([1.0, 0.0], [1.0]), ([1.0, 1.0], [0.0])];
 /// let all = || examples.iter().map(|(x, wanted)| Demonstration { x, wanted });
@@ -58,7 +58,7 @@ struct Mean<R> {
 impl<R: Real> Mean<R> {
     fn add(&mut self, parameters: &[R]) {
         let Some((begun, mean)) = self.words.split_first_mut() else { return };
-        *begun += (R::of(1.0) - *begun) * self.share;
+        *begun += (R::from_f64(1.0) - *begun) * self.share;
         let share = self.share / *begun;
         for (m, p) in mean.iter_mut().zip(parameters) {
             *m += (*p - *m) * share;
@@ -67,11 +67,11 @@ impl<R: Real> Mean<R> {
 }
 
 impl<R: Real, O: Optimizer<R>> Learner<R, O> {
-    /// A learner at these parameters [[`parameter_count`](Layout::parameter_count)].
+    /// A learner at these parameters [[`parameter_count`](LeakyLayout::parameter_count)].
     ///
     /// # Errors
     /// [`Error::Slope`], [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]: the first that applies.
-    pub fn new(layout: Layout, leak: Leak, loss: Loss, parameters: Vec<R>, optimizer: O) -> Result<Self, Error> {
+    pub fn new(layout: LeakyLayout, leak: Leak, loss: Loss, parameters: Vec<R>, optimizer: O) -> Result<Self, Error> {
         let gradient = Gradient::new(layout, leak, loss)?;
         let single: Vec<f32> = parameters.iter().map(|p| p.to_f64() as f32).collect();
         check(&layout, &single)?;
@@ -86,7 +86,7 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
 
     /// The same learner with gradients shortened to this length where they are longer: the long ones of a recurrent network
     /// come from where a small change decides much, and say little.
-    pub fn with_longest(self, longest: R) -> Self {
+    pub fn with_max_gradient_norm(self, longest: R) -> Self {
         Self { longest: Some(longest), ..self }
     }
 
@@ -95,9 +95,9 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
     ///
     /// Source: \[Polyak1992\]. Deviation: the plain mean over the first steps only; then a step counts less by a factor of
     /// `1 - 1/steps` with each that follows.
-    pub fn with_mean(self, steps: u32) -> Self {
+    pub fn with_averaging(self, steps: u32) -> Self {
         let words = core::iter::once(R::default()).chain(self.parameters.iter().copied()).collect();
-        Self { mean: Some(Mean { share: R::of(1.0 / f64::from(steps.max(1))), words }), ..self }
+        Self { mean: Some(Mean { share: R::from_f64(1.0 / f64::from(steps.max(1))), words }), ..self }
     }
 
     /// One step along the mean gradient of these demonstrations; returns what they cost before it, per motor value.
@@ -116,7 +116,7 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
             return Ok(R::default());
         }
         // The mean over ticks and motor values, as of the cost.
-        let values = R::of((ticks * self.gradient.layout().outputs().max(1)) as f64);
+        let values = R::from_f64((ticks * self.gradient.layout().outputs().max(1)) as f64);
         let mut squares = R::default();
         for g in self.gradient.sum_mut() {
             *g = *g / values;
@@ -128,10 +128,10 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
             self.gradient.sum_mut().iter_mut().for_each(|g| *g *= factor);
         }
         self.optimizer.step(self.gradient.sum(), &mut self.parameters, &mut self.memory);
-        let leaks = self.gradient.layout().range(ParameterKind::Leak).start;
+        let leaks = self.gradient.layout().range(LeakyParameter::Leak).start;
         for (index, p) in self.parameters.iter_mut().enumerate() {
             if index >= leaks {
-                *p = farsa_num::Scalar::clamp(*p, R::default(), R::of(1.0));
+                *p = farsa_num::Scalar::clamp(*p, R::default(), R::from_f64(1.0));
             } else if let Some(limit) = self.limit {
                 *p = farsa_num::Scalar::clamp(*p, -limit, limit);
             }
@@ -152,7 +152,7 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
             sum += self.gradient.cost(&self.parameters, demonstration)?;
             values += demonstration.wanted.len();
         }
-        Ok(if values == 0 { sum } else { sum / R::of(values as f64) })
+        Ok(if values == 0 { sum } else { sum / R::from_f64(values as f64) })
     }
 
     /// The optimizer, to change its rate.
@@ -160,13 +160,13 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
         &mut self.optimizer
     }
 
-    /// The parameters [[`parameter_count`](Layout::parameter_count)].
+    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)].
     pub fn parameters(&self) -> &[R] {
         &self.parameters
     }
 
-    /// The mean of the parameters over the latest steps [[`parameter_count`](Layout::parameter_count)], and of a learner
-    /// without [`with_mean`](Self::with_mean) the parameters.
+    /// The mean of the parameters over the latest steps [[`parameter_count`](LeakyLayout::parameter_count)], and of a
+    /// learner without [`with_averaging`](Self::with_averaging) the parameters.
     pub fn mean(&self) -> &[R] {
         self.mean.as_ref().and_then(|mean| mean.words.get(1..)).unwrap_or(&self.parameters)
     }

@@ -14,7 +14,7 @@ pub struct Lesion {
 
 impl Lesion {
     /// A silent neuron.
-    pub const fn of(neuron: usize) -> Self {
+    pub const fn new(neuron: usize) -> Self {
         Self { neuron, activation: 0.0 }
     }
 }
@@ -38,7 +38,7 @@ pub trait Neurons: Controller {
 /// const LAYOUT: CtrnnLayout = CtrnnLayout::new(0, 2, 1);
 /// let parameters = [0.0, 8.0, 0.0, 0.0, 0.0, -2.0, 1.0, 1.0, 1.0, 1.0];
 /// let whole = Ctrnn::new(LAYOUT, 0.1, parameters, [0.0; LAYOUT.state_len()])?;
-/// let lesions = [Lesion::of(0)];
+/// let lesions = [Lesion::new(0)];
 /// let mut without = Lesioned::new(whole.clone(), &lesions);
 /// let (mut whole, mut y, mut z) = (whole, [0.0], [0.0]);
 /// for _ in 0..100 {

@@ -21,13 +21,13 @@ mod evonet_text;
 mod gradient;
 mod integrator;
 mod kernel;
-mod layout;
 mod leak;
+mod leaky_layout;
+mod leaky_network;
 #[cfg(feature = "alloc")]
 mod learner;
 mod lesion;
 mod name;
-mod network;
 mod optimizer;
 mod perceptron;
 mod perceptron_lanes;
@@ -40,7 +40,7 @@ pub use architecture::{Architecture, Plan};
 #[cfg(feature = "alloc")]
 pub use block::BlockLayoutBuf;
 pub use block::{Block, BlockLayout, BlockNetwork, BlockParameter, Group, Span};
-pub use bytes::{Aligned, BytesError, CtrnnBytes, FixedNetworkBytes, NetworkBytes, channel_hash};
+pub use bytes::{Aligned, BytesError, CtrnnBytes, LeakyNetworkBytes, QuantizedNetworkBytes, channel_hash};
 pub use controller::Controller;
 pub use ctrnn::Ctrnn;
 pub use ctrnn_layout::{CtrnnLayout, CtrnnParameter, CtrnnParts};
@@ -51,14 +51,14 @@ pub use evonet_text::Evonet;
 #[cfg(feature = "alloc")]
 pub use gradient::{Demonstration, Gradient, Loss};
 pub use integrator::Integrator;
-pub use layout::{Layout, ParameterKind, Parts};
 pub use leak::Leak;
+pub use leaky_layout::{LeakyLayout, LeakyParameter, LeakyParts};
+pub use leaky_network::LeakyNetwork;
 #[cfg(feature = "alloc")]
 pub use learner::Learner;
 pub use lesion::{Lesion, Lesioned, Neurons};
-pub use network::Network;
 pub use optimizer::{Adam, Momentum, Optimizer};
 pub use perceptron::Perceptron;
 pub use perceptron_lanes::PerceptronLanes;
-pub use quantized::{FixedNetwork, FixedScale};
+pub use quantized::{QuantizedNetwork, QuantizedScale};
 pub use symmetry::CtrnnSymmetry;

@@ -36,7 +36,7 @@ impl<R: Real> Optimizer<R> for Momentum {
     }
 
     fn step(&self, gradient: &[R], parameters: &mut [R], memory: &mut [R]) {
-        let (rate, momentum) = (R::of(self.rate), R::of(self.momentum));
+        let (rate, momentum) = (R::from_f64(self.rate), R::from_f64(self.momentum));
         for ((p, g), v) in parameters.iter_mut().zip(gradient).zip(memory) {
             *v = momentum * *v - rate * *g;
             *p += *v;
@@ -73,9 +73,9 @@ impl<R: Real> Optimizer<R> for Adam {
     }
 
     fn step(&self, gradient: &[R], parameters: &mut [R], memory: &mut [R]) {
-        let one = R::of(1.0);
-        let (rate, epsilon) = (R::of(self.rate), R::of(self.epsilon));
-        let new = self.decays.map(|decay| R::of(1.0 - decay));
+        let one = R::from_f64(1.0);
+        let (rate, epsilon) = (R::from_f64(self.rate), R::from_f64(self.epsilon));
+        let new = self.decays.map(|decay| R::from_f64(1.0 - decay));
         let Some((begun, means)) = memory.split_first_chunk_mut::<2>() else { return };
         for (begun, new) in begun.iter_mut().zip(new) {
             *begun += (one - *begun) * new;

@@ -10,7 +10,7 @@ use crate::kernel::{Layer, level};
 /// One layer of logistic units without memory: `O_i = sigma( beta_i + sum_j w_ji I_j )`,
 /// `sigma(x) = 1/(1 + exp(-slope*x))`.
 ///
-/// The parameters, source-major like those of a [`Layout`](crate::Layout): `w_ji` at `j*outputs + i`
+/// The parameters, source-major like those of a [`LeakyLayout`](crate::LeakyLayout): `w_ji` at `j*outputs + i`
 /// `[inputs x outputs]`, then `beta_i` `[outputs]`. Sums start at the bias and add the inputs in their order.
 ///
 /// Enough for wall following, phototaxis and the discrimination of cylinders by a wheeled robot.
@@ -72,7 +72,8 @@ impl<P: AsRef<[f32]>> Perceptron<P> {
 }
 
 impl<P> Perceptron<P> {
-    /// The same layer over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    /// The same layer over these instructions, as
+    /// [`LeakyNetwork::with_instructions`](crate::LeakyNetwork::with_instructions).
     pub fn with_instructions(self, instructions: Instructions) -> Self {
         Self { level: instructions.level(), ..self }
     }

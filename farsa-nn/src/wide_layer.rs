@@ -30,7 +30,7 @@ impl<R: Real> Layer<'_, R> {
         let Some(last) = y.len().checked_sub(S::LANES) else { return };
         match self.biases.get(..y.len()) {
             Some(biases) => y.copy_from_slice(biases),
-            None => y.fill(R::of(0.0)),
+            None => y.fill(R::from_f64(0.0)),
         }
         let mut end = S::load(simd, &y[last..]);
         for (x, weights) in self.sources {

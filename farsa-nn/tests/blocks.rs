@@ -2,7 +2,7 @@
 
 use farsa_nn::{
     Activation, Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, Controller, Error, EvonetRanges, Group,
-    Layout, Leak, Lesion, Lesioned, Network, Neurons, ParameterKind, Plan, Span,
+    Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Lesion, Lesioned, Neurons, Plan, Span,
 };
 use farsa_num::{Domain, Instructions, Stream};
 use proptest::prelude::*;
@@ -169,16 +169,16 @@ proptest! {
 
     #[test]
     fn the_network_is_one_of_blocks((n, h, o) in (0..12_usize, 1..40_usize, 0..40_usize), seed in any::<u64>()) {
-        let plan = Architecture::elman(n, h, o).with_slope(Layout::SLOPE).with_leaks().without_output_biases().plan();
-        let (layout, whole) = (plan.layout(), Layout::new(n, h, o));
+        let plan = Architecture::elman(n, h, o).with_slope(LeakyLayout::SLOPE).with_leaks().without_output_biases().plan();
+        let (layout, whole) = (plan.layout(), LeakyLayout::new(n, h, o));
         prop_assert_eq!(layout.parameter_count(), whole.parameter_count());
-        prop_assert!(layout.range(BlockParameter::Leak).eq(whole.range(ParameterKind::Leak)));
-        prop_assert!(layout.range(BlockParameter::Bias).eq(whole.range(ParameterKind::Bias)));
+        prop_assert!(layout.range(BlockParameter::Leak).eq(whole.range(LeakyParameter::Leak)));
+        prop_assert!(layout.range(BlockParameter::Bias).eq(whole.range(LeakyParameter::Bias)));
         let parameters = drawn(layout, seed);
         let mut stream = Stream::new(seed, Domain::Sensor, 0, 0, 0);
         for leak in Leak::ALL {
             let mut blocks = BlockNetwork::new(layout, leak, &parameters, state(layout))?;
-            let mut network = Network::new(whole, leak, &parameters, vec![0.0; whole.state_len()])?;
+            let mut network = LeakyNetwork::new(whole, leak, &parameters, vec![0.0; whole.state_len()])?;
             let (mut y, mut z) = (vec![0.0; o], vec![0.0; o]);
             for _ in 0..10 {
                 let x: Vec<f32> = (0..n).map(|_| stream.range(-50.0, 50.0)).collect();
@@ -225,7 +225,7 @@ proptest! {
         for to in 0..16 {
             layout.weights(neuron, to).for_each(|index| cut[index] = 0.0);
         }
-        let lesions = [Lesion::of(neuron)];
+        let lesions = [Lesion::new(neuron)];
         let mut without = Lesioned::new(BlockNetwork::new(layout, Leak::Filter, &parameters, state(layout))?, &lesions);
         let mut cut = BlockNetwork::new(layout, Leak::Filter, &cut, state(layout))?;
         let (mut y, mut z) = ([0.0; 4], [0.0; 4]);
@@ -346,12 +346,12 @@ fn other_parameters_leave_no_trace() -> Result<(), Error> {
 
 #[test]
 fn a_lesion_holds_what_it_is_told() -> Result<(), Error> {
-    const LAYOUT: Layout = Layout::new(1, 9, 2);
+    const LAYOUT: LeakyLayout = LeakyLayout::new(1, 9, 2);
     let parameters: Vec<f32> = (0..LAYOUT.parameter_count()).map(|i| (i * 37 % 101) as f32 / 101.0).collect();
-    let network = Network::new(LAYOUT, Leak::Filter, &parameters, [0.0; LAYOUT.state_len()])?;
+    let network = LeakyNetwork::new(LAYOUT, Leak::Filter, &parameters, [0.0; LAYOUT.state_len()])?;
     assert_eq!(network.neurons(), 11);
     // The last does not exist.
-    let lesions = [Lesion { neuron: 4, activation: 0.75 }, Lesion { neuron: 10, activation: 0.125 }, Lesion::of(99)];
+    let lesions = [Lesion { neuron: 4, activation: 0.75 }, Lesion { neuron: 10, activation: 0.125 }, Lesion::new(99)];
     let mut without = Lesioned::new(network.clone(), &lesions);
     let (mut y, mut z, mut whole) = ([0.0; 2], [0.0; 2], network);
     for _ in 0..3 {
@@ -447,18 +447,18 @@ fn leaks_and_time_constants_are_each_others() {
     for leak in [Leak::Filter, Leak::Evonet] {
         for d in [1e-6_f32, 0.01, 0.3, 0.5, 0.9, 0.999] {
             let tau = leak.time_constant(d, 0.01).expect("a time constant");
-            let back = leak.of_time_constant(tau, 0.01).expect("a leak");
+            let back = leak.for_time_constant(tau, 0.01).expect("a leak");
             assert!((back - d).abs() <= 1e-6 * d, "{leak}: {d} comes back as {back}");
         }
         assert_eq!(leak.time_constant(1.5, 0.01), None);
         assert_eq!(leak.time_constant(f32::NAN, 0.01), None);
-        assert_eq!(leak.of_time_constant(-1.0, 0.01), None);
+        assert_eq!(leak.for_time_constant(-1.0, 0.01), None);
     }
     assert_eq!(Leak::Filter.time_constant(0.0, 0.01), Some(f32::INFINITY));
     assert_eq!(Leak::Filter.time_constant(1.0, 0.01), Some(0.0));
     assert_eq!(Leak::Evonet.time_constant(1.0, 0.01), Some(f32::INFINITY));
-    assert_eq!(Leak::Filter.of_time_constant(f32::INFINITY, 0.01), Some(0.0));
-    assert_eq!(Leak::Filter.of_time_constant(0.0, 0.01), Some(1.0));
-    assert_eq!(Leak::Evonet.of_time_constant(0.0, 0.01), Some(0.0));
-    assert_eq!((Leak::TwoTap.time_constant(0.5, 0.01), Leak::TwoTap.of_time_constant(1.0, 0.01)), (None, None));
+    assert_eq!(Leak::Filter.for_time_constant(f32::INFINITY, 0.01), Some(0.0));
+    assert_eq!(Leak::Filter.for_time_constant(0.0, 0.01), Some(1.0));
+    assert_eq!(Leak::Evonet.for_time_constant(0.0, 0.01), Some(0.0));
+    assert_eq!((Leak::TwoTap.time_constant(0.5, 0.01), Leak::TwoTap.for_time_constant(1.0, 0.01)), (None, None));
 }

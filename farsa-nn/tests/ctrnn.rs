@@ -250,7 +250,7 @@ fn a_silent_neuron_is_one_that_nobody_hears() -> Result<(), Error> {
         let parameters = drawn(layout, 5);
         let mut deaf = parameters.clone();
         deaf[11 + 3 * 11..11 + 4 * 11].fill(0.0);
-        let lesions = [Lesion::of(3)];
+        let lesions = [Lesion::new(3)];
         let mut without = Lesioned::new(Ctrnn::new(layout, 0.1, &parameters, state(layout))?, &lesions);
         let mut deaf = Ctrnn::new(layout, 0.1, &deaf, state(layout))?;
         let (mut y, mut z) = ([0.0; 11], [0.0; 11]);

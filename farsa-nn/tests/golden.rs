@@ -1,21 +1,21 @@
 //! The bits of a long run: a change here is value-breaking and has its heading in the changelog.
 
 use farsa_nn::{
-    Architecture, BlockNetwork, BlockParameter, Controller, Ctrnn, CtrnnLayout, FixedNetwork, FixedScale, Integrator,
-    Layout, Leak, Network, ParameterKind,
+    Architecture, BlockNetwork, BlockParameter, Controller, Ctrnn, CtrnnLayout, Integrator, Leak, LeakyLayout,
+    LeakyNetwork, LeakyParameter, QuantizedNetwork, QuantizedScale,
 };
 use farsa_num::{Digest, Domain, Stream};
 
 #[test]
 fn a_hundred_thousand_steps() {
-    const LAYOUT: Layout = Layout::new(29, 12, 23);
+    const LAYOUT: LeakyLayout = LeakyLayout::new(29, 12, 23);
     let run = |leak| {
         let mut genes = Stream::new(2010, Domain::InitialGenome, 0, 0, 0);
         let mut parameters = [0.0; LAYOUT.parameter_count()];
         for (p, kind) in parameters.iter_mut().zip(LAYOUT.kinds()) {
-            *p = if kind == ParameterKind::Leak { genes.uniform() } else { genes.range(-6.0, 6.0) };
+            *p = if kind == LeakyParameter::Leak { genes.uniform() } else { genes.range(-6.0, 6.0) };
         }
-        let mut network = Network::new(LAYOUT, leak, parameters, [0.0; LAYOUT.state_len()]).expect("valid");
+        let mut network = LeakyNetwork::new(LAYOUT, leak, parameters, [0.0; LAYOUT.state_len()]).expect("valid");
         let mut inputs = Stream::new(2010, Domain::Network, 0, 0, 0);
         let (mut x, mut y, mut digest) = ([0.0; 29], [0.0; 23], Digest::new());
         for _ in 0..100_000 {
@@ -34,20 +34,20 @@ fn a_hundred_thousand_steps() {
 
 #[test]
 fn a_hundred_thousand_steps_in_fixed_point() {
-    const LAYOUT: Layout = Layout::new(29, 12, 23);
+    const LAYOUT: LeakyLayout = LeakyLayout::new(29, 12, 23);
     let run = |leak| {
         let mut genes = Stream::new(2010, Domain::InitialGenome, 0, 0, 0);
         let (mut parameters, mut fixed) = ([0.0; LAYOUT.parameter_count()], [0; LAYOUT.parameter_count()]);
         for (p, kind) in parameters.iter_mut().zip(LAYOUT.kinds()) {
-            *p = if kind == ParameterKind::Leak { genes.uniform() } else { genes.range(-6.0, 6.0) };
+            *p = if kind == LeakyParameter::Leak { genes.uniform() } else { genes.range(-6.0, 6.0) };
         }
-        let scale = FixedScale::quantize(&LAYOUT, 9, &parameters, &mut fixed).expect("fits");
-        let mut network = FixedNetwork::new(LAYOUT, leak, scale, fixed, [0; LAYOUT.state_len()]).expect("valid");
+        let scale = QuantizedScale::quantize(&LAYOUT, 9, &parameters, &mut fixed).expect("fits");
+        let mut network = QuantizedNetwork::new(LAYOUT, leak, scale, fixed, [0; LAYOUT.state_len()]).expect("valid");
         let mut inputs = Stream::new(2010, Domain::Network, 0, 0, 0);
         let (mut x, mut y, mut digest) = ([0; 29], [0; 23], Digest::new());
         for _ in 0..100_000 {
             x.fill_with(|| (inputs.next_u32() >> 19) as i16 - 4096);
-            network.step_fixed(&x, &mut y);
+            network.step_quantized(&x, &mut y);
             let told = network.hidden().iter().map(|h| *h as u64).chain(y.iter().map(|y| *y as u64));
             told.for_each(|value| digest.add_u64(value));
         }

@@ -2,8 +2,8 @@
 #![cfg(feature = "alloc")]
 
 use farsa_nn::{
-    Adam, Controller, Demonstration, Error, Gradient, Layout, Leak, Learner, Loss, Momentum, Network, Optimizer,
-    ParameterKind,
+    Adam, Controller, Demonstration, Error, Gradient, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Learner, Loss,
+    Momentum, Optimizer,
 };
 use farsa_num::{Digest, Domain, Stream};
 use proptest::prelude::*;
@@ -12,7 +12,7 @@ const LOSSES: [Loss; 2] = [Loss::SquaredError, Loss::CrossEntropy];
 
 #[derive(Clone, Debug)]
 struct Case {
-    layout: Layout,
+    layout: LeakyLayout,
     parameters: Vec<f64>,
     x: Vec<f32>,
     wanted: Vec<f32>,
@@ -26,13 +26,13 @@ impl Case {
 
 prop_compose! {
     fn any_case()(n in 0..5_usize, h in 0..6_usize, o in 1..5_usize, ticks in 0..9_usize, slope in 0.1_f32..1.5)(
-        parameters in prop::collection::vec(0.0_f64..1.0, Layout::new(n, h, o).parameter_count()),
+        parameters in prop::collection::vec(0.0_f64..1.0, LeakyLayout::new(n, h, o).parameter_count()),
         x in prop::collection::vec(-3.0_f32..3.0, n * ticks),
         wanted in prop::collection::vec(0.0_f32..=1.0, o * ticks),
-        layout in Just(Layout::new(n, h, o).with_slope(slope)),
+        layout in Just(LeakyLayout::new(n, h, o).with_slope(slope)),
     ) -> Case {
         let parameters = parameters.iter().zip(layout.kinds());
-        let decoded = parameters.map(|(p, kind)| if kind == ParameterKind::Leak { *p } else { 6.0 * p - 3.0 });
+        let decoded = parameters.map(|(p, kind)| if kind == LeakyParameter::Leak { *p } else { 6.0 * p - 3.0 });
         Case { layout, parameters: decoded.collect(), x, wanted }
     }
 }
@@ -65,7 +65,7 @@ proptest! {
     fn costs_what_the_network_does(case in any_case()) {
         let single: Vec<f32> = case.parameters.iter().map(|p| *p as f32).collect();
         for leak in Leak::ALL {
-            let mut network = Network::new(case.layout, leak, &single, vec![0.0; case.layout.state_len()])?;
+            let mut network = LeakyNetwork::new(case.layout, leak, &single, vec![0.0; case.layout.state_len()])?;
             let (n, o) = (case.layout.sensors(), case.layout.outputs());
             let mut expected = 0.0_f32;
             let mut y = vec![0.0; o];
@@ -133,10 +133,10 @@ fn flags() -> Vec<(Vec<f32>, Vec<f32>)> {
 }
 
 fn learner<O: Optimizer<f64>>(leak: Leak, optimizer: O) -> Learner<f64, O> {
-    const LAYOUT: Layout = Layout::new(2, 5, 1).with_slope(1.0);
+    const LAYOUT: LeakyLayout = LeakyLayout::new(2, 5, 1).with_slope(1.0);
     let mut draw = Stream::new(5, Domain::InitialGenome, 0, 0, 0);
     let start =
-        LAYOUT.kinds().map(|kind| if kind == ParameterKind::Leak { 0.5 } else { f64::from(draw.range(-1.0, 1.0)) });
+        LAYOUT.kinds().map(|kind| if kind == LeakyParameter::Leak { 0.5 } else { f64::from(draw.range(-1.0, 1.0)) });
     Learner::new(LAYOUT, leak, Loss::CrossEntropy, start.collect(), optimizer).expect("valid")
 }
 
@@ -153,16 +153,18 @@ fn learn<O: Optimizer<f64>>(learner: &mut Learner<f64, O>, steps: usize) -> f64 
 #[test]
 fn a_memory_is_learned_by_every_reading_and_both_optimizers() {
     for leak in Leak::ALL {
-        let mut adam = learner(leak, Adam::new(0.03)).with_limit(8.0).with_longest(1.0);
+        let mut adam = learner(leak, Adam::new(0.03)).with_limit(8.0).with_max_gradient_norm(1.0);
         let (first, last) = (learn(&mut adam, 1), learn(&mut adam, 1500));
-        let mut momentum = learner(leak, Momentum { rate: 0.5, momentum: 0.9 }).with_limit(8.0).with_longest(1.0);
+        let mut momentum =
+            learner(leak, Momentum { rate: 0.5, momentum: 0.9 }).with_limit(8.0).with_max_gradient_norm(1.0);
         let plain = learn(&mut momentum, 1500);
         println!("{leak:>8}: {first:.3} falls to {last:.5} by Adam, to {plain:.5} by momentum");
         assert!(first > 0.5 && last < 0.02 && plain < 0.02, "{leak}: {first} {last} {plain}");
         // The network itself does it, from the rounded parameters.
         let single: Vec<f32> = adam.parameters().iter().map(|p| *p as f32).collect();
-        let layout = Layout::new(2, 5, 1).with_slope(1.0);
-        let mut network = Network::new(layout, leak, single, vec![0.0; layout.state_len()]).expect("leaks in [0, 1]");
+        let layout = LeakyLayout::new(2, 5, 1).with_slope(1.0);
+        let mut network =
+            LeakyNetwork::new(layout, leak, single, vec![0.0; layout.state_len()]).expect("leaks in [0, 1]");
         for (x, wanted) in flags() {
             network.reset();
             let mut y = [0.0];
@@ -175,7 +177,7 @@ fn a_memory_is_learned_by_every_reading_and_both_optimizers() {
 #[test]
 fn weights_and_biases_reach_their_limit_and_stay_within() {
     let largest = |learner: &Learner<f64, Adam>| {
-        let leaks = Layout::new(2, 5, 1).range(ParameterKind::Leak).start;
+        let leaks = LeakyLayout::new(2, 5, 1).range(LeakyParameter::Leak).start;
         learner.parameters()[..leaks].iter().fold(0.0, |most: f64, w| most.max(w.abs()))
     };
     for limit in [1.5, 3.0] {
@@ -204,12 +206,12 @@ fn long_gradients_are_shortened_and_short_ones_are_not() {
     let length = |step: &[f64]| step.iter().map(|d| d * d).sum::<f64>().sqrt();
     let free = step(start.clone());
     assert!(length(&free) > 0.02, "{}", length(&free));
-    let shortened = step(start.clone().with_longest(0.01));
+    let shortened = step(start.clone().with_max_gradient_norm(0.01));
     assert!((length(&shortened) - 0.01).abs() < 1e-12, "{}", length(&shortened));
     for (short, long) in shortened.iter().zip(&free) {
         assert!((short - long * 0.01 / length(&free)).abs() < 1e-12, "{short} of {long}");
     }
-    assert_eq!(step(start.clone().with_longest(1.01 * length(&free))), free);
+    assert_eq!(step(start.clone().with_max_gradient_norm(1.01 * length(&free))), free);
 }
 
 #[test]
@@ -236,7 +238,7 @@ fn learning_goes_on_where_it_stopped() -> Result<(), Error> {
 /// Against the sum over all steps, of which the latest counts 1 and each before it a factor of 1 - 1/steps less.
 #[test]
 fn a_mean_is_that_of_the_latest_steps() -> Result<(), Error> {
-    let mut averaged = learner(Leak::Filter, Adam::new(0.03)).with_mean(5);
+    let mut averaged = learner(Leak::Filter, Adam::new(0.03)).with_averaging(5);
     assert_eq!(averaged.mean(), averaged.parameters());
     let mut steps: Vec<Vec<f64>> = Vec::new();
     for _ in 0..40 {
@@ -259,16 +261,16 @@ fn a_mean_is_that_of_the_latest_steps() -> Result<(), Error> {
     assert_eq!(plain.mean(), plain.parameters());
     let words: Vec<f64> = averaged.words().collect();
     assert_eq!(plain.set_words(&words), Err(Error::StateLen { expected: plain.words().count(), found: words.len() }));
-    let mut second = learner(Leak::Filter, Adam::new(0.03)).with_mean(5);
+    let mut second = learner(Leak::Filter, Adam::new(0.03)).with_averaging(5);
     second.set_words(&words)?;
     learn(&mut second, 3);
     learn(&mut averaged, 3);
     assert!(second.words().eq(averaged.words()));
     // A mean over one step is that step, but for rounding; one over many of a few is the plain mean.
-    let mut latest = learner(Leak::Filter, Adam::new(0.03)).with_mean(0);
+    let mut latest = learner(Leak::Filter, Adam::new(0.03)).with_averaging(0);
     learn(&mut latest, 40);
     assert!(latest.mean().iter().zip(latest.parameters()).all(|(mean, p)| (mean - p).abs() < 1e-15));
-    let mut all = learner(Leak::Filter, Adam::new(0.03)).with_mean(u32::MAX);
+    let mut all = learner(Leak::Filter, Adam::new(0.03)).with_averaging(u32::MAX);
     learn(&mut all, 40);
     for (index, mean) in all.mean().iter().enumerate() {
         let plain = steps.iter().map(|step| step[index]).sum::<f64>() / 40.0;
@@ -279,7 +281,7 @@ fn a_mean_is_that_of_the_latest_steps() -> Result<(), Error> {
 
 #[test]
 fn demonstrations_of_other_shapes_are_refused() -> Result<(), Error> {
-    let layout = Layout::new(2, 1, 3);
+    let layout = LeakyLayout::new(2, 1, 3);
     let mut gradient = Gradient::<f64>::new(layout, Leak::Filter, Loss::SquaredError)?;
     let parameters = vec![0.0; layout.parameter_count()];
     let shape = |values, wanted| Error::Demonstration { values, sensors: 2, wanted, outputs: 3 };

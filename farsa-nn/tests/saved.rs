@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use farsa_nn::{
     Activation, Adam, Architecture, Block, BlockLayoutBuf, BlockParameter, CtrnnLayout, CtrnnParameter, EvonetRanges,
-    FixedScale, Integrator, Layout, Leak, Lesion, Loss, Momentum, ParameterKind, Span,
+    Integrator, Leak, LeakyLayout, LeakyParameter, Lesion, Loss, Momentum, QuantizedScale, Span,
 };
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::{from_str, to_string};
@@ -30,7 +30,7 @@ fn names_are_those_of_configurations() {
         assert_eq!(comes_back(leak), format!("\"{leak}\""));
     }
     assert_eq!([Loss::SquaredError, Loss::CrossEntropy].map(comes_back), ["\"squared-error\"", "\"cross-entropy\""]);
-    assert_eq!(comes_back(ParameterKind::SensorWeight), "\"sensor-weight\"");
+    assert_eq!(comes_back(LeakyParameter::SensorWeight), "\"sensor-weight\"");
     assert_eq!(comes_back(CtrnnParameter::TimeConstant), "\"time-constant\"");
     assert_eq!(comes_back(BlockParameter::Gain), "\"gain\"");
     assert!(from_str::<Leak>("\"filters\"").is_err());
@@ -38,7 +38,7 @@ fn names_are_those_of_configurations() {
 
 #[test]
 fn layouts_and_options_come_back() {
-    let saved = comes_back(Layout::new(29, 12, 23).with_slope(0.2));
+    let saved = comes_back(LeakyLayout::new(29, 12, 23).with_slope(0.2));
     assert_eq!(saved, r#"{"sensors":29,"hidden":12,"outputs":23,"slope":0.2}"#);
     comes_back(CtrnnLayout::new(2, 5, 2).with_integrator(Integrator::RungeKutta4));
     let architecture = Architecture::elman(3, 4, 2).with_leaks().with_input_delay(2);
@@ -49,15 +49,15 @@ fn layouts_and_options_come_back() {
     assert_eq!(comes_back(Block::Update(Span::new(3, 4))), r#"{"update":{"first":3,"count":4}}"#);
     comes_back(Block::ModulatedGain { neurons: Span::new(1, 2), by: 5 });
     comes_back(EvonetRanges::default());
-    comes_back(Lesion::of(3));
+    comes_back(Lesion::new(3));
     comes_back(Adam::new(0.03));
     comes_back(Momentum { rate: 0.5, momentum: 0.9 });
 }
 
 #[test]
 fn a_scale_is_checked_when_it_is_read() {
-    let saved = comes_back(FixedScale::new(9, 12, 15).expect("a scale"));
+    let saved = comes_back(QuantizedScale::new(9, 12, 15).expect("a scale"));
     assert_eq!(saved, r#"{"inputs":9,"weights":12,"sums":15}"#);
-    let error = from_str::<FixedScale>(&saved.replace(":9", ":16")).expect_err("too many bits").to_string();
+    let error = from_str::<QuantizedScale>(&saved.replace(":9", ":16")).expect_err("too many bits").to_string();
     assert!(error.contains("16 fraction bits of inputs: outside [0, 15]"), "{error}");
 }

@@ -22,7 +22,7 @@ const FRAC_PI_2_REST: f64 = 6.123_233_995_736_766e-17;
 /// ```
 #[inline(always)]
 pub fn atan2<R: Real>(y: R, x: R) -> R {
-    R::of(atan2_f64(y.to_f64(), x.to_f64()))
+    R::from_f64(atan2_f64(y.to_f64(), x.to_f64()))
 }
 
 /// The angle in [-pi/2, pi/2] \[rad\] with this sine, to within 1 unit in the last place; NaN outside [-1, 1].
@@ -30,7 +30,7 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
 /// `f32` is computed in `f64` and rounded. Source: \[Fdlibm\] `e_asin.c` in outline. Deviation: own minimax polynomial.
 #[inline(always)]
 pub fn asin<R: Real>(x: R) -> R {
-    R::of(asin_f64(x.to_f64()))
+    R::from_f64(asin_f64(x.to_f64()))
 }
 
 /// The angle in [0, pi] \[rad\] with this cosine, to within 1 unit in the last place; NaN outside [-1, 1].
@@ -38,7 +38,7 @@ pub fn asin<R: Real>(x: R) -> R {
 /// `f32` is computed in `f64` and rounded. Source: \[Fdlibm\] `e_acos.c` in outline. Deviation: own minimax polynomial.
 #[inline(always)]
 pub fn acos<R: Real>(x: R) -> R {
-    R::of(acos_f64(x.to_f64()))
+    R::from_f64(acos_f64(x.to_f64()))
 }
 
 fn atan2_f64(y: f64, x: f64) -> f64 {

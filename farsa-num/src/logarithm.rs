@@ -11,7 +11,7 @@ use crate::scalar::{Real, Scalar};
 /// polynomial.
 #[inline(always)]
 pub fn ln<R: Real>(x: R) -> R {
-    R::of(ln_f64(x.to_f64()))
+    R::from_f64(ln_f64(x.to_f64()))
 }
 
 fn ln_f64(x: f64) -> f64 {

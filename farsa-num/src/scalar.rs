@@ -19,7 +19,7 @@ pub trait Real: Scalar<Real = Self, Mask = bool, Simd = ()> + PartialOrd + Defau
     const DIGITS: u32;
 
     /// The nearest value of this type.
-    fn of(x: f64) -> Self;
+    fn from_f64(x: f64) -> Self;
     /// The value in double precision, exact.
     fn to_f64(self) -> f64;
 }
@@ -129,7 +129,7 @@ pub trait Scalar:
     /// A constant in every lane, rounded once to the lane's type.
     #[inline(always)]
     fn constant(self, x: f64) -> Self {
-        Self::splat(self.simd(), Self::Real::of(x))
+        Self::splat(self.simd(), Self::Real::from_f64(x))
     }
     /// A lane-type value in every lane.
     #[inline(always)]
@@ -174,7 +174,7 @@ macro_rules! real {
             const DIGITS: u32 = <$real>::MANTISSA_DIGITS;
 
             #[inline(always)]
-            fn of(x: f64) -> Self {
+            fn from_f64(x: f64) -> Self {
                 x as $real
             }
             #[inline(always)]

@@ -8,7 +8,7 @@ fn is_nan<R: Real>(x: R) -> bool {
 }
 
 fn edges<R: Real + core::fmt::Debug>() {
-    let of = R::of;
+    let of = R::from_f64;
     let (infinity, nan) = (of(f64::INFINITY), of(f64::NAN));
     let same = |x: R, y: f64| assert_eq!(x.to_f64().to_bits(), y.to_bits(), "{x:?} is not {y:?}");
 

@@ -21,7 +21,7 @@ fn constants_round_once() {
     assert_eq!(<f64 as Real>::DIGITS, 53);
     assert_eq!(1.0_f32.constant(0.1), 0.1_f32);
     assert_eq!(1.0_f64.constant(0.1), 0.1_f64);
-    assert_eq!(f32::of(16_777_217.0), 16_777_216.0);
+    assert_eq!(f32::from_f64(16_777_217.0), 16_777_216.0);
     assert_eq!(0.1_f32.to_f64(), 0.100_000_001_490_116_12);
 }
 
@@ -29,7 +29,7 @@ fn constants_round_once() {
 #[test]
 fn nan_goes_where_the_documentation_says() {
     fn check<R: Real + std::fmt::Debug>() {
-        let (nan, one, two) = (R::of(f64::NAN), R::of(1.0), R::of(2.0));
+        let (nan, one, two) = (R::from_f64(f64::NAN), R::from_f64(1.0), R::from_f64(2.0));
         let is_nan = |x: R| !x.ge(x);
         // A NaN on the left loses, on the right wins.
         assert_eq!(Scalar::min(nan, one), one);
@@ -42,7 +42,7 @@ fn nan_goes_where_the_documentation_says() {
             assert_eq!(is_nan(y), !high.le(high), "{y:?}");
         }
         assert!(!nan.lt(one) && !nan.le(one) && !nan.gt(one) && !nan.ge(one) && !nan.le(nan));
-        assert!(is_nan(R::of(-1.0).sqrt()));
+        assert!(is_nan(R::from_f64(-1.0).sqrt()));
     }
     check::<f32>();
     check::<f64>();

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::{env, fs};
 
-use farsa_nn::{FixedNetworkBytes, FixedScale, NetworkBytes};
+use farsa_nn::{LeakyNetworkBytes, QuantizedNetworkBytes, QuantizedScale};
 
 /// Fraction bits of sensor values: 9 cover [-64, 64).
 const INPUT_BITS: u32 = 9;
@@ -12,15 +12,16 @@ fn main() {
     println!("cargo:rerun-if-changed=champion.farsa");
     println!("cargo:rerun-if-changed=build.rs");
     let flash = fs::read("champion.farsa").expect("the champion");
-    let champion = NetworkBytes::read(&flash).expect("a network");
+    let champion = LeakyNetworkBytes::read(&flash).expect("a network");
     let layout = champion.layout();
     let mut parameters = vec![0.0; layout.parameter_count()];
     champion.copy_parameters(&mut parameters).expect("the length");
 
     let mut fixed = vec![0; parameters.len()];
-    let scale = FixedScale::quantize(&layout, INPUT_BITS, &parameters, &mut fixed).expect("weights that fit");
-    let mut bytes = vec![0; FixedNetworkBytes::byte_count(layout)];
-    FixedNetworkBytes::write(layout, champion.leak(), scale, champion.channels(), &fixed, &mut bytes).expect("valid");
+    let scale = QuantizedScale::quantize(&layout, INPUT_BITS, &parameters, &mut fixed).expect("weights that fit");
+    let mut bytes = vec![0; QuantizedNetworkBytes::byte_count(layout)];
+    QuantizedNetworkBytes::write(layout, champion.leak(), scale, champion.channels(), &fixed, &mut bytes)
+        .expect("valid");
     let out = env::var("OUT_DIR").expect("cargo says where");
     fs::write(Path::new(&out).join("champion-fixed.farsa"), bytes).expect("written");
 }

@@ -90,7 +90,7 @@ impl<R: Real> Law<R> {
 
     /// The same law in another precision, each number rounded once.
     pub fn cast<Q: Real>(&self) -> Law<Q> {
-        let c = |x: R| Q::of(x.to_f64());
+        let c = |x: R| Q::from_f64(x.to_f64());
         match self {
             Self::MusclePair(m) => Law::MusclePair(MusclePair {
                 tension: c(m.tension),
@@ -116,12 +116,12 @@ mod tests {
     use super::*;
 
     fn servo<R: Real>() -> Servo<R> {
-        Servo { stiffness: R::of(2.0), damping: R::of(0.5), limit: R::of(0.75) }
+        Servo { stiffness: R::from_f64(2.0), damping: R::from_f64(0.5), limit: R::from_f64(0.75) }
     }
 
     fn servo_is_a_capped_spring<R: Real>() {
         let effort = |q: f64, w: f64, wanted: f64| {
-            let e = servo::<R>().effort(R::of(q), R::of(w), [R::of(wanted), R::of(9.0)]);
+            let e = servo::<R>().effort(R::from_f64(q), R::from_f64(w), [R::from_f64(wanted), R::from_f64(9.0)]);
             [e.torque, e.stiffness, e.damping].map(Real::to_f64)
         };
         // Numbers that both precisions hold exactly.

@@ -74,7 +74,7 @@ impl<R: Real> MusclePair<R> {
     ///
     /// `tension` is Tmax [N], `moment_arm` in [m], `range` the joint's lower and upper limit [rad].
     pub fn thesis(tension: R, moment_arm: R, range: [R; 2]) -> Self {
-        Self::of(tension, moment_arm, range, R::of(1.0), R::of(0.9))
+        Self::of(tension, moment_arm, range, R::from_f64(1.0), R::from_f64(0.9))
     }
 
     /// The pair as in the original program: as [`MusclePair::thesis`], but passive tension times 0.5 and `reduction`, b
@@ -82,21 +82,21 @@ impl<R: Real> MusclePair<R> {
     ///
     /// The value of the original's reduction factor is not known to us, so it has no default here.
     pub fn original(tension: R, moment_arm: R, range: [R; 2], reduction: R) -> Self {
-        Self::of(tension, moment_arm, range, R::of(0.5) * reduction, R::of(1.0))
+        Self::of(tension, moment_arm, range, R::from_f64(0.5) * reduction, R::from_f64(1.0))
     }
 
     fn of(tension: R, moment_arm: R, [lower, upper]: [R; 2], passive: R, viscosity: R) -> Self {
-        let shape = R::of(3.0);
+        let shape = R::from_f64(3.0);
         Self {
             tension,
             moment_arm,
             lower,
             upper,
-            shortest: R::of(1.3),
-            rest_length: R::of(2.5),
-            longest: R::of(3.7),
+            shortest: R::from_f64(1.3),
+            rest_length: R::from_f64(2.5),
+            longest: R::from_f64(3.7),
             shape,
-            passive_scale: passive * tension / (exp(shape) - R::of(1.0)),
+            passive_scale: passive * tension / (exp(shape) - R::from_f64(1.0)),
             viscosity,
         }
     }
@@ -125,7 +125,7 @@ impl<R: Real> MusclePair<R> {
     #[inline(always)]
     fn elastic<S: Scalar<Real = R>>(&self, length: S, activation: S) -> (S, S, S) {
         let zero = length.constant(0.0);
-        let per_width = length.like(R::of(1.0) / (self.longest - self.rest_length));
+        let per_width = length.like(R::from_f64(1.0) / (self.longest - self.rest_length));
         let e = (length - length.like(self.rest_length)) * per_width;
         let pull = activation * length.like(self.tension);
         let parabola = length.constant(1.0) - e * e;
@@ -164,7 +164,7 @@ impl<R: Real> MusclePair<R> {
     /// One of the two is always 0. At the ends of the range no active tension is left: nothing but the passive torque
     /// is held there.
     pub fn activations(&self, q: R, torque: R) -> ([R; 2], bool) {
-        let (zero, one) = (R::of(0.0), R::of(1.0));
+        let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
         let [x1, x2] = self.lengths(q);
         let (full1, passive1, _) = self.elastic(x1, one);
         let (full2, passive2, _) = self.elastic(x2, one);
@@ -184,14 +184,14 @@ mod tests {
     const DEG: f64 = core::f64::consts::PI / 180.0;
 
     fn pairs<R: Real>() -> [MusclePair<R>; 4] {
-        let elbow = [R::of(-170.0 * DEG), R::of(0.0)];
-        let shoulder = [R::of(-110.0 * DEG), R::of(90.0 * DEG)];
-        let arm = R::of(0.01);
+        let elbow = [R::from_f64(-170.0 * DEG), R::from_f64(0.0)];
+        let shoulder = [R::from_f64(-110.0 * DEG), R::from_f64(90.0 * DEG)];
+        let arm = R::from_f64(0.01);
         [
-            MusclePair::thesis(R::of(300.0), arm, elbow),
-            MusclePair::thesis(R::of(3000.0), arm, shoulder),
-            MusclePair::original(R::of(300.0), arm, elbow, R::of(1.0)),
-            MusclePair::original(R::of(3000.0), arm, shoulder, R::of(0.4)),
+            MusclePair::thesis(R::from_f64(300.0), arm, elbow),
+            MusclePair::thesis(R::from_f64(3000.0), arm, shoulder),
+            MusclePair::original(R::from_f64(300.0), arm, elbow, R::from_f64(1.0)),
+            MusclePair::original(R::from_f64(3000.0), arm, shoulder, R::from_f64(0.4)),
         ]
     }
 
@@ -201,7 +201,7 @@ mod tests {
 
     /// What a few rounding errors of numbers around 1 add up to.
     fn eps<R: Real>() -> f64 {
-        if R::of(1.0 + 1e-12) > R::of(1.0) { 1e-13 } else { 2e-6 }
+        if R::from_f64(1.0 + 1e-12) > R::from_f64(1.0) { 1e-13 } else { 2e-6 }
     }
 
     fn published_points<R: Real>() {
@@ -210,8 +210,8 @@ mod tests {
         let viscosities = [0.9, 0.9, 1.0, 1.0];
         for ((m, factor), b) in pairs::<R>().iter().zip(factors).zip(viscosities) {
             let full = m.tension.to_f64();
-            let zero = R::of(0.0);
-            let t = |x: f64, a: f64| m.tension_at(R::of(x), zero, R::of(a));
+            let zero = R::from_f64(0.0);
+            let t = |x: f64, a: f64| m.tension_at(R::from_f64(x), zero, R::from_f64(a));
             for a in [0.0, 0.3, 1.0] {
                 close(t(2.5, a).active, a * full, tolerance * full, "T_A(2.5)");
                 for x in [1.3, 3.7, 1.2, 3.9] {
@@ -223,8 +223,8 @@ mod tests {
             close(t(3.7, 1.0).passive, factor * full, 10.0 * tolerance * full, "T_P(3.7)");
             close(t(1.3, 1.0).passive, -0.049_787_068_367_863_94 * factor * full, 10.0 * tolerance * full, "T_P(1.3)");
             assert!(t(3.9, 0.0).passive.to_f64() > 1.5 * factor * full, "the passive part continues");
-            close(m.tension_at(R::of(2.5), R::of(2.0), zero).viscous, 2.0 * b, 10.0 * tolerance, "T_V");
-            let all = m.tension_at(R::of(3.0), R::of(2.0), R::of(0.5));
+            close(m.tension_at(R::from_f64(2.5), R::from_f64(2.0), zero).viscous, 2.0 * b, 10.0 * tolerance, "T_V");
+            let all = m.tension_at(R::from_f64(3.0), R::from_f64(2.0), R::from_f64(0.5));
             assert_eq!(all.total(), all.active + all.passive + all.viscous);
         }
     }
@@ -256,13 +256,13 @@ mod tests {
 
     /// A grid over and beyond the range, activations and speeds.
     fn grid<R: Real>(m: &MusclePair<R>, mut f: impl FnMut(R, R, [R; 2])) {
-        let half = (m.upper - m.lower) / R::of(2.0);
-        let middle = (m.upper + m.lower) / R::of(2.0);
+        let half = (m.upper - m.lower) / R::from_f64(2.0);
+        let middle = (m.upper + m.lower) / R::from_f64(2.0);
         for e in [-1.07, -0.93, -0.71, -0.4, -0.1, 0.0, 0.2, 0.55, 0.87, 1.04] {
             for w in [-12.0, -1.0, 0.0, 0.5, 17.0] {
                 for a in [0.0, 0.3, 1.0] {
                     for b in [0.0, 0.45, 1.0] {
-                        f(middle + R::of(e) * half, R::of(w), [R::of(a), R::of(b)]);
+                        f(middle + R::from_f64(e) * half, R::from_f64(w), [R::from_f64(a), R::from_f64(b)]);
                     }
                 }
             }
@@ -274,22 +274,22 @@ mod tests {
         for m in pairs::<R>() {
             let scale = 10.0 * (m.tension * m.moment_arm).to_f64();
             let sum = m.lower + m.upper;
-            let slack = m.effort(sum / R::of(2.0), R::of(0.0), [R::of(0.5), R::of(0.5)]);
+            let slack = m.effort(sum / R::from_f64(2.0), R::from_f64(0.0), [R::from_f64(0.5), R::from_f64(0.5)]);
             close(slack.torque, 0.0, tolerance * scale, "balance in the middle");
             grid(&m, |q, w, [a, b]| {
                 let one = m.effort(q, w, [a, b]);
                 let mirrored = m.effort(sum - q, -w, [b, a]);
                 close(one.torque, -mirrored.torque.to_f64(), tolerance * scale, "antisymmetry");
-                let still = m.effort(q, R::of(0.0), [a, b]);
-                assert!((one.torque - still.torque) * w <= R::of(0.0), "viscous power is dissipated");
-                assert!(one.stiffness >= R::of(0.0) && one.damping > R::of(0.0));
+                let still = m.effort(q, R::from_f64(0.0), [a, b]);
+                assert!((one.torque - still.torque) * w <= R::from_f64(0.0), "viscous power is dissipated");
+                assert!(one.stiffness >= R::from_f64(0.0) && one.damping > R::from_f64(0.0));
                 // The parts that are exposed make up the torque.
                 let [x1, x2] = m.lengths(q);
                 let v = m.gear() * w;
                 let difference = m.tension_at(x2, -v, b).total() - m.tension_at(x1, v, a).total();
                 close(one.torque, (m.moment_arm * difference).to_f64(), tolerance * scale, "difference of tensions");
                 // Equal activations cancel.
-                let relaxed = m.effort(q, w, [R::of(0.0); 2]);
+                let relaxed = m.effort(q, w, [R::from_f64(0.0); 2]);
                 let tense = m.effort(q, w, [a, a]);
                 close(tense.torque, relaxed.torque.to_f64(), tolerance * scale, "co-contraction adds no torque");
                 close(
@@ -340,33 +340,38 @@ mod tests {
         for m in pairs::<R>() {
             let largest = m.tension * m.moment_arm;
             let tolerance = 20.0 * eps::<R>() * largest.to_f64();
-            let (half, middle) = ((m.upper - m.lower) / R::of(2.0), (m.upper + m.lower) / R::of(2.0));
-            let zero = R::of(0.0);
+            let (half, middle) = ((m.upper - m.lower) / R::from_f64(2.0), (m.upper + m.lower) / R::from_f64(2.0));
+            let zero = R::from_f64(0.0);
             for e in [-0.7, -0.3, 0.0, 0.4, 0.7] {
-                let q = middle + R::of(e) * half;
+                let q = middle + R::from_f64(e) * half;
                 for t in [-0.3, -0.1, 0.0, 0.2] {
-                    let torque = R::of(t) * largest;
+                    let torque = R::from_f64(t) * largest;
                     let (command, reached) = m.activations(q, torque);
-                    assert!(command.iter().all(|a| *a >= zero && *a <= R::of(1.0)) && command[0] * command[1] == zero);
+                    assert!(
+                        command.iter().all(|a| *a >= zero && *a <= R::from_f64(1.0)) && command[0] * command[1] == zero
+                    );
                     let got = m.effort(q, zero, command).torque;
                     if reached {
                         close(got, torque.to_f64(), tolerance, "held torque");
                     } else {
-                        assert!(command[0] == R::of(1.0) || command[1] == R::of(1.0), "as much as there is");
+                        assert!(
+                            command[0] == R::from_f64(1.0) || command[1] == R::from_f64(1.0),
+                            "as much as there is"
+                        );
                     }
                 }
             }
-            let (command, reached) = m.activations(middle, R::of(2.0) * largest);
-            assert!(!reached && command == [zero, R::of(1.0)], "clamped");
+            let (command, reached) = m.activations(middle, R::from_f64(2.0) * largest);
+            assert!(!reached && command == [zero, R::from_f64(1.0)], "clamped");
             let passive = m.effort(m.upper, zero, [zero; 2]).torque;
             let (command, reached) = m.activations(m.upper, passive);
             assert!(reached || command.iter().any(|a| *a > zero), "at the end only the passive torque is held");
         }
         // Without any load the thesis's muscles hold 0.7 of the half range, not 0.75.
         let m = pairs::<R>()[0];
-        let (half, middle) = ((m.upper - m.lower) / R::of(2.0), (m.upper + m.lower) / R::of(2.0));
-        assert!(m.activations(middle + R::of(0.70) * half, R::of(0.0)).1);
-        assert!(!m.activations(middle + R::of(0.75) * half, R::of(0.0)).1);
+        let (half, middle) = ((m.upper - m.lower) / R::from_f64(2.0), (m.upper + m.lower) / R::from_f64(2.0));
+        assert!(m.activations(middle + R::from_f64(0.70) * half, R::from_f64(0.0)).1);
+        assert!(!m.activations(middle + R::from_f64(0.75) * half, R::from_f64(0.0)).1);
     }
 
     #[test]

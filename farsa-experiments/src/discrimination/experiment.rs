@@ -39,7 +39,7 @@ impl Experiment for Discrimination {
     }
 
     fn search(&self, _: &str) -> Search {
-        Search::SteadyState
+        Search::OnePlusOne
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use farsa_lab::{EpisodeId, Error, Lesson};
-use farsa_nn::{Adam, Error as NetworkError, Gradient, Layout, Leak, Learner, Loss, Network, ParameterKind};
+use farsa_nn::{Adam, Error as NetworkError, Gradient, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Learner, Loss};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::kinesthetic_grasp::{demonstrator::Record, demonstrator::Teacher};
@@ -45,7 +45,7 @@ impl Default for Lessons {
 /// A teacher, and what its pupil is made of.
 pub(crate) struct School {
     lessons: Lessons,
-    layout: Layout,
+    layout: LeakyLayout,
     leak: Leak,
     weight_range: f64,
     /// What each sensor value is divided by before it is learned from.
@@ -76,7 +76,7 @@ impl School {
     fn pupil(&self, seed: u64) -> Option<Learner<f64, Adam>> {
         let mut draw = Stream::new(seed, Domain::InitialGenome, 0, 0, 0);
         let first = self.layout.kinds().map(|kind| {
-            f64::from(if kind == ParameterKind::Leak {
+            f64::from(if kind == LeakyParameter::Leak {
                 draw.range(0.2, 1.0)
             } else {
                 draw.range(-FIRST_WEIGHTS, FIRST_WEIGHTS)
@@ -84,7 +84,9 @@ impl School {
         });
         let pupil =
             Learner::new(self.layout, self.leak, Loss::CrossEntropy, first.collect(), Adam::new(self.lessons.rate));
-        Some(pupil.ok()?.with_limit(self.weight_range).with_longest(LONGEST).with_mean(self.lessons.mean))
+        Some(
+            pupil.ok()?.with_limit(self.weight_range).with_max_gradient_norm(LONGEST).with_averaging(self.lessons.mean),
+        )
     }
 
     /// The words that learning starts from; none for a network that cannot be.
@@ -95,7 +97,7 @@ impl School {
     /// The network's parameters that stand last in the words of its pupil: their mean over the latest steps.
     pub(crate) fn parameters(&self, words: &[f64]) -> Vec<f32> {
         let hidden = self.layout.hidden().max(1);
-        let of_sensors = self.layout.range(ParameterKind::SensorWeight);
+        let of_sensors = self.layout.range(LeakyParameter::SensorWeight);
         let unit = |index: usize| if of_sensors.contains(&index) { self.units[index / hidden] } else { 1.0 };
         let mean = &words[words.len().saturating_sub(self.layout.parameter_count())..];
         mean.iter().enumerate().map(|(index, p)| (p / f64::from(unit(index))) as f32).collect()
@@ -104,12 +106,12 @@ impl School {
     /// The genes that come nearest to these parameters.
     pub(crate) fn genes(&self, words: &[f64]) -> Vec<u16> {
         let range = self.weight_range;
-        let gene = |(p, kind): (f32, ParameterKind)| {
+        let gene = |(p, kind): (f32, LeakyParameter)| {
             let p = f64::from(p);
             let share = match (kind, self.leak) {
                 // As `reach-grasp-lift` decodes them: |p| / range of what is decoded like a weight.
-                (ParameterKind::Leak, Leak::Evonet) => 0.5 * (1.0 + p),
-                (ParameterKind::Leak, _) => p,
+                (LeakyParameter::Leak, Leak::Evonet) => 0.5 * (1.0 + p),
+                (LeakyParameter::Leak, _) => p,
                 _ => 0.5 * (1.0 + p / range),
             };
             (share * f64::from(u16::MAX)).round_small() as u16
@@ -125,7 +127,8 @@ impl School {
         pupil.set_words(words).ok()?;
         let parameters = self.parameters(words);
         let mut squares = Gradient::new(self.layout, self.leak, Loss::SquaredError).ok()?;
-        let mut network = Network::new(self.layout, self.leak, &parameters, vec![0.0; self.layout.state_len()]).ok()?;
+        let mut network =
+            LeakyNetwork::new(self.layout, self.leak, &parameters, vec![0.0; self.layout.state_len()]).ok()?;
         let Lessons { passes, batch, rate, half_rate, own_say, .. } = self.lessons;
         let most = match own_say {
             0 => 0.0,

@@ -1,7 +1,7 @@
 //! The values of `reach-grasp-lift` and what is built from them.
 
 use farsa_body::{ArmAndHand, Axes, MuscleVariant, Servo, Surface, Tabletop};
-use farsa_nn::{Layout, Leak};
+use farsa_nn::{Leak, LeakyLayout};
 use farsa_physics::articulated::Options;
 
 use crate::reach_grasp_lift::fitness::Judgement;
@@ -265,9 +265,9 @@ impl Config {
     }
 
     /// The shape of the network: 29 sensors with labels or 26 without, 23 outputs.
-    pub fn layout(&self) -> Layout {
+    pub fn layout(&self) -> LeakyLayout {
         let sensors = if self.labels { 29 } else { 26 };
-        Layout::new(sensors, self.hidden as usize, 23).with_slope(self.slope as f32)
+        LeakyLayout::new(sensors, self.hidden as usize, 23).with_slope(self.slope as f32)
     }
 
     /// Steps in a second, at least one.

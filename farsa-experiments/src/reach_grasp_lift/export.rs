@@ -137,7 +137,7 @@ impl Scene {
 mod tests {
     use super::*;
     use farsa_body::{Axes, Channels, Contacts, Joints, Kinematics, Law, Motor, Sensor, World as _};
-    use farsa_nn::{Controller, Leak, Network};
+    use farsa_nn::{Controller, Leak, LeakyNetwork};
     use farsa_num::{Domain, Stream};
     use farsa_physics::articulated::{Model, World};
 
@@ -270,11 +270,11 @@ mod tests {
         let mut stream = Stream::new(7, Domain::Motor, 0, 0, 0);
         let parameters: Vec<f32> = layout
             .kinds()
-            .map(|kind| if kind == farsa_nn::ParameterKind::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) })
+            .map(|kind| if kind == farsa_nn::LeakyParameter::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) })
             .collect();
         let told = described(&scene, &parameters).network;
         let state = vec![0.0; layout.state_len()];
-        let mut network = Network::new(layout, Leak::Filter, parameters, state).unwrap();
+        let mut network = LeakyNetwork::new(layout, Leak::Filter, parameters, state).unwrap();
         let sigma = |x: f64| 1.0 / (1.0 + farsa_num::exp(-f64::from(told.slope) * x));
         let weight = |weights: &[f32], i: usize| f64::from(weights[i]);
         let (mut hidden, mut y) = (vec![0.0; told.hidden], vec![0.0; told.outputs]);

@@ -1,13 +1,13 @@
 //! The parameters of `reach-grasp-lift`.
 
-use farsa_nn::{Layout, Leak, ParameterKind};
+use farsa_nn::{Leak, LeakyLayout, LeakyParameter};
 
 use farsa_lab::{Error, Parameter, network_parameters};
 
 /// Weights and biases from minus to plus the range of weights, and leaks from 0 to 1, or as the original program has them.
 #[derive(Clone, Debug)]
 pub(crate) struct Ranges {
-    layout: Layout,
+    layout: LeakyLayout,
     range: f32,
     /// Leaks are |p| / range of what is decoded like a weight, as in the original program.
     evonet: bool,
@@ -18,7 +18,7 @@ impl Ranges {
     ///
     /// # Errors
     /// [`Error::Setting`] for a range that is none.
-    pub(crate) fn new(layout: Layout, leak: Leak, range: f32) -> Result<Self, Error> {
+    pub(crate) fn new(layout: LeakyLayout, leak: Leak, range: f32) -> Result<Self, Error> {
         network_parameters(&layout, f64::from(range), [0.0, 1.0], "network.range")?;
         Ok(Self { layout, range, evonet: leak == Leak::Evonet })
     }
@@ -33,7 +33,7 @@ impl Ranges {
     pub(crate) fn of_network(&self, parameters: &[f32]) -> Vec<f32> {
         let mut parameters = parameters.to_vec();
         if self.evonet {
-            for leak in parameters.get_mut(self.layout.range(ParameterKind::Leak)).unwrap_or_default() {
+            for leak in parameters.get_mut(self.layout.range(LeakyParameter::Leak)).unwrap_or_default() {
                 let share = leak.abs() / self.range;
                 // A range of 0 gives NaN: no memory, as for p = 0.
                 *leak = if share < 1.0 {

@@ -4,7 +4,7 @@ use farsa_body::{
     ArmAndHand, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Law, MusclePair, PairId, Recorder, Tabletop,
     Twist,
 };
-use farsa_nn::Network;
+use farsa_nn::LeakyNetwork;
 use farsa_view::{Channel, Stage};
 
 use crate::reach_grasp_lift::fitness::Ledger;
@@ -13,7 +13,7 @@ use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::scene::Scene;
 
 /// The controller's life in a trial.
-pub(crate) type NetworkLife = ReachLife<Network<Vec<f32>, Vec<f32>>>;
+pub(crate) type NetworkLife = ReachLife<LeakyNetwork<Vec<f32>, Vec<f32>>>;
 
 /// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces, 27 + 6
 /// speeds of joints and sphere.

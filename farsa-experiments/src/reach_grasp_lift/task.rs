@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Recorder};
 use farsa_models::MjcfOptions;
-use farsa_nn::Network;
+use farsa_nn::LeakyNetwork;
 
 use crate::reach_grasp_lift::config::TRIALS;
 use crate::reach_grasp_lift::fitness::Ledger;
@@ -35,7 +35,7 @@ impl ReachTask {
         let (config, layout) = (&scene.config, scene.config.layout());
         let ranges = Ranges::new(layout, config.leak, config.weight_range as f32)?;
         let (zeros, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
-        let network = Network::new(layout, config.leak, zeros, state);
+        let network = LeakyNetwork::new(layout, config.leak, zeros, state);
         let network = network.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
         let teller = Arc::new(Teller::new(&scene));
         Ok(Self { life: ReachLife::new(Arc::new(scene), network)?, ranges, teller })

@@ -2,7 +2,7 @@
 
 use farsa_body::MobileRobot;
 use farsa_lab::{Error, Setting, Settings};
-use farsa_nn::Layout;
+use farsa_nn::LeakyLayout;
 use farsa_physics::arena::Arena;
 
 /// The robots of a team, their world, their eyes and the network that drives each of them.
@@ -138,8 +138,8 @@ impl TeamConfig {
     }
 
     /// The network between so many inputs and outputs.
-    pub(crate) fn layout(&self, inputs: usize, outputs: usize) -> Layout {
-        Layout::new(inputs, self.hidden, outputs).with_slope(1.0)
+    pub(crate) fn layout(&self, inputs: usize, outputs: usize) -> LeakyLayout {
+        LeakyLayout::new(inputs, self.hidden, outputs).with_slope(1.0)
     }
 }
 

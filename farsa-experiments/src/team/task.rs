@@ -1,7 +1,7 @@
 //! What there is to know of a team's mission, and its episodes over parameters.
 
 use farsa_body::{BodyId, Kinematics as _, Recorder};
-use farsa_nn::{Controller as _, Layout};
+use farsa_nn::{Controller as _, LeakyLayout};
 use farsa_physics::arena::{Arena, Batch, World};
 
 use crate::team::config::{EYES, TeamConfig};
@@ -17,7 +17,7 @@ use farsa_view::Stage;
 #[derive(Clone)]
 pub(crate) struct TeamTask<M> {
     life: TeamLife<M, OwnedNetwork>,
-    layout: Layout,
+    layout: LeakyLayout,
     /// The population whose outcome is asked for.
     own: usize,
     /// Bodies whose poses are recorded: robots and what is placed beside them.

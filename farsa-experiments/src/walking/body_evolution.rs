@@ -2,7 +2,7 @@
 
 use farsa_body::{Recorder, Robot};
 use farsa_models::MjcfOptions;
-use farsa_nn::Layout;
+use farsa_nn::LeakyLayout;
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
 
@@ -112,8 +112,8 @@ impl Config {
         self.walker.torque > 0.0
     }
 
-    fn layout(&self) -> Option<Layout> {
-        self.powered().then(|| Layout::new(SENSES, self.hidden as usize, 1).with_slope(1.0))
+    fn layout(&self) -> Option<LeakyLayout> {
+        self.powered().then(|| LeakyLayout::new(SENSES, self.hidden as usize, 1).with_slope(1.0))
     }
 
     /// The body and the launch that parameters are for.

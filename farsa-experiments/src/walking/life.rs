@@ -5,7 +5,7 @@ use farsa_body::{
     Kinematics, Motor as _, PairId, Recorder, Scaled, Sensor as _, TorqueMotor, Touch,
 };
 use farsa_lab::{Episode, EpisodeId, Error, seconds};
-use farsa_nn::{Controller, Layout, Leak, Network};
+use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::walking::{gait::End, gait::Gait, gait::Rules};
@@ -69,7 +69,7 @@ type Sole = Touch<[PairId; 1]>;
 /// touch.
 #[derive(Clone, Debug)]
 pub struct Brain {
-    network: Network<Vec<f32>, Vec<f32>>,
+    network: LeakyNetwork<Vec<f32>, Vec<f32>>,
     senses: ((Angle, Angle), (Speed, Speed), (Sole, Sole)),
     motor: TorqueMotor,
     hinge: JointId,
@@ -86,14 +86,14 @@ impl Brain {
     ///
     /// # Errors
     /// [`Error::Other`] for a walker without motor, a layout of another shape, parameters that are none.
-    pub fn new(walker: &Walker, parts: &WalkerParts, layout: Layout, parameters: Vec<f32>) -> Result<Self, Error> {
+    pub fn new(walker: &Walker, parts: &WalkerParts, layout: LeakyLayout, parameters: Vec<f32>) -> Result<Self, Error> {
         let wrong = |error: ChannelError| Error::Other(format!("walker: {error}"));
         let Some(motor) = parts.motor else { return Err(Error::Other("walker: no motor at the hip".into())) };
         if (layout.sensors(), layout.outputs()) != (SENSES, 1) {
             let shape = format!("{} sensors and {} outputs", layout.sensors(), layout.outputs());
             return Err(Error::Other(format!("walker: a network of {shape} where {SENSES} and 1 are wanted")));
         }
-        let network = Network::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()]);
+        let network = LeakyNetwork::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()]);
         let angle = |joint| JointPosition::new(joint, 0.0, FULL[0]).map_err(wrong);
         let speed = |joint| Scaled::new(JointSpeed::new(joint), 1.0 / FULL[1], 0.0).map_err(wrong);
         let touch = |pair| Touch::new([pair], 1.0).map_err(wrong);

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use farsa_experiments::minimal_cognition::LAYOUT as AGENT;
-use farsa_nn::{CtrnnBytes, Layout, Leak, NetworkBytes, channel_hash};
+use farsa_nn::{CtrnnBytes, Leak, LeakyLayout, LeakyNetworkBytes, channel_hash};
 use safetensors::SafeTensors;
 
 use crate::tool::{farsa, ok, own, say, scratch};
@@ -95,16 +95,16 @@ fn the_same_in_other_formats(here: &Path, told: &serde_json::Value) {
     };
 
     let bytes = written("bytes");
-    let read = NetworkBytes::read(&bytes).expect("a network");
+    let read = LeakyNetworkBytes::read(&bytes).expect("a network");
     let mut parameters = vec![0.0; read.layout().parameter_count()];
     read.copy_parameters(&mut parameters).expect("the length");
     assert_eq!(parameters, kinds.map(values).concat());
-    assert_eq!((read.layout(), read.leak()), (Layout::new(29, 12, 23), Leak::Filter));
+    assert_eq!((read.layout(), read.leak()), (LeakyLayout::new(29, 12, 23), Leak::Filter));
     assert_eq!(read.channels(), channel_hash(names("sensors"), names("motors")));
 
     let rust = String::from_utf8(written("rust")).expect("text");
     for part in [
-        "Layout::new(29, 12, 23).with_slope(0.2);".to_owned(),
+        "LeakyLayout::new(29, 12, 23).with_slope(0.2);".to_owned(),
         "LEAK: Leak = Leak::Filter;".to_owned(),
         format!("CHANNELS: u64 = {:#018x};", read.channels()),
         format!("{:?}, {:?},", parameters[0], parameters[1]),

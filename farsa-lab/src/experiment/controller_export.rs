@@ -1,7 +1,7 @@
 //! A controller, its body's channels and its starts as plain data, for `farsa export`.
 
 use farsa_body::{Axes, Law};
-use farsa_nn::{CtrnnLayout, Layout, Leak, Parts};
+use farsa_nn::{CtrnnLayout, Leak, LeakyLayout, LeakyParts};
 use serde::Serialize;
 
 /// A controller with all that another program needs to let it live in another world: numbers, and names of the model that
@@ -29,7 +29,7 @@ pub struct ControllerExport {
     pub steps: u32,
 }
 
-/// A leaky recurrent network, [`farsa_nn::Network`].
+/// A leaky recurrent network, [`farsa_nn::LeakyNetwork`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct NetworkExport {
@@ -230,8 +230,9 @@ pub struct StartExport {
 
 impl NetworkExport {
     /// A network of these parameters.
-    pub fn new(layout: &Layout, leak: Leak, parameters: &[f32]) -> Self {
-        let Parts { sensor_weights, recurrent_weights, output_weights, biases, leaks, .. } = layout.split(parameters);
+    pub fn new(layout: &LeakyLayout, leak: Leak, parameters: &[f32]) -> Self {
+        let LeakyParts { sensor_weights, recurrent_weights, output_weights, biases, leaks, .. } =
+            layout.split(parameters);
         Self {
             inputs: layout.sensors(),
             hidden: layout.hidden(),

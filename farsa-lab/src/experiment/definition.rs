@@ -40,9 +40,9 @@ pub trait Experiment: Sync {
     /// Every setting of the experiment under a condition (`""` if there are none), with its default.
     ///
     /// The settings of evolution (`evolution.*`, [`evolution::settings`](crate::search::evolution::settings) or, as
-    /// [`search`](Self::search) says, [`evolution::steady_state_settings`](crate::search::evolution::steady_state_settings)) are
-    /// added by the command; a setting here with the same key replaces the one there, which is how an experiment has its own
-    /// defaults.
+    /// [`search`](Self::search) says,
+    /// [`evolution::one_plus_one_settings`](crate::search::evolution::one_plus_one_settings)) are added by the command;
+    /// a setting here with the same key replaces the one there, which is how an experiment has its own defaults.
     fn settings(&self, condition: &str) -> Vec<Setting>;
 
     /// The files whose content lives depend on, such as tables of sensors that a setting names; by default none.

@@ -1,51 +1,57 @@
 //! The parameters of a network with a bias and a leak for every neuron.
 
-use farsa_nn::{Layout, Leak, Network, ParameterKind};
+use farsa_nn::{Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 
 use crate::error::Error;
 use crate::experiment::evaluator::Parameter;
 
 /// A network over memory of its own.
-pub type OwnedNetwork = Network<Vec<f32>, Vec<f32>>;
+pub type OwnedNetwork = LeakyNetwork<Vec<f32>, Vec<f32>>;
 
 /// A network's parameters in their order: weights and biases from minus to plus `range`, leaks from `leaks[0]` to `leaks[1]`.
 ///
 /// # Errors
 /// [`Error::Setting`] of `key` for a range that is negative or not finite in f32, in which networks compute.
-pub fn network_parameters(layout: &Layout, range: f64, leaks: [f32; 2], key: &str) -> Result<Vec<Parameter>, Error> {
+pub fn network_parameters(
+    layout: &LeakyLayout,
+    range: f64,
+    leaks: [f32; 2],
+    key: &str,
+) -> Result<Vec<Parameter>, Error> {
     let range = range as f32;
     if !(0.0..=f32::MAX).contains(&range) {
         return Err(Error::setting(key, format!("weights from {} to {range}: no range of numbers", -range)));
     }
     let (hidden, outputs) = (layout.hidden().max(1), layout.outputs().max(1));
-    let of_kind = |kind: ParameterKind| {
-        let ends = if kind == ParameterKind::Leak { leaks } else { [-range, range] };
+    let of_kind = |kind: LeakyParameter| {
+        let ends = if kind == LeakyParameter::Leak { leaks } else { [-range, range] };
         let name = move |index: usize| {
             let pair = |targets: usize| (index / targets + 1, index % targets + 1);
             match kind {
-                ParameterKind::SensorWeight => {
+                LeakyParameter::SensorWeight => {
                     format!("weight of sensor {} on neuron {}", pair(hidden).0, pair(hidden).1)
                 }
-                ParameterKind::RecurrentWeight => {
+                LeakyParameter::RecurrentWeight => {
                     format!("weight of neuron {} on neuron {}", pair(hidden).0, pair(hidden).1)
                 }
-                ParameterKind::OutputWeight => {
+                LeakyParameter::OutputWeight => {
                     format!("weight of neuron {} on output {}", pair(outputs).0, pair(outputs).1)
                 }
-                ParameterKind::Bias => format!("bias of neuron {}", index + 1),
+                LeakyParameter::Bias => format!("bias of neuron {}", index + 1),
                 _ => format!("leak of neuron {}", index + 1),
             }
         };
         (0..layout.range(kind).len()).map(move |index| Parameter::new(name(index), ends.map(f64::from)))
     };
-    Ok(ParameterKind::ALL.into_iter().flat_map(of_kind).collect())
+    Ok(LeakyParameter::ALL.into_iter().flat_map(of_kind).collect())
 }
 
 /// A network of this layout at rest, with leaks as filters and all parameters 0.
 ///
 /// # Errors
 /// [`Error::Other`] for a layout that makes no network.
-pub fn resting_network(layout: &Layout) -> Result<OwnedNetwork, Error> {
+pub fn resting_network(layout: &LeakyLayout) -> Result<OwnedNetwork, Error> {
     let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
-    Network::new(*layout, Leak::Filter, parameters, state).map_err(|error| Error::Other(format!("network: {error}")))
+    LeakyNetwork::new(*layout, Leak::Filter, parameters, state)
+        .map_err(|error| Error::Other(format!("network: {error}")))
 }

@@ -1,7 +1,7 @@
 //! What genes control a robot by: its sensors, a network, and its motors.
 
 use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Recorder, Sensor, record_world};
-use farsa_nn::{Controller as _, Layout};
+use farsa_nn::{Controller as _, LeakyLayout};
 use farsa_view::Stage;
 
 use crate::error::Error;
@@ -14,8 +14,8 @@ use crate::experiment::outcome::Description;
 
 /// Sensors, a recurrent network, and motors: what an episode needs beside its world and its reward.
 ///
-/// The network has one hidden layer, all linked to all ([`Layout`]), with leaks as filters. Its parameters are weights and
-/// biases, and leaks from 0 to 1. The loop stays the caller's:
+/// The network has one hidden layer, all linked to all ([`LeakyLayout`]), with leaks as filters. Its parameters are
+/// weights and biases, and leaks from 0 to 1. The loop stays the caller's:
 ///
 /// ```
 /// use farsa_body::testing::PointWorld;
@@ -41,7 +41,7 @@ use crate::experiment::outcome::Description;
 pub struct Neurocontroller<S, M> {
     sensors: S,
     motors: M,
-    layout: Layout,
+    layout: LeakyLayout,
     range: f64,
     network: OwnedNetwork,
     x: Vec<f32>,
@@ -63,7 +63,7 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         if !(0.0..=f64::from(f32::MAX)).contains(&range) {
             return Err(Error::Other(format!("weights within {range}")));
         }
-        let layout = Layout::new(inputs, hidden, outputs);
+        let layout = LeakyLayout::new(inputs, hidden, outputs);
         let network = resting_network(&layout)?;
         let (x, y) = (vec![0.0; inputs], vec![0.0; outputs]);
         Ok(Self { sensors, motors, layout, range, network, x, y, stage: Stage::default() }.on_stage(Stage::default()))
@@ -172,7 +172,7 @@ mod tests {
     use farsa_body::testing::PointWorld;
     use farsa_body::{ActuatorId, JointId, JointPosition, JointSpeed, Muscles, TorqueMotor, World as _};
     use farsa_evo::{GeneRange, decode};
-    use farsa_nn::{Leak, Network, ParameterKind};
+    use farsa_nn::{Leak, LeakyNetwork, LeakyParameter};
     use farsa_view::Recording;
 
     use crate::experiment::genotype::Genotype;
@@ -191,15 +191,16 @@ mod tests {
         let decoded = Genotype::new(&control.parameters(), 16).decode(&genes).unwrap();
 
         // By hand: every kind of parameter by itself.
-        let layout = Layout::new(2, 4, 1);
+        let layout = LeakyLayout::new(2, 4, 1);
         let mut parameters = vec![0.0; layout.parameter_count()];
-        for kind in ParameterKind::ALL {
+        for kind in LeakyParameter::ALL {
             let (part, [low, high]) =
-                (layout.range(kind), if kind == ParameterKind::Leak { [0.0, 1.0] } else { [-3.0, 3.0] });
+                (layout.range(kind), if kind == LeakyParameter::Leak { [0.0, 1.0] } else { [-3.0, 3.0] });
             decode(&genes[part.clone()], &[GeneRange::new(part.len(), low, high).unwrap()], &mut parameters[part])
                 .unwrap();
         }
-        let mut network = Network::new(layout, Leak::Filter, &parameters[..], vec![0.0; layout.state_len()]).unwrap();
+        let mut network =
+            LeakyNetwork::new(layout, Leak::Filter, &parameters[..], vec![0.0; layout.state_len()]).unwrap();
         let mut sensors = (JointPosition::new(JointId(0), -1.0, 1.0).unwrap(), JointSpeed::new(JointId(0)));
         let mut motor = TorqueMotor::new(ActuatorId(0), 20.0).unwrap();
         let (mut x, mut y) = ([0.0; 2], [0.0; 1]);

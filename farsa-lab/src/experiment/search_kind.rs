@@ -8,11 +8,11 @@ pub enum Search {
     /// them, [`farsa_evo::Coevolution`].
     #[default]
     Truncation,
-    /// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::SteadyState`].
+    /// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::OnePlusOne`].
     ///
     /// The log of such a run is about the mean fitness of the parent over its life and the fitness of the mutant: the
     /// best of the two is that of the survivor, which is the champion.
-    SteadyState,
+    OnePlusOne,
     /// Nothing is selected: a generation is one individual, which takes a lesson after it has lived, [`Setup::lesson`].
     ///
     /// The log of such a run has one fitness three times; errors are in `learning.csv`.

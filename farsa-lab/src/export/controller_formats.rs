@@ -2,18 +2,18 @@
 
 use std::fmt::{self, Write as _};
 
-use farsa_nn::{CtrnnBytes, Layout, Leak, NetworkBytes, channel_hash};
+use farsa_nn::{CtrnnBytes, Leak, LeakyLayout, LeakyNetworkBytes, channel_hash};
 use safetensors::tensor::{Dtype, TensorView};
 use serde_json::Value;
 
 use crate::error::Error;
 use crate::experiment::controller_export::{ControllerExport, CtrnnExport, NetworkExport};
 
-/// The bytes that [`NetworkBytes`] reads.
+/// The bytes that [`LeakyNetworkBytes`] reads.
 pub(crate) fn bytes(controller: &ControllerExport) -> Result<Vec<u8>, Error> {
     let (layout, leak, parameters) = network(&controller.network)?;
-    let mut bytes = vec![0; NetworkBytes::byte_count(layout)];
-    NetworkBytes::write(layout, leak, channels(controller), &parameters, &mut bytes).map_err(other)?;
+    let mut bytes = vec![0; LeakyNetworkBytes::byte_count(layout)];
+    LeakyNetworkBytes::write(layout, leak, channels(controller), &parameters, &mut bytes).map_err(other)?;
     Ok(bytes)
 }
 
@@ -40,10 +40,10 @@ pub(crate) fn rust(controller: &ControllerExport, whose: &str) -> Result<String,
         text,
         "//! {whose}: written by `farsa export controller --format rust`.
 
-use farsa_nn::{{Layout, Leak}};
+use farsa_nn::{{Leak, LeakyLayout}};
 
 /// Numbers of sensors, hidden neurons and motors.
-pub const LAYOUT: Layout = Layout::new({sensors}, {hidden}, {outputs}).with_slope({slope:?});
+pub const LAYOUT: LeakyLayout = LeakyLayout::new({sensors}, {hidden}, {outputs}).with_slope({slope:?});
 
 /// The reading of the leak.
 pub const LEAK: Leak = Leak::{reading};
@@ -100,9 +100,9 @@ pub(crate) fn safetensors(controller: &ControllerExport, mut about: Value) -> Re
     safetensors::serialize(views, Some(metadata)).map_err(other)
 }
 
-fn network(network: &NetworkExport) -> Result<(Layout, Leak, Vec<f32>), Error> {
+fn network(network: &NetworkExport) -> Result<(LeakyLayout, Leak, Vec<f32>), Error> {
     let NetworkExport { sensor_weights, recurrent_weights, output_weights, biases, leaks, .. } = network;
-    let layout = Layout::new(network.inputs, network.hidden, network.outputs).with_slope(network.slope);
+    let layout = LeakyLayout::new(network.inputs, network.hidden, network.outputs).with_slope(network.slope);
     let parameters = [sensor_weights, recurrent_weights, output_weights, biases, leaks].map(Vec::as_slice).concat();
     Ok((layout, network.leak.parse().map_err(other)?, parameters))
 }

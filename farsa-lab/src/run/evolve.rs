@@ -229,7 +229,7 @@ impl Run<'_> {
         let fitness =
             fitness_of_all(pool, &parameters, opponents, id, stop, progress).map_err(Unsuccessful::Unfinished)?;
         let judged = self.evolution.judged(&fitness).map_err(|error| lost(&error.to_string()))?;
-        let statistics = Statistics::of(&judged).ok_or_else(|| lost("no individual was evaluated"))?;
+        let statistics = Statistics::from_fitness(&judged).ok_or_else(|| lost("no individual was evaluated"))?;
         let best = self.evolution.champions(&judged).into_iter().map(|best| {
             let (fitness, genes) = (*judged.get(best)?, genomes.get(best)?.to_vec());
             Some(Best { individual: best as u32, fitness, genes })

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use farsa_evo::{Coevolution, Fitness, Lineage, Lineages, SteadyHistory, SteadyState, TruncationGa};
+use farsa_evo::{Coevolution, Fitness, Lineage, Lineages, OnePlusOne, OnePlusOneHistory, TruncationGa};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -116,11 +116,11 @@ macro_rules! sealed {
 
 sealed! {
     CheckpointOf<TruncationGa>: b"farsachk", "checkpoint";
-    CheckpointOf<SteadyState>: b"farsachs", "checkpoint of a steady-state search";
+    CheckpointOf<OnePlusOne>: b"farsachs", "checkpoint of a steady-state search";
     CheckpointOf<Coevolution>: b"farsachc", "checkpoint of a co-evolution";
     CheckpointOf<Learning>: b"farsachl", "checkpoint of learning";
     AncestryOf<Lineage>: b"farsalin", "lineage";
-    AncestryOf<SteadyHistory>: b"farsalis", "lineage of a steady-state search";
+    AncestryOf<OnePlusOneHistory>: b"farsalis", "lineage of a steady-state search";
     AncestryOf<Lineages>: b"farsalic", "lineage of a co-evolution";
     AncestryOf<Lessons>: b"farsalil", "record of lessons";
     ChampionOfOne: b"farsachm", "champion";
@@ -147,7 +147,7 @@ impl Checkpoint {
         let Self { identity, log, evolution } = self;
         match evolution {
             Evolution::Truncation(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
-            Evolution::SteadyState(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
+            Evolution::OnePlusOne(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
             Evolution::Several(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
             Evolution::Learning(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
         }
@@ -162,9 +162,9 @@ impl Checkpoint {
         let path = directory.checkpoint();
         evolved(directory)?;
         match sealed::magic(&path)? {
-            Some(<CheckpointOf<SteadyState> as Sealed>::MAGIC) => {
+            Some(<CheckpointOf<OnePlusOne> as Sealed>::MAGIC) => {
                 let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
-                Ok(Self { identity, log, evolution: Evolution::SteadyState(evolution) })
+                Ok(Self { identity, log, evolution: Evolution::OnePlusOne(evolution) })
             }
             Some(<CheckpointOf<Coevolution> as Sealed>::MAGIC) => {
                 let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
@@ -202,7 +202,7 @@ impl Ancestry {
         let Self { identity, descent } = self;
         match descent {
             Descent::Truncation(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
-            Descent::SteadyState(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
+            Descent::OnePlusOne(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
             Descent::Several(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
             Descent::Learned(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
             Descent::Imported { genomes, populations: 1 } => sealed::write(path, &Imported { identity, genomes }),
@@ -230,9 +230,9 @@ impl Ancestry {
         }
         let path = directory.lineage();
         let ancestry = match sealed::magic(&path)? {
-            Some(<AncestryOf<SteadyHistory> as Sealed>::MAGIC) => {
+            Some(<AncestryOf<OnePlusOneHistory> as Sealed>::MAGIC) => {
                 let AncestryOf { identity, lineage } = read(&path, plan, directory)?;
-                Self { identity, descent: Descent::SteadyState(lineage) }
+                Self { identity, descent: Descent::OnePlusOne(lineage) }
             }
             Some(<AncestryOf<Lineages> as Sealed>::MAGIC) => {
                 let AncestryOf { identity, lineage } = read(&path, plan, directory)?;

@@ -50,7 +50,7 @@ struct Numbers {
     populations: usize,
 }
 
-const STEADY: Numbers = Numbers { search: Search::SteadyState, populations: 1 };
+const STEADY: Numbers = Numbers { search: Search::OnePlusOne, populations: 1 };
 const LEARNER: Numbers = Numbers { search: Search::Learning, populations: 1 };
 const CHASE: Numbers = Numbers { search: Search::Truncation, populations: 3 };
 
@@ -442,6 +442,6 @@ fn the_search_of_a_run_stays_what_it_was() {
     rising.settings.set("", "evolution.last_rate", Value::Number(0.75)).unwrap();
     let error = create(&rising, &root.join("none")).unwrap_err().to_string();
     assert_eq!(error, "`evolution.last_rate`: a mutation rate cannot fall from 0.5 to 0.75");
-    assert!(matches!(Ancestry::read(&plan(&STEADY, 3), &steady).unwrap().0.descent, Descent::SteadyState(_)));
+    assert!(matches!(Ancestry::read(&plan(&STEADY, 3), &steady).unwrap().0.descent, Descent::OnePlusOne(_)));
     fs::remove_dir_all(root).unwrap();
 }

@@ -1,7 +1,7 @@
 //! How a run searches: the strategies of farsa-evo behind one face.
 
 use farsa_evo::{
-    Coevolution, EvoError, Fitness, Lineage, Lineages, Population, Statistics, SteadyHistory, SteadyState, Strategy,
+    Coevolution, EvoError, Fitness, Lineage, Lineages, OnePlusOne, OnePlusOneHistory, Population, Statistics, Strategy,
     TruncationGa,
 };
 
@@ -20,7 +20,7 @@ const NO_LEARNER: &str = "an experiment that learns without a learner";
 #[derive(Debug, Clone)]
 pub(crate) enum Evolution {
     Truncation(TruncationGa),
-    SteadyState(SteadyState),
+    OnePlusOne(OnePlusOne),
     Several(Coevolution),
     Learning(Learning),
 }
@@ -42,11 +42,11 @@ impl Evolution {
         let (populations, genes) = (evaluator.populations().len(), evaluator.parameters().len());
         match (search, populations) {
             (_, 0) => Err(Error::Other(format!("{}: no population", name))),
-            (Search::SteadyState, 1) => {
-                let config = evolution::steady_state(settings, genes, gene_bits)?;
-                SteadyState::new(config, seed).map(Self::SteadyState).map_err(refused)
+            (Search::OnePlusOne, 1) => {
+                let config = evolution::one_plus_one(settings, genes, gene_bits)?;
+                OnePlusOne::new(config, seed).map(Self::OnePlusOne).map_err(refused)
             }
-            (Search::SteadyState, _) => {
+            (Search::OnePlusOne, _) => {
                 Err(Error::Other(format!("{}: a steady-state search of several populations", name)))
             }
             (Search::Learning, 1) => {
@@ -69,7 +69,7 @@ impl Evolution {
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Truncation(a), Self::Truncation(b)) => a.config() == b.config(),
-            (Self::SteadyState(a), Self::SteadyState(b)) => a.config() == b.config(),
+            (Self::OnePlusOne(a), Self::OnePlusOne(b)) => a.config() == b.config(),
             (Self::Several(a), Self::Several(b)) => a.configs().eq(b.configs()),
             (Self::Learning(a), Self::Learning(b)) => a.is_like(b),
             _ => false,
@@ -80,7 +80,7 @@ impl Evolution {
     pub(crate) fn generation(&self) -> u32 {
         match self {
             Self::Truncation(ga) => ga.generation(),
-            Self::SteadyState(search) => search.generation(),
+            Self::OnePlusOne(search) => search.generation(),
             Self::Several(all) => all.generation(),
             Self::Learning(learning) => learning.generation(),
         }
@@ -90,7 +90,7 @@ impl Evolution {
     pub(crate) fn ask(&self) -> &Population {
         match self {
             Self::Truncation(ga) => ga.ask(),
-            Self::SteadyState(search) => search.ask(),
+            Self::OnePlusOne(search) => search.ask(),
             Self::Several(all) => all.ask(),
             Self::Learning(learning) => learning.ask(),
         }
@@ -108,7 +108,7 @@ impl Evolution {
     pub(crate) fn tell(&mut self, fitness: &[Fitness], evaluator: &mut dyn Evaluator, seed: u64) -> Result<(), String> {
         let told = match self {
             Self::Truncation(ga) => ga.tell(fitness),
-            Self::SteadyState(search) => search.tell(fitness),
+            Self::OnePlusOne(search) => search.tell(fitness),
             Self::Several(all) => all.tell(fitness),
             Self::Learning(learning) => return learning.study(evaluator.learner().ok_or(NO_LEARNER)?, seed),
         };
@@ -119,7 +119,7 @@ impl Evolution {
     /// the mean over its life.
     pub(crate) fn judged(&self, fitness: &[Fitness]) -> Result<Vec<Fitness>, EvoError> {
         match self {
-            Self::SteadyState(search) => search.judged(fitness).map(Into::into),
+            Self::OnePlusOne(search) => search.judged(fitness).map(Into::into),
             Self::Truncation(_) | Self::Several(_) | Self::Learning(_) => Ok(fitness.into()),
         }
     }
@@ -128,10 +128,12 @@ impl Evolution {
     pub(crate) fn champions(&self, judged: &[Fitness]) -> Vec<usize> {
         match self {
             // Ties go to the mutant.
-            Self::SteadyState(_) => vec![usize::from(judged.get(1) >= judged.first())],
+            Self::OnePlusOne(_) => vec![usize::from(judged.get(1) >= judged.first())],
             Self::Truncation(_) | Self::Several(_) | Self::Learning(_) => {
                 let size = (judged.len() / self.populations()).max(1);
-                let best = |fitness: &[Fitness]| Statistics::of(fitness).map_or(0, |statistics| statistics.best_index);
+                let best = |fitness: &[Fitness]| {
+                    Statistics::from_fitness(fitness).map_or(0, |statistics| statistics.best_index)
+                };
                 judged.chunks(size).enumerate().map(|(population, own)| population * size + best(own)).collect()
             }
         }
@@ -141,14 +143,14 @@ impl Evolution {
     pub(crate) fn of_each(&self, judged: &[Fitness]) -> Vec<Statistics> {
         let size = (judged.len() / self.populations()).max(1);
         let each = judged.chunks(size).filter(|_| self.populations() > 1);
-        each.filter_map(Statistics::of).collect()
+        each.filter_map(Statistics::from_fitness).collect()
     }
 
     /// Who descends from whom so far.
     pub(crate) fn descent(&self) -> Descent {
         match self {
             Self::Truncation(ga) => Descent::Truncation(ga.lineage().clone()),
-            Self::SteadyState(search) => Descent::SteadyState(search.history().clone()),
+            Self::OnePlusOne(search) => Descent::OnePlusOne(search.history().clone()),
             Self::Several(all) => Descent::Several(all.lineages()),
             Self::Learning(learning) => Descent::Learned(learning.lessons().clone()),
         }
@@ -159,7 +161,7 @@ impl Evolution {
 #[derive(Debug, Clone)]
 pub(crate) enum Descent {
     Truncation(Lineage),
-    SteadyState(SteadyHistory),
+    OnePlusOne(OnePlusOneHistory),
     Several(Lineages),
     Learned(Lessons),
     /// Genomes from elsewhere, as the only generation: those of one population after the other, as many of each.
@@ -174,7 +176,7 @@ impl Descent {
     pub(crate) fn finished(&self) -> u32 {
         match self {
             Self::Truncation(lineage) => lineage.latest(),
-            Self::SteadyState(history) => history.latest(),
+            Self::OnePlusOne(history) => history.latest(),
             Self::Several(lineages) => lineages.latest(),
             Self::Learned(lessons) => lessons.taken(),
             Self::Imported { .. } => 1,
@@ -186,7 +188,7 @@ impl Descent {
         match self {
             Self::Several(lineages) => lineages.populations(),
             Self::Imported { populations, .. } => (*populations).max(1),
-            Self::Truncation(_) | Self::SteadyState(_) | Self::Learned(_) => 1,
+            Self::Truncation(_) | Self::OnePlusOne(_) | Self::Learned(_) => 1,
         }
     }
 
@@ -194,7 +196,7 @@ impl Descent {
     pub(crate) fn size(&self) -> usize {
         match self {
             Self::Truncation(lineage) => lineage.config().population,
-            Self::SteadyState(_) => SteadyHistory::INDIVIDUALS,
+            Self::OnePlusOne(_) => OnePlusOneHistory::INDIVIDUALS,
             Self::Several(lineages) => lineages.size(),
             Self::Learned(_) => 1,
             Self::Imported { genomes, .. } => genomes.len() / self.populations(),
@@ -206,7 +208,7 @@ impl Descent {
         let first = |selected: Option<&[u32]>| selected.and_then(<[u32]>::first).map(|&individual| individual as usize);
         match self {
             Self::Truncation(lineage) => first(lineage.selected(generation)),
-            Self::SteadyState(history) => history.survivor(generation),
+            Self::OnePlusOne(history) => history.survivor(generation),
             Self::Several(lineages) => {
                 Some(population * lineages.size() + first(lineages.selected(population, generation))?)
             }
@@ -219,7 +221,7 @@ impl Descent {
     pub(crate) fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError> {
         match self {
             Self::Truncation(lineage) => lineage.genome_of(generation, individual),
-            Self::SteadyState(history) => history.genome_of(generation, individual),
+            Self::OnePlusOne(history) => history.genome_of(generation, individual),
             Self::Several(lineages) => lineages.genome_of(generation, individual),
             Self::Learned(lessons) => lessons.genome_of(generation, individual),
             Self::Imported { genomes, .. } => {

@@ -1,6 +1,6 @@
 //! The settings of evolution that all experiments share.
 
-use farsa_evo::{EvoError, GaConfig, Mutation, SteadyStateConfig};
+use farsa_evo::{EvoError, GaConfig, Mutation, OnePlusOneConfig};
 
 use crate::error::Error;
 use crate::experiment::search_kind::Search;
@@ -38,7 +38,7 @@ pub fn settings() -> Vec<Setting> {
 }
 
 /// The settings of the steady-state search, with the defaults of the original's discrimination experiment.
-pub fn steady_state_settings() -> Vec<Setting> {
+pub fn one_plus_one_settings() -> Vec<Setting> {
     vec![
         Setting::whole(GENERATIONS, 500, 1..=i64::from(u32::MAX) - 1)
             .given()
@@ -67,7 +67,7 @@ pub fn learning_settings() -> Vec<Setting> {
 pub(crate) fn complete(mut own: Vec<Setting>, search: Search) -> Vec<Setting> {
     let mut table = match search {
         Search::Truncation => settings(),
-        Search::SteadyState => steady_state_settings(),
+        Search::OnePlusOne => one_plus_one_settings(),
         Search::Learning => learning_settings(),
     };
     for setting in &mut table {
@@ -87,8 +87,8 @@ fn mutation(settings: &Settings) -> Result<Mutation, Error> {
 ///
 /// # Errors
 /// [`Error::Setting`] when the values do not go together, [`Error::Other`] for genomes that cannot be.
-pub(crate) fn steady_state(settings: &Settings, genes: usize, gene_bits: u32) -> Result<SteadyStateConfig, Error> {
-    let config = SteadyStateConfig {
+pub(crate) fn one_plus_one(settings: &Settings, genes: usize, gene_bits: u32) -> Result<OnePlusOneConfig, Error> {
+    let config = OnePlusOneConfig {
         genes,
         gene_bits,
         first_rate: settings.number(FIRST_RATE)?,

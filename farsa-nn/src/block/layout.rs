@@ -40,8 +40,8 @@ impl BlockParameter {
 /// | [`Gain`](BlockParameter::Gain) | neurons in their order |
 /// | [`Leak`](BlockParameter::Leak) | neurons in their order |
 ///
-/// For a [`Layout`](crate::Layout) written as blocks that is the order of its own parameters. The original's order is
-/// another, [`evonet_order`](BlockLayout::evonet_order). Counts saturate.
+/// For a [`LeakyLayout`](crate::LeakyLayout) written as blocks that is the order of its own parameters. The original's
+/// order is another, [`evonet_order`](BlockLayout::evonet_order). Counts saturate.
 ///
 /// ```
 /// use farsa_nn::{Activation, Block, BlockLayout, Group, Span};

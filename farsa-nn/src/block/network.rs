@@ -25,7 +25,7 @@ use crate::lesion::{Lesion, Neurons};
 ///
 /// Feed-forward, Elman's, Jordan's and fully recurrent networks are orders of blocks ([`Architecture`](crate::Architecture)).
 /// Activations are zero at the start. A NaN or infinite input is the caller's mistake, as in a
-/// [`Network`](crate::Network), whose bits this one has where the blocks are the same.
+/// [`LeakyNetwork`](crate::LeakyNetwork), whose bits this one has where the blocks are the same.
 ///
 /// Source: Evonet, the controller of `[FARSA2]`. Deviations: the order of the parameters, which
 /// [`BlockLayout::read_evonet`] reads; other functions, slopes, delays and readings of the leak; leaky inputs are not
@@ -105,7 +105,8 @@ impl<'a, P: AsRef<[f32]>, S: AsMut<[f32]>> BlockNetwork<'a, P, S> {
 }
 
 impl<'a, P, S> BlockNetwork<'a, P, S> {
-    /// The same network over these instructions, as [`Network::with_instructions`](crate::Network::with_instructions).
+    /// The same network over these instructions, as
+    /// [`LeakyNetwork::with_instructions`](crate::LeakyNetwork::with_instructions).
     pub fn with_instructions(self, instructions: Instructions) -> Self {
         Self { level: instructions.level(), ..self }
     }

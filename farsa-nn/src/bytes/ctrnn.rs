@@ -9,8 +9,8 @@ use crate::ctrnn::{check, check_layout, check_values};
 use crate::ctrnn_layout::CtrnnLayout;
 use crate::integrator::Integrator;
 
-/// A [`Ctrnn`](crate::Ctrnn) of somebody's bytes, as [`NetworkBytes`](crate::NetworkBytes) are a `Network`: checked, and used
-/// where it lies.
+/// A [`Ctrnn`](crate::Ctrnn) of somebody's bytes, as [`LeakyNetworkBytes`](crate::LeakyNetworkBytes) are a
+/// `LeakyNetwork`: checked, and used where it lies.
 ///
 /// The time step is part of the layout: a board whose steps are longer is another.
 ///
@@ -77,7 +77,7 @@ impl<'a> CtrnnBytes<'a> {
     /// and every parameter.
     ///
     /// # Errors
-    /// As [`NetworkBytes::read`](crate::NetworkBytes::read).
+    /// As [`LeakyNetworkBytes::read`](crate::LeakyNetworkBytes::read).
     pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
         let Frame { shape, channels, parameters, .. } = Frame::open(Kind::Ctrnn, bytes)?;
         let [inputs, neurons, outputs, direct, first_output, integrator, activation, time_step] = shape;

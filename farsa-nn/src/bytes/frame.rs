@@ -8,12 +8,12 @@ use crate::bytes::error::BytesError;
 /// Bytes that lie where numbers may lie, for [`include_bytes!`].
 ///
 /// ```
-/// # const LAYOUT: farsa_nn::Layout = farsa_nn::Layout::new(1, 1, 1);
-/// # macro_rules! include_bytes { ($name:literal) => { &[0; farsa_nn::NetworkBytes::byte_count(LAYOUT)] } }
-/// use farsa_nn::{Aligned, NetworkBytes};
+/// # const LAYOUT: farsa_nn::LeakyLayout = farsa_nn::LeakyLayout::new(1, 1, 1);
+/// # macro_rules! include_bytes { ($name:literal) => { &[0; farsa_nn::LeakyNetworkBytes::byte_count(LAYOUT)] } }
+/// use farsa_nn::{Aligned, LeakyNetworkBytes};
 ///
 /// // Does not compile when the file has another length.
-/// static CHAMPION: Aligned<[u8; NetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("champion.farsa"));
+/// static CHAMPION: Aligned<[u8; LeakyNetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("champion.farsa"));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C, align(8))]
@@ -35,8 +35,8 @@ const CHECKSUM: usize = 4;
 /// The kinds of controllers by their numbers in the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    Network = 1,
-    FixedNetwork = 2,
+    LeakyNetwork = 1,
+    QuantizedNetwork = 2,
     Ctrnn = 3,
 }
 

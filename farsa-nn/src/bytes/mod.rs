@@ -7,12 +7,12 @@ mod error;
 /// What the bytes of all kinds have in common: head, channels, parameters, checksum.
 mod frame;
 /// Of the leaky network.
-mod network;
+mod leaky;
 /// Of the leaky network in integers.
 mod quantized;
 
 pub use ctrnn::CtrnnBytes;
 pub use error::BytesError;
 pub use frame::{Aligned, channel_hash};
-pub use network::NetworkBytes;
-pub use quantized::FixedNetworkBytes;
+pub use leaky::LeakyNetworkBytes;
+pub use quantized::QuantizedNetworkBytes;

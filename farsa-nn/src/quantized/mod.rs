@@ -7,5 +7,5 @@ pub(crate) mod network;
 /// What its integers stand for, and how real parameters become such integers.
 pub(crate) mod scale;
 
-pub use network::FixedNetwork;
-pub use scale::FixedScale;
+pub use network::QuantizedNetwork;
+pub use scale::QuantizedScale;

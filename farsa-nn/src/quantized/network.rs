@@ -3,10 +3,10 @@
 use crate::controller::Controller;
 use crate::error::Error;
 use crate::kernel::head;
-use crate::layout::{Layout, ParameterKind};
 use crate::leak::Leak;
+use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 use crate::quantized::logistic::{ACTIVATION_BITS, logistic};
-use crate::quantized::scale::{FixedScale, LEAK_BITS};
+use crate::quantized::scale::{LEAK_BITS, QuantizedScale};
 
 /// Outputs whose sums are added side by side.
 const BLOCK: usize = 8;
@@ -14,11 +14,12 @@ const BLOCK: usize = 8;
 /// Fraction bits of activations between steps; the lower half of them keeps a slow neuron moving.
 const STATE_BITS: u32 = 30;
 
-/// A [`Network`](crate::Network) of 16-bit parameters and 32-bit sums: no float, no division, no multiplication wider than
-/// 32 bits in a step.
+/// A [`LeakyNetwork`](crate::LeakyNetwork) of 16-bit parameters and 32-bit sums: no float, no division, no
+/// multiplication wider than 32 bits in a step.
 ///
-/// [`FixedScale::quantize`] makes the parameters of those of a `Network` of the same layout; the slope of the logistic
-/// function is in the weights then, and that of the layout is not asked again. A step rounds each product once,
+/// [`QuantizedScale::quantize`] makes the parameters of those of a `LeakyNetwork` of the same layout; the slope of the
+/// logistic function is in the weights then, and that of the layout is not asked again. A step rounds each product
+/// once,
 ///
 /// ```text
 /// net_i = sum_j (w_ji I_j >> s) + sum_k (r_ki H_k >> s') + (beta_i >> s')
@@ -28,25 +29,32 @@ const STATE_BITS: u32 = 30;
 /// fits. What it does to the motor values is measured in the crate's documentation.
 ///
 /// As a [`Controller`] it takes and writes `f32`: sensor values beyond the range of
-/// [`input_bits`](FixedScale::input_bits) take its ends, motor values are multiples of 2^-15 in [0, 1 - 2^-15].
+/// [`input_bits`](QuantizedScale::input_bits) take its ends, motor values are multiples of 2^-15 in [0, 1 - 2^-15].
 ///
-/// Source: the equations are those of [`Network`](crate::Network), `[Ferrauto2010]` chapter 2. Deviation: the arithmetic.
+/// Source: the equations are those of [`LeakyNetwork`](crate::LeakyNetwork), `[Ferrauto2010]` chapter 2. Deviation: the
+/// arithmetic.
 #[derive(Clone, Debug)]
-pub struct FixedNetwork<P, S> {
-    layout: Layout,
+pub struct QuantizedNetwork<P, S> {
+    layout: LeakyLayout,
     leak: Leak,
-    scale: FixedScale,
+    scale: QuantizedScale,
     parameters: P,
     state: S,
 }
 
-impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
-    /// A network at rest: checks the parameters [[`parameter_count`](Layout::parameter_count)] and zeroes the state
-    /// [[`state_len`](Layout::state_len)].
+impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
+    /// A network at rest: checks the parameters [[`parameter_count`](LeakyLayout::parameter_count)] and zeroes the
+    /// state [[`state_len`](LeakyLayout::state_len)].
     ///
     /// # Errors
     /// [`Error::ParameterCount`], [`Error::LeakRange`], [`Error::SumRange`] or [`Error::StateLen`]: the first that applies.
-    pub fn new(layout: Layout, leak: Leak, scale: FixedScale, parameters: P, mut state: S) -> Result<Self, Error> {
+    pub fn new(
+        layout: LeakyLayout,
+        leak: Leak,
+        scale: QuantizedScale,
+        parameters: P,
+        mut state: S,
+    ) -> Result<Self, Error> {
         check(&layout, scale, parameters.as_ref(), |fixed| fixed)?;
         let (expected, found) = (layout.state_len(), state.as_mut().len());
         if expected != found {
@@ -56,23 +64,23 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
         Ok(Self { layout, leak, scale, parameters, state })
     }
 
-    /// Points the network at other parameters [[`parameter_count`](Layout::parameter_count)] of this scale and returns the old
-    /// ones; the state, whose units are the same in every scale, stays as it is.
+    /// Points the network at other parameters [[`parameter_count`](LeakyLayout::parameter_count)] of this scale and
+    /// returns the old ones; the state, whose units are the same in every scale, stays as it is.
     ///
     /// # Errors
     /// [`Error::ParameterCount`], [`Error::LeakRange`] or [`Error::SumRange`]; then the network is unchanged.
-    pub fn set_parameters(&mut self, scale: FixedScale, parameters: P) -> Result<P, Error> {
+    pub fn set_parameters(&mut self, scale: QuantizedScale, parameters: P) -> Result<P, Error> {
         check(&self.layout, scale, parameters.as_ref(), |fixed| fixed)?;
         self.scale = scale;
         Ok(core::mem::replace(&mut self.parameters, parameters))
     }
 
-    /// Copies other parameters [[`parameter_count`](Layout::parameter_count)] of this scale over the network's own; the state
-    /// stays as it is.
+    /// Copies other parameters [[`parameter_count`](LeakyLayout::parameter_count)] of this scale over the network's
+    /// own; the state stays as it is.
     ///
     /// # Errors
     /// [`Error::ParameterCount`], [`Error::LeakRange`] or [`Error::SumRange`]; then the network is unchanged.
-    pub fn copy_parameters(&mut self, scale: FixedScale, parameters: &[i16]) -> Result<(), Error>
+    pub fn copy_parameters(&mut self, scale: QuantizedScale, parameters: &[i16]) -> Result<(), Error>
     where
         P: AsMut<[i16]>,
     {
@@ -84,14 +92,15 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
         Ok(())
     }
 
-    /// Advances by one tick from the sensor values `x` `[sensors]`, in units of 2^-[`input_bits`](FixedScale::input_bits),
-    /// and overwrites the motor values `y` `[outputs]`, in units of 2^-15, 0..=32767.
+    /// Advances by one tick from the sensor values `x` `[sensors]`, in units of
+    /// 2^-[`input_bits`](QuantizedScale::input_bits), and overwrites the motor values `y` `[outputs]`, in units of
+    /// 2^-15, 0..=32767.
     ///
     /// All values of `x` are valid. Of slices of the wrong length it uses the shorter.
     ///
     /// # Panics
     /// With debug assertions, when `x` or `y` has another length.
-    pub fn step_fixed(&mut self, x: &[i16], y: &mut [i16]) {
+    pub fn step_quantized(&mut self, x: &[i16], y: &mut [i16]) {
         debug_assert_eq!(x.len(), self.layout.sensors(), "sensor values and the layout's sensors");
         debug_assert_eq!(y.len(), self.layout.outputs(), "motor values and the layout's outputs");
         self.advance(x.iter().copied(), y, |motor| motor);
@@ -112,23 +121,23 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
 
         // The bias is the weight of a source that is always 1.
         let shift = scale.activation_shift();
-        for (sum, bias) in sums.iter_mut().zip(part(ParameterKind::Bias)) {
+        for (sum, bias) in sums.iter_mut().zip(part(LeakyParameter::Bias)) {
             *sum = product(*bias, 1 << ACTIVATION_BITS, shift);
         }
-        for (h, row) in hidden.iter().zip(part(ParameterKind::RecurrentWeight).chunks_exact(row_len)) {
+        for (h, row) in hidden.iter().zip(part(LeakyParameter::RecurrentWeight).chunks_exact(row_len)) {
             let source = activation(*h);
             for (sum, w) in sums.iter_mut().zip(row) {
                 *sum += product(*w, source, shift);
             }
         }
         let shift = scale.input_shift();
-        for (x, row) in x.zip(part(ParameterKind::SensorWeight).chunks_exact(row_len)) {
+        for (x, row) in x.zip(part(LeakyParameter::SensorWeight).chunks_exact(row_len)) {
             for (sum, w) in sums.iter_mut().zip(row) {
                 *sum += product(*w, i32::from(x), shift);
             }
         }
 
-        let neurons = hidden.iter_mut().zip(previous).zip(&*sums).zip(part(ParameterKind::Leak));
+        let neurons = hidden.iter_mut().zip(previous).zip(&*sums).zip(part(LeakyParameter::Leak));
         for (((h, previous), sum), d) in neurons {
             let response = logistic(*sum, scale.sum_bits()) << (STATE_BITS - ACTIVATION_BITS);
             let d = i32::from(*d);
@@ -149,7 +158,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
         }
         let shift = scale.activation_shift();
         let outputs = layout.outputs();
-        let rows = part(ParameterKind::OutputWeight).chunks_exact(outputs.max(1));
+        let rows = part(LeakyParameter::OutputWeight).chunks_exact(outputs.max(1));
         // Source by source, as above, where the state has no room for the sums of all outputs.
         for (block, y) in head(y, outputs).chunks_mut(BLOCK).enumerate() {
             let mut sums = [0; BLOCK];
@@ -165,15 +174,15 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> FixedNetwork<P, S> {
         }
     }
 
-    /// The parameters [[`parameter_count`](Layout::parameter_count)].
+    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)].
     pub fn parameters(&self) -> &[i16] {
         self.parameters.as_ref()
     }
 }
 
-impl<P, S> FixedNetwork<P, S> {
+impl<P, S> QuantizedNetwork<P, S> {
     /// The layout.
-    pub const fn layout(&self) -> Layout {
+    pub const fn layout(&self) -> LeakyLayout {
         self.layout
     }
 
@@ -183,7 +192,7 @@ impl<P, S> FixedNetwork<P, S> {
     }
 
     /// Where the binary points lie.
-    pub const fn scale(&self) -> FixedScale {
+    pub const fn scale(&self) -> QuantizedScale {
         self.scale
     }
 
@@ -202,7 +211,7 @@ impl<P, S> FixedNetwork<P, S> {
     }
 }
 
-impl<P: AsRef<[i16]>, S: AsMut<[i32]>> Controller for FixedNetwork<P, S> {
+impl<P: AsRef<[i16]>, S: AsMut<[i32]>> Controller for QuantizedNetwork<P, S> {
     fn inputs(&self) -> usize {
         self.layout.sensors()
     }
@@ -219,7 +228,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> Controller for FixedNetwork<P, S> {
         debug_assert_eq!(x.len(), self.layout.sensors(), "sensor values and the layout's sensors");
         debug_assert_eq!(y.len(), self.layout.outputs(), "motor values and the layout's outputs");
         let scale = self.scale;
-        self.advance(x.iter().map(|x| scale.input(*x)), y, FixedScale::output);
+        self.advance(x.iter().map(|x| scale.input(*x)), y, QuantizedScale::output);
     }
 }
 
@@ -244,8 +253,8 @@ fn share(d: i32, difference: i32) -> i32 {
 
 /// What construction asks of parameters, wherever they lie; `value` makes a number of what lies there.
 pub(crate) fn check<T: Copy>(
-    layout: &Layout,
-    scale: FixedScale,
+    layout: &LeakyLayout,
+    scale: QuantizedScale,
     fixed: &[T],
     value: impl Fn(T) -> i16,
 ) -> Result<(), Error> {
@@ -253,7 +262,7 @@ pub(crate) fn check<T: Copy>(
     if expected != found {
         return Err(Error::ParameterCount { expected, found });
     }
-    let leaks = fixed.iter().enumerate().skip(layout.range(ParameterKind::Leak).start).map(|(i, d)| (i, value(*d)));
+    let leaks = fixed.iter().enumerate().skip(layout.range(LeakyParameter::Leak).start).map(|(i, d)| (i, value(*d)));
     if let Some((index, d)) = leaks.into_iter().find(|(_, d)| !(0..=1 << LEAK_BITS).contains(d)) {
         return Err(Error::LeakRange { index, value: f32::from(d) / f32::from(1_i16 << LEAK_BITS) });
     }

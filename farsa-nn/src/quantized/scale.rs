@@ -3,15 +3,15 @@
 use farsa_num::Scalar;
 
 use crate::error::Error;
-use crate::layout::{Layout, ParameterKind};
-use crate::network::check;
+use crate::leaky_layout::{LeakyLayout, LeakyParameter};
+use crate::leaky_network::check;
 use crate::quantized::logistic::{ACTIVATION_BITS, ARGUMENT_BITS};
 
 /// Fraction bits of leaks: 2^14 stands for 1, which so is exact.
 pub(crate) const LEAK_BITS: u32 = 14;
 
-/// Where the binary points of a [`FixedNetwork`](crate::FixedNetwork) lie: an integer `v` of `b` fraction bits stands for
-/// `v / 2^b`.
+/// Where the binary points of a [`QuantizedNetwork`](crate::QuantizedNetwork) lie: an integer `v` of `b` fraction bits
+/// stands for `v / 2^b`.
 ///
 /// | integers | fraction bits |
 /// |---|---|
@@ -24,7 +24,7 @@ pub(crate) const LEAK_BITS: u32 = 14;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "SavedScale"))]
-pub struct FixedScale {
+pub struct QuantizedScale {
     inputs: u8,
     weights: u8,
     sums: u8,
@@ -33,7 +33,7 @@ pub struct FixedScale {
 /// A scale as it is read, before it is checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
-#[serde(rename = "FixedScale")]
+#[serde(rename = "QuantizedScale")]
 struct SavedScale {
     inputs: u8,
     weights: u8,
@@ -41,7 +41,7 @@ struct SavedScale {
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<SavedScale> for FixedScale {
+impl TryFrom<SavedScale> for QuantizedScale {
     type Error = Error;
 
     fn try_from(saved: SavedScale) -> Result<Self, Error> {
@@ -49,56 +49,63 @@ impl TryFrom<SavedScale> for FixedScale {
     }
 }
 
-impl FixedScale {
+impl QuantizedScale {
     /// The fewest fraction bits of a sum, 10: with fewer the logistic function would miss by more than 1e-4.
     pub const SUM_BITS_MIN: u32 = 10;
 
     /// A scale that was written down before, with a program's parameters.
     ///
     /// # Errors
-    /// [`Error::FixedBits`]: inputs and weights have at most 15 fraction bits; sums have 10 to 20, and no more than a
-    /// product of a weight and an input.
+    /// [`Error::FractionBits`]: inputs and weights have at most 15 fraction bits; sums have 10 to 20, and no more than
+    /// a product of a weight and an input.
     pub const fn new(input_bits: u32, weight_bits: u32, sum_bits: u32) -> Result<Self, Error> {
         if input_bits > 15 {
-            return Err(Error::FixedBits { of: "inputs", found: input_bits, least: 0, most: 15 });
+            return Err(Error::FractionBits { of: "inputs", found: input_bits, least: 0, most: 15 });
         }
         if weight_bits > 15 {
-            return Err(Error::FixedBits { of: "weights", found: weight_bits, least: 0, most: 15 });
+            return Err(Error::FractionBits { of: "weights", found: weight_bits, least: 0, most: 15 });
         }
         let product = input_bits + weight_bits;
         let most = if product < ARGUMENT_BITS { product } else { ARGUMENT_BITS };
         if sum_bits < Self::SUM_BITS_MIN || sum_bits > most {
-            return Err(Error::FixedBits { of: "sums", found: sum_bits, least: Self::SUM_BITS_MIN, most });
+            return Err(Error::FractionBits { of: "sums", found: sum_bits, least: Self::SUM_BITS_MIN, most });
         }
         Ok(Self { inputs: input_bits as u8, weights: weight_bits as u8, sums: sum_bits as u8 })
     }
 
-    /// Writes the parameters of a [`Network`](crate::Network) [[`parameter_count`](Layout::parameter_count)] as integers
-    /// of a [`FixedNetwork`](crate::FixedNetwork) for sensor values of so many fraction bits, each rounded to the nearest.
+    /// Writes the parameters of a [`LeakyNetwork`](crate::LeakyNetwork)
+    /// [[`parameter_count`](LeakyLayout::parameter_count)] as integers of a
+    /// [`QuantizedNetwork`](crate::QuantizedNetwork) for sensor values of so many fraction bits, each rounded to the
+    /// nearest.
     ///
     /// Weights and biases get the most fraction bits, up to 15, with which the largest of them times the slope is an
     /// `i16`; sums the most, up to 20, with which no sensor values whatever can overflow one.
     ///
     /// # Errors
     /// [`Error::Slope`], [`Error::ParameterCount`] (of either slice), [`Error::NotFinite`], [`Error::LeakRange`],
-    /// [`Error::FixedBits`] of the inputs, [`Error::WeightRange`] where a weight times the slope is beyond 32767, and
-    /// [`Error::SumRange`] where sums of 10 fraction bits could overflow. Then `fixed` may be written in part.
+    /// [`Error::FractionBits`] of the inputs, [`Error::WeightRange`] where a weight times the slope is beyond 32767,
+    /// and [`Error::SumRange`] where sums of 10 fraction bits could overflow. Then `fixed` may be written in part.
     ///
     /// ```
-    /// use farsa_nn::{FixedNetwork, FixedScale, Layout, Leak};
+    /// use farsa_nn::{Leak, LeakyLayout, QuantizedNetwork, QuantizedScale};
     ///
-    /// const LAYOUT: Layout = Layout::new(1, 1, 1);
+    /// const LAYOUT: LeakyLayout = LeakyLayout::new(1, 1, 1);
     /// let mut fixed = [0; LAYOUT.parameter_count()];
-    /// let scale = FixedScale::quantize(&LAYOUT, 9, &[6.0, 0.0, -3.0, 0.0, 0.5], &mut fixed)?;
+    /// let scale = QuantizedScale::quantize(&LAYOUT, 9, &[6.0, 0.0, -3.0, 0.0, 0.5], &mut fixed)?;
     /// // 0.2 * 6 = 1.2 is 19661 / 2^14.
     /// assert_eq!((scale.weight_bits(), fixed), (14, [19661, 0, -9830, 0, 8192]));
-    /// let mut network = FixedNetwork::new(LAYOUT, Leak::Filter, scale, fixed, [0; LAYOUT.state_len()])?;
+    /// let mut network = QuantizedNetwork::new(LAYOUT, Leak::Filter, scale, fixed, [0; LAYOUT.state_len()])?;
     /// let mut y = [0];
-    /// network.step_fixed(&[512], &mut y); // x = 1
+    /// network.step_quantized(&[512], &mut y); // x = 1
     /// assert_eq!(y, [14504]); // 0.4426
     /// # Ok::<(), farsa_nn::Error>(())
     /// ```
-    pub fn quantize(layout: &Layout, input_bits: u32, parameters: &[f32], fixed: &mut [i16]) -> Result<Self, Error> {
+    pub fn quantize(
+        layout: &LeakyLayout,
+        input_bits: u32,
+        parameters: &[f32],
+        fixed: &mut [i16],
+    ) -> Result<Self, Error> {
         let slope = layout.slope();
         if !slope.is_finite() {
             return Err(Error::Slope { value: slope });
@@ -108,9 +115,9 @@ impl FixedScale {
             return Err(Error::ParameterCount { expected: parameters.len(), found: fixed.len() });
         }
         if input_bits > 15 {
-            return Err(Error::FixedBits { of: "inputs", found: input_bits, least: 0, most: 15 });
+            return Err(Error::FractionBits { of: "inputs", found: input_bits, least: 0, most: 15 });
         }
-        let leaks = layout.range(ParameterKind::Leak);
+        let leaks = layout.range(LeakyParameter::Leak);
         let (weights, fixed_weights) = (&parameters[..leaks.start], &mut fixed[..leaks.start]);
         // Exact in double precision.
         let sloped = |weight: f32| f64::from(weight) * f64::from(slope);
@@ -180,7 +187,7 @@ impl FixedScale {
     /// Whether every sum fits an `i32`, whatever the sensor values; `value` makes a number of what lies in `fixed`.
     pub(crate) fn check_sums<T: Copy>(
         self,
-        layout: &Layout,
+        layout: &LeakyLayout,
         fixed: &[T],
         value: impl Fn(T) -> i16,
     ) -> Result<(), Error> {
@@ -194,11 +201,11 @@ impl FixedScale {
         let (h, o) = (layout.hidden(), layout.outputs());
         let (input, activation) = (self.input_shift(), self.activation_shift());
         let hidden = (0..h).map(|i| {
-            largest(part(ParameterKind::SensorWeight), i, h, input)
-                + largest(part(ParameterKind::RecurrentWeight), i, h, activation)
-                + largest(part(ParameterKind::Bias), i, h, activation)
+            largest(part(LeakyParameter::SensorWeight), i, h, input)
+                + largest(part(LeakyParameter::RecurrentWeight), i, h, activation)
+                + largest(part(LeakyParameter::Bias), i, h, activation)
         });
-        let outputs = (0..o).map(|i| largest(part(ParameterKind::OutputWeight), i, o, activation));
+        let outputs = (0..o).map(|i| largest(part(LeakyParameter::OutputWeight), i, o, activation));
         let limit = i32::MAX as u64;
         match hidden.chain(outputs).enumerate().find(|(_, sum)| *sum > limit) {
             Some((target, largest)) => Err(Error::SumRange { target, largest, limit }),

@@ -1,10 +1,10 @@
 //! Controllers as bytes: what is written is read, nothing else is.
 
 mod ctrnn;
-mod fixed_network;
-mod network;
+mod leaky;
+mod quantized;
 
-use farsa_nn::{Aligned, BytesError, CtrnnBytes, FixedNetworkBytes, NetworkBytes};
+use farsa_nn::{Aligned, BytesError, CtrnnBytes, LeakyNetworkBytes, QuantizedNetworkBytes};
 use farsa_num::{Digest, crc32};
 
 /// Where the parameters begin.
@@ -78,11 +78,14 @@ fn after_a_head(head: &[u8], rest: &[u8], seal: bool) -> Vec<u8> {
 
 #[test]
 fn each_kind_is_read_as_itself_alone() {
-    let kinds: [&[u8]; 3] = [&network::champion().0, &fixed_network::champion().0, &ctrnn::agent().0];
+    let kinds: [&[u8]; 3] = [&leaky::champion().0, &quantized::champion().0, &ctrnn::agent().0];
     for (at, bytes) in kinds.into_iter().enumerate() {
         let found = at as u32 + 1;
-        let errors =
-            [NetworkBytes::read(bytes).err(), FixedNetworkBytes::read(bytes).err(), CtrnnBytes::read(bytes).err()];
+        let errors = [
+            LeakyNetworkBytes::read(bytes).err(),
+            QuantizedNetworkBytes::read(bytes).err(),
+            CtrnnBytes::read(bytes).err(),
+        ];
         for (expected, error) in (1..).zip(errors) {
             assert_eq!(error, (expected != found).then_some(BytesError::Kind { expected, found }));
         }
@@ -92,7 +95,7 @@ fn each_kind_is_read_as_itself_alone() {
 /// What was written once is written so for good, on every machine: there are boards that hold it.
 #[test]
 fn the_bytes_of_each_kind_do_not_change() {
-    let kinds: [&[u8]; 3] = [&network::champion().0, &fixed_network::champion().0, &ctrnn::agent().0];
+    let kinds: [&[u8]; 3] = [&leaky::champion().0, &quantized::champion().0, &ctrnn::agent().0];
     assert_eq!(
         kinds.map(digest).map(|hash| format!("{hash:016x}")),
         ["7a917e2c3a070d00", "9f6fbfbd8ded40f7", "7211fd8b188cb3d5"]

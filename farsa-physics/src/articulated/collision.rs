@@ -28,7 +28,7 @@ pub(crate) struct Placed<S> {
 
 impl<S: Scalar> Placed<S> {
     pub(crate) fn new(simd: S::Simd) -> Self {
-        let o = S::splat(simd, S::Real::of(0.0));
+        let o = S::splat(simd, S::Real::from_f64(0.0));
         Self { rotation: [[o; 3]; 3], position: [o; 3], velocity: [o; 3] }
     }
     #[inline(always)]

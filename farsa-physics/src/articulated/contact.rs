@@ -23,7 +23,7 @@ pub(crate) fn place_colliders<S: Scalar>(
         let offset = splat::<S>(simd, c.mount.position);
         // `acceleration` holds the predicted velocity here, see `predict`: what it is at the collider's origin.
         *o = if c.mount.link == WORLD {
-            Placed { rotation: own, position: offset, velocity: [S::splat(simd, S::Real::of(0.0)); 3] }
+            Placed { rotation: own, position: offset, velocity: [S::splat(simd, S::Real::from_f64(0.0)); 3] }
         } else {
             let w = &work[usize::from(c.mount.link)];
             let position = add(w.position, rotate(&w.rotation, offset));
@@ -150,21 +150,21 @@ fn point<S: Scalar>(
         (Form::Block { half: ha }, Form::Block { half: hb }) => {
             // Corners of a in b, then edges of b through a, whose normal is turned round: it pushes a away from b. Corners of
             // b in a are not looked at by themselves; the description's order is chosen for that (see `model_builder`).
-            let zero = S::splat(simd, S::Real::of(0.0));
+            let zero = S::splat(simd, S::Real::from_f64(0.0));
             let (ha, hb) = (splat::<S>(simd, ha), splat::<S>(simd, hb));
             if index < 8 {
                 ball_box(corner(pa, ha, index), zero, pb, hb)
             } else {
                 let (middle, direction, length) = edge(pb, hb, index - 8);
                 let mut found = segment_box(middle, direction, length, zero, pa, ha);
-                found.normal = scale(found.normal, S::splat(simd, S::Real::of(-1.0)));
+                found.normal = scale(found.normal, S::splat(simd, S::Real::from_f64(-1.0)));
                 found
             }
         }
         (Form::Block { half }, _) => {
-            ball_plane(corner(pa, splat::<S>(simd, half), index), S::splat(simd, S::Real::of(0.0)), pb)
+            ball_plane(corner(pa, splat::<S>(simd, half), index), S::splat(simd, S::Real::from_f64(0.0)), pb)
         }
-        (Form::Plane, _) => ball_plane(pa.position, S::splat(simd, S::Real::of(0.0)), pb),
+        (Form::Plane, _) => ball_plane(pa.position, S::splat(simd, S::Real::from_f64(0.0)), pb),
     }
 }
 

@@ -48,7 +48,7 @@ fn points_in<R: farsa_num::Real>(a: (Shape, Pose<f64>), b: (Shape, Pose<f64>)) -
     let mut placed = [Placed::new(()), Placed::new(())];
     place_colliders((), &model, scratch.links(), &mut placed);
     let pair = &model.pairs[0];
-    let sign = R::of(if pair.flipped { -1.0 } else { 1.0 });
+    let sign = R::from_f64(if pair.flipped { -1.0 } else { 1.0 });
     (0..pair.points)
         .map(|i| {
             let mut p = find((), &model, pair, &placed, i);

@@ -79,7 +79,7 @@ impl Link<f64> {
     }
 
     pub(crate) fn cast<R: Real>(&self) -> Link<R> {
-        let r = R::of;
+        let r = R::from_f64;
         Link {
             parent: self.parent,
             motion: self.motion,
@@ -103,7 +103,7 @@ impl Link<f64> {
 }
 
 pub(crate) fn cast_mount<R: Real>(m: &Mount<f64>) -> Mount<R> {
-    Mount { link: m.link, rotation: m.rotation.map(|row| row.map(R::of)), position: m.position.map(R::of) }
+    Mount { link: m.link, rotation: m.rotation.map(|row| row.map(R::from_f64)), position: m.position.map(R::from_f64) }
 }
 
 /// The moving links, and where each segment is mounted.

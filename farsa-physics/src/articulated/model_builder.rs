@@ -99,14 +99,14 @@ fn cast_collider<R: Real>((mount, form, bound, _): &Fitted) -> Collider<R> {
     Collider {
         mount: cast_mount(mount),
         form: match *form {
-            Form::Ball { radius } => Form::Ball { radius: R::of(radius) },
+            Form::Ball { radius } => Form::Ball { radius: R::from_f64(radius) },
             Form::Capsule { radius, half_length } => {
-                Form::Capsule { radius: R::of(radius), half_length: R::of(half_length) }
+                Form::Capsule { radius: R::from_f64(radius), half_length: R::from_f64(half_length) }
             }
-            Form::Block { half } => Form::Block { half: half.map(R::of) },
+            Form::Block { half } => Form::Block { half: half.map(R::from_f64) },
             Form::Plane => Form::Plane,
         },
-        bound: R::of(*bound),
+        bound: R::from_f64(*bound),
     }
 }
 
@@ -149,10 +149,10 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
             row: all.row_entries,
             rolling_row: all.rolling_entries,
             rolling: rolls.then_some(all.rolling),
-            friction: R::of(p.surface.friction),
-            rolling_friction: R::of(p.surface.rolling_friction),
-            stiffness: R::of(p.surface.stiffness),
-            damping: R::of(p.surface.damping),
+            friction: R::from_f64(p.surface.friction),
+            rolling_friction: R::from_f64(p.surface.rolling_friction),
+            stiffness: R::from_f64(p.surface.stiffness),
+            damping: R::from_f64(p.surface.damping),
             at_stops: reach.first.iter().chain(&reach.second).any(|l| has_stop(&links[usize::from(*l)])),
             reach,
         });
@@ -245,16 +245,16 @@ impl<R: Real> Model<R> {
             stop_entries: stop_paths.iter().map(|p| p.dofs.len()).sum(),
             stop_paths,
             roots: links.iter().filter(|l| l.motion == Motion::Floating).count(),
-            gravity: options.gravity.map(R::of),
-            time_step: R::of(options.time_step),
-            h: R::of(options.time_step / f64::from(options.substeps)),
+            gravity: options.gravity.map(R::from_f64),
+            time_step: R::from_f64(options.time_step),
+            h: R::from_f64(options.time_step / f64::from(options.substeps)),
             substeps: options.substeps,
             sweeps: options.sweeps,
-            slip: R::of(options.slip),
-            margin: R::of(options.margin),
+            slip: R::from_f64(options.slip),
+            margin: R::from_f64(options.margin),
         };
-        model.initial = initial.into_iter().map(R::of).collect();
-        model.initial.resize(model.state_len(), R::of(0.0));
+        model.initial = initial.into_iter().map(R::from_f64).collect();
+        model.initial.resize(model.state_len(), R::from_f64(0.0));
         Ok(model)
     }
 }

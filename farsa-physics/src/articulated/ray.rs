@@ -12,7 +12,7 @@ use crate::articulated::view::View;
 type Entry<R> = Option<(R, Vector<R>)>;
 
 fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vector<R>, radius: R) -> Entry<R> {
-    let zero = R::of(0.0);
+    let zero = R::from_f64(0.0);
     let from = sub(origin, centre);
     let b = dot(from, direction);
     let c = dot(from, from) - radius * radius;
@@ -21,11 +21,11 @@ fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vector<R>, rad
         return None;
     }
     let t = -b - disc.sqrt();
-    Some((t, scale(add(from, scale(direction, t)), R::of(1.0) / radius)))
+    Some((t, scale(add(from, scale(direction, t)), R::from_f64(1.0) / radius)))
 }
 
 fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R) -> Entry<R> {
-    let zero = R::of(0.0);
+    let zero = R::from_f64(0.0);
     // The cylinder's side first, then the two caps; a hit on the side is nearer than any on a cap behind it.
     let a = direction[0] * direction[0] + direction[1] * direction[1];
     let b = origin[0] * direction[0] + origin[1] * direction[1];
@@ -58,8 +58,8 @@ fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R)
 }
 
 pub(crate) fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vector<R>) -> Entry<R> {
-    let zero = R::of(0.0);
-    let one = R::of(1.0);
+    let zero = R::from_f64(0.0);
+    let one = R::from_f64(1.0);
     let mut enter: Entry<R> = None;
     let mut leave: Option<R> = None;
     for k in 0..3 {
@@ -86,11 +86,11 @@ pub(crate) fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vect
 }
 
 fn plane<R: Real>(origin: Vector<R>, direction: Vector<R>) -> Entry<R> {
-    let zero = R::of(0.0);
+    let zero = R::from_f64(0.0);
     if origin[2] < zero || direction[2] >= zero {
         return None;
     }
-    Some((-origin[2] / direction[2], [zero, zero, R::of(1.0)]))
+    Some((-origin[2] / direction[2], [zero, zero, R::from_f64(1.0)]))
 }
 
 /// The frame of a collider in the world.
@@ -110,15 +110,15 @@ pub(crate) fn cast<R: Real>(
     direction: [f32; 3],
     range: f32,
 ) -> Option<Hit<BodyId>> {
-    let origin = origin.map(|x| R::of(f64::from(x)));
-    let direction = direction.map(|x| R::of(f64::from(x)));
+    let origin = origin.map(|x| R::from_f64(f64::from(x)));
+    let direction = direction.map(|x| R::from_f64(f64::from(x)));
     let mut best: Option<Hit<BodyId>> = None;
     for (i, collider) in world.model().colliders.iter().enumerate() {
         let (rotation, position) = collider_frame(world, i);
         let o = rotate_back(&rotation, sub(origin, position));
         let d = rotate_back(&rotation, direction);
         let entry = match collider.form {
-            Form::Ball { radius } => ball(o, d, [R::of(0.0); 3], radius),
+            Form::Ball { radius } => ball(o, d, [R::from_f64(0.0); 3], radius),
             Form::Capsule { radius, half_length } => capsule(o, d, radius, half_length),
             Form::Block { half } => block(o, d, half),
             Form::Plane => plane(o, d),

@@ -26,7 +26,7 @@ pub(crate) fn tangents<S: Scalar>(n: Vector<S>) -> [Vector<S>; 2] {
 #[inline(always)]
 pub(crate) fn velocity_at<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkData<S>], point: Vector<S>) -> Vector<S> {
     if link == WORLD {
-        return [S::splat(simd, S::Real::of(0.0)); 3];
+        return [S::splat(simd, S::Real::from_f64(0.0)); 3];
     }
     let w = &work[usize::from(link)];
     w.acceleration.at(sub(point, w.reference))
@@ -35,7 +35,11 @@ pub(crate) fn velocity_at<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkData<
 /// Predicted angular velocity of a link.
 #[inline(always)]
 pub(crate) fn spin<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkData<S>]) -> Vector<S> {
-    if link == WORLD { [S::splat(simd, S::Real::of(0.0)); 3] } else { work[usize::from(link)].acceleration.angular }
+    if link == WORLD {
+        [S::splat(simd, S::Real::from_f64(0.0)); 3]
+    } else {
+        work[usize::from(link)].acceleration.angular
+    }
 }
 
 /// Three unit forces on the links of a path.
@@ -146,7 +150,7 @@ fn write<S: Scalar>(
     // Equal and opposite loads climb from both links. Where the two paths meet they are added and go on as one, so that
     // velocities which both sides share get one entry.
     let reach = &pair.reach;
-    let minus = S::splat(simd, S::Real::of(-1.0));
+    let minus = S::splat(simd, S::Real::from_f64(-1.0));
     let first_entries = reach.dofs.len() - reach.second.iter().map(|l| entries(model, *l)).sum::<usize>();
     let other = pull(simd, model, pair.colliders[1], work, load, axes);
     let mut other = [other[0].scale(minus), other[1].scale(minus), other[2].scale(minus)];
@@ -165,7 +169,7 @@ fn write<S: Scalar>(
         at += climb(model, link, work, roots, inverse_sqrt_inertia, &mut p, &mut rows[at..]);
     }
     // The block of J M^-1 J^T: nn, 11, 22, n1, n2, 12.
-    let mut a = [S::splat(simd, S::Real::of(0.0)); 6];
+    let mut a = [S::splat(simd, S::Real::from_f64(0.0)); 6];
     for y in rows.iter() {
         a[0] += y[0] * y[0];
         a[1] += y[1] * y[1];

@@ -43,7 +43,7 @@ pub(crate) struct Block<S: Scalar> {
 
 impl<S: Scalar> Block<S> {
     pub(crate) fn new(simd: S::Simd) -> Self {
-        let o = S::splat(simd, S::Real::of(0.0));
+        let o = S::splat(simd, S::Real::from_f64(0.0));
         Self {
             mask: o.lt(o),
             axes: [[o; 3]; 3],
@@ -145,7 +145,7 @@ impl<S: Scalar> Solver<'_, S> {
         points: &mut [S],
         rolling_impulses: &mut [S],
     ) -> (usize, [S::Mask; 2]) {
-        let zero = S::splat(simd, S::Real::of(0.0));
+        let zero = S::splat(simd, S::Real::from_f64(0.0));
         let mut count = 0;
         let mut touched = [zero.lt(zero); 2];
         for (p, pair) in model.pairs.iter().enumerate() {
@@ -204,7 +204,7 @@ impl<S: Scalar> Solver<'_, S> {
         near: S::Mask,
         far: S,
     ) -> Candidate<S> {
-        let zero = S::splat(simd, S::Real::of(0.0));
+        let zero = S::splat(simd, S::Real::from_f64(0.0));
         let h = S::splat(simd, model.h);
         let margin = S::splat(simd, model.margin);
         let links = links_of_pair(model, pair);
@@ -235,8 +235,8 @@ impl<S: Scalar> Solver<'_, S> {
         candidate: &Candidate<S>,
         old: [S; 3],
     ) {
-        let zero = S::splat(simd, S::Real::of(0.0));
-        let one = S::splat(simd, S::Real::of(1.0));
+        let zero = S::splat(simd, S::Real::from_f64(0.0));
+        let one = S::splat(simd, S::Real::from_f64(1.0));
         let h = S::splat(simd, model.h);
         let Candidate { point, velocity: v, mask, gap } = *candidate;
         let [t1, t2] = tangents(point.normal);
@@ -296,8 +296,8 @@ impl<S: Scalar> Solver<'_, S> {
         old: [S; 3],
     ) {
         let Some(first) = pair.rolling else { return };
-        let zero = S::splat(simd, S::Real::of(0.0));
-        let one = S::splat(simd, S::Real::of(1.0));
+        let zero = S::splat(simd, S::Real::from_f64(0.0));
+        let one = S::splat(simd, S::Real::from_f64(1.0));
         let links = links_of_pair(model, pair);
         let block = self.blocks[pair.point + index];
         let axes = block.axes;
@@ -351,7 +351,7 @@ impl<S: Scalar> Solver<'_, S> {
         let pair = &model.pairs[pair];
         let dofs = &pair.reach.dofs;
         let n = dofs.len();
-        let zero = S::splat(simd, S::Real::of(0.0));
+        let zero = S::splat(simd, S::Real::from_f64(0.0));
         let slip = S::splat(simd, model.slip);
         let block = &mut self.blocks[pair.point + index];
         let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
@@ -402,7 +402,7 @@ impl<S: Scalar> Solver<'_, S> {
         points: &mut [S],
         rolling_impulses: &mut [S],
     ) {
-        let zero = S::splat(simd, S::Real::of(0.0));
+        let zero = S::splat(simd, S::Real::from_f64(0.0));
         for &(p, index) in &self.active[..count] {
             let (pair, index) = (&model.pairs[usize::from(p)], usize::from(index));
             let block = &self.blocks[pair.point + index];

@@ -102,7 +102,7 @@ pub struct Spatial<S> {
 impl<S: Scalar> Spatial<S> {
     #[inline(always)]
     pub(crate) fn zero(simd: S::Simd) -> Self {
-        let z = S::splat(simd, farsa_num::Real::of(0.0));
+        let z = S::splat(simd, farsa_num::Real::from_f64(0.0));
         Self { angular: [z; 3], linear: [z; 3] }
     }
     /// Each component times `k`.
@@ -200,7 +200,7 @@ pub(crate) fn rotate_symmetric<S: Scalar>(rotation: &Matrix<S>, m: &[S; 6]) -> [
 impl<S: Scalar> Inertia<S> {
     #[inline(always)]
     pub(crate) fn zero(simd: S::Simd) -> Self {
-        let z = S::splat(simd, farsa_num::Real::of(0.0));
+        let z = S::splat(simd, farsa_num::Real::from_f64(0.0));
         Self { angular: [z; 6], coupling: [[z; 3]; 3], linear: [z; 6] }
     }
 
@@ -308,7 +308,7 @@ pub(crate) struct Cholesky<S> {
 
 impl<S: Scalar> Cholesky<S> {
     pub(crate) fn identity(simd: S::Simd) -> Self {
-        let z = S::splat(simd, farsa_num::Real::of(0.0));
+        let z = S::splat(simd, farsa_num::Real::from_f64(0.0));
         let mut l = [[z; 6]; 6];
         for (k, row) in l.iter_mut().enumerate() {
             row[k] = z.constant(1.0);

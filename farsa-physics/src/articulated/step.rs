@@ -36,7 +36,7 @@ pub struct Scratch<S: Scalar> {
 impl<S: Scalar> Scratch<S> {
     /// Room for the steps of one model.
     pub fn new(simd: S::Simd, model: &Model<S::Real>) -> Self {
-        let zero = S::splat(simd, S::Real::of(0.0));
+        let zero = S::splat(simd, S::Real::from_f64(0.0));
         Self {
             links: vec![LinkData::new(simd); model.links.len()],
             roots: vec![Root::new(simd); model.roots],
@@ -136,7 +136,7 @@ pub fn step<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s
 /// function of everything.
 #[inline(always)]
 fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s: &mut Scratch<S>) {
-    let zero = S::splat(simd, S::Real::of(0.0));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
     let h = S::splat(simd, model.h);
     let state = parts(model, state);
     // Velocities without contacts: v += h qdd, with qdd from the articulated bodies, whose factor stays in `links` and
@@ -237,7 +237,7 @@ fn efforts<S: Scalar>(
     tau: &mut [S],
     diagonal: &mut [S],
 ) {
-    let zero = S::splat(simd, S::Real::of(0.0));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
     let h = S::splat(simd, model.h);
     for link in &model.links {
         let at = usize::from(link.dof);
@@ -310,7 +310,7 @@ fn respond<S: Scalar>(
     for (i, link) in model.links.iter().enumerate() {
         let at = usize::from(link.dof);
         if link.motion == Motion::Floating {
-            let mut y = [S::splat(simd, S::Real::of(0.0)); 6];
+            let mut y = [S::splat(simd, S::Real::from_f64(0.0)); 6];
             y.copy_from_slice(&response[at..at + 6]);
             let change = roots[usize::from(link.root)].factor.other_half(y);
             for k in 0..3 {

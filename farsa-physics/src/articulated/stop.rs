@@ -29,7 +29,7 @@ pub(crate) struct Stop<S: Scalar> {
 
 impl<S: Scalar> Stop<S> {
     pub(crate) fn new(simd: S::Simd) -> Self {
-        let o = S::splat(simd, S::Real::of(0.0));
+        let o = S::splat(simd, S::Real::from_f64(0.0));
         Self { mask: o.lt(o), link: 0, speed: o, position: o, impulse: o, response: o, gain: o }
     }
 }
@@ -71,8 +71,8 @@ fn watch<S: Scalar>(
     rows: &mut [S],
     stops: &mut [Stop<S>],
 ) -> usize {
-    let one = S::splat(simd, S::Real::of(1.0));
-    let zero = S::splat(simd, S::Real::of(0.0));
+    let one = S::splat(simd, S::Real::from_f64(1.0));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
     let h = S::splat(simd, model.h);
     let minus = -one;
     let mut count = 0;
@@ -149,7 +149,7 @@ pub(crate) fn relax_stop<S: Scalar>(
     let link = &model.links[usize::from(stop.link)];
     let path = &model.stop_paths[usize::from(stop.link)];
     let rows = &rows[path.row..path.row + path.dofs.len()];
-    let zero = S::splat(simd, S::Real::of(0.0));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
     let mut speed = stop.speed;
     for (&d, y) in path.dofs.iter().zip(rows) {
         speed += *y * response[usize::from(d)];

@@ -72,7 +72,7 @@ pub struct LinkData<S> {
 impl<S: Scalar> LinkData<S> {
     /// An empty one.
     pub fn new(simd: S::Simd) -> Self {
-        let o = S::splat(simd, S::Real::of(0.0));
+        let o = S::splat(simd, S::Real::from_f64(0.0));
         let zero = Spatial::zero(simd);
         Self {
             rotation: [[o; 3]; 3],
@@ -107,7 +107,7 @@ pub fn forward_kinematics<S: Scalar>(
     v: &[S],
     work: &mut [LinkData<S>],
 ) {
-    let zero = S::splat(simd, S::Real::of(0.0));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
     // First pass: rotations and origins. A joint's frame turns about or slides along its own z axis.
     for (i, link) in links.iter().enumerate() {
         let at = usize::from(link.q);
@@ -192,7 +192,7 @@ pub fn accelerations<S: Scalar>(
     roots: &mut [Root<S>],
     qdd: &mut [S],
 ) {
-    let one = S::splat(simd, S::Real::of(1.0));
+    let one = S::splat(simd, S::Real::from_f64(1.0));
     rigid_inertias(simd, links, work);
     // Bias forces p_i = v_i x* I_i v_i; gravity comes in with the acceleration of the base, below.
     for w in work.iter_mut() {
@@ -323,8 +323,8 @@ pub fn inverse_dynamics<S: Scalar>(
 /// `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
 pub fn mass_matrix<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut [LinkData<S>], matrix: &mut [S]) {
-    let zero = S::splat(simd, S::Real::of(0.0));
-    let one = S::splat(simd, S::Real::of(1.0));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
+    let one = S::splat(simd, S::Real::from_f64(1.0));
     let dofs: usize = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
     for x in matrix.iter_mut() {
         *x = zero;
@@ -389,8 +389,8 @@ pub fn jacobian<S: Scalar>(
     point: [S; 3],
     matrix: &mut [S],
 ) {
-    let zero = S::splat(simd, S::Real::of(0.0));
-    let one = S::splat(simd, S::Real::of(1.0));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
+    let one = S::splat(simd, S::Real::from_f64(1.0));
     let dofs: usize = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
     for x in matrix.iter_mut() {
         *x = zero;
@@ -430,7 +430,7 @@ pub fn jacobian<S: Scalar>(
 #[inline(always)]
 pub fn kinetic_energy<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], v: &[S], work: &mut [LinkData<S>]) -> S {
     rigid_inertias(simd, links, work);
-    let mut twice = S::splat(simd, S::Real::of(0.0));
+    let mut twice = S::splat(simd, S::Real::from_f64(0.0));
     for (link, w) in links.iter().zip(work.iter()) {
         twice += w.velocity.dot(w.inertia.times(w.velocity));
         if link.motion != Motion::Floating {
@@ -449,7 +449,7 @@ pub fn potential_energy<S: Scalar>(
     gravity: [S::Real; 3],
     work: &[LinkData<S>],
 ) -> S {
-    let mut energy = S::splat(simd, S::Real::of(0.0));
+    let mut energy = S::splat(simd, S::Real::from_f64(0.0));
     for (link, w) in links.iter().zip(work.iter()) {
         energy -= S::splat(simd, link.mass) * dot(splat::<S>(simd, gravity), w.centre);
     }
@@ -459,7 +459,7 @@ pub fn potential_energy<S: Scalar>(
 /// Centre of mass of all links in the world [m]; `work` must have gone through [`forward_kinematics`].
 #[inline(always)]
 pub fn centre_of_mass<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &[LinkData<S>]) -> [S; 3] {
-    let zero = S::splat(simd, S::Real::of(0.0));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
     let (mut sum, mut mass) = ([zero; 3], zero);
     for (link, w) in links.iter().zip(work.iter()) {
         let m = S::splat(simd, link.mass);

@@ -15,7 +15,7 @@ pub(crate) trait View<R: Real> {
     fn word(&self, index: usize) -> R;
     /// Whether any of so many points, whose words begin at `first`, carries a normal impulse.
     fn carries(&self, first: usize, points: usize) -> bool {
-        (0..points).any(|point| self.word(first + 3 + POINT_WORDS * point) > R::of(0.0))
+        (0..points).any(|point| self.word(first + 3 + POINT_WORDS * point) > R::from_f64(0.0))
     }
     /// Changes a word of the state.
     fn set_word(&mut self, index: usize, x: R);
@@ -27,10 +27,10 @@ pub(crate) trait View<R: Real> {
 
 /// The unit quaternion [x, y, z, w] of a rotation, w >= 0 where it is not close to 0.
 pub(crate) fn quaternion<R: Real>(m: &Matrix<R>) -> [R; 4] {
-    let one = R::of(1.0);
-    let half = R::of(0.5);
+    let one = R::from_f64(1.0);
+    let half = R::from_f64(0.5);
     let trace = m[0][0] + m[1][1] + m[2][2];
-    if trace > R::of(0.0) {
+    if trace > R::from_f64(0.0) {
         let s = (trace + one).sqrt();
         let k = half / s;
         return [(m[2][1] - m[1][2]) * k, (m[0][2] - m[2][0]) * k, (m[1][0] - m[0][1]) * k, s * half];
@@ -48,10 +48,10 @@ pub(crate) fn quaternion<R: Real>(m: &Matrix<R>) -> [R; 4] {
 #[inline(always)]
 fn quaternion_about<R: Real, const I: usize>(m: &Matrix<R>) -> [R; 4] {
     let (i, j, k) = (I, (I + 1) % 3, (I + 2) % 3);
-    let half = R::of(0.5);
-    let s = (m[i][i] - m[j][j] - m[k][k] + R::of(1.0)).sqrt();
+    let half = R::from_f64(0.5);
+    let s = (m[i][i] - m[j][j] - m[k][k] + R::from_f64(1.0)).sqrt();
     let t = half / s;
-    let mut q = [R::of(0.0); 4];
+    let mut q = [R::from_f64(0.0); 4];
     q[i] = s * half;
     q[j] = (m[j][i] + m[i][j]) * t;
     q[k] = (m[k][i] + m[i][k]) * t;
@@ -100,8 +100,8 @@ pub(crate) fn joint_speed<R: Real>(world: &impl View<R>, joint: JointId) -> f32 
 pub(crate) fn command<R: Real>(world: &mut impl View<R>, actuator: usize, value: [f32; 2]) {
     if actuator < world.model().actuators.len() {
         let at = world.model().first_command() + 2 * actuator;
-        world.set_word(at, R::of(f64::from(value[0])));
-        world.set_word(at + 1, R::of(f64::from(value[1])));
+        world.set_word(at, R::from_f64(f64::from(value[0])));
+        world.set_word(at + 1, R::from_f64(f64::from(value[1])));
     }
 }
 
@@ -146,8 +146,8 @@ pub(crate) fn pair_contact<R: Real>(world: &impl View<R>, pair: PairId) -> PairC
 pub(crate) fn place_joint<R: Real>(world: &mut impl View<R>, joint: JointId, position: f32, speed: f32) {
     let first_speed = world.model().positions;
     if let Some((q, v)) = world.model().joint_index(joint) {
-        world.set_word(q, R::of(f64::from(position)));
-        world.set_word(first_speed + v, R::of(f64::from(speed)));
+        world.set_word(q, R::from_f64(f64::from(position)));
+        world.set_word(first_speed + v, R::from_f64(f64::from(speed)));
     }
 }
 
@@ -161,7 +161,7 @@ pub(crate) fn place_body<R: Real>(world: &mut impl View<R>, body: BodyId, pose: 
     }
     let (q, v) = (usize::from(link.q), model.positions + usize::from(link.dof));
     let pose: Pose<R> = pose.cast();
-    let [angular, linear] = [twist.angular, twist.linear].map(|a| a.map(|x| R::of(f64::from(x))));
+    let [angular, linear] = [twist.angular, twist.linear].map(|a| a.map(|x| R::from_f64(f64::from(x))));
     let rotation = pose.rotation;
     let length =
         (rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2] + rotation[3] * rotation[3])

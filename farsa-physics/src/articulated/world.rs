@@ -92,7 +92,7 @@ impl<R: Precision> World<R> {
 
     /// Joint efforts that hold the present positions at rest against gravity: recursive Newton-Euler [dofs; N m or N].
     pub fn gravity_efforts(&mut self, tau: &mut [R]) {
-        let zeros = vec![R::of(0.0); self.model.dofs];
+        let zeros = vec![R::from_f64(0.0); self.model.dofs];
         let (model, state) = (&self.model, &self.state);
         let work = &mut self.scratch.links;
         forward_kinematics((), &model.links, &state[..model.positions], &zeros, work);
@@ -127,7 +127,7 @@ impl<R: Precision> View<R> for World<R> {
     }
     fn carries(&self, first: usize, points: usize) -> bool {
         let words = &self.state[first..first + POINT_WORDS * points];
-        words.chunks_exact(POINT_WORDS).any(|words| words[3] > R::of(0.0))
+        words.chunks_exact(POINT_WORDS).any(|words| words[3] > R::from_f64(0.0))
     }
     fn set_word(&mut self, index: usize, x: R) {
         self.state[index] = x;
@@ -214,7 +214,7 @@ impl<R: Precision> Snapshot for World<R> {
     }
     fn restore(&mut self, from: &[f32]) {
         for (x, f) in self.state.iter_mut().zip(from) {
-            *x = R::of(f64::from(*f));
+            *x = R::from_f64(f64::from(*f));
         }
         self.arranged();
     }

@@ -1,7 +1,7 @@
 //! What a recording shows: the bodies, and the names of everything that has a value.
 
 use farsa_body::{BodyId, JointKind, Robot};
-use farsa_nn::{Layout, ParameterKind};
+use farsa_nn::{LeakyLayout, LeakyParameter};
 
 use crate::recording::view::View;
 use crate::shape::prop::Prop;
@@ -147,17 +147,17 @@ impl Stage {
     /// With the neurons and links of a network whose sensors and outputs those of the stage are.
     ///
     /// The recorder must be told the network's parameters, [`Recorder::parameters`](farsa_body::Recorder::parameters).
-    pub fn with_network(self, layout: &Layout) -> Self {
+    pub fn with_network(self, layout: &LeakyLayout) -> Self {
         let (n, h) = (layout.sensors(), layout.hidden());
         let (neurons, outputs) = ([n, n + h], [n + h, n + h + layout.outputs()]);
         let first = |kind| layout.range(kind).start;
         let links = vec![
-            Links { from: [0, n], to: neurons, first: first(ParameterKind::SensorWeight) },
-            Links { from: neurons, to: neurons, first: first(ParameterKind::RecurrentWeight) },
-            Links { from: neurons, to: outputs, first: first(ParameterKind::OutputWeight) },
+            Links { from: [0, n], to: neurons, first: first(LeakyParameter::SensorWeight) },
+            Links { from: neurons, to: neurons, first: first(LeakyParameter::RecurrentWeight) },
+            Links { from: neurons, to: outputs, first: first(LeakyParameter::OutputWeight) },
         ];
         let of_neurons = |name: &str, kind| NodeParameters { name: name.into(), nodes: neurons, first: first(kind) };
-        let node_parameters = vec![of_neurons("bias", ParameterKind::Bias), of_neurons("leak", ParameterKind::Leak)];
+        let node_parameters = vec![of_neurons("bias", LeakyParameter::Bias), of_neurons("leak", LeakyParameter::Leak)];
         let names: Vec<String> = (1..=h).map(|number| number.to_string()).collect();
         let neurons = channels(names, "neuron").into_iter().map(|channel| channel.range(0.0, 1.0)).collect();
         Self { neurons, links, node_parameters, ..self }
@@ -226,7 +226,7 @@ mod tests {
 
     #[test]
     fn links_of_a_network_meet_every_parameter_once() {
-        let layout = Layout::new(5, 3, 2);
+        let layout = LeakyLayout::new(5, 3, 2);
         let stage = Stage::default().with_network(&layout);
         let mut seen = vec![0; layout.parameter_count()];
         for Links { from, to, first } in &stage.links {

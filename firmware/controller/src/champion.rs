@@ -1,9 +1,9 @@
 //! The trained network, in flash.
 
-use farsa_nn::{Aligned, BytesError, FixedNetworkBytes, FixedScale, Layout, Leak, NetworkBytes};
+use farsa_nn::{Aligned, BytesError, Leak, LeakyLayout, LeakyNetworkBytes, QuantizedNetworkBytes, QuantizedScale};
 
 /// 29 sensors, 12 hidden neurons, 23 motors.
-pub const LAYOUT: Layout = Layout::new(29, 12, 23);
+pub const LAYOUT: LeakyLayout = LeakyLayout::new(29, 12, 23);
 
 /// The reading of the leak.
 pub const LEAK: Leak = Leak::Filter;
@@ -15,10 +15,10 @@ pub const CHANNELS: u64 = 0xFD6D_D3B7_8495_FA71;
 pub const INPUT_BITS: u32 = 9;
 
 // A file of another length does not compile.
-static CHAMPION: Aligned<[u8; NetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("../champion.farsa"));
+static CHAMPION: Aligned<[u8; LeakyNetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("../champion.farsa"));
 
 // The build script quantises it.
-static FIXED: Aligned<[u8; FixedNetworkBytes::byte_count(LAYOUT)]> =
+static FIXED: Aligned<[u8; QuantizedNetworkBytes::byte_count(LAYOUT)]> =
     Aligned(*include_bytes!(concat!(env!("OUT_DIR"), "/champion-fixed.farsa")));
 
 /// The champion's parameters where they lie, after all checks.
@@ -26,7 +26,7 @@ static FIXED: Aligned<[u8; FixedNetworkBytes::byte_count(LAYOUT)]> =
 /// # Errors
 /// What is wrong with the bytes; nothing has run then.
 pub fn champion() -> Result<&'static [f32], BytesError> {
-    let bytes = NetworkBytes::read(&CHAMPION.0)?;
+    let bytes = LeakyNetworkBytes::read(&CHAMPION.0)?;
     bytes.expect(LAYOUT, LEAK)?;
     bytes.expect_channels(CHANNELS)?;
     bytes.parameters()
@@ -41,8 +41,8 @@ pub fn fixed_champion() -> &'static [u8] {
 ///
 /// # Errors
 /// What is wrong with the bytes.
-pub(crate) fn read_fixed(bytes: &'static [u8]) -> Result<(FixedScale, &'static [i16]), BytesError> {
-    let bytes = FixedNetworkBytes::read(bytes)?;
+pub(crate) fn read_fixed(bytes: &'static [u8]) -> Result<(QuantizedScale, &'static [i16]), BytesError> {
+    let bytes = QuantizedNetworkBytes::read(bytes)?;
     bytes.expect(LAYOUT, LEAK, INPUT_BITS)?;
     bytes.expect_channels(CHANNELS)?;
     Ok((bytes.scale(), bytes.parameters()?))

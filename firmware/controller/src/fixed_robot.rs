@@ -1,6 +1,6 @@
 //! The loop in integers: no float in it, from the counts of the converters to the widths of the pulses.
 
-use farsa_nn::{BytesError, Controller, FixedNetwork};
+use farsa_nn::{BytesError, Controller, QuantizedNetwork};
 use farsa_num::{Digest, Stream};
 
 use crate::champion::read_fixed;
@@ -27,7 +27,7 @@ const SCALES: [(i16, u32); LAYOUT.sensors()] = {
 /// The controller in integers with its state, as [`Robot`](crate::Robot).
 #[derive(Debug)]
 pub struct FixedRobot {
-    network: FixedNetwork<&'static [i16], [i32; LAYOUT.state_len()]>,
+    network: QuantizedNetwork<&'static [i16], [i32; LAYOUT.state_len()]>,
     x: [i16; LAYOUT.sensors()],
     y: [i16; LAYOUT.outputs()],
 }
@@ -40,7 +40,7 @@ impl FixedRobot {
     pub fn new() -> Result<Self, BytesError> {
         let (scale, parameters) = read_fixed(fixed_champion())?;
         Ok(Self {
-            network: FixedNetwork::new(LAYOUT, LEAK, scale, parameters, [0; LAYOUT.state_len()])?,
+            network: QuantizedNetwork::new(LAYOUT, LEAK, scale, parameters, [0; LAYOUT.state_len()])?,
             x: [0; LAYOUT.sensors()],
             y: [0; LAYOUT.outputs()],
         })
@@ -73,14 +73,14 @@ impl Control for FixedRobot {
             // At most the range's 100 units: 51 200, from -25 600 on.
             *x = from.wrapping_add_unsigned(more as u16);
         }
-        self.network.step_fixed(&self.x, &mut self.y);
+        self.network.step_quantized(&self.x, &mut self.y);
         for (y, width) in self.y.iter().zip(&mut board.widths) {
             *width = ((u32::from(y.unsigned_abs()) * u32::from(Pulse::TOP)) >> 15) as u16;
         }
     }
 
     fn step(&mut self, x: &[i16; LAYOUT.sensors()]) -> &[i16; LAYOUT.outputs()] {
-        self.network.step_fixed(x, &mut self.y);
+        self.network.step_quantized(x, &mut self.y);
         &self.y
     }
 

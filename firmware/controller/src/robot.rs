@@ -1,7 +1,7 @@
 //! The loop: read, think, drive.
 
 use farsa_body::{Motor, Sensor};
-use farsa_nn::{BytesError, Controller, Network};
+use farsa_nn::{BytesError, Controller, LeakyNetwork};
 use farsa_num::{Digest, Stream};
 
 use crate::{Analog, Board, Control, LAYOUT, LEAK, Pulse, champion};
@@ -23,7 +23,7 @@ pub(crate) const RANGES: [[f32; 2]; LAYOUT.sensors()] = {
 #[derive(Debug)]
 pub struct Robot {
     sensors: Analog,
-    network: Network<&'static [f32], [f32; LAYOUT.state_len()]>,
+    network: LeakyNetwork<&'static [f32], [f32; LAYOUT.state_len()]>,
     motors: Pulse,
     x: [f32; LAYOUT.sensors()],
     y: [f32; LAYOUT.outputs()],
@@ -38,7 +38,7 @@ impl Robot {
         let state = [0.0; LAYOUT.state_len()];
         Ok(Self {
             sensors: Analog::new(0, &RANGES),
-            network: Network::new(LAYOUT, LEAK, champion()?, state)?,
+            network: LeakyNetwork::new(LAYOUT, LEAK, champion()?, state)?,
             motors: Pulse::new(0, LAYOUT.outputs()),
             x: [0.0; LAYOUT.sensors()],
             y: [0.0; LAYOUT.outputs()],

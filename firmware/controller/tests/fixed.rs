@@ -1,6 +1,6 @@
 //! What boards must come to in integers, and how far it is from what they come to in floats.
 
-use farsa_nn::{Aligned, BytesError, FixedNetworkBytes, FixedScale};
+use farsa_nn::{Aligned, BytesError, QuantizedNetworkBytes, QuantizedScale};
 use farsa_num::{Digest, Domain, Stream};
 use firmware_controller::{
     Analog, Board, CHANNELS, Control, FixedRobot, INPUT_BITS, LAYOUT, LEAK, Robot, champion, fixed_champion,
@@ -33,7 +33,7 @@ fn motor_values_are_as_far_from_those_in_floats_as_is_written() {
         // Exactly the same inputs: the difference is that of weights, sums and activations.
         let y = robot.step(&x.map(|x| f32::from(x) / 512.0));
         for (y, fixed) in y.iter().zip(integers.step(&x)) {
-            let difference = (f64::from(*y) - f64::from(FixedScale::output(*fixed))).abs();
+            let difference = (f64::from(*y) - f64::from(QuantizedScale::output(*fixed))).abs();
             largest = largest.max(difference);
             squares += difference * difference;
             count += 1;
@@ -80,10 +80,10 @@ fn every_count_is_the_nearest_sensor_value() {
 
 #[test]
 fn the_bytes_are_the_champion_quantised() {
-    let read = FixedNetworkBytes::read(fixed_champion()).expect("a network");
+    let read = QuantizedNetworkBytes::read(fixed_champion()).expect("a network");
     read.expect(LAYOUT, LEAK, INPUT_BITS).expect("the layout");
     let mut quantised = [0; LAYOUT.parameter_count()];
-    let scale = FixedScale::quantize(&LAYOUT, INPUT_BITS, champion().expect("the champion"), &mut quantised);
+    let scale = QuantizedScale::quantize(&LAYOUT, INPUT_BITS, champion().expect("the champion"), &mut quantised);
     assert_eq!((Ok(read.scale()), read.parameters()), (scale, Ok(&quantised[..])));
 }
 
@@ -93,9 +93,9 @@ fn another_network_runs_only_if_its_bytes_are_right() {
     let weights = [0.25; LAYOUT.parameter_count()];
     let mut quantised = [0; LAYOUT.parameter_count()];
     let written = |channels, input_bits, quantised: &mut [i16]| {
-        let mut bytes = Aligned([0; FixedNetworkBytes::byte_count(LAYOUT)]);
-        let scale = FixedScale::quantize(&LAYOUT, input_bits, &weights, quantised).expect("fits");
-        FixedNetworkBytes::write(LAYOUT, LEAK, scale, channels, quantised, &mut bytes.0).expect("valid");
+        let mut bytes = Aligned([0; QuantizedNetworkBytes::byte_count(LAYOUT)]);
+        let scale = QuantizedScale::quantize(&LAYOUT, input_bits, &weights, quantised).expect("fits");
+        QuantizedNetworkBytes::write(LAYOUT, LEAK, scale, channels, quantised, &mut bytes.0).expect("valid");
         bytes
     };
     let mut damaged = written(CHANNELS, INPUT_BITS, &mut quantised);

@@ -3,22 +3,22 @@
 #![no_main]
 
 use cortex_m_rt::entry;
-use farsa_nn::{Aligned, BytesError, Controller, Layout, Leak, Network, NetworkBytes};
+use farsa_nn::{Aligned, BytesError, Controller, Leak, LeakyLayout, LeakyNetwork, LeakyNetworkBytes};
 
-const LAYOUT: Layout = Layout::new({{sensors}}, {{hidden}}, {{motors}});
+const LAYOUT: LeakyLayout = LeakyLayout::new({{sensors}}, {{hidden}}, {{motors}});
 
 // `farsa export controller RUN --format bytes --out champion.farsa`; a file of another length does not compile.
-static CHAMPION: Aligned<[u8; NetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("../champion.farsa"));
+static CHAMPION: Aligned<[u8; LeakyNetworkBytes::byte_count(LAYOUT)]> = Aligned(*include_bytes!("../champion.farsa"));
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
 }
 
-fn champion() -> Result<Network<&'static [f32], [f32; LAYOUT.state_len()]>, BytesError> {
-    let bytes = NetworkBytes::read(&CHAMPION.0)?;
+fn champion() -> Result<LeakyNetwork<&'static [f32], [f32; LAYOUT.state_len()]>, BytesError> {
+    let bytes = LeakyNetworkBytes::read(&CHAMPION.0)?;
     bytes.expect(LAYOUT, Leak::Filter)?;
-    Ok(Network::new(LAYOUT, Leak::Filter, bytes.parameters()?, [0.0; LAYOUT.state_len()])?)
+    Ok(LeakyNetwork::new(LAYOUT, Leak::Filter, bytes.parameters()?, [0.0; LAYOUT.state_len()])?)
 }
 
 #[entry]

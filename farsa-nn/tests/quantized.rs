@@ -1,23 +1,23 @@
 //! The fixed-point network against its equations in wide integers, and against the network of floats.
 
-use farsa_nn::{Controller, Error, FixedNetwork, FixedScale, Layout, Leak, Network, ParameterKind};
+use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, QuantizedNetwork, QuantizedScale};
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
 
-const LABELS: Layout = Layout::new(29, 12, 23);
+const LABELS: LeakyLayout = LeakyLayout::new(29, 12, 23);
 
 /// The equations index by index in 128 bits, the sums in the reverse order.
 struct Oracle<'a> {
-    layout: Layout,
+    layout: LeakyLayout,
     leak: Leak,
-    scale: FixedScale,
+    scale: QuantizedScale,
     fixed: &'a [i16],
     hidden: Vec<i128>,
     previous: Vec<i128>,
 }
 
 impl<'a> Oracle<'a> {
-    fn new(layout: Layout, leak: Leak, scale: FixedScale, fixed: &'a [i16]) -> Self {
+    fn new(layout: LeakyLayout, leak: Leak, scale: QuantizedScale, fixed: &'a [i16]) -> Self {
         let zeros = vec![0; layout.hidden()];
         Self { layout, leak, scale, fixed, hidden: zeros.clone(), previous: zeros }
     }
@@ -73,21 +73,21 @@ impl<'a> Oracle<'a> {
 }
 
 /// Decodes genes [0..1] to weights and biases of this range, and leaks.
-fn decode(layout: Layout, range: f32, genes: &[f32]) -> Vec<f32> {
+fn decode(layout: LeakyLayout, range: f32, genes: &[f32]) -> Vec<f32> {
     let decoded =
-        |(gene, kind): (&f32, _)| if kind == ParameterKind::Leak { *gene } else { range * (2.0 * gene - 1.0) };
+        |(gene, kind): (&f32, _)| if kind == LeakyParameter::Leak { *gene } else { range * (2.0 * gene - 1.0) };
     genes.iter().zip(layout.kinds()).map(decoded).collect()
 }
 
 prop_compose! {
     /// A layout, its parameters, fraction bits of its inputs, and a few steps of any inputs.
     fn any_case()(n in 0..12_usize, h in 0..20_usize, o in 0..20_usize, slope in -2.0_f32..2.0)(
-        genes in prop::collection::vec(0.0_f32..=1.0, Layout::new(n, h, o).parameter_count()),
+        genes in prop::collection::vec(0.0_f32..=1.0, LeakyLayout::new(n, h, o).parameter_count()),
         range in prop::sample::select(vec![1e-6_f32, 0.3, 1.0, 6.0, 100.0]),
         input_bits in 3..=15_u32,
         inputs in prop::collection::vec(prop::collection::vec(any::<i16>(), n), 1..8),
-        layout in Just(Layout::new(n, h, o).with_slope(slope)),
-    ) -> (Layout, Vec<f32>, u32, Vec<Vec<i16>>) {
+        layout in Just(LeakyLayout::new(n, h, o).with_slope(slope)),
+    ) -> (LeakyLayout, Vec<f32>, u32, Vec<Vec<i16>>) {
         (layout, decode(layout, range, &genes), input_bits, inputs)
     }
 }
@@ -97,14 +97,14 @@ proptest! {
     fn equals_the_oracle((layout, parameters, input_bits, inputs) in any_case()) {
         let mut fixed = vec![0; parameters.len()];
         // Where sums of ten bits do not fit there is nothing to compare.
-        let Ok(scale) = FixedScale::quantize(&layout, input_bits, &parameters, &mut fixed) else { return Ok(()) };
+        let Ok(scale) = QuantizedScale::quantize(&layout, input_bits, &parameters, &mut fixed) else { return Ok(()) };
         for leak in Leak::ALL {
-            let mut network = FixedNetwork::new(layout, leak, scale, &fixed, vec![9; layout.state_len()])?;
+            let mut network = QuantizedNetwork::new(layout, leak, scale, &fixed, vec![9; layout.state_len()])?;
             let mut through_floats = network.clone();
             let mut oracle = Oracle::new(layout, leak, scale, &fixed);
             let (mut y, mut z) = (vec![0; layout.outputs()], vec![0.0; layout.outputs()]);
             for x in &inputs {
-                network.step_fixed(x, &mut y);
+                network.step_quantized(x, &mut y);
                 prop_assert_eq!(&y, &oracle.step(x));
                 let hidden: Vec<i128> = network.hidden().iter().map(|h| i128::from(*h)).collect();
                 prop_assert_eq!(&hidden, &oracle.hidden);
@@ -121,46 +121,47 @@ proptest! {
     #[test]
     fn parameters_are_rounded_to_the_finest_units((layout, parameters, input_bits, _) in any_case()) {
         let mut fixed = vec![0; parameters.len()];
-        let Ok(scale) = FixedScale::quantize(&layout, input_bits, &parameters, &mut fixed) else { return Ok(()) };
+        let Ok(scale) = QuantizedScale::quantize(&layout, input_bits, &parameters, &mut fixed) else { return Ok(()) };
         let unit = 1.0 / f64::from(1_u32 << scale.weight_bits());
         let mut largest = 0.0_f64;
         for ((p, q), kind) in parameters.iter().zip(&fixed).zip(layout.kinds()) {
             let (exact, found) = match kind {
-                ParameterKind::Leak => (f64::from(*p) * unit * 16384.0, f64::from(*q) * unit),
+                LeakyParameter::Leak => (f64::from(*p) * unit * 16384.0, f64::from(*q) * unit),
                 _ => (f64::from(*p) * f64::from(layout.slope()), f64::from(*q) * unit),
             };
             prop_assert!((exact - found).abs() <= 0.5000001 * unit, "{} is {}", exact, found);
-            largest = if kind == ParameterKind::Leak { largest } else { largest.max(exact.abs()) };
+            largest = if kind == LeakyParameter::Leak { largest } else { largest.max(exact.abs()) };
         }
         prop_assert!(scale.weight_bits() == 15 || 2.0 * largest / unit > 32767.0);
-        let finer = FixedScale::new(input_bits, scale.weight_bits(), scale.sum_bits() + 1);
-        let fits = |finer| FixedNetwork::new(layout, Leak::Filter, finer, &fixed, vec![0; layout.state_len()]).is_ok();
+        let finer = QuantizedScale::new(input_bits, scale.weight_bits(), scale.sum_bits() + 1);
+        let fits = |finer| QuantizedNetwork::new(layout, Leak::Filter, finer, &fixed, vec![0; layout.state_len()]).is_ok();
         prop_assert!(!finer.is_ok_and(fits));
     }
 
     /// A slow neuron arrives: the largest error of a leak of one unit is that of its rounding, not of its state.
     #[test]
     fn a_slow_neuron_does_not_stop_short(d in 4..200_i16, bias in -9830..9830_i16) {
-        const ONE: Layout = Layout::new(0, 1, 0);
-        let scale = FixedScale::new(9, 14, 20)?;
-        let mut network = FixedNetwork::new(ONE, Leak::Filter, scale, [0, bias, d], [0; 3])?;
-        (0..60_000).for_each(|_| network.step_fixed(&[], &mut []));
+        const ONE: LeakyLayout = LeakyLayout::new(0, 1, 0);
+        let scale = QuantizedScale::new(9, 14, 20)?;
+        let mut network = QuantizedNetwork::new(ONE, Leak::Filter, scale, [0, bias, d], [0; 3])?;
+        (0..60_000).for_each(|_| network.step_quantized(&[], &mut []));
         let exact = farsa_num::logistic(f64::from(bias) / 16384.0);
         prop_assert!((f64::from(network.hidden()[0]) / f64::from(1 << 30) - exact).abs() < 6e-5);
     }
 }
 
 /// Largest and root mean square difference of motor values to the network of floats over so many networks and steps.
-fn deviation(layout: Layout, leak: Leak, range: f32, networks: u32, steps: u32) -> (f64, f64) {
+fn deviation(layout: LeakyLayout, leak: Leak, range: f32, networks: u32, steps: u32) -> (f64, f64) {
     let (mut largest, mut squares, mut count) = (0.0_f64, 0.0_f64, 0_u32);
     for individual in 0..networks {
         let mut draw = Stream::new(16, Domain::InitialGenome, 0, individual, 0);
         let genes: Vec<f32> = (0..layout.parameter_count()).map(|_| draw.uniform()).collect();
         let parameters = decode(layout, range, &genes);
         let mut fixed = vec![0; parameters.len()];
-        let scale = FixedScale::quantize(&layout, 9, &parameters, &mut fixed).expect("fits");
-        let mut network = Network::new(layout, leak, &parameters, vec![0.0; layout.state_len()]).expect("valid");
-        let mut integers = FixedNetwork::new(layout, leak, scale, fixed, vec![0; layout.state_len()]).expect("valid");
+        let scale = QuantizedScale::quantize(&layout, 9, &parameters, &mut fixed).expect("fits");
+        let mut network = LeakyNetwork::new(layout, leak, &parameters, vec![0.0; layout.state_len()]).expect("valid");
+        let mut integers =
+            QuantizedNetwork::new(layout, leak, scale, fixed, vec![0; layout.state_len()]).expect("valid");
         let (mut x, mut y, mut z) =
             (vec![0.5; layout.sensors()], vec![0.0; layout.outputs()], vec![0.0; layout.outputs()]);
         let mut inputs = Stream::new(16, Domain::Sensor, 0, individual, 0);
@@ -208,9 +209,9 @@ fn motor_values_are_close_to_those_of_floats() {
 
 #[test]
 fn construction_names_the_mistake() {
-    const TINY: Layout = Layout::new(1, 1, 1);
-    let scale = FixedScale::new(9, 14, 20).expect("valid");
-    let build = |fixed: &[i16], state: &mut [i32]| FixedNetwork::new(TINY, Leak::Filter, scale, fixed, state).err();
+    const TINY: LeakyLayout = LeakyLayout::new(1, 1, 1);
+    let scale = QuantizedScale::new(9, 14, 20).expect("valid");
+    let build = |fixed: &[i16], state: &mut [i32]| QuantizedNetwork::new(TINY, Leak::Filter, scale, fixed, state).err();
     let mut state = [0; 3];
     assert_eq!(build(&[0; 5], &mut state), None);
     assert_eq!(build(&[0; 4], &mut state), Some(Error::ParameterCount { expected: 5, found: 4 }));
@@ -218,16 +219,16 @@ fn construction_names_the_mistake() {
     assert_eq!(build(&[0, 0, 0, 0, 16385], &mut state), Some(Error::LeakRange { index: 4, value: 16385.0 / 16384.0 }));
     assert!(matches!(build(&[0, 0, 0, 0, -1], &mut state), Some(Error::LeakRange { index: 4, .. })));
 
-    let bits = |of, found, least, most| Err(Error::FixedBits { of, found, least, most });
-    assert_eq!(FixedScale::new(16, 14, 20), bits("inputs", 16, 0, 15));
-    assert_eq!(FixedScale::new(9, 16, 20), bits("weights", 16, 0, 15));
-    assert_eq!(FixedScale::new(9, 14, 21), bits("sums", 21, 10, 20));
-    assert_eq!(FixedScale::new(9, 2, 12), bits("sums", 12, 10, 11));
-    assert_eq!(FixedScale::new(9, 14, 9), bits("sums", 9, 10, 20));
-    assert_eq!(FixedScale::new(0, 5, 10), bits("sums", 10, 10, 5));
+    let bits = |of, found, least, most| Err(Error::FractionBits { of, found, least, most });
+    assert_eq!(QuantizedScale::new(16, 14, 20), bits("inputs", 16, 0, 15));
+    assert_eq!(QuantizedScale::new(9, 16, 20), bits("weights", 16, 0, 15));
+    assert_eq!(QuantizedScale::new(9, 14, 21), bits("sums", 21, 10, 20));
+    assert_eq!(QuantizedScale::new(9, 2, 12), bits("sums", 12, 10, 11));
+    assert_eq!(QuantizedScale::new(9, 14, 9), bits("sums", 9, 10, 20));
+    assert_eq!(QuantizedScale::new(0, 5, 10), bits("sums", 10, 10, 5));
 
     let mut fixed = [0; 5];
-    let mut quantize = |layout: &Layout, bits, p: [f32; 5]| FixedScale::quantize(layout, bits, &p, &mut fixed);
+    let mut quantize = |layout: &LeakyLayout, bits, p: [f32; 5]| QuantizedScale::quantize(layout, bits, &p, &mut fixed);
     assert_eq!(quantize(&TINY, 16, [0.0; 5]), bits("inputs", 16, 0, 15));
     assert_eq!(
         quantize(&TINY.with_slope(f32::NAN), 9, [0.0; 5]).map_err(|e| e.to_string()),
@@ -237,13 +238,13 @@ fn construction_names_the_mistake() {
     assert_eq!(quantize(&TINY, 9, [0.0, 0.0, 0.0, 0.0, 2.0]), Err(Error::LeakRange { index: 4, value: 2.0 }));
     let huge = quantize(&TINY.with_slope(1.0), 9, [0.0, 0.0, 40_000.0, 0.0, 0.0]);
     assert_eq!(huge, Err(Error::WeightRange { index: 2, value: 40_000.0 }));
-    let wide = FixedScale::quantize(&TINY, 9, &[0.0; 5], &mut [0; 4]);
+    let wide = QuantizedScale::quantize(&TINY, 9, &[0.0; 5], &mut [0; 4]);
     assert_eq!(wide, Err(Error::ParameterCount { expected: 5, found: 4 }));
     // A hundred weights of 1.2 and sensors to 32768: 2^15 * 1.2 * 100 = 3.9e6, times 2^10 over 2^31.
-    let many = Layout::new(100, 1, 0);
+    let many = LeakyLayout::new(100, 1, 0);
     let mut fixed = vec![0; many.parameter_count()];
-    let parameters: Vec<f32> = many.kinds().map(|kind| if kind == ParameterKind::Leak { 1.0 } else { 6.0 }).collect();
-    let error = FixedScale::quantize(&many, 0, &parameters, &mut fixed);
+    let parameters: Vec<f32> = many.kinds().map(|kind| if kind == LeakyParameter::Leak { 1.0 } else { 6.0 }).collect();
+    let error = QuantizedScale::quantize(&many, 0, &parameters, &mut fixed);
     assert!(
         matches!(
             error,
@@ -257,17 +258,18 @@ fn construction_names_the_mistake() {
 #[test]
 fn the_extremes_stay_within() -> Result<(), Error> {
     for (n, h) in [(29, 12), (60, 4), (3, 40)] {
-        let layout = Layout::new(n, h, 3).with_slope(1.0);
+        let layout = LeakyLayout::new(n, h, 3).with_slope(1.0);
         for sign in [-1.0, 1.0] {
             let parameters: Vec<f32> =
-                layout.kinds().map(|kind| if kind == ParameterKind::Leak { 1.0 } else { sign }).collect();
+                layout.kinds().map(|kind| if kind == LeakyParameter::Leak { 1.0 } else { sign }).collect();
             let mut fixed = vec![0; parameters.len()];
             for input_bits in 0..=15 {
-                let scale = FixedScale::quantize(&layout, input_bits, &parameters, &mut fixed)?;
-                let mut network = FixedNetwork::new(layout, Leak::Filter, scale, &fixed, vec![0; layout.state_len()])?;
+                let scale = QuantizedScale::quantize(&layout, input_bits, &parameters, &mut fixed)?;
+                let mut network =
+                    QuantizedNetwork::new(layout, Leak::Filter, scale, &fixed, vec![0; layout.state_len()])?;
                 let mut y = [0; 3];
                 for x in [i16::MAX, i16::MIN, i16::MAX] {
-                    network.step_fixed(&vec![x; n], &mut y);
+                    network.step_quantized(&vec![x; n], &mut y);
                     assert!(y.iter().all(|y| (0..=32767).contains(y)));
                 }
             }
@@ -278,11 +280,11 @@ fn the_extremes_stay_within() -> Result<(), Error> {
 
 #[test]
 fn floats_enter_to_the_nearest() -> Result<(), Error> {
-    let scale = FixedScale::new(9, 14, 20)?;
+    let scale = QuantizedScale::new(9, 14, 20)?;
     let cases = [(0.0, 0), (1.0, 512), (-1.0, -512), (0.0029, 1), (64.0, 32767), (-1e9, -32768), (f32::NAN, 0)];
     for (x, fixed) in cases {
         assert_eq!(scale.input(x), fixed, "{x}");
     }
-    assert_eq!(FixedScale::output(16384), 0.5);
+    assert_eq!(QuantizedScale::output(16384), 0.5);
     Ok(())
 }

@@ -5,45 +5,45 @@ use crate::bytes::frame::{
     Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, values, word,
 };
 use crate::error::Error;
-use crate::layout::Layout;
 use crate::leak::Leak;
-use crate::network::{check, check_values};
+use crate::leaky_layout::LeakyLayout;
+use crate::leaky_network::{check, check_values};
 
-/// A [`Network`](crate::Network) of somebody's bytes: checked, and used where it lies.
+/// A [`LeakyNetwork`](crate::LeakyNetwork) of somebody's bytes: checked, and used where it lies.
 ///
 /// The format is written out in `docs/controller-format.md`: a head with a version, the layout and hashes, the parameters in
-/// the order of the [`Layout`], a CRC-32. All of it is little-endian.
+/// the order of the [`LeakyLayout`], a CRC-32. All of it is little-endian.
 ///
 /// ```
-/// use farsa_nn::{Aligned, Controller, Layout, Leak, Network, NetworkBytes};
+/// use farsa_nn::{Aligned, Controller, Leak, LeakyLayout, LeakyNetwork, LeakyNetworkBytes};
 ///
-/// const LAYOUT: Layout = Layout::new(2, 1, 1);
+/// const LAYOUT: LeakyLayout = LeakyLayout::new(2, 1, 1);
 /// # fn main() -> Result<(), farsa_nn::BytesError> {
 /// // A computer writes,
-/// let mut flash = Aligned([0; NetworkBytes::byte_count(LAYOUT)]);
-/// NetworkBytes::write(LAYOUT, Leak::Filter, 0, &[1.0, -1.0, 0.5, 3.0, 0.0, 0.5], &mut flash.0)?;
+/// let mut flash = Aligned([0; LeakyNetworkBytes::byte_count(LAYOUT)]);
+/// LeakyNetworkBytes::write(LAYOUT, Leak::Filter, 0, &[1.0, -1.0, 0.5, 3.0, 0.0, 0.5], &mut flash.0)?;
 /// // a board reads: nothing is copied.
-/// let bytes = NetworkBytes::read(&flash.0)?;
+/// let bytes = LeakyNetworkBytes::read(&flash.0)?;
 /// bytes.expect(LAYOUT, Leak::Filter)?;
-/// let mut network = Network::new(LAYOUT, Leak::Filter, bytes.parameters()?, [0.0; LAYOUT.state_len()])?;
+/// let mut network = LeakyNetwork::new(LAYOUT, Leak::Filter, bytes.parameters()?, [0.0; LAYOUT.state_len()])?;
 /// let mut y = [0.0];
 /// network.step(&[0.5, 0.2], &mut y);
 /// // Others may come later, as those of another individual.
-/// network.set_parameters(NetworkBytes::read(&flash.0)?.parameters()?)?;
+/// network.set_parameters(LeakyNetworkBytes::read(&flash.0)?.parameters()?)?;
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct NetworkBytes<'a> {
-    layout: Layout,
+pub struct LeakyNetworkBytes<'a> {
+    layout: LeakyLayout,
     leak: Leak,
     channels: u64,
     parameters: &'a [u8],
 }
 
-impl NetworkBytes<'_> {
+impl LeakyNetworkBytes<'_> {
     /// Number of bytes of a network of this layout; saturates.
-    pub const fn byte_count(layout: Layout) -> usize {
+    pub const fn byte_count(layout: LeakyLayout) -> usize {
         frame_len(layout.parameter_count().saturating_mul(4))
     }
 
@@ -52,9 +52,10 @@ impl NetworkBytes<'_> {
     /// `channels` says what inputs and outputs are, by [`channel_hash`]; 0 says nothing.
     ///
     /// # Errors
-    /// [`BytesError::Parameters`] as [`Network::new`](crate::Network::new), [`BytesError::Buffer`]; then nothing is written.
+    /// [`BytesError::Parameters`] as [`LeakyNetwork::new`](crate::LeakyNetwork::new), [`BytesError::Buffer`]; then
+    /// nothing is written.
     pub fn write(
-        layout: Layout,
+        layout: LeakyLayout,
         leak: Leak,
         channels: u64,
         parameters: &[f32],
@@ -65,16 +66,16 @@ impl NetworkBytes<'_> {
         }
         check(&layout, parameters)?;
         let words = parameters.iter().map(|p| p.to_le_bytes());
-        Frame::write(Kind::Network, &shape_of(layout, leak), channels, words, out)
+        Frame::write(Kind::LeakyNetwork, &shape_of(layout, leak), channels, words, out)
     }
 
     /// The layout hash: of the layout, its slope and the reading of the leak.
-    pub fn layout_hash(layout: Layout, leak: Leak) -> u64 {
-        layout_hash(Kind::Network, &shape_of(layout, leak))
+    pub fn layout_hash(layout: LeakyLayout, leak: Leak) -> u64 {
+        layout_hash(Kind::LeakyNetwork, &shape_of(layout, leak))
     }
 }
 
-impl<'a> NetworkBytes<'a> {
+impl<'a> LeakyNetworkBytes<'a> {
     /// Checks bytes that should be a network, all of them: the format, the checksum, the layout and every parameter.
     ///
     /// # Errors
@@ -82,7 +83,7 @@ impl<'a> NetworkBytes<'a> {
     /// [`BytesError::Checksum`], [`BytesError::Kind`], [`BytesError::LayoutHash`], [`BytesError::Shape`],
     /// [`BytesError::Parameters`].
     pub fn read(bytes: &'a [u8]) -> Result<Self, BytesError> {
-        let Frame { shape, channels, parameters, .. } = Frame::open(Kind::Network, bytes)?;
+        let Frame { shape, channels, parameters, .. } = Frame::open(Kind::LeakyNetwork, bytes)?;
         let [sensors, hidden, outputs, slope, leak, unused @ ..] = shape;
         let Some(&reading) = Leak::ALL.get(leak as usize) else {
             return Err(BytesError::Shape { word: 4, found: leak });
@@ -94,7 +95,7 @@ impl<'a> NetworkBytes<'a> {
         if !slope.is_finite() {
             return Err(BytesError::Shape { word: 3, found: bits });
         }
-        let layout = Layout::new(sensors as usize, hidden as usize, outputs as usize).with_slope(slope);
+        let layout = LeakyLayout::new(sensors as usize, hidden as usize, outputs as usize).with_slope(slope);
         let found = bytes.len();
         if found != Self::byte_count(layout) {
             return Err(BytesError::Length { expected: Self::byte_count(layout), found });
@@ -107,8 +108,11 @@ impl<'a> NetworkBytes<'a> {
     ///
     /// # Errors
     /// [`BytesError::OtherLayout`].
-    pub fn expect(&self, layout: Layout, leak: Leak) -> Result<(), BytesError> {
-        same_layout(NetworkBytes::layout_hash(layout, leak), NetworkBytes::layout_hash(self.layout, self.leak))
+    pub fn expect(&self, layout: LeakyLayout, leak: Leak) -> Result<(), BytesError> {
+        same_layout(
+            LeakyNetworkBytes::layout_hash(layout, leak),
+            LeakyNetworkBytes::layout_hash(self.layout, self.leak),
+        )
     }
 
     /// Nothing, if the network is for these channels, by their [`channel_hash`].
@@ -120,7 +124,7 @@ impl<'a> NetworkBytes<'a> {
     }
 
     /// The layout.
-    pub const fn layout(&self) -> Layout {
+    pub const fn layout(&self) -> LeakyLayout {
         self.layout
     }
 
@@ -134,7 +138,7 @@ impl<'a> NetworkBytes<'a> {
         self.channels
     }
 
-    /// The parameters [[`parameter_count`](Layout::parameter_count)] where they lie.
+    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)] where they lie.
     ///
     /// # Errors
     /// [`BytesError::Misaligned`] and [`BytesError::BigEndian`]; [`copy_parameters`](Self::copy_parameters) then does.
@@ -142,7 +146,7 @@ impl<'a> NetworkBytes<'a> {
         placed(self.parameters)
     }
 
-    /// Copies the parameters into `out` [[`parameter_count`](Layout::parameter_count)].
+    /// Copies the parameters into `out` [[`parameter_count`](LeakyLayout::parameter_count)].
     ///
     /// # Errors
     /// [`BytesError::Buffer`]; then nothing is copied.
@@ -151,7 +155,7 @@ impl<'a> NetworkBytes<'a> {
     }
 }
 
-fn shape_of(layout: Layout, leak: Leak) -> [u32; SHAPE] {
+fn shape_of(layout: LeakyLayout, leak: Leak) -> [u32; SHAPE] {
     let [sensors, hidden, outputs] = [layout.sensors(), layout.hidden(), layout.outputs()].map(word);
     [sensors, hidden, outputs, layout.slope().to_bits(), leak as u32, 0, 0, 0]
 }

@@ -1,25 +1,26 @@
 //! Leaky networks.
 
 use farsa_nn::{
-    Aligned, BytesError, Controller, Error, Layout, Leak, Network, NetworkBytes, ParameterKind, channel_hash,
+    Aligned, BytesError, Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyNetworkBytes, LeakyParameter,
+    channel_hash,
 };
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
 
 use crate::{HEAD, after_a_head, all_damage_is_refused, at_every_place, placed_or, placement, with_hash};
 
-const LAYOUT: Layout = Layout::new(29, 12, 23);
-const LEN: usize = NetworkBytes::byte_count(LAYOUT);
+const LAYOUT: LeakyLayout = LeakyLayout::new(29, 12, 23);
+const LEN: usize = LeakyNetworkBytes::byte_count(LAYOUT);
 
-fn parameters(layout: Layout, seed: u64) -> Vec<f32> {
+fn parameters(layout: LeakyLayout, seed: u64) -> Vec<f32> {
     let mut stream = Stream::new(seed, Domain::InitialGenome, 0, 0, 0);
-    let value = |kind| if kind == ParameterKind::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) };
+    let value = |kind| if kind == LeakyParameter::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) };
     layout.kinds().map(value).collect()
 }
 
 pub(crate) fn champion() -> Aligned<[u8; LEN]> {
     let mut bytes = Aligned([0; LEN]);
-    NetworkBytes::write(LAYOUT, Leak::Evonet, 7, &parameters(LAYOUT, 1), &mut bytes.0).expect("valid");
+    LeakyNetworkBytes::write(LAYOUT, Leak::Evonet, 7, &parameters(LAYOUT, 1), &mut bytes.0).expect("valid");
     bytes
 }
 
@@ -28,7 +29,7 @@ fn with(place: usize, new: &[u8]) -> Vec<u8> {
 }
 
 fn refused(bytes: &[u8]) -> BytesError {
-    NetworkBytes::read(bytes).expect_err("not a network")
+    LeakyNetworkBytes::read(bytes).expect_err("not a network")
 }
 
 #[test]
@@ -38,7 +39,7 @@ fn the_format_is_that_of_the_document() {
     assert_eq!((LEN, &bytes[..8]), (HEAD + 4 * 792 + 4, &b"FARSA-NN"[..]));
     assert_eq!([8, 12, 16, 20].map(word), [1, 1, 3244, 3168]);
     assert_eq!(core::array::from_fn::<_, 8, _>(|i| word(24 + 4 * i)), [29, 12, 23, 0.2_f32.to_bits(), 2, 0, 0, 0]);
-    assert_eq!(bytes[56..64], NetworkBytes::layout_hash(LAYOUT, Leak::Evonet).to_le_bytes());
+    assert_eq!(bytes[56..64], LeakyNetworkBytes::layout_hash(LAYOUT, Leak::Evonet).to_le_bytes());
     assert_eq!(bytes[64..72], 7_u64.to_le_bytes());
     assert_eq!(bytes[72..76], parameters(LAYOUT, 1)[0].to_le_bytes());
     assert_eq!(word(LEN - 4), crc32(&bytes[..LEN - 4]));
@@ -47,7 +48,7 @@ fn the_format_is_that_of_the_document() {
 #[test]
 fn a_network_over_bytes_is_the_network() {
     let bytes = champion();
-    let read = NetworkBytes::read(&bytes.0).expect("a network");
+    let read = LeakyNetworkBytes::read(&bytes.0).expect("a network");
     assert_eq!((read.layout(), read.leak(), read.channels()), (LAYOUT, Leak::Evonet, 7));
     read.expect(LAYOUT, Leak::Evonet).expect("the layout");
     let mut copy = [0.0; LAYOUT.parameter_count()];
@@ -56,8 +57,8 @@ fn a_network_over_bytes_is_the_network() {
     assert_eq!(placed, parameters(LAYOUT, 1));
 
     let state = || [0.0; LAYOUT.state_len()];
-    let mut own = Network::new(LAYOUT, Leak::Evonet, parameters(LAYOUT, 1), state()).expect("valid");
-    let mut over = Network::new(read.layout(), read.leak(), placed, state()).expect("valid");
+    let mut own = LeakyNetwork::new(LAYOUT, Leak::Evonet, parameters(LAYOUT, 1), state()).expect("valid");
+    let mut over = LeakyNetwork::new(read.layout(), read.leak(), placed, state()).expect("valid");
     let mut inputs = Stream::new(1, Domain::Network, 0, 0, 0);
     let (mut x, mut y, mut z) = ([0.0; 29], [0.0; 23], [0.0; 23]);
     for _ in 0..100 {
@@ -95,12 +96,12 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
 #[test]
 fn another_controller_is_told_apart() {
     let bytes = champion();
-    let read = NetworkBytes::read(&bytes.0).expect("a network");
+    let read = LeakyNetworkBytes::read(&bytes.0).expect("a network");
     for (layout, leak) in [
         (LAYOUT, Leak::Filter),
         (LAYOUT.with_slope(0.3), Leak::Evonet),
-        (Layout::new(26, 12, 23), Leak::Evonet),
-        (Layout::new(29, 12, 22), Leak::Evonet),
+        (LeakyLayout::new(26, 12, 23), Leak::Evonet),
+        (LeakyLayout::new(29, 12, 22), Leak::Evonet),
     ] {
         assert!(matches!(read.expect(layout, leak), Err(BytesError::OtherLayout { .. })), "{layout:?}");
     }
@@ -118,7 +119,7 @@ fn another_controller_is_told_apart() {
 #[test]
 fn where_bytes_lie_is_checked_and_parameters_are_copied_from_anywhere() {
     at_every_place::<{ LEN + 8 }>(&champion().0, |offset, bytes| {
-        let read = NetworkBytes::read(bytes).expect("a network");
+        let read = LeakyNetworkBytes::read(bytes).expect("a network");
         let placed = read.parameters().map(|placed| assert_eq!(placed, parameters(LAYOUT, 1)));
         assert_eq!(placed, placement(offset, 4));
         let mut copy = [0.0; LAYOUT.parameter_count()];
@@ -133,14 +134,14 @@ fn nothing_is_written_that_would_not_be_read() {
     let mut out = [3; LEN];
     let mut wrong = parameters(LAYOUT, 1);
     assert_eq!(
-        NetworkBytes::write(LAYOUT, Leak::Filter, 0, &wrong, &mut out[1..]),
+        LeakyNetworkBytes::write(LAYOUT, Leak::Filter, 0, &wrong, &mut out[1..]),
         Err(BytesError::Buffer { expected: LEN, found: LEN - 1 })
     );
     wrong[2] = f32::NAN;
-    let error = NetworkBytes::write(LAYOUT, Leak::Filter, 0, &wrong, &mut out);
+    let error = LeakyNetworkBytes::write(LAYOUT, Leak::Filter, 0, &wrong, &mut out);
     assert_eq!(error, Err(BytesError::Parameters(Error::NotFinite { index: 2 })));
     let nan = LAYOUT.with_slope(f32::NAN);
-    let error = NetworkBytes::write(nan, Leak::Filter, 0, &parameters(LAYOUT, 1), &mut out);
+    let error = LeakyNetworkBytes::write(nan, Leak::Filter, 0, &parameters(LAYOUT, 1), &mut out);
     assert!(matches!(error, Err(BytesError::Parameters(Error::Slope { .. }))));
     assert_eq!(out, [3; LEN]);
 }
@@ -149,11 +150,11 @@ proptest! {
     #[test]
     fn what_is_written_is_read(sensors in 0_usize..9, hidden in 0_usize..9, outputs in 0_usize..9, slope in -9.0_f32..9.0,
                                leak in 0_usize..3, channels: u64, seed: u64) {
-        let layout = Layout::new(sensors, hidden, outputs).with_slope(slope);
+        let layout = LeakyLayout::new(sensors, hidden, outputs).with_slope(slope);
         let (leak, parameters) = (Leak::ALL[leak], parameters(layout, seed));
-        let mut bytes = vec![0; NetworkBytes::byte_count(layout)];
-        NetworkBytes::write(layout, leak, channels, &parameters, &mut bytes).expect("valid");
-        let read = NetworkBytes::read(&bytes).expect("a network");
+        let mut bytes = vec![0; LeakyNetworkBytes::byte_count(layout)];
+        LeakyNetworkBytes::write(layout, leak, channels, &parameters, &mut bytes).expect("valid");
+        let read = LeakyNetworkBytes::read(&bytes).expect("a network");
         let mut copy = vec![0.0; layout.parameter_count()];
         read.copy_parameters(&mut copy).expect("the length");
         prop_assert_eq!((read.layout(), read.leak(), read.channels(), copy), (layout, leak, channels, parameters));
@@ -161,7 +162,7 @@ proptest! {
 
     #[test]
     fn no_bytes_whatever_are_a_panic(bytes: Vec<u8>, seal: bool) {
-        let _ = NetworkBytes::read(&bytes);
-        prop_assert!(NetworkBytes::read(&after_a_head(&champion().0, &bytes, seal)).is_err());
+        let _ = LeakyNetworkBytes::read(&bytes);
+        prop_assert!(LeakyNetworkBytes::read(&after_a_head(&champion().0, &bytes, seal)).is_err());
     }
 }

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
-use crate::config::{PARENT_AND_MUTANT, SteadyStateConfig};
+use crate::config::{OnePlusOneConfig, PARENT_AND_MUTANT};
 use crate::error::EvoError;
 use crate::mutation::randomize_bits;
 use crate::population::Population;
@@ -19,8 +19,8 @@ use crate::population::Population;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawHistory"))]
-pub struct SteadyHistory {
-    config: SteadyStateConfig,
+pub struct OnePlusOneHistory {
+    config: OnePlusOneConfig,
     seed: u64,
     /// Generations recorded.
     generations: u32,
@@ -28,15 +28,15 @@ pub struct SteadyHistory {
     accepted: Vec<u8>,
 }
 
-impl SteadyHistory {
+impl OnePlusOneHistory {
     /// Number of individuals of a generation: a parent and its mutant.
     pub const INDIVIDUALS: usize = PARENT_AND_MUTANT;
 
     /// The history of a search that has only its initial generation.
     ///
     /// # Errors
-    /// Those of [`SteadyStateConfig::validate`].
-    pub fn new(config: SteadyStateConfig, seed: u64) -> Result<Self, EvoError> {
+    /// Those of [`OnePlusOneConfig::validate`].
+    pub fn new(config: OnePlusOneConfig, seed: u64) -> Result<Self, EvoError> {
         config.validate()?;
         Ok(Self { config, seed, generations: 0, accepted: Vec::new() })
     }
@@ -58,7 +58,7 @@ impl SteadyHistory {
     }
 
     /// The configuration of the search.
-    pub fn config(&self) -> &SteadyStateConfig {
+    pub fn config(&self) -> &OnePlusOneConfig {
         &self.config
     }
 
@@ -138,16 +138,16 @@ impl SteadyHistory {
 /// A history as it is read, before anything in it is believed.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
-#[serde(rename = "SteadyHistory")]
+#[serde(rename = "OnePlusOneHistory")]
 struct RawHistory {
-    config: SteadyStateConfig,
+    config: OnePlusOneConfig,
     seed: u64,
     generations: u32,
     accepted: Vec<u8>,
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<RawHistory> for SteadyHistory {
+impl TryFrom<RawHistory> for OnePlusOneHistory {
     type Error = EvoError;
 
     fn try_from(raw: RawHistory) -> Result<Self, EvoError> {
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn only_accepted_mutants_have_descendants() {
-        let mut history = SteadyHistory::new(SteadyStateConfig::new(14), 3).unwrap();
+        let mut history = OnePlusOneHistory::new(OnePlusOneConfig::new(14), 3).unwrap();
         let mut parent = history.genome_of(0, 0).unwrap();
         // A chain by hand: whoever survives is the next parent.
         for generation in 0..40 {

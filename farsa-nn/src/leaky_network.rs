@@ -6,8 +6,8 @@ use farsa_num::fearless_simd::Level;
 use crate::controller::Controller;
 use crate::error::Error;
 use crate::kernel::{Layer, head, level};
-use crate::layout::{Layout, ParameterKind};
 use crate::leak::Leak;
+use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 use crate::lesion::{Lesion, Neurons, hold};
 
 /// A network of one recurrent hidden layer with leaks, over parameters and state that are the caller's.
@@ -31,12 +31,12 @@ use crate::lesion::{Lesion, Neurons, hold};
 /// reads `H(t-1)`; the initial state, which the source does not give, is zero.
 ///
 /// ```
-/// use farsa_nn::{Controller, Layout, Leak, Network};
+/// use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 ///
-/// const LAYOUT: Layout = Layout::new(1, 1, 1);
+/// const LAYOUT: LeakyLayout = LeakyLayout::new(1, 1, 1);
 /// static PARAMETERS: [f32; LAYOUT.parameter_count()] = [6.0, 0.0, -6.0, 0.0, 0.5];
 /// # fn main() -> Result<(), farsa_nn::Error> {
-/// let mut network = Network::new(LAYOUT, Leak::Filter, &PARAMETERS, [0.0; LAYOUT.state_len()])?;
+/// let mut network = LeakyNetwork::new(LAYOUT, Leak::Filter, &PARAMETERS, [0.0; LAYOUT.state_len()])?;
 /// let mut y = [0.0];
 /// network.step(&[0.0], &mut y);
 /// assert_eq!(network.hidden(), [0.25]);
@@ -46,22 +46,22 @@ use crate::lesion::{Lesion, Neurons, hold};
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Network<P, S> {
-    layout: Layout,
+pub struct LeakyNetwork<P, S> {
+    layout: LeakyLayout,
     leak: Leak,
     parameters: P,
     state: S,
     level: Level,
 }
 
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
-    /// A network at rest: checks the parameters [[`parameter_count`](Layout::parameter_count)] and zeroes the state
-    /// [[`state_len`](Layout::state_len)].
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> LeakyNetwork<P, S> {
+    /// A network at rest: checks the parameters [[`parameter_count`](LeakyLayout::parameter_count)] and zeroes the
+    /// state [[`state_len`](LeakyLayout::state_len)].
     ///
     /// # Errors
     /// [`Error::Slope`], [`Error::ParameterCount`], [`Error::NotFinite`], [`Error::LeakRange`] or [`Error::StateLen`]:
     /// the first that applies, and of the parameters the first that is wrong.
-    pub fn new(layout: Layout, leak: Leak, parameters: P, mut state: S) -> Result<Self, Error> {
+    pub fn new(layout: LeakyLayout, leak: Leak, parameters: P, mut state: S) -> Result<Self, Error> {
         if !layout.slope().is_finite() {
             return Err(Error::Slope { value: layout.slope() });
         }
@@ -74,8 +74,8 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
         Ok(Self { layout, leak, parameters, state, level: level() })
     }
 
-    /// Points the network at other parameters [[`parameter_count`](Layout::parameter_count)] and returns the old ones;
-    /// the state stays as it is.
+    /// Points the network at other parameters [[`parameter_count`](LeakyLayout::parameter_count)] and returns the old
+    /// ones; the state stays as it is.
     ///
     /// # Errors
     /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]; then the network is unchanged.
@@ -84,8 +84,8 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
         Ok(core::mem::replace(&mut self.parameters, parameters))
     }
 
-    /// Copies other parameters [[`parameter_count`](Layout::parameter_count)] over the network's own; the state stays
-    /// as it is.
+    /// Copies other parameters [[`parameter_count`](LeakyLayout::parameter_count)] over the network's own; the state
+    /// stays as it is.
     ///
     /// # Errors
     /// [`Error::ParameterCount`], [`Error::NotFinite`] or [`Error::LeakRange`]; then the network is unchanged.
@@ -100,13 +100,13 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Network<P, S> {
         Ok(())
     }
 
-    /// The parameters [[`parameter_count`](Layout::parameter_count)].
+    /// The parameters [[`parameter_count`](LeakyLayout::parameter_count)].
     pub fn parameters(&self) -> &[f32] {
         self.parameters.as_ref()
     }
 }
 
-impl<P, S> Network<P, S> {
+impl<P, S> LeakyNetwork<P, S> {
     /// The same network over these instructions, with the same bits.
     ///
     /// By default those of [`Instructions::detect`]; of what the processor lacks, the best that it has.
@@ -115,7 +115,7 @@ impl<P, S> Network<P, S> {
     }
 
     /// The layout.
-    pub const fn layout(&self) -> Layout {
+    pub const fn layout(&self) -> LeakyLayout {
         self.layout
     }
 
@@ -139,7 +139,7 @@ impl<P, S> Network<P, S> {
     }
 }
 
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for LeakyNetwork<P, S> {
     fn inputs(&self) -> usize {
         self.layout.sensors()
     }
@@ -159,7 +159,7 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Network<P, S> {
 
 /// The hidden neurons come first, the outputs after them. A hidden neuron that is held is so before and after the step: what
 /// it sends back to the others is held, too.
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for Network<P, S> {
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for LeakyNetwork<P, S> {
     fn neurons(&self) -> usize {
         self.layout.hidden().saturating_add(self.layout.outputs())
     }
@@ -189,13 +189,13 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for Network<P, S> {
     }
 }
 
-pub(crate) fn check(layout: &Layout, parameters: &[f32]) -> Result<(), Error> {
+pub(crate) fn check(layout: &LeakyLayout, parameters: &[f32]) -> Result<(), Error> {
     check_values(layout, parameters.iter().copied())
 }
 
 /// The same for parameters that are no slice of numbers.
 pub(crate) fn check_values(
-    layout: &Layout,
+    layout: &LeakyLayout,
     parameters: impl ExactSizeIterator<Item = f32> + Clone,
 ) -> Result<(), Error> {
     let (expected, found) = (layout.parameter_count(), parameters.len());
@@ -205,7 +205,7 @@ pub(crate) fn check_values(
     if let Some(index) = parameters.clone().position(|p| !p.is_finite()) {
         return Err(Error::NotFinite { index });
     }
-    let leaks = parameters.enumerate().skip(layout.range(ParameterKind::Leak).start);
+    let leaks = parameters.enumerate().skip(layout.range(LeakyParameter::Leak).start);
     match leaks.into_iter().find(|(_, leak)| !(0.0..=1.0).contains(leak)) {
         Some((index, value)) => Err(Error::LeakRange { index, value }),
         None => Ok(()),

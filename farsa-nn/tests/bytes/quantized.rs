@@ -1,27 +1,30 @@
 //! Networks of integers.
 
-use farsa_nn::{Aligned, BytesError, Error, FixedNetwork, FixedNetworkBytes, FixedScale, Layout, Leak, ParameterKind};
+use farsa_nn::{
+    Aligned, BytesError, Error, Leak, LeakyLayout, LeakyParameter, QuantizedNetwork, QuantizedNetworkBytes,
+    QuantizedScale,
+};
 use farsa_num::{Domain, Stream, crc32};
 use proptest::prelude::*;
 
 use crate::{HEAD, after_a_head, all_damage_is_refused, at_every_place, placed_or, placement, with_hash};
 
 // An odd number of parameters: the checksum lies at no multiple of four.
-const LAYOUT: Layout = Layout::new(6, 5, 4);
+const LAYOUT: LeakyLayout = LeakyLayout::new(6, 5, 4);
 const COUNT: usize = LAYOUT.parameter_count();
-const LEN: usize = FixedNetworkBytes::byte_count(LAYOUT);
+const LEN: usize = QuantizedNetworkBytes::byte_count(LAYOUT);
 
-fn quantized(layout: Layout, seed: u64) -> (FixedScale, Vec<i16>) {
+fn quantized(layout: LeakyLayout, seed: u64) -> (QuantizedScale, Vec<i16>) {
     let mut stream = Stream::new(seed, Domain::InitialGenome, 0, 0, 0);
-    let value = |kind| if kind == ParameterKind::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) };
+    let value = |kind| if kind == LeakyParameter::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) };
     let parameters: Vec<f32> = layout.kinds().map(value).collect();
     let mut fixed = vec![0; parameters.len()];
-    (FixedScale::quantize(&layout, 9, &parameters, &mut fixed).expect("fits"), fixed)
+    (QuantizedScale::quantize(&layout, 9, &parameters, &mut fixed).expect("fits"), fixed)
 }
 
 pub(crate) fn champion() -> Aligned<[u8; LEN]> {
     let (mut bytes, (scale, fixed)) = (Aligned([0; LEN]), quantized(LAYOUT, 1));
-    FixedNetworkBytes::write(LAYOUT, Leak::TwoTap, scale, 7, &fixed, &mut bytes.0).expect("valid");
+    QuantizedNetworkBytes::write(LAYOUT, Leak::TwoTap, scale, 7, &fixed, &mut bytes.0).expect("valid");
     bytes
 }
 
@@ -30,7 +33,7 @@ fn with(place: usize, new: &[u8]) -> Vec<u8> {
 }
 
 fn refused(bytes: &[u8]) -> BytesError {
-    FixedNetworkBytes::read(bytes).expect_err("not a network of integers")
+    QuantizedNetworkBytes::read(bytes).expect_err("not a network of integers")
 }
 
 #[test]
@@ -41,7 +44,7 @@ fn the_format_is_that_of_the_document() {
     assert_eq!([8, 12, 16, 20].map(word), [1, 2, 246, 170]);
     let shape = [6, 5, 4, 0, 1, 9, scale.weight_bits(), scale.sum_bits()];
     assert_eq!(core::array::from_fn::<_, 8, _>(|i| word(24 + 4 * i)), shape);
-    assert_eq!(bytes[56..64], FixedNetworkBytes::layout_hash(LAYOUT, Leak::TwoTap, scale).to_le_bytes());
+    assert_eq!(bytes[56..64], QuantizedNetworkBytes::layout_hash(LAYOUT, Leak::TwoTap, scale).to_le_bytes());
     assert_eq!(bytes[64..72], 7_u64.to_le_bytes());
     for (at, value) in fixed.iter().enumerate() {
         assert_eq!(bytes[HEAD + 2 * at..][..2], value.to_le_bytes());
@@ -52,7 +55,7 @@ fn the_format_is_that_of_the_document() {
 #[test]
 fn a_network_over_bytes_is_the_network_and_takes_others_while_it_runs() {
     let (bytes, (scale, fixed)) = (champion(), quantized(LAYOUT, 1));
-    let read = FixedNetworkBytes::read(&bytes.0).expect("a network");
+    let read = QuantizedNetworkBytes::read(&bytes.0).expect("a network");
     assert_eq!((read.leak(), read.scale(), read.channels()), (Leak::TwoTap, scale, 7));
     read.expect(LAYOUT, Leak::TwoTap, 9).expect("the layout");
     // The slope is in the weights.
@@ -66,24 +69,24 @@ fn a_network_over_bytes_is_the_network_and_takes_others_while_it_runs() {
     let mut weak: Vec<f32> = vec![0.1; COUNT];
     weak[3] = -0.2;
     let mut others = vec![0; COUNT];
-    let other_scale = FixedScale::quantize(&LAYOUT, 9, &weak, &mut others).expect("fits");
+    let other_scale = QuantizedScale::quantize(&LAYOUT, 9, &weak, &mut others).expect("fits");
     assert_ne!(scale, other_scale);
     let mut second = Aligned([0; LEN]);
-    FixedNetworkBytes::write(LAYOUT, Leak::TwoTap, other_scale, 7, &others, &mut second.0).expect("valid");
-    let (read_later, mut copy) = (FixedNetworkBytes::read(&second.0).expect("a network"), [0; COUNT]);
+    QuantizedNetworkBytes::write(LAYOUT, Leak::TwoTap, other_scale, 7, &others, &mut second.0).expect("valid");
+    let (read_later, mut copy) = (QuantizedNetworkBytes::read(&second.0).expect("a network"), [0; COUNT]);
     read_later.expect(LAYOUT, Leak::TwoTap, 9).expect("the layout");
     read_later.copy_parameters(&mut copy).expect("the length");
     let replacement = placed_or(read_later.parameters(), &second.0, &copy);
 
     let state = || [0; LAYOUT.state_len()];
-    let mut own = FixedNetwork::new(LAYOUT, Leak::TwoTap, scale, fixed.clone(), state()).expect("valid");
-    let mut over = FixedNetwork::new(LAYOUT, Leak::TwoTap, read.scale(), placed, state()).expect("valid");
+    let mut own = QuantizedNetwork::new(LAYOUT, Leak::TwoTap, scale, fixed.clone(), state()).expect("valid");
+    let mut over = QuantizedNetwork::new(LAYOUT, Leak::TwoTap, read.scale(), placed, state()).expect("valid");
     let mut inputs = Stream::new(1, Domain::Network, 0, 0, 0);
     let (mut x, mut y, mut z) = ([0; 6], [0; 4], [0; 4]);
     for step in 0..100 {
         x.fill_with(|| inputs.next_u32() as i16);
-        own.step_fixed(&x, &mut y);
-        over.step_fixed(&x, &mut z);
+        own.step_quantized(&x, &mut y);
+        over.step_quantized(&x, &mut z);
         assert_eq!((y, own.hidden()), (z, over.hidden()));
         if step == 50 {
             own.copy_parameters(other_scale, &others).expect("valid");
@@ -117,7 +120,7 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     assert!(matches!(hashed(28, u32::MAX), BytesError::Length { found: LEN, .. }));
     assert_eq!(hashed(36, 1), BytesError::Shape { word: 3, found: 1 });
     assert_eq!(hashed(40, 3), BytesError::Shape { word: 4, found: 3 });
-    let bits = |of, found, least, most| BytesError::Parameters(Error::FixedBits { of, found, least, most });
+    let bits = |of, found, least, most| BytesError::Parameters(Error::FractionBits { of, found, least, most });
     assert_eq!(hashed(44, 16), bits("inputs", 16, 0, 15));
     assert_eq!(hashed(48, u32::MAX), bits("weights", u32::MAX, 0, 15));
     assert_eq!(hashed(52, 9), bits("sums", 9, 10, 20));
@@ -129,31 +132,31 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
 /// Weights whose sums could overflow are refused, so that the board's step needs no check.
 #[test]
 fn sums_that_could_overflow_are_refused() {
-    const MANY: Layout = Layout::new(0, 70, 1);
+    const MANY: LeakyLayout = LeakyLayout::new(0, 70, 1);
     let fixed: Vec<i16> =
-        MANY.kinds().map(|kind| if kind == ParameterKind::OutputWeight { i16::MAX } else { 0 }).collect();
-    let scale = FixedScale::new(15, 10, 20).expect("valid");
-    let mut bytes = vec![0; FixedNetworkBytes::byte_count(MANY)];
+        MANY.kinds().map(|kind| if kind == LeakyParameter::OutputWeight { i16::MAX } else { 0 }).collect();
+    let scale = QuantizedScale::new(15, 10, 20).expect("valid");
+    let mut bytes = vec![0; QuantizedNetworkBytes::byte_count(MANY)];
     let largest = 70 * ((32_767 << 10 >> 5 << 5 << 5 >> 5) + 1);
-    let error = FixedNetworkBytes::write(MANY, Leak::Filter, scale, 0, &fixed, &mut bytes);
+    let error = QuantizedNetworkBytes::write(MANY, Leak::Filter, scale, 0, &fixed, &mut bytes);
     let expected = BytesError::Parameters(Error::SumRange { target: 70, largest, limit: i32::MAX as u64 });
     assert_eq!(error, Err(expected));
     // Written with sums of fewer fraction bits, which fit, and forged.
-    let coarse = FixedScale::new(15, 10, 19).expect("valid");
-    FixedNetworkBytes::write(MANY, Leak::Filter, coarse, 0, &fixed, &mut bytes).expect("fits");
-    FixedNetworkBytes::read(&bytes).expect("a network");
+    let coarse = QuantizedScale::new(15, 10, 19).expect("valid");
+    QuantizedNetworkBytes::write(MANY, Leak::Filter, coarse, 0, &fixed, &mut bytes).expect("fits");
+    QuantizedNetworkBytes::read(&bytes).expect("a network");
     assert_eq!(refused(&with_hash(&bytes, 52, 20)), expected);
 }
 
 #[test]
 fn another_controller_is_told_apart() {
     let bytes = champion();
-    let read = FixedNetworkBytes::read(&bytes.0).expect("a network");
+    let read = QuantizedNetworkBytes::read(&bytes.0).expect("a network");
     for (layout, leak, input_bits) in [
         (LAYOUT, Leak::Filter, 9),
         (LAYOUT, Leak::TwoTap, 8),
-        (Layout::new(5, 5, 4), Leak::TwoTap, 9),
-        (Layout::new(6, 5, 3), Leak::TwoTap, 9),
+        (LeakyLayout::new(5, 5, 4), Leak::TwoTap, 9),
+        (LeakyLayout::new(6, 5, 3), Leak::TwoTap, 9),
     ] {
         assert!(matches!(read.expect(layout, leak, input_bits), Err(BytesError::OtherLayout { .. })), "{layout:?}");
     }
@@ -165,7 +168,7 @@ fn another_controller_is_told_apart() {
 fn where_bytes_lie_is_checked_and_parameters_are_copied_from_anywhere() {
     let (_, fixed) = quantized(LAYOUT, 1);
     at_every_place::<{ LEN + 8 }>(&champion().0, |offset, bytes| {
-        let read = FixedNetworkBytes::read(bytes).expect("a network");
+        let read = QuantizedNetworkBytes::read(bytes).expect("a network");
         let placed = read.parameters().map(|placed| assert_eq!(placed, fixed));
         assert_eq!(placed, placement(offset, 2));
         let mut copy = [0; COUNT];
@@ -179,10 +182,10 @@ fn where_bytes_lie_is_checked_and_parameters_are_copied_from_anywhere() {
 fn nothing_is_written_that_would_not_be_read() {
     let (scale, mut wrong) = quantized(LAYOUT, 1);
     let mut out = [3; LEN];
-    let short = FixedNetworkBytes::write(LAYOUT, Leak::Filter, scale, 0, &wrong, &mut out[1..]);
+    let short = QuantizedNetworkBytes::write(LAYOUT, Leak::Filter, scale, 0, &wrong, &mut out[1..]);
     assert_eq!(short, Err(BytesError::Buffer { expected: LEN, found: LEN - 1 }));
     wrong[84] = 16_385;
-    let error = FixedNetworkBytes::write(LAYOUT, Leak::Filter, scale, 0, &wrong, &mut out);
+    let error = QuantizedNetworkBytes::write(LAYOUT, Leak::Filter, scale, 0, &wrong, &mut out);
     let leak = Error::LeakRange { index: 84, value: 16_385.0 / 16_384.0 };
     assert_eq!(error, Err(BytesError::Parameters(leak)));
     assert_eq!(out, [3; LEN]);
@@ -192,11 +195,11 @@ proptest! {
     #[test]
     fn what_is_written_is_read(sensors in 0_usize..9, hidden in 0_usize..9, outputs in 0_usize..9, leak in 0_usize..3,
                                channels: u64, seed: u64) {
-        let layout = Layout::new(sensors, hidden, outputs);
+        let layout = LeakyLayout::new(sensors, hidden, outputs);
         let (leak, (scale, fixed)) = (Leak::ALL[leak], quantized(layout, seed));
-        let mut bytes = vec![0; FixedNetworkBytes::byte_count(layout)];
-        FixedNetworkBytes::write(layout, leak, scale, channels, &fixed, &mut bytes).expect("valid");
-        let read = FixedNetworkBytes::read(&bytes).expect("a network");
+        let mut bytes = vec![0; QuantizedNetworkBytes::byte_count(layout)];
+        QuantizedNetworkBytes::write(layout, leak, scale, channels, &fixed, &mut bytes).expect("valid");
+        let read = QuantizedNetworkBytes::read(&bytes).expect("a network");
         let mut copy = vec![0; layout.parameter_count()];
         read.copy_parameters(&mut copy).expect("the length");
         let found = (read.layout(), read.leak(), read.scale(), read.channels(), copy);
@@ -205,9 +208,9 @@ proptest! {
 
     #[test]
     fn no_bytes_whatever_are_a_panic(bytes: Vec<u8>, seal: bool) {
-        let _ = FixedNetworkBytes::read(&bytes);
+        let _ = QuantizedNetworkBytes::read(&bytes);
         // So many may be parameters by chance.
         prop_assume!(bytes.len() != 2 * COUNT);
-        prop_assert!(FixedNetworkBytes::read(&after_a_head(&champion().0, &bytes, seal)).is_err());
+        prop_assert!(QuantizedNetworkBytes::read(&after_a_head(&champion().0, &bytes, seal)).is_err());
     }
 }

@@ -1,14 +1,14 @@
 //! The network against loops written from its equations, hand-computed cases and properties.
 
-use farsa_nn::{Controller, Error, Layout, Leak, Network, ParameterKind};
+use farsa_nn::{Controller, Error, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa_num::Instructions;
 use proptest::prelude::*;
 
-const LABELS: Layout = Layout::new(29, 12, 23);
+const LABELS: LeakyLayout = LeakyLayout::new(29, 12, 23);
 
 /// The equations of the source, index by index, with vectors of their own.
 struct Oracle<'a> {
-    layout: Layout,
+    layout: LeakyLayout,
     leak: Leak,
     parameters: &'a [f32],
     hidden: Vec<f32>,
@@ -16,7 +16,7 @@ struct Oracle<'a> {
 }
 
 impl<'a> Oracle<'a> {
-    fn new(layout: Layout, leak: Leak, parameters: &'a [f32]) -> Self {
+    fn new(layout: LeakyLayout, leak: Leak, parameters: &'a [f32]) -> Self {
         let zeros = vec![0.0; layout.hidden()];
         Self { layout, leak, parameters, hidden: zeros.clone(), response: zeros }
     }
@@ -62,18 +62,18 @@ fn bits(values: &[f32]) -> Vec<u32> {
 }
 
 /// Decodes genes [0..1] as the experiment does.
-fn decode(layout: Layout, genes: &[f32]) -> Vec<f32> {
-    let decoded = |(gene, kind): (&f32, _)| if kind == ParameterKind::Leak { *gene } else { 12.0 * gene - 6.0 };
+fn decode(layout: LeakyLayout, genes: &[f32]) -> Vec<f32> {
+    let decoded = |(gene, kind): (&f32, _)| if kind == LeakyParameter::Leak { *gene } else { 12.0 * gene - 6.0 };
     genes.iter().zip(layout.kinds()).map(decoded).collect()
 }
 
-fn state(layout: Layout) -> Vec<f32> {
+fn state(layout: LeakyLayout) -> Vec<f32> {
     vec![f32::NAN; layout.state_len()]
 }
 
-fn any_layout() -> impl Strategy<Value = Layout> {
+fn any_layout() -> impl Strategy<Value = LeakyLayout> {
     // Up to 72 targets: every number of vectors side by side, twice, and every remainder.
-    (0..12_usize, 0..72_usize, 0..72_usize).prop_map(|(n, h, o)| Layout::new(n, h, o))
+    (0..12_usize, 0..72_usize, 0..72_usize).prop_map(|(n, h, o)| LeakyLayout::new(n, h, o))
 }
 
 prop_compose! {
@@ -82,7 +82,7 @@ prop_compose! {
         genes in prop::collection::vec(0.0_f32..=1.0, layout.parameter_count()),
         inputs in prop::collection::vec(prop::collection::vec(-50.0_f32..50.0, layout.sensors()), 1..8),
         layout in Just(layout),
-    ) -> (Layout, Vec<f32>, Vec<Vec<f32>>) {
+    ) -> (LeakyLayout, Vec<f32>, Vec<Vec<f32>>) {
         (layout, decode(layout, &genes), inputs)
     }
 }
@@ -91,7 +91,7 @@ proptest! {
     #[test]
     fn equals_the_oracle_bit_for_bit((layout, parameters, inputs) in any_case()) {
         for (leak, instructions) in Leak::ALL.into_iter().flat_map(|leak| Instructions::available().map(move |instructions| (leak, instructions))) {
-            let mut network = Network::new(layout, leak, &parameters, state(layout))?.with_instructions(instructions);
+            let mut network = LeakyNetwork::new(layout, leak, &parameters, state(layout))?.with_instructions(instructions);
             let mut oracle = Oracle::new(layout, leak, &parameters);
             let mut y = vec![f32::NAN; layout.outputs()];
             for x in &inputs {
@@ -105,13 +105,13 @@ proptest! {
 
     #[test]
     fn without_leak_the_readings_agree((layout, mut parameters, inputs) in any_case()) {
-        let leaks = layout.range(ParameterKind::Leak);
+        let leaks = layout.range(LeakyParameter::Leak);
         parameters[leaks.clone()].fill(1.0);
         let mut reversed = parameters.clone();
         reversed[leaks].fill(0.0);
-        let mut filter = Network::new(layout, Leak::Filter, &parameters, state(layout))?;
-        let mut two_tap = Network::new(layout, Leak::TwoTap, &parameters, state(layout))?;
-        let mut evonet = Network::new(layout, Leak::Evonet, &reversed, state(layout))?;
+        let mut filter = LeakyNetwork::new(layout, Leak::Filter, &parameters, state(layout))?;
+        let mut two_tap = LeakyNetwork::new(layout, Leak::TwoTap, &parameters, state(layout))?;
+        let mut evonet = LeakyNetwork::new(layout, Leak::Evonet, &reversed, state(layout))?;
         for x in &inputs {
             let mut y = vec![vec![0.0; layout.outputs()]; 3];
             filter.step(x, &mut y[0]);
@@ -126,8 +126,8 @@ proptest! {
 
     #[test]
     fn a_neuron_that_takes_nothing_new_stays_at_rest((layout, mut parameters, inputs) in any_case()) {
-        parameters[layout.range(ParameterKind::Leak)].fill(0.0);
-        let mut network = Network::new(layout, Leak::Filter, &parameters, state(layout))?;
+        parameters[layout.range(LeakyParameter::Leak)].fill(0.0);
+        let mut network = LeakyNetwork::new(layout, Leak::Filter, &parameters, state(layout))?;
         let mut y = vec![0.0; layout.outputs()];
         for x in &inputs {
             network.step(x, &mut y);
@@ -140,11 +140,11 @@ proptest! {
     #[test]
     fn reversed_outputs_are_the_same_outputs((layout, parameters, inputs) in any_case()) {
         let mut reversed = parameters.clone();
-        for row in reversed[layout.range(ParameterKind::OutputWeight)].chunks_mut(layout.outputs().max(1)) {
+        for row in reversed[layout.range(LeakyParameter::OutputWeight)].chunks_mut(layout.outputs().max(1)) {
             row.reverse();
         }
-        let mut network = Network::new(layout, Leak::Filter, &parameters, state(layout))?;
-        let mut mirror = Network::new(layout, Leak::Filter, &reversed, state(layout))?;
+        let mut network = LeakyNetwork::new(layout, Leak::Filter, &parameters, state(layout))?;
+        let mut mirror = LeakyNetwork::new(layout, Leak::Filter, &reversed, state(layout))?;
         let (mut y, mut z) = (vec![0.0; layout.outputs()], vec![0.0; layout.outputs()]);
         for x in &inputs {
             network.step(x, &mut y);
@@ -162,13 +162,13 @@ proptest! {
                 let mut y = vec![0.0; layout.outputs()];
                 inputs.iter().flat_map(|x| { network.step(x, &mut y); bits(&y) }).collect::<Vec<u32>>()
             };
-            let first = run(&mut Network::new(layout, leak, &parameters[..], state(layout))?);
-            let mut network = Network::new(layout, leak, &other[..], state(layout))?;
+            let first = run(&mut LeakyNetwork::new(layout, leak, &parameters[..], state(layout))?);
+            let mut network = LeakyNetwork::new(layout, leak, &other[..], state(layout))?;
             run(&mut network);
             network.reset();
             prop_assert_eq!(network.set_parameters(&parameters)?, &other[..]);
             prop_assert_eq!(&run(&mut network), &first);
-            let mut owner = Network::new(layout, leak, other.clone(), state(layout))?;
+            let mut owner = LeakyNetwork::new(layout, leak, other.clone(), state(layout))?;
             run(&mut owner);
             owner.reset();
             owner.copy_parameters(&parameters)?;
@@ -183,12 +183,12 @@ fn every_remainder_equals_the_oracle() -> Result<(), Error> {
     const SIZES: [usize; 14] = [0, 1, 2, 7, 8, 9, 15, 16, 17, 24, 31, 33, 47, 1000];
     println!("instructions that ran: {:?}", Instructions::available().collect::<Vec<_>>());
     for (hidden, outputs) in SIZES.into_iter().flat_map(|h| SIZES.map(|o| (h, o))) {
-        let layout = Layout::new(3, hidden, outputs);
+        let layout = LeakyLayout::new(3, hidden, outputs);
         let genes: Vec<f32> = (0..layout.parameter_count()).map(|i| (i * 7919 % 1009) as f32 / 1008.0).collect();
         let parameters = decode(layout, &genes);
         for instructions in Instructions::available() {
             let mut network =
-                Network::new(layout, Leak::Filter, &parameters, state(layout))?.with_instructions(instructions);
+                LeakyNetwork::new(layout, Leak::Filter, &parameters, state(layout))?.with_instructions(instructions);
             let mut oracle = Oracle::new(layout, Leak::Filter, &parameters);
             let mut y = vec![f32::NAN; outputs];
             for x in [[1.0, -40.0, 0.3], [0.0, 9.0, -2.0]] {
@@ -204,7 +204,7 @@ fn every_remainder_equals_the_oracle() -> Result<(), Error> {
 #[test]
 fn two_steps_by_hand() -> Result<(), Error> {
     // One sensor (w 2), one hidden neuron (r 5, bias 1, leak 0.25), one output (w 4).
-    const TINY: Layout = Layout::new(1, 1, 1);
+    const TINY: LeakyLayout = LeakyLayout::new(1, 1, 1);
     let close = |a: f32, b: f32| assert!((a - b).abs() < 1e-6, "{a} is not {b}");
     // x = 2: net 5, y = 1/(1 + exp(-1)) = 0.7310586; x = 0: net 1 + 5*H(1).
     let cases = [
@@ -213,7 +213,7 @@ fn two_steps_by_hand() -> Result<(), Error> {
         (Leak::Evonet, [0.548_293_9, 0.646_178_6], [0.607_933_8, 0.626_432_6]),
     ];
     for (leak, hidden, output) in cases {
-        let mut network = Network::new(TINY, leak, [2.0, 5.0, 4.0, 1.0, 0.25], [0.0; 3])?;
+        let mut network = LeakyNetwork::new(TINY, leak, [2.0, 5.0, 4.0, 1.0, 0.25], [0.0; 3])?;
         let mut y = [0.0];
         for (x, (h, o)) in [2.0, 0.0].into_iter().zip(hidden.into_iter().zip(output)) {
             network.step(&[x], &mut y);
@@ -227,8 +227,8 @@ fn two_steps_by_hand() -> Result<(), Error> {
 #[test]
 fn runs_from_a_static() -> Result<(), Error> {
     static PARAMETERS: [f32; LABELS.parameter_count()] = [0.25; LABELS.parameter_count()];
-    let mut network = Network::new(LABELS, Leak::Filter, &PARAMETERS, [0.0; LABELS.state_len()])?;
-    let mut owned = Network::new(LABELS, Leak::Filter, PARAMETERS.to_vec(), vec![0.0; LABELS.state_len()])?;
+    let mut network = LeakyNetwork::new(LABELS, Leak::Filter, &PARAMETERS, [0.0; LABELS.state_len()])?;
+    let mut owned = LeakyNetwork::new(LABELS, Leak::Filter, PARAMETERS.to_vec(), vec![0.0; LABELS.state_len()])?;
     let (mut y, mut z) = ([0.0; 23], [0.0; 23]);
     for _ in 0..10 {
         network.step(&[1.0; 29], &mut y);
@@ -243,8 +243,8 @@ fn runs_from_a_static() -> Result<(), Error> {
 
 #[test]
 fn construction_names_the_mistake() {
-    const TINY: Layout = Layout::new(1, 1, 1);
-    let build = |parameters: &[f32], state: &mut [f32]| Network::new(TINY, Leak::Filter, parameters, state).err();
+    const TINY: LeakyLayout = LeakyLayout::new(1, 1, 1);
+    let build = |parameters: &[f32], state: &mut [f32]| LeakyNetwork::new(TINY, Leak::Filter, parameters, state).err();
     let mut state = [0.0; 3];
     assert_eq!(build(&[0.0; 5], &mut state), None);
     assert_eq!(build(&[0.0; 4], &mut state), Some(Error::ParameterCount { expected: 5, found: 4 }));
@@ -252,16 +252,16 @@ fn construction_names_the_mistake() {
     assert_eq!(build(&[0.0, 0.0, f32::NAN, 0.0, 2.0], &mut state), Some(Error::NotFinite { index: 2 }));
     assert_eq!(build(&[0.0, 0.0, 0.0, 0.0, f32::INFINITY], &mut state), Some(Error::NotFinite { index: 4 }));
     assert_eq!(build(&[0.0, 0.0, 0.0, 0.0, 1.5], &mut state), Some(Error::LeakRange { index: 4, value: 1.5 }));
-    let steep = Network::new(TINY.with_slope(f32::INFINITY), Leak::Filter, [0.0; 5], [0.0; 3]).err();
+    let steep = LeakyNetwork::new(TINY.with_slope(f32::INFINITY), Leak::Filter, [0.0; 5], [0.0; 3]).err();
     assert_eq!(steep, Some(Error::Slope { value: f32::INFINITY }));
-    let huge = Layout::new(usize::MAX, 2, 2);
-    let error = Network::new(huge, Leak::Filter, [0.0; 5], [0.0; 3]).err();
+    let huge = LeakyLayout::new(usize::MAX, 2, 2);
+    let error = LeakyNetwork::new(huge, Leak::Filter, [0.0; 5], [0.0; 3]).err();
     assert_eq!(error, Some(Error::ParameterCount { expected: usize::MAX, found: 5 }));
 }
 
 #[test]
 fn refused_parameters_change_nothing() -> Result<(), Error> {
-    let mut network = Network::new(Layout::new(1, 1, 1), Leak::Filter, [0.5; 5], [0.0; 3])?;
+    let mut network = LeakyNetwork::new(LeakyLayout::new(1, 1, 1), Leak::Filter, [0.5; 5], [0.0; 3])?;
     assert!(network.set_parameters([2.0; 5]).is_err());
     assert!(network.copy_parameters(&[0.0; 4]).is_err());
     assert_eq!(network.parameters(), [0.5; 5]);
@@ -270,7 +270,7 @@ fn refused_parameters_change_nothing() -> Result<(), Error> {
 
 #[test]
 fn every_parameter_has_one_kind() {
-    for layout in [LABELS, Layout::new(26, 12, 23), Layout::new(0, 3, 1), Layout::new(2, 0, 2)] {
+    for layout in [LABELS, LeakyLayout::new(26, 12, 23), LeakyLayout::new(0, 3, 1), LeakyLayout::new(2, 0, 2)] {
         let kinds: Vec<_> = layout.kinds().collect();
         assert_eq!(kinds.len(), layout.parameter_count());
         assert_eq!(layout.kind(kinds.len()), None);
@@ -301,7 +301,7 @@ fn a_leak_is_known_by_its_name() {
 #[cfg_attr(debug_assertions, should_panic = "sensor values")]
 fn a_missing_sensor_counts_for_nothing() {
     let parameters = decode(LABELS, &[0.75; 792]);
-    let mut network = Network::new(LABELS, Leak::Filter, &parameters, state(LABELS)).expect("valid");
+    let mut network = LeakyNetwork::new(LABELS, Leak::Filter, &parameters, state(LABELS)).expect("valid");
     let (mut short, mut whole) = ([0.0; 23], [0.0; 23]);
     network.step(&[1.0; 28], &mut short);
     network.reset();
@@ -318,7 +318,7 @@ fn a_missing_sensor_counts_for_nothing() {
 #[cfg_attr(debug_assertions, should_panic = "motor values")]
 fn surplus_outputs_are_left_alone() {
     let parameters = decode(LABELS, &[0.75; 792]);
-    let mut network = Network::new(LABELS, Leak::Filter, &parameters, state(LABELS)).expect("valid");
+    let mut network = LeakyNetwork::new(LABELS, Leak::Filter, &parameters, state(LABELS)).expect("valid");
     let (mut long, mut short) = ([-1.0; 25], [0.0; 22]);
     network.step(&[1.0; 29], &mut long);
     assert_eq!(long[23..], [-1.0; 2]);

@@ -2,12 +2,12 @@
 
 use core::ops::Range;
 
-/// What one parameter of a [`Layout`] is.
+/// What one parameter of a [`LeakyLayout`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
-pub enum ParameterKind {
+pub enum LeakyParameter {
     /// `w_ji`: from sensor `j` to hidden neuron `i`.
     SensorWeight,
     /// `r_ki`: from hidden neuron `k`, one step ago, to hidden neuron `i`.
@@ -20,33 +20,33 @@ pub enum ParameterKind {
     Leak,
 }
 
-impl ParameterKind {
+impl LeakyParameter {
     /// Every kind, in the order in which they lie in the parameters.
     pub const ALL: [Self; 5] = [Self::SensorWeight, Self::RecurrentWeight, Self::OutputWeight, Self::Bias, Self::Leak];
 }
 
-/// Numbers of sensors `n`, hidden neurons `h` and outputs `o` of a [`Network`](crate::Network), and the slope of its
-/// logistic function.
+/// Numbers of sensors `n`, hidden neurons `h` and outputs `o` of a [`LeakyNetwork`](crate::LeakyNetwork), and the slope
+/// of its logistic function.
 ///
 /// The parameters are one slice, source-major: all targets of one source together.
 ///
 /// | kind | count | at |
 /// |---|---|---|
-/// | [`SensorWeight`](ParameterKind::SensorWeight) | `n*h` | `j*h + i`, sensor `j` to hidden `i` |
-/// | [`RecurrentWeight`](ParameterKind::RecurrentWeight) | `h*h` | `n*h + k*h + i`, hidden `k` to hidden `i` |
-/// | [`OutputWeight`](ParameterKind::OutputWeight) | `h*o` | `n*h + h*h + j*o + i`, hidden `j` to output `i` |
-/// | [`Bias`](ParameterKind::Bias) | `h` | `n*h + h*h + h*o + i` |
-/// | [`Leak`](ParameterKind::Leak) | `h` | `n*h + h*h + h*o + h + i` |
+/// | [`SensorWeight`](LeakyParameter::SensorWeight) | `n*h` | `j*h + i`, sensor `j` to hidden `i` |
+/// | [`RecurrentWeight`](LeakyParameter::RecurrentWeight) | `h*h` | `n*h + k*h + i`, hidden `k` to hidden `i` |
+/// | [`OutputWeight`](LeakyParameter::OutputWeight) | `h*o` | `n*h + h*h + j*o + i`, hidden `j` to output `i` |
+/// | [`Bias`](LeakyParameter::Bias) | `h` | `n*h + h*h + h*o + i` |
+/// | [`Leak`](LeakyParameter::Leak) | `h` | `n*h + h*h + h*o + h + i` |
 ///
 /// Counts saturate: a layout too large for the machine asks for `usize::MAX` parameters, which no slice has.
 ///
 /// Source: `[Ferrauto2010]` chapter 2, which gives the totals 792 and 756 and not the order.
 ///
 /// ```
-/// use farsa_nn::Layout;
+/// use farsa_nn::LeakyLayout;
 ///
-/// const LABELS: Layout = Layout::new(29, 12, 23);
-/// const NO_LABELS: Layout = Layout::new(26, 12, 23);
+/// const LABELS: LeakyLayout = LeakyLayout::new(29, 12, 23);
+/// const NO_LABELS: LeakyLayout = LeakyLayout::new(26, 12, 23);
 /// assert_eq!(LABELS.parameter_count(), 792);
 /// assert_eq!(NO_LABELS.parameter_count(), 756);
 /// static ZEROS: [f32; LABELS.parameter_count()] = [0.0; LABELS.parameter_count()];
@@ -55,17 +55,17 @@ impl ParameterKind {
 // same order whether it is computed alone or beside others: the width of the vectors does not show in the bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Layout {
+pub struct LeakyLayout {
     sensors: usize,
     hidden: usize,
     outputs: usize,
     slope: f32,
 }
 
-/// The parameters of a [`Layout`] by kind, as [`Layout::split`] cuts them.
+/// The parameters of a [`LeakyLayout`] by kind, as [`LeakyLayout::split`] cuts them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Parts<'a> {
+pub struct LeakyParts<'a> {
     /// Weights from the sensors `[sensors x hidden]`.
     pub sensor_weights: &'a [f32],
     /// Weights from the hidden neurons one step ago `[hidden x hidden]`.
@@ -78,18 +78,18 @@ pub struct Parts<'a> {
     pub leaks: &'a [f32],
 }
 
-impl Layout {
+impl LeakyLayout {
     /// Slope of the logistic function where none is asked for, 0.2 (`[Ferrauto2010]` chapter 2).
     pub const SLOPE: f32 = 0.2;
 
-    /// A layout of so many sensors, hidden neurons and outputs, with slope [`Layout::SLOPE`].
+    /// A layout of so many sensors, hidden neurons and outputs, with slope [`LeakyLayout::SLOPE`].
     pub const fn new(sensors: usize, hidden: usize, outputs: usize) -> Self {
         Self { sensors, hidden, outputs, slope: Self::SLOPE }
     }
 
     /// The same layout with another slope of `sigma(x) = 1/(1 + exp(-slope*x))`.
     ///
-    /// It must be finite, which [`Network::new`](crate::Network::new) checks.
+    /// It must be finite, which [`LeakyNetwork::new`](crate::LeakyNetwork::new) checks.
     pub const fn with_slope(self, slope: f32) -> Self {
         Self { slope, ..self }
     }
@@ -116,7 +116,7 @@ impl Layout {
 
     /// Number of parameters, `n*h + h*h + h*o + h + h`.
     pub const fn parameter_count(&self) -> usize {
-        self.range(ParameterKind::Leak).end
+        self.range(LeakyParameter::Leak).end
     }
 
     /// Length of the state, `3*h`.
@@ -129,59 +129,59 @@ impl Layout {
     }
 
     /// Where the parameters of one kind lie.
-    pub const fn range(&self, kind: ParameterKind) -> Range<usize> {
+    pub const fn range(&self, kind: LeakyParameter) -> Range<usize> {
         let h = self.hidden;
         let recurrent = self.sensors.saturating_mul(h);
         let output = recurrent.saturating_add(h.saturating_mul(h));
         let bias = output.saturating_add(h.saturating_mul(self.outputs));
         let leak = bias.saturating_add(h);
         match kind {
-            ParameterKind::SensorWeight => 0..recurrent,
-            ParameterKind::RecurrentWeight => recurrent..output,
-            ParameterKind::OutputWeight => output..bias,
-            ParameterKind::Bias => bias..leak,
-            ParameterKind::Leak => leak..leak.saturating_add(h),
+            LeakyParameter::SensorWeight => 0..recurrent,
+            LeakyParameter::RecurrentWeight => recurrent..output,
+            LeakyParameter::OutputWeight => output..bias,
+            LeakyParameter::Bias => bias..leak,
+            LeakyParameter::Leak => leak..leak.saturating_add(h),
         }
     }
 
     /// What the parameter at this index is; `None` beyond the last.
-    pub fn kind(&self, index: usize) -> Option<ParameterKind> {
-        ParameterKind::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
+    pub fn kind(&self, index: usize) -> Option<LeakyParameter> {
+        LeakyParameter::ALL.into_iter().find(|&kind| self.range(kind).contains(&index))
     }
 
     /// What each parameter is, in their order, for decoding a genome.
     ///
     /// ```
-    /// use farsa_nn::{Layout, ParameterKind};
+    /// use farsa_nn::{LeakyLayout, LeakyParameter};
     ///
-    /// let layout = Layout::new(29, 12, 23);
+    /// let layout = LeakyLayout::new(29, 12, 23);
     /// let genes = [0.5_f32; 792];
     /// let mut parameters = [0.0_f32; 792];
     /// for ((p, gene), kind) in parameters.iter_mut().zip(genes).zip(layout.kinds()) {
-    ///     *p = if kind == ParameterKind::Leak { gene } else { 12.0 * gene - 6.0 };
+    ///     *p = if kind == LeakyParameter::Leak { gene } else { 12.0 * gene - 6.0 };
     /// }
     /// assert_eq!(layout.split(&parameters).leaks, [0.5; 12]);
     /// assert_eq!(layout.split(&parameters).biases, [0.0; 12]);
     /// ```
-    pub fn kinds(&self) -> impl Iterator<Item = ParameterKind> + use<> {
+    pub fn kinds(&self) -> impl Iterator<Item = LeakyParameter> + use<> {
         let layout = *self;
-        ParameterKind::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
+        LeakyParameter::ALL.into_iter().flat_map(move |kind| core::iter::repeat_n(kind, layout.range(kind).len()))
     }
 
     /// Cuts parameters [[`parameter_count`](Self::parameter_count)] into their kinds.
     ///
     /// Where the slice is too short the last kinds are, too; what is longer is left out.
-    pub fn split<'a>(&self, parameters: &'a [f32]) -> Parts<'a> {
+    pub fn split<'a>(&self, parameters: &'a [f32]) -> LeakyParts<'a> {
         let part = |kind| {
             let Range { start, end } = self.range(kind);
             parameters.get(start..end.min(parameters.len())).unwrap_or(&[])
         };
-        Parts {
-            sensor_weights: part(ParameterKind::SensorWeight),
-            recurrent_weights: part(ParameterKind::RecurrentWeight),
-            output_weights: part(ParameterKind::OutputWeight),
-            biases: part(ParameterKind::Bias),
-            leaks: part(ParameterKind::Leak),
+        LeakyParts {
+            sensor_weights: part(LeakyParameter::SensorWeight),
+            recurrent_weights: part(LeakyParameter::RecurrentWeight),
+            output_weights: part(LeakyParameter::OutputWeight),
+            biases: part(LeakyParameter::Bias),
+            leaks: part(LeakyParameter::Leak),
         }
     }
 }

@@ -2,13 +2,13 @@
 
 use alloc::vec::Vec;
 
-use crate::config::SteadyStateConfig;
+use crate::config::OnePlusOneConfig;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
+use crate::one_plus_one_history::OnePlusOneHistory;
 use crate::population::Population;
 #[cfg(feature = "serde")]
 use crate::saved::Saved;
-use crate::steady_history::SteadyHistory;
 use crate::strategy::{Strategy, next_generation};
 
 /// A search in which one parent makes one mutant a generation, and the better of the two stays.
@@ -16,15 +16,15 @@ use crate::strategy::{Strategy, next_generation};
 /// [`ask`](Strategy::ask) gives the parent (individual 0) and its mutant (individual 1). The parent is evaluated again
 /// every generation, and its fitness is the mean over its life, the evaluation as a mutant included; the mutant takes its
 /// place when its own first evaluation is at least as good. A failed evaluation makes that mean the worst there is, so
-/// that a parent that failed once gives way to any mutant. [`SteadyHistory`] says which numbers are drawn.
+/// that a parent that failed once gives way to any mutant. [`OnePlusOneHistory`] says which numbers are drawn.
 ///
 /// Source: the steady-state algorithm of \[FARSA2\] with one individual, whose fitness is averaged over generations.
 /// Deviation: the random numbers are ours.
 ///
 /// ```
-/// use farsa_evo::{SteadyState, SteadyStateConfig, Strategy};
+/// use farsa_evo::{OnePlusOne, OnePlusOneConfig, Strategy};
 ///
-/// let mut search = SteadyState::new(SteadyStateConfig::new(4), 3)?;
+/// let mut search = OnePlusOne::new(OnePlusOneConfig::new(4), 3)?;
 /// let champion = search.maximize(400, |genes| genes.iter().map(|gene| f64::from(*gene)).sum())?;
 /// assert!(champion.fitness.get() > 4.0 * 250.0);
 /// assert_eq!(search.parent_fitness().map(|(fitness, _)| fitness), Some(champion.fitness));
@@ -35,9 +35,9 @@ use crate::strategy::{Strategy, next_generation};
 /// which are rebuilt when it is read.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::Saved<SteadySaved>"))]
-pub struct SteadyState {
-    history: SteadyHistory,
+#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::Saved<OnePlusOneSaved>"))]
+pub struct OnePlusOne {
+    history: OnePlusOneHistory,
     /// The parent's fitness summed over its evaluations so far.
     sum: Fitness,
     /// The parent's evaluations so far, 0 for the first parent before the first generation is told.
@@ -45,24 +45,24 @@ pub struct SteadyState {
     population: Population,
 }
 
-impl SteadyState {
+impl OnePlusOne {
     /// A search at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`SteadyStateConfig::validate`].
-    pub fn new(config: SteadyStateConfig, seed: u64) -> Result<Self, EvoError> {
-        let history = SteadyHistory::new(config, seed)?;
+    /// Those of [`OnePlusOneConfig::validate`].
+    pub fn new(config: OnePlusOneConfig, seed: u64) -> Result<Self, EvoError> {
+        let history = OnePlusOneHistory::new(config, seed)?;
         let population = history.genomes_at(0)?;
         Ok(Self { history, sum: Fitness::nan_as_failed(0.0), evaluations: 0, population })
     }
 
     /// The configuration.
-    pub fn config(&self) -> &SteadyStateConfig {
+    pub fn config(&self) -> &OnePlusOneConfig {
         self.history.config()
     }
 
     /// What became of every mutant so far.
-    pub fn history(&self) -> &SteadyHistory {
+    pub fn history(&self) -> &OnePlusOneHistory {
         &self.history
     }
 
@@ -79,7 +79,7 @@ impl SteadyState {
     /// [`EvoError::FitnessCount`].
     pub fn judged(&self, fitness: &[Fitness]) -> Result<[Fitness; 2], EvoError> {
         let &[parent, mutant] = fitness else {
-            return Err(EvoError::FitnessCount { expected: SteadyHistory::INDIVIDUALS, found: fitness.len() });
+            return Err(EvoError::FitnessCount { expected: OnePlusOneHistory::INDIVIDUALS, found: fitness.len() });
         };
         Ok([mean(self.grown(parent), self.evaluations.saturating_add(1)), mutant])
     }
@@ -94,7 +94,7 @@ fn mean(sum: Fitness, evaluations: u32) -> Fitness {
     Fitness::nan_as_failed(sum.get() / f64::from(evaluations))
 }
 
-impl Strategy for SteadyState {
+impl Strategy for OnePlusOne {
     fn generation(&self) -> u32 {
         self.history.latest()
     }
@@ -104,11 +104,11 @@ impl Strategy for SteadyState {
     }
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.generation(), SteadyHistory::INDIVIDUALS, fitness)?;
+        let next = next_generation(self.generation(), OnePlusOneHistory::INDIVIDUALS, fitness)?;
         let [parent, mutant] = self.judged(fitness)?;
         let accepted = mutant >= parent;
         let survivor = self.population.get(usize::from(accepted)).map(<[u16]>::to_vec).unwrap_or_default();
-        let mut population = Population::new(SteadyHistory::INDIVIDUALS, self.config().genes)?;
+        let mut population = Population::new(OnePlusOneHistory::INDIVIDUALS, self.config().genes)?;
         for (individual, genes) in population.iter_mut().enumerate() {
             genes.copy_from_slice(&survivor);
             self.history.vary(next, individual, genes)?;
@@ -134,25 +134,25 @@ impl Strategy for SteadyState {
 /// What is saved of a search; the number of the parent's evaluations follows from its history.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
-pub(crate) struct SteadySaved {
-    history: SteadyHistory,
+pub(crate) struct OnePlusOneSaved {
+    history: OnePlusOneHistory,
     sum: Fitness,
 }
 
 #[cfg(feature = "serde")]
-impl serde::Serialize for SteadyState {
+impl serde::Serialize for OnePlusOne {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let state = SteadySaved { history: self.history.clone(), sum: self.sum };
+        let state = OnePlusOneSaved { history: self.history.clone(), sum: self.sum };
         Saved::new(state, &self.population).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<Saved<SteadySaved>> for SteadyState {
+impl TryFrom<Saved<OnePlusOneSaved>> for OnePlusOne {
     type Error = EvoError;
 
-    fn try_from(saved: Saved<SteadySaved>) -> Result<Self, EvoError> {
-        let SteadySaved { history, sum } = &saved.state;
+    fn try_from(saved: Saved<OnePlusOneSaved>) -> Result<Self, EvoError> {
+        let OnePlusOneSaved { history, sum } = &saved.state;
         let latest = history.latest();
         let population = history.genomes_at(latest)?;
         saved.check(&population)?;
@@ -167,11 +167,11 @@ impl TryFrom<Saved<SteadySaved>> for SteadyState {
 mod tests {
     use super::*;
 
-    fn search() -> SteadyState {
-        SteadyState::new(SteadyStateConfig::new(14), 9).unwrap()
+    fn search() -> OnePlusOne {
+        OnePlusOne::new(OnePlusOneConfig::new(14), 9).unwrap()
     }
 
-    fn tell(search: &mut SteadyState, parent: f64, mutant: f64) -> bool {
+    fn tell(search: &mut OnePlusOne, parent: f64, mutant: f64) -> bool {
         search.tell(&[parent, mutant].map(Fitness::nan_as_failed)).unwrap();
         search.history().accepted(search.generation() - 1).unwrap()
     }
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn the_rate_falls_by_its_step_to_the_last() {
-        let config = SteadyStateConfig::new(1);
+        let config = OnePlusOneConfig::new(1);
         assert_eq!([0, 1, 25].map(|generation| config.rate(generation)), [0.5, 0.49, 0.25]);
         assert!((config.rate(48) - 0.02).abs() < 1e-15);
         assert_eq!([49, 499, u32::MAX].map(|generation| config.rate(generation)), [0.02; 3]);
@@ -213,10 +213,10 @@ mod tests {
 
     #[test]
     fn impossible_configurations_are_refused() {
-        let refused = |change: fn(&mut SteadyStateConfig)| {
-            let mut config = SteadyStateConfig::new(14);
+        let refused = |change: fn(&mut OnePlusOneConfig)| {
+            let mut config = OnePlusOneConfig::new(14);
             change(&mut config);
-            SteadyState::new(config, 0).unwrap_err()
+            OnePlusOne::new(config, 0).unwrap_err()
         };
         assert_eq!(refused(|c| c.genes = 0), EvoError::NoGenes);
         assert_eq!(refused(|c| c.genes = usize::MAX), EvoError::TooLarge { population: 2, genes: usize::MAX });
