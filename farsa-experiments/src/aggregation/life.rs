@@ -1,6 +1,6 @@
 //! A life of `aggregation`: robots look for nests, and for each other.
 
-use farsa_body::{Arrange as _, BodyId, ColorBand, Kinematics as _, Pose, Twist};
+use farsa_body::{BodyId, ColorBand, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError};

@@ -1,6 +1,6 @@
 //! A life of `foraging`: robots carry food from a field to their nest, and must come home to live.
 
-use farsa_body::{Arrange as _, BodyId, ColorBand, Pose, Twist};
+use farsa_body::{BodyId, ColorBand, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError};

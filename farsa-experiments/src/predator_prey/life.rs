@@ -2,7 +2,7 @@
 
 use core::f32::consts::PI;
 
-use farsa_body::{Arrange as _, BodyId, ColorBand, Contacts as _, PairId, Pose, Twist};
+use farsa_body::{BodyId, ColorBand, PairId, Pose, Twist};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError};

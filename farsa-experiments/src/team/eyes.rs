@@ -1,8 +1,7 @@
 //! What a robot of a team senses of its surroundings.
 
 use farsa_body::{
-    Beam, BodyId, ChannelError, ColorBand, InfraredRays, Kinematics as _, LinearCamera, MobileParts, MobileRobot,
-    Planar as _, Recorder, Sensor as _,
+    Beam, BodyId, ChannelError, ColorBand, InfraredRays, LinearCamera, MobileParts, MobileRobot, Recorder, Sensor as _,
 };
 
 use crate::infrared::{sensor_rays::SensorRays, sensor_rays::Told};

@@ -1,7 +1,7 @@
 //! Nests as robots of a team sense them: the ground, and what shines.
 
 use crate::team::life::TeamWorld;
-use farsa_body::{ColorBand, Planar as _};
+use farsa_body::ColorBand;
 use farsa_lab::Error;
 
 use crate::team::{eyes::BLUE, eyes::RED};

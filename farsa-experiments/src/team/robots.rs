@@ -2,10 +2,7 @@
 
 use core::f32::consts::PI;
 
-use farsa_body::{
-    Arrange as _, BodyId, ChannelError, ColorBand, Kinematics as _, Leds, MobileParts, Motor as _, Pose, Recorder,
-    SpeedAndTurn, Twist,
-};
+use farsa_body::{BodyId, ChannelError, ColorBand, Leds, MobileParts, Motor as _, Pose, Recorder, SpeedAndTurn, Twist};
 use farsa_lab::Error;
 use farsa_nn::Controller;
 use farsa_num::Stream;

@@ -1,7 +1,7 @@
 //! What there is to know of a team's mission, and its episodes over parameters.
 
-use farsa_body::{BodyId, Kinematics as _, Recorder};
-use farsa_nn::{Controller as _, LeakyLayout};
+use farsa_body::{BodyId, Recorder};
+use farsa_nn::LeakyLayout;
 use farsa_physics::arena::{Arena, Batch, World};
 
 use crate::team::config::{EYES, TeamConfig};

@@ -1,6 +1,6 @@
 //! What is to be seen and told of a walker.
 
-use farsa_body::{BodyId, Collider, Kinematics, Pose, Recorder, Robot, Shape, Surface};
+use farsa_body::{BodyId, Collider, Pose, Robot, Shape, Surface};
 
 use farsa_num::sin_cos;
 use farsa_view::{Channel, Stage};
