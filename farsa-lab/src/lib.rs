@@ -17,12 +17,12 @@ pub use command::cli;
 pub use error::Error;
 pub use evaluation::read_genotypes;
 pub use experiment::{
-    ActuatorExport, Batch, Bodies, ChannelGroup, ControllerExport, CtrnnExport, Description, Episode, EpisodeId,
-    Evaluation, Evaluator, Experiment, Exports, Genotype, InLanes, InWorld, JudgeExport, Lanes, Learner, Lesson,
-    MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Outcome, OwnedNetwork, Parameter,
-    PointExport, Rollout, Search, SensorExport, SensorReading, ServoExport, Setting, Settings, Source, StartExport,
-    SurfaceExport, Task, Value, mean_of_trials, network_parameters, resting_network, run_episode, run_in_lanes,
-    seconds,
+    ActuatorExport, Batch, Bodies, ChannelGroup, Controlled, ControllerExport, CtrnnExport, Description, Episode,
+    EpisodeId, Evaluation, Evaluator, Experiment, Exports, Genotype, InLanes, InWorld, JudgeExport, Lanes, Learner,
+    Lesson, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Objective, Outcome, OwnedNetwork,
+    Parameter, PlanarWorld, PointExport, Rollout, Search, SensorExport, SensorReading, ServoExport, Setting, Settings,
+    SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, mean_of_trials, network_parameters,
+    resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use run::{BestOfRun, ENGINE};
 pub use search::evolution;

@@ -8,11 +8,11 @@ use farsa_physics::arena::{Arena, ArenaError};
 use crate::aggregation::config::AggregationConfig;
 use crate::aggregation::{measure::Gathering, measure::mean_distances};
 use crate::team::config::TeamConfig;
-use crate::team::{life::Mission, life::Moment, life::TeamLife, life::TeamWorld};
+use crate::team::{life::Mission, life::Moment, life::TeamLife};
 use crate::team::{nest::COLORS, nest::on_nest};
 use crate::team::{robots::OUTPUTS, robots::Team, robots::distance};
 use crate::team::{task::eye_groups, task::eye_names};
-use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome};
+use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// Robots that aggregate, with a controller each.
@@ -93,7 +93,7 @@ impl Mission for AggregationMission {
 
     /// Puts the nests and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
     /// generation.
-    fn arrange<C: Controller, W: TeamWorld>(
+    fn arrange<C: Controller, W: PlanarWorld>(
         &mut self,
         team: &Team<C>,
         world: &mut W,
@@ -123,12 +123,12 @@ impl Mission for AggregationMission {
         team.scatter(world, None, &mut stream)
     }
 
-    fn sense<W: TeamWorld>(&self, world: &W, _: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
+    fn sense<W: PlanarWorld>(&self, world: &W, _: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
         rest.copy_from_slice(&[on_nest(world, at)]);
         true
     }
 
-    fn judge<W: TeamWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool {
+    fn judge<W: PlanarWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool {
         let Self { config, nests, homes } = self;
         let centre = |nest: &BodyId| {
             let [x, y, _] = world.pose(*nest).position;

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use farsa_body::{Arrange, BodyId, Handles, JointId, Kinematics, Planar, Recorder};
 use farsa_nn::Perceptron;
-use farsa_physics::arena::{Batch, World};
+use farsa_physics::arena::World;
 
 use crate::discrimination::life::CylinderLife;
 use crate::discrimination::{config::Config, config::EYES, config::ROBOTS};
 use crate::infrared::settings::InfraredModel;
 use crate::worlds::PlanarEngine;
 use farsa_lab::{
-    ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome,
-    Parameter, Rollout, Search, Setting, Settings, Task, mean_of_trials,
+    ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Parameter,
+    Rollout, Search, Setting, Settings, Task, mean_of_trials,
 };
 use farsa_view::{Channel, Links, NodeParameters, Stage};
 
@@ -83,10 +83,7 @@ pub type Layer = Perceptron<Vec<f32>>;
 pub fn evaluator(config: Config) -> Result<InWorld<World, CylinderLife<Layer>>, Error> {
     let (mut world, parked) = (config.world()?, config.parked());
     let life = life(config, &mut world)?;
-    let batch = move |lanes: Lanes| {
-        Batch::new(&parked, lanes.count(), lanes.instructions()).map_err(|error| Error::Other(error.to_string()))
-    };
-    Ok(InWorld::new(world, life).with_lanes(batch))
+    InWorld::in_arena(&parked, life)
 }
 
 /// Evaluates under a configuration, in rapier.

@@ -8,11 +8,11 @@ use farsa_physics::arena::{Arena, ArenaError};
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::field::Field;
 use crate::team::config::TeamConfig;
-use crate::team::{life::Mission, life::Moment, life::TeamLife, life::TeamWorld};
+use crate::team::{life::Mission, life::Moment, life::TeamLife};
 use crate::team::{nest::COLORS, nest::on_nest};
 use crate::team::{robots::OUTPUTS, robots::Team};
 use crate::team::{task::eye_groups, task::eye_names};
-use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome};
+use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// Robots that forage, with a controller each, and the book of their food and energy.
@@ -81,7 +81,7 @@ impl Mission for ForagingMission {
 
     /// Puts the nest and then the robots somewhere, from the stream of [`Domain::Start`] of the id's trial, individual and
     /// generation.
-    fn arrange<C: Controller, W: TeamWorld>(
+    fn arrange<C: Controller, W: PlanarWorld>(
         &mut self,
         team: &Team<C>,
         world: &mut W,
@@ -98,13 +98,13 @@ impl Mission for ForagingMission {
         team.scatter(world, Some((at, config.start_within as f32)), &mut stream)
     }
 
-    fn sense<W: TeamWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
+    fn sense<W: PlanarWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
         let forager = &self.field.robots()[robot];
         rest.copy_from_slice(&[on_nest(world, at), forager.energy as f32]);
         forager.alive
     }
 
-    fn judge<W: TeamWorld>(&mut self, _: &W, moment: Moment<'_>) -> bool {
+    fn judge<W: PlanarWorld>(&mut self, _: &W, moment: Moment<'_>) -> bool {
         for (robot, at) in moment.places.iter().enumerate() {
             self.field.step(robot, at.map(f64::from));
         }

@@ -10,10 +10,10 @@ use farsa_physics::arena::{Arena, ArenaError};
 use crate::predator_prey::{config::NAMES, config::OUTPUTS, config::PredatorPreyConfig};
 use crate::team::config::TeamConfig;
 use crate::team::{eyes::BLUE, eyes::RED};
-use crate::team::{life::Mission, life::Moment, life::TeamLife, life::TeamWorld};
+use crate::team::{life::Mission, life::Moment, life::TeamLife};
 use crate::team::{robots::Team, robots::distance};
 use crate::team::{task::eye_groups, task::eye_names};
-use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome};
+use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// The predator is robot 0, the prey robot 1.
@@ -97,7 +97,7 @@ impl Mission for PredatorPreyMission {
     /// the id's trial, generation, and place within its population.
     ///
     /// The same place in both populations has the same headings: the two lives of a test are one.
-    fn arrange<C: Controller, W: TeamWorld>(
+    fn arrange<C: Controller, W: PlanarWorld>(
         &mut self,
         _: &Team<C>,
         world: &mut W,
@@ -117,7 +117,7 @@ impl Mission for PredatorPreyMission {
     }
 
     /// Capture is told by either robot's contact: one that also collides with a wall may tell of the wall only.
-    fn judge<W: TeamWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool {
+    fn judge<W: PlanarWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool {
         let [predator, prey] = [PREDATOR, PREY].map(|robot| moment.places[robot]);
         self.gap = f64::from(distance(predator, prey)) - 2.0 * self.config.team.robot.radius;
         let met = |a: usize, b: usize| {

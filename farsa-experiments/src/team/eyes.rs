@@ -5,8 +5,8 @@ use farsa_body::{
 };
 
 use crate::infrared::{sensor_rays::SensorRays, sensor_rays::Told};
-use crate::team::life::TeamWorld;
 use crate::team::{config::EYES, config::TeamConfig};
+use farsa_lab::PlanarWorld;
 
 /// What shines red, whatever else shines with it.
 pub(crate) const RED: ColorBand = ColorBand { low: [0.5, 0.0, 0.0], high: [1.0, 0.3, 1.0] };
@@ -84,7 +84,7 @@ impl RobotEyes {
     }
 
     /// Reads the infrared channels and then the camera's \[8 + sectors x colours\].
-    pub fn read<W: TeamWorld>(&mut self, world: &W, out: &mut [f32]) {
+    pub fn read<W: PlanarWorld>(&mut self, world: &W, out: &mut [f32]) {
         let (near, seen) = out.split_at_mut(EYES);
         let Self { body, infrared, ring, things, .. } = self;
         let pose = world.pose(*body);
@@ -120,7 +120,7 @@ impl RobotEyes {
     /// Tells a recorder a ray for each infrared sensor, of the robot where it read `x` last and in the same world.
     ///
     /// One that did not read because its robot does not live tells none.
-    pub(crate) fn tell<W: TeamWorld>(&self, world: &W, x: &[f32], told: Told, recorder: &mut dyn Recorder) {
+    pub(crate) fn tell<W: PlanarWorld>(&self, world: &W, x: &[f32], told: Told, recorder: &mut dyn Recorder) {
         let near = x.get(..EYES).unwrap_or_default();
         let pose = world.pose(self.body);
         if near.iter().all(|x| x.is_finite()) {

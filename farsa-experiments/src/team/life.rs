@@ -1,14 +1,12 @@
 //! A life of a team: robots with a controller each, and a mission that says what it is about.
 
-use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, ColorBand, Contacts, Handles, JointId, Joints, Kinematics, Planar, Rays,
-};
+use farsa_body::ColorBand;
 use farsa_nn::Controller;
 use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::team::config::TeamConfig;
 use crate::team::robots::Team;
-use farsa_lab::{ChannelGroup, Episode, EpisodeId, Error, Outcome};
+use farsa_lab::{ChannelGroup, Episode, EpisodeId, Error, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// Where the robots of a team are, and since when.
@@ -48,7 +46,7 @@ pub trait Mission: Send {
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] where something has no room.
-    fn arrange<C: Controller, W: TeamWorld>(
+    fn arrange<C: Controller, W: PlanarWorld>(
         &mut self,
         team: &Team<C>,
         world: &mut W,
@@ -61,13 +59,13 @@ pub trait Mission: Send {
     }
 
     /// Fills the inputs of the robot at `at` \[m\] that are not its eyes'; false if it does not live.
-    fn sense<W: TeamWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
+    fn sense<W: PlanarWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
         let _ = (world, robot, at, rest);
         true
     }
 
     /// Enters the step that has passed into the account; true if the trial is over before its time.
-    fn judge<W: TeamWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool;
+    fn judge<W: PlanarWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool;
 
     /// What population `own` has earned so far.
     fn earned(&self, own: usize, moment: Moment<'_>) -> f64;
@@ -89,31 +87,6 @@ pub trait Mission: Send {
 
     /// What a recorder is told at every step beside robots and poses.
     fn scalars(&self, moment: Moment<'_>) -> Vec<f64>;
-}
-
-/// A planar world that a team can be in: an arena, or a lane of many.
-pub trait TeamWorld:
-    Planar
-    + Rays
-    + Kinematics
-    + Joints
-    + Actuated
-    + Contacts
-    + Arrange
-    + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
-{
-}
-
-impl<W> TeamWorld for W where
-    W: Planar
-        + Rays
-        + Kinematics
-        + Joints
-        + Actuated
-        + Contacts
-        + Arrange
-        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
-{
 }
 
 /// Robots on a mission, with a controller each.
@@ -149,7 +122,7 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
-    pub fn arrange<W: TeamWorld>(&mut self, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
+    pub fn arrange<W: PlanarWorld>(&mut self, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
         self.mission.arrange(&self.team, world, id)
     }
 
@@ -197,7 +170,7 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
     }
 }
 
-impl<M: Mission, C: Controller, W: TeamWorld> Episode<W> for TeamLife<M, C> {
+impl<M: Mission, C: Controller, W: PlanarWorld> Episode<W> for TeamLife<M, C> {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.failed = self.arrange(world, id).is_err();
         self.team.reset();

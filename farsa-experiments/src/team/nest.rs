@@ -1,8 +1,8 @@
 //! Nests as robots of a team sense them: the ground, and what shines.
 
-use crate::team::life::TeamWorld;
 use farsa_body::ColorBand;
 use farsa_lab::Error;
+use farsa_lab::PlanarWorld;
 
 use crate::team::{eyes::BLUE, eyes::RED};
 
@@ -15,7 +15,7 @@ pub(crate) const NEST: [f64; 3] = [0.45, 0.45, 0.45];
 const DARK: f32 = 0.7;
 
 /// Whether the ground there is a nest's, as a sensor reads it \[0 or 1\].
-pub(crate) fn on_nest<W: TeamWorld>(world: &W, [x, y]: [f32; 2]) -> f32 {
+pub(crate) fn on_nest<W: PlanarWorld>(world: &W, [x, y]: [f32; 2]) -> f32 {
     if world.ground([x, y])[0] < DARK { 1.0 } else { 0.0 }
 }
 

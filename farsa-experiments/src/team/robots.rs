@@ -11,7 +11,7 @@ use farsa_physics::arena::{ArenaError, FreePlace};
 use crate::infrared::sensor_rays::Told;
 use crate::team::config::TeamConfig;
 use crate::team::eyes::RobotEyes;
-use crate::team::life::TeamWorld;
+use farsa_lab::PlanarWorld;
 
 /// The robots of a team in their world, with a controller each.
 ///
@@ -94,7 +94,7 @@ impl<C: Controller> Team<C> {
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
-    pub(crate) fn scatter<W: TeamWorld>(
+    pub(crate) fn scatter<W: PlanarWorld>(
         &self,
         world: &mut W,
         near: Option<([f32; 2], f32)>,
@@ -144,7 +144,7 @@ impl<C: Controller> Team<C> {
     /// Every robot senses, thinks and acts; `more` fills the inputs that are not its eyes', and says whether it lives.
     ///
     /// Who does not live stands still with its LEDs off, and neither senses nor thinks.
-    pub fn act<W: TeamWorld>(
+    pub fn act<W: PlanarWorld>(
         &mut self,
         world: &mut W,
         mut more: impl FnMut(&W, usize, &MobileParts, &mut [f32]) -> bool,
@@ -176,7 +176,7 @@ impl<C: Controller> Team<C> {
 
     /// Tells a recorder the infrared rays of the robots, in the world in which they sensed last: all rays of robot `own`, of
     /// the others those that met something.
-    pub fn tell_rays<W: TeamWorld>(&self, world: &W, own: usize, recorder: &mut dyn Recorder) {
+    pub fn tell_rays<W: PlanarWorld>(&self, world: &W, own: usize, recorder: &mut dyn Recorder) {
         for (robot, member) in self.members.iter().enumerate() {
             let told = if robot == own { Told::All } else { Told::Met };
             member.eyes.tell(world, self.sensed(robot), told, recorder);
@@ -184,7 +184,7 @@ impl<C: Controller> Team<C> {
     }
 
     /// Where a robot is \[m\].
-    pub fn place<W: TeamWorld>(&self, world: &W, robot: usize) -> [f32; 2] {
+    pub fn place<W: PlanarWorld>(&self, world: &W, robot: usize) -> [f32; 2] {
         let [x, y, _] = world.pose(self.members[robot].parts.body).position;
         [x, y]
     }

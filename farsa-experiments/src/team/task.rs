@@ -2,14 +2,14 @@
 
 use farsa_body::{BodyId, Recorder};
 use farsa_nn::LeakyLayout;
-use farsa_physics::arena::{Arena, Batch, World};
+use farsa_physics::arena::{Arena, World};
 
 use crate::team::config::{EYES, TeamConfig};
-use crate::team::life::{Mission, TeamLife, TeamWorld};
+use crate::team::life::{Mission, TeamLife};
 use crate::team::robots::OUTPUTS;
 use farsa_lab::{
-    ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, InWorld, Lanes, Outcome, OwnedNetwork, Parameter,
-    Rollout, Task, mean_of_trials, network_parameters, resting_network, seconds,
+    ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, InWorld, Outcome, OwnedNetwork, Parameter,
+    PlanarWorld, Rollout, Task, mean_of_trials, network_parameters, resting_network, seconds,
 };
 use farsa_view::Stage;
 
@@ -52,14 +52,10 @@ pub(crate) fn evaluator<M: Mission + Clone + 'static>(mission: M) -> Result<InWo
         let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
         life.arrange(&mut world, id).map_err(|error| Error::setting(life.mission().crowded(), error))?;
     }
-    let batch = move |lanes: Lanes| {
-        let arena = parked(arena.clone());
-        Batch::new(&arena, lanes.count(), lanes.instructions()).map_err(|error| Error::Other(error.to_string()))
-    };
-    Ok(InWorld::new(world, TeamTask { life, layout, own: 0, bodies }).with_lanes(batch))
+    InWorld::in_arena(&parked(arena), TeamTask { life, layout, own: 0, bodies })
 }
 
-impl<M: Mission, W: TeamWorld> Episode<W> for TeamTask<M> {
+impl<M: Mission, W: PlanarWorld> Episode<W> for TeamTask<M> {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.life.start(world, id);
     }

@@ -129,6 +129,11 @@ pub enum SensorReading {
         /// Units per metre.
         scale: f32,
     },
+    /// The sensor channel of this number, from 0, as the experiment's own program reads it.
+    Channel {
+        /// Its number.
+        channel: usize,
+    },
     /// `amplitude` in the phase of this name, else 0; the phase is that after the step before, the first one at the start.
     Label {
         /// The phase.
@@ -168,6 +173,11 @@ pub enum MotorDrive {
         actuator: String,
         /// 0 the agonist, which pulls towards the joint's lower limit, 1 the antagonist.
         muscle: usize,
+    },
+    /// The motor channel of this number, from 0, as the experiment's own program drives it.
+    Channel {
+        /// Its number.
+        channel: usize,
     },
     /// The desired positions of servos, from + (to - from) y each.
     Servos {

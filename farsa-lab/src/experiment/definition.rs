@@ -70,3 +70,34 @@ pub trait Experiment: Sync {
     /// [`Error::setting`] for values that are each allowed but do not go together.
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error>;
 }
+
+/// An [`Experiment`] of one condition that is all said by its name, a line, a table and a function.
+#[derive(Clone, Copy)]
+pub struct SimpleExperiment {
+    /// The name on the command line: lower-case letters, digits and hyphens.
+    pub name: &'static str,
+    /// What is asked, in one line.
+    pub summary: &'static str,
+    /// Every setting with its default.
+    pub settings: fn() -> Vec<Setting>,
+    /// Builds what one thread evaluates trials by.
+    pub prepare: fn(&Settings) -> Result<Box<dyn Evaluator>, Error>,
+}
+
+impl Experiment for SimpleExperiment {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn summary(&self) -> &'static str {
+        self.summary
+    }
+
+    fn settings(&self, _: &str) -> Vec<Setting> {
+        (self.settings)()
+    }
+
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        (self.prepare)(settings)
+    }
+}

@@ -10,10 +10,12 @@
 //! - `genotype`: from genes to the parameters that they stand for
 //! - `network_parameters`: the parameters of a network with a bias and a leak for every neuron
 //! - `neurocontroller`: sensors, a network and motors, for episodes of one's own
+//! - `controlled`: an episode of one robot that a network controls, with an objective of one's own
 //! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
 //! - `search_kind`: how an experiment searches, in a word
 //! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
 
+mod controlled;
 pub(crate) mod controller_export;
 pub(crate) mod definition;
 pub(crate) mod episode;
@@ -28,11 +30,12 @@ pub(crate) mod outcome;
 pub(crate) mod search_kind;
 pub(crate) mod settings;
 
+pub use controlled::{Controlled, Objective, PlanarWorld, Trials};
 pub use controller_export::{
     ActuatorExport, ControllerExport, CtrnnExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,
     SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
 };
-pub use definition::Experiment;
+pub use definition::{Experiment, SimpleExperiment};
 pub use episode::{Episode, EpisodeId, NoWorld, run_episode, seconds};
 pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Lesson, Parameter, Task};
 pub use genotype::Genotype;

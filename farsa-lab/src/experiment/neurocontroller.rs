@@ -74,6 +74,11 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         network_parameters(&self.layout, self.range, [0.0, 1.0], "network.range").unwrap_or_default()
     }
 
+    /// The network's layout.
+    pub fn layout(&self) -> &LeakyLayout {
+        &self.layout
+    }
+
     /// Gives the network its parameters and forgets what an earlier episode left in sensors, network and motors; false for
     /// another number of parameters, which changes nothing.
     pub fn load(&mut self, parameters: &[f32]) -> bool {

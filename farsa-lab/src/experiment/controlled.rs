@@ -1,0 +1,218 @@
+//! An episode of one robot that a network controls, with an objective of one's own.
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Planar,
+    Rays, Recorder, Sensor,
+};
+use farsa_nn::Leak;
+use farsa_physics::arena::{Arena, Batch, World};
+use farsa_view::Stage;
+
+use crate::error::Error;
+use crate::experiment::controller_export::{
+    ControllerExport, MotorDrive, MotorExport, NetworkExport, SensorExport, SensorReading,
+};
+use crate::experiment::episode::{Episode, EpisodeId, seconds};
+use crate::experiment::evaluator::{Evaluation, Exports, Parameter, Task};
+use crate::experiment::in_world::{InWorld, Rollout};
+use crate::experiment::lanes::Lanes;
+use crate::experiment::neurocontroller::Neurocontroller;
+use crate::experiment::outcome::{Description, Note, Outcome};
+
+/// A world of wheeled robots: an arena alone, a lane of many, or one in rapier.
+pub trait PlanarWorld:
+    Planar
+    + Rays
+    + Kinematics
+    + Joints
+    + Actuated
+    + Contacts
+    + Arrange
+    + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+{
+}
+
+impl<W> PlanarWorld for W where
+    W: Planar
+        + Rays
+        + Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+{
+}
+
+/// What a robot in a planar world is to do: how a trial starts, and what a step earns.
+pub trait Objective: Clone + Send + 'static {
+    /// Sets the world up for an episode, by random numbers of its own alone, and forgets the one before.
+    fn start<W: PlanarWorld>(&mut self, world: &mut W, id: EpisodeId);
+
+    /// What the step that has passed earns; NaN for a trial that broke down.
+    fn reward<W: PlanarWorld>(&mut self, world: &W) -> f64;
+
+    /// Whether the trial is over before its time.
+    fn is_over(&self) -> bool {
+        false
+    }
+
+    /// Whether the trial succeeded, at its end.
+    fn success(&self) -> bool {
+        false
+    }
+
+    /// What else is worth a column, by name and after every step: a replay shows each step, a test the end of each trial.
+    /// The same names always.
+    fn values(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}
+
+/// How many trials an evaluation has, and how long each takes at most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trials {
+    /// Trials of an evaluation.
+    pub count: usize,
+    /// Most steps of a trial.
+    pub steps: u32,
+    /// Time between two steps \[s\].
+    pub time_step: f64,
+}
+
+/// A robot with a [`Neurocontroller`] and an [`Objective`]: all of an experiment but its name and settings.
+///
+/// Its fitness is the sum of the rewards of all trials. It records what the controller does, exports the network, and in
+/// [`InWorld::in_arena`] runs in lanes.
+#[derive(Clone, Debug)]
+pub struct Controlled<S, M, O> {
+    control: Neurocontroller<S, M>,
+    objective: O,
+    trials: Trials,
+    steps: u32,
+    sum: f64,
+}
+
+impl<S: Channels, M: Channels, O: Objective> Controlled<S, M, O> {
+    /// Episodes of this controller, whose parameters are evaluated, with this objective.
+    pub fn new(control: Neurocontroller<S, M>, objective: O, trials: Trials) -> Self {
+        let names: Vec<&str> = objective.values().into_iter().map(|(name, _)| name).collect();
+        let stage = control.stage().clone().with_scalars(names);
+        Self { control: control.on_stage(stage), objective, trials, steps: 0, sum: 0.0 }
+    }
+}
+
+impl<W, S, M, O> Episode<W> for Controlled<S, M, O>
+where
+    W: PlanarWorld,
+    S: Sensor<W>,
+    M: Motor<W>,
+    O: Objective,
+{
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        (self.steps, self.sum) = (0, 0.0);
+        self.control.reset();
+        self.objective.start(world, id);
+    }
+
+    fn act(&mut self, world: &mut W) {
+        self.control.act(world);
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.steps += 1;
+        self.sum += self.objective.reward(world);
+        let over = self.steps >= self.trials.steps || self.sum.is_nan() || self.objective.is_over();
+        over.then_some(self.sum)
+    }
+
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.control.record(world, recorder);
+        let values: Vec<f64> = self.objective.values().into_iter().map(|(_, value)| value).collect();
+        recorder.scalars(&values);
+        recorder.tick(seconds(self.steps, self.trials.time_step));
+    }
+}
+
+impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S, M, O> {
+    fn parameters(&self) -> Vec<Parameter> {
+        self.control.parameters()
+    }
+
+    fn stage(&self) -> Stage {
+        self.control.stage().clone()
+    }
+
+    fn description(&self) -> Description {
+        self.control.description(self.trials.steps as usize, self.trials.time_step)
+    }
+
+    fn trials(&self) -> usize {
+        self.trials.count
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl<S: Channels + Send, M: Channels + Send, O: Objective> Rollout for Controlled<S, M, O> {
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        self.control.load(evaluation.parameters)
+    }
+
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        self.control.record_parameters(recorder);
+    }
+
+    fn outcome(&self) -> Outcome {
+        let Self { objective, steps, sum, .. } = self;
+        let notes = objective.values().into_iter().map(|(name, value)| (name, Note::from(value))).collect();
+        Outcome { terms: vec![*sum], steps: *steps, success: objective.success(), notes }
+    }
+}
+
+impl<S: Channels + Send, M: Channels + Send, O: Objective> Exports for Controlled<S, M, O> {
+    /// The network, with the numbers of the channels that it reads and writes.
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let stage = self.control.stage();
+        let sensors = stage.sensors.iter().enumerate().map(|(channel, sensor)| SensorExport {
+            name: sensor.name.clone(),
+            reads: SensorReading::Channel { channel },
+        });
+        let motors = stage
+            .outputs
+            .iter()
+            .enumerate()
+            .map(|(channel, motor)| MotorExport { name: motor.name.clone(), drives: MotorDrive::Channel { channel } });
+        Some(ControllerExport {
+            network: NetworkExport::new(self.control.layout(), Leak::Filter, parameters),
+            sensors: sensors.collect(),
+            motors: motors.collect(),
+            actuators: Vec::new(),
+            surfaces: Vec::new(),
+            judge: None,
+            time_step: self.trials.time_step,
+            steps: self.trials.steps,
+        })
+    }
+}
+
+impl<R> InWorld<World, R>
+where
+    R: Rollout + Clone + for<'a> Episode<farsa_physics::arena::Lane<'a>> + 'static,
+{
+    /// Evaluates this episode in an arena, alone or in lanes.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for an arena that cannot be.
+    pub fn in_arena(arena: &Arena, rollout: R) -> Result<Self, Error> {
+        let world = World::new(arena).map_err(|error| Error::Other(error.to_string()))?;
+        let arena = arena.clone();
+        let batch = move |lanes: Lanes| {
+            let batch = Batch::new(&arena, lanes.count(), lanes.instructions());
+            batch.map_err(|error| Error::Other(error.to_string()))
+        };
+        Ok(Self::new(world, rollout).with_lanes::<Batch>(batch))
+    }
+}
