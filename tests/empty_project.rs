@@ -75,3 +75,30 @@ fn whoever_has_nothing_else_can_use_it() {
     }
     fs::remove_dir_all(&place).unwrap();
 }
+
+#[test]
+#[ignore = "builds a crate with the laboratory, a minute: ./ci guides"]
+fn an_experiment_outside_the_workspace_has_the_command() {
+    let source = root().join("farsa-experiments/tests/own-experiment");
+    let place = std::env::temp_dir().join(format!("farsa-own-{}", std::process::id()));
+    fs::create_dir_all(place.join("src")).unwrap();
+    let manifest = fs::read_to_string(source.join("Cargo.toml")).unwrap();
+    let manifest = manifest.replace("../../..", &root().display().to_string());
+    fs::write(place.join("Cargo.toml"), manifest).unwrap();
+    let main = fs::read_to_string(source.join("src/main.rs")).unwrap();
+    assert!(main.lines().count() <= 80, "a whole experiment is to fit in 80 lines");
+    fs::write(place.join("src/main.rs"), main).unwrap();
+    fs::copy(root().join("Cargo.lock"), place.join("Cargo.lock")).unwrap();
+    let output = Command::new(env!("CARGO"))
+        .args(["run", "--quiet", "--offline", "--", "run", "cart", "--generations", "2", "--out", "first"])
+        .current_dir(&place)
+        // The readers of the guides build with the same profile.
+        .env("CARGO_TARGET_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap())
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("2 generations; champion"), "{said}");
+    assert!(place.join("first/fitness.csv").is_file());
+    fs::remove_dir_all(&place).unwrap();
+}

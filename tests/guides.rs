@@ -120,7 +120,7 @@ fn they_are_as_short_as_is_said() {
     assert!((10..=15).contains(&lines), "a sensor of one's own takes {lines} lines");
     assert!(guide("new-sensor").contains(&format!("{lines} lines")), "the guide does not say {lines} lines");
     let lines = read("examples/guide/new_experiment.rs").lines().count();
-    assert!((40..=80).contains(&lines), "a new experiment takes {lines} lines");
+    assert!((40..=60).contains(&lines), "a new experiment takes {lines} lines");
     assert!(guide("new-experiment").contains(&format!("{lines} lines")), "the guide does not say {lines} lines");
 }
 

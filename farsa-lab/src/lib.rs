@@ -20,9 +20,9 @@ pub use experiment::{
     ActuatorExport, Batch, Bodies, ChannelGroup, Controlled, ControllerExport, CtrnnExport, Description, Episode,
     EpisodeId, Evaluation, Evaluator, Experiment, Exports, Genotype, InLanes, InWorld, JudgeExport, Lanes, Learner,
     Lesson, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Objective, Outcome, OwnedNetwork,
-    Parameter, PlanarWorld, PointExport, Rollout, Search, SensorExport, SensorReading, ServoExport, Setting, Settings,
-    SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, mean_of_trials, network_parameters,
-    resting_network, run_episode, run_in_lanes, seconds,
+    Parameter, PlanarWorld, PointExport, Rescored, Rollout, Search, SensorExport, SensorReading, ServoExport, Setting,
+    Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, mean_of_trials,
+    network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use run::{BestOfRun, ENGINE};
 pub use search::evolution;

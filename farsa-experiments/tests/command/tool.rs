@@ -11,43 +11,23 @@ pub(crate) fn farsa() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_farsa"))
 }
 
-/// The command over the experiment of a crate outside the workspace, built by path as a user builds it.
+/// The command over an experiment of a user's own, `tests/own-experiment`; `./ci guides` builds it outside the workspace.
 pub(crate) fn own() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let source = here.join("tests/own-experiment");
-        let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("own-experiment");
-        fs::create_dir_all(root.join("src")).expect("a place for the crate");
-        // A copy, so that the work tree stays as it is; the workspace's lock file pins what is on this machine already.
-        let manifest = fs::read_to_string(source.join("Cargo.toml")).expect("its manifest");
-        let crates = here.parent().expect("the workspace").display().to_string();
-        let manifest = manifest.replace("../../..", &crates);
-        write_if_changed(&root.join("Cargo.toml"), manifest.as_bytes());
-        let main = fs::read_to_string(source.join("src/main.rs")).expect("its main");
-        assert!(main.lines().count() <= 80, "a whole experiment is to fit in 80 lines");
-        write_if_changed(&root.join("src/main.rs"), main.as_bytes());
-        if let Ok(lock) = fs::read(here.join("../Cargo.lock")) {
-            write_if_changed(&root.join("Cargo.lock"), &lock);
-        }
-        // Beside the workspace's own target directory, whose compiled dependencies are used again.
+        // `cargo test` has built it among the examples, unless it was asked for these tests alone.
         let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target directory");
         let build = Command::new(env!("CARGO"))
-            .args(["build", "--offline", "--quiet", "--manifest-path"])
-            .arg(root.join("Cargo.toml"))
+            .args(["build", "--offline", "--quiet", "--workspace", "--example", "own-experiment"])
+            .current_dir(here.parent().expect("the workspace"))
             .env("CARGO_TARGET_DIR", target)
             .stdin(Stdio::null())
             .output()
             .expect("cargo");
         assert!(build.status.success(), "{}", String::from_utf8_lossy(&build.stderr));
-        target.join("debug").join(format!("own-experiment{}", std::env::consts::EXE_SUFFIX))
+        target.join("debug/examples").join(format!("own-experiment{}", std::env::consts::EXE_SUFFIX))
     })
-}
-
-fn write_if_changed(path: &Path, bytes: &[u8]) {
-    if fs::read(path).ok().as_deref() != Some(bytes) {
-        fs::write(path, bytes).expect("a file of the crate");
-    }
 }
 
 /// A directory of a test's own, empty.

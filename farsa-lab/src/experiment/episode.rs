@@ -100,6 +100,14 @@ impl World for NoWorld {
     }
 }
 
+/// Records a row of scalars and ends the recorder's tick at `time` \[s\], if somebody records.
+pub fn record_row(recorder: &mut Option<&mut dyn Recorder>, time: f64, values: &[f64]) {
+    if let Some(recorder) = recorder {
+        recorder.scalars(values);
+        recorder.tick(time);
+    }
+}
+
 /// The time after so many steps \[s\], rounded to the nanosecond: 201 steps of 0.1 s are 20.1 s.
 pub fn seconds(steps: u32, time_step: f64) -> f64 {
     (f64::from(steps) * time_step * 1e9).round() / 1e9

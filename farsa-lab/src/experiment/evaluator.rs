@@ -28,7 +28,7 @@ impl Parameter {
 
 /// What there is to know of an experiment under its settings before anything is evaluated.
 ///
-/// Beside the three that are required, methods say what is so for some experiments only: several populations, exports,
+/// Beside the two that are required, methods say what is so for some experiments only: several populations, exports,
 /// bodies that are made of parameters.
 pub trait Task: Send {
     /// The parameters that an evaluation takes, in their order.
@@ -37,8 +37,10 @@ pub trait Task: Send {
     /// What an episode records at every step, by name: [`Stage::of_scalars`] if it is a row of numbers.
     fn stage(&self) -> Stage;
 
-    /// What the robot senses, does and computes with, for `farsa info`.
-    fn description(&self) -> Description;
+    /// What the robot senses, does and computes with, for `farsa info`; by default the number of parameters alone.
+    fn description(&self) -> Description {
+        Description { parameters: self.parameters().len(), ..Description::default() }
+    }
 
     /// Trials of an evaluation.
     fn trials(&self) -> usize {

@@ -12,6 +12,7 @@
 //! - `neurocontroller`: sensors, a network and motors, for episodes of one's own
 //! - `controlled`: an episode of one robot that a network controls, with an objective of one's own
 //! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
+//! - `rescored`: an experiment that there is, under another fitness
 //! - `search_kind`: how an experiment searches, in a word
 //! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
 
@@ -27,6 +28,7 @@ pub(crate) mod lanes;
 mod network_parameters;
 mod neurocontroller;
 pub(crate) mod outcome;
+mod rescored;
 pub(crate) mod search_kind;
 pub(crate) mod settings;
 
@@ -36,7 +38,7 @@ pub use controller_export::{
     SensorExport, SensorReading, ServoExport, StartExport, SurfaceExport,
 };
 pub use definition::{Experiment, SimpleExperiment};
-pub use episode::{Episode, EpisodeId, NoWorld, run_episode, seconds};
+pub use episode::{Episode, EpisodeId, NoWorld, record_row, run_episode, seconds};
 pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Lesson, Parameter, Task};
 pub use genotype::Genotype;
 pub use in_lanes::{Batch, run_in_lanes};
@@ -45,5 +47,6 @@ pub use lanes::Lanes;
 pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
 pub use neurocontroller::Neurocontroller;
 pub use outcome::{ChannelGroup, Description, Note, Outcome, mean_of_trials};
+pub use rescored::Rescored;
 pub use search_kind::Search;
 pub use settings::{Setting, Settings, Source, Value};

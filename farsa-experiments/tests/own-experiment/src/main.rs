@@ -1,6 +1,8 @@
 //! An experiment of one's own: a cart learns to stop at the middle of its track.
 
-use farsa_lab::{ChannelGroup, Description, Experiment, Job, Outcome, Setting, Settings, Setup, Stage, Tape, cli};
+use farsa_body::Recorder;
+use farsa_lab::{Error, Evaluation, Evaluator, Experiment, Outcome, Parameter, Setting, Settings};
+use farsa_lab::{Stage, Task, cli, record_row};
 use farsa_num::{Domain, Stream};
 
 struct Cart;
@@ -25,7 +27,7 @@ impl Experiment for Cart {
             Setting::whole("trial.steps", 500, 1..=1_000_000).doc("Steps of 10 ms."),
         ]
     }
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Setup>, farsa_lab::Error> {
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
         let (friction, steps) = (settings.number("cart.friction")?, settings.count("trial.steps")?);
         Ok(Box::new(Track { friction, steps: steps as u32, switched: settings.word("cart.motor")? == "switched" }))
     }
@@ -37,9 +39,9 @@ struct Track {
     switched: bool,
 }
 
-impl Setup for Track {
-    fn genes(&self) -> usize {
-        2
+impl Task for Track {
+    fn parameters(&self) -> Vec<Parameter> {
+        ["gain of position", "gain of speed"].map(|name| Parameter::new(name, [-8.0, 8.0])).into()
     }
     fn trials(&self) -> usize {
         3
@@ -47,16 +49,14 @@ impl Setup for Track {
     fn stage(&self) -> Stage {
         Stage::of_scalars(["position [m]", "speed [m/s]", "force [N]"])
     }
-    fn description(&self) -> Description {
-        let sensors = vec![ChannelGroup::new("state", 2, "position [m] and speed [m/s]")];
-        let motors = vec![ChannelGroup::new("force", 1, "-1 to 1 N")];
-        let (network, steps) = ("2-1, linear".into(), self.steps as usize);
-        Description { sensors, motors, network, parameters: 2, steps, step_seconds: 0.01 }
-    }
-    fn live(&mut self, genes: &[u16], job: Job, tape: &mut Tape<'_>) -> Outcome {
-        let mut start = Stream::new(job.seed, Domain::Start, job.trial, 0, job.generation);
+}
+
+impl Evaluator for Track {
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, mut recorder: Option<&mut dyn Recorder>) -> Outcome {
+        let Evaluation { parameters, id, .. } = evaluation;
+        let mut start = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         let (mut x, mut v) = (start.range_f64(-1.0, 1.0), start.range_f64(-1.0, 1.0));
-        let [kx, kv] = [0, 1].map(|gene| f64::from(genes[gene]) / 4096.0 - 8.0);
+        let [kx, kv] = [0, 1].map(|gain| f64::from(parameters[gain]));
         let mut fitness = 0.0;
         for step in 1..=self.steps {
             let force = (kx * x + kv * v).clamp(-1.0, 1.0);
@@ -64,7 +64,7 @@ impl Setup for Track {
             v += 0.01 * (force - self.friction * v);
             x += 0.01 * v;
             fitness += 1.0 / (1.0 + x * x + v * v) / f64::from(self.steps);
-            tape.row(0.01 * f64::from(step), &[x, v, force]);
+            record_row(&mut recorder, 0.01 * f64::from(step), &[x, v, force]);
             if x.abs() > 5.0 {
                 return Outcome::failed(); // Off the track.
             }

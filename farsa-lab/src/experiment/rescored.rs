@@ -1,0 +1,95 @@
+//! An experiment that there is, under another fitness.
+
+use farsa_body::Recorder;
+use farsa_view::Stage;
+
+use crate::error::Error;
+use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Parameter, Task};
+use crate::experiment::lanes::Lanes;
+use crate::experiment::outcome::{Description, Outcome, mean_of_trials};
+
+/// Evaluates as another evaluator does, and puts terms of its own in the place of the outcomes'.
+///
+/// All else is the other's: parameters, populations, lanes, exports. The fitness is the mean of the terms' sums over the trials.
+pub struct Rescored {
+    inner: Box<dyn Evaluator>,
+    names: Vec<String>,
+    score: Box<dyn Fn(&Outcome) -> Vec<f64> + Send>,
+}
+
+impl Rescored {
+    /// Another fitness for `inner`: the names of its terms, and the terms of an outcome.
+    pub fn new<N: Into<String>>(
+        inner: Box<dyn Evaluator>,
+        names: impl IntoIterator<Item = N>,
+        score: impl Fn(&Outcome) -> Vec<f64> + Send + 'static,
+    ) -> Self {
+        Self { inner, names: names.into_iter().map(Into::into).collect(), score: Box::new(score) }
+    }
+}
+
+/// The outcome with other terms; one that failed stays failed.
+fn rescore(score: &dyn Fn(&Outcome) -> Vec<f64>, outcome: Outcome) -> Outcome {
+    if outcome.is_finite() { Outcome { terms: score(&outcome), ..outcome } } else { outcome }
+}
+
+impl Task for Rescored {
+    fn parameters(&self) -> Vec<Parameter> {
+        self.inner.parameters()
+    }
+    fn stage(&self) -> Stage {
+        self.inner.stage()
+    }
+    fn description(&self) -> Description {
+        self.inner.description()
+    }
+    fn trials(&self) -> usize {
+        self.inner.trials()
+    }
+    fn terms(&self) -> Vec<String> {
+        self.names.clone()
+    }
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean_of_trials(trials)
+    }
+    fn populations(&self) -> Vec<String> {
+        self.inner.populations()
+    }
+    fn exports(&self) -> Option<&dyn Exports> {
+        self.inner.exports()
+    }
+    fn bodies(&self) -> Option<&dyn Bodies> {
+        self.inner.bodies()
+    }
+}
+
+impl Evaluator for Rescored {
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
+        rescore(&self.score, self.inner.evaluate(evaluation, recorder))
+    }
+
+    fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
+        if self.inner.in_lanes().is_some() { Some(self) } else { None }
+    }
+
+    fn learner(&mut self) -> Option<&mut dyn Learner> {
+        self.inner.learner()
+    }
+}
+
+impl InLanes for Rescored {
+    fn use_lanes(&mut self, lanes: Lanes) -> Result<(), Error> {
+        self.inner.in_lanes().map_or(Ok(()), |inner| inner.use_lanes(lanes))
+    }
+
+    fn evaluate_all<'p>(
+        &mut self,
+        next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
+        done: &mut dyn FnMut(usize, Outcome),
+    ) {
+        let Self { inner, score, .. } = self;
+        if let Some(inner) = inner.in_lanes() {
+            inner.evaluate_all(next, &mut |number, outcome| done(number, rescore(score, outcome)));
+        }
+    }
+}
