@@ -135,7 +135,7 @@ impl<C: Controller> Episode<World<f32>> for Led<'_, C> {
         self.senses.read(world, &mut self.x);
         let (positions, torques) = plan.torques(world, self.time);
         let wanted = wanted(self.statics, plan, &positions, &torques, self.time);
-        self.positions = positions.to_vec();
+        self.positions = positions;
         let (mut own, mut y) = ([0.0; OUTPUTS], [0.0; OUTPUTS]);
         self.network.step(&self.x, &mut own);
         self.record.x.extend_from_slice(&self.x);

@@ -67,11 +67,9 @@ pub fn run_in_lanes<B, E>(
     loop {
         for (index, (episode, running)) in episodes.iter_mut().zip(&mut running).enumerate() {
             let mut lane = batch.lane(index);
-            if *running {
-                if let Some(sum) = episode.judge(&mut lane) {
-                    end(episode, sum);
-                    *running = false;
-                }
+            if *running && let Some(sum) = episode.judge(&mut lane) {
+                end(episode, sum);
+                *running = false;
             }
             while !*running && more {
                 // Once there is none left, nobody asks again.

@@ -14,8 +14,11 @@ use crate::experiment::outcome::{Description, Outcome, mean_of_trials};
 pub struct Rescored {
     inner: Box<dyn Evaluator>,
     names: Vec<String>,
-    score: Box<dyn Fn(&Outcome) -> Vec<f64> + Send>,
+    score: Score,
 }
+
+/// The terms of an outcome.
+type Score = Box<dyn Fn(&Outcome) -> Vec<f64> + Send>;
 
 impl Rescored {
     /// Another fitness for `inner`: the names of its terms, and the terms of an outcome.
@@ -29,7 +32,7 @@ impl Rescored {
 }
 
 /// The outcome with other terms; one that failed stays failed.
-fn rescore(score: &dyn Fn(&Outcome) -> Vec<f64>, outcome: Outcome) -> Outcome {
+fn rescore(score: &Score, outcome: Outcome) -> Outcome {
     if outcome.is_finite() { Outcome { terms: score(&outcome), ..outcome } } else { outcome }
 }
 

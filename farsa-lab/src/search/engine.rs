@@ -41,19 +41,19 @@ impl Evolution {
         let refused = |error: EvoError| Error::Other(format!("{name}: {error}"));
         let (populations, genes) = (evaluator.populations().len(), evaluator.parameters().len());
         match (search, populations) {
-            (_, 0) => Err(Error::Other(format!("{}: no population", name))),
+            (_, 0) => Err(Error::Other(format!("{name}: no population"))),
             (Search::OnePlusOne, 1) => {
                 let config = evolution::one_plus_one(settings, genes, gene_bits)?;
                 OnePlusOne::new(config, seed).map(Self::OnePlusOne).map_err(refused)
             }
             (Search::OnePlusOne, _) => {
-                Err(Error::Other(format!("{}: a steady-state search of several populations", name)))
+                Err(Error::Other(format!("{name}: a steady-state search of several populations")))
             }
             (Search::Learning, 1) => {
                 let learner = evaluator.learner().ok_or_else(|| Error::Other(NO_LEARNER.into()))?;
                 Learning::new(learner, seed).map(Self::Learning).map_err(refused)
             }
-            (Search::Learning, _) => Err(Error::Other(format!("{}: several populations that learn", name))),
+            (Search::Learning, _) => Err(Error::Other(format!("{name}: several populations that learn"))),
             (Search::Truncation, populations) => {
                 let config = evolution::config(settings, genes, gene_bits)?;
                 if populations == 1 {
