@@ -10,8 +10,9 @@ use std::hint::black_box;
 
 use farsa::nn::{Controller, LeakyLayout};
 use farsa::physics::articulated::Batch;
-use farsa_experiments::reach_grasp_lift::{Config, Lives};
-use farsa_experiments::{Job, Recording, Setup as _, Tape};
+use farsa_experiments::reach_grasp_lift::{Config, evaluator};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator as _, Genotype, Task as _};
+use farsa_view::Recording;
 use scene::{Aba, Lanes, Loop};
 
 /// Repetitions of every case; counts are divided by it.
@@ -53,13 +54,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             });
         }
         "life" | "recorded" => {
-            let mut setup = Lives::new(Config { steps: 6 * TIMES as u32, ..Config::default() })?;
-            let genes: Vec<u16> = (0..setup.genes() as u32).map(|i| (i * 40503) as u16).collect();
-            let mut recording = Recording::new(setup.stage());
+            let mut evaluator = evaluator(Config { steps: 6 * TIMES as u32, ..Config::default() })?;
+            let genotype = Genotype::new(&evaluator.parameters(), 16);
+            let genes: Vec<u16> = (0..genotype.genes() as u32).map(|i| (i * 40503) as u16).collect();
+            let parameters = genotype.decode(&genes).ok_or("other genes")?;
+            let evaluation =
+                Evaluation { number: 0, parameters: &parameters, opponents: &[], id: EpisodeId::default() };
+            let mut recording = Recording::new(evaluator.stage());
             let recorded = case == "recorded";
-            let mut tape = if recorded { Tape::to(&mut recording) } else { Tape::off() };
-            // One life of as many steps as the other cases have repetitions.
-            measured_once(|| drop(setup.live(&genes, Job::default(), &mut tape)));
+            // One episode of as many steps as the other cases have repetitions.
+            measured_once(|| {
+                if recorded {
+                    evaluator.evaluate(evaluation, Some(&mut recording));
+                } else {
+                    evaluator.evaluate(evaluation, None);
+                }
+            });
             assert_eq!(recording.times().len(), if recorded { 6 * TIMES } else { 0 });
         }
         "network" => {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use farsa::body::{ArmAndHand, Finger, Motor as _, Pose, Twist};
 use farsa::num::Scalar;
-use farsa_experiments::Job;
 use farsa_experiments::reach_grasp_lift::{Motors, Plan, Scene, Statics, Timetable};
+use farsa_lab::EpisodeId;
 
 use crate::drive::{Press, Sink, hold};
 use crate::engine::Engine;
@@ -35,9 +35,9 @@ fn at_rest(scene: &Scene, q: &[f64], [x, y]: [f64; 2]) -> Phase {
 pub(crate) fn grasps<E: Engine>(scene: &Arc<Scene>, engine: &mut E, starts: u32, blind: bool) -> Result<(), Failure> {
     let (statics, motors) = (Arc::new(Statics::new(scene)?), scene.motors()?);
     for start in 0..starts {
-        let job = Job { seed: 1, generation: start / 4, trial: start % 4, ..Job::default() };
-        let (q, place) = scene.start(job);
-        let believed = if blind { scene.config.sphere_start(job.trial as usize) } else { place };
+        let id = EpisodeId { seed: 1, generation: start / 4, trial: start % 4, ..EpisodeId::default() };
+        let (q, place) = scene.start(id);
+        let believed = if blind { scene.config.sphere_start(id.trial as usize) } else { place };
         let plan = Plan::new(Timetable::default(), Arc::clone(&statics), &q, believed)?;
         let (held, slip, deepest) = grasp(scene, engine, &motors, &plan, &at_rest(scene, &q, place))?;
         println!("{} {slip:.6} {deepest:.3}", u8::from(held));
@@ -76,7 +76,7 @@ fn grasp<E: Engine>(
 /// A line: how deep the sphere has sunk into the table after 5 s of rest \[um\], and with what force \[N\].
 pub(crate) fn rest<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(), Failure> {
     let statics = Statics::new(scene)?;
-    let (q, place) = scene.start(Job::default());
+    let (q, place) = scene.start(EpisodeId::default());
     let nothing = Press { body: ArmAndHand::PALM, point: scene.arm.palm_centre, force: 0.0 };
     let mut seen = engine.start(&at_rest(scene, &q, place), HOLD)?;
     for _ in 0..HOLD {

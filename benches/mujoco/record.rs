@@ -7,7 +7,7 @@ use std::sync::Arc;
 use farsa::body::{ArmAndHand, Arrange, Motor as _, Pose, Tabletop, Twist, World as _};
 use farsa::num::{Domain, Stream, sin_cos};
 use farsa_experiments::reach_grasp_lift::{Scene, ScriptLife, Statics, Timetable};
-use farsa_experiments::{Job, Life};
+use farsa_lab::{Episode, EpisodeId};
 
 use crate::drive::{Press, Sink, hold};
 use crate::phase::{Failure, MUSCLES, Phase, STEPS, WORDS, command, world};
@@ -17,7 +17,7 @@ fn scripted(scene: &Arc<Scene>) -> Result<[Phase; 2], Failure> {
     let mut world = world::<f32>(scene, scene.config.substeps, true)?;
     let mut script = ScriptLife::new(Arc::clone(scene), Timetable::default())?;
     let motors = scene.motors()?;
-    script.start(&mut world, Job::default());
+    script.start(&mut world, EpisodeId::default());
     let mut phases = [Phase::at(&world), Phase::at(&world)];
     // Lifted since 4.4 s.
     let lifted = 600 - 150;
@@ -25,7 +25,7 @@ fn scripted(scene: &Arc<Scene>) -> Result<[Phase; 2], Failure> {
         if tick == lifted {
             phases[1] = Phase::at(&world);
         }
-        script.tick(&mut world);
+        script.act(&mut world);
         let mut sink = Sink::default();
         motors.clone().drive(script.done(), &mut sink);
         if tick < STEPS {
@@ -34,6 +34,7 @@ fn scripted(scene: &Arc<Scene>) -> Result<[Phase; 2], Failure> {
             phases[1].commands.push(sink.words());
         }
         world.step();
+        Episode::judge(&mut script, &mut world);
     }
     if script.judge().succeeds() { Ok(phases) } else { Err("the script does not hold the sphere".into()) }
 }
@@ -70,7 +71,7 @@ fn on_table(scene: &Scene) -> Result<Phase, Failure> {
 /// Quick motion: every muscle follows a sine of its own between 0.5 and 2 Hz; nothing touches.
 fn waves(scene: &Scene) -> Result<Phase, Failure> {
     let mut world = world::<f32>(scene, scene.config.substeps, false)?;
-    scene.arrange(&mut world, Job::default());
+    scene.arrange(&mut world, EpisodeId::default());
     let mut phase = Phase { contacts: false, ..Phase::at(&world) };
     let mut stream = Stream::new(1, Domain::Motor, 0, 0, 0);
     let waves: [[f64; 2]; 2 * MUSCLES] =

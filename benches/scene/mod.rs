@@ -12,7 +12,7 @@ use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Domain, Instructions, Stream};
 use farsa::physics::articulated::{Batch, Model, Options, Scratch, World, accelerations};
 use farsa_experiments::reach_grasp_lift::{Config, Motors, Scene, ScriptLife, Senses, Statics, Timetable};
-use farsa_experiments::{Job, Life};
+use farsa_lab::{Episode, EpisodeId};
 
 type Failure = Box<dyn Error>;
 
@@ -62,8 +62,8 @@ impl Loop {
     /// The arm held at its first start posture: nothing touches but the sphere the table.
     pub(crate) fn free() -> Result<Self, Failure> {
         let (scene, mut world) = Self::scene()?;
-        scene.arrange(&mut world, Job::default());
-        let joints = scene.start(Job::default()).0;
+        scene.arrange(&mut world, EpisodeId::default());
+        let joints = scene.start(EpisodeId::default()).0;
         let statics = Statics::new(&scene)?;
         let (activations, _) = statics.activations(&joints, &statics.gravity_torques(&joints));
         let muscles = activations.into_iter().flatten().map(|a| a as f32);
@@ -74,10 +74,11 @@ impl Loop {
     pub(crate) fn grasp() -> Result<Self, Failure> {
         let (scene, mut world) = Self::scene()?;
         let mut script = ScriptLife::new(Arc::clone(&scene), Timetable::default())?;
-        script.start(&mut world, Job::default());
+        script.start(&mut world, EpisodeId::default());
         for _ in 0..560 {
-            script.tick(&mut world);
+            script.act(&mut world);
             world.step();
+            Episode::judge(&mut script, &mut world);
         }
         if !script.judge().succeeds() {
             println!("note: the script does not hold the sphere ({:?})", script.judge().trial());

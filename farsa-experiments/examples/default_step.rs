@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use farsa_body::{Actuated, ActuatorId, Arrange, Pose, Robot, Tabletop, Twist, World as _};
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptLife, TRIALS, Timetable};
-use farsa_experiments::{Job, Life};
+use farsa_lab::{EpisodeId, run_episode};
 use farsa_num::{Domain, Stream, sin_cos};
 use farsa_physics::articulated::{Model, Options, Precision, World};
 
@@ -75,10 +75,8 @@ fn grasps(config: &Config, substeps: u32) -> usize {
     let mut life = ScriptLife::new(Arc::clone(&scene), Timetable::default()).expect("a script");
     (0..TRIALS)
         .filter(|trial| {
-            life.start(&mut world, Job { seed: 2010, generation: 0, individual: 0, trial: *trial as u32 });
-            while life.tick(&mut world).is_none() {
-                world.step();
-            }
+            let id = EpisodeId { seed: 2010, generation: 0, individual: 0, trial: *trial as u32 };
+            run_episode(&mut life, &mut world, id, None);
             life.judge().succeeds()
         })
         .count()

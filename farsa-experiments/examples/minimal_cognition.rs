@@ -5,8 +5,9 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use farsa_experiments::MinimalCognition;
 use farsa_experiments::minimal_cognition::{AgentLife, Config, Object, Wiring};
-use farsa_experiments::{Job, read_genotypes};
+use farsa_lab::{EpisodeId, Experiment as _, Genotype, read_genotypes};
 
 /// The part of the line that is drawn, to both sides of the object.
 const SIDE: f64 = 100.0;
@@ -16,7 +17,7 @@ fn scores(life: &mut AgentLife, trials: u32) -> [f64; 2] {
     let kinds = life.config().trials;
     let mut sums = [0.0; 2];
     for trial in 0..trials {
-        life.start(Job { seed: 1 | 1 << 63, generation: trial / kinds, individual: 0, trial: trial % kinds });
+        life.arrange(EpisodeId { seed: 1 | 1 << 63, generation: trial / kinds, individual: 0, trial: trial % kinds });
         while !life.ended() {
             life.step();
         }
@@ -84,8 +85,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [genotype, out] = &arguments[..] else { return Err("usage: minimal_cognition GENOTYPE.gen OUT.svg".into()) };
     let config = Config::default();
     let wiring = Wiring::new(&config)?;
-    let genes = read_genotypes(Path::new(genotype), wiring.genes(), 16)?.pop().ok_or("no genotype")?;
-    let mut life = AgentLife::new(config, wiring.decode(&genes).ok_or("other genes")?)?;
+    let bits = MinimalCognition.gene_bits();
+    let genes = read_genotypes(Path::new(genotype), wiring.genes(), bits)?.pop().ok_or("no genotype")?;
+    let parameters = Genotype::new(wiring.parameters(), bits).decode(&genes);
+    let parameters = parameters.and_then(|parameters| wiring.expand(&parameters)).ok_or("other genes")?;
+    let mut life = AgentLife::new(config, parameters)?;
     let [circles, diamonds] = scores(&mut life, 10_000);
     println!("circles {circles:.4}, diamonds {diamonds:.4}, all {:.4}", 0.5 * (circles + diamonds));
     let apart = left_from_right(&mut life);

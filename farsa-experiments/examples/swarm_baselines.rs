@@ -9,9 +9,10 @@ use std::process::ExitCode;
 
 use farsa_evo::randomize;
 use farsa_experiments::aggregation::{AggregationConfig, AggregationLife, BeaconSeeker, aggregate};
-use farsa_experiments::foraging::{ForagingConfig, ForagingLife, HomingForager, TeamNetwork, forage};
+use farsa_experiments::foraging::{ForagingConfig, ForagingLife, HomingForager, forage};
 use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyLife, chase};
-use farsa_experiments::{Aggregation, BestOfRun, Error, Foraging, Job, Note, Outcome, PredatorPrey, Tape};
+use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
+use farsa_lab::{BestOfRun, EpisodeId, Error, Evaluation, Evaluator, Genotype, Note, Outcome, OwnedNetwork};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 
@@ -34,15 +35,20 @@ fn told(values: &[f64]) -> String {
     format!("{mean:.2} ± {half:.2}")
 }
 
-fn jobs() -> impl Iterator<Item = Job> {
-    (FIRST..).take(COUNT).map(|seed| Job { seed, ..Job::default() })
+fn ids() -> impl Iterator<Item = EpisodeId> {
+    (FIRST..).take(COUNT).map(|seed| EpisodeId { seed, ..EpisodeId::default() })
 }
 
-/// A genome of its own for every start.
-fn random_genes(count: usize, job: Job, which: u32) -> Vec<u16> {
-    let mut genes = vec![0; count];
-    randomize(&mut genes, &mut Stream::new(job.seed, Domain::InitialGenome, which, 0, 0));
-    genes
+/// The parameters of a genome of its own for every start.
+fn random(genotype: &Genotype, id: EpisodeId, which: u32) -> Vec<f32> {
+    let mut genes = vec![0; genotype.genes()];
+    randomize(&mut genes, &mut Stream::new(id.seed, Domain::InitialGenome, which, 0, 0));
+    genotype.decode(&genes).unwrap_or_default()
+}
+
+/// How all these experiments read genes: with 16 bits.
+fn genotype(evaluator: &dyn Evaluator) -> Genotype {
+    Genotype::new(&evaluator.parameters(), 16)
 }
 
 fn earned(outcomes: &[Outcome]) -> Vec<f64> {
@@ -65,23 +71,24 @@ fn row(who: &str, outcomes: &[Outcome], evolved: &[Outcome]) -> String {
 }
 
 fn team(best: &mut BestOfRun) -> Result<(), Error> {
-    let BestOfRun { condition, settings, genomes, setup, .. } = best;
-    let evolved: Vec<Outcome> = jobs().map(|job| setup.live(&genomes[0], job, &mut Tape::off())).collect();
-    let count = setup.genes();
-    let random: Vec<Outcome> =
-        jobs().map(|job| setup.live(&random_genes(count, job, 0), job, &mut Tape::off())).collect();
+    let BestOfRun { condition, settings, parameters, evaluator, .. } = best;
+    let genotype = genotype(evaluator.as_ref());
+    let mut evaluate =
+        |parameters: &[f32], id| evaluator.evaluate(Evaluation { number: 0, parameters, opponents: &[], id }, None);
+    let evolved: Vec<Outcome> = ids().map(|id| evaluate(&parameters[0], id)).collect();
+    let random: Vec<Outcome> = ids().map(|id| evaluate(&random(&genotype, id, 0), id)).collect();
     let by_hand: Vec<Outcome> = if best.experiment == "foraging" {
         let config = ForagingConfig::of_condition(condition).read(settings)?;
         let mut world = config.world()?;
         let robots = vec![HomingForager::new(&config); config.team.robots];
         let mut life = ForagingLife::new(config, robots)?;
-        jobs().map(|job| forage(&mut life, &mut world, job)).collect()
+        ids().map(|id| forage(&mut life, &mut world, id)).collect()
     } else {
         let config = AggregationConfig::of_condition(condition).read(settings)?;
         let mut world = config.world()?;
         let robots = vec![BeaconSeeker::new(&config); config.team.robots];
         let mut life = AggregationLife::new(config, robots)?;
-        jobs().map(|job| aggregate(&mut life, &mut world, job)).collect()
+        ids().map(|id| aggregate(&mut life, &mut world, id)).collect()
     };
     let names: Vec<&str> = evolved[0].notes.iter().map(|(name, _)| *name).collect();
     println!("| controller | fitness | evolved more by | {} |", names.join(" | "));
@@ -94,7 +101,7 @@ fn team(best: &mut BestOfRun) -> Result<(), Error> {
 
 /// Who drives a robot.
 enum Mind {
-    Network(TeamNetwork),
+    Network(OwnedNetwork),
     ByHand(Chaser),
 }
 
@@ -129,24 +136,24 @@ const WHO: [&str; 3] = ["evolved", "hand-written", "random genomes"];
 
 fn pair(best: &BestOfRun) -> Result<(), Error> {
     let config = PredatorPreyConfig::default().read(&best.settings)?;
-    let count = best.setup.genes();
+    let genotype = genotype(best.evaluator.as_ref());
     let mut world = config.world()?;
-    let mind = |who: usize, robot: usize, job: Job| {
+    let mind = |who: usize, robot: usize, id: EpisodeId| {
         Ok::<Mind, Error>(match (who, robot) {
-            (0, robot) => Mind::Network(config.network(&best.genomes[robot])?),
+            (0, robot) => Mind::Network(config.network(&best.parameters[robot])?),
             (1, 0) => Mind::ByHand(Chaser::predator(&config)),
             (1, _) => Mind::ByHand(Chaser::prey(&config)),
-            (_, robot) => Mind::Network(config.network(&random_genes(count, job, robot as u32))?),
+            (_, robot) => Mind::Network(config.network(&random(&genotype, id, robot as u32))?),
         })
     };
     let mut rewards = vec![vec![Vec::new(); 3]; 3];
     let mut captures = [[0; 3]; 3];
     for predator in 0..3 {
         for prey in 0..3 {
-            for job in jobs() {
-                let minds = [mind(predator, 0, job)?, mind(prey, 1, job)?];
+            for id in ids() {
+                let minds = [mind(predator, 0, id)?, mind(prey, 1, id)?];
                 let mut life = PredatorPreyLife::new(config.clone(), minds)?;
-                rewards[predator][prey].push(chase(&mut life, &mut world, job).terms[0]);
+                rewards[predator][prey].push(chase(&mut life, &mut world, id).terms[0]);
                 captures[predator][prey] += u32::from(life.captured());
             }
         }
@@ -184,7 +191,7 @@ fn compare(directory: &Path) -> Result<(), Error> {
     let mut best = BestOfRun::read(directory, &[&Foraging, &Aggregation, &PredatorPrey])?;
     let BestOfRun { experiment, condition, seed, generation, .. } = &best;
     println!("\n{experiment} {condition}, run of seed {seed}, best of generation {generation}:\n");
-    if best.genomes.len() > 1 { pair(&best) } else { team(&mut best) }
+    if best.parameters.len() > 1 { pair(&best) } else { team(&mut best) }
 }
 
 fn main() -> ExitCode {

@@ -4,10 +4,9 @@
 //! Lengths are in legs, masses in hips, times in sqrt(leg length / gravity).
 
 use farsa_body::World as _;
-use farsa_experiments::Job;
-use farsa_experiments::Life as _;
 use farsa_experiments::WalkingModel;
 use farsa_experiments::passive_walker::{Config, Launch, Legs, Rules, Walk, Walker, WalkerLife};
+use farsa_lab::{Episode as _, EpisodeId};
 use farsa_num::Scalar;
 use farsa_physics::articulated::World;
 
@@ -41,7 +40,7 @@ fn pace(slope: f64, foot_mass: f64, stiffness: f64, [angle, rate, swing]: [f64; 
     let mut world = World::new(model);
     let launch = Launch { angles: [angle, -angle], rates: [rate, swing] };
     let mut life = WalkerLife::new(config.walker, parts, config.walk, launch, None);
-    life.start(&mut world, Job::default());
+    life.start(&mut world, EpisodeId::default());
     let mut periods = [0.0; 2];
     loop {
         world.step();

@@ -4,8 +4,9 @@
 use core::f32::consts::PI;
 
 use farsa_body::{Kinematics as _, World as _};
+use farsa_experiments::Braitenberg;
 use farsa_experiments::braitenberg::{Config, Vehicle, VehicleLife};
-use farsa_experiments::{Braitenberg, Experiment, Job, Note, Outcome, Settings, Tape, Value};
+use farsa_lab::{Episode as _, EpisodeId, Evaluation, Experiment as _, Note, Outcome, Settings, Value};
 use farsa_physics::arena::World;
 use proptest::prelude::*;
 
@@ -19,7 +20,7 @@ fn drive(vehicle: Vehicle, [distance, direction, heading]: [f32; 3], steps: u32)
     loop {
         life.act(&mut world);
         world.step();
-        let end = life.judge(&world);
+        let end = life.judge(&mut world);
         let pose = world.pose(life.parts().body);
         way.push([pose.position[0] - 1.0, pose.position[1] - 1.0, pose.heading()]);
         if end.is_some() {
@@ -32,9 +33,12 @@ fn drive(vehicle: Vehicle, [distance, direction, heading]: [f32; 3], steps: u32)
 fn distances_change_as_the_names_say() {
     for vehicle in Vehicle::ALL {
         let settings = Settings::new(Braitenberg.settings(vehicle.name())).unwrap();
-        let mut setup = Braitenberg.prepare(vehicle.name(), &settings).unwrap();
-        let job = |trial| Job { seed: 1, trial, ..Job::default() };
-        let mut outcomes: Vec<Outcome> = (0..400).map(|trial| setup.live(&[0], job(trial), &mut Tape::off())).collect();
+        let mut evaluator = Braitenberg.prepare(vehicle.name(), &settings).unwrap();
+        let mut evaluate = |trial| {
+            let id = EpisodeId { seed: 1, trial, ..EpisodeId::default() };
+            evaluator.evaluate(Evaluation { number: 0, parameters: &[0.0], opponents: &[], id }, None)
+        };
+        let mut outcomes: Vec<Outcome> = (0..400).map(&mut evaluate).collect();
         if vehicle == Vehicle::Love {
             // It comes if the lamp is before it and farther than where it comes to rest; from behind it leaves unawares.
             let number = |outcome: &Outcome, name: &str| {
@@ -48,7 +52,7 @@ fn distances_change_as_the_names_say() {
             });
         }
         let right = outcomes.iter().filter(|outcome| outcome.success).count();
-        println!("{}: {right} of {}, approach {:.3} m", vehicle.name(), outcomes.len(), setup.fitness(&outcomes));
+        println!("{}: {right} of {}, approach {:.3} m", vehicle.name(), outcomes.len(), evaluator.fitness(&outcomes));
         assert!(
             outcomes.len() > 80 && 100 * right >= 95 * outcomes.len(),
             "{vehicle:?}: {right} of {}",

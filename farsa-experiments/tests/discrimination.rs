@@ -1,4 +1,4 @@
-//! `discrimination`: the original's genotypes, the starts of trials, lives.
+//! `discrimination`: the original's genotypes, the starts of trials, trials.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
@@ -6,9 +6,11 @@ use std::process::Command;
 
 use farsa_body::{Arrange as _, Kinematics as _, Pose, Twist};
 use farsa_experiments::discrimination::{Config, CylinderLife, InfraredModel};
-use farsa_experiments::{Discrimination, DiscriminationCylinders, Experiment, Job, Life, Settings, Tape, Value, live};
+use farsa_experiments::{Discrimination, DiscriminationCylinders};
+use farsa_lab::{Episode as _, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Settings, Value, run_episode};
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
+use farsa_view::Recording;
 
 fn fixtures() -> Option<PathBuf> {
     let directory = std::env::var_os("FARSA_FIXTURES").map(|path| Path::new(&path).join("khepera"));
@@ -60,6 +62,16 @@ fn genotypes_of_the_original_stay_near_as_long_as_in_an_independent_replay() {
     }
 }
 
+/// The parameters of these genes.
+fn parameters(experiment: &dyn Experiment, evaluator: &dyn Evaluator, gene: impl Fn(usize) -> u16) -> Vec<f32> {
+    let genotype = Genotype::new(&evaluator.parameters(), experiment.gene_bits());
+    genotype.decode(&(0..genotype.genes()).map(gene).collect::<Vec<_>>()).unwrap()
+}
+
+fn alone(parameters: &[f32], id: EpisodeId) -> Evaluation<'_> {
+    Evaluation { number: 0, parameters, opponents: &[], id }
+}
+
 /// A controller of the layer with all weights 0: the robot drives straight on or stands.
 fn constant(config: &Config, outputs: [f32; 2]) -> Perceptron<Vec<f32>> {
     let inputs = config.inputs();
@@ -76,7 +88,7 @@ fn trials_start_where_the_rules_allow() {
         let mut life = CylinderLife::new(config.clone(), constant(&config, [0.0; 2])).unwrap();
         let (mut starts, mut quadrants) = (Vec::new(), [0; 4]);
         for trial in 0..1000 {
-            life.arrange(&mut world, Job { seed: 3, trial, ..Job::default() }).unwrap();
+            life.arrange(&mut world, EpisodeId { seed: 3, trial, ..EpisodeId::default() }).unwrap();
             let robot = world.pose(life.parts().body).position.map(f64::from);
             let to_wall = |[x, y, _]: [f64; 3]| {
                 let [w, h] = config.size;
@@ -98,13 +110,14 @@ fn trials_start_where_the_rules_allow() {
             starts.push(robot);
         }
         assert!(quadrants.iter().all(|count| (200..300).contains(count)), "{quadrants:?}");
-        let mut again = |job| {
-            life.arrange(&mut world, job).unwrap();
+        let mut again = |id| {
+            life.arrange(&mut world, id).unwrap();
             world.pose(life.parts().body).position.map(f64::from)
         };
-        let job = Job { seed: 3, trial: 5, ..Job::default() };
-        assert_eq!(again(job), starts[5]);
-        for other in [Job { seed: 4, ..job }, Job { individual: 1, ..job }, Job { generation: 1, ..job }] {
+        let id = EpisodeId { seed: 3, trial: 5, ..EpisodeId::default() };
+        assert_eq!(again(id), starts[5]);
+        for other in [EpisodeId { seed: 4, ..id }, EpisodeId { individual: 1, ..id }, EpisodeId { generation: 1, ..id }]
+        {
             assert_ne!(again(other), starts[5]);
         }
     }
@@ -118,7 +131,7 @@ fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
     let mut life = CylinderLife::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
     // A trial whose cylinder stands in the middle; the robot drives towards it, and from beside it to the wall.
     let place = |life: &mut CylinderLife<Perceptron<Vec<f32>>>, world: &mut World, trial| {
-        life.begin(world, Job { trial, ..Job::default() });
+        life.start(world, EpisodeId { trial, ..EpisodeId::default() });
         world.pose(life.cylinders()[0]).position
     };
     let central = |at: [f32; 3]| at[..2].iter().all(|x| (x - 0.2).abs() < 0.05);
@@ -131,7 +144,7 @@ fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
         let fitness = loop {
             life.act(&mut world);
             farsa_body::World::step(&mut world);
-            let end = life.judge(&world);
+            let end = life.judge(&mut world);
             distances.push(life.trial().distance[0]);
             if let Some(fitness) = end {
                 break fitness;
@@ -146,7 +159,7 @@ fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
 }
 
 #[test]
-fn lives_can_be_repeated_taped_and_lived_as_a_life() {
+fn trials_can_be_repeated_recorded_and_run_by_hand() {
     let cases: [(&dyn Experiment, &str, Config); 4] = [
         (&Discrimination, "khepera", Config::default()),
         (&Discrimination, "e-puck", Config::e_puck()),
@@ -156,33 +169,32 @@ fn lives_can_be_repeated_taped_and_lived_as_a_life() {
     for (experiment, condition, config) in cases {
         for model in ["analytic", "rays"] {
             let settings = settings(experiment, condition, &[("robot.infrared", Value::Word(model.into()))]);
-            let mut setup = experiment.prepare(condition, &settings).unwrap();
-            let genes: Vec<u16> = (0..setup.genes()).map(|i| (i * 97 % 256) as u16).collect();
-            let job = Job { seed: 9, generation: 3, individual: 1, trial: 4 };
-            let plain = setup.live(&genes, job, &mut Tape::off());
-            setup.live(&genes, Job { trial: 7, ..job }, &mut Tape::off());
-            let mut recording = farsa_experiments::Recording::new(setup.stage());
-            assert_eq!(setup.live(&genes, job, &mut Tape::to(&mut recording)), plain);
+            let mut evaluator = experiment.prepare(condition, &settings).unwrap();
+            let own = parameters(experiment, evaluator.as_ref(), |i| (i * 97 % 256) as u16);
+            let id = EpisodeId { seed: 9, generation: 3, individual: 1, trial: 4 };
+            let plain = evaluator.evaluate(alone(&own, id), None);
+            evaluator.evaluate(alone(&own, EpisodeId { trial: 7, ..id }), None);
+            let mut recording = Recording::new(evaluator.stage());
+            assert_eq!(evaluator.evaluate(alone(&own, id), Some(&mut recording)), plain);
             let ticks = recording.times().len();
             assert_eq!(ticks, plain.steps as usize);
             assert!((0..ticks).all(|tick| recording.row(tick).all(f64::is_finite)));
             assert_eq!(recording.rays_at(ticks - 1).len(), 6);
-            let description = setup.description();
+            let description = evaluator.description();
             assert_eq!(description.sensors.iter().map(|g| g.count).sum::<usize>(), config.inputs());
-            assert_eq!(description.parameters, setup.genes());
-            // The same as a `Life` of its own controller.
-            let zeros = vec![128; setup.genes()];
+            assert_eq!(description.parameters, own.len());
+            // The same as an episode of its own controller.
+            let zeros = parameters(experiment, evaluator.as_ref(), |_| 128);
             let mut world = config.world().unwrap();
             let w = 5.0 - 128.0 / 255.0 * 10.0;
-            let parameters = vec![w as f32; setup.genes()];
-            let layer = Perceptron::new(config.inputs(), 2, 1.0, parameters).unwrap();
+            let layer = Perceptron::new(config.inputs(), 2, 1.0, vec![w as f32; zeros.len()]).unwrap();
             if model == "analytic" {
                 let infrared = InfraredModel::Analytic;
                 let mut life = CylinderLife::new(Config { infrared, ..config.clone() }, layer).unwrap();
-                let fitness = live(&mut life, &mut world, job);
-                let lived = setup.live(&zeros, job, &mut Tape::off());
-                assert_eq!(fitness, setup.fitness(&[lived]));
-                Life::start(&mut life, &mut world, job);
+                let fitness = run_episode(&mut life, &mut world, id, None);
+                let evaluated = evaluator.evaluate(alone(&zeros, id), None);
+                assert_eq!(fitness, evaluator.fitness(&[evaluated]));
+                life.start(&mut world, id);
                 assert_eq!(life.trial().steps, 0);
             }
         }
@@ -198,10 +210,10 @@ fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
     let body = life.parts().body;
     let central = |at: [f32; 3]| at[..2].iter().all(|x| (x - 0.2).abs() < 0.05);
     let trial = (0..1000).find(|&trial| {
-        life.begin(&mut world, Job { trial, ..Job::default() });
+        life.start(&mut world, EpisodeId { trial, ..EpisodeId::default() });
         central(world.pose(life.cylinders()[0]).position)
     });
-    life.begin(&mut world, Job { trial: trial.unwrap(), ..Job::default() });
+    life.start(&mut world, EpisodeId { trial: trial.unwrap(), ..EpisodeId::default() });
     let at = world.pose(life.cylinders()[0]).position;
     world.place_body(body, Pose::planar([at[0] - 0.13, at[1]], 0.0), Twist::default());
     world.arranged();
@@ -210,7 +222,7 @@ fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
         .map(|step| {
             life.act(&mut world);
             farsa_body::World::step(&mut world);
-            assert_eq!(life.judge(&world), None, "{step}");
+            assert_eq!(life.judge(&mut world), None, "{step}");
             let travelled = f64::from(world.pose(body).position[0] - at[0]) + 0.13;
             assert!((travelled - 0.0144 * f64::from(step + 1)).abs() < 1e-5, "{step}: {travelled}");
             life.trial().near[0]
@@ -218,10 +230,10 @@ fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
         .collect();
     assert_eq!(near, [0, 0, 1, 2, 3]);
     let settings = settings(&Discrimination, "e-puck", &[]);
-    let setup = Discrimination.prepare("e-puck", &settings).unwrap();
-    let description = setup.description();
-    assert_eq!((setup.trials(), description.steps, description.step_seconds), (10, 500, 0.1));
-    assert_eq!(setup.stage().bodies, ["e-puck", "cylinder"]);
+    let evaluator = Discrimination.prepare("e-puck", &settings).unwrap();
+    let description = evaluator.description();
+    assert_eq!((evaluator.trials(), description.steps, description.step_seconds), (10, 500, 0.1));
+    assert_eq!(evaluator.stage().bodies, ["e-puck", "cylinder"]);
     // Nobody has measured its sensors, and a hull that its wheels stand out of is none.
     let mut settings = settings;
     let sampled = settings.set("", "robot.infrared", Value::Word("sampled".into())).unwrap_err().to_string();
@@ -242,10 +254,10 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
         let mut life = CylinderLife::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
         let mut collided = 0;
         for trial in 0..12 {
-            let job = Job { seed: 5, trial, ..Job::default() };
+            let id = EpisodeId { seed: 5, trial, ..EpisodeId::default() };
             let mut ends = Vec::new();
-            life.arrange(&mut ours, job).unwrap();
-            life.arrange(&mut theirs, job).unwrap();
+            life.arrange(&mut ours, id).unwrap();
+            life.arrange(&mut theirs, id).unwrap();
             for body in [life.parts().body, life.cylinders()[0]] {
                 let (a, b) = (ours.pose(body), theirs.pose(body));
                 assert!(
@@ -254,9 +266,9 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
                 );
                 assert!((a.heading() - b.heading()).abs() < 1e-5, "{condition} {trial}");
             }
-            live(&mut life, &mut ours, job);
+            run_episode(&mut life, &mut ours, id, None);
             ends.push(*life.trial());
-            live(&mut life, &mut theirs, job);
+            run_episode(&mut life, &mut theirs, id, None);
             ends.push(*life.trial());
             // Straight on until it runs into something: a step later at most, for it must get up to speed.
             let [a, b] = [&ends[0], &ends[1]];
@@ -267,13 +279,13 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
         }
         assert!(collided > 6, "{condition}: {collided}");
         let settings = settings(&Discrimination, condition, &[("world.engine", Value::Word("rapier".into()))]);
-        let mut setup = Discrimination.prepare(condition, &settings).unwrap();
-        let genes: Vec<u16> = (0..setup.genes()).map(|i| (i * 97 % 256) as u16).collect();
-        let job = Job { seed: 9, generation: 3, individual: 1, trial: 4 };
-        let plain = setup.live(&genes, job, &mut Tape::off());
-        setup.live(&genes, Job { trial: 7, ..job }, &mut Tape::off());
-        let mut recording = farsa_experiments::Recording::new(setup.stage());
-        assert_eq!(setup.live(&genes, job, &mut Tape::to(&mut recording)), plain);
+        let mut evaluator = Discrimination.prepare(condition, &settings).unwrap();
+        let own = parameters(&Discrimination, evaluator.as_ref(), |i| (i * 97 % 256) as u16);
+        let id = EpisodeId { seed: 9, generation: 3, individual: 1, trial: 4 };
+        let plain = evaluator.evaluate(alone(&own, id), None);
+        evaluator.evaluate(alone(&own, EpisodeId { trial: 7, ..id }), None);
+        let mut recording = Recording::new(evaluator.stage());
+        assert_eq!(evaluator.evaluate(alone(&own, id), Some(&mut recording)), plain);
         assert!(plain.is_finite() && recording.times().len() == plain.steps as usize);
     }
 }

@@ -2,27 +2,36 @@
 //! both are the same whoever asks.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use farsa_experiments::kinesthetic_grasp::{Config, Lessons, Lives};
+use farsa_experiments::KinestheticGrasp;
+use farsa_experiments::kinesthetic_grasp::{Config, Lessons, Trainee};
 use farsa_experiments::reach_grasp_lift::Config as Reach;
-use farsa_experiments::{Error, Experiment, Job, KinestheticGrasp, Lesson, Settings, Setup, Tape, Value};
+use farsa_lab::{
+    EpisodeId, Error, Evaluation, Evaluator as _, Experiment as _, Genotype, Learner, Lesson, Settings, Task as _,
+    Value,
+};
 
 const SEED: u64 = 3;
 
 /// Lessons small enough for a test.
-fn lives(demonstrations: u32, own_say: u32) -> Lives {
+fn trainee(demonstrations: u32, own_say: u32) -> Trainee {
     let lessons = Lessons { demonstrations, passes: 6, batch: 2, own_say, ..Lessons::default() };
-    Lives::new(Config { lessons, ..Config::default() }).unwrap()
+    Trainee::new(Config { lessons, ..Config::default() }).unwrap()
 }
 
-fn taught(lives: &mut Lives, lessons: u32) -> (Vec<f64>, Vec<Lesson>) {
-    let mut words = lives.first_words(SEED);
-    let lessons = (0..lessons).map(|generation| lives.lesson(&mut words, SEED, generation).unwrap()).collect();
+fn learner(trainee: &mut Trainee) -> &mut dyn Learner {
+    trainee.learner().unwrap()
+}
+
+fn taught(trainee: &mut Trainee, lessons: u32) -> (Vec<f64>, Vec<Lesson>) {
+    let learner = learner(trainee);
+    let mut words = learner.first_words(SEED);
+    let lessons = (0..lessons).map(|generation| learner.lesson(&mut words, SEED, generation).unwrap()).collect();
     (words, lessons)
 }
 
 #[test]
 fn led_by_the_script_alone_every_demonstration_succeeds() {
-    let (words, lessons) = taught(&mut lives(8, 0), 3);
+    let (words, lessons) = taught(&mut trainee(8, 0), 3);
     println!("{lessons:?}");
     assert!(lessons.iter().all(|lesson| lesson.successes == 1.0), "{lessons:?}");
     assert!(lessons.iter().all(|lesson| lesson.after < lesson.before), "{lessons:?}");
@@ -33,25 +42,27 @@ fn led_by_the_script_alone_every_demonstration_succeeds() {
 
 #[test]
 fn a_lesson_depends_on_words_seed_and_generation_alone() {
-    let (mut one, mut other) = (lives(2, 1), lives(2, 1));
+    let (mut one, mut other) = (trainee(2, 1), trainee(2, 1));
     let (words, lessons) = taught(&mut one, 2);
     let (mut again, first) = taught(&mut other, 1);
     assert_eq!(lessons[0], first[0]);
-    // Another lesson in between, and a life.
-    other.lesson(&mut again.clone(), 9, 5).unwrap();
-    let genes = other.learned(&again);
-    other.live(&genes, Job { seed: SEED, trial: 2, ..Job::default() }, &mut Tape::off());
-    assert_eq!(other.lesson(&mut again, SEED, 1).unwrap(), lessons[1]);
+    // Another lesson in between, and a trial.
+    learner(&mut other).lesson(&mut again.clone(), 9, 5).unwrap();
+    let genes = learner(&mut other).learned(&again);
+    let parameters = Genotype::new(&other.parameters(), KinestheticGrasp.gene_bits()).decode(&genes).unwrap();
+    let id = EpisodeId { seed: SEED, trial: 2, ..EpisodeId::default() };
+    other.evaluate(Evaluation { number: 0, parameters: &parameters, opponents: &[], id }, None);
+    assert_eq!(learner(&mut other).lesson(&mut again, SEED, 1).unwrap(), lessons[1]);
     assert_eq!(again, words);
-    assert!(other.lesson(&mut again[1..], SEED, 1).is_none());
+    assert!(learner(&mut other).lesson(&mut again[1..], SEED, 1).is_none());
 }
 
 #[test]
 fn genes_are_the_parameters_to_half_a_unit() {
-    let lives = lives(1, 0);
-    let words = lives.first_words(SEED);
-    let genes = lives.learned(&words);
-    assert_eq!(genes.len(), lives.genes());
+    let mut trainee = trainee(1, 0);
+    let words = learner(&mut trainee).first_words(SEED);
+    let genes = learner(&mut trainee).learned(&words);
+    assert_eq!(genes.len(), trainee.parameters().len());
     let layout = Config::default().reach.layout();
     let unit = 40.0 / 65535.0;
     for (index, (gene, word)) in genes.iter().zip(&words).enumerate() {
@@ -72,9 +83,9 @@ fn genes_are_the_parameters_to_half_a_unit() {
 fn who_lives_is_the_mean_over_the_steps() {
     let after_a_lesson = |mean| {
         let lessons = Lessons { demonstrations: 2, passes: 6, batch: 2, mean, ..Lessons::default() };
-        let mut lives = Lives::new(Config { lessons, ..Config::default() }).unwrap();
-        let (words, _) = taught(&mut lives, 1);
-        (lives.genes(), lives.learned(&words), words)
+        let mut trainee = Trainee::new(Config { lessons, ..Config::default() }).unwrap();
+        let (words, _) = taught(&mut trainee, 1);
+        (trainee.parameters().len(), learner(&mut trainee).learned(&words), words)
     };
     // The same is learned from what the script shows, and the one that lives is another.
     let (count, latest, mut words) = after_a_lesson(1);
@@ -85,7 +96,7 @@ fn who_lives_is_the_mean_over_the_steps() {
     // It is the one whose parameters stand last.
     let tail = words.len() - count;
     words[tail..].copy_from_slice(&others[others.len() - count..]);
-    assert_eq!(lives(2, 0).learned(&words), mean);
+    assert_eq!(learner(&mut trainee(2, 0)).learned(&words), mean);
 }
 
 #[test]

@@ -1,30 +1,43 @@
-//! A life in a lane is the life alone: whole trials of scripts and networks, at every instruction set of this machine.
+//! An episode in a lane is the episode alone: whole trials of scripts, networks and teams, at every instruction set of this
+//! machine.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::sync::Arc;
 
-use farsa_experiments::reach_grasp_lift::{Config, Lives, Scene, ScriptLife, TRIALS, Timetable, Trial};
-use farsa_experiments::{Job, Lanes, Life, Outcome, Setup, Tape, Task, live, live_in_lanes};
+use farsa_evo::randomize;
+use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptLife, TRIALS, Timetable, Trial, evaluator};
+use farsa_experiments::{Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PredatorPrey};
+use farsa_lab::{
+    Episode, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Settings, Value, run_episode,
+    run_in_lanes,
+};
 use farsa_num::{Domain, Instructions, Stream};
-use farsa_physics::articulated::{Batch, LANES, Lane, Model, World};
+use farsa_physics::articulated::{Batch, LANES, Model, World};
+use farsa_physics::{arena, articulated};
 
-/// Every number of lanes at every instruction set of this machine.
-fn every_batch() -> impl Iterator<Item = (usize, Instructions)> {
-    Batch::instructions().flat_map(|instructions| LANES.map(|lanes| (lanes, instructions)))
+/// Every number of lanes at each of these instruction sets.
+fn every_batch(instructions: impl Iterator<Item = Instructions>) -> impl Iterator<Item = (usize, Instructions)> {
+    instructions.flat_map(|instructions| LANES.map(|lanes| (lanes, instructions)))
 }
 
-/// A script with a number, and what came of the jobs.
+/// A script with a number.
 struct Numbered {
     life: ScriptLife,
     number: usize,
 }
 
-impl Life<Lane<'_>> for Numbered {
-    fn start(&mut self, world: &mut Lane<'_>, job: Job) {
-        self.life.start(world, job);
+impl<W> Episode<W> for Numbered
+where
+    ScriptLife: Episode<W>,
+{
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.life.start(world, id);
     }
-    fn tick(&mut self, world: &mut Lane<'_>) -> Option<f64> {
-        self.life.tick(world)
+    fn act(&mut self, world: &mut W) {
+        self.life.act(world);
+    }
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        Episode::judge(&mut self.life, world)
     }
 }
 
@@ -34,62 +47,162 @@ fn scripted_grasps_in_lanes_are_those_alone() {
     let model = Model::<f32>::new(&scene.robot, &scene.config.options()).unwrap();
     let script = ScriptLife::new(Arc::clone(&scene), Timetable::default()).unwrap();
     // More than lanes, and not a multiple: lanes are filled again while others are in the middle of a grasp.
-    let job = |n: usize| Job { seed: 7, generation: (n / TRIALS) as u32, individual: 0, trial: (n % TRIALS) as u32 };
+    let id =
+        |n: usize| EpisodeId { seed: 7, generation: (n / TRIALS) as u32, individual: 0, trial: (n % TRIALS) as u32 };
     let mut world = World::new(model.clone());
     let alone: Vec<(f64, Trial)> = (0..20)
         .map(|n| {
             let mut life = script.clone();
-            (live(&mut life, &mut world, job(n)), *life.judge().trial())
+            (run_episode(&mut life, &mut world, id(n), None), *life.judge().trial())
         })
         .collect();
     assert!(alone.iter().filter(|(_, trial)| trial.held > 0).count() > 15);
-    for (lanes, instructions) in every_batch() {
+    for (lanes, instructions) in every_batch(articulated::Batch::instructions()) {
         let mut batch = Batch::new(model.clone(), lanes, instructions).unwrap();
         // In some lanes only: the others stay empty.
-        let mut lives: Vec<_> = (0..lanes - 1).map(|_| Numbered { life: script.clone(), number: 0 }).collect();
+        let mut episodes: Vec<_> = (0..lanes - 1).map(|_| Numbered { life: script.clone(), number: 0 }).collect();
         let (mut next, mut ended) = (0, vec![None; alone.len()]);
         let begin = |numbered: &mut Numbered| {
             numbered.number = next;
             next += 1;
-            (numbered.number < alone.len()).then(|| job(numbered.number))
+            (numbered.number < alone.len()).then(|| id(numbered.number))
         };
         let end = |numbered: &mut Numbered, fitness: f64| {
             ended[numbered.number] = Some((fitness, *numbered.life.judge().trial()));
         };
-        live_in_lanes(&mut lives, &mut batch, begin, end);
+        run_in_lanes(&mut episodes, &mut batch, begin, end);
         let ended: Vec<_> = ended.into_iter().flatten().collect();
         assert_eq!(ended, alone, "{lanes} lanes, {instructions:?}");
     }
 }
 
-#[test]
-fn lives_of_networks_in_lanes_are_those_alone() {
-    let mut setup = Lives::new(Config::default()).unwrap();
-    let genomes: Vec<Vec<u16>> = (0..10)
-        .map(|individual| {
-            let mut stream = Stream::new(3, Domain::InitialGenome, 0, individual, 0);
-            (0..setup.genes()).map(|_| (65535.0 * stream.uniform()) as u16).collect()
-        })
-        .collect();
-    let task = |number: usize| {
-        let genes = genomes.get(number / TRIALS)?;
-        let job = Job { seed: 3, generation: 1, individual: (number / TRIALS) as u32, trial: (number % TRIALS) as u32 };
-        Some(Task { number, genes, opponents: &[], job })
-    };
-    let alone: Vec<Outcome> =
-        (0..).map_while(task).map(|Task { genes, job, .. }| setup.live(genes, job, &mut Tape::off())).collect();
-    println!("steps: {:?}", alone.iter().map(|outcome| outcome.steps).collect::<Vec<_>>());
-    for (count, instructions) in every_batch().chain([(1, Instructions::detect())]) {
-        assert_eq!(setup.use_lanes(Lanes::new(count, instructions).unwrap()).unwrap().count(), count);
+/// The parameters of random genes.
+fn random_parameters(evaluator: &dyn Evaluator, bits: u32, seed: u64, individual: u32) -> Vec<f32> {
+    let genotype = Genotype::new(&evaluator.parameters(), bits);
+    let mut genes = vec![0; genotype.genes()];
+    randomize(&mut genes, &mut Stream::new(seed, Domain::InitialGenome, 0, individual, 0));
+    genes.iter_mut().for_each(|gene| *gene &= genotype.largest());
+    genotype.decode(&genes).unwrap()
+}
+
+/// Evaluates in lanes of every number and instruction set, and one after the other by the same trait, and compares with what
+/// `evaluate` returns; returns that.
+fn in_lanes_as_alone<'p>(
+    evaluator: &mut dyn Evaluator,
+    instructions: impl Iterator<Item = Instructions>,
+    evaluations: &[Evaluation<'p>],
+) -> Vec<Outcome> {
+    // More than lanes: they are filled again.
+    assert!(evaluations.len() > LANES[1] && evaluations.len() % LANES[0] != 0);
+    let alone: Vec<Outcome> = evaluations.iter().map(|evaluation| evaluator.evaluate(*evaluation, None)).collect();
+    assert!(alone.iter().all(Outcome::is_finite), "{alone:?}");
+    for (count, instructions) in every_batch(instructions).chain([(1, Instructions::detect())]) {
+        let lanes = evaluator.in_lanes().expect("lanes");
+        lanes.use_lanes(Lanes::new(count, instructions).unwrap()).unwrap();
         // Twice: nothing of the first time is left.
         for _ in 0..2 {
-            let (mut next, mut ended) = (0, vec![Outcome::default(); alone.len()]);
-            let mut draw = || {
-                next += 1;
-                task(next - 1)
-            };
-            setup.live_many(&mut draw, &mut |number, outcome| ended[number] = outcome);
-            assert!(ended == alone, "{count} lanes, {instructions:?}");
+            let (mut rest, mut ended) = (evaluations.iter().copied(), vec![None; alone.len()]);
+            lanes.evaluate_all(&mut || rest.next(), &mut |number, outcome| {
+                assert!(ended[number].replace(outcome).is_none(), "{number} twice");
+            });
+            for (number, (ended, alone)) in ended.iter().zip(&alone).enumerate() {
+                assert_eq!(ended.as_ref(), Some(alone), "{number}: {count} lanes, {instructions:?}");
+            }
         }
     }
+    alone
+}
+
+#[test]
+fn trials_of_networks_in_lanes_are_those_alone() {
+    let mut evaluator = evaluator(Config::default()).unwrap();
+    let genotype = Genotype::new(&farsa_lab::Task::parameters(&evaluator), 16);
+    let parameters: Vec<Vec<f32>> = (0..10)
+        .map(|individual| {
+            let mut stream = Stream::new(3, Domain::InitialGenome, 0, individual, 0);
+            let genes: Vec<u16> = (0..genotype.genes()).map(|_| (65535.0 * stream.uniform()) as u16).collect();
+            genotype.decode(&genes).unwrap()
+        })
+        .collect();
+    let evaluation = |number: usize| {
+        let (individual, trial) = (number / TRIALS, number % TRIALS);
+        let id = EpisodeId { seed: 3, generation: 1, individual: individual as u32, trial: trial as u32 };
+        Evaluation { number, parameters: &parameters[individual], opponents: &[], id }
+    };
+    // 39, which is no multiple of the lanes.
+    let evaluations: Vec<Evaluation> = (0..10 * TRIALS - 1).map(evaluation).collect();
+    let alone = in_lanes_as_alone(&mut evaluator, articulated::Batch::instructions(), &evaluations);
+    println!("steps: {:?}", alone.iter().map(|outcome| outcome.steps).collect::<Vec<_>>());
+}
+
+/// Trials of an experiment with wheeled robots, each with random parameters and a start of its own; returns their outcomes.
+///
+/// Where there are several populations, every other trial is one of the second.
+fn wheels(experiment: &dyn Experiment, condition: &str, values: &[(&str, Value)]) -> Vec<Outcome> {
+    let mut settings = Settings::new(experiment.settings(condition)).unwrap();
+    for (key, value) in values {
+        settings.set("", key, value.clone()).unwrap();
+    }
+    let mut evaluator = experiment.prepare(condition, &settings).unwrap();
+    let random = |individual| random_parameters(evaluator.as_ref(), experiment.gene_bits(), 5, individual);
+    let parameters: Vec<Vec<f32>> = (0..21).map(random).collect();
+    let others: Vec<[&[f32]; 1]> = (0..21).map(|number| [&parameters[20 - number][..]]).collect();
+    let populations = evaluator.populations().len();
+    let evaluation = |number: usize| {
+        let population = number % populations;
+        let size = if populations > 1 { settings.count("evolution.population").unwrap() } else { 0 };
+        let individual = (number + population * size) as u32;
+        let id = EpisodeId { seed: 3, generation: 1, individual, trial: number as u32 };
+        let opponents: &[&[f32]] = if populations > 1 { &others[number] } else { &[] };
+        Evaluation { number, parameters: &parameters[number], opponents, id }
+    };
+    let evaluations: Vec<Evaluation> = (0..21).map(evaluation).collect();
+    let alone = in_lanes_as_alone(evaluator.as_mut(), arena::Batch::instructions(), &evaluations);
+    println!("{} {condition}: {alone:?}", experiment.name());
+    assert!(alone.iter().any(|outcome| *outcome != alone[0]), "all the same: {alone:?}");
+    alone
+}
+
+fn steps(steps: i64) -> (&'static str, Value) {
+    ("trial.steps", Value::Whole(steps))
+}
+
+/// In some of them, not in all, something ends a trial before its time, so that lanes are filled at different steps.
+fn some_end_early(outcomes: &[Outcome], steps: u32) {
+    let early = outcomes.iter().filter(|outcome| outcome.steps < steps).count();
+    assert!(early > 0 && early < outcomes.len(), "{early} of {} end early", outcomes.len());
+}
+
+#[test]
+fn trials_of_discrimination_in_lanes_are_those_alone() {
+    for model in ["analytic", "rays"] {
+        let values = [steps(100), ("robot.infrared", Value::Word(model.into()))];
+        for condition in Discrimination.conditions() {
+            some_end_early(&wheels(&Discrimination, condition, &values), 100);
+        }
+        for condition in DiscriminationCylinders.conditions() {
+            some_end_early(&wheels(&DiscriminationCylinders, condition, &values), 100);
+        }
+    }
+}
+
+#[test]
+fn vehicles_in_lanes_are_those_alone() {
+    for condition in Braitenberg.conditions() {
+        wheels(&Braitenberg, condition, &[steps(100)]);
+    }
+}
+
+#[test]
+fn teams_in_lanes_are_those_alone() {
+    let two = ("team.robots", Value::Whole(2));
+    for condition in Foraging.conditions() {
+        wheels(&Foraging, condition, &[steps(60), two.clone()]);
+        wheels(&Aggregation, condition, &[steps(60), two.clone()]);
+    }
+}
+
+#[test]
+fn predators_and_prey_in_lanes_are_those_alone() {
+    some_end_early(&wheels(&PredatorPrey, "", &[steps(200)]), 200);
 }

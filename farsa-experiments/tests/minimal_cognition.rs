@@ -3,11 +3,13 @@
 
 use std::path::Path;
 
+use farsa_experiments::MinimalCognition;
 use farsa_experiments::minimal_cognition::{AgentLife, Config, INNER, MOTORS, NEURONS, Object, RAYS, Wiring};
-use farsa_experiments::{
-    Experiment, Job, MinimalCognition, Note, Outcome, Recording, Settings, Setup, Tape, Value, read_genotypes,
+use farsa_lab::{
+    EpisodeId, Evaluation, Evaluator, Experiment as _, Genotype, Note, Outcome, Settings, Value, read_genotypes,
 };
 use farsa_num::{Domain, Stream, logistic};
+use farsa_view::Recording;
 use proptest::prelude::*;
 
 fn genes(seed: u64) -> [u16; 47] {
@@ -21,17 +23,26 @@ fn calm() -> Config {
     Config { weight_range: 1.0, ..Config::default() }
 }
 
+/// The network's parameters that genes stand for.
+fn decoded(config: &Config, genes: &[u16]) -> Vec<f32> {
+    let wiring = Wiring::new(config).unwrap();
+    let genotype = Genotype::new(wiring.parameters(), MinimalCognition.gene_bits());
+    wiring.expand(&genotype.decode(genes).unwrap()).unwrap()
+}
+
 fn life(config: Config, genes: &[u16]) -> AgentLife {
-    let parameters = Wiring::new(&config).unwrap().decode(genes).unwrap();
+    let parameters = decoded(&config, genes);
     AgentLife::new(config, parameters).unwrap()
 }
 
-fn setup(changes: &[(&str, Value)]) -> Box<dyn Setup> {
-    let mut settings = Settings::new(MinimalCognition.settings("")).unwrap();
-    for (key, value) in changes {
-        settings.set("", key, value.clone()).unwrap();
-    }
+fn evaluator() -> Box<dyn Evaluator> {
+    let settings = Settings::new(MinimalCognition.settings("")).unwrap();
     MinimalCognition.prepare("", &settings).unwrap()
+}
+
+/// The parameters of an evaluation that genes stand for.
+fn of_genes(evaluator: &dyn Evaluator, genes: &[u16]) -> Vec<f32> {
+    Genotype::new(&evaluator.parameters(), MinimalCognition.gene_bits()).decode(genes).unwrap()
 }
 
 /// Where the agent is after every step of a trial.
@@ -111,7 +122,7 @@ proptest! {
 fn an_agent_that_stays_earns_what_the_offset_says() {
     // Without weights both motors put out the same.
     let config = Config { weight_range: 0.1, ..Config::default() };
-    let middle = Wiring::new(&config).unwrap().decode(&[32_768; 47]).unwrap();
+    let middle = decoded(&config, &[32_768; 47]);
     let still = middle.iter().enumerate().map(|(i, p)| if i < NEURONS * NEURONS { 0.0 } else { *p }).collect();
     let mut life = AgentLife::new(config, still).unwrap();
     for (object, catches) in [(Object::circle(30.0), true), (Object::diamond(30.0), false)] {
@@ -131,15 +142,15 @@ fn starts_are_spread_over_the_range_and_the_same_for_all_individuals() {
     let mut sides = 0;
     for generation in 0..50 {
         for trial in 0..24 {
-            let job = |individual| Job { seed: 7, generation, individual, trial };
-            life.start(job(3));
+            let id = |individual| EpisodeId { seed: 7, generation, individual, trial };
+            life.arrange(id(3));
             let (object, [at, agent]) = (life.object(), life.places());
             assert_eq!(agent, 0.0);
             assert_eq!(object.name(), ["circle", "diamond"][trial as usize % 2]);
             let part = 50.0 / 12.0 * f64::from(trial / 2);
             assert!((part..part + 50.0 / 12.0).contains(&at.abs()), "{trial}: {at}");
             sides += i32::from(at > 0.0);
-            life.start(job(8));
+            life.arrange(id(8));
             assert_eq!((life.object(), life.places()[0]), (object, at));
         }
     }
@@ -153,19 +164,21 @@ fn champion() -> Vec<u16> {
 }
 
 /// The first of the trials that are reported there.
-fn trials() -> impl Iterator<Item = Job> {
-    (0..960).map(|trial| Job { seed: 1 | 1 << 63, generation: trial / 24, individual: 0, trial: trial % 24 })
+fn trials() -> impl Iterator<Item = EpisodeId> {
+    (0..960).map(|trial| EpisodeId { seed: 1 | 1 << 63, generation: trial / 24, individual: 0, trial: trial % 24 })
 }
 
 #[test]
 fn the_evolved_agent_tells_circles_from_diamonds() {
-    let (genes, mut setup) = (champion(), setup(&[]));
-    let outcomes: Vec<_> = trials().map(|job| setup.live(&genes, job, &mut Tape::off())).collect();
+    let mut evaluator = evaluator();
+    let parameters = of_genes(evaluator.as_ref(), &champion());
+    let evaluation = |id| Evaluation { number: 0, parameters: &parameters, opponents: &[], id };
+    let outcomes: Vec<_> = trials().map(|id| evaluator.evaluate(evaluation(id), None)).collect();
     let (circles, diamonds): (Vec<_>, Vec<_>) = outcomes.iter().partition(|outcome| {
         outcome.notes.iter().any(|(name, note)| *name == "object" && *note == Note::from("circle"))
     });
-    let mean = |of: Vec<&Outcome>| setup.fitness(&of.into_iter().cloned().collect::<Vec<_>>());
-    let (all, circles, diamonds) = (setup.fitness(&outcomes), mean(circles), mean(diamonds));
+    let mean = |of: Vec<&Outcome>| evaluator.fitness(&of.into_iter().cloned().collect::<Vec<_>>());
+    let (all, circles, diamonds) = (evaluator.fitness(&outcomes), mean(circles), mean(diamonds));
     assert!(all > 0.975 && circles > 0.985 && diamonds > 0.96, "{all} {circles} {diamonds}");
 }
 
@@ -174,8 +187,8 @@ fn the_evolved_agent_tells_circles_from_diamonds() {
 fn the_evolved_agent_does_the_same_in_double_precision() {
     let config = Config::default();
     let mut life = life(config, &champion());
-    for job in trials() {
-        life.start(job);
+    for id in trials() {
+        life.arrange(id);
         let (object, [at, _]) = (life.object(), life.places());
         let expected = written_out(&config, life.parameters(), object, at);
         let found = way(&mut life, object, at);
@@ -184,13 +197,15 @@ fn the_evolved_agent_does_the_same_in_double_precision() {
 }
 
 #[test]
-fn a_recorded_life_is_the_same_and_has_what_the_stage_names() {
-    let mut setup = setup(&[]);
-    let job = Job { seed: 5, trial: 3, ..Job::default() };
-    let plain = setup.live(&genes(2), job, &mut Tape::off());
-    let stage = setup.stage();
+fn a_recorded_episode_is_the_same_and_has_what_the_stage_names() {
+    let mut evaluator = evaluator();
+    let parameters = of_genes(evaluator.as_ref(), &genes(2));
+    let id = EpisodeId { seed: 5, trial: 3, ..EpisodeId::default() };
+    let evaluation = Evaluation { number: 0, parameters: &parameters, opponents: &[], id };
+    let plain = evaluator.evaluate(evaluation, None);
+    let stage = evaluator.stage();
     let mut recording = Recording::new(stage.clone());
-    assert_eq!(setup.live(&genes(2), job, &mut Tape::to(&mut recording)), plain);
+    assert_eq!(evaluator.evaluate(evaluation, Some(&mut recording)), plain);
     assert_eq!((recording.times().len(), recording.times()[816]), (817, 81.7));
     let links = stage.links.iter().map(|links| (links.from[1] - links.from[0]) * (links.to[1] - links.to[0]));
     let others = stage.node_parameters.iter().map(|parameter| parameter.nodes[1] - parameter.nodes[0]);

@@ -3,8 +3,9 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use farsa_body::Kinematics as _;
+use farsa_experiments::PushBox;
 use farsa_experiments::push_box::{HomingPusher, PushConfig, PushLife, PushTrial};
-use farsa_experiments::{Experiment as _, Job, PushBox, Settings, Value, live};
+use farsa_lab::{EpisodeId, Experiment as _, Settings, Value, run_episode};
 use farsa_nn::{Controller, Perceptron};
 use farsa_num::{Domain, Stream};
 
@@ -14,7 +15,8 @@ fn trials<C: Controller>(config: &PushConfig, count: u32, mut controller: impl F
     let mut life = PushLife::new(config.clone(), controller(0)).unwrap();
     let one = |trial| {
         life.set_controller(controller(trial));
-        live(&mut life, &mut world, Job { seed: 1 | 1 << 63, trial, ..Job::default() });
+        let id = EpisodeId { seed: 1 | 1 << 63, trial, ..EpisodeId::default() };
+        run_episode(&mut life, &mut world, id, None);
         for body in [life.parts().body, life.cube()] {
             let pose = world.pose(body);
             assert!(pose.position[2].abs() < 2e-3 && pose.rotate([0.0, 0.0, 1.0])[2] > 0.99, "trial {trial}: {pose:?}");
@@ -47,7 +49,7 @@ fn trials_start_where_the_rules_allow() {
     let mut life = PushLife::new(config.clone(), HomingPusher::new(&config)).unwrap();
     let (mut nearest, mut farthest) = (f64::INFINITY, 0.0_f64);
     for trial in 0..200 {
-        life.arrange(&mut world, Job { seed: 3, trial, ..Job::default() });
+        life.arrange(&mut world, EpisodeId { seed: 3, trial, ..EpisodeId::default() });
         let [robot, cube] = [life.parts().body, life.cube()].map(|body| world.pose(body).position.map(f64::from));
         assert_eq!(cube[..2], [0.0; 2]);
         let away = robot[0].hypot(robot[1]) - config.robot.radius - config.around();
@@ -56,14 +58,14 @@ fn trials_start_where_the_rules_allow() {
     let [low, high] = config.apart;
     assert!(nearest > low - 1e-6 && farthest < high + 1e-6, "{nearest} {farthest}");
     assert!(nearest < low + 0.01 && farthest > high - 0.01, "{nearest} {farthest}");
-    let job = Job { seed: 3, trial: 5, ..Job::default() };
-    let mut at = |job| {
-        life.arrange(&mut world, job);
+    let id = EpisodeId { seed: 3, trial: 5, ..EpisodeId::default() };
+    let mut at = |id| {
+        life.arrange(&mut world, id);
         world.pose(life.parts().body).position
     };
-    let here = at(job);
-    assert_eq!(at(Job { individual: 4, ..job }), here);
-    for other in [Job { seed: 4, ..job }, Job { trial: 6, ..job }, Job { generation: 1, ..job }] {
+    let here = at(id);
+    assert_eq!(at(EpisodeId { individual: 4, ..id }), here);
+    for other in [EpisodeId { seed: 4, ..id }, EpisodeId { trial: 6, ..id }, EpisodeId { generation: 1, ..id }] {
         assert_ne!(at(other), here);
     }
 }

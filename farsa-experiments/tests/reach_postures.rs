@@ -5,8 +5,8 @@
 use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Joints, KinematicTree, Pose, Shape, Tabletop, Twist, World as _,
 };
-use farsa_experiments::Job;
 use farsa_experiments::reach_grasp_lift::{Config, Scene, Statics, TRIALS};
+use farsa_lab::EpisodeId;
 use farsa_physics::articulated::{Model, World};
 
 /// The lowest point of arm and hand at joint positions [m].
@@ -38,11 +38,11 @@ fn start_poses_are_clear_of_the_table() {
     let displaced = Scene::new(Config::default()).expect("a scene");
     let tree = KinematicTree::new(&scene.robot).expect("a tree");
     for trial in 0..TRIALS as u32 {
-        let clearance = lowest(&scene, &tree, &scene.start(Job { trial, ..Job::default() }).0);
+        let clearance = lowest(&scene, &tree, &scene.start(EpisodeId { trial, ..EpisodeId::default() }).0);
         let mut worst = f64::INFINITY;
         for generation in 0..500 {
-            let job = Job { seed: 1, generation, individual: 0, trial };
-            worst = worst.min(lowest(&displaced, &tree, &displaced.start(job).0));
+            let id = EpisodeId { seed: 1, generation, individual: 0, trial };
+            worst = worst.min(lowest(&displaced, &tree, &displaced.start(id).0));
         }
         println!("start {}: {:.1} mm above the table, displaced {:.1} mm", trial + 1, 1e3 * clearance, 1e3 * worst);
         assert!(worst > 0.0);

@@ -8,7 +8,7 @@ use farsa_body::{
     Kinematics, Motor, Pose, Sensor, Shape, Tabletop, Twist, World as _,
 };
 use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, OUTPUTS, Phase, ReachLife, Scene};
-use farsa_experiments::{Job, Life, live};
+use farsa_lab::{Episode, EpisodeId, run_episode};
 use farsa_nn::{Controller, LeakyNetwork};
 use farsa_physics::articulated::{Model, World};
 
@@ -195,16 +195,16 @@ fn outputs_drive_muscles_and_servo_groups() {
 fn starts_are_displaced_within_bounds_and_shared() {
     let shared = scene(Config::default());
     let own = scene(Config { displacement: Displacement::PerIndividual, ..Config::default() });
-    let job = Job { seed: 7, generation: 3, individual: 5, trial: 2 };
-    assert_eq!(shared.start(job), shared.start(Job { individual: 6, ..job }));
-    assert_ne!(own.start(job), own.start(Job { individual: 6, ..job }));
-    for other in [Job { seed: 8, ..job }, Job { generation: 4, ..job }, Job { trial: 6, ..job }] {
-        assert_ne!(shared.start(job), shared.start(other));
+    let id = EpisodeId { seed: 7, generation: 3, individual: 5, trial: 2 };
+    assert_eq!(shared.start(id), shared.start(EpisodeId { individual: 6, ..id }));
+    assert_ne!(own.start(id), own.start(EpisodeId { individual: 6, ..id }));
+    for other in [EpisodeId { seed: 8, ..id }, EpisodeId { generation: 4, ..id }, EpisodeId { trial: 6, ..id }] {
+        assert_ne!(shared.start(id), shared.start(other));
     }
     let (mut largest, mut farthest) = (0.0_f64, 0.0_f64);
     for generation in 0..200 {
         for trial in 0..4 {
-            let (joints, sphere) = shared.start(Job { generation, trial, ..job });
+            let (joints, sphere) = shared.start(EpisodeId { generation, trial, ..id });
             for (i, q) in joints.iter().enumerate() {
                 let pose = if i < 4 { shared.config.arm_poses[4 * trial as usize + i] } else { 0.0 };
                 let [low, high] = shared.robot.segments[i].joint.range;
@@ -226,9 +226,9 @@ fn a_world_is_arranged_as_the_start_says() {
     for _ in 0..20 {
         world.step();
     }
-    let job = Job { seed: 1, generation: 2, individual: 0, trial: 3 };
-    scene.arrange(&mut world, job);
-    let (joints, [x, y]) = scene.start(job);
+    let id = EpisodeId { seed: 1, generation: 2, individual: 0, trial: 3 };
+    scene.arrange(&mut world, id);
+    let (joints, [x, y]) = scene.start(id);
     for (joint, q) in ArmAndHand::joints().into_iter().zip(joints) {
         assert_eq!((world.position(joint), world.speed(joint)), (q as f32, 0.0));
     }
@@ -245,7 +245,7 @@ fn the_first_observation_is_that_of_the_geometry() {
     // Palm down over the far sphere (geometry.md): ds is 0, pRot 1, and the fingertips are straight ahead.
     let scene = scene(Config { joint_displacement: 0.0, sphere_displacement: 0.0, ..Config::default() });
     let mut world = world(&scene);
-    scene.arrange(&mut world, Job { trial: 2, ..Job::default() });
+    scene.arrange(&mut world, EpisodeId { trial: 2, ..EpisodeId::default() });
     let statics = farsa_experiments::reach_grasp_lift::Statics::new(&scene).unwrap();
     let posture = statics.above(scene.config.sphere_start(2), 0.075).unwrap();
     for (joint, q) in ArmAndHand::joints().into_iter().zip(posture) {
@@ -274,7 +274,7 @@ fn a_sphere_that_falls_ends_the_trial_and_what_was_earned_stays() {
     let scene = scene(Config { sphere_positions: [0.0, 90.0, 0.0, 90.0, 0.0, 90.0, 0.0, 90.0], ..Config::default() });
     let mut world = world(&scene);
     let mut judge = Judge::new(Arc::clone(&scene));
-    judge.start(&mut world, Job::default());
+    judge.start(&mut world, EpisodeId::default());
     let fitness = loop {
         world.step();
         if let Some(fitness) = judge.judge(&world) {
@@ -289,11 +289,11 @@ fn a_sphere_that_falls_ends_the_trial_and_what_was_earned_stays() {
 }
 
 #[test]
-fn a_world_that_breaks_down_fails_the_life() {
+fn a_world_that_breaks_down_fails_the_trial() {
     let scene = scene(Config::default());
     let mut world = world(&scene);
     let mut judge = Judge::new(Arc::clone(&scene));
-    judge.start(&mut world, Job::default());
+    judge.start(&mut world, EpisodeId::default());
     world.place_joint(JointId(3), f32::NAN, 0.0);
     world.arranged();
     let fitness = judge.judge(&world).expect("the end");
@@ -321,17 +321,17 @@ impl Controller for Listener {
 }
 
 #[test]
-fn a_life_thinks_once_a_step_and_hears_reach_first() {
+fn a_controller_steps_once_a_step_and_reads_reach_first() {
     let scene = scene(Config { steps: 50, ..Config::default() });
     let mut world = world(&scene);
     let mut life = ReachLife::new(Arc::clone(&scene), Listener(Vec::new())).expect("a life");
-    let fitness = live(&mut life, &mut world, Job::default());
+    let fitness = run_episode(&mut life, &mut world, EpisodeId::default(), None);
     assert_eq!(life.judge().trial().steps, 50);
     assert_eq!(life.controller().0.len(), 50);
     assert_eq!(life.controller().0[0], [50.0, 0.0, 0.0]);
     assert_eq!(fitness, life.judge().trial().ledger.total());
-    // The same life again, to the same bits, in a world that has lived.
-    assert_eq!(live(&mut life, &mut world, Job::default()), fitness);
+    // The same episode again, to the same bits, in a world that has been used.
+    assert_eq!(run_episode(&mut life, &mut world, EpisodeId::default(), None), fitness);
 }
 
 #[test]
@@ -344,18 +344,18 @@ fn a_network_of_another_shape_is_refused() {
 }
 
 #[test]
-fn ticks_are_the_same_as_judging_and_acting() {
+fn an_episode_that_is_run_is_the_one_written_out() {
     let scene = scene(Config { steps: 30, ..Config::default() });
     let (mut one, mut two) = (world(&scene), world(&scene));
     let mut lives = [(); 2].map(|()| ReachLife::new(Arc::clone(&scene), Listener(Vec::new())).expect("a life"));
-    let job = Job { trial: 1, ..Job::default() };
+    let id = EpisodeId { trial: 1, ..EpisodeId::default() };
     let [first, second] = &mut lives;
-    let fitness = live(first, &mut one, job);
-    second.start(&mut two, job);
+    let fitness = run_episode(first, &mut one, id, None);
+    second.start(&mut two, id);
     let other = loop {
         second.act(&mut two);
         two.step();
-        if let Some(fitness) = second.judge_mut().judge(&two) {
+        if let Some(fitness) = Episode::judge(second, &mut two) {
             break fitness;
         }
     };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use farsa_body::{ArmAndHand, Kinematics, World as _};
 use farsa_experiments::reach_grasp_lift::{Config, Ledger, Phase, Scene, ScriptLife, TRIALS, Timetable, Trial};
-use farsa_experiments::{Job, Life};
+use farsa_lab::{Episode, EpisodeId};
 use farsa_physics::articulated::{Model, Precision, World};
 
 struct Grasp {
@@ -17,15 +17,18 @@ struct Grasp {
     activation: f32,
 }
 
-fn grasp<R: Precision>(config: Config, timetable: Timetable, job: Job) -> Grasp {
+fn grasp<R: Precision>(config: Config, timetable: Timetable, id: EpisodeId) -> Grasp {
     let scene = Arc::new(Scene::new(config).expect("a scene"));
     let mut world = World::new(Model::<R>::new(&scene.robot, &scene.config.options()).expect("a model"));
     let mut life = ScriptLife::new(Arc::clone(&scene), timetable).expect("a script");
-    life.start(&mut world, job);
+    life.start(&mut world, id);
     assert!(life.plan().is_some(), "the sphere is out of reach");
     let (mut relative, mut activation) = (Vec::new(), 0.0_f32);
-    while life.tick(&mut world).is_none() {
+    let mut end = None;
+    while end.is_none() {
+        life.act(&mut world);
         world.step();
+        end = Episode::judge(&mut life, &mut world);
         let palm = world.pose(ArmAndHand::PALM).cast::<f64>();
         relative.push(palm.transform_back(scene.sphere_centre(&world)));
         activation = life.done()[..14].iter().fold(activation, |most, a| most.max(*a));
@@ -41,15 +44,15 @@ fn slip(relative: &[[f64; 3]], steps: usize) -> [f64; 2] {
     [way(&last[0], &last[steps]) / (0.01 * steps as f64), (squares / steps as f64).sqrt() / 0.01]
 }
 
-fn job(trial: usize, generation: u32) -> Job {
-    Job { seed: 2010, generation, individual: 0, trial: trial as u32 }
+fn id(trial: usize, generation: u32) -> EpisodeId {
+    EpisodeId { seed: 2010, generation, individual: 0, trial: trial as u32 }
 }
 
 /// Six seconds of the script, then more to hold: slips less than 1 mm/s over the last 3 s, in both precisions.
 fn holds<R: Precision>() {
     for trial in 0..TRIALS {
         let config = Config { steps: 800, ..Config::default() };
-        let grasp = grasp::<R>(config, Timetable::default(), job(trial, 0));
+        let grasp = grasp::<R>(config, Timetable::default(), id(trial, 0));
         let [mean, rms] = slip(&grasp.relative, 300);
         let Trial { phase, held, highest, .. } = grasp.trial;
         println!(
@@ -75,7 +78,7 @@ fn holds_for_three_seconds_in_double_precision() {
 fn scores_3000_over_the_four_trials() {
     let mut sum = Ledger::default();
     for trial in 0..TRIALS {
-        let grasp = grasp::<f32>(Config::default(), Timetable::default(), job(trial, 0));
+        let grasp = grasp::<f32>(Config::default(), Timetable::default(), id(trial, 0));
         assert_eq!(grasp.trial.steps, 600);
         assert!(grasp.success, "start {}: {:?}", trial + 1, grasp.trial);
         sum.add(&grasp.trial.ledger);
@@ -89,7 +92,7 @@ fn succeeds_from_displaced_starts() {
     let (mut slips, mut activation) = (0.0_f64, 0.0_f32);
     for generation in 1..=10 {
         for trial in 0..TRIALS {
-            let grasp = grasp::<f32>(Config::default(), Timetable::default(), job(trial, generation));
+            let grasp = grasp::<f32>(Config::default(), Timetable::default(), id(trial, generation));
             assert!(grasp.success, "start {}, generation {generation}: {:?}", trial + 1, grasp.trial);
             slips = slips.max(slip(&grasp.relative, 100)[0]);
             activation = activation.max(grasp.activation);
@@ -117,7 +120,7 @@ fn does_not_depend_on_one_set_of_values() {
     let mut failed = Vec::new();
     for (name, config) in variants {
         for trial in 0..TRIALS {
-            let grasp = grasp::<f32>(config.clone(), Timetable::default(), job(trial, 0));
+            let grasp = grasp::<f32>(config.clone(), Timetable::default(), id(trial, 0));
             let [mean, rms] = slip(&grasp.relative, 100);
             println!("{name}, start {}: {:?} slip {mean:.3} rms {rms:.3} mm/s", trial + 1, grasp.success);
             if !grasp.success {
@@ -133,7 +136,7 @@ fn does_not_depend_on_one_set_of_values() {
 fn nothing_holds_without_friction() {
     let config = Config { friction: 0.0, ..Config::default() };
     for trial in 0..TRIALS {
-        let grasp = grasp::<f32>(config.clone(), Timetable::default(), job(trial, 0));
+        let grasp = grasp::<f32>(config.clone(), Timetable::default(), id(trial, 0));
         println!("start {} without friction: {:?}", trial + 1, grasp.trial);
         assert!(!grasp.success, "start {}: {:?}", trial + 1, grasp.trial);
     }

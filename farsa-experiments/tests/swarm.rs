@@ -1,4 +1,4 @@
-//! The experiments on teams: lives repeat, robots stay where they can be, and the books are right.
+//! The experiments on teams: trials repeat, robots stay where they can be, and the books are right.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
@@ -10,10 +10,10 @@ use farsa_evo::randomize;
 use farsa_experiments::aggregation::{AggregationConfig, AggregationLife, BeaconSeeker, Gathering, aggregate};
 use farsa_experiments::foraging::{ForagingConfig, ForagingLife, HomingForager, forage};
 use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyLife, chase};
-use farsa_experiments::{
-    Aggregation, Experiment, Foraging, Job, Note, Outcome, PredatorPrey, Recording, Settings, Setup, Tape, Value,
-};
+use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Note, Outcome, Settings, Value};
 use farsa_num::{Domain, Stream};
+use farsa_view::Recording;
 
 const ALL: [(&dyn Experiment, &str); 7] = [
     (&Foraging, "marxbot"),
@@ -33,15 +33,22 @@ fn settings(experiment: &dyn Experiment, condition: &str, changes: &[(&str, Valu
     settings
 }
 
-fn prepare(experiment: &dyn Experiment, condition: &str, steps: i64) -> Box<dyn Setup> {
+fn prepare(experiment: &dyn Experiment, condition: &str, steps: i64) -> Box<dyn Evaluator> {
     let settings = settings(experiment, condition, &[("trial.steps", Value::Whole(steps))]);
     experiment.prepare(condition, &settings).unwrap()
 }
 
-fn genes(setup: &dyn Setup, number: u32) -> Vec<u16> {
-    let mut genes = vec![0; setup.genes()];
+/// The parameters of random genes; all these experiments have genes of 16 bits.
+fn parameters(evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
+    let genotype = Genotype::new(&evaluator.parameters(), 16);
+    let mut genes = vec![0; genotype.genes()];
     randomize(&mut genes, &mut Stream::new(5, Domain::InitialGenome, number, 0, 0));
-    genes
+    genotype.decode(&genes).unwrap()
+}
+
+/// A trial against other ones.
+fn against<'p>(parameters: &'p [f32], opponents: &'p [&'p [f32]], id: EpisodeId) -> Evaluation<'p> {
+    Evaluation { number: 0, parameters, opponents, id }
 }
 
 fn note(outcome: &Outcome, name: &str) -> f64 {
@@ -51,13 +58,13 @@ fn note(outcome: &Outcome, name: &str) -> f64 {
     }
 }
 
-/// Lives a trial, against `other` where there are two, with and without somebody who listens.
-fn recorded(setup: &mut dyn Setup, genes: &[u16], other: &[u16], job: Job) -> (Outcome, Recording) {
-    let plain = setup.live_against(genes, &[other], job, &mut Tape::off());
-    setup.live_against(other, &[genes], Job { trial: job.trial + 1, ..job }, &mut Tape::off());
-    let mut recording = Recording::new(setup.stage());
-    let taped = setup.live_against(genes, &[other], job, &mut Tape::to(&mut recording));
-    assert_eq!(plain, taped);
+/// A trial, against `other` where there are two, recorded and not.
+fn recorded(evaluator: &mut dyn Evaluator, own: &[f32], other: &[f32], id: EpisodeId) -> (Outcome, Recording) {
+    let plain = evaluator.evaluate(against(own, &[other], id), None);
+    evaluator.evaluate(against(other, &[own], EpisodeId { trial: id.trial + 1, ..id }), None);
+    let mut recording = Recording::new(evaluator.stage());
+    let recorded = evaluator.evaluate(against(own, &[other], id), Some(&mut recording));
+    assert_eq!(plain, recorded);
     (plain, recording)
 }
 
@@ -89,9 +96,9 @@ fn rays_belong_to_robots(recording: &Recording, tick: usize, sensors: usize, [ra
 }
 
 #[test]
-fn lives_repeat_and_robots_stay_between_the_walls_and_apart() {
+fn trials_repeat_and_robots_stay_between_the_walls_and_apart() {
     for (experiment, condition) in ALL {
-        let mut setup = prepare(experiment, condition, 250);
+        let mut evaluator = prepare(experiment, condition, 250);
         let (radius, size) = match condition {
             "e-puck" => (0.035, 2.5),
             "khepera" => (0.035, 2.0),
@@ -99,9 +106,9 @@ fn lives_repeat_and_robots_stay_between_the_walls_and_apart() {
             _ => (0.085, 3.0),
         };
         for number in 0..3 {
-            let (own, other) = (genes(setup.as_ref(), number), genes(setup.as_ref(), number + 10));
-            let job = Job { seed: 3, generation: 2, individual: 7, trial: number };
-            let (outcome, recording) = recorded(setup.as_mut(), &own, &other, job);
+            let (own, other) = (parameters(evaluator.as_ref(), number), parameters(evaluator.as_ref(), number + 10));
+            let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: number };
+            let (outcome, recording) = recorded(evaluator.as_mut(), &own, &other, id);
             assert!(outcome.is_finite(), "{outcome:?}");
             let ticks = recording.times().len();
             assert_eq!(ticks, outcome.steps as usize);
@@ -127,7 +134,7 @@ fn lives_repeat_and_robots_stay_between_the_walls_and_apart() {
                 }
             }
             // Another generation, another start.
-            let next = setup.live_against(&own, &[&other], Job { generation: 3, ..job }, &mut Tape::off());
+            let next = evaluator.evaluate(against(&own, &[&other], EpisodeId { generation: 3, ..id }), None);
             assert!(next.is_finite());
         }
     }
@@ -135,13 +142,14 @@ fn lives_repeat_and_robots_stay_between_the_walls_and_apart() {
 
 #[test]
 fn the_book_of_food_is_what_the_robots_ways_tell() {
-    let mut setup = prepare(&Foraging, "marxbot", 400);
-    let columns = setup.stage().columns();
+    let mut evaluator = prepare(&Foraging, "marxbot", 400);
+    let columns = evaluator.stage().columns();
     let column = |name: &str| columns.iter().position(|c| c == name).unwrap_or_else(|| panic!("{name}"));
     let (mut deaths, mut food) = (0.0, 0.0);
     for number in 0..6 {
-        let own = genes(setup.as_ref(), number);
-        let (outcome, recording) = recorded(setup.as_mut(), &own, &own, Job { trial: number, ..Job::default() });
+        let own = parameters(evaluator.as_ref(), number);
+        let (outcome, recording) =
+            recorded(evaluator.as_mut(), &own, &own, EpisodeId { trial: number, ..EpisodeId::default() });
         // From the poses alone: who is where, from the first step on.
         let mut left = [[true; 20]; 20];
         let (mut carried, mut away, mut paid, mut lost) = ([0.0; 10], [0; 10], 0.0, 0.0);
@@ -190,11 +198,12 @@ fn the_book_of_food_is_what_the_robots_ways_tell() {
 
 #[test]
 fn the_reward_of_aggregation_is_that_of_the_last_places() {
-    let mut setup = prepare(&Aggregation, "marxbot", 200);
+    let mut evaluator = prepare(&Aggregation, "marxbot", 200);
     let radius = 0.085;
     for number in 0..5 {
-        let own = genes(setup.as_ref(), number);
-        let (outcome, recording) = recorded(setup.as_mut(), &own, &own, Job { trial: number, ..Job::default() });
+        let own = parameters(evaluator.as_ref(), number);
+        let (outcome, recording) =
+            recorded(evaluator.as_mut(), &own, &own, EpisodeId { trial: number, ..EpisodeId::default() });
         let place = |body: u16| {
             let [x, y, _] = recording.pose_at(199, BodyId(body)).unwrap().position;
             [x, y]
@@ -216,14 +225,14 @@ fn the_reward_of_aggregation_is_that_of_the_last_places() {
 
 #[test]
 fn capture_is_the_same_for_both() {
-    let mut setup = prepare(&PredatorPrey, "", 400);
+    let mut evaluator = prepare(&PredatorPrey, "", 400);
     let (mut captures, mut escapes) = (0, 0);
     for number in 0..24 {
-        let (own, other) = (genes(setup.as_ref(), number), genes(setup.as_ref(), number + 100));
-        let job = Job { seed: 9, individual: 4, trial: number, ..Job::default() };
-        let predator = setup.live_against(&own, &[&other], job, &mut Tape::off());
+        let (own, other) = (parameters(evaluator.as_ref(), number), parameters(evaluator.as_ref(), number + 100));
+        let id = EpisodeId { seed: 9, individual: 4, trial: number, ..EpisodeId::default() };
+        let predator = evaluator.evaluate(against(&own, &[&other], id), None);
         // The prey of the same place in its population, 40 individuals further.
-        let prey = setup.live_against(&other, &[&own], Job { individual: 44, ..job }, &mut Tape::off());
+        let prey = evaluator.evaluate(against(&other, &[&own], EpisodeId { individual: 44, ..id }), None);
         assert_eq!(predator.terms[0] + prey.terms[0], 1.0);
         assert_eq!((predator.steps, &predator.notes), (prey.steps, &prey.notes));
         assert_ne!(predator.success, prey.success);
@@ -244,7 +253,7 @@ fn robots_that_drive_into_each_other_are_caught_wherever_they_are() {
     let mut world = config.world().unwrap();
     let mut life = PredatorPreyLife::new(config.clone(), minds).unwrap();
     for seed in 0..10 {
-        let outcome = chase(&mut life, &mut world, Job { seed, ..Job::default() });
+        let outcome = chase(&mut life, &mut world, EpisodeId { seed, ..EpisodeId::default() });
         // Capture leaves no gap that a step could not close; without it there was one at every step.
         assert!(!life.captured() || life.gap() < 2.0 * 0.027, "{seed}: {}", life.gap());
         assert!(outcome.is_finite());
@@ -253,31 +262,34 @@ fn robots_that_drive_into_each_other_are_caught_wherever_they_are() {
     let minds = [Chaser::predator(&config), Chaser::predator(&config)];
     let mut life = PredatorPreyLife::new(config, minds).unwrap();
     for seed in 0..10 {
-        let outcome = chase(&mut life, &mut world, Job { seed, ..Job::default() });
+        let outcome = chase(&mut life, &mut world, EpisodeId { seed, ..EpisodeId::default() });
         assert!(life.captured() && outcome.steps < 60, "{seed}: {outcome:?}");
     }
 }
 
 #[test]
 fn hand_written_teams_do_what_they_are_for() {
-    let jobs = || (0..3).map(|seed| Job { seed, ..Job::default() });
+    let ids = || (0..3).map(|seed| EpisodeId { seed, ..EpisodeId::default() });
     let mean = |outcomes: &[Outcome]| {
         outcomes.iter().map(|outcome| outcome.terms.iter().sum::<f64>()).sum::<f64>() / outcomes.len() as f64
     };
     for condition in ["marxbot", "e-puck", "khepera"] {
-        let mut setup = prepare(&Foraging, condition, 1000);
-        let random: Vec<_> =
-            jobs().map(|job| setup.live(&genes(setup.as_ref(), job.seed as u32), job, &mut Tape::off())).collect();
+        let mut evaluator = prepare(&Foraging, condition, 1000);
+        let mut random = Vec::new();
+        for id in ids() {
+            let own = parameters(evaluator.as_ref(), id.seed as u32);
+            random.push(evaluator.evaluate(against(&own, &[], id), None));
+        }
         let config = ForagingConfig::of_condition(condition);
         let mut world = config.world().unwrap();
         let mut life = ForagingLife::new(config.clone(), vec![HomingForager::new(&config); 10]).unwrap();
-        let by_hand: Vec<_> = jobs().map(|job| forage(&mut life, &mut world, job)).collect();
+        let by_hand: Vec<_> = ids().map(|id| forage(&mut life, &mut world, id)).collect();
         assert!(mean(&by_hand) > 2.0 * mean(&random), "{condition}: {} {}", mean(&by_hand), mean(&random));
 
         let config = AggregationConfig::of_condition(condition);
         let mut world = config.world().unwrap();
         let mut life = AggregationLife::new(config.clone(), vec![BeaconSeeker::new(&config); 10]).unwrap();
-        let by_hand: Vec<_> = jobs().map(|job| aggregate(&mut life, &mut world, job)).collect();
+        let by_hand: Vec<_> = ids().map(|id| aggregate(&mut life, &mut world, id)).collect();
         assert!(mean(&by_hand) > 30.0, "{condition}: {}", mean(&by_hand));
     }
 }

@@ -9,12 +9,13 @@ use farsa_experiments::passive_walker::Pace;
 use farsa_experiments::passive_walker::{
     Config, End, Gait, Launch, Legs, Posture, Rules, Walk, Walker, WalkerLife, WalkerParts,
 };
-use farsa_experiments::{
-    BodyEvolution, Error, Experiment, Job, Life, Outcome, PassiveWalker, Settings, Setup, Tape, Value, live,
-    live_in_lanes,
+use farsa_experiments::{BodyEvolution, PassiveWalker};
+use farsa_lab::{
+    Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Genotype, Outcome, Settings, Value, run_episode,
+    run_in_lanes,
 };
 use farsa_num::{Domain, Instructions, Stream};
-use farsa_physics::articulated::{Batch, Lane, Model, World};
+use farsa_physics::articulated::{Batch, Model, World};
 
 /// Two different pairs of legs.
 fn uneven() -> Walker {
@@ -80,7 +81,7 @@ fn walk(config: &Config, launch: Launch, ticks: u32) -> (Option<End>, u32, f64) 
     let (model, parts) = config.model::<f32>().unwrap();
     let mut world = World::new(model);
     let mut life = WalkerLife::new(config.walker, parts, Walk { steps: ticks, ..config.walk }, launch, None);
-    let fitness = live(&mut life, &mut world, Job::default());
+    let fitness = run_episode(&mut life, &mut world, EpisodeId::default(), None);
     (life.gait().end(), life.gait().steps(), fitness)
 }
 
@@ -165,7 +166,7 @@ fn a_rigid_body_with_light_feet_walks_as_the_model() {
     let (world, parts) = config.model::<f64>().unwrap();
     let mut world = World::new(world);
     let mut life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&model), None);
-    life.start(&mut world, Job::default());
+    life.start(&mut world, EpisodeId::default());
     let mut energies = Vec::new();
     while life.gait().steps() < 13 {
         let steps = life.gait().steps();
@@ -187,15 +188,21 @@ fn a_rigid_body_with_light_feet_walks_as_the_model() {
     assert!((a_step / -fall - 1.0).abs() < 0.02, "{a_step} {fall}");
 }
 
-/// A life and the number of its job.
+/// An episode and the number of its trial.
 struct Numbered(WalkerLife, u32);
 
-impl Life<Lane<'_>> for Numbered {
-    fn start(&mut self, world: &mut Lane<'_>, job: Job) {
-        self.0.start(world, job);
+impl<W> Episode<W> for Numbered
+where
+    WalkerLife: Episode<W>,
+{
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.0.start(world, id);
     }
-    fn tick(&mut self, world: &mut Lane<'_>) -> Option<f64> {
-        self.0.tick(world)
+    fn act(&mut self, world: &mut W) {
+        self.0.act(world);
+    }
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.0.judge(world)
     }
 }
 
@@ -207,13 +214,13 @@ fn walks_in_lanes_are_those_alone() {
     let launch = Launch { angles: [0.3, -0.3], rates: [-1.2, 0.0] };
     let (model, parts): (Model<f32>, WalkerParts) = config.model().unwrap();
     let life = || WalkerLife::new(config.walker, parts, config.walk, launch, None);
-    let job = |trial| Job { seed: 4, trial, ..Job::default() };
+    let id = |trial| EpisodeId { seed: 4, trial, ..EpisodeId::default() };
     let mut world = World::new(model.clone());
     let mut one = life();
     let mut steps = 0;
     let alone: Vec<u64> = (0..20)
         .map(|trial| {
-            let fitness = live(&mut one, &mut world, job(trial));
+            let fitness = run_episode(&mut one, &mut world, id(trial), None);
             steps += one.gait().steps();
             fitness.to_bits()
         })
@@ -222,19 +229,23 @@ fn walks_in_lanes_are_those_alone() {
     let mut batch = Batch::new(model, 8, Instructions::detect()).unwrap();
     let mut lives: Vec<Numbered> = (0..8).map(|_| Numbered(life(), 0)).collect();
     let (mut next, mut found) = (0..20, vec![0; 20]);
-    live_in_lanes(
+    run_in_lanes(
         &mut lives,
         &mut batch,
         |life| {
             life.1 = next.next()?;
-            Some(job(life.1))
+            Some(id(life.1))
         },
         |life, fitness| found[life.1 as usize] = fitness.to_bits(),
     );
     assert_eq!(found, alone);
 }
 
-fn prepared(experiment: &dyn Experiment, condition: &str, changes: &[(&str, Value)]) -> Result<Box<dyn Setup>, Error> {
+fn prepared(
+    experiment: &dyn Experiment,
+    condition: &str,
+    changes: &[(&str, Value)],
+) -> Result<Box<dyn Evaluator>, Error> {
     let mut settings = Settings::new(experiment.settings(condition))?;
     for (key, value) in changes {
         settings.set("", key, value.clone())?;
@@ -254,12 +265,13 @@ fn settings_that_do_not_go_together_are_refused_by_name() {
     refused(&BodyEvolution, "body.foot_radius", Value::Numbers(vec![0.1, 0.7]));
 }
 
-/// Lives trials of an evolved genome that no run has met.
+/// Trials of an evolved genome that no run has met.
 fn trials(condition: &str, genes: &[u16]) -> Vec<Outcome> {
-    let mut setup = prepared(&BodyEvolution, condition, &[]).unwrap();
-    assert_eq!(setup.genes(), genes.len());
-    let job = |trial| Job { seed: 1 << 63, trial, ..Job::default() };
-    (0..3).map(|trial| setup.live(genes, job(trial), &mut Tape::off())).collect()
+    let mut evaluator = prepared(&BodyEvolution, condition, &[]).unwrap();
+    let parameters = Genotype::new(&evaluator.parameters(), BodyEvolution.gene_bits()).decode(genes).unwrap();
+    let id = |trial| EpisodeId { seed: 1 << 63, trial, ..EpisodeId::default() };
+    let evaluation = |trial| Evaluation { number: 0, parameters: &parameters, opponents: &[], id: id(trial) };
+    (0..3).map(|trial| evaluator.evaluate(evaluation(trial), None)).collect()
 }
 
 #[test]
@@ -285,7 +297,7 @@ fn walk_in_rapier(speed_sweeps: u32, steps: u32) -> (f64, Option<Pace>) {
     let mut world = farsa_physics::rapier::World::new(&robot, &options).unwrap();
     let launch = config.launch(&config.gait().unwrap());
     let mut life = WalkerLife::new(config.walker, parts, Walk { steps: u32::MAX, ..config.walk }, launch, None);
-    life.start(&mut world, Job::default());
+    life.start(&mut world, EpisodeId::default());
     let (mut flown, mut since) = (0.0, 0);
     while since < 200 || life.gait().steps() < steps {
         world.step();

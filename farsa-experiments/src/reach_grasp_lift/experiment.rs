@@ -82,44 +82,54 @@ pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapi
 
 #[cfg(test)]
 mod tests {
-    use farsa_body::{ArmAndHand, Tabletop};
+    use farsa_body::{ArmAndHand, Recorder, Tabletop};
+    use farsa_lab::{EpisodeId, Evaluation, Genotype, Outcome, Rollout as _, Task as _, run_episode};
     use farsa_view::Recording;
 
     use super::*;
     use crate::reach_grasp_lift::stage::SCALARS;
 
+    fn evaluation(parameters: &[f32], id: EpisodeId) -> Evaluation<'_> {
+        Evaluation { number: 0, parameters, opponents: &[], id }
+    }
+
     #[test]
     fn both_conditions_have_the_sizes_of_the_source() {
         for (condition, sensors, parameters) in [(LABELS, 29, 792), (NO_LABELS, 26, 756)] {
             let settings = Settings::new(ReachGraspLift.settings(condition)).unwrap();
-            let setup = ReachGraspLift.prepare(condition, &settings).unwrap();
-            assert_eq!(setup.genes(), parameters);
-            let description = setup.description();
+            let evaluator = ReachGraspLift.prepare(condition, &settings).unwrap();
+            assert_eq!(evaluator.parameters().len(), parameters);
+            let description = evaluator.description();
             assert_eq!(description.parameters, parameters);
             assert_eq!(description.sensors.iter().map(|group| group.count).sum::<usize>(), sensors);
             assert_eq!(description.motors.iter().map(|group| group.count).sum::<usize>(), 23);
             assert_eq!((description.steps, description.step_seconds), (600, 0.01));
-            assert_eq!(setup.stage().columns().len(), SCALARS + sensors + 12 + 23);
+            assert_eq!(evaluator.stage().columns().len(), SCALARS + sensors + 12 + 23);
         }
     }
 
     #[test]
-    fn a_life_can_be_repeated_and_taped() {
+    fn an_episode_can_be_repeated_and_recorded() {
         let settings = Settings::new(ReachGraspLift.settings(LABELS)).unwrap();
-        let mut setup = ReachGraspLift.prepare(LABELS, &settings).unwrap();
+        let mut evaluator = ReachGraspLift.prepare(LABELS, &settings).unwrap();
         let genes: Vec<u16> = (0..792u32).map(|i| (i * 40503) as u16).collect();
+        let genotype = Genotype::new(&evaluator.parameters(), ReachGraspLift.gene_bits());
+        let parameters = genotype.decode(&genes).unwrap();
         let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: 1 };
-        let plain = setup.live(&genes, id, &mut Tape::off());
-        setup.live(&genes, EpisodeId { trial: 3, ..id }, &mut Tape::off());
-        let mut recording = Recording::new(setup.stage());
-        let taped = setup.live(&genes, id, &mut Tape::to(&mut recording));
-        assert_eq!(plain, taped);
+        let stage = evaluator.stage();
+        let mut evaluate =
+            |id, recorder: Option<&mut dyn Recorder>| evaluator.evaluate(evaluation(&parameters, id), recorder);
+        let plain = evaluate(id, None);
+        evaluate(EpisodeId { trial: 3, ..id }, None);
+        let mut recording = Recording::new(stage.clone());
+        let recorded = evaluate(id, Some(&mut recording));
+        assert_eq!(plain, recorded);
         assert!(plain.is_finite(), "{plain:?}");
         let ticks = plain.steps as usize;
         assert_eq!(recording.times().len(), ticks);
         assert!((0..ticks).all(|tick| recording.row(tick).all(f64::is_finite)));
         // The rewards of the steps add up to the terms.
-        let columns = setup.stage().columns();
+        let columns = stage.columns();
         let value = |tick: usize, name: &str| {
             let column = columns.iter().position(|c| c == name).unwrap();
             recording.row(tick).nth(column).unwrap()
@@ -135,23 +145,22 @@ mod tests {
                 assert_eq!(f64::from(recording.pose_at(tick, body).unwrap().position[0]), value(tick, name));
             }
         }
-        // The whole life as `Life` lives it: the same fitness.
-        let mut lives = Lives::new(Config::default()).unwrap();
-        assert!(lives.decoder.decode(&genes));
-        lives.life.controller_mut().copy_parameters(&lives.decoder.parameters).unwrap();
-        let fitness = farsa_lab::live(&mut lives.life, &mut lives.world, id);
-        assert_eq!(fitness, setup.fitness(core::slice::from_ref(&plain)));
         // Shared by the generation's individuals, another in the next generation.
-        let again = setup.live(&genes, EpisodeId { individual: 8, ..id }, &mut Tape::off());
-        assert_eq!(again, plain);
-        assert_ne!(setup.live(&genes, EpisodeId { generation: 3, ..id }, &mut Tape::off()), plain);
+        assert_eq!(evaluate(EpisodeId { individual: 8, ..id }, None), plain);
+        assert_ne!(evaluate(EpisodeId { generation: 3, ..id }, None), plain);
+        // The episode run by hand: the same fitness.
+        let mut by_hand = super::evaluator(Config::default()).unwrap();
+        let (task, world) = by_hand.parts_mut();
+        assert!(task.load(&evaluation(&parameters, id)));
+        let fitness = run_episode(task, world, id, None);
+        assert_eq!(fitness, by_hand.fitness(core::slice::from_ref(&plain)));
     }
 
     #[test]
     fn a_failed_trial_fails_the_individual() {
-        let setup = Lives::new(Config::default()).unwrap();
+        let task = evaluator(Config::default()).unwrap();
         let good = Outcome { terms: vec![1.0, 2.0, 3.0, 300.0], ..Outcome::default() };
-        assert_eq!(setup.fitness(&[good.clone(), good.clone()]), 612.0);
-        assert!(setup.fitness(&[good, Outcome::failed()]).is_nan());
+        assert_eq!(task.fitness(&[good.clone(), good.clone()]), 612.0);
+        assert!(task.fitness(&[good, Outcome::failed()]).is_nan());
     }
 }
