@@ -18,7 +18,9 @@ use core::hint::black_box;
 use farsa::body::{
     Actuated, ActuatorId, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor,
 };
-use farsa::nn::{Architecture, BlockLayout, BlockNetwork, Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork, Plan};
+use farsa::nn::{
+    Architecture, BlockLayout, BlockNetwork, Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork, Plan,
+};
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::Spatial;
 
