@@ -1,4 +1,4 @@
-//! `discrimination`: the original's genotypes, the starts of trials, trials.
+//! `discrimination`: the original's genotypes, the starts and the course of trials.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};

@@ -81,19 +81,21 @@ fn random_parameters(evaluator: &dyn Evaluator, bits: u32, seed: u64, individual
     let genotype = Genotype::new(&evaluator.parameters(), bits);
     let mut genes = vec![0; genotype.genes()];
     randomize(&mut genes, &mut Stream::new(seed, Domain::InitialGenome, 0, individual, 0));
-    genes.iter_mut().for_each(|gene| *gene &= genotype.largest());
+    for gene in &mut genes {
+        *gene &= genotype.largest();
+    }
     genotype.decode(&genes).unwrap()
 }
 
 /// Evaluates in lanes of every number and instruction set, and one after the other by the same trait, and compares with what
 /// `evaluate` returns; returns that.
-fn in_lanes_as_alone<'p>(
+fn in_lanes_as_alone(
     evaluator: &mut dyn Evaluator,
     instructions: impl Iterator<Item = Instructions>,
-    evaluations: &[Evaluation<'p>],
+    evaluations: &[Evaluation<'_>],
 ) -> Vec<Outcome> {
     // More than lanes: they are filled again.
-    assert!(evaluations.len() > LANES[1] && evaluations.len() % LANES[0] != 0);
+    assert!(evaluations.len() > LANES[1] && !evaluations.len().is_multiple_of(LANES[0]));
     let alone: Vec<Outcome> = evaluations.iter().map(|evaluation| evaluator.evaluate(*evaluation, None)).collect();
     assert!(alone.iter().all(Outcome::is_finite), "{alone:?}");
     for (count, instructions) in every_batch(instructions).chain([(1, Instructions::detect())]) {
