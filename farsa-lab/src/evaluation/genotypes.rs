@@ -219,10 +219,15 @@ mod tests {
 
     #[test]
     fn the_originals_own_files() {
-        let Some(root) = std::env::var_os("FARSA_FIXTURES") else {
-            println!("skipped: FARSA_FIXTURES is not set");
+        // They are not ours to keep. In CI they must be there; elsewhere the test says that it is skipped.
+        let named = std::env::var_os("FARSA_FIXTURES").map(std::path::PathBuf::from);
+        let must_be_there = named.is_some() || std::env::var_os("CI").is_some_and(|value| value == "true");
+        let root = named.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"));
+        if !root.join("khepera").is_dir() {
+            assert!(!must_be_there, "there is no folder khepera in {}; set FARSA_FIXTURES", root.display());
+            eprintln!("skipped: the original's genotypes (set FARSA_FIXTURES)");
             return;
-        };
+        }
         for (name, first) in [("G500S53.gen", [90, 93, 0]), ("G500S54.gen", [75, 96, 124])] {
             let read = read_genotypes(&Path::new(&root).join("khepera").join(name), 14, 8).unwrap();
             assert_eq!((read.len(), &read[0][..3], read[0].len()), (1, &first[..], 14));
