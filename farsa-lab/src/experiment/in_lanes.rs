@@ -48,7 +48,7 @@ batch!(articulated, arena);
 ///
 /// Each of `episodes` has a lane of its own. `begin` makes an episode ready for its next start and returns which it is, or
 /// `None` when there is none left; `end` takes the return. A lane is filled again as soon as its episode ends, whatever
-/// the others are at, so every episode is the one that [`run`](crate::run::evolve) runs alone: lanes, batches and the order
+/// the others are at, so every episode is the one that [`run_episode`](crate::run_episode) runs alone: lanes, batches and the order
 /// change nothing but time.
 pub fn run_in_lanes<B, E>(
     episodes: &mut [E],

@@ -20,7 +20,7 @@ use crate::experiment::outcome::Description;
 /// ```
 /// use farsa_body::testing::PointWorld;
 /// use farsa_body::{ActuatorId, JointId, JointPosition, TorqueMotor, World as _};
-/// use farsa_experiments::Neurocontroller;
+/// use farsa_lab::Neurocontroller;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let sensors = [0, 1].map(|joint| JointPosition::new(JointId(joint), -1.0, 1.0));

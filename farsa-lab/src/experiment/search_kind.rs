@@ -13,7 +13,7 @@ pub enum Search {
     /// The log of such a run is about the mean fitness of the parent over its life and the fitness of the mutant: the
     /// best of the two is that of the survivor, which is the champion.
     OnePlusOne,
-    /// Nothing is selected: a generation is one individual, which takes a lesson after it has lived, [`Setup::lesson`].
+    /// Nothing is selected: a generation is one individual, which takes a lesson after it was evaluated, [`Learner::lesson`](crate::Learner::lesson).
     ///
     /// The log of such a run has one fitness three times; errors are in `learning.csv`.
     Learning,
