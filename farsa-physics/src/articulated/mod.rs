@@ -70,8 +70,5 @@ pub use tree::{
     Link, LinkData, Root, accelerations, centre_of_mass, forward_kinematics, inverse_dynamics, jacobian,
     kinetic_energy, mass_matrix, potential_energy,
 };
-/// Their former names.
-#[doc(hidden)]
-pub use tree::{LinkData as LinkWork, forward_kinematics as place};
 #[cfg(feature = "alloc")]
 pub use world::World;

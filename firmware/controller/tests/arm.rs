@@ -2,7 +2,7 @@
 
 use farsa_body::{ArmAndHand, Robot};
 use farsa_num::{Domain, Stream};
-use farsa_physics::articulated::{LinkWork, Model, Options, inverse_dynamics, place};
+use farsa_physics::articulated::{LinkData, Model, Options, forward_kinematics, inverse_dynamics};
 use firmware_controller::ARM;
 
 /// The arm of the description, its fingers cut off.
@@ -35,7 +35,7 @@ fn the_numbers_are_those_of_the_description() {
 fn torques_are_those_of_the_articulated_bodies() {
     let model = Model::<f64>::new(&arm(), &Options::default()).expect("an arm");
     let mut stream = Stream::new(1, Domain::Start, 0, 0, 0);
-    let mut work = vec![LinkWork::<f64>::new(()); model.links().len()];
+    let mut work = vec![LinkData::<f64>::new(()); model.links().len()];
     let mut worst = 0.0_f64;
     for case in 0..1000 {
         let mut draw = |range: f32| core::array::from_fn::<f32, 7, _>(|_| stream.range(-range, range));
@@ -43,7 +43,7 @@ fn torques_are_those_of_the_articulated_bodies() {
         let (q, qd, qdd) = (draw(3.0), draw(moving), draw(4.0 * moving));
         let [wide, speeds, accelerations] = [q, qd, qdd].map(|values| values.map(f64::from));
         let mut expected = [0.0; 7];
-        place((), model.links(), &wide, &speeds, &mut work);
+        forward_kinematics((), model.links(), &wide, &speeds, &mut work);
         inverse_dynamics((), model.links(), model.gravity(), &accelerations, &mut work, &mut expected);
         let found = ARM.torques(&q, &qd, &qdd);
         if case % 2 == 0 {
