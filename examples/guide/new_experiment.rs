@@ -8,7 +8,7 @@ use farsa_lab::{Setting, Settings, SimpleExperiment, Stage, Trials, cli};
 
 const LAMP: [f64; 2] = [0.8, 0.4]; // metres
 
-fn settings() -> Vec<Setting> {
+fn settings(_condition: &str) -> Vec<Setting> {
     vec![Setting::whole("trial.steps", 400, 1..=1_000_000).doc("Steps of 50 ms.")]
 }
 
@@ -55,5 +55,5 @@ impl Objective for Nearness {
 
 fn main() -> std::process::ExitCode {
     let (name, summary) = ("phototaxis", "a Khepera learns to find a lamp");
-    cli::main(&[&SimpleExperiment { name, summary, settings, prepare }])
+    cli::main(&[&SimpleExperiment { name, summary, conditions: &[], settings, prepare }])
 }

@@ -71,15 +71,17 @@ pub trait Experiment: Sync {
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error>;
 }
 
-/// An [`Experiment`] of one condition that is all said by its name, a line, a table and a function.
+/// An [`Experiment`] that is all said by its name, a line, its conditions, a table and a function.
 #[derive(Clone, Copy)]
 pub struct SimpleExperiment {
     /// The name on the command line: lower-case letters, digits and hyphens.
     pub name: &'static str,
     /// What is asked, in one line.
     pub summary: &'static str,
-    /// Every setting with its default.
-    pub settings: fn() -> Vec<Setting>,
+    /// The conditions that are compared, the default one first; empty if there is only one.
+    pub conditions: &'static [&'static str],
+    /// Every setting with its default, under a condition.
+    pub settings: fn(&str) -> Vec<Setting>,
     /// Builds what one thread evaluates trials by.
     pub prepare: fn(&Settings) -> Result<Box<dyn Evaluator>, Error>,
 }
@@ -93,8 +95,12 @@ impl Experiment for SimpleExperiment {
         self.summary
     }
 
-    fn settings(&self, _: &str) -> Vec<Setting> {
-        (self.settings)()
+    fn conditions(&self) -> &'static [&'static str] {
+        self.conditions
+    }
+
+    fn settings(&self, condition: &str) -> Vec<Setting> {
+        (self.settings)(condition)
     }
 
     fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {

@@ -1,36 +1,24 @@
 //! An experiment of one's own: a cart learns to stop at the middle of its track.
 
 use farsa_body::Recorder;
-use farsa_lab::{Error, Evaluation, Evaluator, Experiment, Outcome, Parameter, Setting, Settings};
+use farsa_lab::{Description, Error, Evaluation, Evaluator, Outcome, Parameter, Setting, Settings, SimpleExperiment};
 use farsa_lab::{Stage, Task, cli, record_row};
 use farsa_num::{Domain, Stream};
 
-struct Cart;
+fn settings(condition: &str) -> Vec<Setting> {
+    let friction = if condition == "smooth" { 0.0 } else { 0.5 };
+    vec![
+        Setting::whole("evolution.population", 20, 1..=1000).doc("Carts of a generation."),
+        Setting::whole("evolution.parents", 5, 1..=1000).doc("Carts that have children."),
+        Setting::number("cart.friction", friction, 0.0..=10.0).unit("1/s").doc("Deceleration per speed."),
+        Setting::word("cart.motor", "linear", &["linear", "switched"]).doc("Continuous or full force."),
+        Setting::whole("trial.steps", 500, 1..=1_000_000).doc("Steps of 10 ms."),
+    ]
+}
 
-impl Experiment for Cart {
-    fn name(&self) -> &'static str {
-        "cart"
-    }
-    fn summary(&self) -> &'static str {
-        "a cart learns to stop at the middle of its track"
-    }
-    fn conditions(&self) -> &'static [&'static str] {
-        &["rough", "smooth"]
-    }
-    fn settings(&self, condition: &str) -> Vec<Setting> {
-        let friction = if condition == "smooth" { 0.0 } else { 0.5 };
-        vec![
-            Setting::whole("evolution.population", 20, 1..=1000).doc("Carts of a generation."),
-            Setting::whole("evolution.parents", 5, 1..=1000).doc("Carts that have children."),
-            Setting::number("cart.friction", friction, 0.0..=10.0).unit("1/s").doc("Deceleration per speed."),
-            Setting::word("cart.motor", "linear", &["linear", "switched"]).doc("Continuous or full force."),
-            Setting::whole("trial.steps", 500, 1..=1_000_000).doc("Steps of 10 ms."),
-        ]
-    }
-    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        let (friction, steps) = (settings.number("cart.friction")?, settings.count("trial.steps")?);
-        Ok(Box::new(Track { friction, steps: steps as u32, switched: settings.word("cart.motor")? == "switched" }))
-    }
+fn prepare(settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+    let (friction, steps) = (settings.number("cart.friction")?, settings.count("trial.steps")?);
+    Ok(Box::new(Track { friction, steps: steps as u32, switched: settings.word("cart.motor")? == "switched" }))
 }
 
 struct Track {
@@ -48,6 +36,10 @@ impl Task for Track {
     }
     fn stage(&self) -> Stage {
         Stage::of_scalars(["position [m]", "speed [m/s]", "force [N]"])
+    }
+    fn description(&self) -> Description {
+        let (network, steps) = ("2-1, linear".into(), self.steps as usize);
+        Description { network, parameters: 2, steps, step_seconds: 0.01, ..Description::default() }
     }
 }
 
@@ -75,5 +67,6 @@ impl Evaluator for Track {
 }
 
 fn main() -> std::process::ExitCode {
-    cli::main(&[&Cart])
+    let (name, summary) = ("cart", "a cart learns to stop at the middle of its track");
+    cli::main(&[&SimpleExperiment { name, summary, conditions: &["rough", "smooth"], settings, prepare }])
 }
