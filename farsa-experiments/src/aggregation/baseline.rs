@@ -5,7 +5,7 @@ use farsa_nn::Controller;
 use crate::aggregation::config::AggregationConfig;
 use crate::team::config::EYES;
 use crate::team::robots::OUTPUTS;
-use crate::team::{steering::away, steering::eyes};
+use crate::team::steering::{away, eyes};
 
 /// Stays on a nest and shines red there; elsewhere it steers to what shines red, else drives straight on and turns away from
 /// what its infrared sensors see.

@@ -5,7 +5,7 @@ use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::aggregation::config::AggregationConfig;
-use crate::aggregation::{life::AggregationLife, life::AggregationMission};
+use crate::aggregation::life::{AggregationLife, AggregationMission};
 use crate::team::config::ROBOTS;
 use crate::team::task::evaluator;
 

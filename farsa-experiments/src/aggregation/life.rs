@@ -6,12 +6,12 @@ use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::aggregation::config::AggregationConfig;
-use crate::aggregation::{measure::Gathering, measure::mean_distances};
+use crate::aggregation::measure::{Gathering, mean_distances};
 use crate::team::config::TeamConfig;
-use crate::team::{life::Mission, life::Moment, life::TeamLife};
-use crate::team::{nest::COLORS, nest::on_nest};
-use crate::team::{robots::OUTPUTS, robots::Team, robots::distance};
-use crate::team::{task::eye_groups, task::eye_names};
+use crate::team::life::{Mission, Moment, TeamLife};
+use crate::team::nest::{COLORS, on_nest};
+use crate::team::robots::{OUTPUTS, Team, distance};
+use crate::team::task::{eye_groups, eye_names};
 use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
 use farsa_view::Channel;
 

@@ -3,7 +3,7 @@
 use farsa_body::Recorder;
 use farsa_physics::arena::{Batch, World};
 
-use crate::braitenberg::{life::Config, life::LIGHTS, life::Vehicle, life::VehicleLife};
+use crate::braitenberg::life::{Config, LIGHTS, Vehicle, VehicleLife};
 use farsa_lab::{
     ChannelGroup, Description, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome, Parameter,
     Rollout, Setting, Settings, Task, mean_of_trials,

@@ -6,8 +6,8 @@ use farsa_body::{Arrange, BodyId, Handles, JointId, Kinematics, Planar, Recorder
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
 
+use crate::discrimination::config::{Config, EYES, ROBOTS};
 use crate::discrimination::life::CylinderLife;
-use crate::discrimination::{config::Config, config::EYES, config::ROBOTS};
 use crate::infrared::settings::InfraredModel;
 use crate::worlds::PlanarEngine;
 use farsa_lab::{

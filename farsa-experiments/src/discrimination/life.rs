@@ -11,7 +11,7 @@ use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream};
 use farsa_physics::arena::{ArenaError, FreePlace};
 
-use crate::discrimination::{config::Config, config::EYES};
+use crate::discrimination::config::{Config, EYES};
 use crate::infrared::settings::Infrared;
 
 /// Most cylinders of a trial.

@@ -5,8 +5,7 @@ use farsa_nn::Controller;
 use crate::foraging::config::ForagingConfig;
 use crate::team::config::EYES;
 use crate::team::robots::OUTPUTS;
-use crate::team::steering::away;
-use crate::team::steering::eyes;
+use crate::team::steering::{away, eyes};
 
 /// Drives circles that lead back to the nest before the energy is used up, and straight on through the nest, so that the
 /// circles make a rosette around it; turns away from what its infrared sensors see.

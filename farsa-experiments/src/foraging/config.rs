@@ -3,9 +3,9 @@
 use farsa_lab::{Error, Setting, Settings};
 use farsa_physics::arena::{Area, Arena, World};
 
-use crate::team::task;
-use crate::team::{config::TeamConfig, config::whole};
-use crate::team::{nest, nest::COLORS, nest::NEST};
+use crate::team::config::{TeamConfig, whole};
+use crate::team::nest::{COLORS, NEST};
+use crate::team::{nest, task};
 
 /// What the robots forage in; the defaults are those of a condition, the robot's name.
 ///

@@ -5,7 +5,7 @@ use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::foraging::config::ForagingConfig;
-use crate::foraging::{life::ForagingLife, life::ForagingMission};
+use crate::foraging::life::{ForagingLife, ForagingMission};
 use crate::team::config::ROBOTS;
 use crate::team::task::evaluator;
 

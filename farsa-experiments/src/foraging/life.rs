@@ -8,10 +8,10 @@ use farsa_physics::arena::{Arena, ArenaError};
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::field::Field;
 use crate::team::config::TeamConfig;
-use crate::team::{life::Mission, life::Moment, life::TeamLife};
-use crate::team::{nest::COLORS, nest::on_nest};
-use crate::team::{robots::OUTPUTS, robots::Team};
-use crate::team::{task::eye_groups, task::eye_names};
+use crate::team::life::{Mission, Moment, TeamLife};
+use crate::team::nest::{COLORS, on_nest};
+use crate::team::robots::{OUTPUTS, Team};
+use crate::team::task::{eye_groups, eye_names};
 use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
 use farsa_view::Channel;
 

@@ -10,7 +10,7 @@ use farsa_body::{
 };
 use farsa_lab::{Error, Setting, Settings};
 
-use crate::infrared::{sensor_rays::SensorRays, sensor_rays::Told};
+use crate::infrared::sensor_rays::{SensorRays, Told};
 
 const MODEL: &str = "robot.infrared";
 const TABLES: &str = "robot.infrared_tables";

@@ -8,8 +8,8 @@ use farsa_nn::{Controller, Demonstration};
 use farsa_physics::articulated::{Model, World};
 
 use crate::reach_grasp_lift::life::Judge;
-use crate::reach_grasp_lift::{scene::Motors, scene::OUTPUTS, scene::Scene, scene::Senses};
-use crate::reach_grasp_lift::{script::Plan, script::Statics, script::Timetable};
+use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
+use crate::reach_grasp_lift::script::{Plan, Statics, Timetable};
 
 /// The activation that both muscles of a pair have where no torque is wanted.
 const TONUS: f64 = 0.5;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use farsa_body::Recorder;
 use farsa_physics::articulated::World;
 
-use crate::kinesthetic_grasp::{training::Lessons, training::School};
+use crate::kinesthetic_grasp::training::{Lessons, School};
 use crate::reach_grasp_lift::config::Config as Reach;
 use crate::reach_grasp_lift::experiment::evaluator;
 use crate::reach_grasp_lift::scene::Scene;

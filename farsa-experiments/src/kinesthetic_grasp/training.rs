@@ -6,7 +6,7 @@ use farsa_lab::{EpisodeId, Error, Lesson};
 use farsa_nn::{Adam, Error as NetworkError, Gradient, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Learner, Loss};
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::kinesthetic_grasp::{demonstrator::Record, demonstrator::Teacher};
+use crate::kinesthetic_grasp::demonstrator::{Record, Teacher};
 use crate::reach_grasp_lift::config::TRIALS;
 use crate::reach_grasp_lift::scene::Scene;
 

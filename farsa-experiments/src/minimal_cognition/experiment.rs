@@ -7,11 +7,8 @@ use farsa_nn::{CtrnnParameter, CtrnnParts, Span};
 
 use crate::minimal_cognition::config::Config;
 use crate::minimal_cognition::life::AgentLife;
+use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTORS, NEURONS, RAYS, Wiring};
 use crate::minimal_cognition::object::Object;
-use crate::minimal_cognition::{
-    network::INNER, network::LAYOUT, network::LINKED, network::MOTOR_ONES, network::MOTORS, network::NEURONS,
-    network::RAYS, network::Wiring,
-};
 use farsa_lab::{
     ChannelGroup, CtrnnExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
     InWorld, NoWorld, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials, seconds,

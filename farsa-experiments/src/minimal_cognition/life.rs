@@ -5,8 +5,8 @@ use farsa_nn::{Controller as _, Ctrnn};
 use farsa_num::{Domain, Stream, sin_cos};
 
 use crate::minimal_cognition::config::Config;
+use crate::minimal_cognition::network::{LAYOUT, MOTORS, RAYS};
 use crate::minimal_cognition::object::Object;
-use crate::minimal_cognition::{network::LAYOUT, network::MOTORS, network::RAYS};
 
 /// An agent under a falling object.
 #[derive(Clone, Debug)]

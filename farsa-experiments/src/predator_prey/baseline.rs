@@ -2,9 +2,9 @@
 
 use farsa_nn::Controller;
 
-use crate::predator_prey::{config::OUTPUTS, config::PredatorPreyConfig};
+use crate::predator_prey::config::{OUTPUTS, PredatorPreyConfig};
 use crate::team::config::EYES;
-use crate::team::{steering::away, steering::eyes};
+use crate::team::steering::{away, eyes};
 
 /// What to do about the other robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use farsa_lab::{Error, OwnedNetwork, Setting, Settings, resting_network};
 use farsa_physics::arena::{Arena, CollisionRule, World};
 
+use crate::team::config::{TeamConfig, whole};
 use crate::team::task;
-use crate::team::{config::TeamConfig, config::whole};
 
 /// Words for the rules of collisions.
 const CIRCLES: &str = "circles";

@@ -5,7 +5,7 @@ use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::predator_prey::config::PredatorPreyConfig;
-use crate::predator_prey::{life::PredatorPreyLife, life::PredatorPreyMission};
+use crate::predator_prey::life::{PredatorPreyLife, PredatorPreyMission};
 use crate::team::task::evaluator;
 
 /// Do a predator and a prey that evolve against each other become better at both? \[FARSA2\]

@@ -7,12 +7,12 @@ use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError};
 
-use crate::predator_prey::{config::NAMES, config::OUTPUTS, config::PredatorPreyConfig};
+use crate::predator_prey::config::{NAMES, OUTPUTS, PredatorPreyConfig};
 use crate::team::config::TeamConfig;
-use crate::team::{eyes::BLUE, eyes::RED};
-use crate::team::{life::Mission, life::Moment, life::TeamLife};
-use crate::team::{robots::Team, robots::distance};
-use crate::team::{task::eye_groups, task::eye_names};
+use crate::team::eyes::{BLUE, RED};
+use crate::team::life::{Mission, Moment, TeamLife};
+use crate::team::robots::{Team, distance};
+use crate::team::task::{eye_groups, eye_names};
 use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
 use farsa_view::Channel;
 

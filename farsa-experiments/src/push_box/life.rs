@@ -10,7 +10,7 @@ use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
-use crate::infrared::{settings::Infrared, settings::InfraredModel};
+use crate::infrared::settings::{Infrared, InfraredModel};
 use crate::push_box::config::PushConfig;
 
 /// Values that a controller gives: left and right wheel.

@@ -3,7 +3,7 @@
 use farsa_body::{Pose, Recorder};
 use farsa_nn::Perceptron;
 
-use crate::push_box::{life::OUTPUTS, life::PushLife};
+use crate::push_box::life::{OUTPUTS, PushLife};
 use farsa_lab::{
     ChannelGroup, Description, Error, Evaluation, Note, Outcome, Parameter, Rollout, Task, mean_of_trials,
 };

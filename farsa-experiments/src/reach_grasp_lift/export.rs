@@ -7,7 +7,7 @@ use farsa_lab::{
 };
 
 use crate::reach_grasp_lift::phase::Phase;
-use crate::reach_grasp_lift::{scene::Scene, scene::TARGET_SCALE};
+use crate::reach_grasp_lift::scene::{Scene, TARGET_SCALE};
 
 impl Scene {
     /// A network with the channels of this scene, named as they are there.

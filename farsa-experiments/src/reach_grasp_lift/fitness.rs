@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::reach_grasp_lift::{phase::Observation, phase::Phase};
+use crate::reach_grasp_lift::phase::{Observation, Phase};
 
 /// Largest sum of the reach terms over an individual's trials \[Ferrauto2010, 2.3.4\].
 pub const REACH_CAP: f64 = 500.0;

@@ -8,9 +8,9 @@ use farsa_body::{
 use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::Controller;
 
+use crate::reach_grasp_lift::fitness::{Ledger, Trial};
 use crate::reach_grasp_lift::phase::Observation;
-use crate::reach_grasp_lift::{fitness::Ledger, fitness::Trial};
-use crate::reach_grasp_lift::{scene::Motors, scene::OUTPUTS, scene::Scene, scene::Senses};
+use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
 
 /// The judge of one trial: sees every step, keeps the account and says when the trial is over.
 #[derive(Clone, Debug)]

@@ -9,8 +9,8 @@ use farsa_lab::{EpisodeId, Error};
 use farsa_models::{Keyframe, MjcfOptions};
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::reach_grasp_lift::{config::Config, config::Displacement, config::TRIALS};
-use crate::reach_grasp_lift::{phase::Observation, phase::Phase};
+use crate::reach_grasp_lift::config::{Config, Displacement, TRIALS};
+use crate::reach_grasp_lift::phase::{Observation, Phase};
 
 /// Sensor channels beside the labels.
 const PLAIN_SENSORS: usize = 26;

@@ -9,7 +9,7 @@ use farsa_body::{
 use farsa_lab::{Episode, EpisodeId, Error};
 
 use crate::reach_grasp_lift::life::Judge;
-use crate::reach_grasp_lift::{scene::Motors, scene::OUTPUTS, scene::Scene};
+use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene};
 
 /// Postures with the palm exactly down, its centre 5 cm above the sphere in its four places \[deg\]: where the search for a
 /// posture begins.

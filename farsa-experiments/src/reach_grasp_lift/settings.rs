@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use farsa_body::{Axes, MuscleVariant};
 use farsa_lab::{ENGINE, Error, Setting, Settings, Source};
 
+use crate::reach_grasp_lift::config::{Config, Displacement, SphereFrame};
 use crate::reach_grasp_lift::fitness::ContactTerm;
-use crate::reach_grasp_lift::{config::Config, config::Displacement, config::SphereFrame};
 use crate::worlds::Engine;
 
 /// How a field of the configuration is read and written.

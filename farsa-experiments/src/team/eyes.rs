@@ -4,8 +4,8 @@ use farsa_body::{
     Beam, BodyId, ChannelError, ColorBand, InfraredRays, LinearCamera, MobileParts, MobileRobot, Recorder, Sensor as _,
 };
 
-use crate::infrared::{sensor_rays::SensorRays, sensor_rays::Told};
-use crate::team::{config::EYES, config::TeamConfig};
+use crate::infrared::sensor_rays::{SensorRays, Told};
+use crate::team::config::{EYES, TeamConfig};
 use farsa_lab::PlanarWorld;
 
 /// What shines red, whatever else shines with it.

@@ -4,7 +4,7 @@ use farsa_body::ColorBand;
 use farsa_lab::Error;
 use farsa_lab::PlanarWorld;
 
-use crate::team::{eyes::BLUE, eyes::RED};
+use crate::team::eyes::{BLUE, RED};
 
 /// What the cameras see.
 pub(crate) const COLORS: [ColorBand; 2] = [RED, BLUE];

@@ -7,14 +7,12 @@ use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
 
 use crate::walking::gait::Rules;
+use crate::walking::life::{Brain, Launch, SENSES, Walk, WalkerLife};
 #[cfg(feature = "rapier")]
 use crate::walking::settings::rapier_options;
-use crate::walking::{life::Brain, life::Launch, life::SENSES, life::Walk, life::WalkerLife};
-use crate::walking::{
-    settings::engine, settings::mjcf_options, settings::on_contacts, settings::outcome, settings::walk,
-};
-use crate::walking::{stage::drawn, stage::exported, stage::stage};
-use crate::walking::{walker::Legs, walker::Walker};
+use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk};
+use crate::walking::stage::{drawn, exported, stage};
+use crate::walking::walker::{Legs, Walker};
 use crate::worlds::Engine;
 use farsa_lab::{
     Bodies, ChannelGroup, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,

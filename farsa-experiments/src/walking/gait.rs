@@ -2,7 +2,7 @@
 
 use farsa_body::{Arrange, Contacts, Handles, JointId, Joints};
 
-use crate::walking::{walker::ASIDE, walker::Posture, walker::Walker, walker::WalkerParts};
+use crate::walking::walker::{ASIDE, Posture, Walker, WalkerParts};
 
 /// How a walk ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

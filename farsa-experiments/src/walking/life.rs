@@ -8,8 +8,8 @@ use farsa_lab::{Episode, EpisodeId, Error, seconds};
 use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::walking::{gait::End, gait::Gait, gait::Rules};
-use crate::walking::{walker::Posture, walker::Walker, walker::WalkerParts};
+use crate::walking::gait::{End, Gait, Rules};
+use crate::walking::walker::{Posture, Walker, WalkerParts};
 
 /// What the network of a walker senses: two angles, two speeds, two touches.
 pub const SENSES: usize = 6;

@@ -10,11 +10,9 @@ use farsa_models::MjcfOptions;
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 
-use crate::walking::{
-    settings::engine, settings::mjcf_options, settings::on_contacts, settings::outcome, settings::walk,
-};
-use crate::walking::{simplest_model::ModelGait, simplest_model::SLOPES, simplest_model::WalkingModel};
-use crate::walking::{stage::drawn, stage::exported, stage::stage};
+use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk};
+use crate::walking::simplest_model::{ModelGait, SLOPES, WalkingModel};
+use crate::walking::stage::{drawn, exported, stage};
 use farsa_lab::{
     Bodies, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, Note,
     Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials,

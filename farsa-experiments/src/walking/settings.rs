@@ -4,8 +4,8 @@ use farsa_lab::{ENGINE, Error, Note, Outcome, Setting, Settings};
 use farsa_models::MjcfOptions;
 
 use crate::walking::gait::End;
+use crate::walking::life::{Walk, WalkerLife};
 use crate::walking::walker::Walker;
-use crate::walking::{life::Walk, life::WalkerLife};
 use crate::worlds::Engine;
 
 /// The surroundings that settings ask for; the rules are those of `plain`.

@@ -5,7 +5,7 @@ use farsa_body::{BodyId, Collider, Pose, Robot, Shape, Surface};
 use farsa_num::sin_cos;
 use farsa_view::{Channel, Stage};
 
-use crate::walking::{walker::Walker, walker::WalkerParts};
+use crate::walking::walker::{Walker, WalkerParts};
 
 /// Half the thickness of drawn legs, axle and soles \[m\].
 const THICK: f64 = 0.012;

@@ -11,14 +11,9 @@ use crate::command::arguments::{
     BenchArgs, Cli, Command, CompletionsArgs, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs,
     ExportStartsArgs, ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
-use crate::command::info;
-use crate::command::manual;
+use crate::command::{info, manual};
 use crate::error::Error;
-use crate::evaluation::draw;
-use crate::evaluation::evaluate;
-use crate::evaluation::import;
-use crate::evaluation::replay;
-use crate::evaluation::test;
+use crate::evaluation::{draw, evaluate, import, replay, test};
 use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
 use crate::export::files::{self, DataFormat};
@@ -27,10 +22,10 @@ use crate::json::pretty;
 use crate::report::write;
 use crate::run::bench::{self, Bench, Sample};
 use crate::run::config_file::{ConfigFile, Entry};
-use crate::run::evolve::{self, Summary};
 use crate::run::plan::{self, Plan};
 use crate::run::replications::{self, Replications};
-use crate::run::world_choice;
+use crate::run::summary::Summary;
+use crate::run::{evolve, world_choice};
 use crate::search::evolution::{GENERATIONS, POPULATION};
 use crate::store::directory::{Directory, create_result, create_results};
 

@@ -6,10 +6,8 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
-use crate::experiment::outcome::ChannelGroup;
-use crate::experiment::outcome::Description;
-use crate::experiment::settings::Source;
-use crate::experiment::settings::Value;
+use crate::experiment::outcome::{ChannelGroup, Description};
+use crate::experiment::settings::{Source, Value};
 use crate::json::pretty;
 use crate::run::plan::Plan;
 

@@ -6,8 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::arguments::EvaluateArgs;
-use crate::evaluation::arguments::GenotypeVariant;
+use crate::evaluation::arguments::{EvaluateArgs, GenotypeVariant};
 use crate::evaluation::genotypes::Shape;
 use crate::evaluation::populations::Populations;
 use crate::evaluation::test;

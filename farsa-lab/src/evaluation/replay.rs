@@ -11,16 +11,12 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::evaluator::Bodies;
-use crate::experiment::evaluator::Evaluation;
-use crate::experiment::evaluator::Evaluator;
-use crate::experiment::outcome::Note;
-use crate::experiment::outcome::Outcome;
+use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
+use crate::experiment::outcome::{Note, Outcome};
 use crate::run::plan::Plan;
 use crate::run::records::Ancestry;
 use crate::search::opponents;
-use crate::store::directory::Directory;
-use crate::store::directory::create_result;
+use crate::store::directory::{Directory, create_result};
 
 /// Which lives to live again; individuals are counted through all populations.
 #[derive(Debug, Clone, Copy, Default)]

@@ -8,23 +8,17 @@ use farsa_num::crc32;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::evaluation::test_table::Findings;
-use crate::evaluation::test_table::Table;
-use crate::evaluation::test_table::Tried;
+use crate::evaluation::test_table::{Findings, Table, Tried};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::Outcome;
-use crate::run::plan::LARGEST_SEED;
-use crate::run::plan::Plan;
-use crate::run::pool::Pool;
-use crate::run::pool::Unfinished;
+use crate::run::plan::{LARGEST_SEED, Plan};
+use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
-use crate::run::records::Best;
-use crate::run::records::Champions;
+use crate::run::records::{Best, Champions};
 use crate::search::evolution::POPULATION;
-use crate::store::directory::Directory;
-use crate::store::directory::replace;
+use crate::store::directory::{Directory, replace};
 
 /// `test.json`: which champion `test.csv` is about, and how to make it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

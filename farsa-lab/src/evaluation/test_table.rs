@@ -7,8 +7,7 @@ use std::path::Path;
 use serde::{Serialize, Serializer};
 
 use crate::error::Error;
-use crate::experiment::outcome::Note;
-use crate::experiment::outcome::Outcome;
+use crate::experiment::outcome::{Note, Outcome};
 use crate::store::directory::replace;
 
 /// The columns that every test has; the terms of the fitness, if there are more than one, and the notes follow.

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::search_kind::Search;
-use crate::experiment::settings::Setting;
-use crate::experiment::settings::Settings;
+use crate::experiment::settings::{Setting, Settings};
 
 /// An experiment that the `farsa` command lists, explains, runs, tests and replays.
 ///

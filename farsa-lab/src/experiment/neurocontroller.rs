@@ -6,11 +6,8 @@ use farsa_view::Stage;
 
 use crate::error::Error;
 use crate::experiment::evaluator::Parameter;
-use crate::experiment::network_parameters::OwnedNetwork;
-use crate::experiment::network_parameters::network_parameters;
-use crate::experiment::network_parameters::resting_network;
-use crate::experiment::outcome::ChannelGroup;
-use crate::experiment::outcome::Description;
+use crate::experiment::network_parameters::{OwnedNetwork, network_parameters, resting_network};
+use crate::experiment::outcome::{ChannelGroup, Description};
 
 /// Sensors, a recurrent network, and motors: what an episode needs beside its world and its reward.
 ///

@@ -5,18 +5,14 @@ use farsa_models::{MjcfOptions, mjcf, urdf};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::genotypes;
 use crate::evaluation::populations::Populations;
-use crate::evaluation::test;
-use crate::experiment::controller_export::ControllerExport;
-use crate::experiment::controller_export::StartExport;
-use crate::experiment::evaluator::Evaluator;
-use crate::experiment::evaluator::Exports;
+use crate::evaluation::{genotypes, test};
+use crate::experiment::controller_export::{ControllerExport, StartExport};
+use crate::experiment::evaluator::{Evaluator, Exports};
 use crate::export::controller_formats;
 use crate::json::pretty;
 use crate::run::plan::Plan;
-use crate::run::records::Best;
-use crate::run::records::Champions;
+use crate::run::records::{Best, Champions};
 use crate::store::directory::Directory;
 
 /// The formats of model files.

@@ -12,15 +12,12 @@ use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::lanes::Told;
 use crate::experiment::outcome::Outcome;
-use crate::run::evolve::Opponents;
-use crate::run::evolve::evaluate_all;
+use crate::run::evolve::{Opponents, evaluate_all};
 use crate::run::plan::Plan;
-use crate::run::pool::Pool;
-use crate::run::pool::Unfinished;
+use crate::run::pool::{Pool, Unfinished};
 use crate::run::records::Ancestry;
 use crate::search::engine::Descent;
-use crate::search::opponents::Hall;
-use crate::search::opponents::Meeting;
+use crate::search::opponents::{Hall, Meeting};
 use crate::store::directory::Directory;
 use crate::store::manifest::Machine;
 

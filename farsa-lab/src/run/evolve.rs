@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use farsa_evo::{Fitness, Statistics};
-use serde::Serialize;
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
@@ -14,24 +13,17 @@ use crate::experiment::evaluator::Evaluation;
 use crate::experiment::outcome::Outcome;
 use crate::figures::plot;
 use crate::run::plan::Plan;
-use crate::run::pool::Pool;
-use crate::run::pool::Unfinished;
+use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
-use crate::run::records::Ancestry;
-use crate::run::records::Best;
-use crate::run::records::Champions;
-use crate::run::records::Checkpoint;
-use crate::run::records::evolved;
+use crate::run::records::{Ancestry, Best, Champions, Checkpoint, evolved};
+use crate::run::summary::{Summary, Winner};
 use crate::search::engine::Evolution;
-use crate::search::opponents::Hall;
-use crate::search::opponents::Meeting;
-use crate::store::directory::Directory;
-use crate::store::directory::replace;
+use crate::search::opponents::{Hall, Meeting};
+use crate::store::directory::{Directory, replace};
 use crate::store::identity::Identity;
 use crate::store::log;
 use crate::store::log::Log;
-use crate::store::manifest::Manifest;
-use crate::store::manifest::Session;
+use crate::store::manifest::{Manifest, Session};
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
@@ -48,65 +40,6 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
         Ancestry { identity: identity.clone(), descent: evolution.descent() }.write(&directory.lineage())?;
         Checkpoint { identity, log: Log::start(populations), evolution }.write(&directory.checkpoint())
     })
-}
-
-/// What came of a run; the champion is that of the last generation.
-#[derive(Debug, Serialize)]
-pub(crate) struct Summary {
-    pub(crate) directory: String,
-    pub(crate) experiment: String,
-    pub(crate) condition: String,
-    pub(crate) seed: u64,
-    pub(crate) generations: u32,
-    /// Lives lived by this process, not those of earlier sessions.
-    pub(crate) evaluations: u64,
-    pub(crate) seconds: f64,
-    /// None if there was nothing left to do; of several populations the first one's.
-    pub(crate) champion: Option<Winner>,
-    /// Those of all populations, if there are several.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) champions: Vec<Winner>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct Winner {
-    pub(crate) generation: u32,
-    pub(crate) individual: u32,
-    pub(crate) fitness: f64,
-}
-
-impl Winner {
-    /// The best of every population.
-    pub(crate) fn of(champions: &Champions) -> Vec<Self> {
-        let Champions { generation, best, .. } = champions;
-        let winner = |&Best { individual, fitness, .. }: &Best| Self {
-            generation: *generation,
-            individual,
-            fitness: fitness.get(),
-        };
-        best.iter().map(winner).collect()
-    }
-}
-
-impl Summary {
-    /// The same in a line of words.
-    pub(crate) fn text(&self) -> String {
-        let Self { directory, generations, .. } = self;
-        if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
-            let all = self.champions.iter().enumerate().map(|(population, Winner { individual, fitness, .. })| {
-                format!("population {population} individual {individual}, fitness {fitness:?}")
-            });
-            let all = all.collect::<Vec<_>>().join("; ");
-            return format!("{directory}: {generations} generations; champions of generation {generation}: {all}");
-        }
-        match &self.champion {
-            None => format!("{directory}: all {generations} generations are finished already"),
-            Some(Winner { generation, individual, fitness }) => format!(
-                "{directory}: {generations} generations; champion: individual {individual} of generation {generation}, \
-                 fitness {fitness:?}"
-            ),
-        }
-    }
 }
 
 /// Evolves the run in a directory up to its last generation and says what came of it.

@@ -10,6 +10,7 @@
 //! - `progress`: what a waiting user sees: a bar on a terminal, plain lines elsewhere
 //! - `records`: the sealed files of a run: where to go on, who descends from whom, who is best, and genotypes from elsewhere
 //! - `replications`: `farsa run --replications`: one plan under one seed after the other, each in a directory of its own
+//! - `summary`: what came of a run, for the command to tell
 //! - `tests`: tests of whole runs by every search: what is selected, written, resumed and lived again
 //! - `world_choice`: which world an experiment is lived in, where there is a choice
 
@@ -23,6 +24,7 @@ pub(crate) mod pool;
 pub(crate) mod progress;
 pub(crate) mod records;
 pub(crate) mod replications;
+pub(crate) mod summary;
 #[cfg(test)]
 mod tests;
 pub(crate) mod world_choice;

@@ -11,15 +11,12 @@ use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
 use crate::experiment::search_kind::Search;
-use crate::experiment::settings::Settings;
-use crate::experiment::settings::Value;
+use crate::experiment::settings::{Settings, Value};
 use crate::run::config_file::ConfigFile;
 use crate::search::engine::Evolution;
 use crate::search::evolution;
 use crate::search::evolution::GENERATIONS;
-use crate::store::identity::FILE;
-use crate::store::identity::Identity;
-use crate::store::identity::VALUES_VERSION;
+use crate::store::identity::{FILE, Identity, VALUES_VERSION};
 
 /// The largest seed of a run; bit 63 marks the lives of a test.
 pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;

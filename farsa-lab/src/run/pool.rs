@@ -5,11 +5,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
 use crate::error::Error;
-use crate::experiment::evaluator::Evaluation;
-use crate::experiment::evaluator::Evaluator;
+use crate::experiment::evaluator::{Evaluation, Evaluator};
 use crate::experiment::genotype::Genotype;
-use crate::experiment::lanes::Lanes;
-use crate::experiment::lanes::Wanted;
+use crate::experiment::lanes::{Lanes, Wanted};
 use crate::experiment::outcome::Outcome;
 use crate::run::plan::Plan;
 

@@ -9,10 +9,11 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::figures::statistics::{Quartiles, median};
-use crate::run::evolve::{self, Summary, Winner};
+use crate::run::evolve;
 use crate::run::plan::{LARGEST_SEED, Plan};
 use crate::run::pool::Pool;
 use crate::run::records::{Champions, Checkpoint};
+use crate::run::summary::{Summary, Winner};
 use crate::store::directory::{Directory, vacant};
 
 /// What came of all replications, in the order of their seeds.

@@ -10,8 +10,7 @@ use crate::experiment::evaluator::Evaluator;
 use crate::experiment::search_kind::Search;
 use crate::experiment::settings::Settings;
 use crate::search::evolution;
-use crate::search::learning::Learning;
-use crate::search::learning::Lessons;
+use crate::search::learning::{Learning, Lessons};
 
 /// An experiment that learns has no learner.
 const NO_LEARNER: &str = "an experiment that learns without a learner";

@@ -4,8 +4,7 @@ use farsa_evo::{EvoError, GaConfig, Mutation, OnePlusOneConfig};
 
 use crate::error::Error;
 use crate::experiment::search_kind::Search;
-use crate::experiment::settings::Setting;
-use crate::experiment::settings::Settings;
+use crate::experiment::settings::{Setting, Settings};
 
 /// Evaluated generations.
 pub(crate) const GENERATIONS: &str = "evolution.generations";

@@ -5,11 +5,9 @@ use std::fmt::Write as _;
 use farsa_evo::{EvoError, Population};
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::evaluator::Learner;
-use crate::experiment::evaluator::Lesson;
+use crate::experiment::evaluator::{Learner, Lesson};
 use crate::figures::plot;
-use crate::figures::plot::Chart;
-use crate::figures::plot::Curve;
+use crate::figures::plot::{Chart, Curve};
 
 /// An individual that learns.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -1,0 +1,64 @@
+//! What came of a run, for the command to tell.
+
+use serde::Serialize;
+
+use crate::run::records::{Best, Champions};
+
+/// What came of a run; the champion is that of the last generation.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) directory: String,
+    pub(crate) experiment: String,
+    pub(crate) condition: String,
+    pub(crate) seed: u64,
+    pub(crate) generations: u32,
+    /// Lives lived by this process, not those of earlier sessions.
+    pub(crate) evaluations: u64,
+    pub(crate) seconds: f64,
+    /// None if there was nothing left to do; of several populations the first one's.
+    pub(crate) champion: Option<Winner>,
+    /// Those of all populations, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) champions: Vec<Winner>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Winner {
+    pub(crate) generation: u32,
+    pub(crate) individual: u32,
+    pub(crate) fitness: f64,
+}
+
+impl Winner {
+    /// The best of every population.
+    pub(crate) fn of(champions: &Champions) -> Vec<Self> {
+        let Champions { generation, best, .. } = champions;
+        let winner = |&Best { individual, fitness, .. }: &Best| Self {
+            generation: *generation,
+            individual,
+            fitness: fitness.get(),
+        };
+        best.iter().map(winner).collect()
+    }
+}
+
+impl Summary {
+    /// The same in a line of words.
+    pub(crate) fn text(&self) -> String {
+        let Self { directory, generations, .. } = self;
+        if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
+            let all = self.champions.iter().enumerate().map(|(population, Winner { individual, fitness, .. })| {
+                format!("population {population} individual {individual}, fitness {fitness:?}")
+            });
+            let all = all.collect::<Vec<_>>().join("; ");
+            return format!("{directory}: {generations} generations; champions of generation {generation}: {all}");
+        }
+        match &self.champion {
+            None => format!("{directory}: all {generations} generations are finished already"),
+            Some(Winner { generation, individual, fitness }) => format!(
+                "{directory}: {generations} generations; champion: individual {individual} of generation {generation}, \
+                 fitness {fitness:?}"
+            ),
+        }
+    }
+}
