@@ -97,8 +97,8 @@ fn an_experiment_outside_the_workspace_has_the_command() {
         .stdin(Stdio::null())
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && said.contains("2 generations; champion"), "{said}");
+    let (said, went_wrong) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && said.contains("first: 2 generations; champion"), "{said} {went_wrong}");
     assert!(place.join("first/fitness.csv").is_file());
     fs::remove_dir_all(&place).unwrap();
 }

@@ -69,7 +69,8 @@ mod tests {
         assert_eq!(plan.settings.word(ENGINE).unwrap(), "rapier");
         assert!(!visit(&mut plan, Some("rapier")).unwrap() && plan.elsewhere.is_none());
         let run = plan.identity().unwrap();
-        assert!(visit(&mut plan, Some("articulated")).unwrap() && plan.evaluator().is_ok());
+        assert!(visit(&mut plan, Some("articulated")).unwrap());
+        assert_eq!(plan.evaluator().err().unwrap().to_string(), "articulated", "it is evaluated there");
         assert_eq!(plan.identity().unwrap(), run, "it is the same run");
         assert!(!visit(&mut plan, None).unwrap() && plan.elsewhere.is_none());
         let error = choose(&mut plan, Some("rapir")).unwrap_err();
