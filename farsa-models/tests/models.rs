@@ -1,6 +1,6 @@
 //! Models that others wrote, read by us and by MuJoCo or Pinocchio (fixtures/models.py).
 //!
-//! The models are not ours to keep: `./ci models` fetches them and sets `FARSA_MODELS` to their folder.
+//! The models are not ours to keep: `./ci test` fetches them and sets `FARSA_MODELS` to their folder.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
@@ -113,11 +113,11 @@ fn places(name: &str, model: &Value, reading: &Imported, worst: &mut f64) -> usi
 }
 
 #[test]
-#[ignore = "reads models that are fetched: ./ci models"]
+#[ignore = "reads models that are fetched: ./ci test"]
 fn models_of_others_are_what_other_programs_read_in_them() {
     let Some(folder) = std::env::var_os("FARSA_MODELS").map(PathBuf::from) else {
         let in_ci = std::env::var_os("CI").is_some_and(|value| value == "true");
-        assert!(!in_ci, "FARSA_MODELS is not set; `./ci models` fetches the models and sets it");
+        assert!(!in_ci, "FARSA_MODELS is not set; `./ci test` fetches the models and sets it");
         eprintln!("skipped: models_of_others_are_what_other_programs_read_in_them (set FARSA_MODELS)");
         return;
     };
