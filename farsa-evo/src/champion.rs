@@ -24,7 +24,6 @@ use crate::statistics::Statistics;
 ///     evolution.tell(&fitness)?;
 /// }
 /// let champion = champion.expect("thirty generations");
-/// assert_eq!(evolution.genome_of(champion.generation, champion.individual)?, champion.genome);
 /// assert_eq!(champion.fitness.get(), f64::from(champion.genome[0]));
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```

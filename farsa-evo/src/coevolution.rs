@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 use crate::config::GaConfig;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
-use crate::lineage::Lineage;
 use crate::population::Population;
 #[cfg(feature = "serde")]
-use crate::saved::Saved;
-use crate::strategy::{Strategy, next_generation};
+use crate::saved::SavedStrategy;
+use crate::snapshot::{Snapshot, StateReader};
+use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
 use crate::truncation::TruncationGa;
 
 /// Two or more populations of the same size, each evolving as a [`TruncationGa`] by the fitness of its own individuals.
@@ -39,12 +39,9 @@ use crate::truncation::TruncationGa;
 /// assert_eq!((search.generation(), search.populations(), search.ask().genome_len()), (10, 2, 5));
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
-///
-/// Under the feature `serde` it is saved as its lineages and a digest of the current genomes, which are rebuilt when it
-/// is read.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::Saved<Lineages>"))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::SavedStrategy<Vec<GaConfig>>"))]
 pub struct Coevolution {
     /// At least two.
     members: Vec<TruncationGa>,
@@ -55,24 +52,23 @@ impl Coevolution {
     /// A co-evolution of populations with these configurations \[populations\], at its random initial generation.
     ///
     /// # Errors
-    /// Those of [`Lineages::new`].
+    /// [`EvoError::FewPopulations`], [`EvoError::UnequalPopulations`], [`EvoError::TooLarge`] and those of
+    /// [`GaConfig::validate`].
     pub fn new(configs: &[GaConfig], seed: u64) -> Result<Self, EvoError> {
-        Self::resume(Lineages::new(configs, seed)?)
-    }
-
-    /// A co-evolution at the latest generation of its lineages, in the same state as the one that recorded them.
-    ///
-    /// # Errors
-    /// None for lineages that were made on this machine.
-    pub fn resume(lineages: Lineages) -> Result<Self, EvoError> {
-        let members = lineages.of.into_iter().map(TruncationGa::resume).collect::<Result<Vec<_>, _>>()?;
+        let [first, _, ..] = configs else {
+            return Err(EvoError::FewPopulations { populations: configs.len() });
+        };
+        configs.iter().try_for_each(GaConfig::validate)?;
+        let first = first.population;
+        if let Some((population, other)) = configs.iter().enumerate().find(|(_, other)| other.population != first) {
+            return Err(EvoError::UnequalPopulations { first, population, individuals: other.population });
+        }
+        let longest = configs.iter().map(|config| config.genes).max().unwrap_or(0);
+        Population::check(first.saturating_mul(configs.len()), longest)?;
+        let members = configs.iter().zip(0..).map(|(config, number)| TruncationGa::numbered(*config, seed, number));
+        let members = members.collect::<Result<Vec<_>, _>>()?;
         let population = together(&members.iter().map(Strategy::ask).collect::<Vec<_>>())?;
         Ok(Self { members, population })
-    }
-
-    /// Number of populations.
-    pub fn populations(&self) -> usize {
-        self.members.len()
     }
 
     /// Number of individuals of each population.
@@ -85,9 +81,9 @@ impl Coevolution {
         self.members.iter().map(TruncationGa::config)
     }
 
-    /// The parents of every generation so far, in each population.
-    pub fn lineages(&self) -> Lineages {
-        Lineages { of: self.members.iter().map(|member| member.lineage().clone()).collect() }
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.members.first().map_or(0, TruncationGa::seed)
     }
 }
 
@@ -122,135 +118,86 @@ impl Strategy for Coevolution {
         Ok(())
     }
 
-    fn genomes_at(&self, generation: u32) -> Result<Population, EvoError> {
-        let populations =
-            self.members.iter().map(|member| member.genomes_at(generation)).collect::<Result<Vec<_>, _>>()?;
-        together(&populations.iter().collect::<Vec<_>>())
+    fn populations(&self) -> usize {
+        self.members.len()
     }
 
-    fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError> {
-        let (size, population) = (self.size(), self.population.len());
-        let member = self.members.get(individual / size).ok_or(EvoError::NoSuchIndividual { individual, population });
-        let mut genes = member?.genome_of(generation, individual % size)?;
-        genes.resize(self.population.genome_len(), 0);
-        Ok(genes)
+    fn recorded(&self) -> Recorded {
+        Recorded::Order
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        Some(self)
     }
 }
 
-/// The lineages of co-evolving populations: with them any genome of a [`Coevolution`] is rebuilt.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Vec<Lineage>", into = "Vec<Lineage>"))]
-pub struct Lineages {
-    of: Vec<Lineage>,
+impl Genealogy for Coevolution {
+    fn parents_of(&self, individual: usize) -> Vec<usize> {
+        let (size, population) = (self.size(), individual / self.size());
+        let own = self.members.get(population).map(|member| member.parents_of(individual % size));
+        own.unwrap_or_default().into_iter().map(|parent| population * size + parent).collect()
+    }
 }
 
-impl Lineages {
-    /// The lineages of a run that has only its initial generation, for these configurations \[populations\].
-    ///
-    /// # Errors
-    /// [`EvoError::FewPopulations`], [`EvoError::UnequalPopulations`], [`EvoError::TooLarge`] and those of
-    /// [`GaConfig::validate`].
-    pub fn new(configs: &[GaConfig], seed: u64) -> Result<Self, EvoError> {
-        Self::checked(configs.iter().map(|config| Lineage::new(*config, seed)).collect::<Result<_, _>>()?)
-    }
-
-    /// Lineages of one run, each told which population it is.
-    fn checked(of: Vec<Lineage>) -> Result<Self, EvoError> {
-        let [first, _, ..] = of.as_slice() else {
-            return Err(EvoError::FewPopulations { populations: of.len() });
-        };
-        for (population, other) in of.iter().enumerate() {
-            let individuals = other.config().population;
-            if individuals != first.config().population {
-                let first = first.config().population;
-                return Err(EvoError::UnequalPopulations { first, population, individuals });
-            }
-            if (other.seed(), other.latest()) != (first.seed(), first.latest()) {
-                return Err(EvoError::OtherRun { population });
-            }
+impl Snapshot for Coevolution {
+    /// The states of the populations, each with its length in front.
+    fn save(&self) -> Vec<u8> {
+        let mut all = Vec::new();
+        for state in self.members.iter().map(Snapshot::save) {
+            all.extend((state.len() as u64).to_le_bytes());
+            all.extend(state);
         }
-        let longest = of.iter().map(|lineage| lineage.config().genes).max().unwrap_or(0);
-        Population::check(first.config().population.saturating_mul(of.len()), longest)?;
-        Ok(Self { of: of.into_iter().zip(0..).map(|(lineage, number)| lineage.numbered(number)).collect() })
+        all
     }
 
-    /// Number of populations.
-    pub fn populations(&self) -> usize {
-        self.of.len()
-    }
-
-    /// Number of individuals of each population.
-    pub fn size(&self) -> usize {
-        self.of.first().map_or(0, |lineage| lineage.config().population)
-    }
-
-    /// The number of the latest generation whose genomes are known, 0 when nothing is recorded.
-    pub fn latest(&self) -> u32 {
-        self.of.first().map_or(0, Lineage::latest)
-    }
-
-    /// The individuals \[parents\] selected from a generation of a population, best first and numbered within it; none for
-    /// the latest generation, what lies ahead and what does not exist.
-    pub fn selected(&self, population: usize, generation: u32) -> Option<&[u32]> {
-        self.of.get(population)?.selected(generation)
-    }
-
-    /// The number, in the generation before, of an individual's parent, both counted through all populations; none in
-    /// generation 0 and for what does not exist.
-    pub fn parent_of(&self, generation: u32, individual: usize) -> Option<usize> {
-        let size = self.size();
-        let population = individual / size;
-        Some(population * size + self.of.get(population)?.parent_of(generation, individual % size)?)
-    }
-
-    /// The genome \[genes of the longest\] of an individual of a generation, counted through all populations.
-    ///
-    /// # Errors
-    /// [`EvoError::NoSuchGeneration`] or [`EvoError::NoSuchIndividual`].
-    pub fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError> {
-        let size = self.size();
-        let beyond = EvoError::NoSuchIndividual { individual, population: size * self.of.len() };
-        let mut genes = self.of.get(individual / size).ok_or(beyond)?.genome_of(generation, individual % size)?;
-        genes.resize(self.of.iter().map(|lineage| lineage.config().genes).max().unwrap_or(0), 0);
-        Ok(genes)
-    }
-}
-
-impl From<Lineages> for Vec<Lineage> {
-    fn from(lineages: Lineages) -> Self {
-        lineages.of
-    }
-}
-
-impl TryFrom<Vec<Lineage>> for Lineages {
-    type Error = EvoError;
-
-    /// The lineages of one run, in the order of its populations.
-    ///
-    /// # Errors
-    /// [`EvoError::FewPopulations`], [`EvoError::UnequalPopulations`], [`EvoError::OtherRun`] or
-    /// [`EvoError::TooLarge`].
-    fn try_from(of: Vec<Lineage>) -> Result<Self, EvoError> {
-        Self::checked(of)
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let mut members = self.members.clone();
+        let mut rest = state;
+        for member in &mut members {
+            let expected = StateReader::new(rest, rest.len())?.u64()?;
+            let short =
+                EvoError::StateLength { expected: usize::try_from(expected).unwrap_or(usize::MAX), found: rest.len() };
+            let own = rest.get(8..).and_then(|rest| rest.split_at_checked(usize::try_from(expected).ok()?));
+            let (own, behind) = own.ok_or(short)?;
+            member.restore(own)?;
+            rest = behind;
+        }
+        if !rest.is_empty() {
+            return Err(EvoError::StateLength { expected: state.len() - rest.len(), found: state.len() });
+        }
+        let generation = members.first().map_or(0, Strategy::generation);
+        if let Some(other) = members.iter().find(|member| member.generation() != generation) {
+            return Err(EvoError::StateContent {
+                what: "the generation of a population",
+                found: other.generation().into(),
+            });
+        }
+        self.population = together(&members.iter().map(Strategy::ask).collect::<Vec<_>>())?;
+        self.members = members;
+        Ok(())
     }
 }
 
 #[cfg(feature = "serde")]
 impl serde::Serialize for Coevolution {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Saved::new(self.lineages(), &self.population).serialize(serializer)
+        let configs: Vec<GaConfig> = self.configs().copied().collect();
+        SavedStrategy::new(configs, self.seed(), self).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<Saved<Lineages>> for Coevolution {
+impl TryFrom<SavedStrategy<Vec<GaConfig>>> for Coevolution {
     type Error = EvoError;
 
-    fn try_from(saved: Saved<Lineages>) -> Result<Self, EvoError> {
-        let rebuilt = Self::resume(saved.state.clone())?;
-        saved.check(&rebuilt.population)?;
-        Ok(rebuilt)
+    fn try_from(saved: SavedStrategy<Vec<GaConfig>>) -> Result<Self, EvoError> {
+        let mut strategy = Self::new(&saved.config, saved.seed)?;
+        strategy.restore(&saved.state)?;
+        Ok(strategy)
     }
 }
 
@@ -270,35 +217,27 @@ mod tests {
     #[test]
     fn population_0_is_a_lone_truncation_ga_and_no_other_is() {
         let mut all = Coevolution::new(&configs(), 5).unwrap();
+        let mut record = crate::Record::new(&mut all).unwrap();
         let mut alone = configs().map(|config| TruncationGa::new(config, 5).unwrap());
         assert_eq!((all.ask().len(), all.ask().genome_len(), all.size(), all.populations()), (18, 7, 6, 3));
         for generation in 0..12 {
             for (individual, genome) in all.ask().iter().enumerate() {
-                assert_eq!(all.genome_of(generation, individual).unwrap(), genome);
-                assert_eq!(all.lineages().genome_of(generation, individual).unwrap(), genome);
                 let own = alone[individual / 6].ask().get(individual % 6).unwrap();
                 assert_eq!(&genome[..own.len()] == own, individual < 6, "{individual} of {generation}");
                 assert!(genome[configs()[individual / 6].genes..].iter().all(|&gene| gene == 0));
             }
             let fitness = told(generation, 18);
-            all.tell(&fitness).unwrap();
+            record.tell(&mut all, &fitness).unwrap();
             alone.iter_mut().zip(fitness.chunks(6)).for_each(|(ga, fitness)| ga.tell(fitness).unwrap());
-            let lineages = all.lineages();
-            assert_eq!((all.generation(), lineages.latest()), (generation + 1, generation + 1));
-            assert_eq!((lineages.populations(), lineages.size()), (3, 6));
+            assert_eq!(all.generation(), generation + 1);
             for (population, ga) in alone.iter().enumerate() {
-                assert_eq!(lineages.selected(population, generation), ga.lineage().selected(generation));
-                let parent = ga.lineage().parent_of(generation + 1, 4).unwrap();
-                assert_eq!(lineages.parent_of(generation + 1, 6 * population + 4), Some(6 * population + parent));
+                let first = ga.selected()[0] as usize;
+                assert_eq!(record.champion(population, generation), Some(6 * population + first));
+                assert_eq!(all.parents_of(6 * population + 4), [6 * population + ga.parents_of(4)[0]]);
             }
         }
-        let lineages = all.lineages();
-        assert_eq!((lineages.selected(3, 0), lineages.parent_of(1, 18)), (None, None));
-        let beyond = EvoError::NoSuchIndividual { individual: 18, population: 18 };
-        assert_eq!(lineages.genome_of(1, 18), Err(beyond));
-        let ahead = EvoError::NoSuchGeneration { generation: 13, latest: 12 };
-        assert_eq!(lineages.genome_of(13, 7), Err(ahead));
-        assert_eq!(Coevolution::resume(lineages).unwrap(), all);
+        assert_eq!(record.champion(3, 0), None);
+        assert!(all.parents_of(18).is_empty());
     }
 
     #[test]
@@ -309,16 +248,9 @@ mod tests {
         let unequal = EvoError::UnequalPopulations { first: 6, population: 2, individuals: 9 };
         assert_eq!(Coevolution::new(&[a, b, other], 1), Err(unequal));
         assert_eq!(Coevolution::new(&[a, GaConfig { genes: 0, ..b }], 1), Err(EvoError::NoGenes));
-        let lineage = |seed| Lineage::new(a, seed).unwrap();
-        let apart = Lineages::try_from(alloc::vec![lineage(1), lineage(1), lineage(2)]);
-        assert_eq!(apart, Err(EvoError::OtherRun { population: 2 }));
-        let mut later = lineage(1);
-        later.record(&[0, 1, 2]).unwrap();
-        assert_eq!(Lineages::try_from(alloc::vec![lineage(1), later]), Err(EvoError::OtherRun { population: 1 }));
         let mut all = Coevolution::new(&[a, b], 1).unwrap();
         let before = all.clone();
         assert_eq!(all.tell(&told(0, 6)), Err(EvoError::FitnessCount { expected: 12, found: 6 }));
         assert_eq!(all, before);
-        assert_eq!(all.genome_of(0, 12), Err(EvoError::NoSuchIndividual { individual: 12, population: 12 }));
     }
 }

@@ -60,18 +60,6 @@ pub enum EvoError {
         /// Its individuals.
         individuals: usize,
     },
-    /// Lineages of co-evolving populations that are not of one run: another seed or another number of generations.
-    OtherRun {
-        /// The population that does not belong to population 0.
-        population: usize,
-    },
-    /// A recorded history of as many generations does not have so many bytes, or has bits beyond them.
-    History {
-        /// Generations recorded.
-        generations: u32,
-        /// Bytes found.
-        bytes: usize,
-    },
     /// A population of more genes than [`Population::MAX_GENES`](crate::Population::MAX_GENES).
     TooLarge {
         /// Individuals asked for.
@@ -120,13 +108,6 @@ pub enum EvoError {
         /// Individuals of a generation.
         population: usize,
     },
-    /// A recorded selection of the wrong number of parents.
-    SelectedCount {
-        /// Parents of a generation.
-        expected: usize,
-        /// Parents recorded.
-        found: usize,
-    },
     /// A recorded selection that names the same parent twice.
     SelectedTwice {
         /// The parent named twice.
@@ -137,12 +118,49 @@ pub enum EvoError {
         /// The generation that it waits for.
         generation: u32,
     },
-    /// A saved state whose genomes come out differently: it was altered, or written by a version that drew otherwise.
-    Digest {
-        /// Digest in the saved state.
-        saved: u64,
-        /// Digest of the genomes rebuilt from it.
-        rebuilt: u64,
+    /// A strategy whose individuals are not shared evenly between its populations.
+    UnevenPopulations {
+        /// Its populations.
+        populations: usize,
+        /// Its individuals.
+        individuals: usize,
+    },
+    /// A record is begun with a strategy that has not been told anything.
+    AlreadyTold {
+        /// The generation that the strategy is at.
+        generation: u32,
+    },
+    /// A strategy that is not at the next generation after it was told one.
+    Stuck {
+        /// The generation that it was told of.
+        generation: u32,
+        /// The generation that it is at.
+        found: u32,
+    },
+    /// A strategy of which genomes are recorded has to save its state.
+    NoSnapshot,
+    /// A strategy cannot be told again what is not in its record: the genomes alone are.
+    GenomesOnly,
+    /// A record of another strategy: of other sizes, or at another generation.
+    OtherRecord {
+        /// What differs.
+        what: &'static str,
+        /// How many of it are in the record.
+        recorded: usize,
+    },
+    /// A saved state, or a record, of the wrong number of bytes.
+    StateLength {
+        /// Bytes that belong there, or that are a multiple of.
+        expected: usize,
+        /// Bytes found.
+        found: usize,
+    },
+    /// A saved state, or a record, with a number in it that cannot be.
+    StateContent {
+        /// What the number stands for.
+        what: &'static str,
+        /// The number.
+        found: u64,
     },
 }
 
@@ -167,12 +185,6 @@ impl fmt::Display for EvoError {
             Self::UnequalPopulations { first, population, individuals } => {
                 write!(f, "population {population} has {individuals} individuals, population 0 has {first}")
             }
-            Self::OtherRun { population } => {
-                write!(f, "population {population} has another seed or other generations than population 0")
-            }
-            Self::History { generations, bytes } => {
-                write!(f, "{bytes} bytes are not the history of {generations} generations")
-            }
             Self::TooLarge { population, genes } => {
                 let limit = MAX_GENES;
                 write!(f, "{population} genomes of {genes} genes are more than {limit} genes")
@@ -192,14 +204,26 @@ impl fmt::Display for EvoError {
             Self::NoSuchIndividual { individual, population } => {
                 write!(f, "individual {individual} of a population of {population}")
             }
-            Self::SelectedCount { expected, found } => {
-                write!(f, "{found} selected parents recorded where {expected} make a generation")
-            }
             Self::SelectedTwice { individual } => write!(f, "individual {individual} selected twice"),
             Self::NoBest { generation } => write!(f, "no best individual in the search up to generation {generation}"),
-            Self::Digest { saved, rebuilt } => {
-                write!(f, "the saved genomes have digest {saved:016x}, the rebuilt ones {rebuilt:016x}")
+            Self::UnevenPopulations { populations, individuals } => {
+                write!(f, "{individuals} individuals cannot be shared evenly by {populations} populations")
             }
+            Self::AlreadyTold { generation } => {
+                write!(f, "a record that begins at generation {generation}, not at 0")
+            }
+            Self::Stuck { generation, found } => {
+                write!(f, "a strategy that was told generation {generation} is at generation {found}")
+            }
+            Self::NoSnapshot => f.write_str("a strategy whose genomes are recorded cannot save its state"),
+            Self::GenomesOnly => f.write_str("the record has genomes alone, which a strategy cannot be told"),
+            Self::OtherRecord { what, recorded } => {
+                write!(f, "the record is of {recorded} {what}, the strategy is not")
+            }
+            Self::StateLength { expected, found } => {
+                write!(f, "a saved state of {found} bytes where {expected} are expected")
+            }
+            Self::StateContent { what, found } => write!(f, "{found} is not {what} in a saved state"),
         }
     }
 }

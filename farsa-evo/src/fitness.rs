@@ -7,7 +7,7 @@ use crate::error::EvoError;
 /// How well an individual did, in the experiment's own unit; larger is better, and never NaN.
 ///
 /// A total order, so that selection never meets a pair it cannot compare. Minus zero is stored as zero: equal values
-/// have equal bits. Under the feature `serde` it is an optional number, absent for a failed life, because text formats
+/// have equal bits. Under the feature `serde` it is an optional number, absent for a failed evaluation, because text formats
 /// such as JSON have no infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -15,7 +15,7 @@ use crate::error::EvoError;
 pub struct Fitness(f64);
 
 impl Fitness {
-    /// The fitness of a failed life, minus infinity: below every other.
+    /// The fitness of a failed evaluation, minus infinity: below every other.
     pub const WORST: Self = Self(f64::NEG_INFINITY);
 
     /// The fitness of this value, none for NaN.
@@ -24,7 +24,7 @@ impl Fitness {
         if value.is_nan() { None } else { Some(Self(value + 0.0)) }
     }
 
-    /// The fitness of this value, [`Fitness::WORST`] for NaN: a life whose arithmetic broke down has failed.
+    /// The fitness of this value, [`Fitness::WORST`] for NaN: an evaluation whose arithmetic broke down has failed.
     pub const fn nan_as_failed(value: f64) -> Self {
         match Self::new(value) {
             Some(fitness) => fitness,
@@ -32,7 +32,7 @@ impl Fitness {
         }
     }
 
-    /// The value, minus infinity for a failed life.
+    /// The value, minus infinity for a failed evaluation.
     pub const fn get(self) -> f64 {
         self.0
     }

@@ -1,22 +1,26 @@
-//! A steady-state search of one parent and one mutant: the (1+1) of the original's discrimination experiment.
+//! A search of one parent and one mutant: the (1+1) of the original's discrimination experiment.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::config::OnePlusOneConfig;
+use farsa_num::{Domain, Stream};
+
+use crate::config::{OnePlusOneConfig, PARENT_AND_MUTANT};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
-use crate::one_plus_one_history::OnePlusOneHistory;
+use crate::mutation::randomize_bits;
 use crate::population::Population;
 #[cfg(feature = "serde")]
-use crate::saved::Saved;
-use crate::strategy::{Strategy, next_generation};
+use crate::saved::SavedStrategy;
+use crate::snapshot::{Snapshot, StateReader, largest, push_genes};
+use crate::strategy::{Genealogy, Strategy, next_generation};
 
 /// A search in which one parent makes one mutant a generation, and the better of the two stays.
 ///
 /// [`ask`](Strategy::ask) gives the parent (individual 0) and its mutant (individual 1). The parent is evaluated again
-/// every generation, and its fitness is the mean over its life, the evaluation as a mutant included; the mutant takes its
+/// every generation, and its fitness is the mean over all its evaluations, that as a mutant included; the mutant takes its
 /// place when its own first evaluation is at least as good. A failed evaluation makes that mean the worst there is, so
-/// that a parent that failed once gives way to any mutant. [`OnePlusOneHistory`] says which numbers are drawn.
+/// that a parent that failed once gives way to any mutant.
 ///
 /// Source: the steady-state algorithm of \[FARSA2\] with one individual, whose fitness is averaged over generations.
 /// Deviation: the random numbers are ours.
@@ -31,13 +35,19 @@ use crate::strategy::{Strategy, next_generation};
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
 ///
-/// Under the feature `serde` it is saved as its history, the parent's summed fitness and a digest of the current genomes,
-/// which are rebuilt when it is read.
+/// Individual 0 of a generation is the parent, individual 1 its mutant. The first parent is drawn from the stream (seed,
+/// [`Domain::InitialGenome`], trial 0, individual 0, generation 0), as individual 0 of a
+/// [`TruncationGa`](crate::TruncationGa) is; the mutant of a generation draws from (seed, [`Domain::Mutation`], trial 0,
+/// individual 1, its generation).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::Saved<OnePlusOneSaved>"))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::SavedStrategy<OnePlusOneConfig>"))]
 pub struct OnePlusOne {
-    history: OnePlusOneHistory,
+    config: OnePlusOneConfig,
+    seed: u64,
+    generation: u32,
+    /// The individual of the generation before that became the parent, 0 or 1.
+    survivor: usize,
     /// The parent's fitness summed over its evaluations so far.
     sum: Fitness,
     /// The parent's evaluations so far, 0 for the first parent before the first generation is told.
@@ -51,19 +61,28 @@ impl OnePlusOne {
     /// # Errors
     /// Those of [`OnePlusOneConfig::validate`].
     pub fn new(config: OnePlusOneConfig, seed: u64) -> Result<Self, EvoError> {
-        let history = OnePlusOneHistory::new(config, seed)?;
-        let population = history.genomes_at(0)?;
-        Ok(Self { history, sum: Fitness::nan_as_failed(0.0), evaluations: 0, population })
+        config.validate()?;
+        let mut parent = vec![0; config.genes];
+        let mut stream = Stream::new(seed, Domain::InitialGenome, 0, 0, 0);
+        randomize_bits(&mut parent, config.gene_bits, &mut stream);
+        let population = pair(&config, seed, 0, &parent)?;
+        let sum = Fitness::nan_as_failed(0.0);
+        Ok(Self { config, seed, generation: 0, survivor: 0, sum, evaluations: 0, population })
     }
 
     /// The configuration.
     pub fn config(&self) -> &OnePlusOneConfig {
-        self.history.config()
+        &self.config
     }
 
-    /// What became of every mutant so far.
-    pub fn history(&self) -> &OnePlusOneHistory {
-        &self.history
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Whether the parent of the current generation was the mutant of the one before.
+    pub fn replaced(&self) -> bool {
+        self.survivor == 1
     }
 
     /// The mean fitness of the current parent over its evaluations so far, and their number; none before the first
@@ -73,13 +92,13 @@ impl OnePlusOne {
     }
 
     /// The two values that the next [`tell`](Strategy::tell) of this fitness \[2\] will compare: the mean over the
-    /// parent's life, the new evaluation included, and the mutant's fitness.
+    /// parent's evaluations, the new evaluation included, and the mutant's fitness.
     ///
     /// # Errors
     /// [`EvoError::FitnessCount`].
     pub fn judged(&self, fitness: &[Fitness]) -> Result<[Fitness; 2], EvoError> {
         let &[parent, mutant] = fitness else {
-            return Err(EvoError::FitnessCount { expected: OnePlusOneHistory::INDIVIDUALS, found: fitness.len() });
+            return Err(EvoError::FitnessCount { expected: PARENT_AND_MUTANT, found: fitness.len() });
         };
         Ok([mean(self.grown(parent), self.evaluations.saturating_add(1)), mutant])
     }
@@ -94,9 +113,22 @@ fn mean(sum: Fitness, evaluations: u32) -> Fitness {
     Fitness::nan_as_failed(sum.get() / f64::from(evaluations))
 }
 
+/// A parent and its mutant in a generation.
+fn pair(config: &OnePlusOneConfig, seed: u64, generation: u32, parent: &[u16]) -> Result<Population, EvoError> {
+    let mut population = Population::new(PARENT_AND_MUTANT, config.genes)?;
+    for (individual, genes) in population.iter_mut().enumerate() {
+        genes.copy_from_slice(parent);
+        if individual > 0 {
+            let mut stream = Stream::new(seed, Domain::Mutation, 0, individual as u32, generation);
+            config.bit_mutation(generation)?.apply(genes, &mut stream);
+        }
+    }
+    Ok(population)
+}
+
 impl Strategy for OnePlusOne {
     fn generation(&self) -> u32 {
-        self.history.latest()
+        self.generation
     }
 
     fn ask(&self) -> &Population {
@@ -104,62 +136,88 @@ impl Strategy for OnePlusOne {
     }
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let next = next_generation(self.generation(), OnePlusOneHistory::INDIVIDUALS, fitness)?;
+        let next = next_generation(self.generation, PARENT_AND_MUTANT, fitness)?;
         let [parent, mutant] = self.judged(fitness)?;
-        let accepted = mutant >= parent;
-        let survivor = self.population.get(usize::from(accepted)).map(<[u16]>::to_vec).unwrap_or_default();
-        let mut population = Population::new(OnePlusOneHistory::INDIVIDUALS, self.config().genes)?;
-        for (individual, genes) in population.iter_mut().enumerate() {
-            genes.copy_from_slice(&survivor);
-            self.history.vary(next, individual, genes)?;
-        }
-        self.history.record(accepted)?;
+        let survivor = usize::from(mutant >= parent);
+        let population = pair(&self.config, self.seed, next, self.population.get(survivor).unwrap_or_default())?;
         (self.sum, self.evaluations) = match fitness {
-            &[parent, _] if !accepted => (self.grown(parent), self.evaluations.saturating_add(1)),
+            &[parent, _] if survivor == 0 => (self.grown(parent), self.evaluations.saturating_add(1)),
             _ => (mutant, 1),
         };
-        self.population = population;
+        (self.generation, self.survivor, self.population) = (next, survivor, population);
         Ok(())
     }
 
-    fn genomes_at(&self, generation: u32) -> Result<Population, EvoError> {
-        self.history.genomes_at(generation)
+    fn ranked_by(&self, fitness: &[Fitness]) -> Vec<Fitness> {
+        self.judged(fitness).map(Vec::from).unwrap_or_default()
     }
 
-    fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError> {
-        self.history.genome_of(generation, individual)
+    /// Ties go to the mutant.
+    fn champions(&self, ranked_by: &[Fitness]) -> Vec<usize> {
+        vec![usize::from(ranked_by.get(1) >= ranked_by.first())]
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        Some(self)
     }
 }
 
-/// What is saved of a search; the number of the parent's evaluations follows from its history.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-pub(crate) struct OnePlusOneSaved {
-    history: OnePlusOneHistory,
-    sum: Fitness,
+impl Genealogy for OnePlusOne {
+    fn parents_of(&self, individual: usize) -> Vec<usize> {
+        let exists = self.generation > 0 && individual < PARENT_AND_MUTANT;
+        exists.then_some(self.survivor).into_iter().collect()
+    }
+}
+
+impl Snapshot for OnePlusOne {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::new();
+        state.extend(self.generation.to_le_bytes());
+        state.extend((self.survivor as u32).to_le_bytes());
+        state.extend(self.sum.get().to_le_bytes());
+        state.extend(self.evaluations.to_le_bytes());
+        push_genes(&mut state, &self.population);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let mut reader = StateReader::new(state, 20 + 2 * self.population.as_slice().len())?;
+        let (generation, survivor, sum) = (reader.u32()?, reader.u32()?, reader.fitness()?);
+        let evaluations = reader.u32()?;
+        if survivor > 1 || (generation == 0 && survivor > 0) {
+            return Err(EvoError::StateContent { what: "a survivor", found: survivor.into() });
+        }
+        // The parent is evaluated once in every generation.
+        if evaluations > generation || (evaluations == 0) != (generation == 0) {
+            return Err(EvoError::StateContent { what: "a number of evaluations", found: evaluations.into() });
+        }
+        let mut population = self.population.clone();
+        reader.genes(&mut population, largest(self.config.gene_bits))?;
+        (self.generation, self.survivor, self.sum, self.evaluations, self.population) =
+            (generation, survivor as usize, sum, evaluations, population);
+        Ok(())
+    }
 }
 
 #[cfg(feature = "serde")]
 impl serde::Serialize for OnePlusOne {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let state = OnePlusOneSaved { history: self.history.clone(), sum: self.sum };
-        Saved::new(state, &self.population).serialize(serializer)
+        SavedStrategy::new(self.config, self.seed, self).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<Saved<OnePlusOneSaved>> for OnePlusOne {
+impl TryFrom<SavedStrategy<OnePlusOneConfig>> for OnePlusOne {
     type Error = EvoError;
 
-    fn try_from(saved: Saved<OnePlusOneSaved>) -> Result<Self, EvoError> {
-        let OnePlusOneSaved { history, sum } = &saved.state;
-        let latest = history.latest();
-        let population = history.genomes_at(latest)?;
-        saved.check(&population)?;
-        let born = (0..latest).rev().find(|&generation| history.accepted(generation) == Some(true));
-        // A mutant's first evaluation was in the generation in which it took its parent's place.
-        let evaluations = latest - born.unwrap_or(0);
-        Ok(Self { history: history.clone(), sum: *sum, evaluations, population })
+    fn try_from(saved: SavedStrategy<OnePlusOneConfig>) -> Result<Self, EvoError> {
+        let mut strategy = Self::new(saved.config, saved.seed)?;
+        strategy.restore(&saved.state)?;
+        Ok(strategy)
     }
 }
 
@@ -173,11 +231,11 @@ mod tests {
 
     fn tell(search: &mut OnePlusOne, parent: f64, mutant: f64) -> bool {
         search.tell(&[parent, mutant].map(Fitness::nan_as_failed)).unwrap();
-        search.history().accepted(search.generation() - 1).unwrap()
+        search.replaced()
     }
 
     #[test]
-    fn the_parent_is_judged_by_its_whole_life() {
+    fn the_parent_is_judged_by_all_its_evaluations() {
         let mut search = search();
         assert_eq!(search.parent_fitness(), None);
         assert!(!tell(&mut search, 4.0, 3.9));
@@ -185,7 +243,7 @@ mod tests {
         assert!(!tell(&mut search, 1.0, 2.4));
         assert_eq!(search.parent_fitness(), Some((Fitness::nan_as_failed(2.5), 2)));
         assert!(tell(&mut search, 1.0, 2.0));
-        // The evaluation as a mutant is the first of the new parent's life.
+        // The evaluation as a mutant is the first of the new parent.
         assert_eq!(search.parent_fitness(), Some((Fitness::nan_as_failed(2.0), 1)));
         assert!(!tell(&mut search, 4.0, 2.9));
         assert_eq!(search.parent_fitness(), Some((Fitness::nan_as_failed(3.0), 2)));

@@ -1,6 +1,5 @@
 //! The null model: search without selection.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
@@ -10,12 +9,13 @@ use crate::fitness::Fitness;
 use crate::mutation::randomize;
 use crate::population::Population;
 #[cfg(feature = "serde")]
-use crate::saved::Saved;
+use crate::saved::SavedStrategy;
+use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Strategy, next_generation};
 
 /// Random search: every genome of every generation is drawn anew, and the best of all is remembered.
 ///
-/// What an evolution finds beyond this, with the same number of lives, is owed to selection. Generation 0 is that of a
+/// What an evolution finds beyond this, with the same number of evaluations, is owed to selection. Generation 0 is that of a
 /// [`TruncationGa`](crate::TruncationGa) of the same seed. (For random search that keeps its best in the population,
 /// take a `TruncationGa` of one parent, rate 1 and [`Mutation::Resample`](crate::Mutation::Resample).)
 ///
@@ -32,7 +32,7 @@ use crate::strategy::{Strategy, next_generation};
 /// Individual `i` of generation `g` is drawn from the stream (seed, [`Domain::InitialGenome`], trial 0, `i`, `g`).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::Saved<SearchState>"))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::SavedStrategy<(usize, usize)>"))]
 pub struct RandomSearch {
     seed: u64,
     generation: u32,
@@ -67,17 +67,6 @@ impl RandomSearch {
     pub fn best(&self) -> Option<Found> {
         self.best
     }
-
-    fn check(&self, generation: u32, individual: usize) -> Result<(), EvoError> {
-        let (latest, population) = (self.generation, self.population.len());
-        if generation > latest {
-            Err(EvoError::NoSuchGeneration { generation, latest })
-        } else if individual >= population {
-            Err(EvoError::NoSuchIndividual { individual, population })
-        } else {
-            Ok(())
-        }
-    }
 }
 
 impl Strategy for RandomSearch {
@@ -101,18 +90,8 @@ impl Strategy for RandomSearch {
         Ok(())
     }
 
-    fn genomes_at(&self, generation: u32) -> Result<Population, EvoError> {
-        self.check(generation, 0)?;
-        let mut population = self.population.clone();
-        draw(self.seed, generation, &mut population);
-        Ok(population)
-    }
-
-    fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError> {
-        self.check(generation, individual)?;
-        let mut genes = vec![0; self.population.genome_len()];
-        randomize(&mut genes, &mut stream(self.seed, generation, individual));
-        Ok(genes)
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
     }
 }
 
@@ -126,54 +105,56 @@ fn draw(seed: u64, generation: u32, population: &mut Population) {
     }
 }
 
-/// What is saved of a search.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-pub(crate) struct SearchState {
-    genes: usize,
-    population: usize,
-    seed: u64,
-    generation: u32,
-    best: Option<Found>,
+impl Snapshot for RandomSearch {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::from(self.generation.to_le_bytes());
+        if let Some(Found { generation, individual, fitness }) = self.best {
+            state.extend(generation.to_le_bytes());
+            state.extend((individual as u64).to_le_bytes());
+            state.extend(fitness.get().to_le_bytes());
+        }
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let generation = StateReader::new(state, state.len())?.u32()?;
+        let mut reader = StateReader::new(state, if generation == 0 { 4 } else { 24 })?;
+        reader.u32()?;
+        let mut best = None;
+        if generation > 0 {
+            let found = (reader.u32()?, reader.u64()?, reader.fitness()?);
+            if found.0 >= generation {
+                return Err(EvoError::NoSuchGeneration { generation: found.0, latest: generation - 1 });
+            }
+            let (individual, population) = (usize::try_from(found.1).unwrap_or(usize::MAX), self.population.len());
+            if individual >= population {
+                return Err(EvoError::NoSuchIndividual { individual, population });
+            }
+            best = Some(Found { generation: found.0, individual, fitness: found.2 });
+        }
+        (self.generation, self.best) = (generation, best);
+        draw(self.seed, generation, &mut self.population);
+        Ok(())
+    }
 }
 
 #[cfg(feature = "serde")]
 impl serde::Serialize for RandomSearch {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let state = SearchState {
-            genes: self.population.genome_len(),
-            population: self.population.len(),
-            seed: self.seed,
-            generation: self.generation,
-            best: self.best,
-        };
-        Saved::new(state, &self.population).serialize(serializer)
+        let sizes = (self.population.genome_len(), self.population.len());
+        SavedStrategy::new(sizes, self.seed, self).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<Saved<SearchState>> for RandomSearch {
+impl TryFrom<SavedStrategy<(usize, usize)>> for RandomSearch {
     type Error = EvoError;
 
-    fn try_from(saved: Saved<SearchState>) -> Result<Self, EvoError> {
-        let state = &saved.state;
-        let mut search = Self::new(state.genes, state.population, state.seed)?;
-        search.generation = state.generation;
-        draw(state.seed, state.generation, &mut search.population);
-        saved.check(&search.population)?;
-        // Exactly the told generations have a best individual, and it is one of them.
-        search.best = state.best;
-        match (state.best, state.generation.checked_sub(1)) {
-            (None, None) => Ok(search),
-            (Some(best), Some(latest)) if best.generation <= latest => {
-                search.check(best.generation, best.individual)?;
-                Ok(search)
-            }
-            (Some(Found { generation, .. }), latest) => {
-                Err(EvoError::NoSuchGeneration { generation, latest: latest.unwrap_or(0) })
-            }
-            (None, Some(_)) => Err(EvoError::NoBest { generation: state.generation }),
-        }
+    fn try_from(saved: SavedStrategy<(usize, usize)>) -> Result<Self, EvoError> {
+        let (genes, population) = saved.config;
+        let mut strategy = Self::new(genes, population, saved.seed)?;
+        strategy.restore(&saved.state)?;
+        Ok(strategy)
     }
 }
 

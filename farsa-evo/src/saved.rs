@@ -1,25 +1,21 @@
-//! Saved strategies: their genomes are rebuilt, so only a digest of them is kept.
+//! Saved strategies.
 
-use crate::error::EvoError;
+use alloc::vec::Vec;
+
 use crate::mutation::Mutation;
-use crate::population::Population;
+use crate::snapshot::Snapshot;
 
-/// A state and the digest of the genomes that it stands for.
+/// A strategy as it is saved: what it was made of, and its state.
 #[derive(serde::Serialize, serde::Deserialize)]
-pub(crate) struct Saved<T> {
-    pub(crate) state: T,
-    digest: u64,
+pub(crate) struct SavedStrategy<C> {
+    pub(crate) config: C,
+    pub(crate) seed: u64,
+    pub(crate) state: Vec<u8>,
 }
 
-impl<T> Saved<T> {
-    pub(crate) fn new(state: T, population: &Population) -> Self {
-        Self { state, digest: population.digest() }
-    }
-
-    /// Refuses a state whose genomes came out differently than when it was saved.
-    pub(crate) fn check(&self, rebuilt: &Population) -> Result<(), EvoError> {
-        let (saved, rebuilt) = (self.digest, rebuilt.digest());
-        if saved == rebuilt { Ok(()) } else { Err(EvoError::Digest { saved, rebuilt }) }
+impl<C> SavedStrategy<C> {
+    pub(crate) fn new(config: C, seed: u64, strategy: &dyn Snapshot) -> Self {
+        Self { config, seed, state: strategy.save() }
     }
 }
 

@@ -4,13 +4,13 @@ use crate::fitness::Fitness;
 
 /// The summary of one generation's fitness, in the experiment's own unit.
 ///
-/// Failed lives count in [`Statistics::failed`] only; when all failed, best, mean and worst are minus infinity.
+/// Failed evaluations count in [`Statistics::failed`] only; when all failed, best, mean and worst are minus infinity.
 ///
 /// ```
 /// use farsa_evo::{Fitness, Statistics};
 ///
 /// let fitness = [1.0, f64::NAN, 3.0].map(Fitness::nan_as_failed);
-/// let summary = Statistics::from_fitness(&fitness).expect("three lives");
+/// let summary = Statistics::from_fitness(&fitness).expect("three evaluations");
 /// assert_eq!((summary.best_index, summary.best, summary.mean, summary.failed), (2, 3.0, 2.0, 1));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,11 +20,11 @@ pub struct Statistics {
     pub best_index: usize,
     /// Largest fitness.
     pub best: f64,
-    /// Mean over the lives that did not fail, summed in the order of the individuals.
+    /// Mean over the evaluations that did not fail, summed in the order of the individuals.
     pub mean: f64,
-    /// Smallest fitness of a life that did not fail.
+    /// Smallest fitness of an evaluation that did not fail.
     pub worst: f64,
-    /// Number of failed lives.
+    /// Number of failed evaluations.
     pub failed: usize,
 }
 
@@ -33,19 +33,19 @@ impl Statistics {
     pub fn from_fitness(fitness: &[Fitness]) -> Option<Self> {
         let mut best = *fitness.first()?;
         let mut worst = Fitness::WORST;
-        let (mut best_index, mut lived, mut sum) = (0, 0_usize, 0.0);
+        let (mut best_index, mut counted, mut sum) = (0, 0_usize, 0.0);
         for (index, &value) in fitness.iter().enumerate() {
             if value > best {
                 (best, best_index) = (value, index);
             }
             if !value.is_failed() {
-                worst = if lived == 0 { value } else { worst.min(value) };
-                lived += 1;
+                worst = if counted == 0 { value } else { worst.min(value) };
+                counted += 1;
                 sum += value.get();
             }
         }
-        let mean = if lived == 0 { f64::NEG_INFINITY } else { sum / lived as f64 };
-        Some(Self { best_index, best: best.get(), mean, worst: worst.get(), failed: fitness.len() - lived })
+        let mean = if counted == 0 { f64::NEG_INFINITY } else { sum / counted as f64 };
+        Some(Self { best_index, best: best.get(), mean, worst: worst.get(), failed: fitness.len() - counted })
     }
 }
 

@@ -6,17 +6,36 @@ use crate::champion::Champion;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
+use crate::snapshot::Snapshot;
+use crate::statistics::Statistics;
+
+/// What has to be recorded of a generation so that it can be rebuilt, [`Strategy::recorded`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Recorded {
+    /// The order of the individuals, best first, equals by index: for strategies that depend on nothing else.
+    Order,
+    /// The values of fitness.
+    Values,
+    /// The genomes themselves: for strategies that take too long to be told again.
+    Genomes,
+}
 
 /// A search over genomes of 16-bit genes that is asked for a generation and told how well it did.
 ///
 /// The caller evaluates [`ask`](Strategy::ask)'s genomes in any order and on any number of threads, then calls
-/// [`tell`](Strategy::tell) once. Implementations draw random numbers only from [`farsa_num::Stream`]s named by seed,
-/// individual and generation, so that any past genome can be rebuilt without evaluating anything.
+/// [`tell`](Strategy::tell) once. A strategy is a pure function of its configuration, its seed and what it was told, so a
+/// [`Record`](crate::Record) of that rebuilds any past generation without evaluating anything. Implementations draw random
+/// numbers only from [`farsa_num::Stream`]s named by seed, individual and generation.
+///
+/// Three methods are required; the others have defaults that fit a strategy of one population that depends on the values of
+/// fitness.
 pub trait Strategy {
     /// The number of the generation that waits for its fitness, from 0.
     fn generation(&self) -> u32;
 
-    /// The genomes of the current generation [individuals x genes].
+    /// The genomes of the current generation [individuals x genes], those of one population after the other.
     fn ask(&self) -> &Population;
 
     /// Takes the fitness \[individuals\] of the current generation and makes the next one.
@@ -25,7 +44,45 @@ pub trait Strategy {
     /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`]; the strategy is then unchanged.
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError>;
 
-    /// The same with plain values \[individuals\]; a NaN is a failed life.
+    /// Number of populations, each of as many individuals.
+    fn populations(&self) -> usize {
+        1
+    }
+
+    /// What has to be recorded of a generation so that it can be rebuilt.
+    fn recorded(&self) -> Recorded {
+        Recorded::Values
+    }
+
+    /// The fitness \[individuals\] that individuals are ranked by if this is what the evaluation gave.
+    fn ranked_by(&self, fitness: &[Fitness]) -> Vec<Fitness> {
+        fitness.to_vec()
+    }
+
+    /// The best individual of each population, counted through all of them, given the fitness that they are
+    /// [`ranked_by`](Strategy::ranked_by) \[individuals\]; among equals the lower index.
+    fn champions(&self, ranked_by: &[Fitness]) -> Vec<usize> {
+        let size = (ranked_by.len() / self.populations().max(1)).max(1);
+        let best = |own| Statistics::from_fitness(own).map_or(0, |summary| summary.best_index);
+        ranked_by.chunks(size).enumerate().map(|(population, own)| population * size + best(own)).collect()
+    }
+
+    /// How the state is saved and taken back, if it can be; else a strategy goes on by being told everything again.
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        None
+    }
+
+    /// Who descends from whom, where individuals have parents.
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        None
+    }
+
+    /// Numbers of its own about the latest generation that it was told, such as a step size; empty if there are none.
+    fn diagnostics(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Takes plain values \[individuals\]; a NaN is a failed evaluation.
     ///
     /// # Errors
     /// Those of [`tell`](Strategy::tell).
@@ -34,8 +91,8 @@ pub trait Strategy {
         self.tell(&fitness)
     }
 
-    /// Lives so many generations, in which `evaluate` says how good a genome \[genes\] is, and returns the best individual
-    /// of them; a NaN is a failed life.
+    /// Evaluates so many generations, where `evaluate` says how good a genome \[genes\] is, and returns the best individual
+    /// of them; a NaN is a failed evaluation.
     ///
     /// ```
     /// use farsa_evo::{GaConfig, Strategy, TruncationGa};
@@ -62,18 +119,13 @@ pub trait Strategy {
         }
         champion.ok_or(EvoError::NoBest { generation: self.generation() })
     }
+}
 
-    /// The genomes of this or an earlier generation [individuals x genes], bit for bit as they were evaluated.
-    ///
-    /// # Errors
-    /// [`EvoError::NoSuchGeneration`] when it lies ahead.
-    fn genomes_at(&self, generation: u32) -> Result<Population, EvoError>;
-
-    /// The genome \[genes\] of one individual of this or an earlier generation.
-    ///
-    /// # Errors
-    /// [`EvoError::NoSuchGeneration`] when it lies ahead, [`EvoError::NoSuchIndividual`] beyond the population.
-    fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError>;
+/// The ability to say whose children the individuals of a generation are.
+pub trait Genealogy {
+    /// The parents of an individual of the generation that waits for its fitness, as indices in the generation before;
+    /// none in generation 0, for an individual without parents, and for one that does not exist.
+    fn parents_of(&self, individual: usize) -> Vec<usize>;
 }
 
 /// The number of the next generation, if `fitness` has one value for each of `population` individuals.

@@ -2,22 +2,29 @@
 
 use alloc::vec::Vec;
 
+use farsa_num::{Domain, Stream};
+
 use crate::config::GaConfig;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
-use crate::lineage::Lineage;
+use crate::mutation::{BitMutation, randomize_bits};
 use crate::population::Population;
 #[cfg(feature = "serde")]
-use crate::saved::Saved;
-use crate::strategy::{Strategy, next_generation};
+use crate::saved::SavedStrategy;
+use crate::snapshot::{Snapshot, StateReader, largest, push_genes};
+use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
 
 /// A generational genetic algorithm with truncation selection, elites and bit mutation, without crossover. Its population is a
 /// multiple of its parents.
 ///
 /// Each generation the `parents` best individuals make `population / parents` copies each: the first unchanged, the
 /// others mutated. Parents are ranked by fitness, equals by index, the lower first; failed individuals are selected
-/// only when too few lived. [`Lineage`] says where the children lie and which numbers they draw. With as many parents
-/// as individuals nothing is ever mutated.
+/// only when too few succeeded. With as many parents as individuals nothing is ever mutated.
+///
+/// Child `i` of a generation descends from the parent of rank `i / copies` of the generation before, `copies` being
+/// population / parents; it is unchanged when `i % copies == 0` and mutated otherwise, with the numbers of the stream
+/// (seed, [`Domain::Mutation`], trial 0, individual `i`, generation of the child). Individual `i` of generation 0 is
+/// drawn from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
 ///
 /// Source: \[Ferrauto2010\] chapter 2, truncation selection in the terms of \[Muhlenbein1993\]. Deviations: everyone is
 /// evaluated again in every generation, the unchanged copies too, and ties go to the lower index; the source says
@@ -35,14 +42,18 @@ use crate::strategy::{Strategy, next_generation};
 /// assert!(evolution.ask().iter().next().is_some_and(|genes| genes[0].abs_diff(20_000) < 200));
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
-///
-/// Under the feature `serde` it is saved as its lineage and a digest of the current genomes, which are rebuilt when it
-/// is read.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::Saved<Lineage>"))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::saved::SavedStrategy<GaConfig>"))]
 pub struct TruncationGa {
-    lineage: Lineage,
+    config: GaConfig,
+    mutation: BitMutation,
+    seed: u64,
+    /// Which of several populations of a search this is: the trial of its streams.
+    number: u32,
+    generation: u32,
+    /// The individuals selected from the generation before, best first \[parents\]; empty in generation 0.
+    selected: Vec<u32>,
     population: Population,
 }
 
@@ -52,32 +63,46 @@ impl TruncationGa {
     /// # Errors
     /// Those of [`GaConfig::validate`].
     pub fn new(config: GaConfig, seed: u64) -> Result<Self, EvoError> {
-        Self::resume(Lineage::new(config, seed)?)
+        Self::numbered(config, seed, 0)
     }
 
-    /// An evolution at the latest generation of a lineage, in the same state as the one that recorded it.
-    ///
-    /// # Errors
-    /// None for a lineage that was made on this machine.
-    pub fn resume(lineage: Lineage) -> Result<Self, EvoError> {
-        let population = lineage.genomes_at(lineage.latest())?;
-        Ok(Self { lineage, population })
+    /// The same as the population with a number among several.
+    pub(crate) fn numbered(config: GaConfig, seed: u64, number: u32) -> Result<Self, EvoError> {
+        config.validate()?;
+        let mutation = config.bit_mutation()?;
+        let mut population = Population::new(config.population, config.genes)?;
+        for (individual, genes) in population.iter_mut().enumerate() {
+            let mut stream = Stream::new(seed, Domain::InitialGenome, number, individual as u32, 0);
+            randomize_bits(genes, config.gene_bits, &mut stream);
+        }
+        Ok(Self { config, mutation, seed, number, generation: 0, selected: Vec::new(), population })
     }
 
     /// The configuration.
     pub fn config(&self) -> &GaConfig {
-        self.lineage.config()
+        &self.config
     }
 
-    /// The parents of every generation so far.
-    pub fn lineage(&self) -> &Lineage {
-        &self.lineage
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The individuals selected from the generation before the current one, best first \[parents\]; empty in generation 0.
+    pub fn selected(&self) -> &[u32] {
+        &self.selected
+    }
+
+    /// Bytes of a state at a generation.
+    fn state_length(&self, generation: u32) -> usize {
+        let parents = if generation == 0 { 0 } else { self.config.parents };
+        4 + 4 * parents + 2 * self.population.as_slice().len()
     }
 }
 
 impl Strategy for TruncationGa {
     fn generation(&self) -> u32 {
-        self.lineage.latest()
+        self.generation
     }
 
     fn ask(&self) -> &Population {
@@ -85,46 +110,92 @@ impl Strategy for TruncationGa {
     }
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        let config = *self.config();
-        let generation = next_generation(self.generation(), config.population, fitness)?;
+        let config = self.config;
+        let generation = next_generation(self.generation, config.population, fitness)?;
         let selected = best(fitness, config.parents);
-        let mutation = config.bit_mutation()?;
         let mut children = Population::new(config.population, config.genes)?;
         let parents = selected.iter().filter_map(|&parent| self.population.get(parent as usize));
         let heirs = parents.flat_map(|parent| core::iter::repeat_n(parent, config.copies()));
         for (individual, (child, parent)) in children.iter_mut().zip(heirs).enumerate() {
             child.copy_from_slice(parent);
-            self.lineage.vary(mutation, generation, individual, child);
+            if !individual.is_multiple_of(config.copies()) {
+                let mut stream = Stream::new(self.seed, Domain::Mutation, self.number, individual as u32, generation);
+                self.mutation.apply(child, &mut stream);
+            }
         }
-        self.lineage.record(&selected)?;
-        self.population = children;
+        (self.generation, self.selected, self.population) = (generation, selected, children);
         Ok(())
     }
 
-    fn genomes_at(&self, generation: u32) -> Result<Population, EvoError> {
-        self.lineage.genomes_at(generation)
+    fn recorded(&self) -> Recorded {
+        Recorded::Order
     }
 
-    fn genome_of(&self, generation: u32, individual: usize) -> Result<Vec<u16>, EvoError> {
-        self.lineage.genome_of(generation, individual)
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        Some(self)
+    }
+}
+
+impl Genealogy for TruncationGa {
+    fn parents_of(&self, individual: usize) -> Vec<usize> {
+        let parent = self.selected.get(individual / self.config.copies());
+        parent.map(|&parent| parent as usize).into_iter().collect()
+    }
+}
+
+impl Snapshot for TruncationGa {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::with_capacity(self.state_length(self.generation));
+        state.extend(self.generation.to_le_bytes());
+        state.extend(self.selected.iter().flat_map(|parent| parent.to_le_bytes()));
+        push_genes(&mut state, &self.population);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let generation = StateReader::new(state, state.len())?.u32()?;
+        let mut reader = StateReader::new(state, self.state_length(generation))?;
+        reader.u32()?;
+        let mut selected: Vec<u32> = Vec::new();
+        for _ in 0..if generation == 0 { 0 } else { self.config.parents } {
+            let parent = reader.u32()?;
+            let (individual, population) = (parent as usize, self.config.population);
+            if individual >= population {
+                return Err(EvoError::NoSuchIndividual { individual, population });
+            }
+            selected.push(parent);
+        }
+        let mut sorted = selected.clone();
+        sorted.sort_unstable();
+        if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(EvoError::SelectedTwice { individual: twice[0] as usize });
+        }
+        let mut population = Population::new(self.config.population, self.config.genes)?;
+        reader.genes(&mut population, largest(self.config.gene_bits))?;
+        (self.generation, self.selected, self.population) = (generation, selected, population);
+        Ok(())
     }
 }
 
 #[cfg(feature = "serde")]
 impl serde::Serialize for TruncationGa {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Saved::new(&self.lineage, &self.population).serialize(serializer)
+        SavedStrategy::new(self.config, self.seed, self).serialize(serializer)
     }
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<Saved<Lineage>> for TruncationGa {
+impl TryFrom<SavedStrategy<GaConfig>> for TruncationGa {
     type Error = EvoError;
 
-    fn try_from(saved: Saved<Lineage>) -> Result<Self, EvoError> {
-        let population = saved.state.genomes_at(saved.state.latest())?;
-        saved.check(&population)?;
-        Ok(Self { lineage: saved.state, population })
+    fn try_from(saved: SavedStrategy<GaConfig>) -> Result<Self, EvoError> {
+        let mut strategy = Self::new(saved.config, saved.seed)?;
+        strategy.restore(&saved.state)?;
+        Ok(strategy)
     }
 }
 

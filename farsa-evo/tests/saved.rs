@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 use farsa_evo::{
-    Champion, Coevolution, Fitness, GaConfig, GeneRange, Lineage, Lineages, Mutation, OnePlusOne, OnePlusOneConfig,
-    OnePlusOneHistory, RandomSearch, Statistics, Strategy, TruncationGa,
+    Champion, Coevolution, Fitness, GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, Record,
+    Recorded, Snapshot, Statistics, Strategy, TruncationGa,
 };
 use postcard::{from_bytes, to_allocvec};
 use serde::{Serialize, de::DeserializeOwned};
@@ -64,54 +64,153 @@ fn a_configuration_of_16_bits_is_saved_as_ever() {
     }
 }
 
-#[test]
-fn a_forged_history_is_refused() {
-    let mut search = OnePlusOne::new(OnePlusOneConfig::new(5), 6).unwrap();
-    live(&mut search, 11);
-    assert_eq!(&from_bytes::<OnePlusOneHistory>(&to_allocvec(search.history()).unwrap()).unwrap(), search.history());
-    let config = *search.config();
-    let read = |config: OnePlusOneConfig, generations: u32, accepted: &[u8]| {
-        from_bytes::<OnePlusOneHistory>(&to_allocvec(&(config, 6_u64, generations, accepted.to_vec())).unwrap())
-    };
-    assert_eq!(read(config, 11, &[3, 4]).unwrap().latest(), 11);
-    assert!(read(config, 16, &[3, 255]).is_ok());
-    for (generations, accepted) in [(11, &[3][..]), (11, &[3, 8]), (11, &[3, 4, 0]), (8, &[3, 0]), (0, &[0])] {
-        assert!(read(config, generations, accepted).is_err(), "{generations} {accepted:?}");
-    }
-    assert!(read(OnePlusOneConfig { gene_bits: 0, ..config }, 3, &[3]).is_err());
-    assert!(read(OnePlusOneConfig { last_rate: 0.9, ..config }, 3, &[3]).is_err());
-    // Another seed or history, with the digest of these genomes.
-    let bytes = |seed: u64, accepted: bool| {
-        let mut history = OnePlusOneHistory::new(config, seed).unwrap();
-        (0..11).for_each(|g| history.record(accepted ^ search.history().accepted(g).unwrap()).unwrap());
-        to_allocvec(&((history, Fitness::WORST), search.ask().digest())).unwrap()
-    };
-    assert!(from_bytes::<OnePlusOne>(&bytes(6, false)).is_ok());
-    assert!(from_bytes::<OnePlusOne>(&bytes(7, false)).is_err());
-    assert!(from_bytes::<OnePlusOne>(&bytes(6, true)).is_err());
+/// A strategy as it is saved, free of its checks.
+#[derive(Serialize)]
+struct Forged<C> {
+    config: C,
+    seed: u64,
+    state: Vec<u8>,
+}
+
+/// Changes the state of a strategy after three generations, and the error that reading it gives.
+fn bent<S, C>(strategy: &S, config: C, change: impl Fn(&mut Vec<u8>)) -> Result<S, postcard::Error>
+where
+    S: Snapshot + DeserializeOwned,
+    C: Serialize,
+{
+    let mut state = strategy.save();
+    change(&mut state);
+    from_bytes(&to_allocvec(&Forged { config, seed: 6, state }).unwrap())
 }
 
 #[test]
-fn forged_lineages_are_refused() {
+fn a_forged_state_is_refused() {
+    let config = GaConfig { population: 4, parents: 2, gene_bits: 8, ..GaConfig::new(3) };
+    let mut ga = TruncationGa::new(config, 6).unwrap();
+    live(&mut ga, 3);
+    let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&ga, config, change);
+    assert_eq!(read(&|_| ()).unwrap(), ga);
+    // Generation (4 bytes), two parents (4 each), then genes (2 each).
+    assert!(read(&|state| state[4] = 4).is_err(), "a parent beyond the population");
+    assert!(read(&|state| state.copy_within(4..8, 8)).is_err(), "a parent twice");
+    assert!(read(&|state| state[13] = 1).is_err(), "a gene above 255");
+    assert!(read(&|state| state[..4].fill(0)).is_err(), "parents in generation 0");
+    assert!(
+        read(&|state| state.push(0)).is_err() && read(&|state| state.truncate(state.len() - 1)).is_err(),
+        "another length"
+    );
+    for config in [
+        GaConfig { genes: 0, ..config },
+        GaConfig { genes: usize::MAX, ..config },
+        GaConfig { genes: 4, ..config },
+        GaConfig { population: 0, ..config },
+        GaConfig { population: 5, ..config },
+        GaConfig { population: 6, ..config },
+        GaConfig { parents: 0, ..config },
+        GaConfig { parents: 1, ..config },
+        GaConfig { mutation_rate: f64::NAN, ..config },
+    ] {
+        assert!(bent(&ga, config, |_| ()).is_err(), "{config:?}");
+    }
+
+    let config = OnePlusOneConfig::new(5);
+    let mut search = OnePlusOne::new(config, 6).unwrap();
+    live(&mut search, 3);
+    let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&search, config, change);
+    assert_eq!(read(&|_| ()).unwrap(), search);
+    // Generation, survivor (4 bytes each), sum (8), evaluations (4), genes.
+    assert!(read(&|state| state[4] = 2).is_err(), "a third survivor");
+    assert!(read(&|state| state[8..16].fill(0xff)).is_err(), "a sum that is NaN");
+    assert!(read(&|state| state[16] = 0).is_err() && read(&|state| state[16] = 4).is_err(), "evaluations");
+    assert!(read(&|state| state[21] = 1).is_err(), "a gene above 255");
+    assert!(read(&|state| state.truncate(state.len() - 1)).is_err(), "another length");
+    assert!(bent(&search, OnePlusOneConfig { last_rate: 0.9, ..config }, |_| ()).is_err());
+
+    let configs = vec![GaConfig::new(4), GaConfig::new(5)];
+    let mut all = Coevolution::new(&configs, 6).unwrap();
+    live(&mut all, 3);
+    let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&all, configs.clone(), change);
+    assert_eq!(read(&|_| ()).unwrap(), all);
+    assert!(read(&|state| state[8] = 2).is_err(), "a population at another generation");
+    assert!(read(&|state| state[0] ^= 4).is_err() && read(&|state| state[7] = 255).is_err(), "another length");
+    assert!(
+        read(&|state| state.push(0)).is_err() && read(&|state| state.truncate(state.len() - 1)).is_err(),
+        "another length"
+    );
+    assert!(bent(&all, configs[..1].to_vec(), |_| ()).is_err());
+
+    let mut search = RandomSearch::new(5, 10, 6).unwrap();
+    assert_eq!(bent(&search, (5_usize, 10_usize), |_| ()).unwrap(), search);
+    live(&mut search, 3);
+    let read = |change: &dyn Fn(&mut Vec<u8>)| bent(&search, (5_usize, 10_usize), change);
+    assert_eq!(read(&|_| ()).unwrap(), search);
+    // Generation, generation of the best (4 bytes each), its index (8), its fitness (8).
+    assert!(read(&|state| state[4] = 3).is_err(), "a best of the future");
+    assert!(read(&|state| state[8] = 10).is_err(), "a best beyond the population");
+    assert!(read(&|state| state[16..].fill(0xff)).is_err(), "a fitness that is NaN");
+    assert!(read(&|state| state.truncate(4)).is_err(), "no best");
+}
+
+#[test]
+fn a_refused_state_changes_nothing() {
     let mut all = Coevolution::new(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap();
     live(&mut all, 3);
-    assert_eq!(from_bytes::<Lineages>(&to_allocvec(&all.lineages()).unwrap()).unwrap(), all.lineages());
-    let mut apart: Vec<Lineage> = all.lineages().into();
-    let digest = all.ask().digest();
-    assert_eq!(from_bytes::<Coevolution>(&to_allocvec(&(&apart, digest)).unwrap()).unwrap(), all);
-    apart.swap(0, 1);
-    assert!(from_bytes::<Coevolution>(&to_allocvec(&(&apart, digest)).unwrap()).is_err());
-    apart.pop();
-    assert!(from_bytes::<Lineages>(&to_allocvec(&apart).unwrap()).is_err());
+    let (before, state) = (all.clone(), Coevolution::new(&[GaConfig::new(4), GaConfig::new(5)], 6).unwrap().save());
+    for len in (0..state.len()).step_by(7) {
+        assert!(all.restore(&state[..len]).is_err());
+        assert_eq!(all, before);
+    }
+}
+
+/// A record as it is saved, free of its checks.
+#[derive(Clone, Serialize)]
+struct ForgedRecord {
+    shape: (Recorded, usize, usize, usize),
+    frames: Vec<u8>,
+    keyframes: Vec<(u32, Vec<u8>)>,
 }
 
 #[test]
-fn a_lineage_round_trips_in_few_bytes() {
-    let mut ga = TruncationGa::new(GaConfig::new(12), 6).unwrap();
-    live(&mut ga, 100);
-    let bytes = to_allocvec(ga.lineage()).unwrap();
-    assert!(bytes.len() < 100 * 20 + 40);
-    assert_eq!(&from_bytes::<Lineage>(&bytes).unwrap(), ga.lineage());
+fn a_record_comes_back_and_a_forged_one_is_refused() {
+    let config = GaConfig { population: 4, parents: 2, ..GaConfig::new(3) };
+    let fresh = || TruncationGa::new(config, 6).unwrap();
+    let mut ga = fresh();
+    let mut record = Record::new(&mut ga).unwrap();
+    for _ in 0..40 {
+        let told: Vec<_> = ga.ask().iter().map(|genes| Fitness::nan_as_failed(f64::from(genes[0]))).collect();
+        record.tell(&mut ga, &told).unwrap();
+    }
+    let read: Record = from_bytes(&to_allocvec(&record).unwrap()).unwrap();
+    assert_eq!(read, record);
+    let (frames, keyframes) = (vec![3, 3, 1, 0, 2, 0, 0, 1, 2, 3], vec![(1, ga.save())]);
+    let good = ForgedRecord { shape: (Recorded::Order, 1, 4, 3), frames, keyframes };
+    let read = |change: &dyn Fn(&mut ForgedRecord)| {
+        let mut forged = good.clone();
+        change(&mut forged);
+        from_bytes::<Record>(&to_allocvec(&forged).unwrap())
+    };
+    assert_eq!(read(&|_| ()).unwrap().generations(), 2);
+    assert_eq!(read(&|_| ()).unwrap().order(0), Some(vec![3, 1, 0, 2]));
+    assert!(read(&|record| record.frames[0] = 4).is_err(), "a champion beyond the population");
+    assert!(read(&|record| record.frames[2] = 3).is_err(), "an individual twice");
+    assert!(read(&|record| record.frames[9] = 4).is_err(), "an individual beyond the population");
+    assert!(read(&|record| record.frames.truncate(9)).is_err(), "half a generation");
+    assert!(read(&|record| record.keyframes[0].0 = 3).is_err(), "a state of the future");
+    assert!(read(&|record| record.keyframes.push((1, Vec::new()))).is_err(), "two states of a generation");
+    for (populations, individuals, genes) in [(0, 4, 3), (3, 4, 3), (1, 0, 3), (1, 4, 0), (1, usize::MAX, usize::MAX)] {
+        assert!(read(&|record| record.shape = (Recorded::Order, populations, individuals, genes)).is_err());
+    }
+    let values = |bytes: [u8; 8]| {
+        let frames = [&[0][..], &bytes].concat();
+        let forged = ForgedRecord { shape: (Recorded::Values, 1, 1, 3), frames, keyframes: Vec::new() };
+        from_bytes::<Record>(&to_allocvec(&forged).unwrap())
+    };
+    assert!(values([0xff; 8]).is_err() && values([0; 8]).is_ok(), "a fitness that is NaN");
+    // The state of another generation, and one that is not of the strategy, are refused when they are needed.
+    let other = read(&|record| record.keyframes[0].0 = 2).unwrap();
+    assert!(other.rebuild(&mut fresh(), 2).is_err());
+    let bent = read(&|record| record.keyframes[0].1.truncate(5)).unwrap();
+    assert!(bent.rebuild(&mut fresh(), 2).is_err());
 }
 
 #[test]
@@ -122,86 +221,6 @@ fn fitness_round_trips() {
     }
     assert_eq!(to_allocvec(&Fitness::WORST).unwrap(), to_allocvec(&None::<f64>).unwrap());
     assert!(from_bytes::<Fitness>(&to_allocvec(&Some(f64::NAN)).unwrap()).is_err());
-}
-
-/// The serialised fields of a lineage, free of its checks.
-#[derive(Serialize)]
-struct Forged {
-    config: GaConfig,
-    seed: u64,
-    selected: Vec<u32>,
-}
-
-#[test]
-fn a_forged_lineage_is_refused() {
-    let config = GaConfig { population: 4, parents: 2, ..GaConfig::new(3) };
-    let read = |config, selected: &[u32]| {
-        let forged = Forged { config, seed: 1, selected: selected.to_vec() };
-        from_bytes::<Lineage>(&to_allocvec(&forged).unwrap())
-    };
-    assert_eq!(read(config, &[0, 3, 2, 1]).unwrap().latest(), 2);
-    for selected in [&[0][..], &[0, 3, 1], &[0, 4], &[0, u32::MAX], &[3, 3]] {
-        assert!(read(config, selected).is_err(), "{selected:?}");
-    }
-    for config in [
-        GaConfig { genes: 0, ..config },
-        GaConfig { genes: usize::MAX, ..config },
-        GaConfig { population: 0, ..config },
-        GaConfig { population: 5, ..config },
-        GaConfig { parents: 0, ..config },
-        GaConfig { parents: 8, ..config },
-        GaConfig { mutation_rate: f64::NAN, ..config },
-        GaConfig { mutation_rate: -0.1, ..config },
-    ] {
-        assert!(read(config, &[0, 1]).is_err(), "{config:?}");
-    }
-}
-
-#[test]
-fn a_state_with_other_genomes_is_refused() {
-    let mut ga = TruncationGa::new(GaConfig::new(12), 6).unwrap();
-    live(&mut ga, 3);
-    let forge = |config: GaConfig, seed, swap: bool| {
-        let lineage = ga.lineage();
-        let mut selected: Vec<u32> =
-            (0..lineage.latest()).flat_map(|g| lineage.selected(g).unwrap().to_vec()).collect();
-        if swap {
-            selected.swap(40, 41);
-        }
-        from_bytes::<TruncationGa>(&to_allocvec(&(Forged { config, seed, selected }, ga.ask().digest())).unwrap())
-    };
-    let config = *ga.config();
-    assert_eq!(forge(config, 6, false).unwrap(), ga);
-    assert!(forge(config, 7, false).is_err());
-    assert!(forge(config, 6, true).is_err());
-    assert!(forge(GaConfig { mutation: Mutation::Flip, ..config }, 6, false).is_err());
-    assert!(forge(GaConfig { mutation_rate: 0.016, ..config }, 6, false).is_err());
-}
-
-#[test]
-fn a_forged_search_is_refused() {
-    type Best = Option<(u32, usize, Option<f64>)>;
-    let mut search = RandomSearch::new(5, 10, 6).unwrap();
-    let read = |search: &RandomSearch, seed: u64, generation: u32, best: Best| {
-        let state = (5_usize, 10_usize, seed, generation, best);
-        from_bytes::<RandomSearch>(&to_allocvec(&(state, search.ask().digest())).unwrap())
-    };
-    assert_eq!(read(&search, 6, 0, None).unwrap(), search);
-    assert!(read(&search, 6, 0, Some((0, 0, Some(1.0)))).is_err());
-    live(&mut search, 2);
-    let best = search.best().unwrap();
-    let found = Some((best.generation, best.individual, Some(best.fitness.get())));
-    assert_eq!(read(&search, 6, 2, found).unwrap(), search);
-    for (seed, generation, best) in [
-        (7, 2, found),
-        (6, 3, found),
-        (6, 2, None),
-        (6, 2, Some((2, 0, Some(1.0)))),
-        (6, 2, Some((1, 10, Some(1.0)))),
-        (6, 2, Some((1, 9, Some(f64::NAN)))),
-    ] {
-        assert!(read(&search, seed, generation, best).is_err());
-    }
 }
 
 #[test]

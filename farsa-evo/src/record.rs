@@ -1,0 +1,423 @@
+//! What a strategy was told: enough to rebuild every genome of a search.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::cmp::Reverse;
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+use crate::strategy::{Recorded, Strategy};
+
+/// What a strategy was told in every generation, in the form that it depends on.
+///
+/// A strategy is a pure function of its configuration, its seed and what it was told. Telling a fresh one the same again
+/// therefore makes the same genomes, bit for bit, without evaluating anything. Of a hundred individuals a generation takes
+/// some hundred bytes where only their order counts, and eight hundred where values do.
+///
+/// So that a long search is rebuilt quickly, the record also keeps the state of a strategy that can save it
+/// ([`Snapshot`](crate::Snapshot)), as often as that at most doubles the size of the record.
+///
+/// ```
+/// use farsa_evo::{Fitness, GaConfig, Record, Strategy, TruncationGa};
+///
+/// let fresh = || TruncationGa::new(GaConfig { population: 6, parents: 2, ..GaConfig::new(3) }, 5);
+/// let mut evolution = fresh()?;
+/// let mut record = Record::new(&mut evolution)?;
+/// let first = evolution.ask().clone();
+/// let fitness = [0.0, 3.0, 1.0, 9.0, 2.0, 2.0].map(Fitness::nan_as_failed);
+/// record.tell(&mut evolution, &fitness)?;
+/// assert_eq!(record.order(0), Some(vec![3, 1, 4, 5, 2, 0]));
+/// assert_eq!(record.champion(0, 0), Some(3));
+///
+/// let mut again = fresh()?;
+/// record.rebuild(&mut again, 1)?;
+/// assert_eq!(again, evolution);
+/// assert_eq!(record.genomes(&mut fresh()?, 0)?, first);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawRecord", into = "RawRecord"))]
+pub struct Record {
+    shape: Shape,
+    /// A frame of [`Shape::frame`] bytes for each generation: the champion of each population, then what was recorded.
+    frames: Vec<u8>,
+    /// Saved states, the earliest first.
+    keyframes: Vec<Keyframe>,
+    /// The number of bytes of frames from which the next state is saved.
+    next_keyframe: usize,
+}
+
+/// The sizes that a record was made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Shape {
+    recorded: Recorded,
+    populations: usize,
+    /// Of all populations.
+    individuals: usize,
+    genes: usize,
+}
+
+/// The state of a strategy at a generation.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Keyframe {
+    generation: u32,
+    state: Vec<u8>,
+}
+
+impl Shape {
+    fn from_strategy(strategy: &(impl Strategy + ?Sized)) -> Self {
+        let (recorded, populations) = (strategy.recorded(), strategy.populations());
+        Self { recorded, populations, individuals: strategy.ask().len(), genes: strategy.ask().genome_len() }
+    }
+
+    /// Whether every population has as many individuals, at least one.
+    fn check(self) -> Result<(), EvoError> {
+        let Self { populations, individuals, .. } = self;
+        let even = populations > 0 && individuals.is_multiple_of(populations);
+        if even { Ok(()) } else { Err(EvoError::UnevenPopulations { populations, individuals }) }
+    }
+
+    /// Whether this is the number of an individual of a population.
+    fn has(self, population: usize, individual: usize) -> bool {
+        individual < self.individuals && individual / (self.individuals / self.populations) == population
+    }
+
+    /// Bytes of an individual's index.
+    fn width(self) -> usize {
+        match self.individuals {
+            0..=0x100 => 1,
+            0x101..=0x1_0000 => 2,
+            _ => 4,
+        }
+    }
+
+    /// Bytes of a generation.
+    fn frame(self) -> usize {
+        let each = match self.recorded {
+            Recorded::Order => self.width(),
+            Recorded::Values => 8,
+            Recorded::Genomes => 2 * self.genes,
+        };
+        self.populations * self.width() + self.individuals * each
+    }
+
+    fn push_index(self, bytes: &mut Vec<u8>, index: usize) {
+        bytes.extend(index.to_le_bytes().iter().take(self.width()));
+    }
+
+    fn indices(self, bytes: &[u8]) -> impl Iterator<Item = usize> + '_ {
+        let index = |bytes: &[u8]| bytes.iter().rev().fold(0, |sum, byte| sum << 8 | usize::from(*byte));
+        bytes.chunks_exact(self.width()).map(index)
+    }
+}
+
+impl Record {
+    /// The record of a strategy that has not been told anything.
+    ///
+    /// # Errors
+    /// [`EvoError::AlreadyTold`]; [`EvoError::UnevenPopulations`]; [`EvoError::NoSnapshot`] for a strategy of which genomes
+    /// are recorded and that cannot save its state: nothing could make it go on.
+    pub fn new(strategy: &mut (impl Strategy + ?Sized)) -> Result<Self, EvoError> {
+        if strategy.generation() != 0 {
+            return Err(EvoError::AlreadyTold { generation: strategy.generation() });
+        }
+        let shape = Shape::from_strategy(strategy);
+        shape.check()?;
+        if shape.recorded == Recorded::Genomes && strategy.snapshot().is_none() {
+            return Err(EvoError::NoSnapshot);
+        }
+        Ok(Self::empty(shape))
+    }
+
+    fn empty(shape: Shape) -> Self {
+        let mut record = Self { shape, frames: Vec::new(), keyframes: Vec::new(), next_keyframe: 0 };
+        record.wait(0);
+        record
+    }
+
+    /// Waits with the next state until as many bytes of frames have been added as it is likely to take.
+    fn wait(&mut self, state: usize) {
+        let genomes = 2 * self.shape.individuals * self.shape.genes;
+        self.next_keyframe = self.frames.len() + genomes.max(state);
+    }
+
+    /// Tells a strategy the fitness \[individuals\] of its generation, and records it.
+    ///
+    /// # Errors
+    /// [`EvoError::OtherRecord`] for a strategy that is not at the end of this record, or that names another number of
+    /// champions than it has populations; [`EvoError::NoSuchIndividual`] for a champion that is not of its population;
+    /// [`EvoError::Stuck`]; and those of [`Strategy::tell`]. Nothing is recorded then.
+    pub fn tell(&mut self, strategy: &mut (impl Strategy + ?Sized), fitness: &[Fitness]) -> Result<(), EvoError> {
+        self.check(strategy)?;
+        if strategy.generation() != self.generations() {
+            return Err(EvoError::OtherRecord { what: "generations", recorded: self.generations() as usize });
+        }
+        let (expected, found) = (self.shape.individuals, fitness.len());
+        if found != expected {
+            return Err(EvoError::FitnessCount { expected, found });
+        }
+        let mut frame = Vec::with_capacity(self.shape.frame());
+        let champions = strategy.champions(&strategy.ranked_by(fitness));
+        if champions.len() != self.shape.populations {
+            return Err(EvoError::OtherRecord { what: "champions", recorded: self.shape.populations });
+        }
+        for (population, champion) in champions.into_iter().enumerate() {
+            if !self.shape.has(population, champion) {
+                return Err(EvoError::NoSuchIndividual { individual: champion, population: self.shape.individuals });
+            }
+            self.shape.push_index(&mut frame, champion);
+        }
+        match self.shape.recorded {
+            Recorded::Order => order(fitness).into_iter().for_each(|index| self.shape.push_index(&mut frame, index)),
+            Recorded::Values => frame.extend(fitness.iter().flat_map(|fitness| fitness.get().to_le_bytes())),
+            Recorded::Genomes => frame.extend(strategy.ask().as_slice().iter().flat_map(|gene| gene.to_le_bytes())),
+        }
+        tell(strategy, fitness)?;
+        self.frames.extend(frame);
+        let due = self.shape.recorded != Recorded::Genomes && self.frames.len() >= self.next_keyframe;
+        if let Some(strategy) = strategy.snapshot().filter(|_| due) {
+            let state = strategy.save();
+            self.wait(state.len());
+            self.keyframes.push(Keyframe { generation: self.generations(), state });
+        }
+        Ok(())
+    }
+
+    /// Whether this is a record for a strategy like this one.
+    ///
+    /// # Errors
+    /// [`EvoError::OtherRecord`].
+    pub fn check(&self, strategy: &(impl Strategy + ?Sized)) -> Result<(), EvoError> {
+        let (ours, theirs) = (self.shape, Shape::from_strategy(strategy));
+        let other = |what, recorded| Err(EvoError::OtherRecord { what, recorded });
+        if ours.populations != theirs.populations {
+            other("populations", ours.populations)
+        } else if ours.individuals != theirs.individuals {
+            other("individuals", ours.individuals)
+        } else if ours.genes != theirs.genes {
+            other("genes", ours.genes)
+        } else if ours.recorded != theirs.recorded {
+            other("bytes of another kind", ours.frame())
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Number of generations that were told, which is that of the generation that waits for its fitness.
+    pub fn generations(&self) -> u32 {
+        (self.frames.len() / self.shape.frame().max(1)) as u32
+    }
+
+    /// Number of populations.
+    pub fn populations(&self) -> usize {
+        self.shape.populations
+    }
+
+    /// Number of individuals of each population.
+    pub fn size(&self) -> usize {
+        self.shape.individuals / self.shape.populations.max(1)
+    }
+
+    /// Bytes of what was recorded, saved states included.
+    pub fn bytes(&self) -> usize {
+        self.frames.len() + self.keyframes.iter().map(|keyframe| keyframe.state.len()).sum::<usize>()
+    }
+
+    /// The champions of a generation and what was recorded of it.
+    fn frame(&self, generation: u32) -> Option<(&[u8], &[u8])> {
+        let frame = self.frames.chunks_exact(self.shape.frame().max(1)).nth(generation as usize)?;
+        frame.split_at_checked(self.shape.populations * self.shape.width())
+    }
+
+    /// The best individual of a population in a generation that was told, counted through all populations.
+    pub fn champion(&self, population: usize, generation: u32) -> Option<usize> {
+        self.shape.indices(self.frame(generation)?.0).nth(population)
+    }
+
+    /// The individuals of a generation that was told, best first, equals by index; none where genomes are recorded.
+    pub fn order(&self, generation: u32) -> Option<Vec<usize>> {
+        match self.shape.recorded {
+            Recorded::Order => Some(self.shape.indices(self.frame(generation)?.1).collect()),
+            Recorded::Values => Some(order(&self.told(generation)?)),
+            Recorded::Genomes => None,
+        }
+    }
+
+    /// What makes a strategy of this kind do what it did: the fitness, or one of the same order.
+    fn told(&self, generation: u32) -> Option<Vec<Fitness>> {
+        let (_, bytes) = self.frame(generation)?;
+        match self.shape.recorded {
+            Recorded::Order => {
+                let mut fitness = vec![Fitness::WORST; self.shape.individuals];
+                for (rank, individual) in self.shape.indices(bytes).enumerate() {
+                    *fitness.get_mut(individual)? = Fitness::nan_as_failed(-(rank as f64));
+                }
+                Some(fitness)
+            }
+            Recorded::Values => {
+                let (values, _) = bytes.as_chunks::<8>();
+                Some(values.iter().map(|bytes| Fitness::nan_as_failed(f64::from_le_bytes(*bytes))).collect())
+            }
+            Recorded::Genomes => None,
+        }
+    }
+
+    /// Brings a strategy, fresh or at an earlier generation of this record, to the generation with this number, as it was
+    /// before it was told its fitness.
+    ///
+    /// # Errors
+    /// [`EvoError::NoSuchGeneration`] for one that lies ahead of the record or behind the strategy, [`EvoError::OtherRecord`]
+    /// for a strategy of another kind or size, [`EvoError::GenomesOnly`] where genomes are recorded,
+    /// [`EvoError::StateContent`] for a saved state of another generation, [`EvoError::Stuck`], and whatever the strategy
+    /// refuses.
+    pub fn rebuild(&self, strategy: &mut (impl Strategy + ?Sized), generation: u32) -> Result<(), EvoError> {
+        self.check(strategy)?;
+        let latest = self.generations();
+        if generation > latest || generation < strategy.generation() {
+            return Err(EvoError::NoSuchGeneration { generation, latest });
+        }
+        let usable = |keyframe: &&Keyframe| keyframe.generation <= generation;
+        let keyframe = self.keyframes.iter().rev().find(usable);
+        let keyframe = keyframe.filter(|keyframe| keyframe.generation > strategy.generation());
+        if let (Some(keyframe), Some(snapshot)) = (keyframe, strategy.snapshot()) {
+            snapshot.restore(&keyframe.state)?;
+            let found = strategy.generation();
+            if found != keyframe.generation {
+                return Err(EvoError::StateContent { what: "the generation of a saved state", found: found.into() });
+            }
+        }
+        while strategy.generation() < generation {
+            let told = self.told(strategy.generation()).ok_or(EvoError::GenomesOnly)?;
+            tell(strategy, &told)?;
+        }
+        Ok(())
+    }
+
+    /// The genomes of a generation that was told [individuals x genes], with the help of a strategy as
+    /// [`rebuild`](Self::rebuild) wants it.
+    ///
+    /// # Errors
+    /// Those of [`rebuild`](Self::rebuild).
+    pub fn genomes(&self, strategy: &mut (impl Strategy + ?Sized), generation: u32) -> Result<Population, EvoError> {
+        if self.shape.recorded != Recorded::Genomes {
+            self.rebuild(strategy, generation)?;
+            return Ok(strategy.ask().clone());
+        }
+        let latest = self.generations();
+        let (_, bytes) = self.frame(generation).ok_or(EvoError::NoSuchGeneration { generation, latest })?;
+        let mut population = Population::new(self.shape.individuals, self.shape.genes)?;
+        let (genes, _) = bytes.as_chunks::<2>();
+        let all = population.iter_mut().flatten();
+        all.zip(genes).for_each(|(gene, bytes)| *gene = u16::from_le_bytes(*bytes));
+        Ok(population)
+    }
+
+    /// Forgets all generations from this one on.
+    pub fn truncate(&mut self, generations: u32) {
+        self.frames.truncate((generations as usize).saturating_mul(self.shape.frame()));
+        self.keyframes.retain(|keyframe| keyframe.generation <= generations);
+        // The place of the next state follows from those before, so that a record that goes on is that of a search that
+        // was never interrupted.
+        let last = self.keyframes.last().map(|keyframe| (keyframe.generation as usize, keyframe.state.len()));
+        let (told, state) = last.unwrap_or_default();
+        let genomes = 2 * self.shape.individuals * self.shape.genes;
+        self.next_keyframe = told * self.shape.frame() + genomes.max(state);
+    }
+}
+
+/// Tells a strategy, which must then be at the next generation: else it could be told for ever.
+fn tell(strategy: &mut (impl Strategy + ?Sized), fitness: &[Fitness]) -> Result<(), EvoError> {
+    let generation = strategy.generation();
+    strategy.tell(fitness)?;
+    let found = strategy.generation();
+    if generation.checked_add(1) == Some(found) { Ok(()) } else { Err(EvoError::Stuck { generation, found }) }
+}
+
+/// The individuals, best first, equals by index.
+fn order(fitness: &[Fitness]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..fitness.len()).collect();
+    order.sort_by_key(|&individual| Reverse(fitness.get(individual)));
+    order
+}
+
+/// A record as it is read, before anything in it is believed.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "Record")]
+struct RawRecord {
+    shape: Shape,
+    frames: Vec<u8>,
+    keyframes: Vec<Keyframe>,
+}
+
+#[cfg(feature = "serde")]
+impl From<Record> for RawRecord {
+    fn from(Record { shape, frames, keyframes, .. }: Record) -> Self {
+        Self { shape, frames, keyframes }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawRecord> for Record {
+    type Error = EvoError;
+
+    fn try_from(raw: RawRecord) -> Result<Self, EvoError> {
+        let RawRecord { shape, frames, keyframes } = raw;
+        Population::check(shape.individuals, shape.genes)?;
+        shape.check()?;
+        let mut record = Self { keyframes, ..Self::empty(shape) };
+        let whole = frames.len().is_multiple_of(shape.frame());
+        if !whole || u32::try_from(frames.len() / shape.frame()).is_err() {
+            return Err(EvoError::StateLength { expected: shape.frame(), found: frames.len() });
+        }
+        record.frames = frames;
+        for generation in 0..record.generations() {
+            record.believe(generation)?;
+        }
+        let rising = record.keyframes.windows(2).all(|pair| pair[0].generation < pair[1].generation);
+        let last = record.keyframes.last().map_or(0, |keyframe| keyframe.generation);
+        if !rising || last > record.generations() {
+            return Err(EvoError::StateContent { what: "the generation of a saved state", found: last.into() });
+        }
+        record.truncate(record.generations());
+        Ok(record)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Record {
+    /// Refuses a generation that no strategy was told.
+    fn believe(&self, generation: u32) -> Result<(), EvoError> {
+        let Shape { recorded, individuals, .. } = self.shape;
+        let (champions, bytes) = self.frame(generation).unwrap_or_default();
+        for (population, champion) in self.shape.indices(champions).enumerate() {
+            if !self.shape.has(population, champion) {
+                return Err(EvoError::NoSuchIndividual { individual: champion, population: individuals });
+            }
+        }
+        match recorded {
+            Recorded::Order => {
+                let mut seen = vec![false; individuals];
+                for individual in self.shape.indices(bytes) {
+                    match seen.get_mut(individual) {
+                        None => return Err(EvoError::NoSuchIndividual { individual, population: individuals }),
+                        Some(true) => return Err(EvoError::SelectedTwice { individual }),
+                        Some(seen) => *seen = true,
+                    }
+                }
+            }
+            Recorded::Values => {
+                let (values, _) = bytes.as_chunks::<8>();
+                if values.iter().any(|bytes| f64::from_le_bytes(*bytes).is_nan()) {
+                    return Err(EvoError::NanFitness);
+                }
+            }
+            Recorded::Genomes => {}
+        }
+        Ok(())
+    }
+}

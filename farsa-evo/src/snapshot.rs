@@ -1,0 +1,79 @@
+//! The state of a strategy as bytes, and how it is read back.
+
+use alloc::vec::Vec;
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+
+/// The ability to go on from a saved state, without being told everything again.
+pub trait Snapshot {
+    /// All that changes from generation to generation, as bytes; configuration and seed are not part of it.
+    fn save(&self) -> Vec<u8>;
+
+    /// Takes the state that a strategy of the same configuration and seed has saved.
+    ///
+    /// # Errors
+    /// [`EvoError::StateLength`], [`EvoError::StateContent`]; the strategy is then unchanged.
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError>;
+}
+
+/// Reads a state from its front, little-endian.
+pub(crate) struct StateReader<'s> {
+    rest: &'s [u8],
+    total: usize,
+}
+
+impl<'s> StateReader<'s> {
+    /// The bytes of a state, which must be so many.
+    pub(crate) fn new(state: &'s [u8], expected: usize) -> Result<Self, EvoError> {
+        let found = state.len();
+        if found == expected {
+            Ok(Self { rest: state, total: found })
+        } else {
+            Err(EvoError::StateLength { expected, found })
+        }
+    }
+
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], EvoError> {
+        let short = EvoError::StateLength { expected: self.total - self.rest.len() + N, found: self.total };
+        let (first, rest) = self.rest.split_first_chunk::<N>().ok_or(short)?;
+        self.rest = rest;
+        Ok(*first)
+    }
+
+    pub(crate) fn u32(&mut self) -> Result<u32, EvoError> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    pub(crate) fn u64(&mut self) -> Result<u64, EvoError> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    pub(crate) fn fitness(&mut self) -> Result<Fitness, EvoError> {
+        Fitness::try_from(self.take().map(f64::from_le_bytes)?)
+    }
+
+    /// The genes of a population, none of them above the largest.
+    pub(crate) fn genes(&mut self, population: &mut Population, largest: u16) -> Result<(), EvoError> {
+        for genome in population.iter_mut() {
+            for gene in genome {
+                *gene = self.take().map(u16::from_le_bytes)?;
+                if *gene > largest {
+                    return Err(EvoError::StateContent { what: "a gene", found: (*gene).into() });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Appends the genes of a population.
+pub(crate) fn push_genes(state: &mut Vec<u8>, population: &Population) {
+    state.extend(population.as_slice().iter().flat_map(|gene| gene.to_le_bytes()));
+}
+
+/// The largest gene of so many bits, 1 to 16.
+pub(crate) fn largest(gene_bits: u32) -> u16 {
+    u16::MAX >> u16::BITS.saturating_sub(gene_bits)
+}
