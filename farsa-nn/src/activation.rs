@@ -48,16 +48,16 @@ impl Activation {
     /// ```
     /// use farsa_nn::Activation;
     ///
-    /// assert_eq!(Activation::Step.of(0.0), 1.0);
-    /// assert_eq!(Activation::ALL.map(|f| f.of(-2.0)), [0.11920292, -0.9640276, -2.0, 0.0, 0.0]);
+    /// assert_eq!(Activation::Step.apply(0.0), 1.0);
+    /// assert_eq!(Activation::ALL.map(|f| f.apply(-2.0)), [0.11920292, -0.9640276, -2.0, 0.0, 0.0]);
     /// ```
-    pub fn of(self, x: f32) -> f32 {
-        self.over(x)
+    pub fn apply(self, x: f32) -> f32 {
+        self.apply_lanes(x)
     }
 
     /// The same over the lanes of a scalar.
     #[inline(always)]
-    pub(crate) fn over<S: Scalar>(self, x: S) -> S {
+    pub(crate) fn apply_lanes<S: Scalar>(self, x: S) -> S {
         let zero = x.constant(0.0);
         match self {
             Self::Logistic => logistic(x),

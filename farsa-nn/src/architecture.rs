@@ -9,10 +9,10 @@ use crate::block::layout::BlockLayout;
 /// Neurons are logistic with slope 1 and biases, without gains and leaks, unless something else is asked for.
 ///
 /// ```
-/// use farsa_nn::{Architecture, LeakyLayout, Plan};
+/// use farsa_nn::{Architecture, LeakyLayout, BlockPlan};
 ///
 /// // The network of the manipulation experiment.
-/// const PLAN: Plan = Architecture::elman(29, 12, 23).with_slope(0.2).with_leaks().without_output_biases().plan();
+/// const PLAN: BlockPlan = Architecture::elman(29, 12, 23).with_slope(0.2).with_leaks().without_output_biases().plan();
 /// assert_eq!(PLAN.layout().parameter_count(), LeakyLayout::new(29, 12, 23).parameter_count());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,11 +33,11 @@ pub struct Architecture {
 
 /// The groups and blocks of an [`Architecture`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plan {
+pub struct BlockPlan {
     inputs: usize,
     outputs: usize,
     groups: [Group; 3],
-    blocks: [Block; Plan::MOST],
+    blocks: [Block; BlockPlan::MOST],
     count: usize,
 }
 
@@ -129,14 +129,20 @@ impl Architecture {
     }
 
     /// Its groups and blocks, in the order in which the original lists them.
-    pub const fn plan(&self) -> Plan {
+    pub const fn plan(&self) -> BlockPlan {
         let inputs = Span::new(0, self.inputs);
         let hidden = Span::new(inputs.end(), self.hidden.neurons);
         let outputs = Span::new(hidden.end(), self.outputs.neurons);
         let all = Span::new(inputs.end(), hidden.count.saturating_add(outputs.count));
         let groups = [Group::new(self.inputs, Activation::Linear), self.hidden, self.outputs];
         let empty = Block::Update(Span::new(0, 0));
-        let plan = Plan { inputs: self.inputs, outputs: outputs.count, groups, blocks: [empty; Plan::MOST], count: 0 };
+        let plan = BlockPlan {
+            inputs: self.inputs,
+            outputs: outputs.count,
+            groups,
+            blocks: [empty; BlockPlan::MOST],
+            count: 0,
+        };
         let plan = plan.and(true, Block::Update(inputs));
         if self.together {
             return plan
@@ -156,7 +162,7 @@ impl Architecture {
     }
 }
 
-impl Plan {
+impl BlockPlan {
     /// The most blocks that an architecture has.
     const MOST: usize = 9;
 

@@ -31,9 +31,9 @@ impl EvonetRanges {
     /// ```
     /// use farsa_nn::EvonetRanges;
     ///
-    /// assert_eq!([0, 51, 255].map(|gene| EvonetRanges::default().of_gene(gene)), [5.0, 3.0, -5.0]);
+    /// assert_eq!([0, 51, 255].map(|gene| EvonetRanges::default().read_gene(gene)), [5.0, 3.0, -5.0]);
     /// ```
-    pub fn of_gene(self, gene: u8) -> f32 {
+    pub fn read_gene(self, gene: u8) -> f32 {
         self.weight - f32::from(gene) / 255.0 * self.weight * 2.0
     }
 
@@ -60,10 +60,10 @@ impl<'a> BlockLayout<'a> {
     /// Source: Evonet of `[FARSA2]`.
     ///
     /// ```
-    /// use farsa_nn::{Architecture, Plan};
+    /// use farsa_nn::{Architecture, BlockPlan};
     ///
     /// // Discrimination: six sensors, two outputs. The biases first, then the weights of each output.
-    /// const PLAN: Plan = Architecture::feed_forward(6, 0, 2).plan();
+    /// const PLAN: BlockPlan = Architecture::feed_forward(6, 0, 2).plan();
     /// assert!(PLAN.layout().evonet_order().eq([12, 13, 0, 2, 4, 6, 8, 10, 1, 3, 5, 7, 9, 11]));
     /// ```
     pub fn evonet_order(&self) -> impl Iterator<Item = usize> + use<'a> {

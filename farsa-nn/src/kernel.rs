@@ -20,7 +20,7 @@ pub(crate) trait Lanes {
     /// Number of neurons that are computed side by side.
     fn widest(&self) -> usize;
     /// The step, over this scalar and over single lanes for what is left.
-    fn over<S: Scalar<Real = f32>>(&mut self, simd: S::Simd);
+    fn run<S: Scalar<Real = f32>>(&mut self, simd: S::Simd);
 }
 
 /// Steps with the instructions of this level.
@@ -57,13 +57,13 @@ fn in_vectors<V: Simd>(work: &mut impl Lanes, simd: V) {
     }
     simd.vectorize(
         #[inline(always)]
-        || work.over::<f32x8<V>>(simd),
+        || work.run::<f32x8<V>>(simd),
     );
 }
 
 #[inline(never)]
 fn one_by_one(work: &mut impl Lanes) {
-    work.over::<f32>(());
+    work.run::<f32>(());
 }
 
 /// A layer of logistic units, `y_i = sigma( beta_i + sum_j w_ji x_j )` with `sigma(x) = 1/(1 + exp(-slope*x))`.
@@ -83,8 +83,8 @@ impl Layer<'_> {
     // Not inlined and not generic, so that a program has the loops once for each instruction set and not for each kind
     // of network. AVX-512 would be a third copy for the same time; SSE4.2 has nothing that these loops use.
     #[inline(never)]
-    pub(crate) fn respond(&self, level: Level, y: &mut [f32]) {
-        let y = head(y, self.targets);
+    pub(crate) fn forward(&self, level: Level, y: &mut [f32]) {
+        let y = prefix(y, self.targets);
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         match (level.as_avx2(), level.as_sse2()) {
             (Some(simd), _) => self.in_vectors(simd, y),
@@ -115,7 +115,7 @@ impl Layer<'_> {
         }
         simd.vectorize(
             #[inline(always)]
-            || self.over::<f32x8<V>>(simd, y),
+            || self.run::<f32x8<V>>(simd, y),
         );
     }
 
@@ -160,7 +160,7 @@ impl Layer<'_> {
     }
 
     #[inline(always)]
-    fn over<S: Scalar<Real = f32>>(&self, simd: S::Simd, y: &mut [f32]) {
+    fn run<S: Scalar<Real = f32>>(&self, simd: S::Simd, y: &mut [f32]) {
         let Some(end) = self.sums::<S>(simd, y) else { return };
         // In a loop of its own, so that this long function is not in each of the three below.
         let slope = S::splat(simd, self.slope);
@@ -248,7 +248,7 @@ impl<R: Real> Layer<'_, R> {
 
 /// The first `len` values, or all where there are fewer.
 #[inline]
-pub(crate) fn head<T>(values: &mut [T], len: usize) -> &mut [T] {
+pub(crate) fn prefix<T>(values: &mut [T], len: usize) -> &mut [T] {
     let len = len.min(values.len());
     values.split_at_mut(len).0
 }
@@ -276,7 +276,7 @@ mod tests {
             layer.one_by_one(&mut alone);
             for instructions in Instructions::available() {
                 let mut together = std::vec![f32::NAN; targets];
-                layer.respond(instructions.level(), &mut together);
+                layer.forward(instructions.level(), &mut together);
                 assert!(
                     alone.iter().zip(&together).all(|(a, b)| a.to_bits() == b.to_bits()),
                     "{targets} at {instructions}"

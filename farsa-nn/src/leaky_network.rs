@@ -5,10 +5,10 @@ use farsa_num::fearless_simd::Level;
 
 use crate::controller::Controller;
 use crate::error::Error;
-use crate::kernel::{Layer, head, level};
+use crate::kernel::{Layer, level, prefix};
 use crate::leak::Leak;
 use crate::leaky_layout::{LeakyLayout, LeakyParameter};
-use crate::lesion::{Lesion, Neurons, hold};
+use crate::lesion::{Ablatable, Lesion, hold};
 
 /// A network of one recurrent hidden layer with leaks, over parameters and state that are the caller's.
 ///
@@ -153,18 +153,18 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for LeakyNetwork<P, S> {
     }
 
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        self.step_without(&[], x, y);
+        self.step_ablated(&[], x, y);
     }
 }
 
 /// The hidden neurons come first, the outputs after them. A hidden neuron that is held is so before and after the step: what
 /// it sends back to the others is held, too.
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for LeakyNetwork<P, S> {
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ablatable for LeakyNetwork<P, S> {
     fn neurons(&self) -> usize {
         self.layout.hidden().saturating_add(self.layout.outputs())
     }
 
-    fn step_without(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
+    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
         let Self { layout, leak, parameters, state, level } = self;
         debug_assert_eq!(x.len(), layout.sensors(), "sensor values and the layout's sensors");
         debug_assert_eq!(y.len(), layout.outputs(), "motor values and the layout's outputs");
@@ -174,18 +174,18 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for LeakyNetwork<P, S> {
         let state = state.as_mut();
         let (hidden, state) = state.split_at_mut(count.min(state.len()));
         let (previous, state) = state.split_at_mut(count.min(state.len()));
-        let response = head(state, count);
+        let response = prefix(state, count);
         hold(lesions, 0, hidden);
 
         let sources = [(x, parts.sensor_weights), (&*hidden, parts.recurrent_weights)];
-        Layer { targets: count, slope, biases: parts.biases, sources }.respond(*level, response);
+        Layer { targets: count, slope, biases: parts.biases, sources }.forward(*level, response);
 
         leak.apply(response, parts.leaks, hidden, previous);
         hold(lesions, 0, hidden);
 
         let sources = [(&*hidden, parts.output_weights), (&[], &[])];
-        Layer { targets: layout.outputs(), slope, biases: &[], sources }.respond(*level, y);
-        hold(lesions, count, head(y, layout.outputs()));
+        Layer { targets: layout.outputs(), slope, biases: &[], sources }.forward(*level, y);
+        hold(lesions, count, prefix(y, layout.outputs()));
     }
 }
 

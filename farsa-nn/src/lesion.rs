@@ -22,11 +22,11 @@ impl Lesion {
 /// A network whose neurons can be held.
 ///
 /// How neurons are numbered is said where the trait is implemented. To cut a link needs no trait: its weight is set to zero.
-pub trait Neurons: Controller {
+pub trait Ablatable: Controller {
     /// Number of neurons that can be held.
     fn neurons(&self) -> usize;
     /// Steps as [`Controller::step`] does with these neurons held; one that does not exist is passed over.
-    fn step_without(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]);
+    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]);
 }
 
 /// A network with lesions, for studies of what its neurons are for.
@@ -54,7 +54,7 @@ pub struct Lesioned<'a, N> {
     lesions: &'a [Lesion],
 }
 
-impl<'a, N: Neurons> Lesioned<'a, N> {
+impl<'a, N: Ablatable> Lesioned<'a, N> {
     /// A network in which these neurons are held from the next step on.
     pub const fn new(network: N, lesions: &'a [Lesion]) -> Self {
         Self { network, lesions }
@@ -76,7 +76,7 @@ impl<'a, N: Neurons> Lesioned<'a, N> {
     }
 }
 
-impl<N: Neurons> Controller for Lesioned<'_, N> {
+impl<N: Ablatable> Controller for Lesioned<'_, N> {
     fn inputs(&self) -> usize {
         self.network.inputs()
     }
@@ -90,7 +90,7 @@ impl<N: Neurons> Controller for Lesioned<'_, N> {
     }
 
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        self.network.step_without(self.lesions, x, y);
+        self.network.step_ablated(self.lesions, x, y);
     }
 }
 

@@ -97,6 +97,6 @@ impl<P: AsRef<[f32]>> Controller for Perceptron<P> {
         let parameters = self.parameters.as_ref();
         let (weights, biases) = parameters.split_at((self.inputs * self.outputs).min(parameters.len()));
         let sources = [(x, weights), (&[][..], &[][..])];
-        Layer { targets: self.outputs, slope: self.slope, biases, sources }.respond(self.level, y);
+        Layer { targets: self.outputs, slope: self.slope, biases, sources }.forward(self.level, y);
     }
 }

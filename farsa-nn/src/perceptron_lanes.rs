@@ -99,14 +99,14 @@ impl<P: AsRef<[f32]>> PerceptronLanes<P> {
             #[inline(always)]
             || {
                 let whole = self.lanes - self.lanes % S::LANES;
-                self.over::<S>(simd, 0..whole, x, y);
-                self.over::<f32>((), whole..self.lanes, x, y);
+                self.run::<S>(simd, 0..whole, x, y);
+                self.run::<f32>((), whole..self.lanes, x, y);
             },
         );
     }
 
     #[inline(always)]
-    fn over<S: Scalar<Real = f32>>(&self, simd: S::Simd, lanes: core::ops::Range<usize>, x: &[f32], y: &mut [f32]) {
+    fn run<S: Scalar<Real = f32>>(&self, simd: S::Simd, lanes: core::ops::Range<usize>, x: &[f32], y: &mut [f32]) {
         let parameters = self.parameters.as_ref();
         let (stride, targets) = (self.lanes, self.outputs);
         let slope = S::splat(simd, self.slope);

@@ -127,7 +127,7 @@ mod tests {
             self.1.len()
         }
 
-        fn over<S: Scalar<Real = f32>>(&mut self, simd: S::Simd) {
+        fn run<S: Scalar<Real = f32>>(&mut self, simd: S::Simd) {
             self.0.all_sums::<S>(simd, self.1);
         }
     }
@@ -162,7 +162,7 @@ mod tests {
             step(&mut Sums(layer(), &mut y), level);
             assert!(same_bits(&sums, &y), "sums: {case}");
             y.fill(f32::NAN);
-            layer().respond(level, &mut y);
+            layer().forward(level, &mut y);
             assert!(same_bits(&responses, &y), "responses: {case}");
         }
     }

@@ -38,11 +38,11 @@ fn holds(stride: usize) {
             Activation::Linear => [f32::MIN, f32::MAX],
             Activation::Rectified => [0.0, f32::MAX],
         };
-        if let Some(x) = first_miss(stride, |x| activation.of(x), range) {
+        if let Some(x) = first_miss(stride, |x| activation.apply(x), range) {
             panic!(
                 "{activation} of {x} is {}, and {} of the float before",
-                activation.of(x),
-                activation.of(x.next_down())
+                activation.apply(x),
+                activation.apply(x.next_down())
             );
         }
     }
@@ -80,7 +80,7 @@ fn every_float() {
 
 #[test]
 fn of_what_is_no_number() {
-    let of = |x: f32| Activation::ALL.map(|activation| activation.of(x));
+    let of = |x: f32| Activation::ALL.map(|activation| activation.apply(x));
     assert_eq!(of(f32::INFINITY), [1.0, 1.0, f32::INFINITY, 1.0, f32::INFINITY]);
     assert_eq!(of(f32::NEG_INFINITY), [0.0, -1.0, f32::NEG_INFINITY, 0.0, 0.0]);
     let [logistic, tanh, linear, step, rectified] = of(f32::NAN);

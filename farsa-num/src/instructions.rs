@@ -2,12 +2,12 @@
 
 use core::fmt;
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::Level;
 
 /// An instruction set with vectors, or none.
 ///
 /// It changes how long lane code takes, never its bits. This is a plain name: one may be chosen that the processor lacks, and
-/// whoever runs lane code then takes the best that it has.
+/// callers of lane code then take the best that there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Instructions {
@@ -88,17 +88,17 @@ impl Instructions {
         match self {
             Self::Fallback => best.is_fallback().then_some(best),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Self::Sse2 => best.as_sse2().map(Simd::level),
+            Self::Sse2 => best.as_sse2().map(fearless_simd::Simd::level),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Self::Sse4_2 => best.as_sse4_2().map(Simd::level),
+            Self::Sse4_2 => best.as_sse4_2().map(fearless_simd::Simd::level),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Self::Avx2 => best.as_avx2().map(Simd::level),
+            Self::Avx2 => best.as_avx2().map(fearless_simd::Simd::level),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Self::Avx512 => best.as_avx512().map(Simd::level),
+            Self::Avx512 => best.as_avx512().map(fearless_simd::Simd::level),
             #[cfg(target_arch = "aarch64")]
-            Self::Neon => best.as_neon().map(Simd::level),
+            Self::Neon => best.as_neon().map(fearless_simd::Simd::level),
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-            Self::WasmSimd128 => best.as_wasm_simd128().map(Simd::level),
+            Self::WasmSimd128 => best.as_wasm_simd128().map(fearless_simd::Simd::level),
             _ => None,
         }
     }

@@ -1,4 +1,4 @@
-//! The one random generator: streams addressed by what they are for, not by who draws first.
+//! The one random generator: streams addressed by what they are for, not by the order of draws.
 
 use crate::logarithm::ln;
 use crate::sin_cos::sin_cos;
@@ -50,7 +50,7 @@ pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
 /// ```
 /// use farsa_num::{Domain, Stream};
 ///
-/// // Sensor noise of trial 3 of individual 17 in generation 120, whoever asks for it and in which order.
+/// // Sensor noise of trial 3 of individual 17 in generation 120, for any caller and in any order.
 /// let mut noise = Stream::new(42, Domain::Sensor, 3, 17, 120);
 /// let first = [noise.normal(), noise.normal()];
 /// assert_eq!(noise.position(), 4);

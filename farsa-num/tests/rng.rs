@@ -4,7 +4,7 @@
 use farsa_num::{Domain, Stream};
 use rand_core::{Rng, SeedableRng};
 
-/// What somebody else's code draws.
+/// What other code draws.
 fn draw(rng: &mut impl Rng) -> (u32, u64) {
     (rng.next_u32(), rng.next_u64())
 }

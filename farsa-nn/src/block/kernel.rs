@@ -5,7 +5,7 @@ use farsa_num::{Scalar, logistic};
 use crate::activation::Activation;
 use crate::block::description::{Block, Span};
 use crate::block::layout::{BlockLayout, BlockParameter};
-use crate::kernel::{Lanes, Layer, head};
+use crate::kernel::{Lanes, Layer, prefix};
 use crate::leak::Leak;
 use crate::lesion::{Lesion, hold};
 
@@ -35,7 +35,7 @@ impl Lanes for Blocks<'_> {
     }
 
     #[inline(always)]
-    fn over<S: Scalar<Real = f32>>(&mut self, simd: S::Simd) {
+    fn run<S: Scalar<Real = f32>>(&mut self, simd: S::Simd) {
         self.begin();
         let (mut weights, mut delays) = (0, 0);
         for block in self.layout.blocks() {
@@ -81,6 +81,7 @@ impl Blocks<'_> {
             return;
         }
         let Some((oldest, ring)) = self.delays.get_mut(delays..).and_then(<[f32]>::split_first_mut) else { return };
+        // A ring of `delay` rows: the oldest is sent and makes room for the newest.
         let place = (*oldest as usize).min(delay - 1);
         let values = ring.iter_mut().skip(place * from.count);
         for ((sent, (activation, gain)), value) in sent.zip(sources).zip(values) {
@@ -91,13 +92,15 @@ impl Blocks<'_> {
 
     #[inline(always)]
     fn connect<S: Scalar<Real = f32>>(&mut self, simd: S::Simd, from: Span, to: Span, weights: usize) {
-        let sent = head(self.sent, from.count);
+        let sent = prefix(self.sent, from.count);
         let (Some(weights), Some(net)) = (self.parameters.get(weights..), self.net.get_mut(to.first..to.end())) else {
             return;
         };
-        let start = head(self.work, to.count);
+        // Several connections may reach one target: each goes on from the sum of those before it.
+        let start = prefix(self.work, to.count);
         start.copy_from_slice(net);
         let layer = Layer { targets: to.count, slope: 1.0, biases: start, sources: [(sent, weights), (&[], &[])] };
+        // Fewer targets than lanes are summed one by one; the bits are the same.
         if to.count < S::LANES {
             layer.all_sums::<f32>((), net);
         } else {
@@ -108,12 +111,13 @@ impl Blocks<'_> {
     #[inline(always)]
     fn update<S: Scalar<Real = f32>>(&mut self, simd: S::Simd, span: Span) {
         let leaks = part(self.parameters, &self.layout, BlockParameter::Leak);
+        // A span may cover parts of several groups, which differ in activation and leak.
         for (group, all, [_, _, leak]) in self.layout.places() {
             let first = span.first.max(all.first);
             let own = first..span.end().min(all.end());
             let (Some(net), Some(work)) = (self.net.get(own.clone()), self.work.get_mut(own.clone())) else { continue };
             let inputs = self.x.get(first..).unwrap_or(&[]);
-            respond::<S>(simd, group.activation, group.slope, net, work);
+            activate::<S>(simd, group.activation, group.slope, net, work);
             // An input neuron responds with its input; a missing one is zero.
             let neurons = first..self.layout.inputs();
             for ((response, _), x) in work.iter_mut().zip(neurons).zip(inputs.iter().chain(core::iter::repeat(&0.0))) {
@@ -143,7 +147,7 @@ impl Blocks<'_> {
 
 /// The responses of as many neurons as there are net inputs.
 #[inline(always)]
-fn respond<S: Scalar<Real = f32>>(simd: S::Simd, activation: Activation, slope: f32, net: &[f32], y: &mut [f32]) {
+fn activate<S: Scalar<Real = f32>>(simd: S::Simd, activation: Activation, slope: f32, net: &[f32], y: &mut [f32]) {
     let last = net.len().min(y.len()).checked_sub(S::LANES);
     match (activation, last) {
         // Apart, because the others need no vectors to be fast.
@@ -156,7 +160,7 @@ fn respond<S: Scalar<Real = f32>>(simd: S::Simd, activation: Activation, slope: 
             // May overlap the one before it, with the same responses.
             logistic(S::splat(simd, slope) * S::load(simd, &net[last..])).store(&mut y[last..]);
         }
-        _ => net.iter().zip(y).for_each(|(net, y)| *y = activation.of(slope * net)),
+        _ => net.iter().zip(y).for_each(|(net, y)| *y = activation.apply(slope * net)),
     }
 }
 

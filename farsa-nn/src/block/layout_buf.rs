@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use crate::activation::Activation;
-use crate::architecture::Plan;
+use crate::architecture::BlockPlan;
 use crate::block::description::{Block, Group, Span};
 use crate::block::layout::BlockLayout;
 
@@ -77,8 +77,8 @@ impl From<BlockLayout<'_>> for BlockLayoutBuf {
     }
 }
 
-impl From<Plan> for BlockLayoutBuf {
-    fn from(plan: Plan) -> Self {
+impl From<BlockPlan> for BlockLayoutBuf {
+    fn from(plan: BlockPlan) -> Self {
         plan.layout().into()
     }
 }

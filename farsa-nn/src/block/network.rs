@@ -9,7 +9,7 @@ use crate::controller::Controller;
 use crate::error::Error;
 use crate::kernel::{self, level};
 use crate::leak::Leak;
-use crate::lesion::{Lesion, Neurons};
+use crate::lesion::{Ablatable, Lesion};
 
 /// A network of connections, updates and gains in any order, over parameters and state that are the caller's.
 ///
@@ -32,9 +32,9 @@ use crate::lesion::{Lesion, Neurons};
 /// clamped to [0, 1].
 ///
 /// ```
-/// use farsa_nn::{Architecture, BlockLayout, BlockNetwork, Controller, Leak, Plan};
+/// use farsa_nn::{Architecture, BlockLayout, BlockNetwork, Controller, Leak, BlockPlan};
 ///
-/// const PLAN: Plan = Architecture::elman(2, 3, 1).plan();
+/// const PLAN: BlockPlan = Architecture::elman(2, 3, 1).plan();
 /// const LAYOUT: BlockLayout = PLAN.layout();
 /// let parameters = [0.5; LAYOUT.parameter_count()];
 /// let mut network = BlockNetwork::new(LAYOUT, Leak::Filter, parameters, [0.0; LAYOUT.state_len()])?;
@@ -150,17 +150,17 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for BlockNetwork<'_, P, S> {
     }
 
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        self.step_without(&[], x, y);
+        self.step_ablated(&[], x, y);
     }
 }
 
 /// Neurons have their numbers in the layout, inputs first; one is held from the beginning of a step and after its updates.
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for BlockNetwork<'_, P, S> {
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ablatable for BlockNetwork<'_, P, S> {
     fn neurons(&self) -> usize {
         self.layout.neurons()
     }
 
-    fn step_without(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
+    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
         debug_assert_eq!(x.len(), self.layout.inputs(), "sensor values and the layout's inputs");
         debug_assert_eq!(y.len(), self.layout.outputs(), "motor values and the layout's outputs");
         let level = self.level;

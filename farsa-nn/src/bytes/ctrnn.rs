@@ -5,11 +5,11 @@ use crate::bytes::error::BytesError;
 use crate::bytes::frame::{
     Frame, Kind, SHAPE, copy, frame_len, layout_hash, placed, same_channels, same_layout, values, word,
 };
-use crate::ctrnn::{check, check_layout, check_values};
-use crate::ctrnn_layout::CtrnnLayout;
-use crate::integrator::Integrator;
+use crate::ctrnn::integrator::Integrator;
+use crate::ctrnn::layout::CtrnnLayout;
+use crate::ctrnn::network::{check, check_layout, check_values};
 
-/// A [`Ctrnn`](crate::Ctrnn) of somebody's bytes, as [`LeakyNetworkBytes`](crate::LeakyNetworkBytes) are a
+/// A [`Ctrnn`](crate::Ctrnn) of given bytes, as [`LeakyNetworkBytes`](crate::LeakyNetworkBytes) are a
 /// `LeakyNetwork`: checked, and used where it lies.
 ///
 /// The time step is part of the layout: a board whose steps are longer is another.

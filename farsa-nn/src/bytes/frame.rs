@@ -133,7 +133,7 @@ impl<'a> Frame<'a> {
     /// Takes bytes apart that are a controller of this kind.
     pub(crate) fn open(kind: Kind, bytes: &'a [u8]) -> Result<Self, BytesError> {
         let mut reader = Reader { bytes, len: bytes.len() };
-        // Whoever begins differently is none of ours, however short it is.
+        // Bytes that begin differently are none of ours, however few.
         let magic = reader.array()?;
         if magic != MAGIC {
             return Err(BytesError::Magic { found: magic });

@@ -9,7 +9,7 @@ use crate::leak::Leak;
 use crate::leaky_layout::LeakyLayout;
 use crate::leaky_network::{check, check_values};
 
-/// A [`LeakyNetwork`](crate::LeakyNetwork) of somebody's bytes: checked, and used where it lies.
+/// A [`LeakyNetwork`](crate::LeakyNetwork) of given bytes: checked, and used where it lies.
 ///
 /// The format is written out in `docs/controller-format.md`: a head with a version, the layout and hashes, the parameters in
 /// the order of the [`LeakyLayout`], a CRC-32. All of it is little-endian.

@@ -7,7 +7,7 @@ use crate::leaky_layout::LeakyLayout;
 use crate::quantized::network::check;
 use crate::quantized::scale::QuantizedScale;
 
-/// A [`QuantizedNetwork`](crate::QuantizedNetwork) of somebody's bytes, as
+/// A [`QuantizedNetwork`](crate::QuantizedNetwork) of given bytes, as
 /// [`LeakyNetworkBytes`](crate::LeakyNetworkBytes) are a `LeakyNetwork`: checked, and used where it lies.
 ///
 /// The scale lies beside the parameters: each individual has its own, and only the fraction bits of the sensor values are the

@@ -2,7 +2,7 @@
 
 use crate::controller::Controller;
 use crate::error::Error;
-use crate::kernel::head;
+use crate::kernel::prefix;
 use crate::leak::Leak;
 use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 use crate::quantized::logistic::{ACTIVATION_BITS, logistic};
@@ -160,7 +160,7 @@ impl<P: AsRef<[i16]>, S: AsMut<[i32]>> QuantizedNetwork<P, S> {
         let outputs = layout.outputs();
         let rows = part(LeakyParameter::OutputWeight).chunks_exact(outputs.max(1));
         // Source by source, as above, where the state has no room for the sums of all outputs.
-        for (block, y) in head(y, outputs).chunks_mut(BLOCK).enumerate() {
+        for (block, y) in prefix(y, outputs).chunks_mut(BLOCK).enumerate() {
             let mut sums = [0; BLOCK];
             for (source, row) in sources.iter().zip(rows.clone()) {
                 for (sum, w) in sums.iter_mut().zip(row.get(block * BLOCK..).unwrap_or(&[])) {

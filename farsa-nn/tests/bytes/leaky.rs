@@ -80,7 +80,7 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     assert_eq!(refused(&with(8, &[2])), BytesError::Version { expected: 1, found: 2 });
     assert_eq!(refused(&with(12, &[9])), BytesError::Kind { expected: 1, found: 9 });
     assert!(matches!(refused(&with(24, &[30])), BytesError::LayoutHash { .. }));
-    // Whoever forges the hash as well is met by what the numbers mean.
+    // A forged hash is caught by what the numbers mean.
     let hashed = |at: usize, word: u32| refused(&with_hash(&champion().0, at, word));
     assert_eq!(hashed(24, 30), BytesError::Length { expected: LEN + 4 * 12, found: LEN });
     assert!(matches!(hashed(28, u32::MAX), BytesError::Length { found: LEN, .. }));

@@ -25,7 +25,7 @@ fn with(bytes: &[u8], place: usize, new: &[u8]) -> Vec<u8> {
     sealed(bytes)
 }
 
-/// The same by somebody who forges the layout hash as well.
+/// The same with a forged layout hash.
 fn with_hash(bytes: &[u8], place: usize, word: u32) -> Vec<u8> {
     let mut bytes = with(bytes, place, &word.to_le_bytes());
     let mut digest = Digest::new();

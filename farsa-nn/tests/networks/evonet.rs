@@ -3,7 +3,7 @@
 
 use farsa_nn::{Activation, Block, BlockNetwork, Controller, Error, Evonet, EvonetRanges, Leak};
 
-const TEXT: &str = include_str!("fixtures/evonet.phe");
+const TEXT: &str = include_str!("../fixtures/evonet.phe");
 
 /// What the text says, as plain numbers: blocks and neurons.
 fn numbers(lines: std::ops::Range<usize>) -> Vec<Vec<usize>> {
@@ -83,7 +83,7 @@ fn genes_are_decoded_as_the_original_does() -> Result<(), Error> {
     let (layout, ranges) = (evonet.layout.layout(), EvonetRanges::default());
     let genes: Vec<u8> = (0..24).map(|i| (i * 97 % 256) as u8).collect();
     let mut parameters = vec![f32::NAN; layout.parameter_count()];
-    layout.read_evonet(ranges, genes.iter().map(|gene| ranges.of_gene(*gene)), &mut parameters)?;
+    layout.read_evonet(ranges, genes.iter().map(|gene| ranges.read_gene(*gene)), &mut parameters)?;
     let mut network = BlockNetwork::new(layout, Leak::Evonet, &parameters, vec![0.0; layout.state_len()])?;
     let numbers: Vec<f64> = genes.iter().map(|gene| 5.0 - f64::from(*gene) / 255.0 * 10.0).collect();
     let (mut act, mut y) = ([0.0; 7], [0.0; 2]);

@@ -4,12 +4,12 @@ use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
 use crate::controller::Controller;
-use crate::ctrnn_layout::{CtrnnLayout, CtrnnParameter};
-use crate::dynamics::{Dynamics, rate};
+use crate::ctrnn::dynamics::{Dynamics, rate};
+use crate::ctrnn::integrator::Integrator;
+use crate::ctrnn::layout::{CtrnnLayout, CtrnnParameter};
 use crate::error::Error;
-use crate::integrator::Integrator;
 use crate::kernel::{self, level};
-use crate::lesion::{Lesion, Neurons};
+use crate::lesion::{Ablatable, Lesion};
 
 /// A continuous-time recurrent neural network, over parameters and state that are the caller's.
 ///
@@ -204,17 +204,17 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Controller for Ctrnn<P, S> {
     }
 
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        self.step_without(&[], x, y);
+        self.step_ablated(&[], x, y);
     }
 }
 
 /// Neurons have their numbers in the layout; one that is held has its output held, its state goes on.
-impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Neurons for Ctrnn<P, S> {
+impl<P: AsRef<[f32]>, S: AsMut<[f32]>> Ablatable for Ctrnn<P, S> {
     fn neurons(&self) -> usize {
         self.layout.neurons()
     }
 
-    fn step_without(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
+    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
         let Self { layout, parameters, state, level, .. } = self;
         debug_assert_eq!(x.len(), layout.inputs(), "sensor values and the layout's inputs");
         debug_assert_eq!(y.len(), layout.outputs(), "motor values and the layout's outputs");

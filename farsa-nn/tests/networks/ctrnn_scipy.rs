@@ -4,7 +4,7 @@ use farsa_nn::{Controller, Ctrnn, CtrnnLayout, Integrator};
 
 /// The rows of this kind, in their order.
 fn rows(kind: &str) -> Vec<Vec<f64>> {
-    let text = include_str!("fixtures/ctrnn.csv");
+    let text = include_str!("../fixtures/ctrnn.csv");
     let rows = text.lines().filter_map(|line| line.strip_prefix(kind)?.strip_prefix(','));
     rows.map(|row| row.split(',').map(|word| word.parse().expect("a number")).collect()).collect()
 }

@@ -2,7 +2,7 @@
 
 use farsa_num::Stream;
 
-use crate::ctrnn_layout::{CtrnnLayout, CtrnnParameter};
+use crate::ctrnn::layout::{CtrnnLayout, CtrnnParameter};
 use crate::error::Error;
 
 impl CtrnnLayout {
@@ -30,7 +30,7 @@ impl CtrnnLayout {
         if expected != found {
             return Err(Error::ParameterCount { expected, found });
         }
-        let middle = self.activation().of(0.0);
+        let middle = self.activation().apply(0.0);
         let (weights, rest) = parameters.split_at_mut(self.range(CtrnnParameter::Bias).start);
         let weights = weights.get(self.range(CtrnnParameter::Weight)).unwrap_or(&[]);
         for (i, bias) in rest.iter_mut().take(self.neurons()).enumerate() {

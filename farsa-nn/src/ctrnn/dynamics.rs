@@ -8,7 +8,7 @@ use core::f64::consts::LN_2;
 use farsa_num::{Real, Scalar, exp, tanh};
 
 use crate::activation::Activation;
-use crate::integrator::Integrator;
+use crate::ctrnn::integrator::Integrator;
 use crate::kernel::{Lanes, Layer};
 use crate::lesion::Lesion;
 
@@ -62,17 +62,17 @@ impl Lanes for Dynamics<'_> {
     }
 
     #[inline(always)]
-    fn over<S: Scalar<Real = f32>>(&mut self, simd: S::Simd) {
+    fn run<S: Scalar<Real = f32>>(&mut self, simd: S::Simd) {
         self.stages::<S>(simd);
     }
 }
 
 impl<R: Real> Dynamics<'_, R> {
-    /// Brings the outputs up to date with states that somebody set.
+    /// Brings the outputs up to date with states that were set.
     #[inline(never)]
     pub(crate) fn refresh(&mut self) {
         for i in 0..self.y.len() {
-            self.o[i] = self.respond(i, self.y[i]);
+            self.o[i] = self.output(i, self.y[i]);
         }
     }
 
@@ -137,7 +137,7 @@ impl<R: Real> Dynamics<'_, R> {
                 (next, sum)
             }
         };
-        [next, sum, self.respond(i, next)]
+        [next, sum, self.output(i, next)]
     }
 
     /// Stores what [`advance`](Self::advance) computed.
@@ -157,9 +157,9 @@ impl<R: Real> Dynamics<'_, R> {
 
     /// The outputs of the neurons from `i` on in these states; of a NaN 0.
     #[inline(always)]
-    fn respond<S: Scalar<Real = R>>(&self, i: usize, y: S) -> S {
+    fn output<S: Scalar<Real = R>>(&self, i: usize, y: S) -> S {
         let (bias, gain) = (S::load(y.simd(), &self.biases[i..]), S::load(y.simd(), &self.gains[i..]));
-        let o = self.activation.over(gain * (y + bias));
+        let o = self.activation.apply_lanes(gain * (y + bias));
         S::select(o.le(o), o, o.constant(0.0))
     }
 }

@@ -1,8 +1,8 @@
 //! Networks of blocks against loops written from their equations, against the other networks, and in the original's order.
 
 use farsa_nn::{
-    Activation, Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, Controller, Error, EvonetRanges, Group,
-    Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Lesion, Lesioned, Neurons, Plan, Span,
+    Ablatable, Activation, Architecture, Block, BlockLayout, BlockNetwork, BlockParameter, BlockPlan, Controller,
+    Error, EvonetRanges, Group, Leak, LeakyLayout, LeakyNetwork, LeakyParameter, Lesion, Lesioned, Span,
 };
 use farsa_num::{Domain, Instructions, Stream};
 use proptest::prelude::*;
@@ -69,7 +69,7 @@ impl<'a> Oracle<'a> {
                 Block::Update(span) => {
                     for i in span.first..span.end() {
                         let Neuron { group, leak: d, .. } = self.neurons[i];
-                        let y = if i < x.len() { x[i] } else { group.activation.of(group.slope * net[i]) };
+                        let y = if i < x.len() { x[i] } else { group.activation.apply(group.slope * net[i]) };
                         let a = self.activations[i];
                         self.activations[i] = match self.leak {
                             _ if !group.leak => y,
@@ -242,7 +242,7 @@ proptest! {
 #[test]
 fn the_named_architectures_have_their_memory() -> Result<(), Error> {
     // A pulse on the input, and what is left of it in the output afterwards.
-    let echo = |plan: Plan| -> Result<Vec<bool>, Error> {
+    let echo = |plan: BlockPlan| -> Result<Vec<bool>, Error> {
         let layout = plan.layout();
         let parameters = vec![1.0; layout.parameter_count()];
         let mut pulsed = BlockNetwork::new(layout, Leak::Filter, &parameters, state(layout))?;
@@ -390,7 +390,7 @@ fn an_architecture_has_what_it_is_asked_for() {
     assert_eq!(counts(Architecture::jordan(3, 4, 2)), [12 + 8 + 8, 6, 0, 0]);
     assert_eq!(counts(Architecture::feed_forward(3, 4, 2)), [12 + 8, 6, 0, 0]);
     assert_eq!(counts(Architecture::fully_recurrent(3, 4, 2)), [18 + 36, 6, 0, 0]);
-    // Of whom: a plan's groups are inputs, hidden neurons, outputs.
+    // Of which: a plan's groups are inputs, hidden neurons, outputs.
     let has = |architecture: Architecture, has: fn(&Group) -> bool| {
         let plan = architecture.plan();
         plan.layout().groups().iter().map(has).collect::<Vec<_>>()
@@ -412,7 +412,7 @@ fn hidden_neurons_and_outputs_have_the_functions_they_are_given() -> Result<(), 
         for x in [-3.0_f32, -1.0, 0.25, 2.0] {
             let mut y = [f32::NAN];
             network.step(&[x], &mut y);
-            let expected = output.of(0.5 + 0.5 * hidden.of(0.5 + 0.5 * x));
+            let expected = output.apply(0.5 + 0.5 * hidden.apply(0.5 + 0.5 * x));
             assert_eq!(y, [expected], "{hidden} and {output} of {x}");
         }
     }

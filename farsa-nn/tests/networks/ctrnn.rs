@@ -19,7 +19,7 @@ impl<'a> Oracle<'a> {
 
     fn outputs(&self, y: &[f32]) -> Vec<f32> {
         let parts = self.layout.split(self.parameters);
-        let one = |i: usize| self.layout.activation().of(parts.gains[i] * (y[i] + parts.biases[i]));
+        let one = |i: usize| self.layout.activation().apply(parts.gains[i] * (y[i] + parts.biases[i]));
         (0..y.len()).map(one).collect()
     }
 

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use crate::activation::Activation;
-use crate::integrator::Integrator;
+use crate::ctrnn::integrator::Integrator;
 
 /// What one parameter of a [`CtrnnLayout`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -6,11 +6,11 @@ use alloc::vec::Vec;
 use farsa_num::Real;
 
 use crate::error::Error;
-use crate::gradient::{Demonstration, Gradient, Loss};
 use crate::leak::Leak;
 use crate::leaky_layout::{LeakyLayout, LeakyParameter};
 use crate::leaky_network::check;
-use crate::optimizer::Optimizer;
+use crate::learning::gradient::{Demonstration, Gradient, Loss};
+use crate::learning::optimizer::Optimizer;
 
 /// Parameters of a [`LeakyNetwork`](crate::LeakyNetwork) that follow the [`Gradient`] of what demonstrations cost.
 ///
@@ -52,12 +52,12 @@ struct Mean<R> {
     /// What each step's parameters are of it.
     share: R,
     /// How much of its steps there is yet, 0 before the first and 1 after many; and the mean itself \[parameters\].
-    words: Vec<R>,
+    state: Vec<R>,
 }
 
 impl<R: Real> Mean<R> {
     fn add(&mut self, parameters: &[R]) {
-        let Some((begun, mean)) = self.words.split_first_mut() else { return };
+        let Some((begun, mean)) = self.state.split_first_mut() else { return };
         *begun += (R::from_f64(1.0) - *begun) * self.share;
         let share = self.share / *begun;
         for (m, p) in mean.iter_mut().zip(parameters) {
@@ -96,8 +96,8 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
     /// Source: \[Polyak1992\]. Deviation: the plain mean over the first steps only; then a step counts less by a factor of
     /// `1 - 1/steps` with each that follows.
     pub fn with_averaging(self, steps: u32) -> Self {
-        let words = core::iter::once(R::default()).chain(self.parameters.iter().copied()).collect();
-        Self { mean: Some(Mean { share: R::from_f64(1.0 / f64::from(steps.max(1))), words }), ..self }
+        let state = core::iter::once(R::default()).chain(self.parameters.iter().copied()).collect();
+        Self { mean: Some(Mean { share: R::from_f64(1.0 / f64::from(steps.max(1))), state }), ..self }
     }
 
     /// One step along the mean gradient of these demonstrations; returns what they cost before it, per motor value.
@@ -168,35 +168,35 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
     /// The mean of the parameters over the latest steps [[`parameter_count`](LeakyLayout::parameter_count)], and of a
     /// learner without [`with_averaging`](Self::with_averaging) the parameters.
     pub fn mean(&self) -> &[R] {
-        self.mean.as_ref().and_then(|mean| mean.words.get(1..)).unwrap_or(&self.parameters)
+        self.mean.as_ref().and_then(|mean| mean.state.get(1..)).unwrap_or(&self.parameters)
     }
 
     /// All that learning goes on from, one after the other: the parameters, the optimizer's memory, and of a learner with a
     /// mean how much of its steps there is yet and the mean.
-    pub fn words(&self) -> impl Iterator<Item = R> + '_ {
-        let mean = self.mean.iter().flat_map(|mean| &mean.words);
+    pub fn state(&self) -> impl Iterator<Item = R> + '_ {
+        let mean = self.mean.iter().flat_map(|mean| &mean.state);
         self.parameters.iter().chain(&self.memory).chain(mean).copied()
     }
 
     /// Goes on from where another learner of the same kind was.
     ///
     /// # Errors
-    /// [`Error::StateLen`] for another number of words, [`Error::NotFinite`]; then nothing has changed.
-    pub fn set_words(&mut self, words: &[R]) -> Result<(), Error> {
-        let found = words.len();
-        let expected = self.words().count();
+    /// [`Error::StateLen`] for another number of state, [`Error::NotFinite`]; then nothing has changed.
+    pub fn set_state(&mut self, state: &[R]) -> Result<(), Error> {
+        let found = state.len();
+        let expected = self.state().count();
         if expected != found {
             return Err(Error::StateLen { expected, found });
         }
-        if let Some(index) = words.iter().position(|word| !word.to_f64().is_finite()) {
+        if let Some(index) = state.iter().position(|value| !value.to_f64().is_finite()) {
             return Err(Error::NotFinite { index });
         }
-        let (parameters, rest) = words.split_at(self.parameters.len());
+        let (parameters, rest) = state.split_at(self.parameters.len());
         let (memory, mean) = rest.split_at(self.memory.len());
         self.parameters.copy_from_slice(parameters);
         self.memory.copy_from_slice(memory);
-        if let Some(Mean { words, .. }) = &mut self.mean {
-            words.copy_from_slice(mean);
+        if let Some(Mean { state, .. }) = &mut self.mean {
+            state.copy_from_slice(mean);
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Bilateral symmetry: few genes, of which each fills every parameter that must be the same.
 
 use crate::block::description::Span;
-use crate::ctrnn_layout::{CtrnnLayout, CtrnnParameter};
+use crate::ctrnn::layout::{CtrnnLayout, CtrnnParameter};
 use crate::error::Error;
 
 /// Which parameters of a [`Ctrnn`](crate::Ctrnn) are one gene, because the network is its own mirror image, because neurons

@@ -171,6 +171,7 @@ impl<R: Real> Gradient<R> {
         let (slope, one) = (R::from_f64(f64::from(layout.slope())), R::from_f64(1.0));
         let ticks = wanted.len().checked_div(o).or(x.len().checked_div(n)).unwrap_or(0);
         trace.clear();
+        // Per tick the responses Y, the activations H and the motor values O; the first tick is the rest before all.
         trace.resize((ticks + 1) * (2 * h + o), R::default());
         let mut cost = R::default();
         let (mut before, mut rest) = trace.split_at_mut(2 * h + o);
@@ -179,6 +180,8 @@ impl<R: Real> Gradient<R> {
             let (response, left) = now.split_at_mut(h);
             let (hidden, motors) = left.split_at_mut(h);
             let (response_before, hidden_before) = before[..2 * h].split_at(h);
+            // N_i = beta_i + sum_j w_ji I_j + sum_k w_ki H_k(t-1), Y_i = sigma(N_i); then the leak makes H(t) of Y and
+            // what was before.
             response.copy_from_slice(part(LeakyParameter::Bias));
             let x = &x[tick * n..(tick + 1) * n];
             add_rows(response, x.iter().map(|x| R::from_f64(f64::from(*x))), part(LeakyParameter::SensorWeight));
@@ -211,6 +214,9 @@ impl<R: Real> Gradient<R> {
         let part = |kind| &parameters[layout.range(kind)];
         let (slope, one) = (R::from_f64(f64::from(layout.slope())), R::from_f64(1.0));
         let [to_hidden, to_response, through] = back;
+        // Back-propagation through time [Werbos1990]. `to_hidden` is dC/dH_i(t): from the motors of now, and from the
+        // tick after through leak and recurrent weights. `to_response` is what of dC/dY_i(t) comes by the leak of the
+        // tick after.
         to_hidden.fill(R::default());
         to_response.fill(R::default());
         let size = 2 * h + o;
@@ -221,6 +227,7 @@ impl<R: Real> Gradient<R> {
             let (hidden, motors) = left.split_at(h);
             let (response_before, hidden_before) = before[..2 * h].split_at(h);
 
+            // dC/dN of the motors, which have no memory: N_o = sum_i w_io H_i(t).
             for ((through, motor), wanted) in through.iter_mut().zip(motors).zip(&wanted[tick * o..]) {
                 *through = slope * loss.slope(*motor, R::from_f64(f64::from(*wanted)));
             }
@@ -236,9 +243,12 @@ impl<R: Real> Gradient<R> {
                     Leak::TwoTap => (d, response_before[i], false),
                     Leak::Evonet => (one - d, hidden_before[i], true),
                 };
+                // dH/dd, the derivative by the leak itself.
                 let by_leak = if *leak == Leak::Evonet { before - y } else { y - before };
                 sum[leaks.start + i] += flow * by_leak;
+                // dC/dN_i = dC/dY_i sigma'(N_i), sigma' = slope Y (1 - Y).
                 through[i] = (share * flow + to_response[i]) * slope * y * (one - y);
+                // What the leak kept came from H(t-1) or, of two taps, from Y(t-1).
                 let kept = (one - share) * flow;
                 (to_hidden[i], to_response[i]) = if stays { (kept, R::default()) } else { (R::default(), kept) };
             }

@@ -1,0 +1,16 @@
+//! Learning from demonstrations by back-propagation.
+
+/// The gradient of what a demonstration costs.
+#[cfg(feature = "alloc")]
+mod gradient;
+/// A network that learns.
+#[cfg(feature = "alloc")]
+mod learner;
+/// How parameters follow a gradient downhill.
+mod optimizer;
+
+#[cfg(feature = "alloc")]
+pub use gradient::{Demonstration, Gradient, Loss};
+#[cfg(feature = "alloc")]
+pub use learner::Learner;
+pub use optimizer::{Adam, Momentum, Optimizer};
