@@ -21,7 +21,7 @@ pub mod motors;
 mod ports;
 /// Positions, orientations and velocities.
 mod pose;
-/// What records a life, tick by tick.
+/// What records an episode, tick by tick.
 mod recorder;
 #[cfg(feature = "alloc")]
 pub mod robot;
@@ -41,7 +41,7 @@ pub use motors::{
 };
 pub use ports::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, Motor,
-    Near, PairContact, PairId, Planar, Rays, Sensor, Sight, Snapshot, World,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Rays, Sensor, Snapshot, World,
 };
 pub use pose::{Pose, Twist};
 pub use recorder::{Recorder, record_world};

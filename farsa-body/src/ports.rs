@@ -123,7 +123,7 @@ pub struct PairContact {
 }
 
 /// Contacts between the pairs of colliders that the robot lists.
-#[diagnostic::on_unimplemented(message = "`{Self}` does not tell its contacts (port `Contacts`)")]
+#[diagnostic::on_unimplemented(message = "`{Self}` does not report its contacts (port `Contacts`)")]
 pub trait Contacts: Handles {
     /// Number of pairs; they are numbered from 0 in the order of the robot's list.
     fn pairs(&self) -> usize;
@@ -141,7 +141,7 @@ pub trait Contacts: Handles {
 /// A surface near a place of a planar world, and its point that is nearest to there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Near<B> {
+pub struct NearbySurface<B> {
     /// The body whose surface it is; `None` for a wall.
     pub body: Option<B>,
     /// The nearest point [m].
@@ -159,7 +159,7 @@ pub struct Near<B> {
 /// What is seen along a line in a planar world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Sight<B> {
+pub struct PlanarHit<B> {
     /// Distance along the line [m].
     pub distance: f32,
     /// The body that is seen; `None` for a wall.
@@ -176,29 +176,29 @@ pub struct Lamp<B> {
     pub body: B,
     /// Its centre [m].
     pub position: [f32; 2],
-    /// How strong it is, in the unit of whoever lit it.
+    /// How strong it is, in a unit of the caller's choice.
     pub intensity: f32,
 }
 
 /// What there is to see and to stand on in a world of the plane, for sensors of mobile robots.
 #[diagnostic::on_unimplemented(message = "`{Self}` does not show its surfaces, colours and lamps (port `Planar`)")]
 pub trait Planar: Handles {
-    /// Tells every surface that has a point within `range` [m] of `from` [m], in the order of walls and bodies.
+    /// Reports every surface that has a point within `range` [m] of `from` [m], in the order of walls and bodies.
     ///
-    /// The robot that asks is told of itself, too.
-    fn near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(Near<Self::Body>));
+    /// The robot that asks is reported, too.
+    fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<Self::Body>));
     /// The first surface along the unit vector `direction` from `from` [m] within `range` [m], other than that of `but`;
     /// what `from` lies within is not seen.
-    fn look(
+    fn cast_planar(
         &self,
         from: [f32; 2],
         direction: [f32; 2],
         range: f32,
         but: Option<Self::Body>,
-    ) -> Option<Sight<Self::Body>>;
+    ) -> Option<PlanarHit<Self::Body>>;
     /// The colour of the ground at a place [m]: red, green and blue [0..1].
     fn ground(&self, at: [f32; 2]) -> [f32; 3];
-    /// Tells every lamp.
+    /// Reports every lamp.
     fn lamps(&self, tell: &mut dyn FnMut(Lamp<Self::Body>));
     /// What a robot's attachment device holds.
     fn attached(&self, robot: Self::Body) -> Option<Self::Body> {
@@ -218,10 +218,10 @@ pub trait Snapshot {
     fn restore(&mut self, from: &[f32]);
 }
 
-/// Setting a world up for a new life.
+/// Setting a world up for a new episode.
 #[diagnostic::on_unimplemented(
     message = "the bodies of `{Self}` cannot be put somewhere (port `Arrange`)",
-    note = "a board has ports but nobody can move its robot at will"
+    note = "a board has ports, but no call can move its robot"
 )]
 pub trait Arrange: Handles {
     /// Back to the description's own start: every joint at 0 or the nearest limit, everything at rest, commands and
@@ -231,15 +231,15 @@ pub trait Arrange: Handles {
     fn place_joint(&mut self, joint: Self::Joint, position: f32, speed: f32);
     /// Puts a floating body somewhere with a velocity; ignored for a body that hangs on a joint.
     fn place_body(&mut self, body: Self::Body, pose: Pose, twist: Twist);
-    /// Ends the setting up: what the other ports tell is true again.
-    fn arranged(&mut self);
+    /// Ends the placement: what the other ports report is true again.
+    fn finish_placement(&mut self);
 }
 
 /// Something with a fixed number of channels: every sensor and every motor.
 pub trait Channels {
     /// Number of values read or driven.
     fn channels(&self) -> usize;
-    /// Forgets what was remembered of an earlier life (noise streams, delays); called at the start of each.
+    /// Forgets what was remembered of an earlier episode (noise streams, delays); called at the start of each.
     fn reset(&mut self) {}
 }
 

@@ -1,17 +1,17 @@
-//! What takes a life down: a file, a page, a viewer.
+//! What records an episode: a file, a page, a viewer.
 
 use crate::ports::{BodyId, Contacts, Kinematics, PairContact, PairId};
 use crate::pose::Pose;
 
-/// Takes down a life, tick by tick: a table, a page to look at, a viewer of one's own.
+/// Records an episode, tick by tick: a table, a page to look at, a viewer of one's own.
 ///
-/// Whoever runs the loop tells what it has, in any order, and ends the tick with [`tick`](Self::tick). Every other method
-/// does nothing unless a recorder wants it, so a loop may tell all and a recorder may keep a part. `()` keeps nothing
-/// and costs nothing; a pair of recorders keeps both.
+/// The loop calls what it has values for, in any order, and ends the tick with [`tick`](Self::tick). Every other method
+/// does nothing unless a recorder wants it, so a loop may pass everything and a recorder may keep a part. `()` keeps
+/// nothing and costs nothing; a pair of recorders keeps both.
 ///
 /// # For implementors
-/// A life must not depend on whether it is recorded: keep, do not answer, and do not fail. What is told twice in a tick
-/// replaces or adds as the method says; what is not told is missing (NaN in a table).
+/// An episode must not depend on whether it is recorded: keep, do not answer, and do not fail. What is recorded twice
+/// in a tick replaces or adds as the method says; what is not recorded is missing (NaN in a table).
 ///
 /// ```
 /// use farsa_body::{BodyId, Pose, Recorder};
@@ -65,11 +65,11 @@ pub trait Recorder {
     fn scalars(&mut self, values: &[f64]) {
         let _ = values;
     }
-    /// Ends the tick: what was told since the last is how things were at `time` [s].
+    /// Ends the tick: what was recorded since the last is how things were at `time` [s].
     fn tick(&mut self, time: f64);
 }
 
-/// Tells a recorder where these bodies of a world are and which pairs touch.
+/// Records where these bodies of a world are and which pairs touch.
 pub fn record_world<W, R>(world: &W, bodies: impl IntoIterator<Item = BodyId>, recorder: &mut R)
 where
     W: Kinematics<Body = BodyId> + Contacts + ?Sized,

@@ -38,7 +38,7 @@ struct Told {
     torque: Vector,
 }
 
-/// Who touches whom, as whoever calls rapier directly has it too.
+/// Which colliders touch, as a direct caller of rapier has it too.
 struct Listed {
     colliders: usize,
     friction: Vec<Option<f32>>,
@@ -133,7 +133,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Rolling, so that its resistance has work to do.
     let twist = Twist { linear: [0.05, 0.0, 0.0], angular: [0.0, 2.0, 0.0] };
     start.place_body(Tabletop::SPHERE, Pose::at([0.1, -0.18, 0.025]), twist);
-    start.arranged();
+    start.finish_placement();
 
     let commands = commands();
     let mut recorded = start.clone();

@@ -219,7 +219,7 @@ fn there_are_robots_but_not_too_many_nor_too_fast() {
     });
     assert!(matches!(many, ArenaError::TooMany { count: 70_002, most: 65_536, .. }), "{many}");
     let many = error(|arena| {
-        let one = farsa_physics::arena::Placed { robot: MobileRobot::marxbot(), ..arena.robots[0].clone() };
+        let one = farsa_physics::arena::RobotPlacement { robot: MobileRobot::marxbot(), ..arena.robots[0].clone() };
         arena.robots = vec![one; 10_000];
     });
     assert_eq!(many, ArenaError::TooMany { what: "actuators of robots", count: 70_000, most: 65_536 });
@@ -236,7 +236,7 @@ fn a_free_place_is_found_or_not() {
     for _ in 0..2000 {
         let at = free.find(&world, &mut stream).unwrap();
         let mut least = [f32::INFINITY; 3];
-        world.near(at, 1.0, &mut |near| {
+        world.query_near(at, 1.0, &mut |near| {
             let which = near.body.map_or(0, |body| 1 + usize::from(body == arena.cylinder(0)));
             least[which] = least[which].min(near.distance - 0.035);
         });

@@ -55,9 +55,9 @@ fn babbling<R: Precision>() -> u64 {
     let mut world = World::new(model::<R>(&robot, Options::default()));
     let groups = ArmAndHand::default().servo_groups();
     let (mut digest, mut touching) = (Digest::new(), 0);
-    for life in 0..2 * Babble::MANNERS {
-        common::start(&robot, &mut world, &mut Stream::new(2010, Domain::Start, life, 0, 0), life as usize);
-        let mut babble = Babble::new(2010, life);
+    for episode in 0..2 * Babble::MANNERS {
+        common::start(&robot, &mut world, &mut Stream::new(2010, Domain::Start, episode, 0, 0), episode as usize);
+        let mut babble = Babble::new(2010, episode);
         for t in 0..300 {
             drive(&mut world, &commands(&groups, babble.next()));
             world.step();
@@ -81,14 +81,14 @@ fn squeezing<R: Precision>() -> u64 {
         let robot = hand_and_sphere(wrist, surface, Some(Law::Servo(arm.servo)));
         let mut world = World::new(model::<R>(&robot, Options { gravity: [0.0; 3], ..Options::default() }));
         put_in_the_palm(&mut world, 0.0005);
-        world.arranged();
+        world.finish_placement();
         close(&mut world, &CLOSED);
         for _ in 0..60 {
             world.step();
         }
         let mut heavy = World::new(model::<R>(&robot, Options::default()));
         heavy.state_mut().copy_from_slice(world.state());
-        heavy.arranged();
+        heavy.finish_placement();
         let mut stream = common::stream(2010, 1);
         let (mut least, mut most) = (usize::MAX, 0.0_f64);
         for t in 0..300 {

@@ -25,21 +25,22 @@ fn steps() -> usize {
 
 const WORLDS: usize = 16;
 /// Lanes are refilled every so often, but not together: each begins in another phase.
-const LIFE: usize = 600;
+const EPISODE_STEPS: usize = 600;
 /// The lane that loses a joint, and when.
 const LOST: (usize, usize) = (3, 700);
 
-/// What a lane does before step `t`: the number of the life that begins there, if one does.
+/// What a lane does before step `t`: the number of the episode that begins there, if one does.
 fn begins(lane: usize, t: usize) -> Option<u32> {
     let shifted = t + 37 * lane;
-    (t == 0 || shifted.is_multiple_of(LIFE)).then_some((lane + WORLDS * (shifted / LIFE)) as u32)
+    (t == 0 || shifted.is_multiple_of(EPISODE_STEPS)).then_some((lane + WORLDS * (shifted / EPISODE_STEPS)) as u32)
 }
 
-/// The state in which a life begins: the first lives of the lanes some way on, so that phases differ from the first step.
-fn beginning(robot: &Robot, world: &mut World<f32>, groups: &[Vec<ServoRange>; 9], life: u32) -> (Vec<f32>, Babble) {
-    start(robot, world, &mut Stream::new(5, Domain::Start, life, 0, 0), life as usize);
-    let mut babble = Babble::new(5, life);
-    for _ in 0..13 * (life as usize % 8) {
+/// The state in which an episode begins: the first episodes of the lanes some way on, so that phases differ from the
+/// first step.
+fn beginning(robot: &Robot, world: &mut World<f32>, groups: &[Vec<ServoRange>; 9], episode: u32) -> (Vec<f32>, Babble) {
+    start(robot, world, &mut Stream::new(5, Domain::Start, episode, 0, 0), episode as usize);
+    let mut babble = Babble::new(5, episode);
+    for _ in 0..13 * (episode as usize % 8) {
         drive(world, &commands(groups, babble.next()));
         world.step();
     }
@@ -69,15 +70,15 @@ fn alone(robot: &Robot, model: &Model<f32>, groups: &[Vec<ServoRange>; 9], lane:
     let of_table: usize = first + 8 * (0..table).map(|p| points_of(robot, p)).sum::<usize>();
     let points: usize = (0..robot.pairs.len()).map(|p| points_of(robot, p)).sum();
     for t in 0..steps() {
-        if let Some(life) = begins(lane, t) {
-            let (state, new) = beginning(robot, &mut other, groups, life);
+        if let Some(episode) = begins(lane, t) {
+            let (state, new) = beginning(robot, &mut other, groups, episode);
             world.state_mut().copy_from_slice(&state);
-            world.arranged();
+            world.finish_placement();
             babble = new;
         }
         if (lane, t) == LOST {
             world.state_mut()[4] = f32::NAN;
-            world.arranged();
+            world.finish_placement();
         }
         drive(&mut world, &commands(groups, babble.next()));
         world.step();
@@ -90,7 +91,7 @@ fn alone(robot: &Robot, model: &Model<f32>, groups: &[Vec<ServoRange>; 9], lane:
     truth
 }
 
-/// Steps a batch through what the worlds alone have lived and compares every state word after every step.
+/// Steps a batch through what the worlds alone have gone through and compares every state word after every step.
 fn together(name: &str, robot: &Robot, batch: &mut Batch, groups: &[Vec<ServoRange>; 9], truths: &[Truth]) {
     let mut other = World::new(batch.model().clone());
     let lanes = batch.lanes();
@@ -99,8 +100,8 @@ fn together(name: &str, robot: &Robot, batch: &mut Batch, groups: &[Vec<ServoRan
     for t in 0..steps() {
         for lane in 0..lanes {
             let mut world = batch.lane(lane);
-            if let Some(life) = begins(lane, t) {
-                let (start, new) = beginning(robot, &mut other, groups, life);
+            if let Some(episode) = begins(lane, t) {
+                let (start, new) = beginning(robot, &mut other, groups, episode);
                 world.restore(&start);
                 babbles[lane] = new;
             }
@@ -184,13 +185,13 @@ fn a_box_moved_off_an_edge_forgets_how_it_rolled_there() {
     let moved = Pose::at([0.0, 0.0, 0.5495]);
     let mut world = World::new(model.clone());
     world.place_body(small, leaning, spinning);
-    world.arranged();
+    world.finish_placement();
     world.step();
     // Three words for each of 8 corners and 12 edges of the pair, behind all others.
     let edges = |state: &[f32]| state[state.len() - 3 * 12..].to_vec();
     assert!(edges(world.state()).iter().any(|x| *x != 0.0), "nothing rolls on the edge");
     world.place_body(small, moved, Twist::default());
-    world.arranged();
+    world.finish_placement();
     world.step();
     assert!(edges(world.state()).iter().all(|x| *x == 0.0), "rolling impulses left: {:?}", edges(world.state()));
     for level in Batch::instructions() {
@@ -199,14 +200,14 @@ fn a_box_moved_off_an_edge_forgets_how_it_rolled_there() {
             for lane in 0..lanes {
                 let mut lane = batch.lane(lane);
                 lane.place_body(small, leaning, spinning);
-                lane.arranged();
+                lane.finish_placement();
             }
             batch.step();
             // The even lanes go, the odd ones stay at the edge.
             for lane in (0..lanes).step_by(2) {
                 let mut lane = batch.lane(lane);
                 lane.place_body(small, moved, Twist::default());
-                lane.arranged();
+                lane.finish_placement();
             }
             batch.step();
             let mut own = vec![0.0; model.state_len()];
@@ -324,8 +325,8 @@ impl Arrange for Alone {
     fn place_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
         self.with(|lane| lane.place_body(body, pose, twist));
     }
-    fn arranged(&mut self) {
-        self.with(|lane| lane.arranged());
+    fn finish_placement(&mut self) {
+        self.with(|lane| lane.finish_placement());
     }
 }
 
@@ -333,13 +334,13 @@ impl Arrange for Alone {
 fn a_lane_conforms() {
     let robot = scene();
     let model = model(&robot, Options::default());
-    let probe = Probe::of(&robot);
+    let probe = Probe::for_robot(&robot);
     let make = || {
         let mut world = Alone::new(&model, 5);
         for (j, degrees) in common::POSES[0].into_iter().enumerate() {
             world.place_joint(JointId(j as u16), degrees.to_radians() as f32, 0.0);
         }
-        world.arranged();
+        world.finish_placement();
         world
     };
     assert_eq!(check_world(make, &probe), Ok(()));

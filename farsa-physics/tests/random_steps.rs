@@ -8,7 +8,7 @@ use farsa_body::{ArmAndHand, Robot, ServoRange, Tabletop, World as _};
 use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{Model, Options, World};
 
-const LIFE: usize = 600;
+const EPISODE_STEPS: usize = 600;
 
 /// A largest value and where it was seen.
 #[derive(Clone, Debug)]
@@ -119,28 +119,28 @@ impl<'a> Checked<'a> {
     }
 }
 
-/// Lives of random commands, one after the other.
+/// Episodes of random commands, one after the other.
 fn babble(checked: &Checked, groups: &[Vec<ServoRange>; 9], seed: u64, steps: usize, f: &mut Figures) {
     let model = checked.model;
     let mut world = World::new(model.clone());
-    let mut life = 0;
+    let mut episode = 0;
     let mut done = 0;
     while done < steps {
-        let mut stream = Stream::new(seed, Domain::Start, life, 0, 0);
-        start(checked.robot, &mut world, &mut stream, life as usize);
-        let mut babble = Babble::new(seed, life);
-        for t in 1..=LIFE {
+        let mut stream = Stream::new(seed, Domain::Start, episode, 0, 0);
+        start(checked.robot, &mut world, &mut stream, episode as usize);
+        let mut babble = Babble::new(seed, episode);
+        for t in 1..=EPISODE_STEPS {
             drive(&mut world, &commands(groups, babble.next()));
             world.step();
             done += 1;
-            checked.check(world.state(), f, &format!("life {life} step {t}"));
+            checked.check(world.state(), f, &format!("episode {episode} step {t}"));
             // The sphere's height: it has fallen off the table.
             if world.state()[29] < 0.0 {
                 f.falls += 1;
                 break;
             }
         }
-        life += 1;
+        episode += 1;
     }
 }
 

@@ -284,7 +284,7 @@ fn the_worlds_agree() {
     assert!(beyond.is_empty(), "{beyond:#?}");
 }
 
-/// The committed models and timetables; new ones are put beside the tests' other files for whoever meant the change.
+/// The committed models and timetables; new ones are put beside the tests' other files, for an intended change.
 #[test]
 fn the_scenes_are_the_committed_ones() {
     let scenes = scenes();

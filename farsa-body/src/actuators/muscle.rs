@@ -74,7 +74,7 @@ impl<R: Real> MusclePair<R> {
     ///
     /// `tension` is Tmax [N], `moment_arm` in [m], `range` the joint's lower and upper limit [rad].
     pub fn thesis(tension: R, moment_arm: R, range: [R; 2]) -> Self {
-        Self::of(tension, moment_arm, range, R::from_f64(1.0), R::from_f64(0.9))
+        Self::new(tension, moment_arm, range, R::from_f64(1.0), R::from_f64(0.9))
     }
 
     /// The pair as in the original program: as [`MusclePair::thesis`], but passive tension times 0.5 and `reduction`, b
@@ -82,10 +82,10 @@ impl<R: Real> MusclePair<R> {
     ///
     /// The value of the original's reduction factor is not known to us, so it has no default here.
     pub fn original(tension: R, moment_arm: R, range: [R; 2], reduction: R) -> Self {
-        Self::of(tension, moment_arm, range, R::from_f64(0.5) * reduction, R::from_f64(1.0))
+        Self::new(tension, moment_arm, range, R::from_f64(0.5) * reduction, R::from_f64(1.0))
     }
 
-    fn of(tension: R, moment_arm: R, [lower, upper]: [R; 2], passive: R, viscosity: R) -> Self {
+    fn new(tension: R, moment_arm: R, [lower, upper]: [R; 2], passive: R, viscosity: R) -> Self {
         let shape = R::from_f64(3.0);
         Self {
             tension,

@@ -48,7 +48,7 @@ pub(crate) struct Miss {
 }
 
 impl Miss {
-    pub(crate) fn of(goal: &Goal, pose: &Pose<f64>) -> Self {
+    pub(crate) fn new(goal: &Goal, pose: &Pose<f64>) -> Self {
         let way = sub(goal.position, pose.transform(goal.point));
         let (turn, idle) = match goal.orientation {
             Orientation::Free => ([0.0; 3], None),

@@ -106,6 +106,7 @@ fn squared(v: &[f64; 6]) -> f64 {
 
 /// Solves a x = b by Cholesky's decomposition; `None` if the symmetric `a` is not positive definite.
 fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
+    // a = L L^T in its own place, column by column; then L y = b and L^T x = y.
     for j in 0..N {
         for k in 0..j {
             for i in j..N {
@@ -185,12 +186,13 @@ impl InverseKinematics {
                     // Where there is no limit: half a turn (or pi metres) beyond zero or the other end.
                     let low_end = if low.is_finite() { low } else { high.min(0.0) - core::f64::consts::PI };
                     let high_end = if high.is_finite() { high } else { low.max(0.0) + core::f64::consts::PI };
+                    // The fractional part of attempt * sqrt(prime), from one end of the range to the other.
                     let x = attempt as f64 * root;
                     q[*c] = low_end + (x - (x as u64) as f64) * (high_end - low_end);
                 }
             }
             self.descend(tree, goal, &limits, &mut q, &mut poses);
-            let miss = Miss::of(goal, &poses[goal.body.index()]);
+            let miss = Miss::new(goal, &poses[goal.body.index()]);
             let cost = squared(&miss.weighted(self.angle_weight));
             let found = Solution { joints: q, position_error: norm(&miss.way), angle_error: norm(&miss.turn) };
             if found.position_error <= self.position_tolerance && found.angle_error <= self.angle_tolerance {
@@ -225,7 +227,7 @@ impl InverseKinematics {
     ) {
         let body = goal.body.index();
         tree.poses_into(q, poses);
-        let mut miss = Miss::of(goal, &poses[body]);
+        let mut miss = Miss::new(goal, &poses[body]);
         let mut error = miss.weighted(self.angle_weight);
         let mut damping = 1e-3;
         let mut next = q.to_vec();
@@ -238,6 +240,7 @@ impl InverseKinematics {
             let mut free = Vec::new();
             let mut a = [[0.0; 6]; 6];
             for (c, mut angular, linear) in tree.columns(poses, goal.body, at) {
+                // A turn about the wanted direction changes nothing.
                 if let Some(idle) = miss.idle {
                     let along = dot(angular, idle);
                     angular = [0, 1, 2].map(|k| angular[k] - along * idle[k]);
@@ -247,6 +250,7 @@ impl InverseKinematics {
                 }
                 let ([r, s, t], [x, y, z]) = (angular.map(|w| w * self.angle_weight), linear);
                 let column = [r, s, t, x, y, z];
+                // J^T e of this joint: which way it would go. At an end of its range it is let go only back into it.
                 let pull = (0..6).fold(0.0, |sum, k| sum + column[k] * error[k]);
                 let [low, high] = limits[c];
                 if (q[c] <= low && pull < 0.0) || (q[c] >= high && pull > 0.0) {
@@ -266,6 +270,7 @@ impl InverseKinematics {
             next.copy_from_slice(q);
             let mut largest = 0.0;
             for (c, column) in &free {
+                // dq = J^T (J J^T + damping 1)^-1 e [Wampler1986].
                 let step = (0..6).fold(0.0, |sum, k| sum + column[k] * y[k]);
                 // A joint that turns by more than this has left the region where the Jacobian means anything.
                 let [low, high] = limits[*c];
@@ -273,8 +278,10 @@ impl InverseKinematics {
                 largest = f64::max(largest, (next[*c] - q[*c]).abs());
             }
             tree.poses_into(&next, poses);
-            let moved = Miss::of(goal, &poses[body]);
+            let moved = Miss::new(goal, &poses[body]);
             let left = moved.weighted(self.angle_weight);
+            // Levenberg-Marquardt: a step that helps is kept and the next is longer, else it is taken back and the next
+            // is shorter.
             if squared(&left) < squared(&error) {
                 q.copy_from_slice(&next);
                 (miss, error) = (moved, left);
@@ -349,8 +356,8 @@ mod tests {
     fn wrong_questions() {
         let (tree, solver) = (planar([-3.0, 3.0]), InverseKinematics::default());
         let goal = tip([0.3, 0.2, 0.0]);
-        let nobody = Goal { body: BodyId(2), ..goal };
-        assert_eq!(solver.solve(&tree, &nobody, &[0.0; 2]), Err(InverseKinematicsError::Body { body: 2, count: 2 }));
+        let missing = Goal { body: BodyId(2), ..goal };
+        assert_eq!(solver.solve(&tree, &missing, &[0.0; 2]), Err(InverseKinematicsError::Body { body: 2, count: 2 }));
         assert_eq!(solver.solve(&tree, &goal, &[0.0]), Err(InverseKinematicsError::Start { given: 1, joints: 2 }));
         let direction = Orientation::Direction { own: [0.0; 3], wanted: [0.0, 0.0, 1.0] };
         for wrong in [

@@ -15,7 +15,7 @@
 //! are motors. A value outside [0, 1] drives like the nearer end, NaN like 0. For noise, delay or damage put a
 //! [wrapper](crate::wrappers) around one.
 
-/// Devices that hold on to things: the motor that switches one and the sensor that tells whether it holds.
+/// Devices that hold on to things: the motor that switches one and the sensor that reads whether it holds.
 pub(crate) mod attachment;
 /// Motors of joints: muscles, servos, torques.
 pub(crate) mod joints;

@@ -252,7 +252,7 @@ impl Collider {
 
     /// The mass properties of a solid of this shape and place with `mass` [kg], in the body's frame.
     pub fn mass_properties(&self, mass: f64) -> MassProperties {
-        MassProperties::of_shape(&self.shape, mass).placed(&self.placement)
+        MassProperties::from_shape(&self.shape, mass).placed(&self.placement)
     }
 }
 
@@ -268,7 +268,7 @@ impl Robot {
         BodyId((self.segments.len() - 1) as u16)
     }
 
-    /// Appends a collider and tells its index.
+    /// Appends a collider and returns its index.
     pub fn add_collider(&mut self, collider: Collider) -> usize {
         self.colliders.push(collider);
         self.colliders.len() - 1
@@ -286,7 +286,7 @@ impl Robot {
         ActuatorId((self.actuators.len() - 1) as u16)
     }
 
-    /// Takes in all parts of `other` after the own ones and tells where they begin.
+    /// Appends all parts of `other` and returns where they begin.
     ///
     /// No pair between the two is made. Names are kept: [`Robot::validate`] finds clashes, [`Robot::prefixed`] avoids
     /// them.

@@ -51,7 +51,7 @@ impl MassProperties {
     }
 
     /// A solid of this shape with `mass` [kg]; a plane, which has no volume, gets a mass without inertia.
-    pub fn of_shape(shape: &Shape, mass: f64) -> Self {
+    pub fn from_shape(shape: &Shape, mass: f64) -> Self {
         match *shape {
             Shape::Sphere { radius } => Self::sphere(mass, radius),
             Shape::Capsule { radius, half_length } => Self::capsule(mass, radius, half_length),

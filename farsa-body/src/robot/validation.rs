@@ -56,7 +56,7 @@ pub enum RobotError {
         /// How many there are.
         count: usize,
     },
-    /// More parts of one kind than 65535, which indices can tell apart.
+    /// More parts of one kind than 65535, which is what indices can number.
     Count {
         /// The kind of parts.
         parts: &'static str,
@@ -266,7 +266,7 @@ fn segment(own_index: usize, segment: &Segment) -> Result<(), RobotError> {
 }
 
 impl Robot {
-    /// Looks for anything by which no world can be built from the description, and tells the first it finds.
+    /// Looks for anything that keeps a world from being built, and returns the first error.
     ///
     /// Checked are: indices and the order of parents, at most 65535 parts of a kind, names present and unique within
     /// their kind, finite numbers, unit quaternions (to 1e-6), axes longer than 1e-6, ordered ranges, floating joints

@@ -73,7 +73,7 @@ pub(crate) struct BeamFrame<B> {
 impl<B: Copy + PartialEq> BeamFrame<B> {
     /// The plane at `height` [m] above the robot's origin.
     #[inline]
-    pub(crate) fn of<W: Kinematics<Body = B> + ?Sized>(world: &W, body: B, height: f32) -> Self {
+    pub(crate) fn from_world<W: Kinematics<Body = B> + ?Sized>(world: &W, body: B, height: f32) -> Self {
         let pose = world.pose(body);
         Self {
             body,

@@ -48,7 +48,7 @@ where
     W: Planar<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let stance = Stance::of(world, self.body);
+        let stance = Stance::from_world(world, self.body);
         for (values, &place) in out.chunks_mut(self.colors).zip(self.places.as_ref()) {
             let [r, g, b] = world.ground(stance.place(place)).map(unit);
             let color = if self.colors == 3 { [r, g, b] } else { [(r + g + b) / 3.0; 3] };

@@ -44,7 +44,7 @@ where
     W: Rays<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let frame = BeamFrame::of(world, self.body, self.height);
+        let frame = BeamFrame::from_world(world, self.body, self.height);
         for (o, beam) in out.iter_mut().zip(self.beams.as_ref()) {
             *o = frame
                 .distance(world, beam, self.range, |_, _| true)

@@ -47,7 +47,7 @@ impl<B> LightSensors<Vec<Beam>, B> {
     ///
     /// # Errors
     /// Those of [`LightSensors::new`].
-    pub fn of(robot: &MobileRobot, body: B, reference: f32) -> Result<Self, ChannelError> {
+    pub fn for_robot(robot: &MobileRobot, body: B, reference: f32) -> Result<Self, ChannelError> {
         let sensor = |&angle: &f64| Beam::in_cone(robot.radius, angle, 0.0, 0, 1);
         Self::new(body, robot.infrared.angles.iter().map(sensor).collect(), reference)
     }
@@ -66,7 +66,7 @@ where
     W: Planar<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let (stance, sensors) = (Stance::of(world, self.body), self.sensors.as_ref());
+        let (stance, sensors) = (Stance::from_world(world, self.body), self.sensors.as_ref());
         let channels = sensors.len().min(out.len());
         let out = &mut out[..channels];
         out.fill(0.0);
@@ -84,7 +84,7 @@ where
                 // False for a lamp at the sensor's very place: there is no way to it.
                 if cosine > 0.0 {
                     let hidden = world
-                        .look(from, towards, distance, Some(self.body))
+                        .cast_planar(from, towards, distance, Some(self.body))
                         .is_some_and(|sight| sight.body != Some(lamp.body));
                     if !hidden {
                         *o += lamp.intensity * cosine * self.reference * self.reference / square;

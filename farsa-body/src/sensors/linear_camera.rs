@@ -50,7 +50,7 @@ impl ColorBand {
 /// let mut world = PlaneWorld::new();
 /// let robot = world.add_robot(&MobileRobot::marxbot(), [0.0, 0.0], 0.0);
 /// world.add_disc([1.0, 0.3], 0.2, [1.0, 0.0, 0.0]);
-/// let mut camera = LinearCamera::of_view(robot.body, 1.0, 2, 10, [red, blue], 5.0)?;
+/// let mut camera = LinearCamera::for_view(robot.body, 1.0, 2, 10, [red, blue], 5.0)?;
 /// let mut x = [0.0; 4];
 /// camera.read(&world, &mut x);
 /// assert_eq!(x, [0.8, 0.0, 0.0, 0.0]);
@@ -97,7 +97,7 @@ impl<C: AsRef<[ColorBand]>, B> LinearCamera<Vec<Beam>, C, B> {
     ///
     /// # Errors
     /// [`ChannelError::Value`] if the field of view is not within 0 and 2 pi, and those of [`LinearCamera::new`].
-    pub fn of_view(
+    pub fn for_view(
         body: B,
         field_of_view: f64,
         sectors: usize,
@@ -118,7 +118,7 @@ impl<C: AsRef<[ColorBand]>, B> LinearCamera<Vec<Beam>, C, B> {
     }
 }
 
-/// More rays than this nobody needs, and a slip may run out of memory.
+/// More rays than this are not needed, and a mistake could run out of memory.
 #[cfg(feature = "alloc")]
 const MOST_RAYS: usize = 1 << 20;
 
@@ -140,9 +140,10 @@ where
     W: Planar<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let (stance, bands) = (Stance::of(world, self.body), self.bands.as_ref());
+        let (stance, bands) = (Stance::from_world(world, self.body), self.bands.as_ref());
         let rays = self.rays.as_ref();
-        let shown = Shown::of(world, &stance, rays, self.range, |color| bands.iter().any(|band| band.shows(color)));
+        let shown =
+            Shown::from_world(world, &stance, rays, self.range, |color| bands.iter().any(|band| band.shows(color)));
         for (values, sector) in out.chunks_mut(bands.len()).zip(rays.chunks_exact(self.per_sector)) {
             values.fill(0.0);
             for ray in sector {
@@ -150,7 +151,7 @@ where
                 if !shown.may_meet(from, direction) {
                     continue;
                 }
-                if let Some(sight) = world.look(from, direction, self.range, Some(self.body)) {
+                if let Some(sight) = world.cast_planar(from, direction, self.range, Some(self.body)) {
                     for (o, band) in values.iter_mut().zip(bands) {
                         *o += if band.shows(sight.color) { 1.0 } else { 0.0 };
                     }
@@ -177,7 +178,7 @@ const MOST_SHOWN: usize = 16;
 
 impl Shown {
     #[inline]
-    fn of<W: Planar + ?Sized>(
+    fn from_world<W: Planar + ?Sized>(
         world: &W,
         stance: &Stance,
         rays: &[Beam],
@@ -187,11 +188,11 @@ impl Shown {
         let mut shown = Self { rounds: [([0.0; 2], 0.0); MOST_SHOWN], count: 0, anywhere: false };
         let aside = |ray: &Beam| ray.from[0].abs() + ray.from[1].abs();
         let reach = rays.iter().map(aside).fold(0.0, f32::max) + range;
-        world.near(stance.at, reach, &mut |near| {
+        world.query_near(stance.at, reach, &mut |near| {
             if shown.anywhere || !shows(near.color) {
                 return;
             }
-            // The middle lies a radius behind the nearest point, which does not tell it from close by.
+            // The middle lies a radius behind the nearest point, which cannot be known from close by.
             let told = near.body.is_some() && near.distance > 0.5 * near.radius;
             let Some(room) = shown.rounds.get_mut(shown.count).filter(|_| told) else {
                 shown.anywhere = true;

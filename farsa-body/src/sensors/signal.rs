@@ -5,7 +5,7 @@ use crate::ports::{Channels, Sensor};
 
 /// Reads what the experiment last set, `N` channels in any world: a label, an instruction, a constant bias.
 ///
-/// A new life does not change it: whoever sets it during a life sets its beginning too.
+/// A new episode does not change it: code that sets it during an episode must set it at the start, too.
 #[doc(alias = "label")]
 #[doc(alias = "bias")]
 #[doc(alias = "constant")]

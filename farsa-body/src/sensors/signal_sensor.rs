@@ -3,13 +3,14 @@
 use farsa_num::{Scalar, atan2};
 
 use crate::channel::{ChannelError, groups, positive, unit};
-use crate::ports::{BodyId, Channels, Kinematics, Near, Planar, Sensor};
+use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Planar, Sensor};
 use crate::sensors::stance::Stance;
 
 /// Reads what other robots signal, in `SECTORS` equal sectors around a robot, one channel each in [0, 1]: the strongest
 /// signal.
 ///
-/// After [`SignalSensor::mean`] the mean over the robots of a sector. 0 where nobody is heard. The first sector lies around
+/// After [`SignalSensor::mean`] the mean over the robots of a sector. 0 where no robot is heard. The first sector lies
+/// around
 /// straight ahead, the others follow counter-clockwise; of four they are ahead, left, behind and right. A robot is heard
 /// as loudly at every distance within the range, and through everything; it belongs to the sector of its centre. Wrap it
 /// in [`crate::Noisy`] for noise.
@@ -59,9 +60,9 @@ where
     W: Planar<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let stance = Stance::of(world, self.body);
+        let stance = Stance::from_world(world, self.body);
         let (mut heard, mut robots) = ([0.0_f32; SECTORS], [0.0_f32; SECTORS]);
-        world.near(stance.at, self.range, &mut |near: Near<B>| {
+        world.query_near(stance.at, self.range, &mut |near: NearbySurface<B>| {
             let Some(signal) = near.signal.filter(|_| near.body != Some(self.body)) else { return };
             let sector = sector(stance.bearing(&near), SECTORS);
             if let (Some(heard), Some(robots)) = (heard.get_mut(sector), robots.get_mut(sector)) {

@@ -2,7 +2,7 @@
 
 use farsa_num::Scalar;
 
-use crate::ports::{Kinematics, Near};
+use crate::ports::{Kinematics, NearbySurface};
 
 /// The pose of a robot in the plane; a tilted one is seen from above.
 #[derive(Clone, Copy)]
@@ -15,7 +15,7 @@ pub(crate) struct Stance {
 
 impl Stance {
     #[inline]
-    pub(crate) fn of<W: Kinematics + ?Sized>(world: &W, body: W::Body) -> Self {
+    pub(crate) fn from_world<W: Kinematics + ?Sized>(world: &W, body: W::Body) -> Self {
         let pose = world.pose(body);
         let [x, y, _] = pose.rotate([1.0, 0.0, 0.0]);
         let length = Scalar::sqrt(x * x + y * y);
@@ -50,7 +50,7 @@ impl Stance {
     /// Within a round body that is the way out of it turned round, so that it points to the body's centre all the same.
     /// Straight ahead where the point is the origin itself.
     #[inline]
-    pub(crate) fn bearing<B>(&self, near: &Near<B>) -> [f32; 2] {
+    pub(crate) fn bearing<B>(&self, near: &NearbySurface<B>) -> [f32; 2] {
         let [x, y] = self.way_to(near.point);
         let length = Scalar::sqrt(x * x + y * y);
         let length = if near.distance < 0.0 { -length } else { length };

@@ -5,14 +5,14 @@ use alloc::vec::Vec;
 use farsa_num::{Scalar, sin_cos};
 
 use crate::ports::{
-    Actuated, ActuatorId, BodyId, Handles, Hit, JointId, Joints, Kinematics, Lamp, Near, Planar, Rays, Sight, Snapshot,
-    World,
+    Actuated, ActuatorId, BodyId, Handles, Hit, JointId, Joints, Kinematics, Lamp, NearbySurface, Planar, PlanarHit,
+    Rays, Snapshot, World,
 };
 use crate::pose::{Pose, Twist};
 use crate::robots::mobile::{MobileParts, MobileRobot};
 
-/// Walls, discs, lamps, coloured ground and robots, told by loops over all of them: the naive counterpart of a world that
-/// is fast.
+/// Walls, discs, lamps, coloured ground and robots, found by loops over all of them: the naive counterpart of a world
+/// that is fast.
 ///
 /// Bodies are numbered in the order in which they are added; the wheels of the robots, left and right, and their actuators
 /// likewise. For rays everything is infinitely high. Robots drive exact arcs through everything: nothing collides. An
@@ -328,7 +328,7 @@ impl Rays for PlaneWorld {
 }
 
 impl Planar for PlaneWorld {
-    fn near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(Near<BodyId>)) {
+    fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
         for wall in &self.walls {
             let [a, b] = wall.ends;
             let along = sub(b, a);
@@ -336,7 +336,7 @@ impl Planar for PlaneWorld {
             let point = [a[0] + share * along[0], a[1] + share * along[1]];
             let distance = length(sub(point, from));
             if distance <= range {
-                tell(Near { body: None, point, distance, radius: 0.0, color: wall.color, signal: None });
+                tell(NearbySurface { body: None, point, distance, radius: 0.0, color: wall.color, signal: None });
             }
         }
         for (body, round) in self.ids() {
@@ -348,13 +348,19 @@ impl Planar for PlaneWorld {
                 let point = [0, 1].map(|i| from[i] + distance * towards[i]);
                 let signal = self.robot_of(round).map(|robot| robot.signal);
                 let (radius, color) = (round.radius, self.color(round));
-                tell(Near { body: Some(body), point, distance, radius, color, signal });
+                tell(NearbySurface { body: Some(body), point, distance, radius, color, signal });
             }
         }
     }
-    fn look(&self, from: [f32; 2], direction: [f32; 2], range: f32, but: Option<BodyId>) -> Option<Sight<BodyId>> {
+    fn cast_planar(
+        &self,
+        from: [f32; 2],
+        direction: [f32; 2],
+        range: f32,
+        but: Option<BodyId>,
+    ) -> Option<PlanarHit<BodyId>> {
         let met = self.meet(from, direction, range, but)?;
-        Some(Sight { distance: met.distance, body: met.body, color: met.color })
+        Some(PlanarHit { distance: met.distance, body: met.body, color: met.color })
     }
     fn ground(&self, at: [f32; 2]) -> [f32; 3] {
         let painted = |area: &&Painted| length(sub(at, area.centre)) <= area.radius;

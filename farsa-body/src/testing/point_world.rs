@@ -186,7 +186,7 @@ impl Arrange for PointWorld {
         }
     }
     fn place_body(&mut self, _: BodyId, _: Pose, _: Twist) {}
-    fn arranged(&mut self) {}
+    fn finish_placement(&mut self) {}
 }
 
 impl Snapshot for PointWorld {

@@ -32,7 +32,7 @@ impl Probe {
     const SLACK: f32 = 0.1;
 
     /// A probe of a world built from this robot.
-    pub fn of(robot: &Robot) -> Self {
+    pub fn for_robot(robot: &Robot) -> Self {
         let finite = |range: [f64; 2]| {
             let [low, high] = range.map(|x| x as f32);
             [if low.is_finite() { low } else { -1.0 }, if high.is_finite() { high } else { 1.0 }]

@@ -9,7 +9,7 @@ use core::fmt;
 pub enum Promise {
     /// The time step is finite and > 0.
     TimeStep,
-    /// What the ports tell is finite.
+    /// What the ports report is finite.
     Finite,
     /// Rotations are unit quaternions.
     UnitRotation,
@@ -27,7 +27,7 @@ pub enum Promise {
     Deterministic,
     /// Saving writes every word of the snapshot.
     SnapshotFilled,
-    /// Restoring brings back what the ports told.
+    /// Restoring brings back what the ports reported.
     SnapshotRestores,
     /// What follows a restored snapshot has the same bits.
     SnapshotReplays,
@@ -43,11 +43,11 @@ pub enum Promise {
     JointPlaced,
     /// A floating or planar body is where it was placed, and no other.
     BodyPlaced,
-    /// After the setting up every port tells the truth.
+    /// After the setting up every port reports the truth.
     Arranged,
-    /// A ray meets the nearest surface within its range, and tells how.
+    /// A ray meets the nearest surface within its range, and reports how.
     Ray,
-    /// What is near in the plane is told, where it is.
+    /// What is near in the plane is reported, where it is.
     Near,
     /// The nearest surface in a direction of the plane is seen.
     Look,

@@ -11,7 +11,7 @@ use crate::testing::probe::Probe;
 /// Number of steps between two commands of the script.
 pub(crate) const HOLD: usize = 8;
 
-/// All bits of a world at one instant: what its ports tell and its snapshot.
+/// All bits of a world at one instant: what its ports report and its snapshot.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Instant {
     readings: Vec<u32>,
@@ -25,7 +25,7 @@ const BODY_WORDS: usize = 13;
 const PAIR_WORDS: usize = 9;
 
 impl Instant {
-    pub(crate) fn of<W>(world: &W, probe: &Probe<W::Body, W::Joint, W::Actuator>) -> Self
+    pub(crate) fn from_world<W>(world: &W, probe: &Probe<W::Body, W::Joint, W::Actuator>) -> Self
     where
         W: Joints + Kinematics + Contacts + Snapshot,
     {
@@ -129,7 +129,7 @@ where
                 command(world, probe, tick);
             }
             world.step();
-            Instant::of(world, probe)
+            Instant::from_world(world, probe)
         })
         .collect()
 }

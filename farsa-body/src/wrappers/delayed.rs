@@ -9,8 +9,8 @@ use crate::wrappers::wrap::room;
 
 /// Passes values on a number of ticks later.
 ///
-/// Until the first value of a life has come through, a sensor repeats that first value, and a motor is not driven: the
-/// world keeps the commands that it has.
+/// Until the first value of an episode has come through, a sensor repeats that first value, and a motor is not driven:
+/// the world keeps the commands that it has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delayed<T, M> {
     inner: T,
@@ -20,7 +20,7 @@ pub struct Delayed<T, M> {
     memory: M,
     /// The row that comes out next, and is then overwritten.
     row: usize,
-    /// How many rows hold values of this life.
+    /// How many rows hold values of this episode.
     filled: usize,
 }
 

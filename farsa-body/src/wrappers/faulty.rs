@@ -56,7 +56,7 @@ impl<T: Channels, M: AsMut<[f32]>> Lesioned<T, M> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum StuckAt {
-    /// At its value in the last tick before it got stuck; at the life's first if it is stuck from the beginning.
+    /// At its value in the last tick before it got stuck; at the episode's first if it is stuck from the beginning.
     Last,
     /// At a given value.
     Value(f32),
@@ -71,9 +71,9 @@ struct Sticking {
     which: Range<usize>,
     at: StuckAt,
     after: u32,
-    /// Ticks of this life so far.
+    /// Ticks of this episode so far.
     ticks: u32,
-    /// Broken during this life by a call.
+    /// Broken during this episode by a call.
     broken: bool,
 }
 
@@ -99,7 +99,7 @@ wrapper!(Stuck);
 
 #[cfg(feature = "alloc")]
 impl<T: Channels> Stuck<T, Vec<f32>> {
-    /// Wraps a sensor or motor whose channels `which` get stuck after `after` ticks of every life, `..` for all
+    /// Wraps a sensor or motor whose channels `which` get stuck after `after` ticks of every episode, `..` for all
     /// channels, 0 for from the beginning, `u32::MAX` for never.
     ///
     /// # Errors
@@ -132,7 +132,7 @@ impl<T: Channels, M: AsMut<[f32]>> Stuck<T, M> {
 }
 
 impl<T, M> Stuck<T, M> {
-    /// Makes the channels stick from the next tick to the end of this life.
+    /// Makes the channels stick from the next tick to the end of this episode.
     pub fn stick(&mut self) {
         self.0.filter.broken = true;
     }

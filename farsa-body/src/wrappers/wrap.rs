@@ -9,7 +9,7 @@ use crate::ports::{Channels, Motor, Sensor};
 pub(crate) trait Filter {
     /// Computes one tick's `passed` from its `values`, both of the same length; `passed` still holds the last tick's.
     fn pass(&mut self, values: &[f32], passed: &mut [f32]);
-    /// Back to the beginning of a life.
+    /// Back to the beginning of an episode.
     fn rewind(&mut self) {}
 }
 

@@ -8,7 +8,7 @@ use farsa_num::Instructions;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileParts,
-    Near, PairContact, PairId, Planar, Pose, Rays, Sight, Snapshot, Twist, World as _,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Snapshot, Twist, World as _,
 };
 
 use crate::arena::description::Arena;
@@ -104,7 +104,7 @@ impl Batch {
     }
 
     /// Readings of a robot's ring of analytic infrared sensors in every world: [sensors x lanes], as
-    /// [`World::infrared`] tells them in each; a shorter slice gets the first sensors.
+    /// [`World::infrared`] gives them in each; a shorter slice gets the first sensors.
     pub fn infrared(&self, robot: usize, out: &mut [f32]) {
         let model = self.alone.model();
         self.lockstep.infrared(model, &self.words, robot.min(model.robots.len() - 1), out);
@@ -116,7 +116,7 @@ impl Batch {
             for lane in 0..self.lanes {
                 let own = self.words.iter().skip(lane).step_by(self.lanes);
                 self.alone.words_mut().iter_mut().zip(own).for_each(|(x, from)| *x = *from);
-                self.alone.arranged();
+                self.alone.finish_placement();
                 self.alone.step();
                 let own = self.words.iter_mut().skip(lane).step_by(self.lanes);
                 own.zip(self.alone.words()).for_each(|(to, x)| *to = *x);
@@ -134,7 +134,7 @@ impl Clone for Batch {
             lanes: self.lanes,
             words: self.words.clone(),
             work: self.work.clone(),
-            lockstep: self.lockstep.another(),
+            lockstep: self.lockstep.boxed_clone(),
         }
     }
 }
@@ -196,5 +196,5 @@ impl Arrange for Lane<'_> {
     fn place_body(&mut self, body: BodyId, pose: Pose, _: Twist) {
         view::place_body(self, body, pose);
     }
-    fn arranged(&mut self) {}
+    fn finish_placement(&mut self) {}
 }

@@ -9,6 +9,11 @@ pub(crate) const GREY: [f64; 3] = [0.5; 3];
 
 /// The form of a [`Convex`].
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum ConvexForm {
     /// An upright prism on the ground.
     Prism {
@@ -39,12 +44,13 @@ pub enum ConvexForm {
 /// arena.add_robot(MobileRobot::khepera(), [0.2, 0.2], 0.0);
 /// let world = World::new(&arena)?;
 /// // Past the corner along the diagonal, the long side is met.
-/// let sight = world.look([0.9, 0.9], [-0.5_f32.sqrt(), -0.5_f32.sqrt()], 2.0, None).unwrap();
+/// let sight = world.cast_planar([0.9, 0.9], [-0.5_f32.sqrt(), -0.5_f32.sqrt()], 2.0, None).unwrap();
 /// assert!((sight.distance - 0.35 * 2.0_f32.sqrt()).abs() < 1e-6);
 /// assert!(world.cast([0.5, 0.1, 0.11], [0.0, 1.0, 0.0], 0.5).is_none());
 /// # Ok::<(), farsa_physics::arena::ArenaError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Convex {
     /// Its form and place.
     pub form: ConvexForm,

@@ -19,13 +19,13 @@ pub(crate) struct Crowd {
     pub(crate) grid: Option<Grid>,
     /// The first robot of those that hold together with each.
     group: Vec<u16>,
-    /// Whether anybody holds anybody.
+    /// Whether any robot holds another.
     held: bool,
     back: Vec<bool>,
     /// Whether those that hold together are set back, by the first of them.
     stopped: Vec<bool>,
     pushes: Vec<(u16, [f32; 2])>,
-    /// Who is set back now, and who was in the last round.
+    /// Which robots are set back now, and which were in the last round.
     now: Vec<u16>,
     last: Vec<u16>,
 }
@@ -54,7 +54,7 @@ impl Crowd {
         }
     }
 
-    /// Finds everybody again.
+    /// Finds all robots again.
     pub(crate) fn fill(&mut self, words: &[f32]) {
         if let Some(grid) = &mut self.grid {
             grid.fill(words);
@@ -72,6 +72,7 @@ impl Crowd {
     /// Robots and cylinders that may touch a disc, itself included.
     #[inline]
     fn around(&self, model: &Model, [x, y]: [f32; 2], radius: f32, tell: impl FnMut(usize)) {
+        // A little more than needed: rounding must not leave out one that touches.
         let reach = 1.01 * (radius + model.largest);
         self.visit(model, [x - reach, y - reach], [x + reach, y + reach], tell);
     }
@@ -108,6 +109,7 @@ impl Crowd {
                 take(meets_solid(solid, own, radius), NOTHING, 1.0, &mut push);
             }
         }
+        // A grid names bodies cell by cell. They are sorted, because sums of pushes have other bits in another order.
         let mut others = [0_u16; 16];
         let mut count = 0;
         let touched = |body: usize| {
@@ -124,6 +126,7 @@ impl Crowd {
         });
         let mut each = |body: usize| {
             let meeting = meets_disc(own, at(words, body), radius, model.radius(body));
+            // Two robots give way by half each; cylinders do not give way.
             take(meeting, body as f32, if body < model.robots.len() { 0.5 } else { 1.0 }, &mut push);
         };
         match others.get_mut(..count) {
@@ -133,6 +136,7 @@ impl Crowd {
                     each(usize::from(*body));
                 }
             }
+            // More than there is room for: all bodies are looked at, which are in order.
             None => (0..model.round_bodies()).filter(|body| touched(*body)).for_each(each),
         }
         met
@@ -154,7 +158,7 @@ impl Crowd {
         self.undo(model, words, work);
     }
 
-    /// Lets devices take hold and let go, and finds who holds together.
+    /// Lets devices take hold and let go, and finds which robots hold together.
     fn hold(&mut self, model: &Model, words: &mut [f32]) {
         self.held = false;
         if !model.attachments {
@@ -237,6 +241,8 @@ impl Crowd {
                 let word = model.robot_word(robot, VELOCITY);
                 [words[word], words[word + 1]]
             };
+            // Least squares of v_i = V + w x r_i, with r_i from the mean of the centres: V = mean of v_i,
+            // w = sum r_i x v_i / sum r_i . r_i.
             let (mut centre, mut mean) = ([0.0_f32; 2], [0.0_f32; 2]);
             for robot in (first..robots).filter(member) {
                 let (p, v) = (was(robot), velocity(words, robot));
@@ -253,6 +259,7 @@ impl Crowd {
                 inertia += x * x + y * y;
             }
             let spin = if inertia > 0.0 { moment / inertia } else { 0.0 };
+            // Turned by the whole angle w h, so that distances within the group stay as they are.
             let (sine, cosine) = sin_cos(spin * model.time_step);
             for robot in (first..robots).filter(member) {
                 let p = was(robot);
@@ -285,6 +292,7 @@ impl Crowd {
     fn push(&mut self, model: &Model, words: &mut [f32], work: &[f32]) {
         self.back.fill(false);
         for _ in 0..SWEEPS {
+            // All pushes of a sweep are found before anybody moves, so that nobody comes first.
             let mut pushes = core::mem::take(&mut self.pushes);
             pushes.clear();
             for robot in 0..model.robots.len() {
@@ -301,15 +309,16 @@ impl Crowd {
                     (0..2).for_each(|k| words[POSE_WORDS * robot + k] += push[k]);
                 }
             }
-            let nobody = pushes.is_empty();
+            let none = pushes.is_empty();
             self.pushes = pushes;
-            if nobody {
+            if none {
                 break;
             }
             self.fill(words);
         }
         for robot in (0..model.robots.len()).filter(|robot| self.back[*robot]) {
             for k in 0..2 {
+                // Who was pushed has the velocity of the way that it really went.
                 let way = words[POSE_WORDS * robot + k] - work[WORK_WORDS * robot + k];
                 words[model.robot_word(robot, VELOCITY + k)] = way / model.time_step;
             }
@@ -338,6 +347,7 @@ impl Crowd {
             for robot in &now {
                 self.back[usize::from(*robot)] = true;
             }
+            // A group goes back as a whole, as it moved as a whole.
             if self.held {
                 self.stopped.fill(false);
                 for robot in &now {
@@ -357,7 +367,7 @@ impl Crowd {
             if self.held || model.collisions == CollisionRule::Circles {
                 self.fill(words);
             }
-            // Whoever did not overlap before can only overlap one that was set back just now.
+            // A robot that did not overlap before can only overlap one that was set back just now.
             self.now = core::mem::take(&mut self.last);
             self.now.clear();
             let mut found = core::mem::take(&mut self.now);

@@ -8,6 +8,7 @@ use crate::arena::convex::{Convex, GREY};
 
 /// A wall: a box that stands on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Wall {
     /// Its middle [m].
     pub centre: [f64; 2],
@@ -53,6 +54,7 @@ impl Wall {
 
 /// A cylinder that stands on the ground and does not move by itself; perhaps a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Cylinder {
     /// Where its axis stands at first [m].
     pub centre: [f64; 2],
@@ -75,6 +77,11 @@ impl Cylinder {
 
 /// The form of an [`Area`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum AreaShape {
     /// A disc.
     Circle {
@@ -90,6 +97,7 @@ pub enum AreaShape {
 
 /// A part of the ground in a colour of its own, such as a target or a nest; nothing collides with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Area {
     /// Its middle at first [m].
     pub centre: [f64; 2],
@@ -115,20 +123,23 @@ impl Area {
 
 /// What happens to robots that would overlap something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum CollisionRule {
-    /// All move; whoever then overlaps anything is set back to where it was, as often as that makes others overlap.
+    /// All move; robots that then overlap anything are set back to where it was, as often as that makes others overlap.
     ///
     /// Its wheels go on turning. As the original does.
     #[default]
-    Undone,
+    Revert,
     /// Overlapping robots are pushed apart, half by half, and off walls and cylinders, so that they slide along.
     ///
-    /// Whom eight sweeps of pushing do not free is set back as by [`Undone`](Self::Undone); so are attached robots.
+    /// Robots that eight sweeps of pushing do not free are set back as by [`Revert`](Self::Revert); so are attached
+    /// robots.
     Circles,
 }
 
 /// How neighbours are found; the results are the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Search {
     /// In a grid where there are more than 32 robots and cylinders.
     #[default]
@@ -141,7 +152,8 @@ pub enum Search {
 
 /// A robot and where it starts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Placed {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct RobotPlacement {
     /// The robot.
     pub robot: MobileRobot,
     /// Where it starts [m].
@@ -172,6 +184,7 @@ pub struct Placed {
 /// # Ok::<(), farsa_physics::arena::ArenaError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Arena {
     /// Everything starts within [0, width] x [0, depth] [m], if given.
     pub size: Option<[f64; 2]>,
@@ -184,7 +197,7 @@ pub struct Arena {
     /// The areas; where several lie over each other, the last one is seen.
     pub areas: Vec<Area>,
     /// The robots.
-    pub robots: Vec<Placed>,
+    pub robots: Vec<RobotPlacement>,
     /// Colour of the ground where no area is.
     pub ground: [f64; 3],
     /// The control step [s].
@@ -218,7 +231,7 @@ impl Arena {
             robots: Vec::new(),
             ground: [1.0; 3],
             time_step: Self::TIME_STEP,
-            collisions: CollisionRule::Undone,
+            collisions: CollisionRule::Revert,
             search: Search::Auto,
         }
     }
@@ -260,7 +273,7 @@ impl Arena {
 
     /// Adds a robot that starts at `at` [m] and looks along `heading` [rad]; its number, see [`Arena::parts`].
     pub fn add_robot(&mut self, robot: MobileRobot, at: [f64; 2], heading: f64) -> usize {
-        self.robots.push(Placed { robot, at, heading });
+        self.robots.push(RobotPlacement { robot, at, heading });
         self.robots.len() - 1
     }
 

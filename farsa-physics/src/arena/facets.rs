@@ -11,7 +11,7 @@ use crate::arena::solid::Face;
 
 /// Points lie on a common face that are no farther from it, in parts of half the hull's breadth: what rounding makes of flat.
 const FLAT: f64 = 1e-9;
-/// Points are one that are no farther apart, in the same parts: `f32` has to tell them from each other.
+/// Points are one that are no farther apart, in the same parts: `f32` has to distinguish them.
 const SAME: f64 = 2e-4;
 
 /// How far points may lie beyond a face, in the same parts: parry leaves out corners that stand out less than a hundred times

@@ -1,4 +1,4 @@
-//! A uniform grid over the places of robots and cylinders: who may be near.
+//! A uniform grid over the places of robots and cylinders: which bodies may be near.
 
 use alloc::vec;
 use alloc::vec::Vec;

@@ -61,7 +61,7 @@ fn add_walls<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, robot: usize, 
         let way = to_wall(slab, pose.at);
         add_surface(simd, &kind.infrared, &model.wall_seen, pose.axis, way, kind.radius, out);
     }
-    // Twice what is felt: whom the mask leaves out feels nothing anyway.
+    // Twice what is felt: lanes that the mask leaves out feel nothing anyway.
     let reach = S::splat(simd, 2.0 * (kind.radius + model.wall_seen.range()));
     for solid in &model.solids {
         if beside(solid, pose.at, reach).any() {
@@ -125,7 +125,7 @@ pub(crate) fn ring<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &
     sums_to_readings::<S>(simd, sensors, out);
 }
 
-/// The same where the bodies that may be sensed are told, in their order.
+/// The same where the bodies that may be sensed are given, in their order.
 pub(crate) fn ring_among(
     model: &Model,
     words: &[f32],
@@ -137,7 +137,7 @@ pub(crate) fn ring_among(
     let pose = pose::<f32>((), words, robot);
     clear_sums::<f32>((), sensors, out);
     add_walls((), model, robot, pose, out);
-    // A little more than can be felt: what is told in vain adds zero.
+    // A little more than can be felt: what is given in vain adds zero.
     let reach = model.kind(robot).radius + model.largest + model.wall_seen.range();
     near(pose.at, 1.01 * reach, &mut |other| add_body((), model, words, robot, pose, other, out));
     sums_to_readings::<f32>((), sensors, out);

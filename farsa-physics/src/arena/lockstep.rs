@@ -18,7 +18,7 @@ pub(crate) trait Lockstep: Send + Sync {
     /// Readings of a robot's infrared ring; see [`ring`].
     fn infrared(&self, model: &Model, words: &[f32], robot: usize, out: &mut [f32]);
     /// The same again.
-    fn another(&self) -> Box<dyn Lockstep>;
+    fn boxed_clone(&self) -> Box<dyn Lockstep>;
 }
 
 /// Nothing but the proof that the instructions are there.
@@ -48,14 +48,14 @@ where
         );
     }
 
-    fn another(&self) -> Box<dyn Lockstep> {
+    fn boxed_clone(&self) -> Box<dyn Lockstep> {
         Box::new(Self { simd: self.simd, scalar: PhantomData })
     }
 }
 
 /// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for.
 pub(crate) fn lockstep(lanes: usize, instructions: Instructions) -> Box<dyn Lockstep> {
-    fn of<S: Simd>(simd: S, lanes: usize) -> Box<dyn Lockstep> {
+    fn boxed<S: Simd>(simd: S, lanes: usize) -> Box<dyn Lockstep> {
         if lanes == LANES[0] {
             Box::new(Vectors::<f32x8<S>> { simd, scalar: PhantomData })
         } else {
@@ -66,14 +66,14 @@ pub(crate) fn lockstep(lanes: usize, instructions: Instructions) -> Box<dyn Lock
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if let Some(simd) = level.as_avx512() {
-            return of(simd, lanes);
+            return boxed(simd, lanes);
         }
         if let Some(simd) = level.as_avx2() {
-            return of(simd, lanes);
+            return boxed(simd, lanes);
         }
         if let Some(simd) = level.as_sse2() {
-            return of(simd, lanes);
+            return boxed(simd, lanes);
         }
     }
-    farsa_num::fearless_simd::dispatch!(level, simd => of(simd, lanes))
+    farsa_num::fearless_simd::dispatch!(level, simd => boxed(simd, lanes))
 }

@@ -13,7 +13,7 @@
 //! - `surface`: nearest points and overlaps of discs with walls and with each other
 //! - `step`: one step, of one world or of lanes
 //! - `crowd`: a step of one world with many robots or attachments
-//! - `grid`: a uniform grid: who may be near
+//! - `grid`: a uniform grid: which bodies may be near
 //! - `infrared`: the ring of analytic infrared sensors
 //! - `view`: answers of the ports, from the words of a state
 //! - `world`: one world behind the ports
@@ -46,7 +46,7 @@ mod world;
 #[cfg(all(feature = "lanes", not(test)))]
 pub use batch::{Batch, Lane};
 pub use convex::{Convex, ConvexForm};
-pub use description::{Area, AreaShape, Arena, CollisionRule, Cylinder, Placed, Search, Wall};
+pub use description::{Area, AreaShape, Arena, CollisionRule, Cylinder, RobotPlacement, Search, Wall};
 pub use error::{ArenaError, Part};
 pub use place::FreePlace;
 pub use world::World;

@@ -141,7 +141,7 @@ fn kind(robot: &MobileRobot, time_step: f64) -> Kind {
         advance: (0.5 * wheel * time_step) as f32,
         speeds: narrow([0.5 * wheel, wheel / robot.track]),
         infrared: robot.infrared.angles.iter().map(|angle| direction(*angle)).collect(),
-        seen: AnalyticInfrared::of(robot.radius as f32),
+        seen: AnalyticInfrared::for_radius(robot.radius as f32),
         robot: robot.clone(),
     }
 }
@@ -314,7 +314,7 @@ impl Model {
             first += start.robot.actuators();
         }
         Self::check_places(arena)?;
-        let mut model = Self::of(arena, kinds, numbers, solids);
+        let mut model = Self::from_parts(arena, kinds, numbers, solids);
         model.actuators = actuators;
         model.initial = model.start(arena);
         Ok(model)
@@ -348,13 +348,13 @@ impl Model {
         check_overlaps(arena, &mut discs)
     }
 
-    fn of(arena: &Arena, kinds: Vec<Kind>, robots: Vec<(u16, u16)>, solids: Vec<Solid>) -> Self {
+    fn from_parts(arena: &Arena, kinds: Vec<Kind>, robots: Vec<(u16, u16)>, solids: Vec<Solid>) -> Self {
         let rounds = arena.cylinders.iter().map(|cylinder| Round {
             radius: cylinder.radius as f32,
             height: cylinder.height as f32,
             color: narrow(cylinder.color),
             lamp: cylinder.lamp as f32,
-            seen: AnalyticInfrared::of(cylinder.radius as f32),
+            seen: AnalyticInfrared::for_radius(cylinder.radius as f32),
         });
         let patches = arena.areas.iter().map(|area| {
             let (half, disc) = match area.shape {
@@ -382,7 +382,7 @@ impl Model {
                 Search::All => false,
                 Search::Grid => true,
             },
-            wall_seen: AnalyticInfrared::of(0.0),
+            wall_seen: AnalyticInfrared::for_radius(0.0),
             actuators: 0,
             initial: Vec::new(),
             kinds,

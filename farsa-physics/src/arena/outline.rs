@@ -6,46 +6,46 @@ use farsa_num::Scalar;
 
 use crate::arena::error::{ArenaError, Part};
 
-/// A place in the plane [m].
-type Place = [f64; 2];
+/// A point in the plane [m].
+type Point2 = [f64; 2];
 
 /// Corners that are no farther apart are the same [m].
 pub(crate) const LEAST: f64 = 1e-6;
 /// Rounding may dent a straight side so much [m].
 const SLACK: f64 = 1e-9;
 
-fn apart(a: Place, b: Place) -> f64 {
+fn apart(a: Point2, b: Point2) -> f64 {
     let [x, y] = [b[0] - a[0], b[1] - a[1]];
     Scalar::sqrt(x * x + y * y)
 }
 
 /// Twice the area of the triangle, positive if it runs counter-clockwise.
-fn turn(a: Place, b: Place, c: Place) -> f64 {
+fn turn(a: Point2, b: Point2, c: Point2) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
 /// How far a place lies to the right of the line from `a` to `b` [m].
-fn beyond([a, b]: [Place; 2], place: Place) -> f64 {
+fn beyond([a, b]: [Point2; 2], place: Point2) -> f64 {
     -turn(a, b, place) / apart(a, b)
 }
 
 /// The sides of a closed polygon, from each corner to the next.
-pub(crate) fn sides(corners: &[Place]) -> impl Iterator<Item = [Place; 2]> + '_ {
+pub(crate) fn sides(corners: &[Point2]) -> impl Iterator<Item = [Point2; 2]> + '_ {
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| [*a, *b])
 }
 
 /// The convex hull of places, counter-clockwise from the lowest x; fewer than three places if it has no area.
 ///
 /// Source: own, after Andrew's monotone chain.
-pub(crate) fn hull(places: &[Place]) -> Vec<Place> {
-    fn extend(chain: &mut Vec<Place>, least: usize, place: Place) {
+pub(crate) fn hull(places: &[Point2]) -> Vec<Point2> {
+    fn extend(chain: &mut Vec<Point2>, least: usize, place: Point2) {
         while chain.len() >= least && turn(chain[chain.len() - 2], chain[chain.len() - 1], place) <= 0.0 {
             chain.pop();
         }
         chain.push(place);
     }
     // No negative zeros: they would sort before what is equal to them.
-    let mut sorted: Vec<Place> = places.iter().map(|place| place.map(|x| x + 0.0)).collect();
+    let mut sorted: Vec<Point2> = places.iter().map(|place| place.map(|x| x + 0.0)).collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     sorted.dedup();
     let mut chain = Vec::with_capacity(sorted.len() + 1);
@@ -62,17 +62,17 @@ pub(crate) fn hull(places: &[Place]) -> Vec<Place> {
 }
 
 /// How far a place lies beyond that side of an outline which it is farthest beyond [m]; negative within.
-fn gap(outline: &[Place], place: Place) -> f64 {
+fn gap(outline: &[Point2], place: Point2) -> f64 {
     sides(outline).map(|side| beyond(side, place)).fold(f64::NEG_INFINITY, Scalar::max)
 }
 
 /// Distance from a place to an outline [m]; negative within.
-pub(crate) fn distance(outline: &[Place], place: Place) -> f64 {
+pub(crate) fn distance(outline: &[Point2], place: Point2) -> f64 {
     let gap = gap(outline, place);
     if gap <= 0.0 {
         return gap;
     }
-    let to_side = |[a, b]: [Place; 2]| {
+    let to_side = |[a, b]: [Point2; 2]| {
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let along = ((place[0] - a[0]) * x + (place[1] - a[1]) * y) / (x * x + y * y);
         let along = along.clamp(0.0, 1.0);
@@ -82,17 +82,17 @@ pub(crate) fn distance(outline: &[Place], place: Place) -> f64 {
 }
 
 /// The smallest breadth of an outline [m]; 0 if it has no area.
-pub(crate) fn width(outline: &[Place]) -> f64 {
+pub(crate) fn width(outline: &[Point2]) -> f64 {
     if outline.len() < 3 {
         return 0.0;
     }
     let breadth =
-        |side: [Place; 2]| outline.iter().map(|corner| -beyond(side, *corner)).fold(f64::NEG_INFINITY, Scalar::max);
+        |side: [Point2; 2]| outline.iter().map(|corner| -beyond(side, *corner)).fold(f64::NEG_INFINITY, Scalar::max);
     sides(outline).map(breadth).fold(f64::INFINITY, Scalar::min)
 }
 
 /// Whether corners follow each other around a convex polygon, either way.
-pub(crate) fn check_turns(part: Part, corners: &[Place], outline: &[Place]) -> Result<(), ArenaError> {
+pub(crate) fn check_turns(part: Part, corners: &[Point2], outline: &[Point2]) -> Result<(), ArenaError> {
     for (i, a) in corners.iter().enumerate() {
         for (j, b) in corners.iter().enumerate().skip(i + 1) {
             let distance = apart(*a, *b);
@@ -125,7 +125,7 @@ mod tests {
     proptest! {
         #[test]
         fn hulls_hold_their_places(places in prop::collection::vec(prop::array::uniform2(-9_i32..9), 0..30)) {
-            let places: Vec<Place> = places.into_iter().map(|place| place.map(f64::from)).collect();
+            let places: Vec<Point2> = places.into_iter().map(|place| place.map(f64::from)).collect();
             let hull = hull(&places);
             prop_assert!(hull.iter().all(|corner| places.contains(corner)));
             if hull.len() > 2 {

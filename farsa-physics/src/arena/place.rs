@@ -21,7 +21,7 @@ use crate::arena::error::ArenaError;
 /// let free = FreePlace { walls: 0.01, ..FreePlace::new([[0.0, 0.0], [0.4, 0.4]], 0.035) };
 /// let at = free.find(&world, &mut stream)?;
 /// world.place_body(world.parts(robot).body, Pose::planar(at, stream.range(-3.14, 3.14)), Twist::default());
-/// world.arranged();
+/// world.finish_placement();
 /// # Ok::<(), ArenaError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl<'a> FreePlace<'a> {
         for _ in 0..self.tries {
             let at = [0, 1].map(|k| stream.range(low[k], high[k]));
             let mut lacks = f32::NEG_INFINITY;
-            world.near(at, self.radius + farthest.max(0.0), &mut |near| {
+            world.query_near(at, self.radius + farthest.max(0.0), &mut |near| {
                 let clearance = match near.body {
                     None => Some(self.walls),
                     Some(body) => self.bodies.iter().find(|(b, _)| *b == body).map(|(_, far)| *far),

@@ -59,6 +59,7 @@ pub(crate) fn prism_faces(outline: &[[f64; 2]], height: f64) -> Vec<Face> {
     let upright = sides(outline).map(|[a, b]| {
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let length = Scalar::sqrt(x * x + y * y);
+        // To the right of a side that runs counter-clockwise is outwards.
         let [u, v] = [y / length, -x / length];
         Face { out: [u as f32, v as f32, 0.0], reach: (u * a[0] + v * a[1]) as f32 }
     });
@@ -120,11 +121,13 @@ fn nearest<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2]) -> Nearest<S> {
         let [u, v] = [x.like(side.along[0]), x.like(side.along[1])];
         let from = [x.like(side.from[0]), x.like(side.from[1])];
         let [p, q] = [place[0] - from[0], place[1] - from[1]];
+        // Outwards is (v, -u): positive beyond the line of the side. A place beyond none lies within.
         let beyond = p * v - q * u;
         within = within & beyond.le(zero);
         let farther = beyond.gt(gap);
         gap = S::select(farther, beyond, gap);
         out = [S::select(farther, v, out[0]), S::select(farther, -u, out[1])];
+        // The nearest point of the side, not of its line.
         let along = (p * u + q * v).clamp(zero, x.like(side.length));
         let foot = [from[0] + along * u, from[1] + along * v];
         let [a, b] = [place[0] - foot[0], place[1] - foot[1]];
@@ -141,6 +144,7 @@ fn nearest<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2]) -> Nearest<S> {
 /// Whether a place may be nearer to an obstacle than `reach` [m].
 #[inline(always)]
 pub(crate) fn beside<S: Scalar<Real = f32>>(solid: &Solid, [x, y]: [S; 2], reach: S) -> S::Mask {
+    // The rectangle around it first: most places are far from most obstacles.
     let [u, v] = [(x - x.like(solid.centre[0])).abs(), (y - x.like(solid.centre[1])).abs()];
     (u - x.like(solid.around[0])).lt(reach) & (v - x.like(solid.around[1])).lt(reach)
 }
@@ -168,6 +172,7 @@ pub(crate) fn meets_solid<S: Scalar<Real = f32>>(solid: &Solid, at: [S; 2], radi
     let [x, y] = [place[0] - point[0], place[1] - point[1]];
     // From within, out by the nearest side.
     let out = [S::select(outside, x / divisor, out[0]), S::select(outside, y / divisor, out[1])];
+    // Within, `gap` is negative: the way back to the nearest side comes on top of the radius.
     let depth = radius - S::select(outside, distance, gap);
     let point = [radius.like(solid.centre[0]) + point[0], radius.like(solid.centre[1]) + point[1]];
     Meeting { depth, out, point }
@@ -178,6 +183,8 @@ pub(crate) fn meets_solid<S: Scalar<Real = f32>>(solid: &Solid, at: [S; 2], radi
 #[inline(always)]
 fn enters(faces: impl Iterator<Item = [f32; 2]>) -> Option<(f32, usize)> {
     let (mut enter, mut leave, mut face) = (f32::NEG_INFINITY, f32::INFINITY, 0);
+    // It crosses a face where beyond + t growth = 0: inwards where growth is negative, else outwards. It is within
+    // between the last crossing inwards and the first outwards [Ericson2005] section 5.3.8.
     for (i, [beyond, growth]) in faces.enumerate() {
         if growth < 0.0 {
             let here = -beyond / growth;
@@ -186,6 +193,7 @@ fn enters(faces: impl Iterator<Item = [f32; 2]>) -> Option<(f32, usize)> {
             }
         } else if growth > 0.0 {
             leave = Scalar::min(-beyond / growth, leave);
+        // Along this face and outside of it.
         } else if beyond > 0.0 {
             return None;
         }

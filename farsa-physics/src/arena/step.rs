@@ -123,7 +123,7 @@ pub(crate) fn step_without_collisions<S: Scalar<Real = f32>>(
     for (k, x) in [forward * pose[3], forward * pose[4], spin].into_iter().enumerate() {
         store(words, word + VELOCITY + k, x);
     }
-    // Nothing met so far, nothing pushed, nobody set back.
+    // Nothing met so far, nothing pushed, no robot set back.
     let zero = S::splat(simd, 0.0);
     for k in 0..5 {
         store(words, word + CONTACT + k, zero);
@@ -243,7 +243,7 @@ fn find_overlap<S: Scalar<Real = f32>>(
     met
 }
 
-/// The smallest depth that is told of what overlaps: rounding may leave none [m].
+/// The smallest depth that is reported of what overlaps: rounding may leave none [m].
 const LEAST: f32 = 1e-12;
 
 /// Keeps of two meetings the deeper one; of equal ones the first.
@@ -297,8 +297,8 @@ fn record_contact<S: Scalar<Real = f32>>(
 /// Pushes overlapping robots apart and off what stands.
 #[inline(always)]
 fn push<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], work: &mut [f32]) {
-    // Jacobi: all pushes of a sweep are found before anybody moves, so that the order of robots does not matter. Those that
-    // are left after the last sweep are undone.
+    // Jacobi: all pushes of a sweep are found before any robot moves, so that the order of robots does not matter.
+    // Those that are left after the last sweep are undone.
     let zero = S::splat(simd, 0.0);
     let one = S::splat(simd, 1.0);
     for _ in 0..SWEEPS {
@@ -328,7 +328,7 @@ fn push<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
             }
         }
     }
-    // Whoever was pushed has the velocity of the way that it really went.
+    // A pushed robot has the velocity of the way that it really went.
     let time_step = S::splat(simd, model.time_step);
     for robot in 0..model.robots.len() {
         let pushed = load::<S>(simd, work, WORK_WORDS * robot + PUSHED).gt(zero);
@@ -342,15 +342,15 @@ fn push<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
     }
 }
 
-/// Sets back whoever overlaps anything until nobody does who is not set back.
+/// Sets back robots that overlap anything, until all others are free.
 #[inline(always)]
 fn undo<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], work: &mut [f32]) {
     let zero = S::splat(simd, 0.0);
     let one = S::splat(simd, 1.0);
     let robots = model.robots.len();
     // A robot that is set back may stand where another has come to in the meantime, which is then set back in the next round.
-    // Where all stand where they stood, nobody overlaps: as many rounds as robots, and one that finds nothing.
-    // Each round but the last sets somebody back.
+    // With all robots back, none overlaps: as many rounds as robots, and one that finds nothing.
+    // Each round but the last sets a robot back.
     for _ in 0..=robots {
         let mut any = false;
         for robot in 0..robots {
@@ -379,7 +379,7 @@ fn undo<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model, words: &mut [f32], 
                 store_where(simd, work, WORK_WORDS * robot + BACK, mask, one);
             }
         }
-        // Alone, it is where it was: there is nobody to look again for.
+        // Alone, it is where it was: there is no other to look again for.
         if robots == 1 {
             break;
         }

@@ -84,7 +84,7 @@ pub(crate) fn meets_disc<S: Scalar<Real = f32>>(at: [S; 2], other: [S; 2], radiu
 
 /// Where a ray of unit direction enters a disc around the origin [m]; `None` if it begins within or misses.
 pub(crate) fn ray_to_disc(from: [f32; 2], direction: [f32; 2], radius: f32) -> Option<f32> {
-    // Of the squares' difference: from far away, their roots would not tell a small disc.
+    // Of the squares' difference: from far away, their roots would lose a small disc.
     let along = from[0] * direction[0] + from[1] * direction[1];
     let across = from[0] * direction[1] - from[1] * direction[0];
     let outside = from[0] * from[0] + from[1] * from[1] - radius * radius;

@@ -1,6 +1,6 @@
-//! What the ports of a planar world tell, from its words: for a world alone and a lane.
+//! What the ports of a planar world report, from its words: for a world alone and a lane.
 
-use farsa_body::{ActuatorId, BodyId, Hit, JointId, Lamp, Near, PairContact, PairId, Pose, Sight, Twist};
+use farsa_body::{ActuatorId, BodyId, Hit, JointId, Lamp, NearbySurface, PairContact, PairId, PlanarHit, Pose, Twist};
 use farsa_num::{Scalar, sin_cos};
 
 use crate::arena::model::{CONTACT, HELD, MET, Model, NOTHING, POSE_WORDS, SHOWN, VELOCITY, WHEELS, pose_words};
@@ -30,7 +30,7 @@ struct Sorted {
 impl Sorted {
     /// The bodies whose centres may lie in the rectangle; `None` if they are too many.
     #[inline]
-    fn of(world: &impl View, low: [f32; 2], high: [f32; 2]) -> Option<Self> {
+    fn new(world: &impl View, low: [f32; 2], high: [f32; 2]) -> Option<Self> {
         let mut sorted = Self { bodies: [0; 64], count: 0 };
         world.visit(low, high, |body| {
             let mut at = sorted.count;
@@ -50,7 +50,7 @@ impl Sorted {
 /// Tells the robots and cylinders whose centres may lie in the rectangle [m], in their order.
 #[inline]
 pub(crate) fn in_order(world: &impl View, low: [f32; 2], high: [f32; 2], mut tell: impl FnMut(usize)) {
-    match Sorted::of(world, low, high) {
+    match Sorted::new(world, low, high) {
         Some(sorted) => sorted.bodies[..sorted.count].iter().for_each(|body| tell(usize::from(*body))),
         None => (0..world.model().round_bodies()).for_each(tell),
     }
@@ -149,7 +149,7 @@ fn signal(world: &impl View, body: usize) -> Option<f32> {
 }
 
 /// See [`farsa_body::Planar::near`].
-pub(crate) fn near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl FnMut(Near<BodyId>)) {
+pub(crate) fn query_near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl FnMut(NearbySurface<BodyId>)) {
     let model = world.model();
     for slab in &model.slabs {
         if !slab.within_reach(from, range) {
@@ -159,7 +159,7 @@ pub(crate) fn near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl
         let distance = Scalar::sqrt(x * x + y * y);
         if distance <= range {
             let point = [from[0] + x, from[1] + y];
-            tell(Near { body: None, point, distance, radius: 0.0, color: slab.color, signal: None });
+            tell(NearbySurface { body: None, point, distance, radius: 0.0, color: slab.color, signal: None });
         }
     }
     // Farther than the range, so that rounding leaves out nothing that is within it.
@@ -168,7 +168,7 @@ pub(crate) fn near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl
         let distance = Scalar::sqrt(x * x + y * y);
         if distance <= range {
             let point = [from[0] + x, from[1] + y];
-            tell(Near { body: None, point, distance, radius: 0.0, color: solid.color, signal: None });
+            tell(NearbySurface { body: None, point, distance, radius: 0.0, color: solid.color, signal: None });
         }
     }
     let reach = range + model.largest;
@@ -183,7 +183,7 @@ pub(crate) fn near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl
         }
         let away = Scalar::sqrt(square);
         let out = if away > 0.0 { [x / away, y / away] } else { [1.0, 0.0] };
-        tell(Near {
+        tell(NearbySurface {
             body: Some(BodyId(body as u16)),
             point: [centre[0] + radius * out[0], centre[1] + radius * out[1]],
             distance: away - radius,
@@ -199,7 +199,7 @@ const PIECES: usize = 64;
 
 /// Goes along a ray in the plane and tries each body that may lie on it; `way` need not be a unit vector.
 ///
-/// `try_body` tells how far the nearest thing found so far is, in lengths of `way`.
+/// `try_body` returns how far the nearest thing found so far is, in lengths of `way`.
 fn along(
     world: &impl View,
     from: [f32; 2],
@@ -232,22 +232,22 @@ fn along(
 }
 
 /// See [`farsa_body::Planar::look`].
-pub(crate) fn look(
+pub(crate) fn cast_planar(
     world: &impl View,
     from: [f32; 2],
     direction: [f32; 2],
     range: f32,
     but: Option<BodyId>,
-) -> Option<Sight<BodyId>> {
+) -> Option<PlanarHit<BodyId>> {
     let model = world.model();
-    let mut sight: Option<Sight<BodyId>> = None;
+    let mut sight: Option<PlanarHit<BodyId>> = None;
     let mut nearest = range;
     for slab in &model.slabs {
         if let Some(distance) = ray_to_wall(slab, from, direction)
             && (distance < nearest || sight.is_none() && distance <= nearest)
         {
             nearest = distance;
-            sight = Some(Sight { distance, body: None, color: slab.color });
+            sight = Some(PlanarHit { distance, body: None, color: slab.color });
         }
     }
     for solid in &model.solids {
@@ -255,7 +255,7 @@ pub(crate) fn look(
             && (distance < nearest || sight.is_none() && distance <= nearest)
         {
             nearest = distance;
-            sight = Some(Sight { distance, body: None, color: solid.color });
+            sight = Some(PlanarHit { distance, body: None, color: solid.color });
         }
     }
     let mut met: Option<(f32, usize)> = None;
@@ -272,7 +272,7 @@ pub(crate) fn look(
     });
     match met {
         Some((distance, body)) if distance < nearest || sight.is_none() => {
-            Some(Sight { distance, body: Some(BodyId(body as u16)), color: color(world, body) })
+            Some(PlanarHit { distance, body: Some(BodyId(body as u16)), color: color(world, body) })
         }
         _ => sight,
     }

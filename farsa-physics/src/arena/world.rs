@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileParts,
-    Near, PairContact, PairId, Planar, Pose, Rays, Sight, Snapshot, Twist,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Snapshot, Twist,
 };
 
 use crate::arena::crowd::Crowd;
@@ -16,12 +16,12 @@ use crate::arena::model::Model;
 use crate::arena::step::{WORK_WORDS, step};
 use crate::arena::view::{self as view, View};
 
-/// One planar world: kinematic, wheels do exactly what they are told.
+/// One planar world: kinematic, wheels do exactly what is commanded.
 ///
 /// - *Motion*: along an arc about the instantaneous centre of rotation, exactly; commands of wheels are brought within the robot's
 ///   greatest wheel speed, a NaN stands still. LEDs and signals are shown from the next step on. Wheels turn whatever becomes of
 ///   the motion; their positions go on at the other end of +-16 turns.
-/// - *Collisions*: [`CollisionRule`](crate::arena::CollisionRule). A robot that was set back is told to be at rest.
+/// - *Collisions*: [`CollisionRule`](crate::arena::CollisionRule). A robot that was set back is reported at rest.
 /// - *Contacts*: pair `r` is robot `r` and whatever it overlapped most in the last step, before that was undone or pushed
 ///   apart, with a nominal normal force of 1 N; `None` is a wall, and nothing where it does not touch.
 /// - *Attachment*: while its command is above 0.5, a device takes hold of the nearest robot that is straight ahead within reach of
@@ -75,7 +75,7 @@ impl World {
         });
     }
 
-    /// The state, to be changed; [`Arrange::arranged`] must follow.
+    /// The state, to be changed; [`Arrange::finish_placement`] must follow.
     #[cfg(all(feature = "lanes", not(test)))]
     pub(crate) fn words_mut(&mut self) -> &mut [f32] {
         &mut self.words
@@ -176,17 +176,17 @@ macro_rules! ports {
         }
 
         impl Planar for $world {
-            fn near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(Near<BodyId>)) {
-                view::near(self, from, range, tell);
+            fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
+                view::query_near(self, from, range, tell);
             }
-            fn look(
+            fn cast_planar(
                 &self,
                 from: [f32; 2],
                 direction: [f32; 2],
                 range: f32,
                 but: Option<BodyId>,
-            ) -> Option<Sight<BodyId>> {
-                view::look(self, from, direction, range, but)
+            ) -> Option<PlanarHit<BodyId>> {
+                view::cast_planar(self, from, direction, range, but)
             }
             fn ground(&self, at: [f32; 2]) -> [f32; 3] {
                 view::ground(self, at)
@@ -212,7 +212,7 @@ macro_rules! ports {
                 for (i, x) in from.iter().take(self.snapshot_len()).enumerate() {
                     self.set_word(i, *x);
                 }
-                self.arranged();
+                self.finish_placement();
             }
         }
     };
@@ -226,7 +226,7 @@ ports!(World);
 impl Arrange for World {
     fn clear(&mut self) {
         view::clear(self);
-        self.arranged();
+        self.finish_placement();
     }
     fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
         view::place_joint(self, joint, position, speed);
@@ -234,7 +234,7 @@ impl Arrange for World {
     fn place_body(&mut self, body: BodyId, pose: Pose, _: Twist) {
         view::place_body(self, body, pose);
     }
-    fn arranged(&mut self) {
+    fn finish_placement(&mut self) {
         self.crowd.fill(&self.words);
     }
 }

@@ -26,7 +26,7 @@ use crate::articulated::model::{Model, ModelError};
 /// for i in 0..8 {
 ///     let mut lane = batch.lane(i);
 ///     lane.place_joint(JointId(0), 0.1 * i as f32, 0.0);
-///     lane.arranged();
+///     lane.finish_placement();
 /// }
 /// batch.step();
 /// assert_eq!(batch.lane(0).position(JointId(0)), 0.0);
@@ -89,7 +89,7 @@ impl Clone for Batch {
     fn clone(&self) -> Self {
         // What the steps remember is in the words: loaded again, it is the same.
         let words = Words { arranged: true, ..self.words.clone() };
-        Self { model: self.model.clone(), words, lockstep: self.lockstep.another() }
+        Self { model: self.model.clone(), words, lockstep: self.lockstep.boxed_clone() }
     }
 }
 

@@ -19,14 +19,14 @@ pub(crate) struct Point<S: Scalar> {
 
 /// A shape in the world, for one step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed<S> {
+pub(crate) struct PlacedShape<S> {
     pub(crate) rotation: Matrix<S>,
     pub(crate) position: Vector<S>,
     /// Predicted velocity of the position.
     pub(crate) velocity: Vector<S>,
 }
 
-impl<S: Scalar> Placed<S> {
+impl<S: Scalar> PlacedShape<S> {
     pub(crate) fn new(simd: S::Simd) -> Self {
         let o = S::splat(simd, S::Real::from_f64(0.0));
         Self { rotation: [[o; 3]; 3], position: [o; 3], velocity: [o; 3] }
@@ -119,7 +119,7 @@ fn box_distance<S: Scalar>(p: Vector<S>, half: Vector<S>) -> (S, Vector<S>) {
 
 /// A ball about `p` against a box.
 #[inline(always)]
-pub(crate) fn ball_box<S: Scalar>(p: Vector<S>, radius: S, place: &Placed<S>, half: Vector<S>) -> Point<S> {
+pub(crate) fn ball_box<S: Scalar>(p: Vector<S>, radius: S, place: &PlacedShape<S>, half: Vector<S>) -> Point<S> {
     let local = rotate_back(&place.rotation, sub(p, place.position));
     let (distance, normal) = box_distance(local, half);
     let normal = rotate(&place.rotation, normal);
@@ -140,7 +140,7 @@ pub(crate) fn segment_box<S: Scalar>(
     axis: Vector<S>,
     half_length: S,
     radius: S,
-    place: &Placed<S>,
+    place: &PlacedShape<S>,
     half: Vector<S>,
 ) -> Point<S> {
     // In the box's axes the segment is c + t d. The slope of the distance along it is the outward normal times d.
@@ -175,7 +175,7 @@ pub(crate) fn segment_box<S: Scalar>(
 
 /// A ball about `p` against the half space below a plane.
 #[inline(always)]
-pub(crate) fn ball_plane<S: Scalar>(p: Vector<S>, radius: S, plane: &Placed<S>) -> Point<S> {
+pub(crate) fn ball_plane<S: Scalar>(p: Vector<S>, radius: S, plane: &PlacedShape<S>) -> Point<S> {
     let normal = plane.axis();
     let gap = dot(sub(p, plane.position), normal) - radius;
     let zero = gap.constant(0.0);
@@ -185,7 +185,7 @@ pub(crate) fn ball_plane<S: Scalar>(p: Vector<S>, radius: S, plane: &Placed<S>) 
 
 /// Corner `index` (0..8) of a box in the world.
 #[inline(always)]
-pub(crate) fn corner<S: Scalar>(place: &Placed<S>, half: Vector<S>, index: usize) -> Vector<S> {
+pub(crate) fn corner<S: Scalar>(place: &PlacedShape<S>, half: Vector<S>, index: usize) -> Vector<S> {
     let mut at = half;
     for k in 0..3 {
         if index >> k & 1 == 0 {
@@ -197,7 +197,7 @@ pub(crate) fn corner<S: Scalar>(place: &Placed<S>, half: Vector<S>, index: usize
 
 /// Edge `index` (0..12) of a box in the world: middle, direction, half length.
 #[inline(always)]
-pub(crate) fn edge<S: Scalar>(place: &Placed<S>, half: Vector<S>, index: usize) -> (Vector<S>, Vector<S>, S) {
+pub(crate) fn edge<S: Scalar>(place: &PlacedShape<S>, half: Vector<S>, index: usize) -> (Vector<S>, Vector<S>, S) {
     // Four edges along each axis, at the four corners of the other two.
     let along = index / 4;
     let (u, v) = ((along + 1) % 3, (along + 2) % 3);
@@ -211,6 +211,6 @@ pub(crate) fn edge<S: Scalar>(place: &Placed<S>, half: Vector<S>, index: usize) 
 
 /// Distance from a point to a box [m], for the bounding test.
 #[inline(always)]
-pub(crate) fn distance_to_box<S: Scalar>(p: Vector<S>, place: &Placed<S>, half: Vector<S>) -> S {
+pub(crate) fn distance_to_box<S: Scalar>(p: Vector<S>, place: &PlacedShape<S>, half: Vector<S>) -> S {
     box_distance(rotate_back(&place.rotation, sub(p, place.position)), half).0
 }

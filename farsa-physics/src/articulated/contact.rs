@@ -3,10 +3,10 @@
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::collision::{
-    Placed, Point, ball_box, ball_plane, balls, corner, distance_to_box, edge, nearest_of_segments, nearest_on_segment,
-    segment_box,
+    PlacedShape, Point, ball_box, ball_plane, balls, corner, distance_to_box, edge, nearest_of_segments,
+    nearest_on_segment, segment_box,
 };
-use crate::articulated::model::{Form, Model, Pair};
+use crate::articulated::model::{Geometry, Model, Pair};
 use crate::articulated::spatial::{Vector, add, dot, product, rotate, scale, splat, splat_matrix, sub};
 use crate::articulated::tree::{LinkData, WORLD};
 
@@ -16,19 +16,19 @@ pub(crate) fn place_colliders<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     work: &[LinkData<S>],
-    out: &mut [Placed<S>],
+    out: &mut [PlacedShape<S>],
 ) {
     for (c, o) in model.colliders.iter().zip(out) {
         let own = splat_matrix(simd, c.mount.rotation);
         let offset = splat::<S>(simd, c.mount.position);
         // `acceleration` holds the predicted velocity here, see `predict`: what it is at the collider's origin.
         *o = if c.mount.link == WORLD {
-            Placed { rotation: own, position: offset, velocity: [S::splat(simd, S::Real::from_f64(0.0)); 3] }
+            PlacedShape { rotation: own, position: offset, velocity: [S::splat(simd, S::Real::from_f64(0.0)); 3] }
         } else {
             let w = &work[usize::from(c.mount.link)];
             let position = add(w.position, rotate(&w.rotation, offset));
             let velocity = w.acceleration.at(sub(position, w.reference));
-            Placed { rotation: product(&w.rotation, &own), position, velocity }
+            PlacedShape { rotation: product(&w.rotation, &own), position, velocity }
         };
     }
 }
@@ -39,16 +39,16 @@ pub(crate) fn clearance<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     pair: &Pair<S::Real>,
-    placed: &[Placed<S>],
+    placed: &[PlacedShape<S>],
 ) -> S {
     // A ball around the first shape against the second itself where that costs little (plane, box), else against its ball:
     // a ball around a table would be near everything.
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
     let bound = S::splat(simd, model.colliders[a].bound);
-    match model.colliders[b].form {
-        Form::Plane => dot(sub(pa.position, pb.position), pb.axis()) - bound,
-        Form::Block { half } => distance_to_box(pa.position, pb, splat::<S>(simd, half)) - bound,
+    match model.colliders[b].geometry {
+        Geometry::Plane => dot(sub(pa.position, pb.position), pb.axis()) - bound,
+        Geometry::Block { half } => distance_to_box(pa.position, pb, splat::<S>(simd, half)) - bound,
         _ => {
             let d = sub(pa.position, pb.position);
             dot(d, d).sqrt() - bound - S::splat(simd, model.colliders[b].bound)
@@ -62,13 +62,13 @@ pub(crate) fn edge_distance<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     pair: &Pair<S::Real>,
-    placed: &[Placed<S>],
+    placed: &[PlacedShape<S>],
     index: usize,
 ) -> Option<S> {
     // Of a small box on a large one most of the twelve edges are far away; each costs a search with twelve halvings.
     let [a, b] = pair.colliders;
-    match (model.colliders[a].form, model.colliders[b].form) {
-        (Form::Block { .. }, Form::Block { half }) if index >= 8 => {
+    match (model.colliders[a].geometry, model.colliders[b].geometry) {
+        (Geometry::Block { .. }, Geometry::Block { half }) if index >= 8 => {
             let (middle, direction, length) = edge(&placed[b], splat::<S>(simd, half), index - 8);
             let near = nearest_on_segment(middle, direction, length, placed[a].position);
             let d = sub(near, placed[a].position);
@@ -80,7 +80,7 @@ pub(crate) fn edge_distance<S: Scalar>(
 
 /// One end of a capsule's axis, the upper one unless `index` is 0.
 #[inline(always)]
-fn end<S: Scalar>(place: &Placed<S>, index: usize, half: S) -> Vector<S> {
+fn end<S: Scalar>(place: &PlacedShape<S>, index: usize, half: S) -> Vector<S> {
     add(place.position, scale(place.axis(), if index == 0 { -half } else { half }))
 }
 
@@ -90,7 +90,7 @@ pub(crate) fn find<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     pair: &Pair<S::Real>,
-    placed: &[Placed<S>],
+    placed: &[PlacedShape<S>],
     index: usize,
 ) -> Point<S> {
     S::vectorize(
@@ -105,26 +105,26 @@ fn point<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     pair: &Pair<S::Real>,
-    placed: &[Placed<S>],
+    placed: &[PlacedShape<S>],
     index: usize,
 ) -> Point<S> {
     // Spheres and capsules are balls swept over a point or a segment, corners and edges of boxes the same with radius 0: each
     // pair comes down to a ball with a ball, a box or a plane. Shapes come in the order ball, capsule, block, plane.
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
-    match (model.colliders[a].form, model.colliders[b].form) {
-        (Form::Ball { radius: ra }, Form::Ball { radius: rb }) => {
+    match (model.colliders[a].geometry, model.colliders[b].geometry) {
+        (Geometry::Ball { radius: ra }, Geometry::Ball { radius: rb }) => {
             balls(pa.position, S::splat(simd, ra), pb.position, S::splat(simd, rb))
         }
-        (Form::Ball { radius: ra }, Form::Capsule { radius: rb, half_length }) => {
+        (Geometry::Ball { radius: ra }, Geometry::Capsule { radius: rb, half_length }) => {
             let near = nearest_on_segment(pb.position, pb.axis(), S::splat(simd, half_length), pa.position);
             balls(pa.position, S::splat(simd, ra), near, S::splat(simd, rb))
         }
-        (Form::Ball { radius }, Form::Block { half }) => {
+        (Geometry::Ball { radius }, Geometry::Block { half }) => {
             ball_box(pa.position, S::splat(simd, radius), pb, splat::<S>(simd, half))
         }
-        (Form::Ball { radius }, Form::Plane) => ball_plane(pa.position, S::splat(simd, radius), pb),
-        (Form::Capsule { radius: ra, half_length: la }, Form::Capsule { radius: rb, half_length: lb }) => {
+        (Geometry::Ball { radius }, Geometry::Plane) => ball_plane(pa.position, S::splat(simd, radius), pb),
+        (Geometry::Capsule { radius: ra, half_length: la }, Geometry::Capsule { radius: rb, half_length: lb }) => {
             let (na, nb) = nearest_of_segments(
                 pa.position,
                 pa.axis(),
@@ -135,7 +135,7 @@ fn point<S: Scalar>(
             );
             balls(na, S::splat(simd, ra), nb, S::splat(simd, rb))
         }
-        (Form::Capsule { radius, half_length }, Form::Block { half }) => {
+        (Geometry::Capsule { radius, half_length }, Geometry::Block { half }) => {
             // Both ends of the axis, and the deepest place between them, where the capsule lies across an edge.
             let half = splat::<S>(simd, half);
             if index < 2 {
@@ -144,10 +144,10 @@ fn point<S: Scalar>(
                 segment_box(pa.position, pa.axis(), S::splat(simd, half_length), S::splat(simd, radius), pb, half)
             }
         }
-        (Form::Capsule { radius, half_length }, _) => {
+        (Geometry::Capsule { radius, half_length }, _) => {
             ball_plane(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb)
         }
-        (Form::Block { half: ha }, Form::Block { half: hb }) => {
+        (Geometry::Block { half: ha }, Geometry::Block { half: hb }) => {
             // Corners of a in b, then edges of b through a, whose normal is turned round: it pushes a away from b. Corners of
             // b in a are not looked at by themselves; the description's order is chosen for that (see `model_builder`).
             let zero = S::splat(simd, S::Real::from_f64(0.0));
@@ -161,10 +161,10 @@ fn point<S: Scalar>(
                 found
             }
         }
-        (Form::Block { half }, _) => {
+        (Geometry::Block { half }, _) => {
             ball_plane(corner(pa, splat::<S>(simd, half), index), S::splat(simd, S::Real::from_f64(0.0)), pb)
         }
-        (Form::Plane, _) => ball_plane(pa.position, S::splat(simd, S::Real::from_f64(0.0)), pb),
+        (Geometry::Plane, _) => ball_plane(pa.position, S::splat(simd, S::Real::from_f64(0.0)), pb),
     }
 }
 

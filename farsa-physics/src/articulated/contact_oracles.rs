@@ -9,7 +9,7 @@ use farsa_body::{BodyId, Collider, Joint, MassProperties, Pose, Robot, Segment, 
 use proptest::prelude::*;
 
 use super::{find, place_colliders};
-use crate::articulated::collision::{Placed, Point};
+use crate::articulated::collision::{PlacedShape, Point};
 use crate::articulated::{Model, Options, Scratch};
 
 type V = [f64; 3];
@@ -44,8 +44,8 @@ fn points_in<R: farsa_num::Real>(a: (Shape, Pose<f64>), b: (Shape, Pose<f64>)) -
     robot.add_pair([0, 1], Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 1e5, damping: 100.0 });
     let model = Model::<R>::new(&robot, &Options::default()).unwrap();
     let mut scratch = Scratch::new((), &model);
-    scratch.place((), &model, &model.initial);
-    let mut placed = [Placed::new(()), Placed::new(())];
+    scratch.forward_kinematics((), &model, &model.initial);
+    let mut placed = [PlacedShape::new(()), PlacedShape::new(())];
     place_colliders((), &model, scratch.links(), &mut placed);
     let pair = &model.pairs[0];
     let sign = R::from_f64(if pair.flipped { -1.0 } else { 1.0 });

@@ -47,7 +47,7 @@ impl Words {
         for (x, from) in state.iter_mut().zip(self.state.iter().skip(lane).step_by(self.lanes)) {
             *x = *from;
         }
-        f32::place(model, state, scratch);
+        f32::forward_kinematics(model, state, scratch);
         let to = self.links.iter_mut().skip(lane).step_by(self.lanes);
         for (to, x) in to.zip(scratch.links.iter().flat_map(link_words)) {
             *to = x;
@@ -100,7 +100,7 @@ impl View<f32> for Lane<'_> {
     fn set_word(&mut self, index: usize, x: f32) {
         self.words.state[index * self.words.lanes + self.index] = x;
     }
-    fn place(&self, link: usize) -> (Matrix<f32>, Vector<f32>) {
+    fn link_frame(&self, link: usize) -> (Matrix<f32>, Vector<f32>) {
         (self.link_matrix(link), self.link(link, 9))
     }
     fn motion(&self, link: usize) -> (Spatial<f32>, Vector<f32>) {
@@ -172,7 +172,7 @@ impl Snapshot for Lane<'_> {
         for (i, x) in from.iter().take(self.snapshot_len()).enumerate() {
             self.set_word(i, *x);
         }
-        self.arranged();
+        self.finish_placement();
     }
 }
 
@@ -181,7 +181,7 @@ impl Arrange for Lane<'_> {
         for i in 0..self.model.state_len() {
             self.set_word(i, self.model.initial[i]);
         }
-        self.arranged();
+        self.finish_placement();
     }
     fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
         view::place_joint(self, joint, position, speed);
@@ -191,7 +191,7 @@ impl Arrange for Lane<'_> {
         view::place_body(self, body, pose, twist);
         self.words.arranged = true;
     }
-    fn arranged(&mut self) {
+    fn finish_placement(&mut self) {
         self.words.place(self.model, self.index);
         self.words.arranged = true;
     }

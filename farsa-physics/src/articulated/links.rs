@@ -22,6 +22,7 @@ fn axis_frame(axis: Vector<f64>) -> Matrix<f64> {
     } else {
         [1.0, 0.0, 0.0]
     };
+    // Gram-Schmidt: what of u is across the axis; v then makes the frame right-handed.
     let along = u[0] * x + u[1] * y + u[2] * z;
     let u = [u[0] - along * x, u[1] - along * y, u[2] - along * z];
     let n = Scalar::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
@@ -61,6 +62,7 @@ impl Link<f64> {
         if total == 0.0 {
             return;
         }
+        // Both bodies about their common centre: sum of I_k + m_k (c_k . c_k 1 - c_k c_k^T), the parallel axis theorem.
         let (old, w) = (self.centre, mass / total);
         let joint = [0, 1, 2].map(|k: usize| old[k] * (1.0 - w) + centre[k] * w);
         let turned = rotate_symmetric(&mount.rotation, inertia);
@@ -120,6 +122,7 @@ pub(crate) fn links_of(robot: &Robot) -> (Vec<Link<f64>>, Vec<Mount<f64>>) {
         let at = compose(&base, &frame(&joint.placement));
         let motion = match joint.kind {
             JointKind::Fixed => {
+                // What is fixed to a link is part of it; what is fixed to the world has no inertia that anybody feels.
                 if let Some(link) = links.get_mut(usize::from(at.link)) {
                     link.carry(segment.mass, segment.centre, &segment.inertia, &at);
                 }
@@ -130,6 +133,8 @@ pub(crate) fn links_of(robot: &Robot) -> (Vec<Link<f64>>, Vec<Mount<f64>>) {
             JointKind::Prismatic => Motion::Prismatic,
             JointKind::Floating => Motion::Floating,
         };
+        // The link is turned so that its joint moves along or about its z axis; the segment is mounted on it the other
+        // way round.
         let own = if motion == Motion::Floating { IDENTITY } else { axis_frame(joint.axis) };
         let mount = Mount { link: links.len() as u16, rotation: transpose(&own), position: [0.0; 3] };
         let (nq, nv) = if motion == Motion::Floating { (7, 6) } else { (1, 1) };
@@ -167,6 +172,7 @@ pub(crate) fn choose_references(links: &mut [Link<f64>]) {
     let n = links.len();
     let mut tree: Vec<usize> = (0..n).collect();
     let mut children = vec![0_usize; n];
+    // Parents come before their children, so the root of the parent is known.
     for i in 0..n {
         if links[i].parent != WORLD {
             tree[i] = tree[usize::from(links[i].parent)];
@@ -216,6 +222,7 @@ pub(crate) fn set_limits(
             continue;
         }
         let at = usize::from(link.dof);
+        // k = I w^2 and d = 2 zeta I w, with I the inertia that the joint feels at `initial`.
         let inertia = matrix[at * dofs + at];
         if inertia.is_nan() || inertia <= 0.0 {
             return Err(ModelError::Weightless { segment: segment.name.clone() });

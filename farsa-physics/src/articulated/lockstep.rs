@@ -21,7 +21,7 @@ pub(crate) trait Lockstep: Send + Sync {
     /// One control step from words to words.
     fn step(&mut self, model: &Model<f32>, words: &mut Words);
     /// The same again.
-    fn another(&self) -> Box<dyn Lockstep>;
+    fn boxed_clone(&self) -> Box<dyn Lockstep>;
 }
 
 /// State and scratch in vectors.
@@ -44,8 +44,8 @@ impl<S: Scalar<Real = f32>> Vectors<S> {
             for (x, from) in self.state.iter_mut().zip(words.state.chunks_exact(S::LANES)) {
                 *x = S::load(simd, from);
             }
-            // The lanes that nobody has touched come to the bits that they have.
-            self.scratch.place(simd, model, &self.state);
+            // Untouched lanes come to the bits that they have.
+            self.scratch.forward_kinematics(simd, model, &self.state);
             words.arranged = false;
         } else {
             let commands = model.first_command()..model.first_point();
@@ -83,7 +83,7 @@ where
         );
     }
 
-    fn another(&self) -> Box<dyn Lockstep> {
+    fn boxed_clone(&self) -> Box<dyn Lockstep> {
         Box::new(self.clone())
     }
 }
@@ -96,7 +96,7 @@ pub(crate) fn instructions() -> impl Iterator<Item = Instructions> {
 
 /// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for.
 pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, instructions: Instructions) -> Box<dyn Lockstep> {
-    fn of<S: Simd>(simd: S, model: &Model<f32>, lanes: usize) -> Box<dyn Lockstep> {
+    fn boxed<S: Simd>(simd: S, model: &Model<f32>, lanes: usize) -> Box<dyn Lockstep> {
         if lanes == LANES[0] {
             Box::new(Vectors::<f32x8<S>>::new(simd, model))
         } else {
@@ -107,14 +107,14 @@ pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, instructions: Instructi
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if let Some(simd) = level.as_avx512() {
-            return of(simd, model, lanes);
+            return boxed(simd, model, lanes);
         }
         if let Some(simd) = level.as_avx2() {
-            return of(simd, model, lanes);
+            return boxed(simd, model, lanes);
         }
         if let Some(simd) = level.as_sse2() {
-            return of(simd, model, lanes);
+            return boxed(simd, model, lanes);
         }
     }
-    farsa_num::fearless_simd::dispatch!(level, simd => of(simd, model, lanes))
+    farsa_num::fearless_simd::dispatch!(level, simd => boxed(simd, model, lanes))
 }

@@ -12,6 +12,7 @@ use crate::articulated::tree::{Link, WORLD};
 
 /// How an articulated world is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Options {
     /// Control step [s].
     pub time_step: f64,
@@ -22,7 +23,7 @@ pub struct Options {
     /// Sweeps over the contacts per dynamics step.
     pub sweeps: u32,
     /// Tangential velocity per friction impulse at a sticking contact [m/(s N s)]: what is left of creep.
-    pub slip: f64,
+    pub friction_compliance: f64,
     /// Natural frequency of a joint stop, from the joint's own inertia at position 0 [rad/s].
     pub limit_frequency: f64,
     /// Damping ratio of a joint stop.
@@ -38,7 +39,7 @@ impl Default for Options {
             substeps: 4,
             gravity: [0.0, 0.0, -9.81],
             sweeps: 10,
-            slip: 1e-3,
+            friction_compliance: 1e-3,
             limit_frequency: 1000.0,
             limit_damping: 1.0,
             margin: 5e-4,
@@ -108,9 +109,9 @@ pub(crate) struct Mount<R> {
     pub(crate) position: Vector<R>,
 }
 
-/// The form of a collider with its sizes.
+/// The geometry of a collider with its sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Form<R> {
+pub(crate) enum Geometry<R> {
     Ball { radius: R },
     Capsule { radius: R, half_length: R },
     Block { half: Vector<R> },
@@ -120,7 +121,7 @@ pub(crate) enum Form<R> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Collider<R> {
     pub(crate) mount: Mount<R>,
-    pub(crate) form: Form<R>,
+    pub(crate) geometry: Geometry<R>,
     /// Radius of the ball about its origin that holds it; none for a plane.
     pub(crate) bound: R,
 }
@@ -206,7 +207,7 @@ pub struct Model<R> {
     pub(crate) h: R,
     pub(crate) substeps: u32,
     pub(crate) sweeps: u32,
-    pub(crate) slip: R,
+    pub(crate) friction_compliance: R,
     pub(crate) margin: R,
 }
 

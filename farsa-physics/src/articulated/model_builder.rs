@@ -7,7 +7,9 @@ use farsa_body::{JointKind, Robot, RobotError, Shape};
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::links::{IDENTITY, cast_mount, choose_references, compose, frame, links_of, set_limits, unit};
-use crate::articulated::model::{Actuator, Collider, Form, Model, ModelError, Mount, Options, Pair, Reach, StopPath};
+use crate::articulated::model::{
+    Actuator, Collider, Geometry, Model, ModelError, Mount, Options, Pair, Reach, StopPath,
+};
 use crate::articulated::tree::{Link, Motion, WORLD};
 
 fn check(options: &Options) -> Result<(), ModelError> {
@@ -16,7 +18,7 @@ fn check(options: &Options) -> Result<(), ModelError> {
         ("time_step", options.time_step, 1e-6, 1.0),
         ("substeps", f64::from(options.substeps), 1.0, 1e6),
         ("sweeps", f64::from(options.sweeps), 1.0, 1e4),
-        ("slip", options.slip, 0.0, 1e6),
+        ("friction_compliance", options.friction_compliance, 0.0, 1e6),
         ("limit_frequency", options.limit_frequency, 1.0, 1e6),
         ("limit_damping", options.limit_damping, 0.0, 1e3),
         ("margin", options.margin, 0.0, 0.1),
@@ -31,26 +33,26 @@ fn check(options: &Options) -> Result<(), ModelError> {
     Ok(())
 }
 
-fn form_of(shape: Shape) -> (Form<f64>, f64, u8) {
+fn geometry_of(shape: Shape) -> (Geometry<f64>, f64, u8) {
     match shape {
-        Shape::Sphere { radius } => (Form::Ball { radius }, radius, 0),
-        Shape::Capsule { radius, half_length } => (Form::Capsule { radius, half_length }, radius + half_length, 1),
+        Shape::Sphere { radius } => (Geometry::Ball { radius }, radius, 0),
+        Shape::Capsule { radius, half_length } => (Geometry::Capsule { radius, half_length }, radius + half_length, 1),
         Shape::Box { half } => {
-            (Form::Block { half }, Scalar::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 2)
+            (Geometry::Block { half }, Scalar::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 2)
         }
-        Shape::Plane => (Form::Plane, 0.0, 3),
+        Shape::Plane => (Geometry::Plane, 0.0, 3),
     }
 }
 
-/// Contact points of a pair of forms, in their canonical order.
-fn points_of(a: &Form<f64>, b: &Form<f64>) -> Option<usize> {
+/// Contact points of a pair of geometries, in their canonical order.
+fn points_of(a: &Geometry<f64>, b: &Geometry<f64>) -> Option<usize> {
     match (a, b) {
-        (Form::Ball { .. }, _) | (Form::Capsule { .. }, Form::Capsule { .. }) => Some(1),
-        (Form::Capsule { .. }, Form::Plane) => Some(2),
-        (Form::Capsule { .. }, Form::Block { .. }) => Some(3),
-        (Form::Block { .. }, Form::Plane) => Some(8),
+        (Geometry::Ball { .. }, _) | (Geometry::Capsule { .. }, Geometry::Capsule { .. }) => Some(1),
+        (Geometry::Capsule { .. }, Geometry::Plane) => Some(2),
+        (Geometry::Capsule { .. }, Geometry::Block { .. }) => Some(3),
+        (Geometry::Block { .. }, Geometry::Plane) => Some(8),
         // Corners of the one in the other, edges of the other in the one.
-        (Form::Block { .. }, Form::Block { .. }) => Some(20),
+        (Geometry::Block { .. }, Geometry::Block { .. }) => Some(20),
         _ => None,
     }
 }
@@ -83,28 +85,29 @@ fn reach_of(links: &[Link<f64>], a: u16, b: u16) -> Reach {
     Reach { first, second, meet, dofs }
 }
 
-/// A collider in its link's frame: where, which form, the radius of its bound, and its rank in the order of forms.
-type Fitted = (Mount<f64>, Form<f64>, f64, u8);
+/// A collider in its link's frame: where, which geometry, the radius of its bound, and its rank in the order of
+/// geometries.
+type Fitted = (Mount<f64>, Geometry<f64>, f64, u8);
 
 fn colliders_of(robot: &Robot, mounts: &[Mount<f64>]) -> Vec<Fitted> {
     let fitted = robot.colliders.iter().map(|c| {
         let base = c.body.map_or(Mount { link: WORLD, rotation: IDENTITY, position: [0.0; 3] }, |b| mounts[b.index()]);
-        let (form, bound, rank) = form_of(c.shape);
-        (compose(&base, &frame(&c.placement)), form, bound, rank)
+        let (geometry, bound, rank) = geometry_of(c.shape);
+        (compose(&base, &frame(&c.placement)), geometry, bound, rank)
     });
     fitted.collect()
 }
 
-fn cast_collider<R: Real>((mount, form, bound, _): &Fitted) -> Collider<R> {
+fn cast_collider<R: Real>((mount, geometry, bound, _): &Fitted) -> Collider<R> {
     Collider {
         mount: cast_mount(mount),
-        form: match *form {
-            Form::Ball { radius } => Form::Ball { radius: R::from_f64(radius) },
-            Form::Capsule { radius, half_length } => {
-                Form::Capsule { radius: R::from_f64(radius), half_length: R::from_f64(half_length) }
+        geometry: match *geometry {
+            Geometry::Ball { radius } => Geometry::Ball { radius: R::from_f64(radius) },
+            Geometry::Capsule { radius, half_length } => {
+                Geometry::Capsule { radius: R::from_f64(radius), half_length: R::from_f64(half_length) }
             }
-            Form::Block { half } => Form::Block { half: half.map(R::from_f64) },
-            Form::Plane => Form::Plane,
+            Geometry::Block { half } => Geometry::Block { half: half.map(R::from_f64) },
+            Geometry::Plane => Geometry::Plane,
         },
         bound: R::from_f64(*bound),
     }
@@ -250,7 +253,7 @@ impl<R: Real> Model<R> {
             h: R::from_f64(options.time_step / f64::from(options.substeps)),
             substeps: options.substeps,
             sweeps: options.sweeps,
-            slip: R::from_f64(options.slip),
+            friction_compliance: R::from_f64(options.friction_compliance),
             margin: R::from_f64(options.margin),
         };
         model.initial = initial.into_iter().map(R::from_f64).collect();

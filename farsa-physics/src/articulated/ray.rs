@@ -3,7 +3,7 @@
 use farsa_body::{BodyId, Hit};
 use farsa_num::Real;
 
-use crate::articulated::model::Form;
+use crate::articulated::model::Geometry;
 use crate::articulated::spatial::{Matrix, Vector, add, dot, product, rotate, rotate_back, scale, sub};
 use crate::articulated::tree::WORLD;
 use crate::articulated::view::View;
@@ -13,10 +13,13 @@ type Entry<R> = Option<(R, Vector<R>)>;
 
 fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vector<R>, radius: R) -> Entry<R> {
     let zero = R::from_f64(0.0);
+    // |from + t d|^2 = r^2 with |d| = 1 is t^2 + 2 b t + c = 0, whose smaller root is the entry [Ericson2005] section
+    // 5.3.2.
     let from = sub(origin, centre);
     let b = dot(from, direction);
     let c = dot(from, from) - radius * radius;
     let disc = b * b - c;
+    // From within, away from it, or past it.
     if c < zero || b > zero || disc < zero {
         return None;
     }
@@ -27,6 +30,7 @@ fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vector<R>, rad
 fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R) -> Entry<R> {
     let zero = R::from_f64(0.0);
     // The cylinder's side first, then the two caps; a hit on the side is nearer than any on a cap behind it.
+    // Across the axis: a t^2 + 2 b t + c = 0. Along the axis a is 0, and only the caps are in the way.
     let a = direction[0] * direction[0] + direction[1] * direction[1];
     let b = origin[0] * direction[0] + origin[1] * direction[1];
     let c = origin[0] * origin[0] + origin[1] * origin[1] - radius * radius;
@@ -60,10 +64,13 @@ fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R)
 pub(crate) fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vector<R>) -> Entry<R> {
     let zero = R::from_f64(0.0);
     let one = R::from_f64(1.0);
+    // The ray is within between the last entry into a pair of faces and the first exit from one [Ericson2005] section
+    // 5.3.3.
     let mut enter: Entry<R> = None;
     let mut leave: Option<R> = None;
     for k in 0..3 {
         if direction[k] == zero {
+            // Along these two faces: between them for ever, or never.
             if origin[k].abs() > half[k] {
                 return None;
             }
@@ -82,6 +89,7 @@ pub(crate) fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vect
         }
     }
     let (t, normal) = enter?;
+    // From within, the last entry lies behind the origin.
     (t >= zero && leave.is_none_or(|far| t <= far)).then_some((t, normal))
 }
 
@@ -99,7 +107,7 @@ fn collider_frame<R: Real>(world: &impl View<R>, index: usize) -> (Matrix<R>, Ve
     if mount.link == WORLD {
         return (mount.rotation, mount.position);
     }
-    let (rotation, position) = world.place(usize::from(mount.link));
+    let (rotation, position) = world.link_frame(usize::from(mount.link));
     (product(&rotation, &mount.rotation), add(position, rotate(&rotation, mount.position)))
 }
 
@@ -115,13 +123,14 @@ pub(crate) fn cast<R: Real>(
     let mut best: Option<Hit<BodyId>> = None;
     for (i, collider) in world.model().colliders.iter().enumerate() {
         let (rotation, position) = collider_frame(world, i);
+        // In the frame of the collider; rotations keep lengths, so t is the distance in the world, too.
         let o = rotate_back(&rotation, sub(origin, position));
         let d = rotate_back(&rotation, direction);
-        let entry = match collider.form {
-            Form::Ball { radius } => ball(o, d, [R::from_f64(0.0); 3], radius),
-            Form::Capsule { radius, half_length } => capsule(o, d, radius, half_length),
-            Form::Block { half } => block(o, d, half),
-            Form::Plane => plane(o, d),
+        let entry = match collider.geometry {
+            Geometry::Ball { radius } => ball(o, d, [R::from_f64(0.0); 3], radius),
+            Geometry::Capsule { radius, half_length } => capsule(o, d, radius, half_length),
+            Geometry::Block { half } => block(o, d, half),
+            Geometry::Plane => plane(o, d),
         };
         let Some((t, normal)) = entry else { continue };
         let distance = t.to_f64() as f32;
@@ -137,29 +146,29 @@ pub(crate) fn cast<R: Real>(
 mod tests {
     use super::*;
 
-    /// Signed distance to each form, the oracle that a march along the ray finds the same surface by.
-    fn distance(form: &Form<f64>, p: Vector<f64>) -> f64 {
+    /// Signed distance to each geometry, the oracle that a march along the ray finds the same surface by.
+    fn distance(geometry: &Geometry<f64>, p: Vector<f64>) -> f64 {
         let length = |v: Vector<f64>| Real::to_f64(farsa_num::Scalar::sqrt(dot(v, v)));
-        match *form {
-            Form::Ball { radius } => length(p) - radius,
-            Form::Capsule { radius, half_length } => {
+        match *geometry {
+            Geometry::Ball { radius } => length(p) - radius,
+            Geometry::Capsule { radius, half_length } => {
                 length([p[0], p[1], p[2] - p[2].clamp(-half_length, half_length)]) - radius
             }
-            Form::Block { half } => {
+            Geometry::Block { half } => {
                 let q = [0, 1, 2].map(|k: usize| p[k].abs() - half[k]);
                 length(q.map(|x| x.max(0.0))) + q[0].max(q[1]).max(q[2]).min(0.0)
             }
-            Form::Plane => p[2],
+            Geometry::Plane => p[2],
         }
     }
 
     #[test]
     fn rays_meet_what_marching_along_them_meets() {
-        let forms = [
-            Form::Ball { radius: 0.3 },
-            Form::Capsule { radius: 0.2, half_length: 0.4 },
-            Form::Block { half: [0.3, 0.2, 0.5] },
-            Form::Plane,
+        let geometries = [
+            Geometry::Ball { radius: 0.3 },
+            Geometry::Capsule { radius: 0.2, half_length: 0.4 },
+            Geometry::Block { half: [0.3, 0.2, 0.5] },
+            Geometry::Plane,
         ];
         let mut stream = farsa_num::Stream::new(1, farsa_num::Domain::Start, 0, 0, 0);
         let mut met = [0; 4];
@@ -169,20 +178,20 @@ mod tests {
             let d = [draw(), draw(), draw()];
             let n = farsa_num::Scalar::sqrt(dot(d, d));
             let d = d.map(|x| x / n);
-            for (i, form) in forms.iter().enumerate() {
-                if distance(form, origin) <= 1e-3 {
+            for (i, geometry) in geometries.iter().enumerate() {
+                if distance(geometry, origin) <= 1e-3 {
                     continue;
                 }
-                let entry = match *form {
-                    Form::Ball { radius } => ball(origin, d, [0.0; 3], radius),
-                    Form::Capsule { radius, half_length } => capsule(origin, d, radius, half_length),
-                    Form::Block { half } => block(origin, d, half),
-                    Form::Plane => plane(origin, d),
+                let entry = match *geometry {
+                    Geometry::Ball { radius } => ball(origin, d, [0.0; 3], radius),
+                    Geometry::Capsule { radius, half_length } => capsule(origin, d, radius, half_length),
+                    Geometry::Block { half } => block(origin, d, half),
+                    Geometry::Plane => plane(origin, d),
                 };
                 // Sphere tracing: steps of the distance itself never jump over the surface.
                 let (mut t, mut hit) = (0.0, false);
                 for _ in 0..400 {
-                    let gap = distance(form, add(origin, scale(d, t)));
+                    let gap = distance(geometry, add(origin, scale(d, t)));
                     if gap < 1e-9 {
                         hit = true;
                         break;
@@ -195,11 +204,11 @@ mod tests {
                 if let Some((found, normal)) = entry {
                     if found < 10.0 && hit {
                         met[i] += 1;
-                        assert!((found - t).abs() < 1e-4, "form {i}: {found} marching {t}");
+                        assert!((found - t).abs() < 1e-4, "geometry {i}: {found} marching {t}");
                         assert!((dot(normal, normal) - 1.0).abs() < 1e-9 && dot(normal, d) <= 0.0);
                     }
                 } else {
-                    assert!(!hit, "form {i} missed: marching met it at {t}");
+                    assert!(!hit, "geometry {i} missed: marching met it at {t}");
                 }
             }
         }

@@ -8,7 +8,7 @@
 
 use farsa_num::{Mask, Real, Scalar};
 
-use crate::articulated::collision::{Placed, Point};
+use crate::articulated::collision::{PlacedShape, Point};
 use crate::articulated::contact::{clearance, edge_distance, find};
 use crate::articulated::model::{Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
@@ -75,7 +75,7 @@ struct Candidate<S: Scalar> {
 
 /// The parts of the scratch that the contact solver uses.
 pub(crate) struct Solver<'a, S: Scalar> {
-    pub(crate) placed: &'a [Placed<S>],
+    pub(crate) placed: &'a [PlacedShape<S>],
     pub(crate) work: &'a [LinkData<S>],
     pub(crate) roots: &'a [Root<S>],
     /// Square roots of the reciprocals of the joints' articulated inertias [dofs].
@@ -96,7 +96,7 @@ pub(crate) struct Solver<'a, S: Scalar> {
 ///
 /// The bounds close by the centres' relative velocity, and a little more for turning.
 #[inline(always)]
-fn bounds<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Real>, placed: &[Placed<S>]) -> [S; 2] {
+fn bounds<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Real>, placed: &[PlacedShape<S>]) -> [S; 2] {
     let h = S::splat(simd, model.h);
     let [a, b] = pair.colliders;
     let approach = sub(placed[a].velocity, placed[b].velocity);
@@ -111,7 +111,7 @@ fn links_of_pair<R>(model: &Model<R>, pair: &Pair<R>) -> [u16; 2] {
 }
 
 /// How many pairs a step that left the colliders at these places has looked at the surfaces of.
-pub(crate) fn near_pairs<R: Real>(model: &Model<R>, placed: &[Placed<R>]) -> usize {
+pub(crate) fn near_pairs<R: Real>(model: &Model<R>, placed: &[PlacedShape<R>]) -> usize {
     let near = |pair: &&Pair<R>| {
         let [far, reach] = bounds((), model, pair, placed);
         far <= reach
@@ -258,7 +258,7 @@ impl<S: Scalar> Solver<'_, S> {
         let offset = point.gap * S::splat(simd, pair.stiffness) / rate;
 
         // Warm start: the last step's impulse along the new axes, brought back into the friction cone |l_t| <= mu l_n.
-        let slip = S::splat(simd, model.slip);
+        let slip = S::splat(simd, model.friction_compliance);
         let friction = S::splat(simd, pair.friction);
         let normal = dot(old, axes[0]).max(zero);
         let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
@@ -352,7 +352,7 @@ impl<S: Scalar> Solver<'_, S> {
         let dofs = &pair.reach.dofs;
         let n = dofs.len();
         let zero = S::splat(simd, S::Real::from_f64(0.0));
-        let slip = S::splat(simd, model.slip);
+        let slip = S::splat(simd, model.friction_compliance);
         let block = &mut self.blocks[pair.point + index];
         let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
         let mut v = velocity(dofs, rows, block.velocity, self.response);

@@ -83,6 +83,8 @@ pub(crate) fn product<S: Scalar>(m: &Matrix<S>, n: &Matrix<S>) -> Matrix<S> {
 pub(crate) fn matrix_of<S: Scalar>(q: [S; 4]) -> Matrix<S> {
     let one = q[0].constant(1.0);
     let [x, y, z, w] = q;
+    // R = 1 + 2 w [v]x + 2 [v]x [v]x with v = (x, y, z); doubled once, so that each entry takes one product and one
+    // sum.
     let (x2, y2, z2) = (x + x, y + y, z + z);
     let (xx, yy, zz) = (x * x2, y * y2, z * z2);
     let (xy, xz, yz) = (x * y2, x * z2, y * z2);
@@ -186,6 +188,7 @@ pub(crate) fn symmetric<S: Scalar>(m: &[S; 6], a: Vector<S>) -> Vector<S> {
 /// `rotation * m * rotation^T` of a symmetric matrix.
 #[inline(always)]
 pub(crate) fn rotate_symmetric<S: Scalar>(rotation: &Matrix<S>, m: &[S; 6]) -> [S; 6] {
+    // With r_i the rows of the rotation, entry (i, j) is r_i . (m r_j).
     let t = [symmetric(m, rotation[0]), symmetric(m, rotation[1]), symmetric(m, rotation[2])];
     [
         dot(rotation[0], t[0]),
@@ -208,6 +211,8 @@ impl<S: Scalar> Inertia<S> {
     #[inline(always)]
     pub(crate) fn rigid(mass: S, centre: Vector<S>, about_centre: [S; 6]) -> Self {
         let zero = mass.constant(0.0);
+        // With c the centre of mass: I_c + m (c . c 1 - c c^T) about the point, and m [c]x between motion and moment
+        // [Featherstone2008] section 2.13.
         let m = scale(centre, mass);
         let [x, y, z] = centre;
         let [mx, my, mz] = m;
@@ -228,6 +233,7 @@ impl<S: Scalar> Inertia<S> {
     #[inline(always)]
     pub(crate) fn times(&self, m: Spatial<S>) -> Spatial<S> {
         Spatial {
+            // Below the diagonal stands the coupling transposed.
             angular: add(symmetric(&self.angular, m.angular), rotate(&self.coupling, m.linear)),
             linear: add(rotate_back(&self.coupling, m.angular), symmetric(&self.linear, m.linear)),
         }
@@ -250,6 +256,8 @@ impl<S: Scalar> Inertia<S> {
     #[inline(always)]
     pub(crate) fn minus_square(&self, u: Spatial<S>, d: S) -> Self {
         let s = u.scale(d);
+        // What a joint that gives way takes from the inertia that its parent feels: I - U U^T / D. One triangle is
+        // enough.
         let (w, v, sw, sv) = (u.angular, u.linear, s.angular, s.linear);
         let mut o = *self;
         for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
@@ -280,6 +288,8 @@ impl<S: Scalar> Inertia<S> {
     #[inline(always)]
     pub(crate) fn cholesky(&self) -> Cholesky<S> {
         let one = self.angular[0].constant(1.0);
+        // A = L L^T, column by column: l_jj = sqrt(a_jj - sum_k l_jk^2), l_ij = (a_ij - sum_k l_ik l_jk) / l_jj. The
+        // reciprocals of l_jj are kept: those who solve with the factor then only multiply.
         let mut l = [[one; 6]; 6];
         for j in 0..6 {
             let mut d = self.entry(j, j);
@@ -319,6 +329,7 @@ impl<S: Scalar> Cholesky<S> {
     /// `L^-1 b`.
     #[inline(always)]
     pub(crate) fn half(&self, b: Spatial<S>) -> [S; 6] {
+        // Forwards: y_i = (b_i - sum_(k<i) l_ik y_k) / l_ii.
         let mut y = [b.angular[0], b.angular[1], b.angular[2], b.linear[0], b.linear[1], b.linear[2]];
         for i in 0..6 {
             for k in 0..i {
@@ -332,6 +343,7 @@ impl<S: Scalar> Cholesky<S> {
     /// `L^-T y`.
     #[inline(always)]
     pub(crate) fn other_half(&self, mut y: [S; 6]) -> Spatial<S> {
+        // Backwards: x_i = (y_i - sum_(k>i) l_ki x_k) / l_ii.
         for i in (0..6).rev() {
             for k in i + 1..6 {
                 y[i] -= self.l[k][i] * y[k];

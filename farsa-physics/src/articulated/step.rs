@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Real, Scalar};
 
-use crate::articulated::collision::Placed;
+use crate::articulated::collision::PlacedShape;
 use crate::articulated::contact::place_colliders;
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::solver::{Block, Solver};
@@ -23,7 +23,7 @@ pub struct Scratch<S: Scalar> {
     qdd: Vec<S>,
     inverse_sqrt_inertia: Vec<S>,
     response: Vec<S>,
-    pub(crate) placed: Vec<Placed<S>>,
+    pub(crate) placed: Vec<PlacedShape<S>>,
     blocks: Vec<Block<S>>,
     rolling: Vec<Block<S>>,
     rows: Vec<[S; 3]>,
@@ -45,7 +45,7 @@ impl<S: Scalar> Scratch<S> {
             qdd: vec![zero; model.dofs],
             inverse_sqrt_inertia: vec![zero; model.dofs],
             response: vec![zero; model.dofs],
-            placed: vec![Placed::new(simd); model.colliders.len()],
+            placed: vec![PlacedShape::new(simd); model.colliders.len()],
             blocks: vec![Block::new(simd); model.points],
             rolling: vec![Block::new(simd); model.rolling],
             rows: vec![[zero; 3]; model.row_entries],
@@ -56,7 +56,7 @@ impl<S: Scalar> Scratch<S> {
         }
     }
 
-    /// Where the links are, after [`Scratch::place`] or a step, for the kernels of [`crate::articulated`].
+    /// Where the links are, after [`Scratch::forward_kinematics`] or a step, for the kernels of [`crate::articulated`].
     pub fn links(&mut self) -> &mut [LinkData<S>] {
         &mut self.links
     }
@@ -68,7 +68,7 @@ impl<S: Scalar> Scratch<S> {
 
     /// Places the links of `state` [`Model::state_len`]; needed once before the first step and after any change from outside.
     #[inline(always)]
-    pub fn place(&mut self, simd: S::Simd, model: &Model<S::Real>, state: &[S]) {
+    pub fn forward_kinematics(&mut self, simd: S::Simd, model: &Model<S::Real>, state: &[S]) {
         let (q, rest) = state.split_at(model.positions);
         place_links(simd, model, q, rest, &mut self.links);
     }
@@ -80,16 +80,16 @@ impl<S: Scalar> Scratch<S> {
 pub trait Precision: Real {
     /// [`step`] for one world.
     fn step(model: &Model<Self>, state: &mut [Self], scratch: &mut Scratch<Self>);
-    /// [`Scratch::place`] for one world.
-    fn place(model: &Model<Self>, state: &[Self], scratch: &mut Scratch<Self>);
+    /// [`Scratch::forward_kinematics`] for one world.
+    fn forward_kinematics(model: &Model<Self>, state: &[Self], scratch: &mut Scratch<Self>);
 }
 
 impl Precision for f32 {
     fn step(model: &Model<f32>, state: &mut [f32], scratch: &mut Scratch<f32>) {
         step((), model, state, scratch);
     }
-    fn place(model: &Model<f32>, state: &[f32], scratch: &mut Scratch<f32>) {
-        scratch.place((), model, state);
+    fn forward_kinematics(model: &Model<f32>, state: &[f32], scratch: &mut Scratch<f32>) {
+        scratch.forward_kinematics((), model, state);
     }
 }
 
@@ -97,8 +97,8 @@ impl Precision for f64 {
     fn step(model: &Model<f64>, state: &mut [f64], scratch: &mut Scratch<f64>) {
         step((), model, state, scratch);
     }
-    fn place(model: &Model<f64>, state: &[f64], scratch: &mut Scratch<f64>) {
-        scratch.place((), model, state);
+    fn forward_kinematics(model: &Model<f64>, state: &[f64], scratch: &mut Scratch<f64>) {
+        scratch.forward_kinematics((), model, state);
     }
 }
 
@@ -121,7 +121,8 @@ pub(crate) fn parts<'a, R: Real, S>(model: &Model<R>, state: &'a mut [S]) -> Par
 
 /// Lets one control step pass for every lane of `state` [`Model::state_len`].
 ///
-/// `scratch` must have been made for the model, and [`Scratch::place`]d once since `state` was changed from outside.
+/// `scratch` must have been made for the model, and [`Scratch::forward_kinematics`] called once since `state` was
+/// changed from outside.
 ///
 /// # Panics
 /// If `state` is shorter than [`Model::state_len`], or `scratch` is another model's.

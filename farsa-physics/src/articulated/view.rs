@@ -1,4 +1,5 @@
-//! What the ports of a world tell, from the words of its state and the places of its links: for a world alone and a lane.
+//! What the ports of a world report, from the words of its state and the places of its links: for a world alone and a
+//! lane.
 
 use farsa_body::{BodyId, JointId, JointKind, PairContact, PairId, Pose, Twist};
 use farsa_num::Real;
@@ -20,7 +21,7 @@ pub(crate) trait View<R: Real> {
     /// Changes a word of the state.
     fn set_word(&mut self, index: usize, x: R);
     /// Rotation and position of a moving link.
-    fn place(&self, link: usize) -> (Matrix<R>, Vector<R>);
+    fn link_frame(&self, link: usize) -> (Matrix<R>, Vector<R>);
     /// Velocity of a moving link, and the point that its linear part belongs to.
     fn motion(&self, link: usize) -> (Spatial<R>, Vector<R>);
 }
@@ -65,7 +66,7 @@ pub(crate) fn pose<R: Real>(world: &impl View<R>, body: BodyId) -> Pose<R> {
     if mount.link == WORLD {
         return Pose { position: mount.position, rotation: quaternion(&mount.rotation) };
     }
-    let (rotation, position) = world.place(usize::from(mount.link));
+    let (rotation, position) = world.link_frame(usize::from(mount.link));
     Pose {
         position: add(position, rotate(&rotation, mount.position)),
         rotation: quaternion(&product(&rotation, &mount.rotation)),
@@ -79,7 +80,7 @@ pub(crate) fn velocity<R: Real>(world: &impl View<R>, body: BodyId) -> Twist<R> 
         return Twist::default();
     }
     let link = usize::from(mount.link);
-    let (rotation, position) = world.place(link);
+    let (rotation, position) = world.link_frame(link);
     let (velocity, reference) = world.motion(link);
     let origin = add(position, rotate(&rotation, mount.position));
     Twist { linear: velocity.at(sub(origin, reference)), angular: velocity.angular }
@@ -133,7 +134,7 @@ pub(crate) fn pair_contact<R: Real>(world: &impl View<R>, pair: PairId) -> PairC
         }
     }
     if contact.points > 0 {
-        // The points tell of the first collider in the model's order.
+        // The points are of the first collider in the model's order.
         let sign = if pair.flipped { -1.0 } else { 1.0 };
         contact.force = force.map(|x| (sign * x) as f32);
         contact.normal_force = normal as f32;

@@ -35,7 +35,7 @@ impl<R: Precision> World<R> {
         let state = model.initial.clone();
         let scratch = Scratch::new((), &model);
         let mut world = Self { model, state, scratch };
-        world.arranged();
+        world.finish_placement();
         world
     }
 
@@ -49,7 +49,7 @@ impl<R: Precision> World<R> {
         &self.state
     }
 
-    /// The same, to be changed; [`Arrange::arranged`] must follow.
+    /// The same, to be changed; [`Arrange::finish_placement`] must follow.
     pub fn state_mut(&mut self) -> &mut [R] {
         &mut self.state
     }
@@ -97,7 +97,7 @@ impl<R: Precision> World<R> {
         let work = &mut self.scratch.links;
         forward_kinematics((), &model.links, &state[..model.positions], &zeros, work);
         inverse_dynamics((), &model.links, model.gravity, &zeros, work, tau);
-        self.arranged();
+        self.finish_placement();
     }
 
     /// Number of pairs that the last dynamics step has looked at the surfaces of: those whose bounds were near.
@@ -132,7 +132,7 @@ impl<R: Precision> View<R> for World<R> {
     fn set_word(&mut self, index: usize, x: R) {
         self.state[index] = x;
     }
-    fn place(&self, link: usize) -> (Matrix<R>, Vector<R>) {
+    fn link_frame(&self, link: usize) -> (Matrix<R>, Vector<R>) {
         let w = &self.scratch.links[link];
         (w.rotation, w.position)
     }
@@ -216,14 +216,14 @@ impl<R: Precision> Snapshot for World<R> {
         for (x, f) in self.state.iter_mut().zip(from) {
             *x = R::from_f64(f64::from(*f));
         }
-        self.arranged();
+        self.finish_placement();
     }
 }
 
 impl<R: Precision> Arrange for World<R> {
     fn clear(&mut self) {
         self.state.copy_from_slice(&self.model.initial);
-        self.arranged();
+        self.finish_placement();
     }
 
     fn place_joint(&mut self, joint: JointId, position: f32, speed: f32) {
@@ -232,7 +232,7 @@ impl<R: Precision> Arrange for World<R> {
     fn place_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
         view::place_body(self, body, pose, twist);
     }
-    fn arranged(&mut self) {
-        R::place(&self.model, &self.state, &mut self.scratch);
+    fn finish_placement(&mut self) {
+        R::forward_kinematics(&self.model, &self.state, &mut self.scratch);
     }
 }

@@ -5,6 +5,7 @@ use crate::rapier::options::Options;
 
 /// How a world of wheeled robots is stepped in rapier; the control step is the arena's.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ArenaOptions {
     /// The longest step of rapier [s]: a control step is divided into as few equal ones as are no longer.
     pub longest_step: f64,

@@ -1,8 +1,8 @@
 //! The ports of a world of wheeled robots in rapier.
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, Near,
-    PairContact, PairId, Planar, Pose, Rays, Sight, Snapshot, Twist,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, NearbySurface,
+    PairContact, PairId, Planar, PlanarHit, Pose, Rays, Snapshot, Twist,
 };
 use farsa_num::Scalar;
 use rapier3d::geometry::Ray;
@@ -93,13 +93,13 @@ impl Rays for ArenaWorld {
 }
 
 impl Planar for ArenaWorld {
-    fn near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(Near<BodyId>)) {
-        view::near(self, from, range, &mut *tell);
+    fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
+        view::query_near(self, from, range, &mut *tell);
         for (block, slab) in self.slabs.iter().enumerate().filter(|(_, slab)| slab.within_reach(from, range)) {
             let [x, y] = to_wall(slab, from);
             let distance = Scalar::sqrt(x * x + y * y);
             if distance <= range {
-                tell(Near {
+                tell(NearbySurface {
                     body: Some(BodyId((self.model.bodies() + block) as u16)),
                     point: [from[0] + x, from[1] + y],
                     distance,
@@ -111,15 +111,21 @@ impl Planar for ArenaWorld {
         }
     }
 
-    fn look(&self, from: [f32; 2], direction: [f32; 2], range: f32, but: Option<BodyId>) -> Option<Sight<BodyId>> {
-        let mut sight = view::look(self, from, direction, range, but);
+    fn cast_planar(
+        &self,
+        from: [f32; 2],
+        direction: [f32; 2],
+        range: f32,
+        but: Option<BodyId>,
+    ) -> Option<PlanarHit<BodyId>> {
+        let mut sight = view::cast_planar(self, from, direction, range, but);
         for (block, slab) in self.slabs.iter().enumerate() {
             let body = BodyId((self.model.bodies() + block) as u16);
             if but != Some(body)
                 && let Some(distance) = ray_to_wall(slab, from, direction)
                 && sight.as_ref().map_or(distance <= range, |sight| distance < sight.distance)
             {
-                sight = Some(Sight { distance, body: Some(body), color: slab.color });
+                sight = Some(PlanarHit { distance, body: Some(body), color: slab.color });
             }
         }
         sight
@@ -191,7 +197,7 @@ impl Arrange for ArenaWorld {
         view::place_body(self, body, pose);
         self.put_body(body, &pose);
     }
-    fn arranged(&mut self) {
+    fn finish_placement(&mut self) {
         self.settle();
     }
 }

@@ -9,6 +9,7 @@ use crate::rapier::error::RapierError;
 
 /// What a wheeled robot is as a rigid body, beside what [`MobileRobot`] says of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Chassis {
     /// Mass of all of it [kg].
     pub mass: f64,
@@ -33,7 +34,7 @@ impl Chassis {
     /// All of it is chosen: its mass by [`Chassis::DENSITY`], a tenth of it in the wheels; motors that together push with half
     /// the robot's weight and, geared as they are, resist acceleration as a fifth of its mass more would; rubber wheels (0.8)
     /// and a smooth hull (0.3).
-    pub fn of(robot: &MobileRobot) -> Self {
+    pub fn for_robot(robot: &MobileRobot) -> Self {
         let volume = core::f64::consts::PI * robot.radius * robot.radius * robot.height;
         let mass = Self::DENSITY * volume;
         let wheel = robot.wheel_radius;
@@ -64,6 +65,7 @@ impl Chassis {
 ///
 /// Its frame has x along its length, z up and the origin on the ground below its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Block {
     /// Its middle at first [m].
     pub centre: [f64; 2],
@@ -131,6 +133,7 @@ impl Block {
 /// }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ArenaScene {
     /// The arena; its rule of collisions is of the kinematic world and not looked at here.
     pub arena: Arena,
@@ -143,7 +146,7 @@ pub struct ArenaScene {
 impl ArenaScene {
     /// An arena without blocks whose robots have the chassis that is chosen for their size.
     pub fn new(arena: Arena) -> Self {
-        let chassis = arena.robots.iter().map(|placed| Chassis::of(&placed.robot)).collect();
+        let chassis = arena.robots.iter().map(|placed| Chassis::for_robot(&placed.robot)).collect();
         Self { arena, chassis, blocks: Vec::new() }
     }
 

@@ -31,7 +31,7 @@ use crate::rapier::world::LEAST_STIFFNESS;
 ///   touch the ground in one point each. So robots accelerate, slip and stall. The centre of mass is between the wheels.
 /// - *Motors* turn a wheel with a torque in proportion to what it lacks of the commanded speed, all of it where that is a
 ///   hundredth of the greatest speed or more; for a NaN they stand still.
-/// - *Wheels* tell the mean speed of the last control step, as encoders do, and positions within +-16 turns.
+/// - *Wheels* report the mean speed of the last control step, as encoders do, and positions within +-16 turns.
 /// - *Walls, convex obstacles and cylinders* do not move. Of two surfaces that rub the smoother one decides; walls and ground
 ///   are rougher than anything.
 /// - *Contacts*: pair `r` is robot `r` and what its hull met hardest in any step of rapier of the last control step, with that
@@ -41,7 +41,7 @@ use crate::rapier::world::LEAST_STIFFNESS;
 /// - *Poses* of robots and blocks are those of rapier: a robot leans by some tenths of a degree on its skids.
 /// - *Arranging*: a body keeps its place and heading of a pose, upright and at rest. What is put into something is pushed out.
 ///
-/// A world that has broken down does not step and tells NaN of robots and blocks, until it is cleared or restored.
+/// A world that has broken down does not step, and every port of it returns NaN, until it is cleared or restored.
 pub struct ArenaWorld {
     pub(crate) model: Model,
     pub(crate) plan: ArenaPlan,
@@ -107,7 +107,7 @@ impl ArenaWorld {
         !self.lost
     }
 
-    /// rapier's own state, for what the ports do not tell.
+    /// rapier's own state, for what the ports do not report.
     pub fn physics(&self) -> &PhysicsWorld {
         &self.physics
     }
@@ -390,7 +390,7 @@ impl ArenaWorld {
         }
     }
 
-    /// Brings everything that follows from places up to date: links, colliders, who is near whom, what is seen.
+    /// Brings everything that follows from places up to date: links, colliders, which bodies are near, what is seen.
     pub(crate) fn settle(&mut self) {
         if core::mem::take(&mut self.moved) {
             let physics = &mut self.physics;
@@ -410,7 +410,7 @@ impl ArenaWorld {
         self.observe();
     }
 
-    /// Whether rapier's state is of a world of this description, as far as numbers of parts tell.
+    /// Whether rapier's state is of a world of this description, as far as numbers of parts say.
     pub(crate) fn fits(&self, physics: &PhysicsWorld) -> bool {
         let parts = |p: &PhysicsWorld| {
             let dofs: Vec<_> = p.multibody_joints.multibodies().map(Multibody::ndofs).collect();

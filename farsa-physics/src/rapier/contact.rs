@@ -1,4 +1,4 @@
-//! What rapier's contacts say, as the port tells it.
+//! rapier's contacts as the port reports them.
 
 use farsa_body::PairContact;
 use rapier3d::dynamics::{FrictionModel, RigidBodyHandle};
@@ -6,7 +6,7 @@ use rapier3d::geometry::{ColliderHandle, Contact, ContactManifold};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
-use crate::rapier::model::{Plan, Touching};
+use crate::rapier::model::{RobotPlan, Touching};
 
 /// The flag in a contact's number that says that it is new.
 const NEW: u32 = 1 << 31;
@@ -37,11 +37,13 @@ fn normal_force(physics: &PhysicsWorld, pair: &Touching) -> f32 {
 
 /// The friction impulse of a whole step at a point of a multibody, on rapier's first body.
 ///
-/// rapier keeps it along two directions that it does not tell. What it keeps for the next start are the same two numbers
-/// of the last iteration and their vector in the world: from these follow the directions.
+/// rapier keeps it along two directions that it does not expose. What it keeps for the next start are the same two
+/// numbers of the last iteration and their vector in the world: from these follow the directions.
 fn friction_at(point: &Contact, normal: Vector) -> Vector {
     let data = &point.data;
     let (last, world) = (data.warmstart_tangent_impulse, data.warmstart_tangent_world);
+    // With t1 and t2 = t1 x n the two directions, `world` is a t1 + b t2 and `across` is a t2 - b t1: solved for t1 and
+    // t2, the determinant is a^2 + b^2.
     let across = -normal.cross(world);
     let square = last.x * last.x + last.y * last.y;
     if square > 0.0 {
@@ -69,6 +71,7 @@ pub(crate) fn pair_contact(physics: &PhysicsWorld, pair: &Touching) -> PairConta
     let mut contact = PairContact { depth: f32::NEG_INFINITY, ..PairContact::default() };
     let Some((manifolds, flipped)) = manifolds(physics, pair.colliders) else { return contact };
     let [first, second] = if flipped { [pair.colliders[1], pair.colliders[0]] } else { pair.colliders };
+    // From here on rapier's order of the two, whose normal leads from its first to its second.
     let (first, second) = (physics.colliders[first].position(), physics.colliders[second].position());
     let per_second = 1.0 / physics.integration_parameters.dt;
     let parameters = &physics.integration_parameters;
@@ -87,6 +90,7 @@ pub(crate) fn pair_contact(physics: &PhysicsWorld, pair: &Touching) -> PairConta
                 contact.points += 1;
                 contact.normal_force += normal_force;
                 force -= normal * normal_force;
+                // The point is the mean of the contacts' middles, weighted by their normal forces.
                 moment += (p1 + p2) * (0.5 * normal_force);
             }
         }
@@ -102,7 +106,7 @@ pub(crate) fn pair_contact(physics: &PhysicsWorld, pair: &Touching) -> PairConta
 ///
 /// The torque is the surface's rolling friction times the normal force of the step before, against the relative rotation,
 /// but no more than stops a free body's rotation within the step. A link of a multibody counts as immovable for that.
-pub(crate) fn roll(physics: &mut PhysicsWorld, plan: &Plan) {
+pub(crate) fn roll(physics: &mut PhysicsWorld, plan: &RobotPlan) {
     for pair in plan.pairs.iter().filter(|pair| pair.rolling_friction > 0.0) {
         for carrier in pair.carriers.iter().flatten() {
             reset(physics, plan.carriers[*carrier].body);
@@ -121,6 +125,8 @@ pub(crate) fn roll(physics: &mut PhysicsWorld, plan: &Plan) {
         let relative = rotation[0] - rotation[1];
         let speed = relative.length();
         if speed > 0.0 {
+            // With dw the relative rotation and 1/I the sum of both inverse inertias, I dw / h is what stops it in one
+            // step.
             let torque = (pair.rolling_friction * force).min(speed / inverse * per_second);
             let torque = relative * (-torque / speed);
             for (carrier, sign) in carriers.iter().zip([1.0, -1.0]) {

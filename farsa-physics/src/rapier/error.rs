@@ -28,25 +28,25 @@ pub enum RapierError {
         /// The collider's name.
         collider: String,
     },
-    /// A number of a thing is NaN, infinite or out of its range.
-    Thing {
-        /// The thing's name.
+    /// A number of an object is NaN, infinite or out of its range.
+    SceneObject {
+        /// The object's name.
         name: String,
         /// Which number.
         field: &'static str,
         /// Its value.
         value: f64,
     },
-    /// A thing with a mass whose form does not move.
+    /// An object with a mass whose geometry does not move.
     Immovable {
-        /// The thing's name.
+        /// The object's name.
         name: String,
-        /// Its form.
-        form: &'static str,
+        /// Its geometry.
+        geometry: &'static str,
     },
     /// A triangle of a vertex that the mesh does not have.
     Triangle {
-        /// The thing's name.
+        /// The object's name.
         name: String,
         /// The triangle's number.
         triangle: usize,
@@ -57,7 +57,7 @@ pub enum RapierError {
     },
     /// A height field that has not as many heights as rows times columns, or fewer than two of either.
     Grid {
-        /// The thing's name.
+        /// The object's name.
         name: String,
         /// Number of rows and columns.
         size: [usize; 2],
@@ -66,7 +66,7 @@ pub enum RapierError {
     },
     /// Points or triangles that rapier makes nothing of.
     Unusable {
-        /// The thing's name.
+        /// The object's name.
         name: String,
         /// Why.
         why: String,
@@ -134,19 +134,21 @@ impl fmt::Display for RapierError {
                 write!(f, "option {name} is {value}, not from {low} to {high}; the nearest is {nearest}")
             }
             Self::MovingPlane { collider } => write!(f, "collider {collider}: a plane does not move"),
-            Self::Thing { name, field, value } => write!(f, "thing {name}: {field} is {value}"),
-            Self::Immovable { name, form } => write!(f, "thing {name}: a {form} does not move, so it has no mass"),
+            Self::SceneObject { name, field, value } => write!(f, "object {name}: {field} is {value}"),
+            Self::Immovable { name, geometry } => {
+                write!(f, "object {name}: a {geometry} does not move, so it has no mass")
+            }
             Self::Triangle { name, triangle, vertex, count } => {
                 let last = count.saturating_sub(1);
-                write!(f, "thing {name}: triangle {triangle} has vertex {vertex}; the last of {count} is {last}")
+                write!(f, "object {name}: triangle {triangle} has vertex {vertex}; the last of {count} is {last}")
             }
             Self::Grid { name, size: [rows, columns], heights } => {
                 write!(
                     f,
-                    "thing {name}: {heights} heights for {rows} rows of {columns}, of which there are at least two"
+                    "object {name}: {heights} heights for {rows} rows of {columns}, of which there are at least two"
                 )
             }
-            Self::Unusable { name, why } => write!(f, "thing {name}: {why}"),
+            Self::Unusable { name, why } => write!(f, "object {name}: {why}"),
             Self::Arena(e) => e.fmt(f),
             Self::Chassis { robots, chassis } => write!(f, "{chassis} chassis for {robots} robots: one for each"),
             Self::Attachment { robot } => {

@@ -6,7 +6,7 @@
 //! use farsa_body::{
 //!     Actuated, Collider, Joint, JointId, Kinematics, Law, MassProperties, Pose, Robot, Segment, Servo, Shape, World as _,
 //! };
-//! use farsa_physics::rapier::{Form, Options, RapierError, Scene, Thing, World};
+//! use farsa_physics::rapier::{Geometry, Options, RapierError, Scene, SceneObject, World};
 //!
 //! fn main() -> Result<(), RapierError> {
 //!     let half = [0.02, 0.05, 0.02];
@@ -18,17 +18,17 @@
 //!     let motor = robot.add_actuator("slide", JointId(block.0), Law::Servo(servo));
 //!
 //!     let mut scene = Scene::new(robot);
-//!     scene.add(Thing::fixed("ground", Form::Simple(Shape::Plane), Pose::identity()));
-//!     let form = Form::Simple(Shape::Box { half: [0.04; 3] });
-//!     let goods = scene.add(Thing::movable("crate", form, Pose::at([0.1, 0.0, 0.04]), 0.5));
+//!     scene.add(SceneObject::fixed("ground", Geometry::Simple(Shape::Plane), Pose::identity()));
+//!     let geometry = Geometry::Simple(Shape::Box { half: [0.04; 3] });
+//!     let parcel = scene.add(SceneObject::movable("crate", geometry, Pose::at([0.1, 0.0, 0.04]), 0.5));
 //!
-//!     let mut world = World::of_scene(&scene, &Options::default())?;
+//!     let mut world = World::from_scene(&scene, &Options::default())?;
 //!     for step in 1..=200 {
 //!         world.command(motor, [0.001 * step as f32, 0.0]);
 //!         world.step();
 //!     }
 //!     // 0.26 m, less what the servo's damping lags behind at 0.1 m/s.
-//!     let place = world.pose(goods).position[0];
+//!     let place = world.pose(parcel).position[0];
 //!     assert!((place - 0.25).abs() < 0.005, "{place} m");
 //!     Ok(())
 //! }
@@ -37,11 +37,11 @@
 //! The files without a prefix are of articulated robots and general scenes, those with `arena_` of wheeled robots:
 //!
 //! - `options`: how a world is stepped
-//! - `scene`: a robot with things around it, as data
+//! - `scene`: a robot with objects around it, as data
 //! - `error`: why a world cannot be built
 //! - `convert`: vectors, frames and shapes as rapier has them
 //! - `model`: from a description to rapier's bodies, joints and colliders
-//! - `rules`: who may touch whom, and with what friction
+//! - `rules`: which colliders may touch, and with what friction
 //! - `world`: one world of rapier
 //! - `ports`: its ports
 //! - `contact`: what rapier's contacts say
@@ -73,5 +73,5 @@ pub use arena_scene::{ArenaScene, Block, Chassis};
 pub use arena_world::ArenaWorld;
 pub use error::RapierError;
 pub use options::Options;
-pub use scene::{Form, Scene, Thing};
+pub use scene::{Geometry, Scene, SceneObject};
 pub use world::World;

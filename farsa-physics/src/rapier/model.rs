@@ -21,7 +21,7 @@ use crate::rapier::convert::{pose, shape_of, vector};
 use crate::rapier::error::RapierError;
 use crate::rapier::options::Options;
 use crate::rapier::rules::Rules;
-use crate::rapier::scene::{Scene, Side, Thing};
+use crate::rapier::scene::{Scene, SceneObject, Side};
 
 /// What moves: a free body, or a link of a multibody.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +39,7 @@ pub(crate) struct Carrier {
 
 /// Where a body of the ports is: on which carrier (none: the world), and its frame in the carrier's.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct BodyFrame {
     pub(crate) carrier: Option<usize>,
     pub(crate) pose: Pose,
 }
@@ -65,9 +65,9 @@ pub(crate) struct Drive {
 
 /// The constant part of a world of rapier.
 #[derive(Clone, Debug)]
-pub(crate) struct Plan {
+pub(crate) struct RobotPlan {
     pub(crate) carriers: Vec<Carrier>,
-    pub(crate) places: Vec<Place>,
+    pub(crate) frames: Vec<BodyFrame>,
     pub(crate) kinds: Vec<JointKind>,
     pub(crate) colliders: Vec<ColliderHandle>,
     pub(crate) collider_bodies: Vec<Option<BodyId>>,
@@ -109,14 +109,14 @@ fn centre_roots(links: &mut [Link<f64>], mounts: &mut [Mount<f64>]) -> Vec<[f64;
 }
 
 /// Builds the bodies, joints and colliders of a scene.
-pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(Plan, PhysicsWorld), RapierError> {
+pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, PhysicsWorld), RapierError> {
     let robot = &scene.robot;
     robot.validate()?;
     options.check()?;
     scene.check()?;
     for (what, count) in [
-        ("segments and things", robot.segments.len() + scene.things.len()),
-        ("colliders and things", robot.colliders.len() + scene.things.len()),
+        ("segments and objects", robot.segments.len() + scene.objects.len()),
+        ("colliders and objects", robot.colliders.len() + scene.objects.len()),
         ("pairs", scene.sides().count()),
         ("actuators", robot.actuators.len()),
     ] {
@@ -130,11 +130,11 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(Plan, PhysicsWo
     let mut physics = options.world();
     let mut carriers = add_links(&mut physics, &links, &shifts);
 
-    let place = |mount: &Mount<f64>| Place {
+    let body_frame = |mount: &Mount<f64>| BodyFrame {
         carrier: (mount.link != WORLD).then_some(usize::from(mount.link)),
         pose: Pose { position: mount.position, rotation: quaternion(&mount.rotation) }.cast(),
     };
-    let mut places: Vec<_> = mounts.iter().map(place).collect();
+    let mut frames: Vec<_> = mounts.iter().map(body_frame).collect();
     let mut colliders = Vec::new();
     let mut on = Vec::new();
     for (number, collider) in robot.colliders.iter().enumerate() {
@@ -154,13 +154,13 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(Plan, PhysicsWo
     }
     let mut bodies: Vec<_> = robot.colliders.iter().map(|c| c.body).collect();
     let mut kinds: Vec<_> = robot.segments.iter().map(|s| s.joint.kind).collect();
-    for thing in &scene.things {
-        let carrier = thing.mass.map(|_| carriers.len());
-        bodies.push(Some(BodyId(places.len() as u16)));
+    for object in &scene.objects {
+        let carrier = object.mass.map(|_| carriers.len());
+        bodies.push(Some(BodyId(frames.len() as u16)));
         kinds.push(if carrier.is_some() { JointKind::Floating } else { JointKind::Fixed });
-        let pose = if carrier.is_some() { Pose::identity() } else { thing.placement.cast() };
-        places.push(Place { carrier, pose });
-        let (added, collider) = add_thing(&mut physics, thing, colliders.len())?;
+        let pose = if carrier.is_some() { Pose::identity() } else { object.placement.cast() };
+        frames.push(BodyFrame { carrier, pose });
+        let (added, collider) = add_object(&mut physics, object, colliders.len())?;
         carriers.extend(added);
         colliders.push(collider);
         on.push(carrier);
@@ -168,8 +168,8 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(Plan, PhysicsWo
     let sides: Vec<_> = scene.sides().map(|sides| sides.map(|side| number_of(side, robot.colliders.len()))).collect();
     let surface = |number: usize| robot.pairs.get(number).map(|pair| pair.surface);
     let rules = sides.iter().enumerate().map(|(number, sides)| {
-        let thing = |number: &usize| Some(scene.things.get(number.checked_sub(robot.colliders.len())?)?.friction);
-        let between = || match (thing(&sides[0]), thing(&sides[1])) {
+        let object = |number: &usize| Some(scene.objects.get(number.checked_sub(robot.colliders.len())?)?.friction);
+        let between = || match (object(&sides[0]), object(&sides[1])) {
             (Some(a), Some(b)) => farsa_num::Scalar::sqrt(a * b),
             (a, b) => a.or(b).unwrap_or(0.0),
         };
@@ -184,13 +184,13 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(Plan, PhysicsWo
         of_links: sides.iter().any(|c| on[*c].is_some_and(|c| carriers[c].link.is_some())),
     });
     let (drives, laws) = drives_of(robot, &mounts);
-    let plan = Plan {
+    let plan = RobotPlan {
         pairs: pairs.collect(),
         kinds,
         collider_bodies: bodies,
         rules: Rules::new(colliders.len(), &rules),
         carriers,
-        places,
+        frames,
         colliders,
         drives,
         laws,
@@ -205,22 +205,22 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(Plan, PhysicsWo
 fn number_of(side: Side, colliders: usize) -> usize {
     match side {
         Side::Collider(number) => number,
-        Side::Thing(number) => colliders + number,
+        Side::SceneObject(number) => colliders + number,
     }
 }
 
-/// A thing's body, if it moves, and its collider.
-fn add_thing(
+/// An object's body, if it moves, and its collider.
+fn add_object(
     physics: &mut PhysicsWorld,
-    thing: &Thing,
+    object: &SceneObject,
     number: usize,
 ) -> Result<(Option<Carrier>, ColliderHandle), RapierError> {
-    let (shape, local) = thing.shape()?;
-    let at = pose(&frame(&thing.placement));
+    let (shape, local) = object.shape()?;
+    let at = pose(&frame(&object.placement));
     let built = ColliderBuilder::new(shape)
         .user_data(Rules::mark(number))
         .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS | ActiveHooks::MODIFY_SOLVER_CONTACTS);
-    let Some(mass) = thing.mass else {
+    let Some(mass) = object.mass else {
         return Ok((None, physics.insert_collider(built.position(at * local), None)));
     };
     let body = physics.insert_body(RigidBodyBuilder::dynamic().can_sleep(false).pose(at));

@@ -8,6 +8,7 @@ use crate::rapier::error::RapierError;
 
 /// How a world of rapier is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Options {
     /// Control step [s].
     pub time_step: f64,
@@ -85,7 +86,7 @@ impl Options {
         parameters.static_contact_softness = softness;
         // At each point of a box by itself friction works against itself and is a tenth too weak.
         parameters.friction_model = FrictionModel::Simplified;
-        // Who reads a contact wants the one of this step, at the points that the solver has seen.
+        // Readers of a contact want that of this step, at the points that the solver has seen.
         parameters.contact_recycling = false;
         parameters.contact_clustering = false;
         physics

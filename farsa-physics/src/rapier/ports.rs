@@ -116,7 +116,7 @@ impl Arrange for World {
     fn place_body(&mut self, body: BodyId, pose: Pose, twist: Twist) {
         self.put_body(body, pose, twist);
     }
-    fn arranged(&mut self) {
+    fn finish_placement(&mut self) {
         self.settle();
     }
 }

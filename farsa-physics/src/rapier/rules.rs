@@ -1,4 +1,4 @@
-//! Who may touch whom, and with what friction: rapier asks for every pair of colliders that come near.
+//! Which colliders may touch, and with what friction: rapier asks for every pair of colliders that come near.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,7 +11,7 @@ const NONE: u16 = u16::MAX;
 
 /// The pairs of colliders that may touch.
 ///
-/// A collider bears its number plus one as user data; 0 is one that somebody else put there, which touches everything.
+/// A collider bears its number plus one as user data; 0 is a collider that others put there, which touches everything.
 #[derive(Clone, Debug)]
 pub(crate) struct Rules {
     /// Number of colliders.
@@ -37,12 +37,12 @@ impl Rules {
         number as u128 + 1
     }
 
-    /// The number of a collider; `None` for one of somebody else's.
+    /// The number of a collider; `None` for one of others.
     pub(crate) fn number(collider: &Collider) -> Option<usize> {
         usize::try_from(collider.user_data).ok()?.checked_sub(1)
     }
 
-    /// The pair of two colliders; `Err` for a collider of somebody else's.
+    /// The pair of two colliders; `Err` for a collider of others.
     fn pair(&self, a: &Collider, b: &Collider) -> Result<Option<usize>, ()> {
         let (Some(a), Some(b)) = (Self::number(a), Self::number(b)) else { return Err(()) };
         let pair = self.pairs.get(a * self.width + b).copied().unwrap_or(NONE);

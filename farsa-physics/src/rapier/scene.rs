@@ -1,4 +1,4 @@
-//! A robot with things around it that only a general world can have.
+//! A robot with objects around it that only a general world can have.
 
 use alloc::format;
 use alloc::string::String;
@@ -12,9 +12,14 @@ use rapier3d::parry::utils::Array2;
 use crate::rapier::convert::shape_of;
 use crate::rapier::error::RapierError;
 
-/// The form of a thing, in its own frame.
+/// The geometry of an object, in its own frame.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Form {
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
+pub enum Geometry {
     /// A sphere, capsule, box or plane as robots have them.
     Simple(Shape),
     /// A cylinder about the z axis.
@@ -46,73 +51,76 @@ pub enum Form {
 
 /// Something beside the robot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Thing {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct SceneObject {
     /// Its name, unique in the scene.
     pub name: String,
-    /// Its form.
-    pub form: Form,
+    /// Its geometry.
+    pub geometry: Geometry,
     /// Where it is at the start, in the world.
     pub placement: Pose<f64>,
     /// Its mass [kg], spread evenly; `None` for what does not move.
     pub mass: Option<f64>,
-    /// Coefficient of sliding friction with the robot; between two things the geometric mean of theirs.
+    /// Coefficient of sliding friction with the robot; between two objects the geometric mean of theirs.
     pub friction: f64,
 }
 
-impl Thing {
-    /// A thing that moves, with friction 0.5.
-    pub fn movable(name: &str, form: Form, placement: Pose<f64>, mass: f64) -> Self {
-        Self { name: name.into(), form, placement, mass: Some(mass), friction: 0.5 }
+impl SceneObject {
+    /// An object that moves, with friction 0.5.
+    pub fn movable(name: &str, geometry: Geometry, placement: Pose<f64>, mass: f64) -> Self {
+        Self { name: name.into(), geometry, placement, mass: Some(mass), friction: 0.5 }
     }
 
-    /// A thing that does not move, with friction 0.5.
-    pub fn fixed(name: &str, form: Form, placement: Pose<f64>) -> Self {
-        Self { name: name.into(), form, placement, mass: None, friction: 0.5 }
+    /// An object that does not move, with friction 0.5.
+    pub fn fixed(name: &str, geometry: Geometry, placement: Pose<f64>) -> Self {
+        Self { name: name.into(), geometry, placement, mass: None, friction: 0.5 }
     }
 }
 
-/// A robot and the things around it.
+/// A robot and the objects around it.
 ///
-/// The robot's colliders touch each other as its pairs say; a thing touches all of them and all other things, except that
-/// what never moves does not touch what never moves. Bodies and pairs of things are numbered after the robot's own.
+/// The robot's colliders touch each other as its pairs say; an object touches all of them and all other objects, except
+/// that
+/// what never moves does not touch what never moves. Bodies and pairs of objects are numbered after the robot's own.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Scene {
     /// The robot.
     pub robot: Robot,
-    /// The things.
-    pub things: Vec<Thing>,
+    /// The objects.
+    pub objects: Vec<SceneObject>,
 }
 
-/// One of the two sides of a pair: a collider of the robot or a thing, by its number.
+/// One of the two sides of a pair: a collider of the robot or an object, by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Collider(usize),
-    Thing(usize),
+    SceneObject(usize),
 }
 
 impl Scene {
     /// A scene of a robot alone.
     pub fn new(robot: Robot) -> Self {
-        Self { robot, things: Vec::new() }
+        Self { robot, objects: Vec::new() }
     }
 
-    /// Appends a thing and tells its body.
-    pub fn add(&mut self, thing: Thing) -> BodyId {
-        self.things.push(thing);
-        BodyId((self.robot.segments.len() + self.things.len() - 1) as u16)
+    /// Appends an object and returns its body.
+    pub fn add(&mut self, object: SceneObject) -> BodyId {
+        self.objects.push(object);
+        BodyId((self.robot.segments.len() + self.objects.len() - 1) as u16)
     }
 
-    /// The body of a segment or thing of this name.
+    /// The body of a segment or object of this name.
     pub fn body(&self, name: &str) -> Option<BodyId> {
-        let thing = || self.things.iter().position(|thing| thing.name == name);
-        self.robot.body(name).or_else(|| Some(BodyId((self.robot.segments.len() + thing()?) as u16)))
+        let object = || self.objects.iter().position(|object| object.name == name);
+        self.robot.body(name).or_else(|| Some(BodyId((self.robot.segments.len() + object()?) as u16)))
     }
 
-    /// The pair of two colliders or things of these names, in either order.
+    /// The pair of two colliders or objects of these names, in either order.
     pub fn pair(&self, a: &str, b: &str) -> Option<PairId> {
         let side = |name: &str| {
-            let thing = self.things.iter().position(|thing| thing.name == name).map(Side::Thing);
-            thing.or_else(|| self.robot.collider(name).map(Side::Collider))
+            let object = self.objects.iter().position(|object| object.name == name).map(Side::SceneObject);
+            object.or_else(|| self.robot.collider(name).map(Side::Collider))
         };
         let (a, b) = (side(a)?, side(b)?);
         let found = self.sides().position(|pair| pair == [a, b] || pair == [b, a]);
@@ -124,25 +132,26 @@ impl Scene {
         let robot = &self.robot;
         let rides = |collider: usize| robot.colliders.get(collider).is_some_and(|c| robot_moves(robot, c.body));
         let own = robot.pairs.iter().map(|pair| pair.colliders.map(Side::Collider));
-        let others = self.things.iter().enumerate().flat_map(move |(number, thing)| {
-            let moves = thing.mass.is_some();
+        let others = self.objects.iter().enumerate().flat_map(move |(number, object)| {
+            let moves = object.mass.is_some();
             let colliders = (0..robot.colliders.len()).filter(move |c| moves || rides(*c)).map(Side::Collider);
-            let things = (0..number).filter(move |other| moves || self.things[*other].mass.is_some()).map(Side::Thing);
-            colliders.chain(things).map(move |other| [Side::Thing(number), other])
+            let objects =
+                (0..number).filter(move |other| moves || self.objects[*other].mass.is_some()).map(Side::SceneObject);
+            colliders.chain(objects).map(move |other| [Side::SceneObject(number), other])
         });
         own.chain(others)
     }
 
-    /// Looks whether things can be built; the robot is looked at elsewhere.
+    /// Looks whether objects can be built; the robot is looked at elsewhere.
     pub(crate) fn check(&self) -> Result<(), RapierError> {
-        for (number, thing) in self.things.iter().enumerate() {
-            let taken = self.things[..number].iter().any(|other| other.name == thing.name)
-                || self.robot.segments.iter().any(|segment| segment.name == thing.name)
-                || self.robot.colliders.iter().any(|collider| collider.name == thing.name);
+        for (number, object) in self.objects.iter().enumerate() {
+            let taken = self.objects[..number].iter().any(|other| other.name == object.name)
+                || self.robot.segments.iter().any(|segment| segment.name == object.name)
+                || self.robot.colliders.iter().any(|collider| collider.name == object.name);
             if taken {
-                return Err(RobotError::Name { name: thing.name.clone() }.into());
+                return Err(RobotError::Name { name: object.name.clone() }.into());
             }
-            thing.check()?;
+            object.check()?;
         }
         Ok(())
     }
@@ -159,10 +168,10 @@ fn robot_moves(robot: &Robot, mut body: Option<BodyId>) -> bool {
     false
 }
 
-impl Thing {
+impl SceneObject {
     fn check(&self) -> Result<(), RapierError> {
         let value = |field: &'static str, value: f64, good: bool| {
-            let wrong = || RapierError::Thing { name: self.name.clone(), field, value };
+            let wrong = || RapierError::SceneObject { name: self.name.clone(), field, value };
             if good { Ok(()) } else { Err(wrong()) }
         };
         let positive = |field, x: f64| value(field, x, (1e-6..=1e6).contains(&x));
@@ -179,24 +188,24 @@ impl Thing {
             let far = points.iter().flatten().find(|x| !(x.is_finite() && x.abs() <= 1e6));
             far.map_or(Ok(()), |x| value("coordinate of a point", f64::from(*x), false))
         };
-        let still = |form: &'static str| match self.mass {
-            Some(_) => Err(RapierError::Immovable { name: self.name.clone(), form }),
+        let still = |geometry: &'static str| match self.mass {
+            Some(_) => Err(RapierError::Immovable { name: self.name.clone(), geometry }),
             None => Ok(()),
         };
-        match &self.form {
-            Form::Simple(Shape::Sphere { radius }) => positive("radius", *radius),
-            Form::Simple(Shape::Capsule { radius, half_length }) => {
+        match &self.geometry {
+            Geometry::Simple(Shape::Sphere { radius }) => positive("radius", *radius),
+            Geometry::Simple(Shape::Capsule { radius, half_length }) => {
                 positive("radius", *radius)?;
                 value("half length", *half_length, (0.0..=1e6).contains(half_length))
             }
-            Form::Simple(Shape::Box { half }) => half.iter().try_for_each(|x| positive("half edge", *x)),
-            Form::Simple(Shape::Plane) => still("plane"),
-            Form::Cylinder { radius, half_length } => {
+            Geometry::Simple(Shape::Box { half }) => half.iter().try_for_each(|x| positive("half edge", *x)),
+            Geometry::Simple(Shape::Plane) => still("plane"),
+            Geometry::Cylinder { radius, half_length } => {
                 positive("radius", *radius)?;
                 positive("half length", *half_length)
             }
-            Form::Hull(corners) => points(corners),
-            Form::Mesh { vertices, triangles } => {
+            Geometry::Hull(corners) => points(corners),
+            Geometry::Mesh { vertices, triangles } => {
                 still("mesh")?;
                 points(vertices)?;
                 value("number of triangles", triangles.len() as f64, !triangles.is_empty())?;
@@ -210,7 +219,7 @@ impl Thing {
                 }
                 Ok(())
             }
-            Form::HeightField { heights, size, extent } => {
+            Geometry::HeightField { heights, size, extent } => {
                 still("height field")?;
                 let [rows, columns] = *size;
                 if rows < 2 || columns < 2 || rows.checked_mul(columns) != Some(heights.len()) {
@@ -224,18 +233,18 @@ impl Thing {
         }
     }
 
-    /// The form as rapier has it, and its frame in the thing's.
+    /// The geometry as rapier has it, and its frame in the object's.
     pub(crate) fn shape(&self) -> Result<(SharedShape, Frame), RapierError> {
         let unusable = |why: String| RapierError::Unusable { name: self.name.clone(), why };
         let quarter = core::f32::consts::FRAC_1_SQRT_2;
         // rapier's cylinders and height fields stand upright along y.
         let upright = Frame::from_rotation(Rotation::from_xyzw(quarter, 0.0, 0.0, quarter));
-        Ok(match &self.form {
-            Form::Simple(shape) => (shape_of(shape), Frame::IDENTITY),
-            Form::Cylinder { radius, half_length } => {
+        Ok(match &self.geometry {
+            Geometry::Simple(shape) => (shape_of(shape), Frame::IDENTITY),
+            Geometry::Cylinder { radius, half_length } => {
                 (SharedShape::cylinder(*half_length as f32, *radius as f32), upright)
             }
-            Form::Hull(points) => {
+            Geometry::Hull(points) => {
                 let points: Vec<Vector> = points.iter().map(|point| Vector::from(*point)).collect();
                 let hull = (points.len() > 3).then(|| SharedShape::convex_hull(&points)).flatten();
                 // A flat hull has no mass of its own.
@@ -243,13 +252,13 @@ impl Thing {
                 let why = || unusable(format!("{} points span no solid", points.len()));
                 (hull.ok_or_else(why)?, Frame::IDENTITY)
             }
-            Form::Mesh { vertices, triangles } => {
+            Geometry::Mesh { vertices, triangles } => {
                 let vertices = vertices.iter().map(|vertex| Vector::from(*vertex)).collect();
                 let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
                 let mesh = SharedShape::trimesh_with_flags(vertices, triangles.clone(), flags);
                 (mesh.map_err(|error| unusable(format!("{error}")))?, Frame::IDENTITY)
             }
-            Form::HeightField { heights, size: [rows, columns], extent: [x, y] } => {
+            Geometry::HeightField { heights, size: [rows, columns], extent: [x, y] } => {
                 // Upright, rapier's rows run towards -y; its grid lies column after column.
                 let at = |row: usize, column: usize| heights[(rows - 1 - row) * columns + column];
                 let data = (0..*columns).flat_map(|column| (0..*rows).map(move |row| at(row, column))).collect();

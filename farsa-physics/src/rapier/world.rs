@@ -12,7 +12,7 @@ use rapier3d::pipeline::PhysicsWorld;
 
 use crate::rapier::contact::roll;
 use crate::rapier::error::RapierError;
-use crate::rapier::model::{Carrier, Plan, build};
+use crate::rapier::model::{Carrier, RobotPlan, build};
 use crate::rapier::options::Options;
 use crate::rapier::scene::Scene;
 use crate::rapier::snapshot::copy;
@@ -22,10 +22,10 @@ pub(crate) const LEAST_STIFFNESS: f32 = 1e-6;
 
 /// One world of rapier, from the same description as [`crate::articulated::World`] and with the same ports.
 ///
-/// A world that has broken down (rapier took a body out because of numbers that are no numbers, or an actuator's law gave
-/// one) does not step and tells NaN of everything, until it is cleared or restored.
+/// A world that has broken down (rapier took a body out because of non-finite values, or an actuator's law gave
+/// one) does not step, and every port of it returns NaN, until it is cleared or restored.
 pub struct World {
-    pub(crate) plan: Plan,
+    pub(crate) plan: RobotPlan,
     pub(crate) physics: PhysicsWorld,
     initial: PhysicsWorld,
     pub(crate) commands: Vec<[f32; 2]>,
@@ -41,14 +41,14 @@ impl World {
     /// A description that is not valid, an option out of range, a joint without inertia, a plane on a moving body, more
     /// parts than 16 bits can number.
     pub fn new(robot: &Robot, options: &Options) -> Result<Self, RapierError> {
-        Self::of_scene(&Scene::new(robot.clone()), options)
+        Self::from_scene(&Scene::new(robot.clone()), options)
     }
 
-    /// A world of a robot and the things around it, at their start.
+    /// A world of a robot and the objects around it, at their start.
     ///
     /// # Errors
-    /// As [`World::new`], and things that cannot be built.
-    pub fn of_scene(scene: &Scene, options: &Options) -> Result<Self, RapierError> {
+    /// As [`World::new`], and objects that cannot be built.
+    pub fn from_scene(scene: &Scene, options: &Options) -> Result<Self, RapierError> {
         let (plan, physics) = build(scene, options)?;
         let commands = vec![[0.0; 2]; plan.actuators];
         let mut world = Self { plan, initial: copy(&physics), physics, commands, lost: false, moved: true };
@@ -57,7 +57,7 @@ impl World {
         Ok(world)
     }
 
-    /// rapier's own state, for what the ports do not tell.
+    /// rapier's own state, for what the ports do not report.
     pub fn physics(&self) -> &PhysicsWorld {
         &self.physics
     }
@@ -84,8 +84,8 @@ impl World {
     }
 
     fn carrier(&self, body: BodyId) -> Option<&Carrier> {
-        let place = self.plan.places.get(body.index())?;
-        place.carrier.map(|carrier| &self.plan.carriers[carrier])
+        let frame = self.plan.frames.get(body.index())?;
+        frame.carrier.map(|carrier| &self.plan.carriers[carrier])
     }
 
     /// The carrier of a joint; `None` for one that has no position.
@@ -115,13 +115,13 @@ impl World {
 
     /// Pose of a body's frame; the identity for a body that does not exist.
     pub(crate) fn pose_of(&self, body: BodyId) -> Pose {
-        let Some(place) = self.plan.places.get(body.index()) else { return Pose::identity() };
-        let Some(carrier) = place.carrier else { return place.pose };
+        let Some(frame) = self.plan.frames.get(body.index()) else { return Pose::identity() };
+        let Some(carrier) = frame.carrier else { return frame.pose };
         if self.lost {
             return Pose { position: [f32::NAN; 3], rotation: [f32::NAN; 4] };
         }
         let at = self.physics.bodies[self.plan.carriers[carrier].body].position();
-        Pose { position: at.translation.into(), rotation: at.rotation.into() }.compose(&place.pose)
+        Pose { position: at.translation.into(), rotation: at.rotation.into() }.compose(&frame.pose)
     }
 
     /// Velocity of a body's origin and its angular velocity.
@@ -199,7 +199,7 @@ impl World {
         (self.lost, self.moved) = (false, false);
     }
 
-    /// Whether a snapshot is of a world of this description, as far as numbers of parts tell.
+    /// Whether a snapshot is of a world of this description, as far as numbers of parts say.
     pub(crate) fn fits(&self, kept: &crate::rapier::snapshot::Kept) -> bool {
         let parts = |p: &PhysicsWorld| {
             let dofs: Vec<_> = p.multibody_joints.multibodies().map(Multibody::ndofs).collect();
@@ -228,7 +228,7 @@ impl World {
         }
         let Some(carrier) = self.carrier(body).copied() else { return };
         self.moved = true;
-        let local = self.plan.places[body.index()].pose;
+        let local = self.plan.frames[body.index()].pose;
         // The carrier's frame is parallel to the body's.
         let arm = pose.rotate(local.position.map(|x| -x));
         let angular = Vector::from(twist.angular);
@@ -254,7 +254,7 @@ impl World {
         }
     }
 
-    /// Brings everything that follows from places up to date: links, colliders, who is near whom.
+    /// Brings everything that follows from places up to date: links, colliders, which bodies are near.
     pub(crate) fn settle(&mut self) {
         if !core::mem::take(&mut self.moved) {
             return;
@@ -265,7 +265,7 @@ impl World {
             let Some((multibody, 0 | 1, _)) = carrier.link else { continue };
             if let Some(multibody) = physics.multibody_joints.get_multibody_mut(multibody) {
                 multibody.forward_kinematics(&physics.bodies, true);
-                // Colliders follow a body only if it is told by itself where it is.
+                // Colliders follow a body only if it is placed by itself.
                 for link in multibody.links() {
                     if let Some(body) = physics.bodies.get_mut(link.rigid_body_handle()) {
                         body.set_position(*link.local_to_world(), false);

@@ -55,7 +55,7 @@ pub(crate) fn start<R: Precision>(robot: &Robot, world: &mut World<R>, stream: &
     }
     let at = SPHERES[k % 4].map(|x| (x + 0.015 * f64::from(stream.range(-1.0, 1.0))) as f32);
     world.place_body(Tabletop::SPHERE, Pose::at([at[0], at[1], 0.025]), Twist::default());
-    world.arranged();
+    world.finish_placement();
 }
 
 pub(crate) fn stream(seed: u64, trial: u32) -> Stream {
@@ -99,9 +99,9 @@ impl Babble {
     /// Number of manners.
     pub(crate) const MANNERS: u32 = 6;
 
-    pub(crate) fn new(seed: u64, life: u32) -> Self {
-        let hold = [1, 1, 20, 20, 60, 200][(life % Self::MANNERS) as usize];
-        Self { stream: stream(seed, life), hold, extreme: life % 2 == 1, left: 0, y: [0.0; OUTPUTS] }
+    pub(crate) fn new(seed: u64, episode: u32) -> Self {
+        let hold = [1, 1, 20, 20, 60, 200][(episode % Self::MANNERS) as usize];
+        Self { stream: stream(seed, episode), hold, extreme: episode % 2 == 1, left: 0, y: [0.0; OUTPUTS] }
     }
 
     pub(crate) fn next(&mut self) -> &[f32; OUTPUTS] {

@@ -107,7 +107,7 @@ impl Scene {
         for (body, pose, twist) in &self.bodies {
             world.place_body(*body, *pose, *twist);
         }
-        world.arranged();
+        world.finish_placement();
         let mut rows = Vec::new();
         for step in 0..self.steps {
             for (i, command) in self.commands_at(step).into_iter().enumerate() {
@@ -203,7 +203,7 @@ fn arm(name: &'static str, joints: core::ops::Range<u16>, muscles: [f32; 2], clo
 /// Something of 50 g and a ground, tilted about y.
 fn thing(name: &'static str, shape: Shape, friction: f64, degrees: f64) -> Scene {
     let mut robot = Robot::new(name);
-    let solid = MassProperties::of_shape(&shape, MASS);
+    let solid = MassProperties::from_shape(&shape, MASS);
     let start = Joint::floating(Pose::at([0.0, 0.0, 1.0]));
     let body = robot.add_segment(Segment::new("thing", None, start, solid));
     let (sin, cos) = sin_cos(degrees.to_radians() / 2.0);
@@ -260,7 +260,7 @@ fn push() -> Scene {
     let robot = &mut scene.robot;
     let knob = Shape::Sphere { radius: 0.01 };
     let rail = Joint::prismatic("rail", [1.0, 0.0, 0.0], Pose::at([-0.045, 0.0, 0.015]), ENDLESS);
-    let solid = MassProperties::of_shape(&knob, 0.1);
+    let solid = MassProperties::from_shape(&knob, 0.1);
     let body = robot.add_segment(Segment::new("knob", None, rail, solid));
     let knob = robot.add_collider(Collider::new("knob", Some(body), knob, Pose::identity()));
     robot.add_pair([knob, 0], surface(0.3));
@@ -283,7 +283,7 @@ fn pinch() -> Scene {
     let mut commands = Vec::new();
     for (name, side) in [("left", -1.0), ("right", 1.0)] {
         let rail = Joint::prismatic(name, [-side, 0.0, 0.0], Pose::at([side * (RADIUS + half[0]), 0.0, 0.5]), ENDLESS);
-        let body = robot.add_segment(Segment::new(name, None, rail, MassProperties::of_shape(&plate, 0.1)));
+        let body = robot.add_segment(Segment::new(name, None, rail, MassProperties::from_shape(&plate, 0.1)));
         let collider = robot.add_collider(Collider::new(name, Some(body), plate, Pose::identity()));
         robot.add_pair([skin, collider], surface(1.0));
         robot.add_actuator(name, JointId(body.0), servo(2000.0, 40.0, 10.0));

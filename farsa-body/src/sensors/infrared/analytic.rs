@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use crate::channel::{ChannelError, direction, groups, positive};
-use crate::ports::{BodyId, Channels, Kinematics, Near, Planar, Sensor};
+use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Planar, Sensor};
 #[cfg(feature = "alloc")]
 use crate::robots::mobile::MobileRobot;
 #[cfg(feature = "alloc")]
@@ -38,7 +38,7 @@ impl<L: AsRef<[[f32; 2]]>, B> InfraredAnalytic<L, B> {
     pub fn new(body: B, axes: L, radius: f32) -> Result<Self, ChannelError> {
         groups("axes", axes.as_ref().len(), 1)?;
         axes.as_ref().iter().try_for_each(|&axis| direction("length of an axis", axis))?;
-        Ok(Self { body, axes, radius: positive("radius", radius)?, wall: AnalyticInfrared::of(0.0) })
+        Ok(Self { body, axes, radius: positive("radius", radius)?, wall: AnalyticInfrared::for_radius(0.0) })
     }
 }
 
@@ -48,7 +48,7 @@ impl<B> InfraredAnalytic<Vec<[f32; 2]>, B> {
     ///
     /// # Errors
     /// Those of [`InfraredAnalytic::new`].
-    pub fn of(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
+    pub fn for_robot(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
         let axis = |&angle: &f64| Beam::in_cone(robot.radius, angle, 0.0, 0, 1).direction;
         Self::new(body, robot.infrared.angles.iter().map(axis).collect(), robot.radius as f32)
     }
@@ -67,16 +67,16 @@ where
     W: Planar<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let (stance, axes) = (Stance::of(world, self.body), self.axes.as_ref());
+        let (stance, axes) = (Stance::from_world(world, self.body), self.axes.as_ref());
         let channels = axes.len().min(out.len());
         let out = &mut out[..channels];
         out.fill(0.0);
         // A wall is seen from farthest.
-        world.near(stance.at, self.radius + self.wall.range(), &mut |near: Near<B>| {
+        world.query_near(stance.at, self.radius + self.wall.range(), &mut |near: NearbySurface<B>| {
             if near.body == Some(self.body) {
                 return;
             }
-            let model = if near.radius > 0.0 { AnalyticInfrared::of(near.radius) } else { self.wall };
+            let model = if near.radius > 0.0 { AnalyticInfrared::for_radius(near.radius) } else { self.wall };
             let strength = model.distance_term(near.distance - self.radius);
             if strength > 0.0 {
                 let bearing = stance.bearing(&near);

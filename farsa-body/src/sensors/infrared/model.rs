@@ -25,11 +25,11 @@ use farsa_num::Scalar;
 /// ```
 /// use farsa_body::AnalyticInfrared;
 ///
-/// let wall = AnalyticInfrared::of(0.0);
+/// let wall = AnalyticInfrared::for_radius(0.0);
 /// assert!((wall.response(0.010_f32, 1.0) - 1.0).abs() < 1e-6);
 /// assert!((wall.response(0.023_f32, 1.0) - 0.5).abs() < 1e-6);
 /// assert_eq!(wall.response(0.010_f32, 0.0), 0.0);
-/// assert!(AnalyticInfrared::of(0.0125).response(0.023_f32, 1.0) < 0.2);
+/// assert!(AnalyticInfrared::for_radius(0.0125).response(0.023_f32, 1.0) < 0.2);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnalyticInfrared {
@@ -60,7 +60,7 @@ fn between([a, b]: [f64; 2], part: f64) -> f64 {
 
 impl AnalyticInfrared {
     /// The model of a surface with this radius [m]; 0, negative and NaN are a wall's.
-    pub fn of(radius: f32) -> Self {
+    pub fn for_radius(radius: f32) -> Self {
         let curvature = if radius > 0.0 { 1.0 / f64::from(radius) } else { 0.0 };
         let part = Scalar::min(curvature / SMALL_CURVATURE, 1.0);
         let (near, far) = (between([WALL[0], SMALL[0]], part), between([WALL[1], SMALL[1]], part));
@@ -128,19 +128,19 @@ mod tests {
     fn the_documented_table_is_true() {
         let rows = [(0.0, [0.013, 0.033, 50.0]), (0.027, [0.01115, 0.0293, 32.0]), (0.0125, [0.009, 0.025, 32.0])];
         for (radius, [near, far, width]) in rows {
-            let [n, f, edge] = constants(&AnalyticInfrared::of(radius));
+            let [n, f, edge] = constants(&AnalyticInfrared::for_radius(radius));
             let cosine = farsa_num::sin_cos::<f64>(width * core::f64::consts::PI / 180.0).1;
             assert!((n - near).abs() < 1e-5 && (f - far).abs() < 1e-5 && (edge - cosine).abs() < 1e-6, "{radius}");
         }
-        assert_eq!(AnalyticInfrared::of(0.001), AnalyticInfrared::of(0.0125));
-        assert_eq!(AnalyticInfrared::of(f32::NAN), AnalyticInfrared::of(0.0));
+        assert_eq!(AnalyticInfrared::for_radius(0.001), AnalyticInfrared::for_radius(0.0125));
+        assert_eq!(AnalyticInfrared::for_radius(f32::NAN), AnalyticInfrared::for_radius(0.0));
     }
 
     #[test]
     fn half_the_response_is_at_half_the_width() {
         for (radius, degrees) in [(0.0, 26.0_f64), (0.0125, 17.0)] {
             let cosine = farsa_num::sin_cos(degrees * core::f64::consts::PI / 180.0).1 as f32;
-            let half = AnalyticInfrared::of(radius).angle_term(cosine);
+            let half = AnalyticInfrared::for_radius(radius).angle_term(cosine);
             assert!((half - 0.5).abs() < 0.03, "{radius}: {half}");
         }
     }
@@ -150,20 +150,20 @@ mod tests {
         fn falls_with_distance_and_angle(
             radius in 0.0_f32..0.1, d in -0.05_f32..0.05, further in 0.0_f32..0.05, c in -1.0_f32..1.0, off in 0.0_f32..1.0,
         ) {
-            let model = AnalyticInfrared::of(radius);
+            let model = AnalyticInfrared::for_radius(radius);
             let here = model.response(d, c);
             prop_assert!((0.0..=1.0).contains(&here));
             prop_assert!(model.response(d + further, c) <= here);
             prop_assert!(model.response(d, c - off) <= here);
             prop_assert_eq!(model.response(model.range(), c), 0.0);
             // A rounder thing is seen less.
-            prop_assert!(model.response(d, c) <= AnalyticInfrared::of(0.0).response(d, c) + 1e-6);
+            prop_assert!(model.response(d, c) <= AnalyticInfrared::for_radius(0.0).response(d, c) + 1e-6);
         }
     }
 
     #[test]
     fn what_is_no_number_is_not_seen() {
-        let wall = AnalyticInfrared::of(0.0);
+        let wall = AnalyticInfrared::for_radius(0.0);
         assert_eq!([wall.response(f32::NAN, 1.0), wall.response(0.0, f32::NAN)], [0.0; 2]);
     }
 }

@@ -25,7 +25,7 @@ use crate::sensors::beam::{Beam, BeamFrame};
 /// use farsa_body::{BodyId, InfraredRays, MobileRobot, Noise, Noisy, Saturated};
 /// use farsa_num::{Domain, Stream};
 ///
-/// let ring = InfraredRays::of(&MobileRobot::khepera(), BodyId(0))?;
+/// let ring = InfraredRays::for_robot(&MobileRobot::khepera(), BodyId(0))?;
 /// let noise = Noisy::new(ring, Noise::Uniform(0.05), Stream::new(7, Domain::Sensor, 0, 0, 0))?;
 /// let ring = Saturated::new(noise, 0.0, 1.0)?; // noise is never clamped by itself
 /// # }
@@ -56,7 +56,8 @@ impl<L: AsRef<[Beam]>, B> InfraredRays<L, B> {
 }
 
 impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
-    /// Reads as [`Sensor::read`] does, without casting the rays that meet nothing, which one may know who knows what is near.
+    /// Reads as [`Sensor::read`] does, without casting rays that are known to meet nothing, where what is near is
+    /// known.
     ///
     /// `meets` gets the ends of a ray \[m\] and says whether there may be something between them; a ray of which it says
     /// no reads 0.
@@ -65,7 +66,7 @@ impl<L: AsRef<[Beam]>, B: Copy + PartialEq> InfraredRays<L, B> {
     where
         W: Rays<Body = B> + Kinematics + ?Sized,
     {
-        let frame = BeamFrame::of(world, self.body, self.height);
+        let frame = BeamFrame::from_world(world, self.body, self.height);
         for (o, cone) in out.iter_mut().zip(self.beams.as_ref().chunks_exact(self.rays)) {
             let mut nearest = self.range;
             for beam in cone {
@@ -84,7 +85,7 @@ impl<B> InfraredRays<Vec<Beam>, B> {
     ///
     /// # Errors
     /// Those of [`InfraredRays::new`].
-    pub fn of(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
+    pub fn for_robot(robot: &MobileRobot, body: B) -> Result<Self, ChannelError> {
         let (ring, rays) = (&robot.infrared, robot.infrared.rays);
         let cone =
             |&angle: &f64| (0..rays).map(move |ray| Beam::in_cone(robot.radius, angle, ring.aperture, ray, rays));

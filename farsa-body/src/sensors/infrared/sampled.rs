@@ -6,7 +6,7 @@ use core::borrow::Borrow;
 use farsa_num::atan2;
 
 use crate::channel::{ChannelError, groups, positive};
-use crate::ports::{BodyId, Channels, Kinematics, Near, Planar, Sensor};
+use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Planar, Sensor};
 use crate::sensors::infrared::table::InfraredTable;
 use crate::sensors::stance::Stance;
 
@@ -134,11 +134,11 @@ where
     W: Planar<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        let (stance, tables) = (Stance::of(world, self.body), self.tables.borrow());
+        let (stance, tables) = (Stance::from_world(world, self.body), self.tables.borrow());
         let channels = self.channels.min(out.len());
         let out = &mut out[..channels];
         out.fill(0.0);
-        world.near(stance.at, self.radius + tables.range(), &mut |near: Near<B>| {
+        world.query_near(stance.at, self.radius + tables.range(), &mut |near: NearbySurface<B>| {
             if near.body != Some(self.body) {
                 let [x, y] = stance.bearing(&near);
                 let response = tables.table(near.radius).response(near.distance - self.radius, atan2(y, x));

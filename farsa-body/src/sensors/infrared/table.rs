@@ -167,7 +167,7 @@ pub enum InfraredTableError {
         /// What stands there.
         found: String,
     },
-    /// The first line announces more readings than anybody measured.
+    /// The first line announces more readings than follow.
     TooLarge {
         /// Its line.
         line: usize,

@@ -11,10 +11,10 @@ use crate::testing::trace::{HOLD, Instant, parting, saved, trace};
 /// How far what is read may be from where it was placed; a world may keep other coordinates.
 const NEAR: f32 = 1e-4;
 
-/// Checks what every world promises about being set up for a new life, on worlds that `make` makes all alike.
+/// Checks what every world promises about being set up for a new episode, on worlds that `make` makes all alike.
 ///
 /// A cleared world knows nothing of its past, joints, floating and planar bodies are where they were placed, and what the ports
-/// tell after [`Arrange::arranged`] is what a snapshot brings back.
+/// report after [`Arrange::finish_placement`] is what a snapshot brings back.
 ///
 /// # Errors
 /// The first broken promise.
@@ -34,9 +34,9 @@ where
     trace(&mut used, probe, 0..3 * HOLD + 1, false);
     for world in [&mut fresh, &mut used] {
         world.clear();
-        world.arranged();
+        world.finish_placement();
     }
-    forgets(Instant::of(&fresh, probe).difference(&Instant::of(&used, probe)))?;
+    forgets(Instant::from_world(&fresh, probe).difference(&Instant::from_world(&used, probe)))?;
     for (index, &(joint, _)) in probe.joints.iter().enumerate() {
         let speed = fresh.speed(joint);
         ensure(speed == 0.0, Promise::ClearForgets, || format!("joint {index} is cleared to a speed of {speed}"))?;
@@ -44,18 +44,18 @@ where
 
     for world in [&mut fresh, &mut used] {
         place(world, probe);
-        world.arranged();
+        world.finish_placement();
     }
     check_joints(&fresh, probe)?;
     check_bodies(&mut fresh, probe)?;
 
-    let instant = Instant::of(&fresh, probe);
+    let instant = Instant::from_world(&fresh, probe);
     let mut restored = make();
     restored.restore(&saved(&fresh));
-    let difference = instant.difference(&Instant::of(&restored, probe));
+    let difference = instant.difference(&Instant::from_world(&restored, probe));
     ensure(difference.is_none(), Promise::Arranged, || difference.unwrap_or_default())?;
 
-    // After the same setting up the same life, whatever went before.
+    // After the same setting up the same episode, whatever went before.
     let [a, b] = [&mut fresh, &mut used].map(|world| trace(world, probe, 1..2 * HOLD, false));
     forgets(parting(&a, &b))
 }
@@ -126,13 +126,13 @@ where
         let kept = near(&pose.position, &told.position) && same_turn(&pose, &told) && moving == Twist::default();
         ensure(kept, Promise::BodyPlaced, || format!("planar body {index}: {told:?}, {moving:?}"))?;
     }
-    let before = Instant::of(world, probe);
+    let before = Instant::from_world(world, probe);
     let placed = |body| probe.floating.contains(body) || probe.planar.contains(body);
     for &body in probe.bodies.iter().filter(|body| !placed(body)) {
         world.place_body(body, Pose::at([1.0, 2.0, 3.0]), Twist::default());
     }
-    world.arranged();
-    let difference = before.difference(&Instant::of(world, probe));
+    world.finish_placement();
+    let difference = before.difference(&Instant::from_world(world, probe));
     ensure(difference.is_none(), Promise::BodyPlaced, || {
         format!("a body on a joint was placed: {}", difference.unwrap_or_default())
     })

@@ -1,6 +1,6 @@
 //! The kit's checks.
 
-/// Setting a world up for a new life.
+/// Setting a world up for a new episode.
 mod arrange;
 /// Sensors and motors.
 mod channels;

@@ -4,7 +4,7 @@ use alloc::{format, string::String, vec::Vec};
 
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
-use crate::ports::{Lamp, Near, Planar};
+use crate::ports::{Lamp, NearbySurface, Planar};
 use crate::testing::promise::{ConformanceError, Promise, ensure};
 
 /// Number of directions looked in from every place.
@@ -16,9 +16,10 @@ const CLOSE: f32 = 1e-4;
 /// Checks what every world of the plane promises about what is near, in sight, underfoot and shining, at these places [m]
 /// and as far as `range` [m].
 ///
-/// What is near is told within its range, with the distance of its point, and again within twice the range; what is seen
-/// in a random direction is the nearest thing there, told as near and not seen without its body; a round body that is near
-/// is in sight or behind something nearer. Colours and signals are in [0, 1].
+/// What is near is reported within its range, with the distance of its point, and again within twice the range; what is
+/// seen
+/// in a random direction is the nearest object there, reported as near and not seen without its body; a round body that
+/// is near is in sight or behind something nearer. Colours and signals are in [0, 1].
 ///
 /// `bodies` are all bodies of the world; no place lies within a wall. Something must be near and something in sight.
 ///
@@ -57,9 +58,9 @@ where
     Ok(())
 }
 
-fn told<W: Planar>(world: &W, from: [f32; 2], range: f32) -> Vec<Near<W::Body>> {
+fn told<W: Planar>(world: &W, from: [f32; 2], range: f32) -> Vec<NearbySurface<W::Body>> {
     let mut all = Vec::new();
-    world.near(from, range, &mut |near| all.push(near));
+    world.query_near(from, range, &mut |near| all.push(near));
     all
 }
 
@@ -73,7 +74,7 @@ fn check_near<W>(
     bodies: &[W::Body],
     from: [f32; 2],
     range: f32,
-    all: &[Near<W::Body>],
+    all: &[NearbySurface<W::Body>],
 ) -> Result<(), ConformanceError>
 where
     W: Planar,
@@ -103,7 +104,7 @@ where
         ensure(farther.contains(near), Promise::Near, || broken("not told within twice the range"))?;
         // A wall may be looked at along its edge; a round body cannot be missed in its middle.
         if near.radius > 0.0 && distance > CLOSE {
-            let sight = world.look(from, way.map(|x| x / apart), 2.0 * range, None);
+            let sight = world.cast_planar(from, way.map(|x| x / apart), 2.0 * range, None);
             ensure(sight.is_some_and(|sight| sight.distance <= distance + CLOSE), Promise::Look, || {
                 broken("not in sight, nor hidden")
             })?;
@@ -119,13 +120,13 @@ fn check_look<W>(
     from: [f32; 2],
     direction: [f32; 2],
     range: f32,
-    near: &[Near<W::Body>],
+    near: &[NearbySurface<W::Body>],
 ) -> Result<bool, ConformanceError>
 where
     W: Planar,
     W::Body: PartialEq,
 {
-    let look = |range| world.look(from, direction, range, None);
+    let look = |range| world.cast_planar(from, direction, range, None);
     let Some(sight) = look(range) else { return Ok(false) };
     let what = || format!("look from {from:?} along {direction:?}");
     let (distance, body) = (sight.distance, sight.body);
@@ -139,11 +140,12 @@ where
     ensure(short < 1e-3 || look(short).is_none(), Promise::Look, || {
         format!("{}: seen at {distance} and within {short}", what())
     })?;
-    let told =
-        |near: &Near<W::Body>| near.body == body && near.distance <= distance + CLOSE && near.color == sight.color;
+    let told = |near: &NearbySurface<W::Body>| {
+        near.body == body && near.distance <= distance + CLOSE && near.color == sight.color
+    };
     ensure(near.iter().any(told), Promise::Near, || format!("{}: seen at {distance}, but not told", what()))?;
     if body.is_some() {
-        let behind = world.look(from, direction, range, body);
+        let behind = world.cast_planar(from, direction, range, body);
         let other = behind.is_none_or(|behind| behind.body != body && behind.distance >= distance);
         ensure(other, Promise::Look, || format!("{}: not blind to the body asked for", what()))?;
     }

@@ -11,8 +11,8 @@ use crate::testing::trace::{HOLD, Instant, command, pairs, parting, saved, trace
 /// Checks what every world promises, on worlds that `make` makes all alike.
 ///
 /// They are stepped under random commands within the probe's ranges: the same commands give the same bits, snapshots
-/// hold everything, commands hold and act, and what the ports tell fits together. The mean velocity over each step must
-/// lie as near to that of its ends as these to each other, give or take [`Probe::slack`], in nine steps of ten.
+/// hold everything, commands hold and act, and what the ports report fits together. The mean velocity over each step
+/// must lie as near to that of its ends as these to each other, give or take [`Probe::slack`], in nine steps of ten.
 ///
 /// # Errors
 /// The first broken promise.
@@ -40,18 +40,18 @@ where
     trace(&mut world, probe, 0..middle, false);
     check_save(&world)?;
     let snapshot = saved(&world);
-    let instant = Instant::of(&world, probe);
+    let instant = Instant::from_world(&world, probe);
     let rest = &run[middle..];
     trace(&mut world, probe, middle..steps, false);
     world.restore(&snapshot);
-    broken(Promise::SnapshotRestores, instant.difference(&Instant::of(&world, probe)))?;
+    broken(Promise::SnapshotRestores, instant.difference(&Instant::from_world(&world, probe)))?;
     broken(Promise::SnapshotReplays, parting(rest, &trace(&mut world, probe, middle..steps, false)))?;
 
     // The other world has another past: nothing of it may shine through.
     let mut other = make();
     trace(&mut other, probe, HOLD..2 * HOLD, false);
     other.restore(&snapshot);
-    broken(Promise::SnapshotTravels, instant.difference(&Instant::of(&other, probe)))?;
+    broken(Promise::SnapshotTravels, instant.difference(&Instant::from_world(&other, probe)))?;
     broken(Promise::SnapshotTravels, parting(rest, &trace(&mut other, probe, middle..steps, false)))?;
 
     for (index, &(actuator, [low, high])) in probe.actuators.iter().enumerate() {
@@ -62,7 +62,7 @@ where
             for _ in 0..HOLD {
                 world.step();
             }
-            Instant::of(&world, probe)
+            Instant::from_world(&world, probe)
         });
         ensure(a.other_readings(&b).is_some(), Promise::CommandActs, || {
             format!("actuator {index} does the same under {low:?} and {:?}", [high[0], low[1]])
@@ -82,7 +82,7 @@ fn check_save<W: Snapshot>(world: &W) -> Result<(), ConformanceError> {
     })
 }
 
-/// Steps a world and checks at every step that what its ports tell fits together.
+/// Steps a world and checks at every step that what its ports report fits together.
 fn check_telling<W>(
     world: &mut W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,
@@ -137,7 +137,7 @@ where
 /// One step in so many may be odd: an impact within it leaves no trace in the velocities at its ends.
 const USUAL: usize = 10;
 
-/// The steps in which a part moved otherwise than its velocities tell.
+/// The steps in which a part moved otherwise than its velocities say.
 #[derive(Clone, Default)]
 struct Odd {
     steps: usize,
@@ -198,7 +198,7 @@ where
     Ok(())
 }
 
-/// Checks all that the ports tell at one instant.
+/// Checks all that the ports report at one instant.
 fn check_instant<W>(
     world: &W,
     probe: &Probe<W::Body, W::Joint, W::Actuator>,

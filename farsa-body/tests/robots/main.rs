@@ -1,0 +1,21 @@
+//! Descriptions of robots, sensors and motors, and what a world owes them.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+#[cfg(feature = "alloc")]
+mod arm_and_hand;
+#[cfg(feature = "alloc")]
+mod cameras;
+#[cfg(feature = "alloc")]
+mod conformance;
+mod lanes;
+#[cfg(feature = "alloc")]
+mod mobile;
+#[cfg(feature = "alloc")]
+mod planar_conformance;
+#[cfg(feature = "alloc")]
+mod planar_sensors;
+#[cfg(feature = "alloc")]
+mod sensors_and_motors;
+mod serialised;
+#[cfg(feature = "alloc")]
+mod wrappers;

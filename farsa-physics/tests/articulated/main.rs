@@ -1,0 +1,15 @@
+//! Worlds of trees with contacts, against closed forms, other programs and naive oracles.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+mod agreement;
+#[path = "../channels/mod.rs"]
+mod channels;
+#[path = "../common/mod.rs"]
+mod common;
+mod conformance;
+mod energy;
+mod floating;
+mod honest;
+mod oracle;
+mod snapshot;
+mod sphere;
