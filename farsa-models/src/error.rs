@@ -7,14 +7,14 @@ use farsa_body::RobotError;
 /// A line of a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Place {
+pub struct SourceLocation {
     /// The file, as it was named.
     pub file: String,
     /// The line, from 1.
     pub line: usize,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for SourceLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} line {}", self.file, self.line)
     }
@@ -34,7 +34,7 @@ pub enum ReadError {
     /// A file's path leads out of the folders that may be read, or to nothing.
     Path {
         /// Where the path stands.
-        place: Place,
+        place: SourceLocation,
         /// The path.
         path: String,
         /// What is wrong with it.
@@ -43,7 +43,7 @@ pub enum ReadError {
     /// More of something than the [`Limits`](crate::Limits) allow.
     TooMuch {
         /// Where the limit was passed.
-        place: Place,
+        place: SourceLocation,
         /// Of what.
         what: &'static str,
         /// The limit.
@@ -52,14 +52,14 @@ pub enum ReadError {
     /// No XML, or XML that defines entities.
     Malformed {
         /// Where.
-        place: Place,
+        place: SourceLocation,
         /// What is wrong.
         why: String,
     },
     /// A name that means nothing there.
     Unknown {
         /// Where.
-        place: Place,
+        place: SourceLocation,
         /// What it should be the name of.
         what: String,
         /// The name.
@@ -70,7 +70,7 @@ pub enum ReadError {
     /// An element without something that it needs.
     Missing {
         /// Where the element is.
-        place: Place,
+        place: SourceLocation,
         /// The element.
         element: String,
         /// What it lacks.
@@ -79,7 +79,7 @@ pub enum ReadError {
     /// An attribute whose value cannot be.
     Value {
         /// Where.
-        place: Place,
+        place: SourceLocation,
         /// The element.
         element: String,
         /// The attribute.
@@ -92,7 +92,7 @@ pub enum ReadError {
     /// A name or thing of which there may be one only.
     Twice {
         /// Where the second is.
-        place: Place,
+        place: SourceLocation,
         /// What it is.
         what: String,
         /// Its name.
@@ -103,7 +103,7 @@ pub enum ReadError {
     /// Something that a description cannot hold and that would change the robot if it were left out.
     Unsupported {
         /// Where.
-        place: Place,
+        place: SourceLocation,
         /// The element.
         element: String,
         /// What there is no place for, and what to do.
@@ -112,21 +112,21 @@ pub enum ReadError {
     /// A tree with more than one root.
     Roots {
         /// Where the second root is.
-        place: Place,
+        place: SourceLocation,
         /// The roots' names.
         names: Vec<String>,
     },
     /// Links that carry each other.
     Cycle {
         /// Where the first of them is.
-        place: Place,
+        place: SourceLocation,
         /// Their names.
         names: Vec<String>,
     },
     /// A mass or inertia that a body cannot have, or that one that moves cannot do with.
     Mass {
         /// Where the body is.
-        place: Place,
+        place: SourceLocation,
         /// Its name.
         body: String,
         /// Its mass [kg].
@@ -137,7 +137,7 @@ pub enum ReadError {
     /// A mesh's file that is none.
     Mesh {
         /// Where the mesh is named.
-        place: Place,
+        place: SourceLocation,
         /// The file.
         path: String,
         /// What is wrong with it.

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 
-use crate::error::{Place, ReadError};
+use crate::error::{ReadError, SourceLocation};
 use crate::options::ReadOptions;
 
 /// Reads files for a model.
@@ -45,24 +45,24 @@ impl ModelFiles {
 
     /// The text of the model itself, wherever it is.
     pub(crate) fn model(&mut self, path: &Path) -> Result<String, ReadError> {
-        let place = Place { file: path.display().to_string(), line: 1 };
+        let place = SourceLocation { file: path.display().to_string(), line: 1 };
         text(path, self.bytes(path, &place)?)
     }
 
     /// The text of a file that the model names.
-    pub(crate) fn text(&mut self, place: &Place, name: &str) -> Result<(PathBuf, String), ReadError> {
+    pub(crate) fn text(&mut self, place: &SourceLocation, name: &str) -> Result<(PathBuf, String), ReadError> {
         let path = self.find(place, name)?;
         let read = text(&path, self.bytes(&path, place)?)?;
         Ok((path, read))
     }
 
     /// The content of a file that the model names.
-    pub(crate) fn content(&mut self, place: &Place, name: &str) -> Result<Vec<u8>, ReadError> {
+    pub(crate) fn content(&mut self, place: &SourceLocation, name: &str) -> Result<Vec<u8>, ReadError> {
         let path = self.find(place, name)?;
         self.bytes(&path, place)
     }
 
-    fn bytes(&mut self, path: &Path, place: &Place) -> Result<Vec<u8>, ReadError> {
+    fn bytes(&mut self, path: &Path, place: &SourceLocation) -> Result<Vec<u8>, ReadError> {
         self.opened += 1;
         if self.opened > self.most_files {
             return Err(ReadError::TooMuch { place: place.clone(), what: "files", limit: self.most_files });
@@ -87,7 +87,7 @@ impl ModelFiles {
     }
 
     /// Where a file that the model names is, if it may be read.
-    fn find(&self, place: &Place, name: &str) -> Result<PathBuf, ReadError> {
+    fn find(&self, place: &SourceLocation, name: &str) -> Result<PathBuf, ReadError> {
         let fault = |why| ReadError::Path { place: place.clone(), path: name.into(), why };
         if let Some(within) = name.strip_prefix("package://") {
             if self.packages.is_empty() {

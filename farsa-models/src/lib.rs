@@ -25,7 +25,7 @@ mod warnings;
 /// XML: checked before it is parsed, asked for names and numbers, written.
 mod xml;
 
-pub use error::{Place, ReadError};
+pub use error::{ReadError, SourceLocation};
 pub use frame::Frame;
 pub use imported::Imported;
 pub use mjcf::{Keyframe, MjcfOptions};

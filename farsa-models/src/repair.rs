@@ -2,22 +2,22 @@
 
 use farsa_body::{BodyId, JointKind, MassProperties, Pose, Robot};
 
-use crate::error::{Place, ReadError};
+use crate::error::{ReadError, SourceLocation};
 use crate::mesh::principal_axes::principal_axes;
 use crate::options::Repair;
 use crate::warnings::Warnings;
 
 /// Gives what moves a mass, if the links fixed to it have one or the caller said which, and refuses what no body can have.
 ///
-/// `places` says where each segment is in its file.
+/// `locations` says where each segment is in its file.
 pub(crate) fn repair_masses(
     robot: &mut Robot,
-    places: &[Place],
+    locations: &[SourceLocation],
     repair: &Repair,
     warnings: &mut Warnings,
 ) -> Result<(), ReadError> {
-    move_fixed_masses(robot, places, warnings);
-    for (segment, place) in robot.segments.iter_mut().zip(places) {
+    move_fixed_masses(robot, locations, warnings);
+    for (segment, place) in robot.segments.iter_mut().zip(locations) {
         let moves = segment.joint.kind != JointKind::Fixed;
         let mut body = segment.mass_properties();
         if let Some(changed) = repaired(&body, moves, repair) {
@@ -56,7 +56,7 @@ pub(crate) fn repaired(body: &MassProperties, moves: bool, repair: &Repair) -> O
 }
 
 /// Moves the masses of fixed links to the moving one that carries them, where it has none itself.
-fn move_fixed_masses(robot: &mut Robot, places: &[Place], warnings: &mut Warnings) {
+fn move_fixed_masses(robot: &mut Robot, locations: &[SourceLocation], warnings: &mut Warnings) {
     let without: Vec<bool> =
         robot.segments.iter().map(|segment| segment.joint.kind != JointKind::Fixed && segment.mass == 0.0).collect();
     // The segment whose motion each shares, and its place in that one's frame.
@@ -81,7 +81,7 @@ fn move_fixed_masses(robot: &mut Robot, places: &[Place], warnings: &mut Warning
         MassProperties { mass: to.mass, centre: to.centre, inertia: to.inertia } = both;
         let from = &mut robot.segments[i];
         (from.mass, from.centre, from.inertia) = (0.0, [0.0; 3], [0.0; 6]);
-        warnings.add(places[i].clone(), "mass", "of a fixed link given to the one without mass that carries it");
+        warnings.add(locations[i].clone(), "mass", "of a fixed link given to the one without mass that carries it");
     }
 }
 
@@ -112,15 +112,15 @@ mod tests {
         for (name, x) in [("left", -0.5), ("right", 0.5)] {
             robot.add_segment(Segment::new(name, Some(arm), Joint::fixed(Pose::at([x, 0.0, 0.0])), ball));
         }
-        let places = vec![Place { file: "r".into(), line: 1 }; 3];
-        repair_masses(&mut robot, &places, &Repair::default(), &mut Warnings::default()).expect("a mass");
+        let locations = vec![SourceLocation { file: "r".into(), line: 1 }; 3];
+        repair_masses(&mut robot, &locations, &Repair::default(), &mut Warnings::default()).expect("a mass");
         let own = robot.segments[0].mass_properties();
         assert_eq!((own.mass, own.centre), (2.0, [0.0; 3]));
         assert!((own.inertia[2] - 2.0 * (0.4 * 0.01 + 0.25)).abs() < 1e-15);
         assert!(robot.segments[1].mass == 0.0 && robot.validate().is_ok());
         robot.segments[0].mass = 0.0;
         let error =
-            repair_masses(&mut robot, &places, &Repair::default(), &mut Warnings::default()).expect_err("no mass");
+            repair_masses(&mut robot, &locations, &Repair::default(), &mut Warnings::default()).expect_err("no mass");
         assert!(matches!(error, ReadError::Mass { .. }), "{error}");
     }
 }

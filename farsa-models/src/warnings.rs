@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::error::Place;
+use crate::error::SourceLocation;
 
 /// Something that the file says and the robot does not.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Warning {
     /// Where it stands first.
-    pub place: Place,
+    pub place: SourceLocation,
     /// The element, with the attribute if that alone is meant.
     pub what: String,
     /// What became of it and why.
@@ -31,11 +31,11 @@ impl std::fmt::Display for Warning {
 /// Warnings, equal ones counted.
 #[derive(Default)]
 pub(crate) struct Warnings {
-    all: BTreeMap<(String, String), (Place, usize)>,
+    all: BTreeMap<(String, String), (SourceLocation, usize)>,
 }
 
 impl Warnings {
-    pub(crate) fn add(&mut self, place: Place, what: impl Into<String>, why: impl Into<String>) {
+    pub(crate) fn add(&mut self, place: SourceLocation, what: impl Into<String>, why: impl Into<String>) {
         self.all.entry((what.into(), why.into())).or_insert((place, 0)).1 += 1;
     }
 

@@ -70,7 +70,7 @@ fn fixtures() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures"))
 }
 
-/// The committed texts; new ones are put beside the tests' other files for whoever meant the change.
+/// The committed texts; new ones are put beside the tests' other files, for an intended change.
 #[test]
 fn the_texts_are_the_committed_ones() {
     let mut others = Vec::new();

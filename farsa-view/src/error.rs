@@ -6,7 +6,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A camera's name that nobody knows.
+    /// An unknown name of a camera.
     UnknownCamera {
         /// The name.
         name: String,

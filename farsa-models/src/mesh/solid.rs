@@ -73,7 +73,7 @@ impl Solid {
     pub(crate) fn mass_properties(&self, mass: Option<f64>, density: f64) -> MassProperties {
         let mass = mass.unwrap_or_else(|| density * self.volume());
         match self {
-            Self::Native(shape) => MassProperties::of_shape(shape, mass),
+            Self::Native(shape) => MassProperties::from_shape(shape, mass),
             Self::Cylinder { radius, half_length } => MassProperties::cylinder(mass, *radius, *half_length),
             Self::Ellipsoid(axes) => {
                 let [a, b, c] = axes.map(|x| x * x * mass / 5.0);
@@ -82,7 +82,7 @@ impl Solid {
             Self::Mesh(mesh) => mesh.solid(1.0).map_or_else(
                 || {
                     let (shape, at) = mesh.fitted();
-                    MassProperties::of_shape(&shape, mass).placed(&at)
+                    MassProperties::from_shape(&shape, mass).placed(&at)
                 },
                 |solid| scaled(&solid, mass / solid.mass),
             ),

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, MassProperties, Pose, Robot, Segment};
 
 use crate::context::Context;
-use crate::error::{Place, ReadError};
+use crate::error::{ReadError, SourceLocation};
 use crate::frame::Frame;
 use crate::mesh::solid::scaled;
 use crate::mjcf::classes::{Classed, Classes};
@@ -104,11 +104,11 @@ impl<'t, 'c> Bodies<'t, 'c> {
         })
     }
 
-    /// Reads all bodies into the robot; `places` gets the line of each segment.
+    /// Reads all bodies into the robot; `locations` gets the line of each segment.
     pub(crate) fn read(
         &mut self,
         robot: &mut Robot,
-        places: &mut Vec<Place>,
+        locations: &mut Vec<SourceLocation>,
         context: &mut Context<'_>,
     ) -> Result<(), ReadError> {
         let worlds: Vec<Element<'t>> = self.model.all("worldbody").collect();
@@ -126,7 +126,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             // that segments come in the file's order, parents before their children.
             let mut waiting = Self::waiting(0, &items);
             while let Some(next) = waiting.pop() {
-                let (index, items) = self.body(robot, places, &next, context)?;
+                let (index, items) = self.body(robot, locations, &next, context)?;
                 waiting.extend(Self::waiting(index, &items));
             }
         }
@@ -163,7 +163,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
     fn body(
         &mut self,
         robot: &mut Robot,
-        places: &mut Vec<Place>,
+        locations: &mut Vec<SourceLocation>,
         next: &Waiting<'t>,
         context: &mut Context<'_>,
     ) -> Result<(usize, Vec<Item<'t>>), ReadError> {
@@ -188,10 +188,10 @@ impl<'t, 'c> Bodies<'t, 'c> {
         let moves = !joints.is_empty();
         let piece = Piece { element, name: &name, carrying, placement, mass };
         let (segment, frame) = if moves {
-            self.jointed(robot, places, &piece, joints, context)
+            self.jointed(robot, locations, &piece, joints, context)
         } else {
             let fixed = Segment::new(&name, carrying, Joint::fixed(placement), mass);
-            places.push(element.place());
+            locations.push(element.place());
             (Some(robot.add_segment(fixed)), Pose::identity())
         };
 
@@ -211,7 +211,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
     fn jointed(
         &mut self,
         robot: &mut Robot,
-        places: &mut Vec<Place>,
+        locations: &mut Vec<SourceLocation>,
         piece: &Piece<'_, 't>,
         joints: Vec<(Joint, [f64; 3])>,
         context: &mut Context<'_>,
@@ -238,7 +238,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             if let Some(joint) = single {
                 self.joints.insert(joint, JointId(id.0));
             }
-            places.push(element.place());
+            locations.push(element.place());
             last = Some(id);
         }
         if count > 1 {

@@ -3,7 +3,7 @@
 use farsa_body::{MassProperties, Robot};
 
 use crate::context::Context;
-use crate::error::{Place, ReadError};
+use crate::error::{ReadError, SourceLocation};
 use crate::frame::Frame;
 use crate::mesh::solid::scaled;
 use crate::mjcf::actuators::actuators;
@@ -42,10 +42,10 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
         }
     }
     let mut robot = Robot::new(model.attribute("model").unwrap_or_default());
-    let mut places: Vec<Place> = Vec::new();
+    let mut locations: Vec<SourceLocation> = Vec::new();
     let mut bodies = Bodies::new(model, &compiler, &classes, context)?;
-    bodies.read(&mut robot, &mut places, context)?;
-    repair_masses(&mut robot, &places, &compiler.repair, &mut context.warnings)?;
+    bodies.read(&mut robot, &mut locations, context)?;
+    repair_masses(&mut robot, &locations, &compiler.repair, &mut context.warnings)?;
     if compiler.total_mass > 0.0 {
         let sum: f64 = robot.segments.iter().map(|segment| segment.mass).sum();
         for segment in robot.segments.iter_mut().filter(|_| sum > 0.0) {

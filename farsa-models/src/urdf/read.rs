@@ -8,7 +8,7 @@ use farsa_body::{
 use farsa_num::sin_cos;
 
 use crate::context::Context;
-use crate::error::{Place, ReadError};
+use crate::error::{ReadError, SourceLocation};
 use crate::frame::Frame;
 use crate::mesh::solid::Solid;
 use crate::mesh::triangles::Mesh;
@@ -46,7 +46,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
     let links = Links::from_model(root)?;
     let order = links.order()?;
     let mut robot = Robot::new(root.attribute("name").unwrap_or_default());
-    let mut places = Vec::new();
+    let mut locations = Vec::new();
     let mut frames = Vec::new();
     let mut bodies: Vec<Option<BodyId>> = vec![None; links.elements.len()];
     for index in order {
@@ -65,7 +65,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
                 return Err(element.unsupported("a floating joint on a link; only links on the world can float"));
             }
             bodies[index] = Some(robot.add_segment(Segment::new(name, parent, joint, mass)));
-            places.push(link.place());
+            locations.push(link.place());
             if let Some(id) = bodies[index] {
                 motor(&mut robot, id, links.joints[index])?;
             }
@@ -75,7 +75,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
     }
     names(&mut robot);
     let repair = context.options.repair;
-    repair_masses(&mut robot, &places, &repair, &mut context.warnings)?;
+    repair_masses(&mut robot, &locations, &repair, &mut context.warnings)?;
     Ok((robot, frames))
 }
 
@@ -310,7 +310,7 @@ fn collisions(
     link: Element<'_>,
     context: &mut Context<'_>,
 ) -> Result<(), ReadError> {
-    let mut solids: Vec<(String, Solid, Pose<f64>, Place)> = Vec::new();
+    let mut solids: Vec<(String, Solid, Pose<f64>, SourceLocation)> = Vec::new();
     for collision in link.all("collision") {
         collision.check_open(&["name"], &mut context.warnings)?;
         collision.check_children(&["origin", "geometry"], &NOTED, &mut context.warnings)?;
@@ -338,11 +338,11 @@ fn collisions(
 fn capsule(
     tube: &Solid,
     at: &Pose<f64>,
-    a: &(String, Solid, Pose<f64>, Place),
-    b: &(String, Solid, Pose<f64>, Place),
+    a: &(String, Solid, Pose<f64>, SourceLocation),
+    b: &(String, Solid, Pose<f64>, SourceLocation),
 ) -> Option<Shape> {
     let Solid::Cylinder { radius, half_length } = *tube else { return None };
-    let end = |(_, solid, place, _): &(String, Solid, Pose<f64>, Place), z: f64| {
+    let end = |(_, solid, place, _): &(String, Solid, Pose<f64>, SourceLocation), z: f64| {
         let point = at.transform_back(place.position);
         let off = norm(&[point[0], point[1], point[2] - z]);
         *solid == Solid::Native(Shape::Sphere { radius }) && off <= 1e-9 * (1.0 + half_length)

@@ -1,6 +1,6 @@
 //! A look at XML before it is parsed: what is too large, too deep or multiplies itself gets no further.
 
-use crate::error::{Place, ReadError};
+use crate::error::{ReadError, SourceLocation};
 use crate::options::Limits;
 
 /// Refuses text with more or deeper elements or more attributes than the limits allow, or with a document type, which
@@ -18,7 +18,7 @@ pub(crate) fn check(file: &str, text: &str, elements: &mut usize, limits: &Limit
         at += found;
         line += bytes[counted..at].split(|byte| *byte == b'\n').count() - 1;
         counted = at;
-        let place = || Place { file: file.into(), line };
+        let place = || SourceLocation { file: file.into(), line };
         let too_much = |what, limit| Err(ReadError::TooMuch { place: place(), what, limit });
         let rest = &bytes[at..];
         if let Some(end) = [(&b"<!--"[..], &b"-->"[..]), (b"<![CDATA[", b"]]>"), (b"<?", b"?>")]
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn what_is_not_is_refused_with_its_line() {
-        let of = |line| Place { file: "m.xml".into(), line };
+        let of = |line| SourceLocation { file: "m.xml".into(), line };
         let deep = format!("\n{}", "<a>\n".repeat(11));
         let expected = ReadError::TooMuch { place: of(12), what: "elements within each other", limit: 10 };
         assert_eq!(refused(&deep), Some(expected));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use roxmltree::{Document, ParsingOptions};
 
 use crate::context::Context;
-use crate::error::{Place, ReadError, nearest};
+use crate::error::{ReadError, SourceLocation, nearest};
 use crate::warnings::Warnings;
 use crate::xml::check::check;
 
@@ -50,7 +50,7 @@ impl Tree {
         let nodes_limit = u32::try_from(limits.elements.saturating_mul(8)).unwrap_or(u32::MAX);
         let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options).map_err(|error| {
-            let place = Place { file: file.into(), line: error.pos().row as usize };
+            let place = SourceLocation { file: file.into(), line: error.pos().row as usize };
             // The parser's message ends with its own place, which ours already has.
             let message = error.to_string();
             let why = message.rsplit_once(" at ").map_or(message.as_str(), |(why, _)| why).to_owned();
@@ -145,8 +145,8 @@ impl<'t> Element<'t> {
         &self.node().tag
     }
 
-    pub(crate) fn place(&self) -> Place {
-        Place { file: self.tree.files[self.node().file].clone(), line: self.node().line }
+    pub(crate) fn place(&self) -> SourceLocation {
+        SourceLocation { file: self.tree.files[self.node().file].clone(), line: self.node().line }
     }
 
     pub(crate) fn children(&self) -> impl Iterator<Item = Self> + use<'t> {

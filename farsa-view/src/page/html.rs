@@ -1,4 +1,4 @@
-//! A page that shows recorded lives in a browser: one file, no network.
+//! A page that shows recorded episodes in a browser: one file, no network.
 
 use std::fmt::Write as _;
 
@@ -10,31 +10,34 @@ use serde_json::{Value, json};
 
 use crate::picture::svg_data::hex;
 use crate::recording::memory::Recording;
-use crate::recording::stage::Channel;
+use crate::recording::schema::Channel;
 use crate::recording::view::View;
-use crate::shape::form::Form;
+use crate::shape::geometry::Geometry;
 
 const TEMPLATE: &str = include_str!("viewer/page.html");
 const STYLE: &str = include_str!("viewer/viewer.css");
 const SCRIPTS: &[&str] = &[
     include_str!("viewer/data.js"),
+    include_str!("viewer/camera.js"),
     include_str!("viewer/scene.js"),
+    include_str!("viewer/view.js"),
     include_str!("viewer/strips.js"),
     include_str!("viewer/network.js"),
+    include_str!("viewer/player.js"),
     include_str!("viewer/main.js"),
 ];
 
 /// Counts of a 16-bit quantity; one more says NaN in channels.
 const COUNTS: f64 = 65534.0;
 
-/// A page of recorded lives, to be looked at in a browser: bodies in space, strips of everything that has a value, and the
-/// network, all on one clock.
+/// A page of recorded episodes, to be looked at in a browser: bodies in space, strips of everything that has a value,
+/// and the network, all on one clock.
 ///
 /// It needs nothing but itself. The format of its data is described in `docs/replay-format.md` of the project.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
     title: String,
-    lives: Vec<Film>,
+    episodes: Vec<Film>,
 }
 
 #[derive(Clone, Debug)]
@@ -45,33 +48,33 @@ struct Film {
 }
 
 impl Page {
-    /// A page without lives.
+    /// A page without episodes.
     pub fn new(title: &str) -> Self {
-        Self { title: title.into(), lives: Vec::new() }
+        Self { title: title.into(), episodes: Vec::new() }
     }
 
-    /// The same page with another life.
+    /// The same page with another episode.
     pub fn with(mut self, name: &str, recording: Recording) -> Self {
         self.add(name, Vec::new(), recording);
         self
     }
 
-    /// Adds a life with facts about it, by name, such as its fitness.
+    /// Adds an episode with facts about it, by name, such as its fitness.
     pub fn add(&mut self, name: &str, facts: Vec<(String, String)>, recording: Recording) {
-        self.lives.push(Film { name: name.into(), facts, recording });
+        self.episodes.push(Film { name: name.into(), facts, recording });
     }
 
     /// The whole file.
     pub fn html(&self) -> String {
-        let top = self.lives.first().is_some_and(|film| film.recording.stage().view == View::Top);
-        let lives: Vec<Value> = self.lives.iter().map(Film::data).collect();
+        let top = self.episodes.first().is_some_and(|film| film.recording.schema().view == View::Top);
+        let episodes: Vec<Value> = self.episodes.iter().map(Film::data).collect();
         let data = json!({
             "format": "farsa-replay",
             "version": 1,
             "made_by": concat!("farsa ", env!("CARGO_PKG_VERSION")),
             "title": self.title,
             "view": if top { "top" } else { "free" },
-            "lives": lives,
+            "lives": episodes,
         });
         // No text of a recording can end the element that holds it.
         let data = data.to_string().replace('<', "\\u003c");
@@ -109,7 +112,7 @@ pub(crate) fn escaped(text: &str) -> String {
     html
 }
 
-/// The bytes of a life, block by block.
+/// The bytes of an episode, block by block.
 #[derive(Default)]
 struct Blocks {
     bytes: Vec<u8>,
@@ -136,7 +139,7 @@ struct Space {
 }
 
 impl Space {
-    fn of(positions: impl Iterator<Item = [f32; 3]>) -> Self {
+    fn from_positions(positions: impl Iterator<Item = [f32; 3]>) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for position in positions {
             for k in 0..3 {
@@ -163,16 +166,18 @@ impl Space {
 impl Film {
     fn data(&self) -> Value {
         let Self { name, facts, recording } = self;
-        let stage = recording.stage();
+        let schema = recording.schema();
         let ticks = recording.times().len();
-        let bodies: Vec<BodyId> = stage.shown().collect();
+        let bodies: Vec<BodyId> = schema.shown().collect();
         let position = |tick: usize, body: BodyId| recording.pose_at(tick, body).map(|pose| pose.position);
         let of_bodies = (0..ticks).flat_map(|tick| bodies.iter().filter_map(move |body| position(tick, *body)));
         let of_points = (0..ticks)
-            .flat_map(|tick| (0..stage.points.len()).filter_map(move |point| recording.point_at(tick, point)));
+            .flat_map(|tick| (0..schema.points.len()).filter_map(move |point| recording.point_at(tick, point)));
         let touching = || (0..ticks).flat_map(|tick| recording.contacts_at(tick));
         let rays = (0..ticks).flat_map(|tick| recording.rays_at(tick)).flat_map(|ray| [ray.from, ray.to]);
-        let space = Space::of(of_bodies.chain(of_points).chain(touching().map(|contact| contact.point)).chain(rays));
+        let space = Space::from_positions(
+            of_bodies.chain(of_points).chain(touching().map(|contact| contact.point)).chain(rays),
+        );
         let largest = touching().flat_map(|contact| contact.force).map(f32::abs).fold(1e-3, f32::max);
         let force_unit = f64::from(largest) / 32767.0;
 
@@ -183,7 +188,7 @@ impl Film {
         let mut last = vec![farsa_body::Pose::identity(); bodies.len()];
         for tick in 0..ticks {
             for (body, last) in bodies.iter().zip(&mut last) {
-                // A body that was not told stays where it was.
+                // A body that was not recorded stays where it was.
                 if let Some(pose) = recording.pose_at(tick, *body)
                     && pose.position.iter().chain(&pose.rotation).all(|x| x.is_finite())
                 {
@@ -196,7 +201,7 @@ impl Film {
         let channels = self.channels(&mut blocks);
         blocks.begin("points");
         for tick in 0..ticks {
-            (0..stage.points.len())
+            (0..schema.points.len())
                 .filter_map(|point| recording.point_at(tick, point))
                 .for_each(|position| space.write(position, &mut blocks));
         }
@@ -233,7 +238,7 @@ impl Film {
             "shapes": self.shapes(&bodies),
             "channels": channels,
             "pairs": self.pairs(),
-            "points": stage.points,
+            "points": schema.points,
             "position_origin": space.origin,
             "position_unit": space.unit,
             "force_unit": force_unit,
@@ -250,24 +255,24 @@ impl Film {
     }
 
     fn names(&self, bodies: &[BodyId]) -> Vec<&str> {
-        bodies.iter().map(|body| self.recording.stage().body_name(*body)).collect()
+        bodies.iter().map(|body| self.recording.schema().body_name(*body)).collect()
     }
 
     fn shapes(&self, bodies: &[BodyId]) -> Vec<Value> {
-        let stage = self.recording.stage();
-        let shape = |name: &str, body: Option<BodyId>, form: Form, placement: &Pose<f64>, role: &str| {
-            let mut shape = match form {
-                Form::Sphere { radius } => json!({"kind": "sphere", "radius": radius}),
-                Form::Capsule { radius, half_length } => {
+        let schema = self.recording.schema();
+        let shape = |name: &str, body: Option<BodyId>, geometry: Geometry, placement: &Pose<f64>, role: &str| {
+            let mut shape = match geometry {
+                Geometry::Sphere { radius } => json!({"kind": "sphere", "radius": radius}),
+                Geometry::Capsule { radius, half_length } => {
                     json!({"kind": "capsule", "radius": radius, "half_length": half_length})
                 }
-                Form::Cylinder { radius, half_length } => {
+                Geometry::Cylinder { radius, half_length } => {
                     json!({"kind": "cylinder", "radius": radius, "half_length": half_length})
                 }
-                Form::Box { half } => json!({"kind": "box", "half": half}),
-                Form::Plane => json!({"kind": "plane"}),
-                Form::Disc { radius } => json!({"kind": "cylinder", "radius": radius, "half_length": 0.0}),
-                Form::Rectangle { half: [x, y] } => json!({"kind": "box", "half": [x, y, 0.0]}),
+                Geometry::Box { half } => json!({"kind": "box", "half": half}),
+                Geometry::Plane => json!({"kind": "plane"}),
+                Geometry::Disc { radius } => json!({"kind": "cylinder", "radius": radius, "half_length": 0.0}),
+                Geometry::Rectangle { half: [x, y] } => json!({"kind": "box", "half": [x, y, 0.0]}),
             };
             let body = body.and_then(|body| bodies.iter().position(|other| *other == body));
             shape["name"] = name.into();
@@ -277,38 +282,38 @@ impl Film {
             shape["rotation"] = json!(placement.rotation);
             shape
         };
-        let colliders = stage.robot.iter().flat_map(|robot| &robot.colliders).map(|collider| {
+        let colliders = schema.robot.iter().flat_map(|robot| &robot.colliders).map(|collider| {
             let role = match collider.body {
                 None => "ground",
-                Some(body) if stage.is_thing(body) => "thing",
+                Some(body) if schema.is_thing(body) => "thing",
                 Some(_) => "robot",
             };
             shape(&collider.name, collider.body, collider.shape.into(), &collider.placement, role)
         });
-        let props = stage.props.iter().map(|prop| {
-            let mut value = shape(&prop.name, prop.body, prop.form, &prop.placement, prop.role.name());
-            if let Some(color) = prop.color {
+        let objects = schema.objects.iter().map(|object| {
+            let mut value = shape(&object.name, object.body, object.geometry, &object.placement, object.role.name());
+            if let Some(color) = object.color {
                 value["color"] = hex(color).into();
             }
             value
         });
-        colliders.chain(props).collect()
+        colliders.chain(objects).collect()
     }
 
     fn pairs(&self) -> Vec<[&str; 2]> {
-        let Some(robot) = &self.recording.stage().robot else { return Vec::new() };
+        let Some(robot) = &self.recording.schema().robot else { return Vec::new() };
         let name = |collider: usize| robot.colliders.get(collider).map_or("", |collider| collider.name.as_str());
         robot.pairs.iter().map(|pair| pair.colliders.map(name)).collect()
     }
 
-    /// Writes the values of all channels and tells how to read them.
+    /// Writes the values of all channels and says how to read them.
     fn channels(&self, blocks: &mut Blocks) -> Vec<Value> {
         let recording = &self.recording;
         let ticks = recording.times().len();
         let rows: Vec<Vec<f64>> = (0..ticks).map(|tick| recording.row(tick).collect()).collect();
         blocks.begin("channels");
         let mut told = Vec::new();
-        for (index, (_, channel)) in recording.stage().channels().enumerate() {
+        for (index, (_, channel)) in recording.schema().channels().enumerate() {
             let values = || rows.iter().map(|row| row[index]);
             let finite = || values().filter(|x| x.is_finite());
             let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
@@ -325,21 +330,21 @@ impl Film {
     }
 
     fn network(&self) -> Option<Value> {
-        let stage = self.recording.stage();
-        if stage.links.is_empty() || self.recording.controller_parameters().is_empty() {
+        let schema = self.recording.schema();
+        if schema.links.is_empty() || self.recording.controller_parameters().is_empty() {
             return None;
         }
-        let layers = [&stage.sensors, &stage.neurons, &stage.outputs];
+        let layers = [&schema.sensors, &schema.neurons, &schema.outputs];
         let channels = layers.into_iter().enumerate().flat_map(|(layer, of)| of.iter().map(move |x| (layer, x)));
-        let first = stage.scalars.len();
+        let first = schema.scalars.len();
         let nodes: Vec<Value> = channels
             .enumerate()
             .map(|(index, (layer, node))| json!({"name": node.title(), "layer": layer, "channel": first + index}))
             .collect();
-        let links: Vec<Value> = (stage.links.iter())
+        let links: Vec<Value> = (schema.links.iter())
             .map(|links| json!({"from": links.from, "to": links.to, "first": links.first}))
             .collect();
-        let values: Vec<Value> = (stage.node_parameters.iter())
+        let values: Vec<Value> = (schema.node_parameters.iter())
             .map(|of| json!({"name": of.name, "nodes": of.nodes, "first": of.first}))
             .collect();
         Some(json!({"nodes": nodes, "links": links, "values": values}))
@@ -381,7 +386,7 @@ pub fn readable(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::stage::Stage;
+    use crate::recording::schema::Schema;
     use farsa_body::{PairContact, PairId, Pose, Recorder, Tabletop};
 
     /// The data of a page, as a browser reads it.
@@ -398,9 +403,9 @@ mod tests {
     #[test]
     fn what_is_read_back_is_what_was_told_within_the_stated_error() {
         let robot = Tabletop::default().scene(&farsa_body::ArmAndHand::default()).unwrap();
-        let mut stage = Stage::of_robot(&robot).with_sensors(["a </script> <b>"]).with_scalars(["x [m]", "n"]);
-        stage.points = vec!["p".into()];
-        let mut recording = Recording::new(stage);
+        let mut schema = Schema::from_robot(&robot).with_sensors(["a </script> <b>"]).with_scalars(["x [m]", "n"]);
+        schema.points = vec!["p".into()];
+        let mut recording = Recording::new(schema);
         let sphere = Tabletop::SPHERE;
         let place = |tick: u16| [0.01 * f32::from(tick), -0.3, 0.5];
         for tick in 0..100_u16 {
@@ -419,20 +424,20 @@ mod tests {
         assert!(html.contains("<title>T &amp; &lt;T&gt;"));
         assert_eq!(html.matches("</script>").count(), 2);
         let page = data(&html);
-        let life = &page["lives"][0];
-        let bytes = STANDARD.decode(life["data"].as_str().unwrap()).unwrap();
-        assert_eq!(life["crc32"], crc32(&bytes));
-        assert_eq!(life["bytes"], bytes.len());
-        let start = |block: &str| life["blocks"][block].as_u64().unwrap();
-        assert!(life["blocks"].as_object().unwrap().values().all(|at| at.as_u64().unwrap() % 4 == 0));
+        let episode = &page["lives"][0];
+        let bytes = STANDARD.decode(episode["data"].as_str().unwrap()).unwrap();
+        assert_eq!(episode["crc32"], crc32(&bytes));
+        assert_eq!(episode["bytes"], bytes.len());
+        let start = |block: &str| episode["blocks"][block].as_u64().unwrap();
+        assert!(episode["blocks"].as_object().unwrap().values().all(|at| at.as_u64().unwrap() % 4 == 0));
 
-        let bodies = life["bodies"].as_array().unwrap();
+        let bodies = episode["bodies"].as_array().unwrap();
         let index = bodies.iter().position(|name| name == "sphere").unwrap() as u64;
-        let unit = life["position_unit"].as_f64().unwrap();
+        let unit = episode["position_unit"].as_f64().unwrap();
         for tick in [0, 50, 99_u16] {
             let at = start("poses") + 14 * (u64::from(tick) * bodies.len() as u64 + index);
             for k in 0..3 {
-                let origin = life["position_origin"][k].as_f64().unwrap();
+                let origin = episode["position_origin"][k].as_f64().unwrap();
                 let x = origin + unit * f64::from(word(&bytes, at + 2 * k as u64));
                 assert!((x - f64::from(place(tick)[k])).abs() <= 0.51 * unit);
             }
@@ -440,7 +445,7 @@ mod tests {
             assert!((w + 0.8).abs() < 2e-5);
         }
         // Scalars come first.
-        let channels = life["channels"].as_array().unwrap();
+        let channels = episode["channels"].as_array().unwrap();
         assert_eq!(
             channels.iter().map(|c| c["name"].as_str().unwrap()).collect::<Vec<_>>(),
             ["x", "n", "a </script> <b>"]
@@ -458,11 +463,11 @@ mod tests {
         }
         let at = start("contacts") + 2 * 50;
         assert_eq!((word(&bytes, at - 2), word(&bytes, at), word(&bytes, at + 2)), (0, 1, 3));
-        let force = f64::from(word(&bytes, at + 12).cast_signed()) * life["force_unit"].as_f64().unwrap();
+        let force = f64::from(word(&bytes, at + 12).cast_signed()) * episode["force_unit"].as_f64().unwrap();
         assert!((force - 2.0).abs() < 1e-3 || (force + 4.0).abs() < 1e-3);
-        assert_eq!(life["pairs"].as_array().unwrap().len(), robot.pairs.len());
-        assert_eq!(life["shapes"].as_array().unwrap().len(), robot.colliders.len());
-        assert!(life.get("network").is_none());
+        assert_eq!(episode["pairs"].as_array().unwrap().len(), robot.pairs.len());
+        assert_eq!(episode["shapes"].as_array().unwrap().len(), robot.colliders.len());
+        assert!(episode.get("network").is_none());
     }
 
     #[test]
@@ -476,6 +481,6 @@ mod tests {
     #[test]
     fn the_viewer_is_small() {
         let size = TEMPLATE.len() + STYLE.len() + SCRIPTS.iter().map(|script| script.len()).sum::<usize>();
-        assert!(size <= 60 * 1024, "{size} bytes");
+        assert!(size <= 66 * 1024, "{size} bytes");
     }
 }

@@ -41,7 +41,7 @@ const NEAR: f64 = 1e-3;
 pub(crate) struct Window {
     /// The eye; with parallel lines of sight, a point before everything looked for [m].
     pub(crate) eye: Vector,
-    /// The directions of the picture's right and upper edges, and towards the one who looks.
+    /// The directions of the picture's right and upper edges, and towards the viewer.
     pub(crate) axes: [Vector; 3],
     /// Pixels per tangent of the angle of sight, or per metre if lines of sight are parallel.
     pub(crate) focal: f64,
@@ -82,7 +82,7 @@ impl Camera {
         known.ok_or_else(|| Error::unknown_camera(name, Self::NAMES))
     }
 
-    /// The one that a view of a stage begins with.
+    /// The one that a view begins with.
     pub fn for_view(view: View) -> Self {
         match view {
             View::Free => CAMERAS[0],
@@ -225,24 +225,24 @@ impl Window {
 mod tests {
     use super::*;
     use crate::picture::moment::Picture;
-    use crate::shape::appearance::{Placed, Role};
-    use crate::shape::form::{Form, Sight};
+    use crate::shape::appearance::{Instance, Role};
+    use crate::shape::geometry::{Geometry, Sight};
     use farsa_body::Pose;
     use proptest::prelude::*;
 
-    fn placed() -> impl Strategy<Value = Placed> {
+    fn placed() -> impl Strategy<Value = Instance> {
         let size = || 0.02..0.6;
-        let form = prop_oneof![
-            size().prop_map(|radius| Form::Sphere { radius }),
-            (size(), size()).prop_map(|(radius, half_length)| Form::Capsule { radius, half_length }),
-            (size(), size()).prop_map(|(radius, half_length)| Form::Cylinder { radius, half_length }),
-            prop::array::uniform3(size()).prop_map(|half| Form::Box { half }),
+        let geometry = prop_oneof![
+            size().prop_map(|radius| Geometry::Sphere { radius }),
+            (size(), size()).prop_map(|(radius, half_length)| Geometry::Capsule { radius, half_length }),
+            (size(), size()).prop_map(|(radius, half_length)| Geometry::Cylinder { radius, half_length }),
+            prop::array::uniform3(size()).prop_map(|half| Geometry::Box { half }),
         ];
         let turn = prop::array::uniform4(-1.0..1.0);
         let turn = turn.prop_filter("a turn", |q: &[f64; 4]| q.iter().map(|x| x * x).sum::<f64>() > 0.1);
-        (form, prop::array::uniform3(-2.0..2.0), turn).prop_map(|(form, position, q)| {
+        (geometry, prop::array::uniform3(-2.0..2.0), turn).prop_map(|(geometry, position, q)| {
             let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-            Placed::new(form, Pose { position, rotation: q.map(|x| x / length) }, Role::Thing)
+            Instance::new(geometry, Pose { position, rotation: q.map(|x| x / length) }, Role::Object)
         })
     }
 
@@ -259,7 +259,7 @@ mod tests {
                 } else {
                     Sight::Eye(placed.pose.transform_back(view.eye))
                 };
-                for point in placed.form.rim(sight, 24) {
+                for point in placed.geometry.rim(sight, 24) {
                     let [x, y] = view.project(placed.pose.transform(point)).unwrap();
                     prop_assert!(x >= 0.0 && x <= f64::from(width), "{x} of {width}");
                     prop_assert!(y >= 0.0 && y <= f64::from(height), "{y} of {height}");
@@ -272,7 +272,7 @@ mod tests {
             point in prop::array::uniform3(-1.0..1.0), which in 0..5usize, size in prop::array::uniform2(50u32..2000),
         ) {
             let picture = Picture {
-                shapes: vec![Placed::new(Form::Box { half: [1.0; 3] }, Pose::identity(), Role::Thing)],
+                shapes: vec![Instance::new(Geometry::Box { half: [1.0; 3] }, Pose::identity(), Role::Object)],
                 ..Picture::default()
             };
             let view = picture.window(CAMERAS[which], size);

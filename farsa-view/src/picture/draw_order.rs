@@ -2,7 +2,7 @@
 
 use crate::picture::camera::Window;
 use crate::picture::lit_scene::LitScene;
-use crate::picture::outline::{Place, bounds, holds};
+use crate::picture::outline::{Point2, bounds, holds};
 
 /// Places looked at along each side of the area that two outlines share.
 const SIDE: usize = 6;
@@ -11,9 +11,9 @@ const SIDE: usize = 6;
 ///
 /// Of two that overlap, the one that most lines of sight through both meet first comes later. Where that leads round in
 /// a circle, the farthest comes first.
-pub(crate) fn back_to_front(scene: &LitScene, view: &Window, outlines: &[Vec<Place>]) -> Vec<usize> {
+pub(crate) fn back_to_front(scene: &LitScene, view: &Window, outlines: &[Vec<Point2>]) -> Vec<usize> {
     let shown: Vec<usize> = (0..outlines.len()).filter(|i| outlines[*i].len() > 2).collect();
-    let boxes: Vec<[Place; 2]> = outlines.iter().map(|outline| bounds(outline)).collect();
+    let boxes: Vec<[Point2; 2]> = outlines.iter().map(|outline| bounds(outline)).collect();
     // What must be drawn before each.
     let mut before: Vec<Vec<usize>> = vec![Vec::new(); outlines.len()];
     for (k, a) in shown.iter().enumerate() {
@@ -51,7 +51,7 @@ pub(crate) fn back_to_front(scene: &LitScene, view: &Window, outlines: &[Vec<Pla
 }
 
 /// 1 if the line of sight through a place meets the first of two solids first, -1 for the second, 0 if not both.
-fn nearer(scene: &LitScene, view: &Window, [a, b]: [usize; 2], place: Place) -> i32 {
+fn nearer(scene: &LitScene, view: &Window, [a, b]: [usize; 2], place: Point2) -> i32 {
     let (origin, direction) = view.ray(place);
     let meets = |i| scene.see(origin, direction, [i]).is_some();
     match scene.see(origin, direction, [a, b]) {
@@ -71,13 +71,14 @@ mod tests {
     use super::*;
     use crate::picture::camera::Camera;
     use crate::picture::moment::Picture;
-    use crate::shape::appearance::{Placed, Role};
-    use crate::shape::form::Form;
+    use crate::shape::appearance::{Instance, Role};
+    use crate::shape::geometry::Geometry;
     use crate::shape::vector::Vector;
     use farsa_body::Pose;
 
-    fn order(shapes: &[(Form, Vector)], camera: &str) -> Vec<usize> {
-        let shapes = shapes.iter().map(|(form, at)| Placed::new(*form, Pose::at(*at), Role::Thing)).collect();
+    fn order(shapes: &[(Geometry, Vector)], camera: &str) -> Vec<usize> {
+        let shapes =
+            shapes.iter().map(|(geometry, at)| Instance::new(*geometry, Pose::at(*at), Role::Object)).collect();
         let picture = Picture { shapes, ..Picture::default() };
         let view = picture.window(Camera::named(camera).unwrap(), [300, 300]);
         let scene = LitScene::new(&picture, &view);
@@ -87,8 +88,8 @@ mod tests {
 
     #[test]
     fn the_nearer_box_comes_later() {
-        let form = Form::Box { half: [0.1, 0.3, 0.2] };
-        let [near, far] = [(form, [0.4, 0.1, 0.0]), (form, [-0.4, 0.0, 0.0])];
+        let geometry = Geometry::Box { half: [0.1, 0.3, 0.2] };
+        let [near, far] = [(geometry, [0.4, 0.1, 0.0]), (geometry, [-0.4, 0.0, 0.0])];
         assert_eq!(order(&[near, far], "front"), [1, 0]);
         assert_eq!(order(&[far, near], "front"), [0, 1]);
     }
@@ -96,8 +97,8 @@ mod tests {
     #[test]
     fn centres_do_not_decide() {
         // A long table's middle is nearer to the eye than the ball at its far end.
-        let table = (Form::Box { half: [1.0, 0.5, 0.05] }, [0.0, 0.0, -0.05]);
-        let ball = (Form::Sphere { radius: 0.1 }, [-0.8, 0.0, 0.1]);
+        let table = (Geometry::Box { half: [1.0, 0.5, 0.05] }, [0.0, 0.0, -0.05]);
+        let ball = (Geometry::Sphere { radius: 0.1 }, [-0.8, 0.0, 0.1]);
         assert_eq!(order(&[ball, table], "front"), [1, 0]);
         assert_eq!(order(&[table, ball], "three-quarter"), [0, 1]);
     }

@@ -5,8 +5,8 @@ use farsa_num::acos;
 
 use crate::picture::camera::Window;
 use crate::picture::moment::Picture;
-use crate::shape::appearance::{Color, Placed, Role};
-use crate::shape::form::{Form, Meeting};
+use crate::shape::appearance::{Color, Instance, Role};
+use crate::shape::geometry::{Geometry, Meeting};
 use crate::shape::vector::{Vector, add, along, cross, dot, length, mix, scale, sub, unit};
 
 /// How bright light is: screens take about its square root, and so do the sums here, to need nothing but `sqrt`.
@@ -32,8 +32,8 @@ const FILL: f64 = 0.52;
 /// A shape with what rays need.
 #[derive(Clone, Debug)]
 pub(crate) struct Solid {
-    /// Its form.
-    pub(crate) form: Form,
+    /// Its geometry.
+    pub(crate) geometry: Geometry,
     /// Its frame in the world.
     pub(crate) pose: Pose<f64>,
     /// What it is.
@@ -76,38 +76,38 @@ pub(crate) struct LitScene {
 }
 
 impl Solid {
-    fn new(placed: &Placed, view: &Window, step: f64) -> Self {
-        let (mut form, mut pose) = (placed.form, placed.pose);
-        if form == Form::Plane {
+    fn new(placed: &Instance, view: &Window, step: f64) -> Self {
+        let (mut geometry, mut pose) = (placed.geometry, placed.pose);
+        if geometry == Geometry::Plane {
             // A piece about the middle of the picture, from grid line to grid line.
             let middle = pose.transform_back(view.centre);
             let edge =
                 |x: f64, out: f64| ((x + out * 1.35 * view.radius) / (2.0 * step) + 0.5 * out).round() * 2.0 * step;
             let [low, high] = [-1.0, 1.0].map(|out| [0, 1].map(|i| edge(middle[i], out)));
-            form = Form::Rectangle { half: [0, 1].map(|i| (high[i] - low[i]) / 2.0) };
+            geometry = Geometry::Rectangle { half: [0, 1].map(|i| (high[i] - low[i]) / 2.0) };
             let at = [f64::midpoint(low[0], high[0]), f64::midpoint(low[1], high[1]), 0.0];
             pose = pose.compose(&Pose::at(at));
         }
-        let least = match form {
-            Form::Box { half } => half[0].min(half[1]),
-            Form::Rectangle { half } => half[0].min(half[1]),
-            Form::Disc { radius } => radius,
+        let least = match geometry {
+            Geometry::Box { half } => half[0].min(half[1]),
+            Geometry::Rectangle { half } => half[0].min(half[1]),
+            Geometry::Disc { radius } => radius,
             _ => 0.0,
         };
-        let blocks = match form {
-            Form::Box { half } => Some(half),
+        let blocks = match geometry {
+            Geometry::Box { half } => Some(half),
             // The largest within it: nothing that asks may stand in it.
-            Form::Cylinder { radius, half_length } => Some([0.707 * radius, 0.707 * radius, half_length]),
+            Geometry::Cylinder { radius, half_length } => Some([0.707 * radius, 0.707 * radius, half_length]),
             _ => None,
         };
         Self {
-            form,
+            geometry,
             pose,
-            faces: blocks.map_or_else(Vec::new, |half| Form::Box { half }.faces(0)),
+            faces: blocks.map_or_else(Vec::new, |half| Geometry::Box { half }.faces(0)),
             role: placed.role,
             grid: placed.role == Role::Ground && least > 2.0 * step,
             axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| pose.rotate(axis)),
-            reach: form.reach(),
+            reach: geometry.reach(),
             albedo: linear(placed.color()),
         }
     }
@@ -122,7 +122,7 @@ impl Solid {
             return None;
         }
         let own = |v: Vector| self.axes.map(|axis| dot(axis, v));
-        let Meeting { distance, normal } = self.form.meet(own(from), own(direction))?;
+        let Meeting { distance, normal } = self.geometry.meet(own(from), own(direction))?;
         Some(Meeting { distance, normal: self.turned(normal) })
     }
 
@@ -142,16 +142,16 @@ impl Solid {
             let square = dot(towards, towards).max(radius * radius);
             (dot(towards, normal) / length(towards).max(1e-9)).max(0.0) * radius * radius / square
         };
-        match self.form {
-            Form::Sphere { radius } => ball(self.pose.position, radius),
-            Form::Capsule { radius, half_length } => {
+        match self.geometry {
+            Geometry::Sphere { radius } => ball(self.pose.position, radius),
+            Geometry::Capsule { radius, half_length } => {
                 let along_axis = (-dot(towards, self.axes[2])).clamp(-half_length, half_length);
                 let nearest = along(self.pose.position, self.axes[2], along_axis);
                 // A rod hides more than the ball in it.
                 (ball(nearest, radius) * (1.0 + 0.4 * (half_length / radius).min(1.0))).min(1.0)
             }
-            Form::Cylinder { .. } | Form::Box { .. } => self.box_hides(point, normal),
-            Form::Plane | Form::Disc { .. } | Form::Rectangle { .. } => 0.0,
+            Geometry::Cylinder { .. } | Geometry::Box { .. } => self.box_hides(point, normal),
+            Geometry::Plane | Geometry::Disc { .. } | Geometry::Rectangle { .. } => 0.0,
         }
     }
 
@@ -233,7 +233,7 @@ impl LitScene {
         let mut shades: [usize; 64] = [0; 64];
         let mut count = 0;
         for (i, solid) in self.solids.iter().enumerate() {
-            if matches!(solid.form, Form::Disc { .. } | Form::Rectangle { .. }) {
+            if matches!(solid.geometry, Geometry::Disc { .. } | Geometry::Rectangle { .. }) {
                 continue;
             }
             let from = sub(solid.pose.position, origin);
@@ -257,7 +257,7 @@ impl LitScene {
             shades.swap(0, hider.unwrap_or(0));
             hider.is_none()
         };
-        // A part of the lamp, all over it, mostly tells that all of it is hidden or none.
+        // A part of the lamp, all over it, mostly shows that all of it is hidden or none.
         let part = self.lights.iter().step_by(6);
         let (asked, seen) = (part.len(), part.filter(&mut free).count());
         if seen == 0 || seen == asked {
@@ -324,7 +324,7 @@ impl LitScene {
         // From above comes more light than back from the ground.
         let fill = FILL * sky * (0.78 + 0.22 * normal[2]);
         let light = scale(self.albedo(view, seen), fill + KEY * facing * lamp);
-        if !matches!(solid.role, Role::Robot | Role::Thing) {
+        if !matches!(solid.role, Role::Robot | Role::Object) {
             return light;
         }
         // A soft highlight, and darker rims that part what overlaps.
@@ -344,7 +344,7 @@ mod tests {
     use crate::shape::vector::across;
     use farsa_num::{Domain, Stream, sin_cos};
 
-    fn lit(shapes: Vec<Placed>) -> LitScene {
+    fn lit(shapes: Vec<Instance>) -> LitScene {
         let picture = Picture { shapes, ..Picture::default() };
         LitScene::new(&picture, &picture.window(Camera::default(), [100, 100]))
     }
@@ -367,9 +367,9 @@ mod tests {
     fn the_sky_is_hidden_as_by_many_rays() {
         let turn = Pose { position: [0.0, 0.1, 0.5], rotation: [0.6, 0.0, 0.0, 0.8] };
         let scene = lit(vec![
-            Placed::new(Form::Box { half: [0.3, 0.2, 0.1] }, turn, Role::Thing),
-            Placed::new(Form::Sphere { radius: 0.2 }, turn, Role::Thing),
-            Placed::new(Form::Capsule { radius: 0.1, half_length: 0.3 }, turn, Role::Thing),
+            Instance::new(Geometry::Box { half: [0.3, 0.2, 0.1] }, turn, Role::Object),
+            Instance::new(Geometry::Sphere { radius: 0.2 }, turn, Role::Object),
+            Instance::new(Geometry::Capsule { radius: 0.1, half_length: 0.3 }, turn, Role::Object),
         ]);
         // A box exactly, also where it dips below the horizon; a ball wholly above it; a rod roughly.
         for normal in [[0.0, 0.0, 1.0], unit([1.0, 0.3, 0.2]), unit([0.0, -1.0, 0.4])] {
@@ -389,8 +389,8 @@ mod tests {
 
     #[test]
     fn things_throw_shadows() {
-        let ball = Placed::new(Form::Sphere { radius: 0.1 }, Pose::at([0.0, 0.0, 0.5]), Role::Thing);
-        let scene = lit(vec![ball, Placed::new(Form::Plane, Pose::identity(), Role::Ground)]);
+        let ball = Instance::new(Geometry::Sphere { radius: 0.1 }, Pose::at([0.0, 0.0, 0.5]), Role::Object);
+        let scene = lit(vec![ball, Instance::new(Geometry::Plane, Pose::identity(), Role::Ground)]);
         let up = [0.0, 0.0, 1.0];
         let fallen = along([0.0, 0.0, 0.5], scene.key, -0.5 / scene.key[2]);
         assert_eq!(scene.lamp(fallen, up), 0.0);

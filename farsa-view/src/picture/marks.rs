@@ -3,7 +3,7 @@
 use crate::picture::camera::Window;
 use crate::picture::lit_scene::LitScene;
 use crate::picture::moment::Picture;
-use crate::picture::outline::Place;
+use crate::picture::outline::Point2;
 use crate::shape::appearance::{Color, OKABE_ITO};
 use crate::shape::vector::{Vector, along, length, mix};
 
@@ -11,7 +11,7 @@ use crate::shape::vector::{Vector, along, length, mix};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Stroke {
     /// Its corners [pixels].
-    pub(crate) places: Vec<Place>,
+    pub(crate) places: Vec<Point2>,
     /// Its width [pixels].
     pub(crate) width: f64,
     /// Its colour.
@@ -72,13 +72,13 @@ struct Marks<'a> {
 }
 
 impl Marks<'_> {
-    fn push(&mut self, places: Vec<Place>, width: f64, color: Color, opacity: f64) {
+    fn push(&mut self, places: Vec<Point2>, width: f64, color: Color, opacity: f64) {
         self.strokes.push(Stroke { places, width: width * self.unit, color, opacity });
     }
 
     /// A way in pieces of some pixels, faint where it is hidden.
     fn way(&mut self, points: &[Vector], width: f64, color: Color) {
-        let mut piece: Vec<Place> = Vec::new();
+        let mut piece: Vec<Point2> = Vec::new();
         let mut shown = true;
         for ends in points.windows(2) {
             let (Some(a), Some(b)) = (self.view.project(ends[0]), self.view.project(ends[1])) else {
@@ -103,7 +103,7 @@ impl Marks<'_> {
         self.end(&mut piece, width, color, shown);
     }
 
-    fn end(&mut self, piece: &mut Vec<Place>, width: f64, color: Color, shown: bool) {
+    fn end(&mut self, piece: &mut Vec<Point2>, width: f64, color: Color, shown: bool) {
         if piece.len() > 1 {
             let places = thinned(piece, 0.25);
             self.push(places, width, color, if shown { 1.0 } else { HIDDEN });
@@ -140,7 +140,7 @@ impl Marks<'_> {
             let barb = |side: f64| [b[0] - x - side * 0.5 * y, b[1] - y + side * 0.5 * x];
             parts.push(vec![barb(1.0), b, barb(-1.0)]);
         } else {
-            // It points to the one who looks, or away.
+            // It points to the viewer, or away.
             parts = vec![vec![a, a]];
         }
         for (width, color, opacity) in [(6.2, WHITE, 0.85), (3.0, FORCE, 1.0)] {
@@ -152,7 +152,7 @@ impl Marks<'_> {
 }
 
 /// The corners without those that are less than `near` pixels off the line between their neighbours.
-fn thinned(places: &[Place], near: f64) -> Vec<Place> {
+fn thinned(places: &[Point2], near: f64) -> Vec<Point2> {
     // Ramer, Douglas and Peucker, with a list of pieces still to look at.
     let mut keep = vec![false; places.len()];
     let last = places.len().saturating_sub(1);
@@ -175,7 +175,7 @@ fn thinned(places: &[Place], near: f64) -> Vec<Place> {
 }
 
 /// The distance of a place from the line between two others.
-pub(crate) fn distance(place: Place, a: Place, b: Place) -> f64 {
+pub(crate) fn distance(place: Point2, a: Point2, b: Point2) -> f64 {
     let ([x, y], [u, v]) = ([place[0] - a[0], place[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
     let square = u * u + v * v;
     let share = if square > 0.0 { ((x * u + y * v) / square).clamp(0.0, 1.0) } else { 0.0 };
@@ -187,13 +187,13 @@ mod tests {
     use super::*;
     use crate::picture::camera::Camera;
     use crate::picture::moment::{Beam, Push};
-    use crate::shape::appearance::{Placed, Role};
-    use crate::shape::form::Form;
+    use crate::shape::appearance::{Instance, Role};
+    use crate::shape::geometry::Geometry;
     use farsa_body::Pose;
 
     #[test]
     fn straight_ways_need_two_corners() {
-        let line: Vec<Place> = (0..50).map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
+        let line: Vec<Point2> = (0..50).map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
         assert_eq!(thinned(&line, 0.1), [[0.0, 0.0], [49.0, 98.0]]);
         let corner = [[0.0, 0.0], [5.0, 0.01], [10.0, 0.0], [10.0, 10.0]];
         assert_eq!(thinned(&corner, 0.1), [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]]);
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn what_is_hidden_is_faint() {
         let picture = Picture {
-            shapes: vec![Placed::new(Form::Sphere { radius: 0.1 }, Pose::identity(), Role::Thing)],
+            shapes: vec![Instance::new(Geometry::Sphere { radius: 0.1 }, Pose::identity(), Role::Object)],
             rays: vec![Beam { from: [-1.0, 0.0, 0.0], to: [1.0, 0.0, 0.0], hit: false }],
             ..Picture::default()
         };

@@ -1,7 +1,7 @@
 //! Pictures of a moment, drawn without a browser.
 //!
 //! - `moment`: what a picture shows
-//! - `of_recording`: a tick of a recording as a picture
+//! - `from_recording`: a tick of a recording as a picture
 //! - `camera`: from where it is seen
 //! - `lit_scene`: shapes under a lamp: rays, light, shadows
 //! - `marks`: arrows, rays, points and trails as strokes
@@ -13,10 +13,10 @@
 
 pub(crate) mod camera;
 mod draw_order;
+mod from_recording;
 mod lit_scene;
 mod marks;
 pub(crate) mod moment;
-mod of_recording;
 mod outline;
 mod png;
 mod render;

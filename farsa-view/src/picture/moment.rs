@@ -3,7 +3,7 @@
 use farsa_body::{BodyId, JointKind, Pose, Robot};
 
 use crate::picture::camera::{Camera, Window};
-use crate::shape::appearance::{Color, OKABE_ITO, Placed, Role};
+use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role};
 use crate::shape::vector::{Vector, length};
 
 /// A force on a point.
@@ -46,7 +46,7 @@ pub struct Beam {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// The shapes.
-    pub shapes: Vec<Placed>,
+    pub shapes: Vec<Instance>,
     /// Contact forces, drawn as arrows in proportion to the largest.
     pub contacts: Vec<Push>,
     /// Rays of sensors.
@@ -88,7 +88,7 @@ impl Picture {
         let mut things = Vec::new();
         for collider in &robot.colliders {
             let Some(body) = collider.body else {
-                self.shapes.push(Placed::new(collider.shape, collider.placement, Role::Ground));
+                self.shapes.push(Instance::new(collider.shape, collider.placement, Role::Ground));
                 continue;
             };
             let (i, at) = (body.index(), pose(body).compose(&collider.placement));
@@ -100,10 +100,10 @@ impl Picture {
                 });
                 // Blues are the robot's.
                 let color = [0, 2, 6, 3][known % 4];
-                self.shapes.push(Placed::new(collider.shape, at, Role::Thing).with_color(OKABE_ITO[color]));
+                self.shapes.push(Instance::new(collider.shape, at, Role::Object).with_color(OKABE_ITO[color]));
                 continue;
             }
-            let placed = Placed::new(collider.shape, at, Role::Robot);
+            let placed = Instance::new(collider.shape, at, Role::Robot);
             let branch = ancestors(i).find_map(|body| branches.iter().position(|branch| *branch == body));
             self.shapes.push(match branch {
                 Some(branch) => placed.with_color(BRANCHES[branch % BRANCHES.len()]).with_focus(),
@@ -120,10 +120,10 @@ impl Picture {
 
     /// Balls that hold what a camera has to show: everything but the ground, or with `close` what that looks for.
     pub(crate) fn interest(&self, close: bool) -> Vec<(Vector, f64)> {
-        let wanted = |placed: &&Placed| if close { placed.focus } else { placed.role != Role::Ground };
-        let hull = |placed: &Placed| {
+        let wanted = |placed: &&Instance| if close { placed.focus } else { placed.role != Role::Ground };
+        let hull = |placed: &Instance| {
             let pose = placed.pose;
-            placed.form.hull().into_iter().map(move |(centre, radius)| (pose.transform(centre), radius))
+            placed.geometry.hull().into_iter().map(move |(centre, radius)| (pose.transform(centre), radius))
         };
         let mut balls: Vec<_> = self.shapes.iter().filter(wanted).flat_map(hull).collect();
         if close && !balls.is_empty() {
@@ -155,7 +155,7 @@ mod tests {
         let mut picture = Picture::default();
         picture.add_robot(&robot, |body| poses[body.index()]);
         let count = |role| picture.shapes.iter().filter(|placed| placed.role == role).count();
-        assert_eq!([Role::Robot, Role::Thing, Role::Ground, Role::Area].map(count), [18, 1, 1, 0]);
+        assert_eq!([Role::Robot, Role::Object, Role::Ground, Role::Area].map(count), [18, 1, 1, 0]);
         // The palm, fifteen phalanges and the sphere.
         assert_eq!(picture.shapes.iter().filter(|placed| placed.focus).count(), 17);
         assert_eq!(picture.shapes[18].color(), OKABE_ITO[0]);

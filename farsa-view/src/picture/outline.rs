@@ -1,16 +1,16 @@
 //! Flat outlines: convex hulls, clipping.
 
-/// A place in a picture, from the upper left corner [pixels].
-pub(crate) type Place = [f64; 2];
+/// A point in a picture, from the upper left corner [pixels].
+pub(crate) type Point2 = [f64; 2];
 
 /// The convex hull of places, anticlockwise with y up; fewer than three places if it has no area.
-pub(crate) fn hull(places: &[Place]) -> Vec<Place> {
+pub(crate) fn hull(places: &[Point2]) -> Vec<Point2> {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     sorted.dedup();
-    let mut chain: Vec<Place> = Vec::with_capacity(2 * sorted.len());
+    let mut chain: Vec<Point2> = Vec::with_capacity(2 * sorted.len());
     // Andrew's monotone chain: the lower side from left to right, then the upper one back.
-    let mut extend = |floor: usize, place: Place| {
+    let mut extend = |floor: usize, place: Point2| {
         while chain.len() > floor + 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], place) <= 0.0 {
             chain.pop();
         }
@@ -29,17 +29,17 @@ pub(crate) fn hull(places: &[Place]) -> Vec<Place> {
 }
 
 /// Twice the area of the triangle, positive if it runs anticlockwise with y up.
-fn turn(a: Place, b: Place, c: Place) -> f64 {
+fn turn(a: Point2, b: Point2, c: Point2) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
 /// Whether a place lies in a hull or on its edge.
-pub(crate) fn holds(hull: &[Place], place: Place) -> bool {
+pub(crate) fn holds(hull: &[Point2], place: Point2) -> bool {
     hull.len() > 2 && (0..hull.len()).all(|i| turn(hull[i], hull[(i + 1) % hull.len()], place) >= 0.0)
 }
 
 /// Lowest and highest x and y of places, `[low, high]`.
-pub(crate) fn bounds(places: &[Place]) -> [Place; 2] {
+pub(crate) fn bounds(places: &[Point2]) -> [Point2; 2] {
     places.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], place| {
         [[low[0].min(place[0]), low[1].min(place[1])], [high[0].max(place[0]), high[1].max(place[1])]]
     })
@@ -62,8 +62,8 @@ pub(crate) fn clip<P: Copy>(corners: &[P], room: impl Fn(&P) -> f64, mix: impl F
 }
 
 /// The part of a convex polygon within a frame of this size and `margin` around it.
-pub(crate) fn framed(corners: &[Place], size: [u32; 2], margin: f64) -> Vec<Place> {
-    let mix = |a: Place, b: Place, s: f64| [a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s];
+pub(crate) fn framed(corners: &[Point2], size: [u32; 2], margin: f64) -> Vec<Point2> {
+    let mix = |a: Point2, b: Point2, s: f64| [a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s];
     let mut kept = corners.to_vec();
     for axis in 0..2 {
         let high = f64::from(size[axis]) + margin;
@@ -81,7 +81,7 @@ mod tests {
     proptest! {
         #[test]
         fn hulls_hold_their_places(places in prop::collection::vec(prop::array::uniform2(-9i32..9), 0..30)) {
-            let places: Vec<Place> = places.into_iter().map(|place| place.map(f64::from)).collect();
+            let places: Vec<Point2> = places.into_iter().map(|place| place.map(f64::from)).collect();
             let hull = hull(&places);
             prop_assert!(hull.iter().all(|corner| places.contains(corner)));
             for i in 0..hull.len() {

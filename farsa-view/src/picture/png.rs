@@ -9,7 +9,7 @@ use crate::picture::marks::{self, Stroke};
 use crate::picture::moment::Picture;
 use crate::picture::outline::bounds;
 use crate::shape::appearance::Color;
-use crate::shape::form::Sight;
+use crate::shape::geometry::Sight;
 use crate::shape::vector::{Vector, add, mix, scale};
 
 /// Edges are drawn with this many rays along each side of a pixel.
@@ -40,7 +40,7 @@ fn pixels(picture: &Picture, camera: Camera, size: [u32; 2]) -> Vec<Color> {
     let scene = LitScene::new(picture, &view);
     let canvas = Canvas { scene: &scene, view: &view, boxes: boxes(&scene, &view) };
     let mut pixels = vec![[0; 3]; width * height];
-    // Bands of rows go to whoever is free; every pixel is for itself, so nobody sees who did it.
+    // Bands of rows go to any free thread; pixels are independent, so the result is the same.
     let threads = thread::available_parallelism().map_or(1, usize::from).min(8);
     let bands: Vec<_> = pixels.chunks_mut((16 * width).max(1)).enumerate().collect();
     let bands = std::sync::Mutex::new(bands.into_iter());
@@ -72,7 +72,7 @@ fn boxes(scene: &LitScene, view: &Window) -> Vec<[[f64; 2]; 2]> {
         } else {
             Sight::Eye(solid.pose.transform_back(view.eye))
         };
-        let rim = solid.form.rim(sight, 32);
+        let rim = solid.geometry.rim(sight, 32);
         let places: Option<Vec<_>> = rim.into_iter().map(|p| view.project(solid.pose.transform(p))).collect();
         let [low, high] = bounds(&places.filter(|places| !places.is_empty())?);
         // The circle bulges between its points by less than 1/200 of its radius.
@@ -192,17 +192,17 @@ fn paint(pixels: &mut [Color], size: [u32; 2], stroke: &Stroke) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::appearance::{OKABE_ITO, Placed, Role};
-    use crate::shape::form::Form;
+    use crate::shape::appearance::{Instance, OKABE_ITO, Role};
+    use crate::shape::geometry::Geometry;
     use farsa_body::Pose;
 
-    fn ball(position: Vector) -> Placed {
-        Placed::new(Form::Sphere { radius: 0.03 }, Pose::at(position), Role::Thing)
+    fn ball(position: Vector) -> Instance {
+        Instance::new(Geometry::Sphere { radius: 0.03 }, Pose::at(position), Role::Object)
     }
 
     #[test]
     fn the_sphere_is_where_it_is_projected() {
-        let ground = Placed::new(Form::Plane, Pose::identity(), Role::Ground);
+        let ground = Instance::new(Geometry::Plane, Pose::identity(), Role::Ground);
         let picture = Picture { shapes: vec![ball([0.1, -0.2, 0.03]), ground], ..Picture::default() };
         for name in Camera::NAMES {
             let camera = Camera::named(name).unwrap();
@@ -226,8 +226,8 @@ mod tests {
     #[test]
     fn the_nearer_box_hides_the_other() {
         let at = |x: f64, color| {
-            let form = Form::Box { half: [0.1, 0.5, 0.5] };
-            Placed::new(form, Pose::at([x, 0.0, 0.0]), Role::Thing).with_color(color)
+            let geometry = Geometry::Box { half: [0.1, 0.5, 0.5] };
+            Instance::new(geometry, Pose::at([x, 0.0, 0.0]), Role::Object).with_color(color)
         };
         let [red, green] = [[200, 0, 0], [0, 200, 0]];
         for shapes in [[at(0.5, red), at(-0.5, green)], [at(-0.5, green), at(0.5, red)]] {

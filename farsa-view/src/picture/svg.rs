@@ -7,10 +7,10 @@ use crate::picture::draw_order::back_to_front;
 use crate::picture::lit_scene::{BACKGROUND, LitScene, Seen, Solid, encoded};
 use crate::picture::marks;
 use crate::picture::moment::Picture;
-use crate::picture::outline::{Place, framed, hull};
+use crate::picture::outline::{Point2, framed, hull};
 use crate::picture::svg_data::{digits, escaped, hex, path};
 use crate::shape::appearance::{Color, Role};
-use crate::shape::form::{Form, Sight};
+use crate::shape::geometry::{Geometry, Sight};
 use crate::shape::vector::{Vector, add, dot, length, scale, sub};
 
 /// How far shapes may reach out of the frame before they are cut off [pixels].
@@ -29,7 +29,7 @@ pub(crate) fn svg(picture: &Picture, camera: Camera, size: [u32; 2], prefix: &st
     let scene = LitScene::new(picture, &view);
     let mut drawing =
         Drawing { scene: &scene, view: &view, prefix, defs: String::new(), body: String::new(), gridded: false };
-    let outlines: Vec<Vec<Place>> = scene.solids.iter().map(|solid| outline(solid, &view)).collect();
+    let outlines: Vec<Vec<Point2>> = scene.solids.iter().map(|solid| outline(solid, &view)).collect();
     for i in back_to_front(&scene, &view, &outlines) {
         drawing.solid(i, &outlines[i]);
     }
@@ -49,35 +49,35 @@ pub(crate) fn svg(picture: &Picture, camera: Camera, size: [u32; 2], prefix: &st
 }
 
 /// The outline of a solid in the picture, cut off at the frame; empty if it is not to be seen.
-pub(crate) fn outline(solid: &Solid, view: &Window) -> Vec<Place> {
+pub(crate) fn outline(solid: &Solid, view: &Window) -> Vec<Point2> {
     let sight = if view.parallel {
         Sight::Along(solid.pose.rotate_back(view.axes[2]))
     } else {
         Sight::Eye(solid.pose.transform_back(view.eye))
     };
-    let places = |points: Vec<Vector>| -> Vec<Place> {
+    let places = |points: Vec<Vector>| -> Vec<Point2> {
         points.into_iter().filter_map(|point| view.project(solid.pose.transform(point))).collect()
     };
-    let flat = matches!(solid.form, Form::Box { .. } | Form::Rectangle { .. } | Form::Disc { .. });
+    let flat = matches!(solid.geometry, Geometry::Box { .. } | Geometry::Rectangle { .. } | Geometry::Disc { .. });
     let hull = if flat {
         // What reaches behind the eye is cut there: the hull of the faces' parts is that of the part.
-        let faces = solid.form.faces(48).into_iter().flat_map(|(_, corners)| {
+        let faces = solid.geometry.faces(48).into_iter().flat_map(|(_, corners)| {
             let corners: Vec<_> = corners.into_iter().map(|corner| solid.pose.transform(corner)).collect();
             view.before(&corners)
         });
         hull(&faces.filter_map(|point| view.project(point)).collect::<Vec<_>>())
     } else {
         // Circles get as many corners as they need to look round.
-        hull(&places(solid.form.rim(sight, roundness(solid, view, 0.12))))
+        hull(&places(solid.geometry.rim(sight, roundness(solid, view, 0.12))))
     };
     framed(&hull, view.size, MARGIN)
 }
 
 /// How many corners keep the circles of a solid within a share of a pixel.
 fn roundness(solid: &Solid, view: &Window, off: f64) -> usize {
-    let radius = match solid.form {
-        Form::Capsule { radius, .. } | Form::Cylinder { radius, .. } => radius,
-        form => form.reach(),
+    let radius = match solid.geometry {
+        Geometry::Capsule { radius, .. } | Geometry::Cylinder { radius, .. } => radius,
+        geometry => geometry.reach(),
     };
     // The arc over an edge is r (1 - cos(pi / n)) high, about r pi^2 / 2 n^2.
     let count = 2.22 * (radius / view.pixel(solid.pose.position) / off).sqrt();
@@ -95,7 +95,7 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    fn path(&mut self, outlines: &[&[Place]], attributes: &str) {
+    fn path(&mut self, outlines: &[&[Point2]], attributes: &str) {
         let data: String = outlines.iter().map(|outline| path(outline, true)).collect();
         if !data.is_empty() {
             self.line(&format!("<path d=\"{data}\" {attributes}/>"));
@@ -107,23 +107,25 @@ impl Drawing<'_> {
         self.body.push('\n');
     }
 
-    fn solid(&mut self, i: usize, outline: &[Place]) {
+    fn solid(&mut self, i: usize, outline: &[Point2]) {
         let solid = &self.scene.solids[i];
-        match solid.form {
-            Form::Sphere { .. } => {
+        match solid.geometry {
+            Geometry::Sphere { .. } => {
                 let fill = self.radial(i, outline);
                 self.path(&[outline], &format!("fill=\"{fill}\" {CONTOUR}"));
             }
-            Form::Capsule { .. } => {
+            Geometry::Capsule { .. } => {
                 let fill = self.rod(i, outline);
                 self.path(&[outline], &format!("fill=\"{fill}\" {CONTOUR}"));
             }
-            Form::Cylinder { .. } => {
+            Geometry::Cylinder { .. } => {
                 let fill = self.rod(i, outline);
                 self.path(&[outline], &format!("fill=\"{fill}\" {CONTOUR}"));
                 self.faces(i);
             }
-            Form::Box { .. } | Form::Rectangle { .. } | Form::Disc { .. } | Form::Plane => self.faces(i),
+            Geometry::Box { .. } | Geometry::Rectangle { .. } | Geometry::Disc { .. } | Geometry::Plane => {
+                self.faces(i);
+            }
         }
     }
 
@@ -134,7 +136,7 @@ impl Drawing<'_> {
             let corners: Vec<Vector> = corners.into_iter().map(|corner| solid.pose.transform(corner)).collect();
             (solid.pose.rotate(normal), corners)
         };
-        for (normal, corners) in solid.form.faces(roundness(solid, self.view, 0.12)).into_iter().map(to_world) {
+        for (normal, corners) in solid.geometry.faces(roundness(solid, self.view, 0.12)).into_iter().map(to_world) {
             let middle = scale(corners.iter().fold([0.0; 3], |sum, c| add(sum, *c)), 1.0 / corners.len() as f64);
             if dot(normal, self.view.sight(middle)) >= 0.0 {
                 continue;
@@ -149,7 +151,7 @@ impl Drawing<'_> {
             let opacity = if solid.role == Role::Area { " fill-opacity=\".8\"" } else { "" };
             // A hairline in its own colour closes the seams of the ground.
             let edge = match solid.role {
-                Role::Robot | Role::Thing => CONTOUR.to_owned(),
+                Role::Robot | Role::Object => CONTOUR.to_owned(),
                 Role::Ground | Role::Area => format!("stroke=\"{color}\" stroke-width=\".5\""),
             };
             self.path(&[&places], &format!("fill=\"{color}\" {edge}{opacity}"));
@@ -162,7 +164,7 @@ impl Drawing<'_> {
         }
     }
 
-    fn places(&self, points: &[Vector]) -> Vec<Place> {
+    fn places(&self, points: &[Vector]) -> Vec<Point2> {
         points.iter().filter_map(|point| self.view.project(*point)).collect()
     }
 
@@ -208,13 +210,14 @@ impl Drawing<'_> {
                 if matches!(solid.role, Role::Ground | Role::Area) || solid.pose.position[2] < height {
                     continue;
                 }
-                let rim = solid.form.rim(Sight::Along(solid.pose.rotate_back(light)), roundness(solid, self.view, 0.6));
+                let rim =
+                    solid.geometry.rim(Sight::Along(solid.pose.rotate_back(light)), roundness(solid, self.view, 0.6));
                 let fallen = rim.into_iter().map(|point| {
                     let point = solid.pose.transform(point);
                     let fall = (point[2] - height).max(0.0) / light[2];
                     sub(point, scale(light, fall))
                 });
-                let places: Option<Vec<Place>> = fallen.map(|point| self.view.project(point)).collect();
+                let places: Option<Vec<Point2>> = fallen.map(|point| self.view.project(point)).collect();
                 let outline = hull(&places.unwrap_or_default());
                 data.push_str(&path(&framed(&outline, self.view.size, MARGIN), true));
             }
@@ -230,7 +233,7 @@ impl Drawing<'_> {
     }
 
     /// The colour of a solid at a place of the picture, or at the nearest one towards `inside` where it is.
-    fn color(&self, i: usize, place: Place, inside: Place) -> Color {
+    fn color(&self, i: usize, place: Point2, inside: Point2) -> Color {
         let tries = [0.0, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0];
         let seen = tries.into_iter().find_map(|share| {
             let at = [0, 1].map(|k| place[k] + (inside[k] - place[k]) * share);
@@ -251,12 +254,12 @@ impl Drawing<'_> {
     }
 
     /// The fill of a ball: rings about where it faces the lamp.
-    fn radial(&mut self, i: usize, outline: &[Place]) -> String {
+    fn radial(&mut self, i: usize, outline: &[Point2]) -> String {
         let solid = &self.scene.solids[i];
         let centre = solid.pose.position;
         let (Some(middle), Some(bright)) = (
             self.view.project(centre),
-            self.view.project(add(centre, scale(self.scene.key, 0.62 * solid.form.reach()))),
+            self.view.project(add(centre, scale(self.scene.key, 0.62 * solid.geometry.reach()))),
         ) else {
             return hex(BACKGROUND);
         };
@@ -273,10 +276,12 @@ impl Drawing<'_> {
     }
 
     /// The fill of a rod: bands along its axis.
-    fn rod(&mut self, i: usize, outline: &[Place]) -> String {
+    fn rod(&mut self, i: usize, outline: &[Point2]) -> String {
         let solid = &self.scene.solids[i];
-        let (half, radius) = match solid.form {
-            Form::Capsule { radius, half_length } | Form::Cylinder { radius, half_length } => (half_length, radius),
+        let (half, radius) = match solid.geometry {
+            Geometry::Capsule { radius, half_length } | Geometry::Cylinder { radius, half_length } => {
+                (half_length, radius)
+            }
             _ => (0.0, 0.0),
         };
         let ends = [-half, half].map(|z| self.view.project(solid.pose.transform([0.0, 0.0, z])));
@@ -284,7 +289,7 @@ impl Drawing<'_> {
         let axis = [b[0] - a[0], b[1] - a[1]];
         let far = length([axis[0], axis[1], 0.0]);
         let wide = radius / self.view.pixel(solid.pose.position);
-        if far < 0.5 * wide && matches!(solid.form, Form::Capsule { .. }) {
+        if far < 0.5 * wide && matches!(solid.geometry, Geometry::Capsule { .. }) {
             return self.radial(i, outline);
         }
         let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));
@@ -325,7 +330,7 @@ impl Drawing<'_> {
         self.line(&format!(
             "<g font-size=\"{font}\" fill=\"#333\" stroke=\"#fff\" stroke-width=\"{halo}\" paint-order=\"stroke\">"
         ));
-        let text = |place: Place, anchor: &str, words: &str| {
+        let text = |place: Point2, anchor: &str, words: &str| {
             let [x, y] = place.map(|x| digits(x, 10.0));
             format!("<text x=\"{x}\" y=\"{y}\"{anchor}>{}</text>", escaped(words))
         };
@@ -357,7 +362,7 @@ impl Drawing<'_> {
 }
 
 /// Where the line on which a coordinate is `at` enters and leaves a convex polygon.
-fn crossings(corners: &[Vector], axis: usize, at: f64) -> [Option<Place>; 2] {
+fn crossings(corners: &[Vector], axis: usize, at: f64) -> [Option<Point2>; 2] {
     let mut found = [None; 2];
     let mut count = 0;
     for (i, a) in corners.iter().enumerate() {
@@ -375,7 +380,7 @@ fn crossings(corners: &[Vector], axis: usize, at: f64) -> [Option<Place>; 2] {
 mod tests {
     use super::*;
     use crate::picture::moment::{Beam, Push};
-    use crate::shape::appearance::Placed;
+    use crate::shape::appearance::Instance;
     use farsa_body::{ArmAndHand, KinematicTree, Pose, Tabletop};
 
     /// The elements of a document by name with their attributes; panics if it is not well-formed.
@@ -421,9 +426,9 @@ mod tests {
         let poses = tree.poses(&tree.zero());
         let mut picture = Picture { caption: Some("a < b & c".into()), ..Picture::default() };
         picture.add_robot(&robot, |body| poses[body.index()]);
-        picture.shapes.push(Placed::new(Form::Disc { radius: 0.05 }, Pose::at([0.2, -0.2, 0.0]), Role::Area));
-        let wheel = Form::Cylinder { radius: 0.02, half_length: 0.01 };
-        picture.shapes.push(Placed::new(wheel, Pose::at([0.2, -0.2, 0.02]), Role::Thing));
+        picture.shapes.push(Instance::new(Geometry::Disc { radius: 0.05 }, Pose::at([0.2, -0.2, 0.0]), Role::Area));
+        let wheel = Geometry::Cylinder { radius: 0.02, half_length: 0.01 };
+        picture.shapes.push(Instance::new(wheel, Pose::at([0.2, -0.2, 0.02]), Role::Object));
         picture.contacts.push(Push { point: [0.1, -0.18, 0.05], force: [0.0, 1.0, -2.0] });
         picture.rays.push(Beam { from: [0.0, 0.0, 0.1], to: [0.4, 0.0, 0.1], hit: true });
         picture.points.push(("<target>".into(), [0.1, -0.18, 0.1]));
@@ -461,8 +466,8 @@ mod tests {
 
     #[test]
     fn nothing_can_be_drawn_too() {
-        let plane = Placed::new(Form::Plane, Pose::identity(), Role::Ground);
-        let inside = Placed::new(Form::Sphere { radius: 90.0 }, Pose::identity(), Role::Ground);
+        let plane = Instance::new(Geometry::Plane, Pose::identity(), Role::Ground);
+        let inside = Instance::new(Geometry::Sphere { radius: 90.0 }, Pose::identity(), Role::Ground);
         for shapes in [vec![], vec![plane], vec![inside, plane]] {
             let picture = Picture { shapes, ..Picture::default() };
             for name in Camera::NAMES {
@@ -474,8 +479,8 @@ mod tests {
     #[test]
     fn the_nearer_box_is_drawn_later() {
         let at = |x: f64, color| {
-            let form = Form::Box { half: [0.1, 0.5, 0.5] };
-            Placed::new(form, Pose::at([x, 0.0, 0.0]), Role::Area).with_color(color)
+            let geometry = Geometry::Box { half: [0.1, 0.5, 0.5] };
+            Instance::new(geometry, Pose::at([x, 0.0, 0.0]), Role::Area).with_color(color)
         };
         let front = Camera::named("front").unwrap();
         for shapes in [[at(0.5, [9, 0, 0]), at(-0.5, [0, 9, 0])], [at(-0.5, [0, 9, 0]), at(0.5, [9, 0, 0])]] {

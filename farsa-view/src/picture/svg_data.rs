@@ -2,16 +2,16 @@
 
 use std::fmt::Write as _;
 
-use crate::picture::outline::Place;
+use crate::picture::outline::Point2;
 use crate::shape::appearance::Color;
 
 /// The data of a path through these places, in steps of a tenth of a pixel.
-pub(crate) fn path(places: &[Place], closed: bool) -> String {
+pub(crate) fn path(places: &[Point2], closed: bool) -> String {
     let mut data = String::new();
     if places.len() < 2 || (closed && places.len() < 3) {
         return data;
     }
-    let tenths = |place: &Place| place.map(|x| (10.0 * x).round().clamp(-1e7, 1e7) as i64);
+    let tenths = |place: &Point2| place.map(|x| (10.0 * x).round().clamp(-1e7, 1e7) as i64);
     let number = |tenths: i64| digits(tenths as f64 / 10.0, 10.0);
     let mut last = [0; 2];
     for (i, place) in places.iter().enumerate() {
@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(path(&[[1.0, 2.0], [3.04, 1.0], [3.06, 5.0]], true), "M1,2l2-1 .1,4z");
         assert_eq!(path(&[[1.0, 2.0]], false), "");
         // A thousand steps of a third of a tenth are a hundred thirds, whatever each was rounded to.
-        let steps: Vec<Place> = (0..=1000).map(|i| [f64::from(i) / 30.0, 0.0]).collect();
+        let steps: Vec<Point2> = (0..=1000).map(|i| [f64::from(i) / 30.0, 0.0]).collect();
         let written = path(&steps, false);
         let steps = written.trim_start_matches("M0,0l").split(' ').map(|step| step.trim_end_matches(",0"));
         let sum: f64 = steps.map(|step| step.parse::<f64>().unwrap()).sum();

@@ -1,10 +1,10 @@
-//! A life as it was told, kept in memory.
+//! A recorded episode, kept in memory.
 
 use std::ops::Range;
 
 use farsa_body::{BodyId, Contacts, Kinematics, PairContact, PairId, Pose, Recorder, record_world};
 
-use crate::recording::stage::Stage;
+use crate::recording::schema::Schema;
 
 /// Numbers of a pose: position and rotation.
 const POSE: usize = 7;
@@ -33,13 +33,13 @@ pub struct CastRay {
     pub met: bool,
 }
 
-/// A life as it was told to this recorder, tick by tick: for a [`Page`](crate::Page), or to look things up.
+/// A recorded episode, tick by tick: for a [`Page`](crate::Page), or to look things up.
 ///
-/// What belongs to no name of the stage is not kept, what was not told is NaN.
+/// What belongs to no name of the schema is not kept, what was not recorded is NaN.
 ///
 /// ```
 /// use farsa_body::{ArmAndHand, JointPosition, JointId, Recorder, Sensor, Tabletop, World as _};
-/// use farsa_view::{Page, Recording, Stage};
+/// use farsa_view::{Page, Recording, Schema};
 /// use farsa_physics::articulated::{Model, Options, World};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -48,7 +48,7 @@ pub struct CastRay {
 /// let mut elbow = JointPosition::new(JointId(3), -2.0, 0.0)?;
 /// let mut x = [0.0];
 ///
-/// let mut recording = Recording::new(Stage::of_robot(&robot).with_sensors(["elbow"]));
+/// let mut recording = Recording::new(Schema::from_robot(&robot).with_sensors(["elbow"]));
 /// for tick in 0..50 {
 ///     elbow.read(&world, &mut x);
 ///     world.step();
@@ -62,7 +62,7 @@ pub struct CastRay {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
-    stage: Stage,
+    schema: Schema,
     parameters: Vec<f32>,
     times: Vec<f64>,
     /// Ticks x bodies x 7, the tick under way included; so with the next three.
@@ -82,15 +82,15 @@ pub struct Recording {
 
 impl Recording {
     /// A recording of nothing yet.
-    pub fn new(stage: Stage) -> Self {
-        let mut recording = Self { stage, ..Self::default() };
-        let widest = [POSE * recording.bodies(), 3 * recording.stage.points.len(), recording.width()];
+    pub fn new(schema: Schema) -> Self {
+        let mut recording = Self { schema, ..Self::default() };
+        let widest = [POSE * recording.bodies(), 3 * recording.schema.points.len(), recording.width()];
         recording.blank = vec![f32::NAN; widest.into_iter().max().unwrap_or(0)];
-        // Most lives are shorter; a longer one makes room by itself.
+        // Most episodes are shorter; a longer one makes room by itself.
         recording.poses.reserve(TICKS * POSE * recording.bodies());
-        recording.points.reserve(TICKS * 3 * recording.stage.points.len());
+        recording.points.reserve(TICKS * 3 * recording.schema.points.len());
         recording.values.reserve(TICKS * recording.width());
-        recording.scalars.reserve(TICKS * recording.stage.scalars.len());
+        recording.scalars.reserve(TICKS * recording.schema.scalars.len());
         recording.open();
         recording
     }
@@ -98,20 +98,20 @@ impl Recording {
     /// Room for the tick to come, all of it unknown.
     fn open(&mut self) {
         // One copy of a line of unknowns is cheaper than filling each.
-        let Self { blank, poses, points, values, scalars, stage, .. } = self;
+        let Self { blank, poses, points, values, scalars, schema, .. } = self;
         let count = |per_tick: usize| blank.get(..per_tick).unwrap_or(&[]);
-        poses.extend_from_slice(count(POSE * stage.body_count()));
-        points.extend_from_slice(count(3 * stage.points.len()));
-        values.extend_from_slice(count(stage.sensors.len() + stage.neurons.len() + stage.outputs.len()));
-        scalars.resize(scalars.len() + stage.scalars.len(), f64::NAN);
+        poses.extend_from_slice(count(POSE * schema.body_count()));
+        points.extend_from_slice(count(3 * schema.points.len()));
+        values.extend_from_slice(count(schema.sensors.len() + schema.neurons.len() + schema.outputs.len()));
+        scalars.resize(scalars.len() + schema.scalars.len(), f64::NAN);
     }
 
     fn bodies(&self) -> usize {
-        self.stage.body_count()
+        self.schema.body_count()
     }
 
     fn width(&self) -> usize {
-        self.stage.sensors.len() + self.stage.neurons.len() + self.stage.outputs.len()
+        self.schema.sensors.len() + self.schema.neurons.len() + self.schema.outputs.len()
     }
 
     /// Takes down where all bodies with a shape are and what touches.
@@ -119,17 +119,17 @@ impl Recording {
     where
         W: Kinematics<Body = BodyId> + Contacts + ?Sized,
     {
-        let shown: Vec<BodyId> = self.stage.shown().collect();
+        let shown: Vec<BodyId> = self.schema.shown().collect();
         record_world(world, shown, self);
         self
     }
 
     /// What it is a recording of.
-    pub fn stage(&self) -> &Stage {
-        &self.stage
+    pub fn schema(&self) -> &Schema {
+        &self.schema
     }
 
-    /// The parameters of the controller; empty if none were told.
+    /// The parameters of the controller; empty if none were recorded.
     pub fn controller_parameters(&self) -> &[f32] {
         &self.parameters
     }
@@ -139,7 +139,7 @@ impl Recording {
         &self.times
     }
 
-    /// Where a body was at a tick; NaN if it was not told, `None` if there is no such body or tick.
+    /// Where a body was at a tick; NaN if it was not recorded, `None` if there is no such body or tick.
     pub fn pose_at(&self, tick: usize, body: BodyId) -> Option<Pose> {
         let at = POSE * (tick * self.bodies() + body.index());
         if tick >= self.times.len() || body.index() >= self.bodies() {
@@ -151,8 +151,8 @@ impl Recording {
 
     /// Where a point was at a tick.
     pub fn point_at(&self, tick: usize, point: usize) -> Option<[f32; 3]> {
-        let at = 3 * (tick * self.stage.points.len() + point);
-        if tick >= self.times.len() || point >= self.stage.points.len() {
+        let at = 3 * (tick * self.schema.points.len() + point);
+        if tick >= self.times.len() || point >= self.schema.points.len() {
             return None;
         }
         self.points.get(at..at + 3).map(|words| [words[0], words[1], words[2]])
@@ -168,12 +168,12 @@ impl Recording {
         self.rays.get(ended(&self.ray_ends, tick)).unwrap_or(&[])
     }
 
-    /// All values of a tick in the order of [`Stage::columns`].
+    /// All values of a tick in the order of [`Schema::columns`].
     pub fn row(&self, tick: usize) -> impl Iterator<Item = f64> + '_ {
         fn of_tick<T>(values: &[T], tick: usize, width: usize) -> &[T] {
             values.get(tick * width..(tick + 1) * width).unwrap_or(&[])
         }
-        let scalars = of_tick(&self.scalars, tick, self.stage.scalars.len());
+        let scalars = of_tick(&self.scalars, tick, self.schema.scalars.len());
         let values = of_tick(&self.values, tick, self.width());
         scalars.iter().copied().chain(values.iter().copied().map(f64::from))
     }
@@ -214,8 +214,8 @@ impl Recorder for Recording {
     }
 
     fn point(&mut self, point: usize, position: [f32; 3]) {
-        let at = 3 * (self.times.len() * self.stage.points.len() + point);
-        if point < self.stage.points.len()
+        let at = 3 * (self.times.len() * self.schema.points.len() + point);
+        if point < self.schema.points.len()
             && let Some(words) = self.points.get_mut(at..at + 3)
         {
             words.copy_from_slice(&position);
@@ -223,19 +223,19 @@ impl Recorder for Recording {
     }
 
     fn sensors(&mut self, x: &[f32]) {
-        self.keep(0, self.stage.sensors.len(), x);
+        self.keep(0, self.schema.sensors.len(), x);
     }
 
     fn neurons(&mut self, states: &[f32]) {
-        self.keep(self.stage.sensors.len(), self.stage.neurons.len(), states);
+        self.keep(self.schema.sensors.len(), self.schema.neurons.len(), states);
     }
 
     fn outputs(&mut self, y: &[f32]) {
-        self.keep(self.stage.sensors.len() + self.stage.neurons.len(), self.stage.outputs.len(), y);
+        self.keep(self.schema.sensors.len() + self.schema.neurons.len(), self.schema.outputs.len(), y);
     }
 
     fn scalars(&mut self, values: &[f64]) {
-        let count = self.stage.scalars.len();
+        let count = self.schema.scalars.len();
         let at = self.times.len() * count;
         if let Some(to) = self.scalars.get_mut(at..at + count) {
             to.iter_mut().zip(values).for_each(|(to, value)| *to = *value);
@@ -253,16 +253,16 @@ impl Recorder for Recording {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::stage::Channel;
+    use crate::recording::schema::Channel;
     use farsa_body::ArmAndHand;
 
     #[test]
     fn what_was_told_is_there_and_the_rest_is_unknown() {
         let robot = ArmAndHand::default().robot().unwrap();
-        let mut stage = Stage::of_robot(&robot).with_sensors(["a", "b"]).with_outputs(["c"]).with_scalars(["d"]);
-        stage.neurons = vec![Channel::new("n")];
-        stage.points = vec!["p".into(), "q".into()];
-        let mut recording = Recording::new(stage);
+        let mut schema = Schema::from_robot(&robot).with_sensors(["a", "b"]).with_outputs(["c"]).with_scalars(["d"]);
+        schema.neurons = vec![Channel::new("n")];
+        schema.points = vec!["p".into(), "q".into()];
+        let mut recording = Recording::new(schema);
         let contact = PairContact { points: 1, force: [1.0, 2.0, 3.0], ..PairContact::default() };
         recording.sensors(&[1.0, 2.0, 9.0]);
         recording.outputs(&[3.0]);

@@ -1,15 +1,15 @@
-//! Lives as a table of comma-separated values.
+//! Episodes as a table of comma-separated values.
 
 use std::io::{self, Write};
 
 use farsa_body::Recorder;
 
-use crate::recording::stage::Stage;
+use crate::recording::schema::Schema;
 
-/// A recorder that writes a line per tick: `trial,step,time [s]` and the columns of the stage.
+/// A recorder that writes a line per tick: `trial,step,time [s]` and the columns of the schema.
 ///
 /// A value that single precision can hold is written with the digits that single precision needs. Bodies, contacts and
-/// points are not written; whoever wants numbers of them makes them scalars.
+/// points are not written; to have numbers of them, record them as scalars.
 pub struct Table<W: Write> {
     out: csv::Writer<W>,
     trial: u32,
@@ -26,17 +26,17 @@ impl<W: Write> Table<W> {
     ///
     /// # Errors
     /// What the writer says.
-    pub fn new(out: W, stage: &Stage) -> io::Result<Self> {
+    pub fn new(out: W, schema: &Schema) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
-        let head = ["trial", "step", "time [s]"].map(String::from).into_iter().chain(stage.columns());
+        let head = ["trial", "step", "time [s]"].map(String::from).into_iter().chain(schema.columns());
         out.write_record(head).map_err(as_io)?;
-        let starts = [stage.sensors.len(), stage.sensors.len() + stage.neurons.len()];
+        let starts = [schema.sensors.len(), schema.sensors.len() + schema.neurons.len()];
         Ok(Self {
             out,
             trial: 0,
             step: 0,
-            scalars: vec![f64::NAN; stage.scalars.len()],
-            values: vec![f32::NAN; starts[1] + stage.outputs.len()],
+            scalars: vec![f64::NAN; schema.scalars.len()],
+            values: vec![f32::NAN; starts[1] + schema.outputs.len()],
             starts,
             written: Ok(()),
         })
@@ -121,10 +121,10 @@ mod tests {
 
     #[test]
     fn a_line_per_tick_in_the_order_of_the_head() {
-        let mut stage = Stage::of_scalars(["x [m]"]).with_sensors(["a", "b"]).with_outputs(["c"]);
-        stage.neurons = vec![crate::recording::stage::Channel::new("n")];
+        let mut schema = Schema::from_scalars(["x [m]"]).with_sensors(["a", "b"]).with_outputs(["c"]);
+        schema.neurons = vec![crate::recording::schema::Channel::new("n")];
         let mut bytes = Vec::new();
-        let mut table = Table::new(&mut bytes, &stage).unwrap();
+        let mut table = Table::new(&mut bytes, &schema).unwrap();
         table.begin(2);
         table.outputs(&[0.5, 9.0]);
         table.sensors(&[0.1]);

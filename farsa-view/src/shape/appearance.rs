@@ -2,18 +2,18 @@
 
 use farsa_body::Pose;
 
-use crate::shape::form::Form;
+use crate::shape::geometry::Geometry;
 
 /// Red, green and blue as screens take them.
 pub type Color = [u8; 3];
 
-/// What a shape is to the one who looks.
+/// What a shape is to the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// A part of a robot.
     Robot,
     /// A thing that moves or that the robot deals with.
-    Thing,
+    Object,
     /// What everything stands on, and walls: never what a camera looks for.
     Ground,
     /// A mark on the ground, such as a target area; shows what it lies on through it.
@@ -25,7 +25,7 @@ impl Role {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Robot => "robot",
-            Self::Thing => "thing",
+            Self::Object => "thing",
             Self::Ground => "ground",
             Self::Area => "area",
         }
@@ -34,9 +34,9 @@ impl Role {
 
 /// A shape in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
-    /// Its form.
-    pub form: Form,
+pub struct Instance {
+    /// Its geometry.
+    pub geometry: Geometry,
     /// Its frame in the world.
     pub pose: Pose<f64>,
     /// What it is.
@@ -55,10 +55,10 @@ pub const OKABE_ITO: [Color; 7] =
 const ARM: Color = [146, 161, 178];
 const GROUND: Color = [219, 222, 226];
 
-impl Placed {
+impl Instance {
     /// A shape in its role's colour.
-    pub fn new(form: impl Into<Form>, pose: Pose<f64>, role: Role) -> Self {
-        Self { form: form.into(), pose, role, color: None, focus: role == Role::Thing }
+    pub fn new(geometry: impl Into<Geometry>, pose: Pose<f64>, role: Role) -> Self {
+        Self { geometry: geometry.into(), pose, role, color: None, focus: role == Role::Object }
     }
 
     /// The same shape in this colour.
@@ -77,7 +77,7 @@ impl Placed {
     pub fn color(&self) -> Color {
         self.color.unwrap_or(match self.role {
             Role::Robot => ARM,
-            Role::Thing => OKABE_ITO[0],
+            Role::Object => OKABE_ITO[0],
             Role::Ground => GROUND,
             Role::Area => OKABE_ITO[2],
         })

@@ -31,11 +31,11 @@ const join = (a, b) => [...add(cross(a, b), add(mul(b, a[3]), mul(a, b[3]))), a[
 const turn = (q, v) => add(v, mul(cross(q, add(cross(q, v), mul(v, q[3]))), 2));
 const HOME = {position: [0, 0, 0], rotation: [0, 0, 0, 1]};
 
-class Life {
+class Trial {
 	constructor(json, index) {
 		Object.assign(this, json, {index, json, name: String(json.name)});
 		const {ticks, bodies, points, blocks} = json;
-		const of = `of life ${index}`;
+		const of = `of trial ${index}`;
 		const whole = (x) => Number.isInteger(x) && x >= 0;
 		need(whole(ticks) && ticks, `there are no ticks ${of}`);
 		let bytes;
@@ -170,9 +170,9 @@ function readPage(element) {
 	}
 	need(page?.format === "farsa-replay", "its data is not of the format farsa-replay");
 	need(page.version === 1, `its data is of version ${page.version}, this viewer reads version 1`);
-	need(page.lives?.length, "it holds no life");
+	need(page.lives?.length, "it holds no trial");
 	try {
-		return {...page, lives: page.lives.map((life, i) => new Life(life, i))};
+		return {...page, trials: page.lives.map((trial, i) => new Trial(trial, i))};
 	} catch (error) {
 		throw error instanceof Damage ? error : new Damage(`its data lacks something (${error.message})`);
 	}

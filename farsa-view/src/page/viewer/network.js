@@ -3,10 +3,105 @@
 const LABEL = "12px system-ui, sans-serif";
 const signed = (x) => (x < 0 ? "" : "+") + x.toFixed(3);
 
+// The node at a place, if one is near; its name counts as well, where `named` says that the place is on that side.
+function nearestNode(nodes, named, x, y) {
+	let [best, found] = [12, null];
+	for (const node of nodes) {
+		const far = named(node) ? abs(node.y - y)*1.3 : hypot(node.x - x, node.y - y);
+		if (far < best) [best, found] = [far, node];
+	}
+	return found;
+}
+
+// The link at a place, if one is near: its curve is taken as ten straight pieces.
+function nearestLink(links, x, y) {
+	let [best, found] = [4, null];
+	for (const link of links) {
+		const [x0, y0, x1, y1, x2, y2, x3, y3] = link.curve;
+		let [near, px, py] = [best, x0, y0];
+		for (let t = 0.1; t < 1.01; t += 0.1) {
+			const on = (a, b, d, e) => (1 - t)**3*a + 3*t*(1 - t)**2*b + 3*t*t*(1 - t)*d + t**3*e;
+			const [ux, uy] = [on(x0, x1, x2, x3) - px, on(y0, y1, y2, y3) - py];
+			const s = min(1, max(0, ((x - px)*ux + (y - py)*uy)/(ux*ux + uy*uy || 1)));
+			near = min(near, hypot(px + s*ux - x, py + s*uy - y));
+			[px, py] = [px + ux, py + uy];
+		}
+		// Of links about as near the strongest, which comes last.
+		if (near < best) [best, found] = [min(4, near + 0.5), link];
+	}
+	return found;
+}
+
+// The numbers of a node or a link; `say` is a node's value at present.
+function aboutOf(chosen, links, say) {
+	if (!chosen) return [make("p", "soft", "Point at a node or a link, or tap it, for its numbers.")];
+	if (!chosen.links) {
+		const {from, to, weight} = chosen;
+		return [make("h3", "", `${from.name} → ${to.name}`, make("b", "", signed(weight))), make("p", "", `source ${say(from)}, target ${say(to)}`)];
+	}
+	const table = (head, here, there) => {
+		const some = links.filter((l) => l[here] === chosen).reverse();
+		const rows = some.slice(0, 6).map((l) => make("tr", "", make("td", "", l[there].name), make("td", "", signed(l.weight))));
+		return make("table", "", make("caption", "", `${head} (${some.length})`), ...rows);
+	};
+	return [
+		make("h3", "", chosen.name, make("b", "", say(chosen))), make("p", "", chosen.values.map(([name, x]) => `${name} ${signed(x)}`).join(", ")),
+		make("div", "tables", table("strongest in", "to", "from"), table("strongest out", "from", "to")),
+	];
+}
+
+// How a link runs, as a Bezier curve. Links within a column bend out, down on one side and up on the other.
+function curveOf({from: a, to: b}) {
+	const [dx, dy] = [b.x - a.x, b.y - a.y];
+	const bend = dx ? 0 : (dy < 0 ? -1 : 1)*(14 + abs(dy)*0.28);
+	return a === b ? [a.x, a.y, a.x + 26, a.y - 18, a.x + 26, a.y + 18, a.x, a.y]
+		: [a.x, a.y, a.x + dx/3 + bend, a.y + dy/3, b.x - dx/3 + bend, b.y - dy/3, b.x, b.y];
+}
+
+// Draws links, each as opaque as `alpha` makes of its part of the strongest.
+function paintLinks(c, links, some, alpha) {
+	const strongest = abs(links.at(-1)?.weight) || 1;
+	for (const {weight, curve: [x, y, ...rest]} of some) {
+		const part = abs(weight)/strongest;
+		Object.assign(c, {globalAlpha: alpha(part), lineWidth: 0.5 + 2.4*part, strokeStyle: colorOf(weight < 0 ? "--a" : "--b")});
+		c.beginPath();
+		c.moveTo(x, y);
+		c.bezierCurveTo(...rest);
+		c.stroke();
+	}
+	c.globalAlpha = 1;
+}
+
+// Draws a node lit by its value, which is the colour `fill`.
+function paintNode(c, {x, y}, lit, fill) {
+	const [ink, soft] = ["--ink", "--soft"].map(colorOf);
+	c.beginPath();
+	c.arc(x, y, lit ? 7.5 : 6, 0, 7);
+	c.fillStyle = fill;
+	c.fill();
+	Object.assign(c, {lineWidth: lit ? 2.5 : 1, strokeStyle: lit ? ink : soft});
+	c.stroke();
+}
+
+// Writes a node's name beside it: of the first column to the left, of others to the right.
+function paintName(c, {x, y, layer, name}, width, ink) {
+	let text = name;
+	while (text.length > 2 && c.measureText(text).width > (layer ? width - x : x) - 12) text = `${text.slice(0, -2)}…`;
+	Object.assign(c, {lineWidth: 4, strokeStyle: colorOf("--panel"), fillStyle: ink, textAlign: layer ? "left" : "right"});
+	for (const way of ["strokeText", "fillText"]) c[way](text, x + (layer ? 11 : -11), y + 0.5);
+}
+
+// Writes above a column how many nodes it has; `side` picks by where the column stands: first, between, last.
+function paintHead(c, column, side) {
+	if (!column[0]) return;
+	c.textAlign = side("right", "center", "left");
+	c.fillText(`${column.length} ${side("sensors", "neurons", "outputs")}`, column[0].x + side(6, 0, -6), max(7, column[0].y - 18));
+}
+
 function graphOf() {
 	const [canvas, choice] = [$("graph"), $("node")];
 	const c = canvas.getContext("2d");
-	let life, nodes, links, last, width, ratio, back, tick = 0, over, pinned;
+	let trial, nodes, links, last, width, ratio, back, tick = 0, over, pinned;
 	new ResizeObserver(() => layout()).observe(canvas);
 	canvas.onpointermove = (event) => event.pointerType === "mouse" && choose(hit(event), pinned);
 	canvas.onpointerleave = () => choose(null, pinned);
@@ -14,9 +109,9 @@ function graphOf() {
 	choice.onchange = () => choose(null, nodes[choice.value]);
 
 	function set(other) {
-		if (other === life) return;
-		life = other;
-		({nodes, links} = life.network);
+		if (other === trial) return;
+		trial = other;
+		({nodes, links} = trial.network);
 		last = max(...nodes.map((n) => n.layer));
 		over = pinned = null;
 		choice.replaceChildren(...options([[-1, "node …"], ...nodes.map((n, i) => [i, n.name])]));
@@ -31,13 +126,13 @@ function graphOf() {
 		tell();
 	}
 
-	const valueOf = (node) => life.channels[node.channel].values[tick];
-	const say = (node) => `${show(life.channels[node.channel], valueOf(node))} ${life.channels[node.channel].unit || ""}`;
+	const valueOf = (node) => trial.channels[node.channel].values[tick];
+	const say = (node) => `${show(trial.channels[node.channel], valueOf(node))} ${trial.channels[node.channel].unit || ""}`;
 	const side = (layer, first, middle, end) => (layer ? (layer === last ? end : middle) : first);
 
 	function layout() {
 		width = canvas.clientWidth;
-		if (!life || !width) return;
+		if (!trial || !width) return;
 		const columns = list(last + 1, (layer) => nodes.filter((n) => n.layer === layer));
 		const height = max(200, max(...columns.map((column) => column.length))*16 + 30);
 		ratio = min(2, devicePixelRatio);
@@ -55,36 +150,17 @@ function graphOf() {
 				node.y = height/2 + 8 + (i - (column.length - 1)/2)*step;
 			});
 		});
-		for (const link of links) {
-			const {from: a, to: b} = link;
-			const [dx, dy] = [b.x - a.x, b.y - a.y];
-			// Links within a column bend out, down on one side and up on the other.
-			const bend = dx ? 0 : (dy < 0 ? -1 : 1)*(14 + abs(dy)*0.28);
-			link.curve = a === b ? [a.x, a.y, a.x + 26, a.y - 18, a.x + 26, a.y + 18, a.x, a.y]
-				: [a.x, a.y, a.x + dx/3 + bend, a.y + dy/3, b.x - dx/3 + bend, b.y - dy/3, b.x, b.y];
-		}
+		for (const link of links) link.curve = curveOf(link);
 		back = Object.assign(make("canvas"), {width: canvas.width, height: canvas.height});
-		paint(back.getContext("2d"), links, (part) => 0.03 + 0.72*part**2.5);
+		const hidden = back.getContext("2d");
+		hidden.setTransform(ratio, 0, 0, ratio, 0, 0);
+		paintLinks(hidden, links, links, (part) => 0.03 + 0.72*part**2.5);
 		draw();
 		tell();
 	}
 
-	function paint(c, some, alpha) {
-		c.setTransform(ratio, 0, 0, ratio, 0, 0);
-		const strongest = abs(links.at(-1)?.weight) || 1;
-		for (const {weight, curve: [x, y, ...rest]} of some) {
-			const part = abs(weight)/strongest;
-			Object.assign(c, {globalAlpha: alpha(part), lineWidth: 0.5 + 2.4*part, strokeStyle: colorOf(weight < 0 ? "--a" : "--b")});
-			c.beginPath();
-			c.moveTo(x, y);
-			c.bezierCurveTo(...rest);
-			c.stroke();
-		}
-		c.globalAlpha = 1;
-	}
-
 	function update(now) {
-		if (now === tick || !life) return;
+		if (now === tick || !trial) return;
 		tick = now;
 		draw();
 		tell();
@@ -97,77 +173,27 @@ function graphOf() {
 		c.clearRect(0, 0, canvas.width, canvas.height);
 		c.globalAlpha = chosen ? 0.16 : 1;
 		c.drawImage(back, 0, 0);
-		paint(c, chosen ? chosen.links || [chosen] : [], (part) => 0.25 + 0.75*part);
+		c.setTransform(ratio, 0, 0, ratio, 0, 0);
+		paintLinks(c, links, chosen ? chosen.links || [chosen] : [], (part) => 0.25 + 0.75*part);
 		Object.assign(c, {font: LABEL, textBaseline: "middle"});
 		const [ink, soft, panel] = ["--ink", "--soft", "--panel"].map(colorOf);
 		for (const node of nodes) {
-			const {x, y, layer} = node;
 			const lit = chosen && [chosen, chosen.from, chosen.to].includes(node);
 			const value = valueOf(node);
-			c.beginPath();
-			c.arc(x, y, lit ? 7.5 : 6, 0, 7);
-			c.fillStyle = Number.isNaN(value) ? panel : `rgb(${heatOf(life.channels[node.channel], value)})`;
-			c.fill();
-			Object.assign(c, {lineWidth: lit ? 2.5 : 1, strokeStyle: lit ? ink : soft});
-			c.stroke();
-			if (side(layer, false, !lit, false)) continue;
-			let text = node.name;
-			while (text.length > 2 && c.measureText(text).width > (layer ? width - x : x) - 12) text = `${text.slice(0, -2)}…`;
-			Object.assign(c, {lineWidth: 4, strokeStyle: panel, fillStyle: lit || !chosen ? ink : soft, textAlign: layer ? "left" : "right"});
-			for (const way of ["strokeText", "fillText"]) c[way](text, x + (layer ? 11 : -11), y + 0.5);
+			paintNode(c, node, lit, Number.isNaN(value) ? panel : `rgb(${heatOf(trial.channels[node.channel], value)})`);
+			if (side(node.layer, true, lit, true)) paintName(c, node, width, lit || !chosen ? ink : soft);
 		}
 		c.fillStyle = soft;
-		for (let layer = 0; layer <= last; layer++) {
-			const column = nodes.filter((n) => n.layer === layer);
-			if (!column[0]) continue;
-			c.textAlign = side(layer, "right", "center", "left");
-			c.fillText(`${column.length} ${side(layer, "sensors", "neurons", "outputs")}`, column[0].x + side(layer, 6, 0, -6), max(7, column[0].y - 18));
-		}
+		for (let layer = 0; layer <= last; layer++) paintHead(c, nodes.filter((n) => n.layer === layer), (...of) => side(layer, ...of));
 	}
 
 	function hit({offsetX: x, offsetY: y}) {
-		let [best, found] = [12, null];
-		for (const node of nodes) {
-			const named = side(node.layer, x < node.x, false, x > node.x);
-			const far = named ? abs(node.y - y)*1.3 : hypot(node.x - x, node.y - y);
-			if (far < best) [best, found] = [far, node];
-		}
-		if (found) return found;
-		best = 4;
-		for (const link of links) {
-			const [x0, y0, x1, y1, x2, y2, x3, y3] = link.curve;
-			let [near, px, py] = [best, x0, y0];
-			for (let t = 0.1; t < 1.01; t += 0.1) {
-				const on = (a, b, d, e) => (1 - t)**3*a + 3*t*(1 - t)**2*b + 3*t*t*(1 - t)*d + t**3*e;
-				const [ux, uy] = [on(x0, x1, x2, x3) - px, on(y0, y1, y2, y3) - py];
-				const s = min(1, max(0, ((x - px)*ux + (y - py)*uy)/(ux*ux + uy*uy || 1)));
-				near = min(near, hypot(px + s*ux - x, py + s*uy - y));
-				[px, py] = [px + ux, py + uy];
-			}
-			// Of links about as near the strongest, which comes last.
-			if (near < best) [best, found] = [min(4, near + 0.5), link];
-		}
-		return found;
+		const named = (node) => side(node.layer, x < node.x, false, x > node.x);
+		return nearestNode(nodes, named, x, y) || nearestLink(links, x, y);
 	}
 
 	function tell() {
-		const chosen = over || pinned;
-		const table = (head, here, there) => {
-			const some = links.filter((l) => l[here] === chosen).reverse();
-			const rows = some.slice(0, 6).map((l) => make("tr", "", make("td", "", l[there].name), make("td", "", signed(l.weight))));
-			return make("table", "", make("caption", "", `${head} (${some.length})`), ...rows);
-		};
-		let parts = [make("p", "soft", "Point at a node or a link, or tap it, for its numbers.")];
-		if (chosen?.links) {
-			parts = [
-				make("h3", "", chosen.name, make("b", "", say(chosen))), make("p", "", chosen.values.map(([name, x]) => `${name} ${signed(x)}`).join(", ")),
-				make("div", "tables", table("strongest in", "to", "from"), table("strongest out", "from", "to")),
-			];
-		} else if (chosen) {
-			const {from, to, weight} = chosen;
-			parts = [make("h3", "", `${from.name} → ${to.name}`, make("b", "", signed(weight))), make("p", "", `source ${say(from)}, target ${say(to)}`)];
-		}
-		$("about").replaceChildren(...parts);
+		$("about").replaceChildren(...aboutOf(over || pinned, links, say));
 	}
 
 	return {set, layout, update};

@@ -4,7 +4,7 @@ const CIVIDIS = ["#00224e", "#35456c", "#666970", "#948e77", "#c8b866", "#fee838
 const DIVERGING = ["#6db5f2", "#2e5f8d", "#20262e", "#94591f", "#f5a04c"];
 const WORDS = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2", "#d55e00", "#999999"];
 
-// Values on both sides of zero are told by colour, others by brightness. Gives 0..255.
+// Values on both sides of zero are shown by colour, others by brightness. Gives 0..255.
 function heatOf({low, high}, value) {
 	const both = low < 0 && high > 0;
 	const stops = both ? DIVERGING : CIVIDIS;
@@ -39,41 +39,105 @@ function make(tag, className = "", ...children) {
 	return made;
 }
 
-function stripsOf(seek) {
-	const [groups, closed] = [$("groups"), new Set()];
-	let [rows, lives, from, to, ticks, part] = [[], [], 0, 1];
-	const watch = new IntersectionObserver((entries) => {
-		for (const {target, isIntersecting} of entries) {
-			target.row.near = isIntersecting;
-			if (isIntersecting) paint(target.row);
-		}
-	}, {rootMargin: "300px"});
-	const box = () => rows.find(({canvas}) => canvas.offsetWidth)?.canvas.getBoundingClientRect();
+// What is drawn in a strip: bands for words, heat for large groups, else a line. `x` is where a tick stands, `tall` and `top`
+// are the height of the trial's part of the field and where it begins, all in pixels; `ratio` is that of a CSS pixel.
+function paintBands(c, {values}, {words}, {x, tall, top, ratio}) {
+	Object.assign(c, {font: `600 ${12*ratio}px system-ui, sans-serif`, textBaseline: "middle"});
+	for (const [t, after, color, value] of runs(values)) {
+		const wide = x(min(after, values.length - 1)) - x(t);
+		c.fillStyle = color;
+		c.fillRect(x(t), top, max(wide, 1), tall - ratio/2);
+		c.fillStyle = "#10161c";
+		const word = words[value] ?? "";
+		if (c.measureText(word).width + 12*ratio < wide) c.fillText(word, x(t) + 6*ratio, top + tall/2);
+	}
+}
+
+function paintHeat(c, {values}, {low, high}, {x, tall, top, ratio, width}) {
+	const span = high - low || 1;
+	const image = new ImageData(values.length, 1);
+	const table = list(256, (k) => [...heatOf({low, high}, low + span*k/255), 255]);
+	values.forEach((value, t) => image.data.set(table[min(255, max(0, round((value - low)/span*255)))] || [], 4*t));
+	const line = Object.assign(make("canvas"), {width: values.length, height: 1});
+	line.getContext("2d").putImageData(image, 0, 0);
+	c.imageSmoothingEnabled = values.length > width;
+	c.drawImage(line, x(0), top, x(values.length - 1) - x(0) + 1, tall - ratio/2);
+}
+
+function paintLine(c, {values}, {low, high}, {x, ratio, width, height, color}) {
+	const y = (value) => 3*ratio + (high - value)/(high - low || 1)*(height - 6*ratio);
+	c.fillStyle = colorOf("--line");
+	if (low < 0 && high > 0) c.fillRect(0, round(y(0)), width, ratio);
+	Object.assign(c, {strokeStyle: colorOf(color), lineWidth: 1.5*ratio, lineJoin: "round"});
+	c.beginPath();
+	// No line leads to a value that is not there.
+	values.forEach((value, t) => c[Number.isNaN(values[t - 1] ?? NaN) ? "moveTo" : "lineTo"](x(t), y(value)));
+	c.stroke();
+}
+
+// Draws a row's strip from one time to another, unless it stands there already.
+function paintStrip(row, trials, from, to) {
+	const {canvas, channels, kind, scale} = row;
+	const ratio = min(2, devicePixelRatio);
+	const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((x) => round(x*ratio));
+	const painted = `${width} ${height} ${theme()}`;
+	if (row.painted === painted || !width) return;
+	row.painted = painted;
+	Object.assign(canvas, {width, height});
+	const c = canvas.getContext("2d");
+	const shown = channels.filter(Boolean);
+	channels.forEach((channel, i) => {
+		if (!channel) return;
+		const {times, end} = trials[i];
+		const at = (time) => (time - from)/(to - from || 1)*width;
+		const x = (t) => at(times[0]) + (at(end) - at(times[0]))*t/max(1, channel.values.length - 1);
+		// Lines of two trials share the field, bands and heat stand apart.
+		const tall = height/shown.length;
+		const place = {x, tall, top: shown.indexOf(channel)*tall, ratio, width, height, color: i ? "--b" : "--a"};
+		({bands: paintBands, heat: paintHeat, lines: paintLine})[kind](c, channel, scale, place);
+	});
+}
+
+// A finger or the mouse along the strips seeks; `box` is where the strips stand.
+function dragOn(element, box, seek) {
 	let dragged = false;
 	const move = ({clientX}) => {
 		const {left, width} = box() || {};
 		if (dragged && width) seek((clientX - left)/width);
 	};
-	groups.onpointerdown = (event) => {
+	element.onpointerdown = (event) => {
 		dragged = !event.button && event.target.matches(".plot");
-		if (dragged) groups.setPointerCapture(event.pointerId);
+		if (dragged) element.setPointerCapture(event.pointerId);
 		move(event);
 	};
-	groups.onpointermove = move;
-	groups.onpointerup = groups.onpointercancel = () => (dragged = false);
+	element.onpointermove = move;
+	element.onpointerup = element.onpointercancel = () => (dragged = false);
+}
+
+function stripsOf(seek) {
+	const [groups, closed] = [$("groups"), new Set()];
+	let [rows, trials, from, to, ticks, part] = [[], [], 0, 1];
+	const watch = new IntersectionObserver((entries) => {
+		for (const {target, isIntersecting} of entries) {
+			target.row.near = isIntersecting;
+			if (isIntersecting) paintStrip(target.row, trials, from, to);
+		}
+	}, {rootMargin: "300px"});
+	const box = () => rows.find(({canvas}) => canvas.offsetWidth)?.canvas.getBoundingClientRect();
+	dragOn(groups, box, seek);
 	new ResizeObserver(() => resize()).observe(groups);
 
 	function set(some, first, last) {
-		[lives, from, to, rows] = [some, first, last, []];
+		[trials, from, to, rows] = [some, first, last, []];
 		watch.disconnect();
 		const names = new Map();
-		for (const {group, name} of lives.flatMap((life) => life.channels)) names.set(group, (names.get(group) || new Set()).add(name));
+		for (const {group, name} of trials.flatMap((trial) => trial.channels)) names.set(group, (names.get(group) || new Set()).add(name));
 		groups.replaceChildren(...[...names].map(([group, set]) => section(group, [...set])));
 		update();
 	}
 
 	function section(group, names) {
-		// What all names begin with, as "force on sphere.", takes the room of what tells them apart.
+		// What all names begin with, as "force on sphere.", takes the room of what differs.
 		let cut = 0;
 		while (names[1] && names.every((name) => name[cut] && name[cut] === names[0][cut])) cut++;
 		const body = make("div", "rows", ...names.map((name) => row(group, name, cut > 7 ? cut : 0, names.length > 10 ? "heat" : "lines")));
@@ -94,13 +158,13 @@ function stripsOf(seek) {
 	}
 
 	function row(group, name, cut, mode) {
-		const channels = lives.map((life) => life.channels.find((c) => c.name === name && c.group === group));
+		const channels = trials.map((trial) => trial.channels.find((c) => c.name === name && c.group === group));
 		const some = channels.filter(Boolean);
 		const {words, unit = "", scale} = some[0];
-		// One scale for both lives.
+		// One scale for both trials.
 		const [low, high] = [min(...some.map((c) => c.low)), max(...some.map((c) => c.high))];
 		const kind = words ? "bands" : mode;
-		const values = channels.map((_, i) => make("span", `value life-${i}`));
+		const values = channels.map((_, i) => make("span", `value trial-${i}`));
 		const canvas = make("canvas", "plot");
 		const element = make("div", `row ${kind}`, make("span", "name", name.slice(cut)), make("span", "values", ...values), make("span", "unit", unit), canvas,
 			make("span", "unit", words ? "" : `${bound(low)} … ${bound(high)}`));
@@ -113,70 +177,19 @@ function stripsOf(seek) {
 	}
 
 	function resize() {
-		for (const row of rows) if (row.near) paint(row);
+		for (const row of rows) if (row.near) paintStrip(row, trials, from, to);
 		update();
 	}
 
 	function update(now = ticks, share = part, playing = false) {
 		[ticks, part] = [now, share];
-		if (ticks?.length !== lives.length) return;
+		if (ticks?.length !== trials.length) return;
 		for (const {near, channels, values, scale} of rows) {
 			if (near || !playing) channels.forEach((channel, i) => channel && (values[i].textContent = show(scale, channel.values[floor(ticks[i])])));
 		}
 		const {left, width} = box() || {};
 		$("cursor").hidden = !width;
 		$("cursor").style.transform = `translateX(${left - $("list").getBoundingClientRect().left + part*width}px)`;
-	}
-
-	function paint(row) {
-		const {canvas, channels, kind, scale: {words, low, high}} = row;
-		const ratio = min(2, devicePixelRatio);
-		const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((x) => round(x*ratio));
-		const painted = `${width} ${height} ${theme()}`;
-		if (row.painted === painted || !width) return;
-		row.painted = painted;
-		Object.assign(canvas, {width, height});
-		const c = canvas.getContext("2d");
-		const span = high - low || 1;
-		const shown = channels.filter(Boolean);
-		channels.forEach((channel, i) => {
-			if (!channel) return;
-			const {values} = channel;
-			const {times, end} = lives[i];
-			const at = (time) => (time - from)/(to - from || 1)*width;
-			const x = (t) => at(times[0]) + (at(end) - at(times[0]))*t/max(1, values.length - 1);
-			// Lines of two lives share the field, bands and heat stand apart.
-			const tall = height/shown.length;
-			const top = shown.indexOf(channel)*tall;
-			if (kind === "bands") {
-				Object.assign(c, {font: `600 ${12*ratio}px system-ui, sans-serif`, textBaseline: "middle"});
-				for (const [t, after, color, value] of runs(values)) {
-					const wide = x(min(after, values.length - 1)) - x(t);
-					c.fillStyle = color;
-					c.fillRect(x(t), top, max(wide, 1), tall - ratio/2);
-					c.fillStyle = "#10161c";
-					const word = words[value] ?? "";
-					if (c.measureText(word).width + 12*ratio < wide) c.fillText(word, x(t) + 6*ratio, top + tall/2);
-				}
-			} else if (kind === "heat") {
-				const image = new ImageData(values.length, 1);
-				const table = list(256, (k) => [...heatOf({low, high}, low + span*k/255), 255]);
-				values.forEach((value, t) => image.data.set(table[min(255, max(0, round((value - low)/span*255)))] || [], 4*t));
-				const line = Object.assign(make("canvas"), {width: values.length, height: 1});
-				line.getContext("2d").putImageData(image, 0, 0);
-				c.imageSmoothingEnabled = values.length > width;
-				c.drawImage(line, x(0), top, x(values.length - 1) - x(0) + 1, tall - ratio/2);
-			} else {
-				const y = (value) => 3*ratio + (high - value)/span*(height - 6*ratio);
-				c.fillStyle = colorOf("--line");
-				if (low < 0 && high > 0) c.fillRect(0, round(y(0)), width, ratio);
-				Object.assign(c, {strokeStyle: colorOf(i ? "--b" : "--a"), lineWidth: 1.5*ratio, lineJoin: "round"});
-				c.beginPath();
-				// No line leads to a value that is not there.
-				values.forEach((value, t) => c[Number.isNaN(values[t - 1] ?? NaN) ? "moveTo" : "lineTo"](x(t), y(value)));
-				c.stroke();
-			}
-		});
 	}
 
 	return {set, resize, update};

@@ -1,13 +1,13 @@
-//! The forms a picture is made of: where rays meet them, and what outlines them.
+//! The geometries a picture is made of: where rays meet them, and what outlines them.
 
 use farsa_body::Shape;
 use farsa_num::sin_cos;
 
 use crate::shape::vector::{Vector, across, add, along, dot, length, scale, sub, unit};
 
-/// A form in its own frame.
+/// A geometry in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Form {
+pub enum Geometry {
     /// A ball about the origin.
     Sphere {
         /// Radius [m].
@@ -46,12 +46,12 @@ pub enum Form {
     },
 }
 
-/// Where a ray enters a form.
+/// Where a ray enters a geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meeting {
     /// Distance along the ray [m].
     pub(crate) distance: f64,
-    /// Unit normal of the surface, out of the form.
+    /// Unit normal of the surface, out of the geometry.
     pub(crate) normal: Vector,
 }
 
@@ -64,7 +64,7 @@ pub(crate) enum Sight {
     Along(Vector),
 }
 
-impl From<Shape> for Form {
+impl From<Shape> for Geometry {
     fn from(shape: Shape) -> Self {
         match shape {
             Shape::Sphere { radius } => Self::Sphere { radius },
@@ -123,8 +123,8 @@ fn circle(centre: Vector, normal: Vector, radius: f64, count: usize) -> impl Ite
     })
 }
 
-impl Form {
-    /// Where a ray from `origin` along the unit vector `direction` first enters the form, if it starts outside.
+impl Geometry {
+    /// Where a ray from `origin` along the unit vector `direction` first enters the geometry, if it starts outside.
     pub(crate) fn meet(&self, origin: Vector, direction: Vector) -> Option<Meeting> {
         match *self {
             Self::Sphere { radius } => ball(origin, direction, [0.0; 3], radius),
@@ -138,7 +138,7 @@ impl Form {
                     let [x, y, _] = along(origin, direction, first);
                     return (first >= 0.0).then(|| Meeting { distance: first, normal: [x / radius, y / radius, 0.0] });
                 }
-                // Whoever is in the endless cylinder beyond an end passes through the ball at that end.
+                // A ray in the endless cylinder beyond an end passes through the ball at that end.
                 ball(origin, direction, [0.0, 0.0, half_length.copysign(height)], radius)
             }
             Self::Cylinder { radius, half_length } => {
@@ -185,7 +185,7 @@ impl Form {
         }
     }
 
-    /// Radius of the ball about the origin that holds the form [m]; infinite for a plane.
+    /// Radius of the ball about the origin that holds the geometry [m]; infinite for a plane.
     pub(crate) fn reach(&self) -> f64 {
         match *self {
             Self::Sphere { radius } | Self::Disc { radius } => radius,
@@ -197,7 +197,7 @@ impl Form {
         }
     }
 
-    /// Balls whose convex hull holds the form and little more: centres and radii [m]; none for a plane.
+    /// Balls whose convex hull holds the geometry and little more: centres and radii [m]; none for a plane.
     pub(crate) fn hull(&self) -> Vec<(Vector, f64)> {
         match *self {
             Self::Sphere { radius } => vec![([0.0; 3], radius)],
@@ -217,8 +217,8 @@ impl Form {
         }
     }
 
-    /// Points of the surface whose convex hull in the picture outlines the form, `count` on every circle; none for a
-    /// plane, nor for a ball with the eye in it.
+    /// Points of the surface whose convex hull in the picture outlines the geometry, `count` on every circle; none for
+    /// a plane, nor for a ball with the eye in it.
     pub(crate) fn rim(&self, sight: Sight, count: usize) -> Vec<Vector> {
         // A ball's outline from a point is a circle nearer to the eye than the centre, and smaller than the ball.
         let contour = |centre: Vector, radius: f64| {
@@ -290,34 +290,34 @@ mod tests {
     use proptest::prelude::*;
 
     /// Distance to the surface, negative inside.
-    fn signed_distance(form: &Form, p: Vector) -> f64 {
+    fn signed_distance(geometry: &Geometry, p: Vector) -> f64 {
         let outside = |d: [f64; 3]| length(d.map(|x| x.max(0.0))) + d[0].max(d[1]).max(d[2]).min(0.0);
-        match *form {
-            Form::Sphere { radius } => length(p) - radius,
-            Form::Capsule { radius, half_length } => {
+        match *geometry {
+            Geometry::Sphere { radius } => length(p) - radius,
+            Geometry::Capsule { radius, half_length } => {
                 length([p[0], p[1], p[2] - p[2].clamp(-half_length, half_length)]) - radius
             }
-            Form::Cylinder { radius, half_length } => {
+            Geometry::Cylinder { radius, half_length } => {
                 let side = length([p[0], p[1], 0.0]) - radius;
                 outside([side, p[2].abs() - half_length, f64::NEG_INFINITY])
             }
-            Form::Box { half } => outside([0, 1, 2].map(|i| p[i].abs() - half[i])),
-            Form::Plane => p[2],
-            Form::Disc { radius } => {
+            Geometry::Box { half } => outside([0, 1, 2].map(|i| p[i].abs() - half[i])),
+            Geometry::Plane => p[2],
+            Geometry::Disc { radius } => {
                 let side = length([p[0], p[1], 0.0]) - radius;
                 length([side.max(0.0), p[2], 0.0])
             }
-            Form::Rectangle { half } => {
+            Geometry::Rectangle { half } => {
                 length([(p[0].abs() - half[0]).max(0.0), (p[1].abs() - half[1]).max(0.0), p[2]])
             }
         }
     }
 
     /// The distance at which small steps of the signed distance come to the surface.
-    fn marched(form: &Form, origin: Vector, direction: Vector) -> Option<f64> {
+    fn marched(geometry: &Geometry, origin: Vector, direction: Vector) -> Option<f64> {
         let mut distance = 0.0;
         for _ in 0..20_000 {
-            let free = signed_distance(form, along(origin, direction, distance));
+            let free = signed_distance(geometry, along(origin, direction, distance));
             if free < 1e-7 {
                 return Some(distance);
             }
@@ -329,16 +329,16 @@ mod tests {
         Some(distance)
     }
 
-    fn form() -> impl Strategy<Value = Form> {
+    fn geometry() -> impl Strategy<Value = Geometry> {
         let size = || 0.05..1.0;
         prop_oneof![
-            size().prop_map(|radius| Form::Sphere { radius }),
-            (size(), size()).prop_map(|(radius, half_length)| Form::Capsule { radius, half_length }),
-            (size(), size()).prop_map(|(radius, half_length)| Form::Cylinder { radius, half_length }),
-            prop::array::uniform3(size()).prop_map(|half| Form::Box { half }),
-            Just(Form::Plane),
-            size().prop_map(|radius| Form::Disc { radius }),
-            prop::array::uniform2(size()).prop_map(|half| Form::Rectangle { half }),
+            size().prop_map(|radius| Geometry::Sphere { radius }),
+            (size(), size()).prop_map(|(radius, half_length)| Geometry::Capsule { radius, half_length }),
+            (size(), size()).prop_map(|(radius, half_length)| Geometry::Cylinder { radius, half_length }),
+            prop::array::uniform3(size()).prop_map(|half| Geometry::Box { half }),
+            Just(Geometry::Plane),
+            size().prop_map(|radius| Geometry::Disc { radius }),
+            prop::array::uniform2(size()).prop_map(|half| Geometry::Rectangle { half }),
         ]
     }
 
@@ -350,47 +350,47 @@ mod tests {
     proptest! {
         #[test]
         fn rays_meet_what_marching_meets(
-            form in form(), at in prop::array::uniform3(-1.0..1.0), back in 0.5..4.0f64, direction in direction(),
+            geometry in geometry(), at in prop::array::uniform3(-1.0..1.0), back in 0.5..4.0f64, direction in direction(),
         ) {
             let origin = along(at, direction, -back);
-            prop_assume!(signed_distance(&form, origin) > 1e-3);
-            match (form.meet(origin, direction), marched(&form, origin, direction)) {
+            prop_assume!(signed_distance(&geometry, origin) > 1e-3);
+            match (geometry.meet(origin, direction), marched(&geometry, origin, direction)) {
                 (Some(meeting), Some(distance)) => {
                     let point = along(origin, direction, meeting.distance);
-                    prop_assert!(signed_distance(&form, point).abs() < 1e-9);
+                    prop_assert!(signed_distance(&geometry, point).abs() < 1e-9);
                     // Marching stops early along a grazing ray.
                     prop_assert!((meeting.distance - distance).abs() < 2e-3, "{meeting:?} instead of {distance}");
                     prop_assert!(dot(meeting.normal, direction) <= 1e-9);
                     prop_assert!((length(meeting.normal) - 1.0).abs() < 1e-9);
-                    prop_assert!(signed_distance(&form, along(point, meeting.normal, 1e-4)) > 0.5e-4);
+                    prop_assert!(signed_distance(&geometry, along(point, meeting.normal, 1e-4)) > 0.5e-4);
                 }
                 (None, None) => {}
                 (None, Some(distance)) => {
                     // A ray that only just touches.
                     let inner = along(origin, direction, distance + 1e-4);
-                    prop_assert!(signed_distance(&form, inner) > -1e-4, "missed at {distance}");
+                    prop_assert!(signed_distance(&geometry, inner) > -1e-4, "missed at {distance}");
                 }
-                // Nobody marches as far as a plane may be.
+                // No march goes as far as a plane may be.
                 (Some(meeting), None) => prop_assert!(meeting.distance > 19.0, "met {meeting:?}, where nothing is"),
             }
         }
 
         #[test]
-        fn rims_lie_on_the_form_and_balls_are_touched(form in form(), towards in direction(), far in 4.0..9.0f64) {
+        fn rims_lie_on_the_form_and_balls_are_touched(geometry in geometry(), towards in direction(), far in 4.0..9.0f64) {
             let eye = scale(towards, far);
-            for point in form.rim(Sight::Eye(eye), 16) {
-                prop_assert!(signed_distance(&form, point) < 1e-9);
-                prop_assert!(length(point) <= form.reach() + 1e-9);
-                if let Form::Sphere { .. } = form {
+            for point in geometry.rim(Sight::Eye(eye), 16) {
+                prop_assert!(signed_distance(&geometry, point) < 1e-9);
+                prop_assert!(length(point) <= geometry.reach() + 1e-9);
+                if let Geometry::Sphere { .. } = geometry {
                     prop_assert!(dot(point, sub(eye, point)).abs() < 1e-9);
                 }
             }
         }
 
         #[test]
-        fn hulls_hold_the_form(form in form(), looking in direction()) {
-            for point in form.rim(Sight::Along(looking), 16) {
-                let farthest = form.hull().into_iter().map(|(c, r)| dot(c, looking) + r).fold(f64::MIN, f64::max);
+        fn hulls_hold_the_form(geometry in geometry(), looking in direction()) {
+            for point in geometry.rim(Sight::Along(looking), 16) {
+                let farthest = geometry.hull().into_iter().map(|(c, r)| dot(c, looking) + r).fold(f64::MIN, f64::max);
                 prop_assert!(dot(point, looking) <= farthest + 1e-9);
             }
         }
@@ -398,8 +398,9 @@ mod tests {
 
     #[test]
     fn faces_look_outwards() {
-        for form in [Form::Box { half: [1.0, 2.0, 3.0] }, Form::Cylinder { radius: 1.0, half_length: 2.0 }] {
-            for (normal, corners) in form.faces(12) {
+        for geometry in [Geometry::Box { half: [1.0, 2.0, 3.0] }, Geometry::Cylinder { radius: 1.0, half_length: 2.0 }]
+        {
+            for (normal, corners) in geometry.faces(12) {
                 let outer = dot(normal, corners[0]);
                 assert!(outer > 0.0);
                 assert!(corners.iter().all(|corner| (dot(normal, *corner) - outer).abs() < 1e-12));

@@ -4,11 +4,11 @@ use farsa_body::{BodyId, Pose};
 use farsa_num::{Scalar, atan2, sin_cos};
 use farsa_physics::arena::{Area, AreaShape, Arena, Convex, Cylinder, Wall};
 
-use crate::recording::stage::Stage;
+use crate::recording::schema::Schema;
 use crate::recording::view::View;
 use crate::shape::appearance::{Color, OKABE_ITO, Role};
-use crate::shape::form::Form;
-use crate::shape::prop::{Prop, screen_color};
+use crate::shape::geometry::Geometry;
+use crate::shape::scene_object::{SceneObject, screen_color};
 
 /// Walls that are given no colour: dark, so that ways along them are seen.
 const WALL: Color = [84, 90, 99];
@@ -48,25 +48,26 @@ fn numbered(names: &[&str]) -> Vec<String> {
 }
 
 /// The ground of an arena that has a size, else an endless one.
-fn ground(arena: &Arena) -> Prop {
-    let (form, middle) = match arena.size {
-        Some(size) => (Form::Rectangle { half: size.map(|x| 0.5 * x) }, size.map(|x| 0.5 * x)),
-        None => (Form::Plane, [0.0; 2]),
+fn ground(arena: &Arena) -> SceneObject {
+    let (geometry, middle) = match arena.size {
+        Some(size) => (Geometry::Rectangle { half: size.map(|x| 0.5 * x) }, size.map(|x| 0.5 * x)),
+        None => (Geometry::Plane, [0.0; 2]),
     };
-    Prop::new("ground", form, standing(middle, 0.0, 0.0), Role::Ground).with_color(screen_color(arena.ground))
+    SceneObject::new("ground", geometry, standing(middle, 0.0, 0.0), Role::Ground)
+        .with_color(screen_color(arena.ground))
 }
 
-fn wall(number: usize, wall: &Wall) -> Prop {
+fn wall(number: usize, wall: &Wall) -> SceneObject {
     let [length, thickness] = wall.size;
     let up = 0.5 * wall.height;
-    let form = Form::Box { half: [0.5 * length, 0.5 * thickness, up] };
+    let geometry = Geometry::Box { half: [0.5 * length, 0.5 * thickness, up] };
     let color = if wall.color == Wall::COLOR { WALL } else { screen_color(wall.color) };
     let name = format!("wall {}", number + 1);
-    Prop::new(&name, form, standing(wall.centre, up, wall.heading), Role::Ground).with_color(color)
+    SceneObject::new(&name, geometry, standing(wall.centre, up, wall.heading), Role::Ground).with_color(color)
 }
 
 /// A convex obstacle, as its upright sides over its outline: thin walls within it.
-fn convex(number: usize, convex: &Convex) -> Vec<Prop> {
+fn convex(number: usize, convex: &Convex) -> Vec<SceneObject> {
     let corners = convex.outline();
     let color = if convex.color == Wall::COLOR { WALL } else { screen_color(convex.color) };
     let up = 0.5 * convex.height();
@@ -77,28 +78,28 @@ fn convex(number: usize, convex: &Convex) -> Vec<Prop> {
         // The outline runs counter-clockwise: inwards is to the left.
         let inwards = 0.5 * SIDE / length;
         let middle = [0.5 * (a[0] + b[0]) - inwards * y, 0.5 * (a[1] + b[1]) + inwards * x];
-        let form = Form::Box { half: [0.5 * length, 0.5 * SIDE, up] };
+        let geometry = Geometry::Box { half: [0.5 * length, 0.5 * SIDE, up] };
         let name = format!("obstacle {} side {}", number + 1, i + 1);
-        Prop::new(&name, form, standing(middle, up, atan2(y, x)), Role::Ground).with_color(color)
+        SceneObject::new(&name, geometry, standing(middle, up, atan2(y, x)), Role::Ground).with_color(color)
     };
     (0..corners.len()).map(side).collect()
 }
 
-fn area(number: usize, area: &Area) -> Prop {
-    let form = match area.shape {
-        AreaShape::Circle { radius } => Form::Disc { radius },
-        AreaShape::Rectangle { size } => Form::Rectangle { half: size.map(|x| 0.5 * x) },
+fn area(number: usize, area: &Area) -> SceneObject {
+    let geometry = match area.shape {
+        AreaShape::Circle { radius } => Geometry::Disc { radius },
+        AreaShape::Rectangle { size } => Geometry::Rectangle { half: size.map(|x| 0.5 * x) },
     };
     // Where several lie over each other, the last one is seen.
     let place = standing([0.0; 2], LAYER * (number + 1) as f64, 0.0);
-    Prop::new("area", form, place, Role::Area).with_color(screen_color(area.color))
+    SceneObject::new("area", geometry, place, Role::Area).with_color(screen_color(area.color))
 }
 
 /// A cylinder in its colour; of those without one, lamps are yellow and the others as things are.
-fn cylinder(cylinder: &Cylinder) -> Prop {
+fn cylinder(cylinder: &Cylinder) -> SceneObject {
     let up = 0.5 * cylinder.height;
-    let form = Form::Cylinder { radius: cylinder.radius, half_length: up };
-    let plain = Prop::new("cylinder", form, standing([0.0; 2], up, 0.0), Role::Thing);
+    let geometry = Geometry::Cylinder { radius: cylinder.radius, half_length: up };
+    let plain = SceneObject::new("cylinder", geometry, standing([0.0; 2], up, 0.0), Role::Object);
     match cylinder.color {
         color if color != Wall::COLOR => plain.with_color(screen_color(color)),
         _ if cylinder.lamp > 0.0 => plain.with_color(OKABE_ITO[3]),
@@ -106,57 +107,57 @@ fn cylinder(cylinder: &Cylinder) -> Prop {
     }
 }
 
-impl Stage {
+impl Schema {
     /// The bodies of a planar world, seen from above, by the numbers that they have there: robots, cylinders, areas.
     ///
     /// A convex obstacle is shown by thin walls along its outline. A lamp stands on a light disc. A robot is its hull with a light stripe that points ahead; it is drawn in its own colour, whatever its LEDs show.
     ///
     /// ```
     /// use farsa_body::MobileRobot;
-    /// use farsa_view::Stage;
+    /// use farsa_view::Schema;
     /// use farsa_physics::arena::{Arena, Cylinder};
     ///
     /// let mut arena = Arena::walled(0.4, 0.4);
     /// arena.add_robot(MobileRobot::khepera(), [0.1, 0.2], 0.0);
     /// arena.add_cylinder(Cylinder::new([0.3, 0.2], 0.0125));
-    /// let stage = Stage::of_arena(&arena).with_sensors(["front"]);
-    /// assert_eq!(stage.bodies, ["Khepera", "cylinder"]);
+    /// let schema = Schema::from_arena(&arena).with_sensors(["front"]);
+    /// assert_eq!(schema.bodies, ["Khepera", "cylinder"]);
     /// ```
-    pub fn of_arena(arena: &Arena) -> Self {
+    pub fn from_arena(arena: &Arena) -> Self {
         let robots = arena.robots.iter().map(|placed| placed.robot.name.as_str());
         let cylinders = arena.cylinders.iter().map(|cylinder| if cylinder.lamp > 0.0 { "lamp" } else { "cylinder" });
         let areas = arena.areas.iter().map(|_| "area");
         let bodies = numbered(&robots.chain(cylinders).chain(areas).collect::<Vec<_>>());
-        let mut props = vec![ground(arena)];
-        props.extend(arena.walls.iter().enumerate().map(|(number, it)| wall(number, it)));
-        props.extend(arena.convexes.iter().enumerate().flat_map(|(number, it)| convex(number, it)));
-        let moving = |prop: Prop, body: BodyId| {
+        let mut objects = vec![ground(arena)];
+        objects.extend(arena.walls.iter().enumerate().map(|(number, it)| wall(number, it)));
+        objects.extend(arena.convexes.iter().enumerate().flat_map(|(number, it)| convex(number, it)));
+        let moving = |object: SceneObject, body: BodyId| {
             let name = bodies.get(body.index()).cloned().unwrap_or_default();
-            Prop { name, ..prop.on(body) }
+            SceneObject { name, ..object.on_body(body) }
         };
-        props.extend(arena.areas.iter().enumerate().map(|(i, it)| moving(area(i, it), arena.area(i))));
+        objects.extend(arena.areas.iter().enumerate().map(|(i, it)| moving(area(i, it), arena.area(i))));
         for (i, it) in arena.cylinders.iter().enumerate() {
             let body = arena.cylinder(i);
             if it.lamp > 0.0 {
-                let disc = Form::Disc { radius: 5.0 * it.radius };
+                let disc = Geometry::Disc { radius: 5.0 * it.radius };
                 let place = standing([0.0; 2], LAYER * (arena.areas.len() + 1) as f64, 0.0);
-                let glow = Prop::new("", disc, place, Role::Area).with_color(GLOW);
-                props.push(Prop { name: format!("{} light", bodies[body.index()]), ..glow.on(body) });
+                let glow = SceneObject::new("", disc, place, Role::Area).with_color(GLOW);
+                objects.push(SceneObject { name: format!("{} light", bodies[body.index()]), ..glow.on_body(body) });
             }
-            props.push(moving(cylinder(it), body));
+            objects.push(moving(cylinder(it), body));
         }
         for (number, placed) in arena.robots.iter().enumerate() {
             let (robot, body) = (&placed.robot, BodyId(number as u16));
             let up = 0.5 * robot.height;
-            let hull = Form::Cylinder { radius: robot.radius, half_length: up };
-            let hull = Prop::new("hull", hull, standing([0.0; 2], up, 0.0), Role::Robot);
-            props.push(moving(hull.with_color(screen_color(robot.color)), body));
+            let hull = Geometry::Cylinder { radius: robot.radius, half_length: up };
+            let hull = SceneObject::new("hull", hull, standing([0.0; 2], up, 0.0), Role::Robot);
+            objects.push(moving(hull.with_color(screen_color(robot.color)), body));
             let half = [0.4 * robot.radius, 0.09 * robot.radius, 0.01 * robot.radius];
             let at = standing([0.55 * robot.radius, 0.0], robot.height + half[2], 0.0);
-            let stripe = Prop::new("", Form::Box { half }, at, Role::Robot).with_color(STRIPE);
-            props.push(Prop { name: format!("{} ahead", bodies[number]), ..stripe.on(body) });
+            let stripe = SceneObject::new("", Geometry::Box { half }, at, Role::Robot).with_color(STRIPE);
+            objects.push(SceneObject { name: format!("{} ahead", bodies[number]), ..stripe.on_body(body) });
         }
-        Self { bodies, props, view: View::Top, ..Self::default() }
+        Self { bodies, objects, view: View::Top, ..Self::default() }
     }
 }
 
@@ -178,32 +179,32 @@ mod tests {
         arena.add_cylinder(Cylinder { color: [1.0, 0.0, 0.0], ..Cylinder::new([0.9, 0.4], 0.02) });
         arena.add_area(Area::circle([0.5, 0.4], 0.05, [0.0, 1.0, 0.0]));
         arena.add_area(Area::rectangle([0.1, 0.4], [0.1, 0.05], 0.3, [0.0, 0.0, 1.0]));
-        let stage = Stage::of_arena(&arena);
-        assert_eq!(stage.bodies, ["Khepera 1", "Khepera 2", "e-puck", "lamp", "cylinder", "area 1", "area 2"]);
+        let schema = Schema::from_arena(&arena);
+        assert_eq!(schema.bodies, ["Khepera 1", "Khepera 2", "e-puck", "lamp", "cylinder", "area 1", "area 2"]);
         // The ground, four walls, two areas, two cylinders, a light and twice three robots.
-        assert_eq!(stage.props.len(), 1 + 4 + 2 + 3 + 6);
+        assert_eq!(schema.objects.len(), 1 + 4 + 2 + 3 + 6);
         let world = World::new(&arena).unwrap();
-        assert!(stage.shown().eq((0..7).map(BodyId)));
-        for prop in stage.props.iter().filter(|prop| prop.role != Role::Ground) {
-            let body = prop.body.unwrap();
-            let ahead = prop.name.ends_with(" ahead");
-            assert_eq!(prop.name.trim_end_matches(" ahead").trim_end_matches(" light"), stage.bodies[body.index()]);
+        assert!(schema.shown().eq((0..7).map(BodyId)));
+        for object in schema.objects.iter().filter(|object| object.role != Role::Ground) {
+            let body = object.body.unwrap();
+            let ahead = object.name.ends_with(" ahead");
+            assert_eq!(object.name.trim_end_matches(" ahead").trim_end_matches(" light"), schema.bodies[body.index()]);
             let pose = world.pose(body).cast::<f64>();
-            let at = pose.compose(&prop.placement).position;
-            let off = prop.placement.position[0];
-            let expected = pose.transform([off, 0.0, prop.placement.position[2]]);
-            assert_eq!((off > 0.0, at), (ahead, expected), "{}", prop.name);
+            let at = pose.compose(&object.placement).position;
+            let off = object.placement.position[0];
+            let expected = pose.transform([off, 0.0, object.placement.position[2]]);
+            assert_eq!((off > 0.0, at), (ahead, expected), "{}", object.name);
         }
-        let inner: Vec<f64> = stage.props[1..5]
+        let inner: Vec<f64> = schema.objects[1..5]
             .iter()
-            .map(|prop| {
-                let Form::Box { half } = prop.form else { panic!("{prop:?}") };
-                let at = prop.placement.position;
+            .map(|object| {
+                let Geometry::Box { half } = object.geometry else { panic!("{object:?}") };
+                let at = object.placement.position;
                 if half[0] > half[1] { (at[1] - 0.25).abs() - half[1] } else { (at[0] - 0.5).abs() - half[0] }
             })
             .collect();
         assert!(inner.iter().zip([0.25, 0.25, 0.5, 0.5]).all(|(a, b)| (a - b).abs() < 1e-12), "{inner:?}");
-        let mut recording = Recording::new(stage);
+        let mut recording = Recording::new(schema);
         (0..7).for_each(|body| recording.pose(BodyId(body), world.pose(BodyId(body))));
         recording.tick(0.0);
         assert!(crate::Page::new("x").with("y", recording).html().contains("Khepera 2 ahead"));
@@ -219,24 +220,29 @@ mod tests {
         });
         arena.add_convex(Convex::prism(&hexagon, 0.1).placed([0.3, 0.25], 0.3));
         arena.add_convex(Convex::prism(&[[0.6, 0.5], [0.5, 0.5], [0.6, 0.4]], 0.05).with_color([0.8, 0.2, 0.1]));
-        let stage = Stage::of_arena(&arena);
-        let sides: Vec<&Prop> = stage.props.iter().filter(|prop| prop.name.starts_with("obstacle")).collect();
+        let schema = Schema::from_arena(&arena);
+        let sides: Vec<&SceneObject> =
+            schema.objects.iter().filter(|object| object.name.starts_with("obstacle")).collect();
         assert_eq!((sides.len(), sides[8].color), (9, Some([204, 51, 26])));
-        assert_eq!(stage.bodies, ["Khepera"]);
+        assert_eq!(schema.bodies, ["Khepera"]);
         // Outer edges are the sides: both ends of each are corners.
         let corners: Vec<[f64; 2]> = arena.convexes.iter().flat_map(Convex::outline).collect();
-        for prop in &sides {
-            let Form::Box { half } = prop.form else { panic!("{prop:?}") };
+        for object in &sides {
+            let Geometry::Box { half } = object.geometry else { panic!("{object:?}") };
             for end in [-half[0], half[0]] {
-                let [x, y, z] = prop.placement.transform([end, -half[1], -half[2]]);
+                let [x, y, z] = object.placement.transform([end, -half[1], -half[2]]);
                 let near = |corner: &[f64; 2]| (corner[0] - x).hypot(corner[1] - y) < 1e-12;
-                assert!(corners.iter().any(near) && z.abs() < 1e-12, "{prop:?}");
+                assert!(corners.iter().any(near) && z.abs() < 1e-12, "{object:?}");
             }
         }
         if let Some(path) = std::env::var_os("FARSA_LOOK") {
             let mut picture = crate::picture::moment::Picture::default();
-            picture.shapes.extend(stage.props.iter().map(|prop| {
-                prop.placed(&if prop.body.is_some() { standing([0.1, 0.1], 0.0, 0.9).cast() } else { Pose::identity() })
+            picture.shapes.extend(schema.objects.iter().map(|object| {
+                object.placed(&if object.body.is_some() {
+                    standing([0.1, 0.1], 0.0, 0.9).cast()
+                } else {
+                    Pose::identity()
+                })
             }));
             let corners = [[-0.03, -0.03, 0.0], [0.63, 0.53, 0.0]];
             picture.frame = corners.into();
@@ -250,8 +256,8 @@ mod tests {
     fn a_plane_without_end_has_ground_and_no_walls() {
         let mut arena = Arena::new();
         arena.add_robot(MobileRobot::marxbot(), [0.0, 0.0], 0.0);
-        let stage = Stage::of_arena(&arena);
-        assert_eq!((stage.props.len(), stage.props[0].form), (3, Form::Plane));
-        assert_eq!(stage.bodies, ["MarXbot"]);
+        let schema = Schema::from_arena(&arena);
+        assert_eq!((schema.objects.len(), schema.objects[0].geometry), (3, Geometry::Plane));
+        assert_eq!(schema.bodies, ["MarXbot"]);
     }
 }

@@ -2,34 +2,34 @@
 
 use farsa_body::{BodyId, Pose};
 
-use crate::shape::appearance::{Color, Placed, Role};
-use crate::shape::form::Form;
+use crate::shape::appearance::{Color, Instance, Role};
+use crate::shape::geometry::Geometry;
 
 /// A shape to be seen that no [`Robot`](farsa_body::Robot) holds: a wheeled robot's hull, a wall, an area on the ground.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Prop {
+pub struct SceneObject {
     /// What it is called.
     pub name: String,
     /// The body it moves with; `None` for what stands.
     pub body: Option<BodyId>,
-    /// Its form.
-    pub form: Form,
+    /// Its geometry.
+    pub geometry: Geometry,
     /// Its frame in the body's frame, or in the world.
     pub placement: Pose<f64>,
-    /// What it is to the one who looks.
+    /// What it is to the viewer.
     pub role: Role,
     /// Its colour; `None` for that of its role.
     pub color: Option<Color>,
 }
 
-impl Prop {
+impl SceneObject {
     /// A standing shape in its role's colour.
-    pub fn new(name: &str, form: Form, placement: Pose<f64>, role: Role) -> Self {
-        Self { name: name.into(), body: None, form, placement, role, color: None }
+    pub fn new(name: &str, geometry: Geometry, placement: Pose<f64>, role: Role) -> Self {
+        Self { name: name.into(), body: None, geometry, placement, role, color: None }
     }
 
     /// The same shape, moving with a body.
-    pub fn on(self, body: BodyId) -> Self {
+    pub fn on_body(self, body: BodyId) -> Self {
         Self { body: Some(body), ..self }
     }
 
@@ -39,9 +39,9 @@ impl Prop {
     }
 
     /// The shape in its place, when its body is at `pose`.
-    pub(crate) fn placed(&self, pose: &Pose<f64>) -> Placed {
-        let placed = Placed::new(self.form, pose.compose(&self.placement), self.role);
-        Placed { color: self.color, ..placed }
+    pub(crate) fn placed(&self, pose: &Pose<f64>) -> Instance {
+        let placed = Instance::new(self.geometry, pose.compose(&self.placement), self.role);
+        Instance { color: self.color, ..placed }
     }
 }
 

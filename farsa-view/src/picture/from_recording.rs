@@ -5,9 +5,9 @@ use farsa_body::{BodyId, Pose};
 use crate::picture::moment::{Beam, Picture, Push};
 use crate::recording::memory::Recording;
 use crate::recording::view::View;
-use crate::shape::appearance::{Color, OKABE_ITO, Placed, Role};
-use crate::shape::form::Form;
-use crate::shape::prop::Prop;
+use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role};
+use crate::shape::geometry::Geometry;
+use crate::shape::scene_object::SceneObject;
 use crate::shape::vector::{Vector, length, sub};
 
 /// How high above the ground trails are drawn [m].
@@ -20,23 +20,23 @@ impl Recording {
     ///
     /// A view from above also shows the ways that robots went up to then.
     pub fn picture(&self, tick: usize) -> Option<Picture> {
-        let stage = self.stage();
-        if tick >= self.times().len() || (stage.robot.is_none() && stage.props.is_empty()) {
+        let schema = self.schema();
+        if tick >= self.times().len() || (schema.robot.is_none() && schema.objects.is_empty()) {
             return None;
         }
         let mut picture = Picture::default();
         let pose = |body| self.pose_at(tick, body).map_or_else(Pose::identity, |pose| pose.cast());
-        if let Some(robot) = &stage.robot {
+        if let Some(robot) = &schema.robot {
             picture.add_robot(robot, pose);
         }
-        let place = |prop: &Prop| prop.placed(&prop.body.map_or_else(Pose::identity, pose));
-        picture.shapes.extend(stage.props.iter().map(place));
-        if stage.view == View::Top {
+        let place = |object: &SceneObject| object.placed(&object.body.map_or_else(Pose::identity, pose));
+        picture.shapes.extend(schema.objects.iter().map(place));
+        if schema.view == View::Top {
             picture.trails = trails(self, tick);
             // What stands around belongs into the frame: an arena is seen whole.
-            let walls = picture.shapes.iter().filter(|placed| matches!(placed.form, Form::Box { .. }));
-            let corners = |placed: &Placed| {
-                placed.form.hull().into_iter().map(|(corner, _)| placed.pose.transform(corner)).collect::<Vec<_>>()
+            let walls = picture.shapes.iter().filter(|placed| matches!(placed.geometry, Geometry::Box { .. }));
+            let corners = |placed: &Instance| {
+                placed.geometry.hull().into_iter().map(|(corner, _)| placed.pose.transform(corner)).collect::<Vec<_>>()
             };
             picture.frame = walls.flat_map(corners).collect();
         }
@@ -51,16 +51,16 @@ impl Recording {
             let position = self.point_at(tick, index)?;
             position.iter().all(|x| x.is_finite()).then(|| (name.clone(), f64_of(position)))
         };
-        picture.points = stage.points.iter().enumerate().filter_map(point).collect();
+        picture.points = schema.points.iter().enumerate().filter_map(point).collect();
         Some(picture)
     }
 }
 
 /// The ways that robots went up to a tick, a little above the ground, each in the colour of its robot's hull.
 fn trails(recording: &Recording, tick: usize) -> Vec<(Vec<Vector>, Color)> {
-    let stage = recording.stage();
+    let schema = recording.schema();
     let bodies: Vec<BodyId> =
-        stage.props.iter().filter(|prop| prop.role == Role::Robot).filter_map(|prop| prop.body).collect();
+        schema.objects.iter().filter(|object| object.role == Role::Robot).filter_map(|object| object.body).collect();
     let mut seen = Vec::new();
     let mut trails = Vec::new();
     for body in bodies {
@@ -90,12 +90,12 @@ mod tests {
     use super::*;
     use crate::page::html::Page;
     use crate::picture::camera::Camera;
-    use crate::recording::stage::Stage;
+    use crate::recording::schema::Schema;
     use farsa_body::{ArmAndHand, Recorder};
 
     fn recording(ticks: u32) -> Recording {
         let robot = ArmAndHand::default().robot().unwrap();
-        let mut recording = Recording::new(Stage::of_robot(&robot));
+        let mut recording = Recording::new(Schema::from_robot(&robot));
         for tick in 1..=ticks {
             recording.pose(ArmAndHand::PALM, Pose::at([0.1 * tick as f32, 0.0, 0.0]));
             recording.tick(0.01 * f64::from(tick));
@@ -105,9 +105,9 @@ mod tests {
 
     #[test]
     fn only_bodies_can_be_drawn() {
-        assert!(Recording::new(Stage::of_scalars(["x"])).picture(0).is_none());
+        assert!(Recording::new(Schema::from_scalars(["x"])).picture(0).is_none());
         let recording = recording(2);
-        let robot = recording.stage().robot.as_ref().unwrap();
+        let robot = recording.schema().robot.as_ref().unwrap();
         assert_eq!(recording.picture(1).unwrap().shapes.len(), robot.colliders.len());
         assert_eq!(recording.picture(2), None, "there are two ticks");
     }
@@ -116,22 +116,24 @@ mod tests {
     fn arena() -> Recording {
         let on_ground = |x: f64, y: f64, z: f64| Pose::at([x, y, z]);
         let (robot, post) = (BodyId(0), BodyId(1));
-        let hull = Form::Cylinder { radius: 0.035, half_length: 0.015 };
-        let wall = Form::Box { half: [0.2, 0.005, 0.02] };
-        let stage = Stage {
+        let hull = Geometry::Cylinder { radius: 0.035, half_length: 0.015 };
+        let wall = Geometry::Box { half: [0.2, 0.005, 0.02] };
+        let schema = Schema {
             bodies: vec!["robot".into(), "post".into()],
-            props: vec![
-                Prop::new("ground", Form::Rectangle { half: [0.2; 2] }, Pose::identity(), Role::Ground),
-                Prop::new("nest", Form::Disc { radius: 0.05 }, on_ground(0.1, 0.1, 0.0), Role::Area),
-                Prop::new("north", wall, on_ground(0.0, 0.205, 0.02), Role::Ground),
-                Prop::new("south", wall, on_ground(0.0, -0.205, 0.02), Role::Ground),
-                Prop::new("hull", hull, on_ground(0.0, 0.0, 0.015), Role::Robot).on(robot),
-                Prop::new("post", hull, on_ground(0.0, 0.0, 0.015), Role::Thing).on(post).with_color([200, 30, 30]),
+            objects: vec![
+                SceneObject::new("ground", Geometry::Rectangle { half: [0.2; 2] }, Pose::identity(), Role::Ground),
+                SceneObject::new("nest", Geometry::Disc { radius: 0.05 }, on_ground(0.1, 0.1, 0.0), Role::Area),
+                SceneObject::new("north", wall, on_ground(0.0, 0.205, 0.02), Role::Ground),
+                SceneObject::new("south", wall, on_ground(0.0, -0.205, 0.02), Role::Ground),
+                SceneObject::new("hull", hull, on_ground(0.0, 0.0, 0.015), Role::Robot).on_body(robot),
+                SceneObject::new("post", hull, on_ground(0.0, 0.0, 0.015), Role::Object)
+                    .on_body(post)
+                    .with_color([200, 30, 30]),
             ],
             view: View::Top,
-            ..Stage::default()
+            ..Schema::default()
         };
-        let mut recording = Recording::new(stage);
+        let mut recording = Recording::new(schema);
         for tick in 0..=20u8 {
             let (sine, cosine) = farsa_num::sin_cos(f32::from(tick) * 0.078);
             recording.pose(robot, Pose::at([0.1 * cosine - 0.1, 0.1 * sine, 0.0]));

@@ -4,7 +4,7 @@ use farsa_body::{BodyId, JointKind, Robot};
 use farsa_nn::{LeakyLayout, LeakyParameter};
 
 use crate::recording::view::View;
-use crate::shape::prop::Prop;
+use crate::shape::scene_object::SceneObject;
 
 /// Something that has one value per tick, as tables and pages name it.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -77,25 +77,25 @@ pub struct NodeParameters {
     pub first: usize,
 }
 
-/// Everything that a recorder is told about in a life, by name and in order.
+/// What a recording holds: everything that a recorder is given in an episode, by name and in order.
 ///
 /// ```
 /// use farsa_body::ArmAndHand;
-/// use farsa_view::Stage;
+/// use farsa_view::Schema;
 ///
 /// let robot = ArmAndHand::default().robot()?;
-/// let stage = Stage::of_robot(&robot).with_sensors(["J1", "J2"]).with_scalars(["time to go [s]"]);
-/// assert_eq!(stage.columns(), ["time to go [s]", "sensor.J1", "sensor.J2"]);
+/// let schema = Schema::from_robot(&robot).with_sensors(["J1", "J2"]).with_scalars(["time to go [s]"]);
+/// assert_eq!(schema.columns(), ["time to go [s]", "sensor.J1", "sensor.J2"]);
 /// # Ok::<(), farsa_body::RobotError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct Stage {
+pub struct Schema {
     /// The bodies with their shapes; `None` if there is nothing to see.
     pub robot: Option<Robot>,
     /// The names of the bodies where no robot names them, by number.
     pub bodies: Vec<String>,
     /// What is to be seen beside the robot's shapes.
-    pub props: Vec<Prop>,
+    pub objects: Vec<SceneObject>,
     /// What is sensed.
     pub sensors: Vec<Channel>,
     /// The neurons between sensors and motors.
@@ -118,14 +118,14 @@ fn channels<N: AsRef<str>>(names: impl IntoIterator<Item = N>, group: &str) -> V
     names.into_iter().map(|name| Channel::new(name.as_ref()).group(group)).collect()
 }
 
-impl Stage {
+impl Schema {
     /// Only the bodies of a robot or scene.
-    pub fn of_robot(robot: &Robot) -> Self {
+    pub fn from_robot(robot: &Robot) -> Self {
         Self { robot: Some(robot.clone()), ..Self::default() }
     }
 
     /// Only named values, units in brackets: `["x [m]"]`.
-    pub fn of_scalars<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> Self {
+    pub fn from_scalars<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> Self {
         Self::default().with_scalars(names)
     }
 
@@ -144,9 +144,9 @@ impl Stage {
         Self { scalars: channels(names, "value"), ..self }
     }
 
-    /// With the neurons and links of a network whose sensors and outputs those of the stage are.
+    /// With the neurons and links of a network whose sensors and outputs those of the schema are.
     ///
-    /// The recorder must be told the network's parameters, [`Recorder::parameters`](farsa_body::Recorder::parameters).
+    /// The recorder must be given the network's parameters, [`Recorder::parameters`](farsa_body::Recorder::parameters).
     pub fn with_network(self, layout: &LeakyLayout) -> Self {
         let (n, h) = (layout.sensors(), layout.hidden());
         let (neurons, outputs) = ([n, n + h], [n + h, n + h + layout.outputs()]);
@@ -166,12 +166,12 @@ impl Stage {
     /// The bodies that can be seen.
     pub fn shown(&self) -> impl Iterator<Item = BodyId> + '_ {
         let of_robot = self.robot.iter().flat_map(Robot::shaped_bodies);
-        let mut of_props: Vec<BodyId> = self.props.iter().filter_map(|prop| prop.body).collect();
-        of_props.sort_unstable();
-        of_props.dedup();
+        let mut of_objects: Vec<BodyId> = self.objects.iter().filter_map(|object| object.body).collect();
+        of_objects.sort_unstable();
+        of_objects.dedup();
         let known = |body: &BodyId| self.robot.as_ref().is_some_and(|robot| robot.shaped_bodies().any(|b| b == *body));
-        of_props.retain(|body| !known(body));
-        of_robot.chain(of_props)
+        of_objects.retain(|body| !known(body));
+        of_robot.chain(of_objects)
     }
 
     /// Number of bodies, seen or not.
@@ -227,15 +227,15 @@ mod tests {
     #[test]
     fn links_of_a_network_meet_every_parameter_once() {
         let layout = LeakyLayout::new(5, 3, 2);
-        let stage = Stage::default().with_network(&layout);
+        let schema = Schema::default().with_network(&layout);
         let mut seen = vec![0; layout.parameter_count()];
-        for Links { from, to, first } in &stage.links {
+        for Links { from, to, first } in &schema.links {
             (0..(from[1] - from[0]) * (to[1] - to[0])).for_each(|weight| seen[first + weight] += 1);
         }
-        for NodeParameters { nodes, first, .. } in &stage.node_parameters {
+        for NodeParameters { nodes, first, .. } in &schema.node_parameters {
             (0..nodes[1] - nodes[0]).for_each(|node| seen[first + node] += 1);
         }
         assert_eq!(seen, vec![1; layout.parameter_count()]);
-        assert_eq!(stage.columns(), ["neuron.1", "neuron.2", "neuron.3"]);
+        assert_eq!(schema.columns(), ["neuron.1", "neuron.2", "neuron.3"]);
     }
 }

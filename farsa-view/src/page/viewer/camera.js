@@ -1,0 +1,123 @@
+// Where a trial is seen from: matrices, bounds of all that is shown, and the camera.
+
+const TAN = 0.3;
+
+// 1, 2 or 5 times a power of ten, not below x.
+const rounded = (x) => {
+	const power = 10**floor(Math.log10(x));
+	return power*[1, 2, 5, 10].find((m) => m*power >= x*0.999);
+};
+
+// Matrices are column-major; axes are right, up, back.
+const product = (a, b) => list(16, (i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[4*k + i%4]*b[i - i%4 + k], 0));
+const parallel = (x, y, far) => [1/x, 0, 0, 0, 0, 1/y, 0, 0, 0, 0, -2/far, 0, 0, 0, -1, 1];
+const perspective = (x, y, near, far) => [1/x, 0, 0, 0, 0, 1/y, 0, 0, 0, 0, (near + far)/(near - far), -1, 0, 0, 2*near*far/(near - far), 0];
+const viewFrom = (eye, axes) => [...[0, 1, 2].flatMap((i) => [...axes.map((a) => a[i]), 0]), ...axes.map((a) => -dot(a, eye)), 1];
+const axesOf = (back) => {
+	const right = unit(cross([0, 0, 1], back));
+	return [right, cross(back, right), back];
+};
+
+const boundsOf = (balls) => [[min, -1], [max, 1]].map(([most, sign]) => [0, 1, 2].map((i) => most(...balls.map((b) => b.at[i] + sign*b.radius))));
+const middleOf = ([low, high]) => mul(add(low, high), 0.5);
+
+// Once for each trial.
+function survey(trial) {
+	const {ticks, bodies, shapes} = trial;
+	const step = max(1, floor(ticks/60));
+	const [balls, floors] = [[], []];
+	for (const {body, role, kind, half, radius = hypot(...half || []), half_length: long = 0, position, rotation} of shapes) {
+		if (body < 0 && ["ground", "area"].includes(role)) {
+			const [x, y] = half || [radius, radius];
+			if (kind !== "plane") for (const s of [-1, 1]) floors.push({at: add(position, [s*x, s*y, 0]), radius: 0});
+			continue;
+		}
+		// A long shape by its two ends, so that the picture is no wider than it is.
+		for (let t = 0; t < (body < 0 ? 1 : ticks); t += step) {
+			const pose = body < 0 ? HOME : trial.pose(t, body);
+			for (const z of new Set([-long, long])) {
+				const at = add(pose.position, turn(pose.rotation, add(position, turn(rotation, [0, 0, z]))));
+				balls.push({at, radius, thing: role === "thing"});
+			}
+		}
+	}
+	if (!balls.length) balls.push({at: [0, 0, 0], radius: 1});
+	// Of a robot of many bodies only the one that goes farthest leaves a trail.
+	const moving = bodies.flatMap((name, body) => {
+		const role = shapes.find((s) => s.body === body)?.role;
+		const path = [];
+		if (role) for (let t = 0; t < ticks; t += max(1, floor(ticks/1500))) path.push({t, at: trial.pose(t, body).position});
+		const way = max(...path.map(({at}) => hypot(...sub(at, path[0].at))));
+		return way > 1e-3 ? [{name, path, way, thing: role === "thing"}] : [];
+	});
+	const robot = moving.filter((m) => !m.thing).sort((a, b) => b.way - a.way);
+	const trails = [...moving.filter((m) => m.thing), ...robot.slice(0, robot.length > 6 ? 1 : 6)];
+	const forces = list(ticks, (t) => trial.contacts(t).map((c) => hypot(...c.force))).flat().sort((a, b) => a - b);
+	const has = {forces: forces.length, points: trial.points.length, rays: trial.rayStarts.some((start) => trial.words[start])};
+	Object.assign(trial, {balls, floors, trails, has, force: forces[floor(forces.length*0.95)] || 1});
+}
+
+// One camera for both views: trials are compared from the same place.
+class Camera {
+	axes(top = this.top) {
+		const [level, {yaw, pitch}] = [cos(this.pitch), this];
+		return top ? [[1, 0, 0], [0, 1, 0], [0, 0, 1]] : axesOf([cos(yaw)*level, sin(yaw)*level, sin(pitch)]);
+	}
+
+	// Frames what moves, with the things in front.
+	frame(trials, aspect) {
+		const all = trials.flatMap((trial) => trial.balls);
+		const bounds = boundsOf(all);
+		const middle = middleOf(bounds);
+		this.force = max(...trials.map((trial) => trial.force));
+		const things = all.filter((b) => b.thing);
+		const [x, y] = sub(middleOf(boundsOf(things.length ? things : all)), middle);
+		this.yaw = Math.atan2(y, x || 1e-9) - 0.75;
+		this.pitch = 0.42;
+		this.radius = max(1e-6, ...all.map((b) => hypot(...sub(b.at, middle)) + b.radius));
+		const [right, up, back] = this.axes(false);
+		this.target = middle;
+		for (const axis of [right, up]) {
+			const along = all.map(({at, radius}) => ({at: [dot(sub(at, middle), axis), 0, 0], radius}));
+			this.target = add(this.target, mul(axis, middleOf(boundsOf(along))[0]));
+		}
+		this.distance = max(...all.map(({at, radius}) => {
+			const p = sub(at, this.target);
+			return dot(p, back) + max((abs(dot(p, right)) + radius)/aspect, abs(dot(p, up)) + radius)/(TAN*0.8);
+		}));
+		// Walls and areas are seen from above, unless they are far larger than what moves.
+		const span = ([low, high]) => max(high[0] - low[0], high[1] - low[1]);
+		const wide = boundsOf([...all, ...trials.flatMap((trial) => trial.floors)]);
+		const flat = span(wide) < 4*span(bounds) ? wide : bounds;
+		this.middle = middleOf(flat);
+		this.half = 0.56*max(flat[1][1] - flat[0][1], (flat[1][0] - flat[0][0])/aspect, 1e-6);
+	}
+
+	lens(aspect) {
+		const {top, half, radius, distance} = this;
+		const axes = this.axes();
+		const eye = top ? add(this.middle, [0, 0, 100*radius]) : add(this.target, mul(axes[2], distance));
+		const lens = top ? parallel(half*aspect, half, 200*radius) : perspective(TAN*aspect, TAN, distance/50, distance + 60*radius);
+		return {eye, lens: product(lens, viewFrom(eye, axes))};
+	}
+
+	turn(dx, dy) {
+		this.yaw -= dx*0.008;
+		this.pitch = min(1.55, max(-1.55, this.pitch + dy*0.008));
+	}
+
+	pan(dx, dy) {
+		const [right, up] = this.axes();
+		const what = this.top ? "middle" : "target";
+		this[what] = add(this[what], mul(sub(mul(up, dy), mul(right, dx)), 2*(this.top ? this.half : TAN*this.distance)));
+	}
+
+	zoom(factor) {
+		this[this.top ? "half" : "distance"] *= factor;
+	}
+
+	// Round numbers, for the legend.
+	arrow() {
+		return {long: rounded(this.radius*0.12), newtons: rounded(this.force*0.4)};
+	}
+}

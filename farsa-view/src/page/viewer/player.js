@@ -1,0 +1,158 @@
+// What is shown when: one clock, up to two trials in step.
+
+class Player {
+	constructor({trials, view, made_by: maker}) {
+		Object.assign(this, {maker, shown: [trials[0]], clock: trials[0], tick: 0, speed: 1, asked: false, before: 0, views: []});
+		this.camera = new Camera();
+		this.camera.top = view === "top";
+		this.visible = {forces: true, rays: true, points: true, trails: this.camera.top};
+		this.strips = stripsOf((part) => {
+			const {clock} = this;
+			this.go(round(clock.tickAt(clock.times[0] + part*(clock.end - clock.times[0]))));
+		});
+		this.graph = graphOf();
+	}
+
+	get now() {
+		return this.clock.timeAt(this.tick);
+	}
+
+	// In step by time; a shorter trial stands still at its end.
+	tickOf(trial) {
+		return trial === this.clock ? this.tick : trial.tickAt(this.now);
+	}
+
+	at(trial) {
+		return floor(this.tickOf(trial));
+	}
+
+	ask() {
+		if (!this.asked) requestAnimationFrame((time) => this.frame(time));
+		this.asked = true;
+	}
+
+	frame(time) {
+		const {clock, shown} = this;
+		this.asked = false;
+		if (farsa.playing) {
+			// A page that was hidden goes on where it was.
+			this.tick = clock.tickAt(this.now + min(100, max(0, time - this.before))/1000*this.speed);
+			this.before = time;
+			if (this.tick >= clock.ticks - 1) this.pause();
+			this.ask();
+		}
+		shown.forEach((trial, i) => this.views[i].draw(trial, this.tickOf(trial), this.visible));
+		const tick = floor(this.tick);
+		const seconds = `${clock.times[tick].toFixed(2)} s`;
+		$("slider").value = tick;
+		$("slider").setAttribute("aria-valuetext", seconds);
+		$("clock").textContent = `${seconds} · tick ${tick} of ${clock.ticks - 1}`;
+		const part = (this.now - clock.times[0])/(clock.end - clock.times[0] || 1);
+		this.strips.update(shown.map((trial) => this.tickOf(trial)), part, farsa.playing);
+		this.graph.update(this.at(shown[0]));
+	}
+
+	seek(to) {
+		this.tick = min(this.clock.ticks - 1, max(0, +to || 0));
+		this.ask();
+	}
+
+	play() {
+		if (this.tick >= this.clock.ticks - 1) this.tick = 0;
+		this.before = performance.now();
+		farsa.playing = true;
+		this.marks();
+	}
+
+	pause() {
+		// It stands on a tick: what is shown was recorded.
+		this.tick = floor(this.tick);
+		farsa.playing = false;
+		this.marks();
+	}
+
+	go(to) {
+		this.pause();
+		this.seek(to);
+	}
+
+	step(by) {
+		this.go(floor(this.tick) + by);
+	}
+
+	setSpeed(to) {
+		$("speed").value = this.speed = +to;
+	}
+
+	faster(by) {
+		this.setSpeed(SPEEDS[SPEEDS.indexOf(this.speed) + by] || this.speed);
+	}
+
+	toggle(name) {
+		this.visible[name] = !this.visible[name];
+		this.marks();
+	}
+
+	setView(name) {
+		this.camera.top = name === "top";
+		this.marks();
+	}
+
+	// The buttons say what is on.
+	marks() {
+		$("play").classList.toggle("playing", farsa.playing);
+		$("play").setAttribute("aria-label", farsa.playing ? "Pause" : "Play");
+		for (const [name, on] of Object.entries({top: this.camera.top, ...this.visible})) $(name).setAttribute("aria-pressed", on);
+		this.ask();
+	}
+
+	frameCamera() {
+		const {clientWidth: w, clientHeight: h} = this.views[0].element;
+		this.camera.frame(this.shown, w/h || 1.6);
+		this.ask();
+	}
+
+	setTheme(name) {
+		root.dataset.theme = name;
+		colors = {};
+		this.strips.resize();
+		this.graph.layout();
+		this.ask();
+	}
+
+	show(a, b) {
+		this.shown = [...new Set([a, b || a])];
+		const {shown} = this;
+		const two = shown.length > 1;
+		const mark = (i) => (two ? `trial-${i}` : "");
+		this.clock = shown.reduce((x, y) => (y.end > x.end ? y : x));
+		this.tick = min(this.tick, this.clock.ticks - 1);
+		$("app").classList.toggle("two", two);
+		shown.forEach((trial, i) => (this.views[i] ??= viewOf(this.camera, () => this.ask())).set(trial, mark(i)));
+		if (this.views[1]) this.views[1].element.hidden = !two;
+		$("trial").value = a.index;
+		$("beside").value = two ? b.index : "";
+		$("slider").max = this.clock.ticks - 1;
+		$("slider").style.setProperty("--track", `linear-gradient(90deg, ${trackOf(a, this.clock)})`);
+		for (const name of ["forces", "rays", "points"]) $(name).hidden = !shown.some((trial) => trial.has[name]);
+		this.strips.set(shown, min(...shown.map((l) => l.times[0])), this.clock.end);
+		$("network").hidden = !a.network;
+		if (a.network) this.graph.set(a);
+		$("facts").replaceChildren(...shown.map((trial, i) => factsOf(trial, mark(i))), make("p", "soft", this.maker || ""));
+		this.frameCamera();
+	}
+}
+
+// The colours of the track under the slider: phases, where the trial on the clock has them.
+function trackOf(trial, clock) {
+	const words = trial === clock && trial.channels.find((c) => c.words);
+	const percent = (t) => `${100*t/(trial.ticks - 1 || 1)}%`;
+	const stops = words ? runs(words.values).map(([from, to, color]) => `${color} ${percent(from)} ${percent(to)}`) : ["var(--line)", "var(--line)"];
+	return `${stops}, ${stops.at(-1)}`;
+}
+
+function factsOf(trial, mark) {
+	return make("div", "", make("h2", mark, trial.name),
+		make("dl", "", ...trial.facts.flatMap(([name, text]) => [make("dt", "", name), make("dd", "", text)])),
+		make("p", "soft", `Positions within ${length(trial.position_unit/2)}, forces within ${short(trial.force_unit/2, "N")} of what was recorded; channels: point at their names.`));
+}

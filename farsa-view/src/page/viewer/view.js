@@ -1,0 +1,84 @@
+// A trial in a figure of the page: its picture with labels, and the hands that move the camera.
+
+// Mouse, fingers and wheel turn, move and zoom.
+function steer(canvas, camera, ask) {
+	const fingers = new Map();
+	canvas.onpointerdown = (event) => {
+		fingers.set(event.pointerId, event);
+		canvas.setPointerCapture(event.pointerId);
+	};
+	canvas.onpointerup = canvas.onpointercancel = (event) => fingers.delete(event.pointerId);
+	canvas.oncontextmenu = (event) => event.preventDefault();
+	canvas.onpointermove = (event) => {
+		const last = fingers.get(event.pointerId);
+		if (!last) return;
+		const height = canvas.clientHeight;
+		const [dx, dy] = [event.clientX - last.clientX, event.clientY - last.clientY];
+		const other = [...fingers.values()].find((f) => f.pointerId !== event.pointerId);
+		if (other) {
+			const gap = (f) => hypot(f.clientX - other.clientX, f.clientY - other.clientY) || 1;
+			camera.zoom(gap(last)/gap(event));
+			// Each finger moves the picture by its half.
+			camera.pan(dx/2/height, dy/2/height);
+		} else if (camera.top || event.shiftKey || event.buttons & 6) camera.pan(dx/height, dy/height);
+		else camera.turn(dx, dy);
+		fingers.set(event.pointerId, event);
+		ask();
+	};
+	canvas.addEventListener("wheel", (event) => {
+		event.preventDefault();
+		camera.zoom(Math.exp(event.deltaY*(event.deltaMode ? 0.02 : 0.0012)));
+		ask();
+	}, {passive: false});
+}
+
+// A picture with labels, to be moved with mouse and fingers.
+function viewOf(camera, ask) {
+	const [canvas, labels, caption, note] = [make("canvas", "scene"), make("div", "labels"), make("figcaption"), make("span", "soft")];
+	const element = make("figure", "", canvas, labels, caption);
+	$("views").append(element);
+	let scene;
+	try {
+		scene = new Scene(canvas, ask);
+	} catch (error) {
+		element.append(make("p", "none", `No 3D picture: this browser offers no WebGL 2 (${error.message}). All else works.`));
+	}
+	const size = () => {
+		const [width, height] = [element.clientWidth, element.clientHeight].map((x) => max(1, round(x*min(2, devicePixelRatio))));
+		if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
+		ask();
+	};
+	new ResizeObserver(size).observe(element);
+
+	function set(trial, mark) {
+		canvas.setAttribute("aria-label", `Scene of ${trial.name}`);
+		caption.replaceChildren(make("b", mark, trial.name), make("div", "", note, ` ${trial.facts.slice(0, 2).map((fact) => fact.join(" ")).join(" · ")}`));
+		labels.replaceChildren(...trial.points.map((name) => make("span", "", name)));
+		size();
+	}
+
+	function draw(trial, tick, visible) {
+		if (!scene) return;
+		scene.draw(trial, tick, camera, visible);
+		trial.points.forEach((_, p) => {
+			const at = visible.points && scene.project(trial.point(tick, p));
+			labels.children[p].hidden = !at;
+			if (at) labels.children[p].style.transform = `translate(${at[0]*element.clientWidth + 9}px, ${at[1]*element.clientHeight - 20 + 15*p}px)`;
+		});
+		const {long, newtons} = camera.arrow();
+		note.textContent = [
+			trial.has.forces && visible.forces ? `arrow of ${length(long)}: ${short(newtons, "N")}` : "",
+			visible.trails ? `trails: ${trial.trails.map((trail) => trail.name).join(", ") || "nothing moves"}` : "",
+			tick >= trial.ticks - 1 ? "ended" : "",
+		].filter(Boolean).join(" · ");
+	}
+
+	function project(p) {
+		const place = scene?.project(p);
+		const box = canvas.getBoundingClientRect();
+		return place && {x: box.left + place[0]*box.width, y: box.top + place[1]*box.height};
+	}
+
+	steer(canvas, camera, ask);
+	return {element, set, draw, project};
+}
