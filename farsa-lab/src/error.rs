@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Error {
-    /// A name that nobody knows.
+    /// An unknown name.
     Unknown {
         /// Where the name stands, such as `my.toml line 3` or `--set`; empty if it is plain from the command line.
         place: String,
@@ -52,7 +52,7 @@ pub enum Error {
         /// CRC-32 of the file as it is.
         found: String,
     },
-    /// A run whose lives this program would live differently.
+    /// A run whose trials would differ in this program.
     OtherVersion {
         /// The file that says so.
         path: PathBuf,
@@ -93,7 +93,7 @@ pub enum Error {
         /// Its reason.
         source: io::Error,
     },
-    /// A life panicked, which is a mistake in the experiment.
+    /// A trial panicked, which is a mistake in the experiment.
     Panicked {
         /// The generation.
         generation: u32,
@@ -149,7 +149,7 @@ impl Error {
     }
 }
 
-/// What robots, worlds, sensors, networks and searches cannot be built from, so that `?` suffices in
+/// What robots, worlds, sensors, networks and strategies cannot be built from, so that `?` suffices in
 /// [`Experiment::prepare`](crate::Experiment::prepare).
 macro_rules! others {
     ($($error:ty),+ $(,)?) => {
@@ -220,7 +220,7 @@ impl fmt::Display for Error {
             Self::OtherVersion { path, what, file, program } => write!(
                 f,
                 "{}: made with version {file} of {what}, this program has version {program}: \
-                 the same genes would live other lives",
+                 the same genes would give other results",
                 path.display()
             ),
             Self::Occupied { directory, why } | Self::NoRun { directory, why } => {
@@ -228,7 +228,7 @@ impl fmt::Display for Error {
             }
             Self::Damaged { path, why } => write!(f, "{}: {why}", path.display()),
             Self::Io { doing, path, source } => write!(f, "cannot {doing} {}: {source}", path.display()),
-            Self::Panicked { generation } => write!(f, "a life of generation {generation} panicked"),
+            Self::Panicked { generation } => write!(f, "a trial of generation {generation} panicked"),
             Self::Interrupted { resume } => write!(f, "interrupted; go on with `{resume}`"),
         }
     }

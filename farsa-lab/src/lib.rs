@@ -1,6 +1,9 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
+// What runs, tests and reports is private: its user is the command.
+#![cfg_attr(not(feature = "command"), allow(dead_code))]
 
+#[cfg(feature = "command")]
 mod command;
 mod error;
 mod evaluation;
@@ -10,22 +13,25 @@ mod figures;
 mod json;
 mod report;
 mod run;
-mod search;
 mod store;
+mod strategy;
 
+#[cfg(feature = "command")]
 pub use command::cli;
 pub use error::Error;
 pub use evaluation::read_genotypes;
 pub use experiment::{
     ActuatorExport, Batch, Bodies, ChannelGroup, Controlled, ControllerExport, CtrnnExport, Description, Episode,
-    EpisodeId, Evaluation, Evaluator, Experiment, Exports, Genotype, InLanes, InWorld, JudgeExport, Lanes, Learner,
-    Lesson, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Objective, Outcome, OwnedNetwork,
-    Parameter, PlanarWorld, PointExport, Rescored, Rollout, Search, SensorExport, SensorReading, ServoExport, Setting,
-    Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, mean_of_trials,
+    EpisodeId, Evaluation, Evaluator, Experiment, Exports, Genotype, InLanes, InWorld, Iteration, JudgeExport, Lanes,
+    Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Objective, Outcome, OwnedNetwork,
+    Parameter, PlanarWorld, PointExport, Rescored, Rollout, SensorExport, SensorReading, ServoExport, Setting,
+    Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, WithStrategy, mean_of_trials,
     network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use run::{BestOfRun, ENGINE};
-pub use search::evolution;
 pub use store::VALUES_VERSION;
+pub use strategy::{
+    Diagnostics, DiagnosticsChart, Learning, OnePlusOne, StrategyDefinition, StrategyStart, Truncation,
+};
 
-pub use farsa_view::{Channel, Links, NodeParameters, Prop, Recording, Stage, View};
+pub use farsa_view::{Channel, Links, NodeParameters, Recording, SceneObject, Schema, View};

@@ -1,33 +1,36 @@
 //! The command: `main` for any set of experiments.
 
 use std::io::{self, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::FromArgMatches as _;
 
-use crate::command::arguments::{
-    BenchArgs, Cli, Command, CompletionsArgs, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs,
-    ExportStartsArgs, ExportWhat, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
+use crate::command::arguments::export::{
+    DataFormat, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs, ExportStartsArgs, ExportWhat,
+};
+use crate::command::arguments::subcommands::{
+    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
 use crate::command::{info, manual};
 use crate::error::Error;
 use crate::evaluation::{draw, evaluate, import, replay, test};
 use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
-use crate::export::files::{self, DataFormat};
+use crate::export::files;
 use crate::export::robot_file;
 use crate::json::pretty;
 use crate::report::write;
+use crate::run::begin;
 use crate::run::bench::{self, Bench, Sample};
 use crate::run::config_file::{ConfigFile, Entry};
 use crate::run::plan::{self, Plan};
 use crate::run::replications::{self, Replications};
 use crate::run::summary::Summary;
 use crate::run::{evolve, world_choice};
-use crate::search::evolution::{GENERATIONS, POPULATION};
 use crate::store::directory::{Directory, create_result, create_results};
+use crate::strategy::settings::{GENERATIONS, POPULATION};
 
 /// Runs the command over these experiments with the process's arguments: the whole of a `main`.
 ///
@@ -43,7 +46,8 @@ pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    match execute(cli.command, cli.quiet, &program, experiments) {
+    let invocation = Invocation { program: &program, experiments, quiet: cli.quiet };
+    match invocation.execute(cli.command) {
         Ok(()) => ExitCode::SUCCESS,
         // The reader has seen enough: `farsa replay ... | head`.
         Err(error) if replay::reader_left(&error) => ExitCode::SUCCESS,
@@ -62,253 +66,263 @@ fn program() -> String {
     name.map_or_else(|| "farsa".into(), |name| name.trim_end_matches(std::env::consts::EXE_SUFFIX).into())
 }
 
-fn execute(command: Command, quiet: bool, program: &str, experiments: &[&dyn Experiment]) -> Result<(), Error> {
-    // JSON that was asked for is no summary that quiet leaves out.
-    let summary = |json: bool, text: String, all: &dyn Fn() -> Result<String, Error>| match (json, quiet) {
-        (true, _) => say(&all()?),
-        (false, true) => Ok(()),
-        (false, false) => say(&text),
-    };
-    match command {
-        Command::List(ListArgs { json: false }) => say(&info::list(experiments)),
-        Command::List(ListArgs { json: true }) => say(&info::list_as_json(experiments)?),
-        Command::Info(InfoArgs { experiment, condition, json }) => {
-            let plan = Plan::new(plan::find(experiments, &experiment, "")?, condition.as_deref(), "")?;
-            say(&if json { info::as_json(&plan)? } else { info::as_text(&plan)? })
-        }
-        Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
-            let found = replicate(&args, count, quiet, program, experiments)?;
-            summary(args.json, found.text(), &|| pretty(&found))
-        }
-        Command::Run(args) => {
-            let found = start_or_resume(&args, quiet, program, experiments)?;
-            summary(args.json, format!("{}\n", found.text()), &|| pretty(&found))
-        }
-        Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
-            let (mut directory, mut plan) = existing(&directory, experiments)?;
-            let other = world_choice::visit(&mut plan, world.name.as_deref())?;
-            if let Some(other) = world.name.filter(|_| other) {
-                directory.tests_in(&other);
+/// The command as it was called.
+struct Invocation<'e, 'a> {
+    /// What the user calls this program.
+    program: &'a str,
+    experiments: &'a [&'e dyn Experiment],
+    quiet: bool,
+}
+
+impl<'e> Invocation<'e, '_> {
+    fn execute(&self, command: Command) -> Result<(), Error> {
+        let Self { program, experiments, quiet } = *self;
+        match command {
+            Command::List(ListArgs { json: false }) => say(&info::list(experiments)),
+            Command::List(ListArgs { json: true }) => say(&info::list_as_json(experiments)?),
+            Command::Info(InfoArgs { experiment, condition, json }) => {
+                let plan = Plan::new(self.find(&experiment)?, condition.as_deref(), "")?;
+                say(&if json { info::as_json(&plan)? } else { info::as_text(&plan)? })
             }
-            let found =
-                test::test(&plan, &directory, trials as usize, seed, workers.threads(), workers.lanes(), quiet)?;
-            summary(json, found.text(), &|| pretty(&found))
-        }
-        Command::Evaluate(args) => {
-            let found = evaluate::evaluate(&args, quiet, experiments)?;
-            say(&if args.json { pretty(&found)? } else { found.text() })
-        }
-        Command::Import(args) => {
-            let found = import::import(&args, experiments)?;
-            summary(args.json, format!("{}\n", found.text()), &|| pretty(&found))
-        }
-        Command::Replay(args) => replay(&args, quiet, experiments),
-        Command::Draw(args) => {
-            let (directory, plan) = existing(&args.directory, experiments)?;
-            let camera = args.camera.as_deref();
-            let found = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
-            summary(args.json, format!("{}\n", found.summary), &|| pretty(&found))
-        }
-        Command::Report(ReportArgs { directories, html, md, json }) => {
-            let runs = directories.iter().map(|path| existing(path, experiments)).collect::<Result<Vec<_>, _>>()?;
-            let found = write::report(runs, html.as_deref(), md.as_deref(), program)?;
-            summary(json, found.text(), &|| pretty(&found))
-        }
-        Command::Export(ExportArgs { what }) => {
-            let (content, out) = exported(what, experiments)?;
-            match out {
-                None => say(&content),
-                Some(path) => create_results(&[(path, content)]),
+            Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
+                let found = self.replicate(&args, count)?;
+                self.summary(args.json, &found.text(), &|| pretty(&found))
             }
-        }
-        Command::Robot(args) => {
-            let reading = robot_file::read(&args)?;
-            let found = robot_file::Summary::of(&args, &reading);
-            match (args.format, args.out) {
-                (None, _) => say(&if args.json { pretty(&found)? } else { found.text() }),
-                (Some(format), None) => say(&robot_file::written(&reading, format)?),
-                (Some(format), Some(path)) => {
-                    create_results(&[(path, robot_file::written(&reading, format)?)])?;
-                    summary(false, found.text(), &|| Ok(String::new()))
+            Command::Run(args) => {
+                let found = self.start_or_resume(&args)?;
+                self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
+            }
+            Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
+                let (mut directory, mut plan) = self.existing(&directory)?;
+                let other = world_choice::visit(&mut plan, world.name.as_deref())?;
+                if let Some(other) = world.name.filter(|_| other) {
+                    directory.tests_in(&other);
+                }
+                let found =
+                    test::test(&plan, &directory, trials as usize, seed, workers.threads(), workers.lanes(), quiet)?;
+                self.summary(json, &found.text(), &|| pretty(&found))
+            }
+            Command::Evaluate(args) => {
+                let plan = args.variant.plan(self.find(&args.experiment)?)?;
+                let (pool, trials) = (args.workers.pool(&plan)?, args.trials as usize);
+                let found = evaluate::evaluate(&plan, pool, &args.genes(), trials, args.seed, quiet)?;
+                say(&if args.json { pretty(&found)? } else { found.text() })
+            }
+            Command::Import(args) => {
+                let mut plan = args.variant.plan(self.find(&args.experiment)?)?;
+                plan.seed = args.seed;
+                let found = import::import(plan, &args.files, args.variant.set(POPULATION), &args.out)?;
+                self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
+            }
+            Command::Replay(args) => self.replay(&args),
+            Command::Draw(args) => {
+                let (directory, plan) = self.existing(&args.directory)?;
+                let camera = args.camera.as_deref();
+                let found = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
+                self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
+            }
+            Command::Report(ReportArgs { directories, html, md, json }) => {
+                let runs = directories.iter().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
+                let found = write::report(runs, html.as_deref(), md.as_deref(), program)?;
+                self.summary(json, &found.text(), &|| pretty(&found))
+            }
+            Command::Export(ExportArgs { what }) => {
+                let (content, out) = self.exported(what)?;
+                match out {
+                    None => say(&content),
+                    Some(path) => create_results(&[(path, content)]),
                 }
             }
-        }
-        Command::Bench(args) => {
-            let found = bench(&args, experiments)?;
-            summary(args.json, found.text(), &|| pretty(&found))
-        }
-        Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, experiments)),
-        Command::Man(ManArgs { out: None }) => say(&manual::page(program, experiments)?),
-        Command::Man(ManArgs { out: Some(path) }) => {
-            let pages = manual::pages(&path, program, experiments)?;
-            summary(false, format!("{}: {pages} pages\n", path.display()), &|| Ok(String::new()))
+            Command::Robot(args) => {
+                let reading = robot_file::read(&args.file, &args.options())?;
+                let found = robot_file::Summary::new(&args.file, &reading);
+                match (args.format, args.out) {
+                    (None, _) => say(&if args.json { pretty(&found)? } else { found.text() }),
+                    (Some(format), None) => say(&robot_file::written(&reading, format)?),
+                    (Some(format), Some(path)) => {
+                        create_results(&[(path, robot_file::written(&reading, format)?)])?;
+                        self.summary(false, &found.text(), &|| Ok(String::new()))
+                    }
+                }
+            }
+            Command::Bench(args) => {
+                let found = self.bench(&args)?;
+                self.summary(args.json, &found.text(), &|| pretty(&found))
+            }
+            Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, experiments)),
+            Command::Man(ManArgs { out: None }) => say(&manual::page(program, experiments)?),
+            Command::Man(ManArgs { out: Some(path) }) => {
+                let pages = manual::pages(&path, program, experiments)?;
+                self.summary(false, &format!("{}: {pages} pages\n", path.display()), &|| Ok(String::new()))
+            }
         }
     }
-}
 
-/// What is to be exported, and where to.
-fn exported(what: ExportWhat, experiments: &[&dyn Experiment]) -> Result<(Vec<u8>, Option<PathBuf>), Error> {
-    match what {
-        ExportWhat::Robot(ExportRobotArgs { experiment, variant, format, out }) => {
-            let plan = variant.plan(plan::find(experiments, &experiment, "")?)?;
-            Ok((files::robot(&plan, format)?.into_bytes(), out))
-        }
-        ExportWhat::Controller(ExportControllerArgs { directory, format, out }) => {
-            let (directory, plan) = existing(&directory, experiments)?;
-            Ok((files::controller(&plan, &directory, format)?, out))
-        }
-        ExportWhat::Genotype(ExportGenotypeArgs { directory, population, out }) => {
-            let (directory, plan) = existing(&directory, experiments)?;
-            Ok((files::genotype(&plan, &directory, population.as_deref())?.into_bytes(), out))
-        }
-        ExportWhat::Starts(ExportStartsArgs { directory, trials, seed, format: DataFormat::Json, out }) => {
-            let (_, plan) = existing(&directory, experiments)?;
-            Ok((files::starts(&plan, trials as usize, seed)?.into_bytes(), out))
+    /// Says what came of the command; JSON that was asked for is no summary that quiet leaves out.
+    fn summary(&self, json: bool, text: &str, all: &dyn Fn() -> Result<String, Error>) -> Result<(), Error> {
+        match (json, self.quiet) {
+            (true, _) => say(&all()?),
+            (false, true) => Ok(()),
+            (false, false) => say(text),
         }
     }
-}
 
-fn replay(args: &ReplayArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<(), Error> {
-    let (directory, mut plan) = existing(&args.directory, experiments)?;
-    world_choice::visit(&mut plan, args.world.name.as_deref())?;
-    let which = args.life.which();
-    let mut found = match (&args.html, &args.out) {
-        (Some(path), _) => {
-            let other = args.compare.as_deref().map(|path| existing(path, experiments)).transpose()?;
-            let other = other.as_ref().map(|(directory, plan)| (plan, directory));
-            replay::page(&plan, &directory, which, other, path)?
+    /// What is to be exported, and where to.
+    fn exported(&self, what: ExportWhat) -> Result<(Vec<u8>, Option<PathBuf>), Error> {
+        match what {
+            ExportWhat::Robot(ExportRobotArgs { experiment, variant, format, out }) => {
+                let plan = variant.plan(self.find(&experiment)?)?;
+                Ok((files::robot(&plan, format)?.into_bytes(), out))
+            }
+            ExportWhat::Controller(ExportControllerArgs { directory, format, out }) => {
+                let (directory, plan) = self.existing(&directory)?;
+                Ok((files::controller(&plan, &directory, format)?, out))
+            }
+            ExportWhat::Genotype(ExportGenotypeArgs { directory, population, out }) => {
+                let (directory, plan) = self.existing(&directory)?;
+                Ok((files::genotype(&plan, &directory, population.as_deref())?.into_bytes(), out))
+            }
+            ExportWhat::Starts(ExportStartsArgs { directory, trials, seed, format: DataFormat::Json, out }) => {
+                let (_, plan) = self.existing(&directory)?;
+                Ok((files::starts(&plan, trials as usize, seed)?.into_bytes(), out))
+            }
         }
-        (None, Some(path)) => replay::replay(&plan, &directory, which, &mut create_result(path)?)?,
-        (None, None) => replay::replay(&plan, &directory, which, &mut io::stdout().lock())?,
-    };
-    found.file = args.html.as_ref().or(args.out.as_ref()).map(|path| path.display().to_string());
-    if args.json {
-        let summary = pretty(&found)?;
-        // The standard output is free only when the steps went elsewhere.
-        if found.file.is_some() {
-            return say(&summary);
-        }
-        let _ = write!(io::stderr(), "{summary}");
-    } else if !quiet {
-        let _ = writeln!(io::stderr(), "{}", found.summary);
     }
-    Ok(())
+
+    fn replay(&self, args: &ReplayArgs) -> Result<(), Error> {
+        let (directory, mut plan) = self.existing(&args.directory)?;
+        world_choice::visit(&mut plan, args.world.name.as_deref())?;
+        let which = args.which.which();
+        let mut found = match (&args.html, &args.out) {
+            (Some(path), _) => {
+                let other = args.compare.as_deref().map(|path| self.existing(path)).transpose()?;
+                let other = other.as_ref().map(|(directory, plan)| (plan, directory));
+                replay::page(&plan, &directory, which, other, path)?
+            }
+            (None, Some(path)) => replay::replay(&plan, &directory, which, &mut create_result(path)?)?,
+            (None, None) => replay::replay(&plan, &directory, which, &mut io::stdout().lock())?,
+        };
+        found.file = args.html.as_ref().or(args.out.as_ref()).map(|path| path.display().to_string());
+        if args.json {
+            let summary = pretty(&found)?;
+            // The standard output is free only when the steps went elsewhere.
+            if found.file.is_some() {
+                return say(&summary);
+            }
+            let _ = write!(io::stderr(), "{summary}");
+        } else if !self.quiet {
+            let _ = writeln!(io::stderr(), "{}", found.summary);
+        }
+        Ok(())
+    }
+
+    /// The experiment of this name.
+    fn find(&self, name: &str) -> Result<&'e dyn Experiment, Error> {
+        plan::find(self.experiments, name, "")
+    }
+
+    /// A run that exists, with the plan in its configuration.
+    fn existing(&self, path: &Path) -> Result<(Directory, Plan<'e>), Error> {
+        let directory = Directory::open(path)?;
+        let plan = Plan::from_file(self.experiments, &ConfigFile::read(&directory.config())?)?;
+        Ok((directory, plan))
+    }
+
+    fn bench(&self, args: &BenchArgs) -> Result<Bench, Error> {
+        let run = args.run.as_deref().map(|path| self.existing(path)).transpose()?;
+        let (evolved, plan) = match (run, &args.experiment, self.experiments.first()) {
+            (Some((directory, mut plan)), ..) => {
+                let evolved = Sample::from_run(&plan, &directory)?;
+                args.variant.apply(&mut plan)?;
+                (Some(evolved), plan)
+            }
+            (None, Some(name), _) => (None, args.variant.plan(self.find(name)?)?),
+            (None, None, Some(first)) => (None, args.variant.plan(*first)?),
+            (None, None, None) => return Err(Error::Usage("there is no experiment".into())),
+        };
+        let pool = args.workers.pool(&plan)?;
+        let sample = evolved.map_or_else(|| Sample::random(&plan), Ok)?;
+        bench::bench(&plan, &sample, pool, args.seconds)
+    }
+
+    /// Runs of one plan with one seed after the other; each is begun, gone on with, or finished already.
+    fn replicate(&self, args: &RunArgs, count: u32) -> Result<Replications, Error> {
+        let (_, plan) = self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())?;
+        let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
+        let pool = |plan: &Plan<'_>| args.workers.pool(plan);
+        replications::run(plan, count, &root, &pool, stop_on_interrupt, self.program, self.quiet)
+    }
+
+    fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {
+        let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
+        let (directory, plan) = self.planned(args, file.as_ref())?;
+        // What is refused leaves no directory behind.
+        let pool = args.workers.pool(&plan)?;
+        let directory = match directory {
+            Some(directory) => {
+                same_names(args, file.as_ref(), &plan, &directory)?;
+                directory
+            }
+            None => begin::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
+        };
+        evolve::go_on(&plan, &directory, pool, stop_on_interrupt(), self.program, self.quiet)
+    }
+
+    /// What the command line and its file ask for, and the directory that is to be gone on with.
+    fn planned(&self, args: &RunArgs, file: Option<&ConfigFile>) -> Result<(Option<Directory>, Plan<'e>), Error> {
+        let (directory, mut plan) = match &args.resume {
+            Some(path) => {
+                let (directory, plan) = self.existing(path)?;
+                (Some(directory), plan)
+            }
+            None => (None, self.fresh(args, file)?),
+        };
+        if let Some(file) = file {
+            plan.apply(file)?;
+        }
+        args.variant.apply(&mut plan)?;
+        world_choice::choose(&mut plan, args.world.name.as_deref())?;
+        for (option, key, value) in
+            [("--generations", GENERATIONS, args.generations), ("--population", POPULATION, args.population)]
+        {
+            if let Some(value) = value {
+                plan.settings.set(option, key, Value::Whole(value))?;
+            }
+        }
+        if let Some(seed) = args.seed {
+            plan.seed = seed;
+        }
+        Ok((directory, plan))
+    }
+
+    /// The defaults of the experiment and condition that are named on the command line or else in the file.
+    fn fresh(&self, args: &RunArgs, file: Option<&ConfigFile>) -> Result<Plan<'e>, Error> {
+        let named = file.and_then(|file| file.experiment.as_ref());
+        let experiment = match (&args.experiment, named) {
+            (Some(name), named) => {
+                let experiment = self.find(name)?;
+                if let Some(other) = named.filter(|entry| entry.value != *name) {
+                    let why = format!("is {:?} here and `{name}` on the command line", other.value);
+                    return Err(Error::Setting { place: other.place.clone(), key: "experiment".into(), why });
+                }
+                experiment
+            }
+            (None, Some(entry)) => plan::find(self.experiments, &entry.value, &entry.place)?,
+            (None, None) => {
+                return Err(Error::Usage("neither the command line nor the file names an experiment".into()));
+            }
+        };
+        match (&args.variant.condition, file.and_then(|file| file.condition.as_ref())) {
+            (Some(name), _) => Plan::new(experiment, Some(name), ""),
+            (None, Some(entry)) => Plan::new(experiment, Some(&entry.value), &entry.place),
+            (None, None) => Plan::new(experiment, None, ""),
+        }
+    }
 }
 
 fn say(text: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_ref()).and_then(|()| out.flush()).map_err(Error::io("write", "the output".as_ref()))
-}
-
-/// A run that exists, with the plan in its configuration.
-fn existing<'e>(path: &std::path::Path, experiments: &[&'e dyn Experiment]) -> Result<(Directory, Plan<'e>), Error> {
-    let directory = Directory::open(path)?;
-    let plan = Plan::of_file(experiments, &ConfigFile::read(&directory.config())?)?;
-    Ok((directory, plan))
-}
-
-fn bench(args: &BenchArgs, experiments: &[&dyn Experiment]) -> Result<Bench, Error> {
-    let run = args.run.as_deref().map(|path| existing(path, experiments)).transpose()?;
-    let (evolved, plan) = match (run, &args.experiment, experiments.first()) {
-        (Some((directory, mut plan)), ..) => {
-            let evolved = Sample::of_run(&plan, &directory)?;
-            args.variant.apply(&mut plan)?;
-            (Some(evolved), plan)
-        }
-        (None, Some(name), _) => (None, args.variant.plan(plan::find(experiments, name, "")?)?),
-        (None, None, Some(first)) => (None, args.variant.plan(*first)?),
-        (None, None, None) => return Err(Error::Usage("there is no experiment".into())),
-    };
-    let pool = args.workers.pool(&plan)?;
-    let sample = evolved.map_or_else(|| Sample::random(&plan), Ok)?;
-    bench::bench(&plan, &sample, pool, args.seconds)
-}
-
-/// Runs of one plan with one seed after the other; each is begun, gone on with, or finished already.
-fn replicate(
-    args: &RunArgs,
-    count: u32,
-    quiet: bool,
-    program: &str,
-    experiments: &[&dyn Experiment],
-) -> Result<Replications, Error> {
-    let (_, plan) = planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref(), experiments)?;
-    let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
-    let pool = |plan: &Plan<'_>| args.workers.pool(plan);
-    replications::run(plan, count, &root, &pool, stop_on_interrupt, program, quiet)
-}
-
-fn start_or_resume(
-    args: &RunArgs,
-    quiet: bool,
-    program: &str,
-    experiments: &[&dyn Experiment],
-) -> Result<Summary, Error> {
-    let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
-    let (directory, plan) = planned(args, file.as_ref(), experiments)?;
-    // What is refused leaves no directory behind.
-    let pool = args.workers.pool(&plan)?;
-    let directory = match directory {
-        Some(directory) => {
-            same_names(args, file.as_ref(), &plan, &directory)?;
-            directory
-        }
-        None => evolve::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
-    };
-    evolve::go_on(&plan, &directory, pool, stop_on_interrupt(), program, quiet)
-}
-
-/// What the command line and its file ask for, and the directory that is to be gone on with.
-fn planned<'e>(
-    args: &RunArgs,
-    file: Option<&ConfigFile>,
-    experiments: &[&'e dyn Experiment],
-) -> Result<(Option<Directory>, Plan<'e>), Error> {
-    let (directory, mut plan) = match &args.resume {
-        Some(path) => {
-            let (directory, plan) = existing(path, experiments)?;
-            (Some(directory), plan)
-        }
-        None => (None, fresh(args, file, experiments)?),
-    };
-    if let Some(file) = file {
-        plan.apply(file)?;
-    }
-    args.variant.apply(&mut plan)?;
-    world_choice::choose(&mut plan, args.world.name.as_deref())?;
-    for (option, key, value) in
-        [("--generations", GENERATIONS, args.generations), ("--population", POPULATION, args.population)]
-    {
-        if let Some(value) = value {
-            plan.settings.set(option, key, Value::Whole(value))?;
-        }
-    }
-    if let Some(seed) = args.seed {
-        plan.seed = seed;
-    }
-    Ok((directory, plan))
-}
-
-/// The defaults of the experiment and condition that are named on the command line or else in the file.
-fn fresh<'e>(args: &RunArgs, file: Option<&ConfigFile>, experiments: &[&'e dyn Experiment]) -> Result<Plan<'e>, Error> {
-    let named = file.and_then(|file| file.experiment.as_ref());
-    let experiment = match (&args.experiment, named) {
-        (Some(name), named) => {
-            let experiment = plan::find(experiments, name, "")?;
-            if let Some(other) = named.filter(|entry| entry.value != *name) {
-                let why = format!("is {:?} here and `{name}` on the command line", other.value);
-                return Err(Error::Setting { place: other.place.clone(), key: "experiment".into(), why });
-            }
-            experiment
-        }
-        (None, Some(entry)) => plan::find(experiments, &entry.value, &entry.place)?,
-        (None, None) => return Err(Error::Usage("neither the command line nor the file names an experiment".into())),
-    };
-    match (&args.variant.condition, file.and_then(|file| file.condition.as_ref())) {
-        (Some(name), _) => Plan::new(experiment, Some(name), ""),
-        (None, Some(entry)) => Plan::new(experiment, Some(&entry.value), &entry.place),
-        (None, None) => Plan::new(experiment, None, ""),
-    }
 }
 
 /// Refuses a resumed run under another name; its settings and seed are compared with the checkpoint later.
@@ -335,7 +349,7 @@ fn stop_on_interrupt() -> &'static AtomicBool {
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        let _ = writeln!(io::stderr(), "stopping after the lives that are under way; again to stop at once");
+        let _ = writeln!(io::stderr(), "stopping after the trials that are running; again to stop at once");
     });
     &STOP
 }

@@ -79,7 +79,7 @@ struct SettingInfo {
 }
 
 impl Info {
-    fn of(plan: &Plan<'_>) -> Result<Self, Error> {
+    fn from_plan(plan: &Plan<'_>) -> Result<Self, Error> {
         let evaluator = plan.evaluator()?;
         let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.description();
         let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
@@ -125,12 +125,12 @@ fn json(value: &Value) -> serde_json::Value {
 
 /// All about an experiment as JSON.
 pub(crate) fn as_json(plan: &Plan<'_>) -> Result<String, Error> {
-    pretty(&Info::of(plan)?)
+    pretty(&Info::from_plan(plan)?)
 }
 
 /// All about an experiment in words.
 pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
-    let info = Info::of(plan)?;
+    let info = Info::from_plan(plan)?;
     let mut text = format!("{}: {}\n", info.experiment, info.summary);
     // Writing into a string cannot fail.
     if !info.condition.is_empty() {

@@ -8,7 +8,7 @@ use clap::{Command, CommandFactory as _};
 use clap_complete::Shell;
 use farsa_view::Camera;
 
-use crate::command::arguments::Cli;
+use crate::command::arguments::subcommands::Cli;
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
 use crate::store::directory::create_results;
@@ -33,7 +33,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
     let tour = [
         format!("run {experiment} --generations 20"),
         format!("test {run}"),
-        format!("replay {run} --html life.html"),
+        format!("replay {run} --html trial.html"),
         format!("report {run} --html report.html"),
     ];
     let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
@@ -75,8 +75,8 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
         (
             "replay",
             vec![
-                format!("replay {run} --trial 0 --out life.csv"),
-                format!("replay {run} --html life.html"),
+                format!("replay {run} --trial 0 --out trial.csv"),
+                format!("replay {run} --html trial.html"),
                 format!("replay {run} --generation 0 --individual 7 | head"),
             ],
         ),

@@ -1,4 +1,4 @@
-//! `farsa draw`: a moment of a life as a picture, and a champion's for the report.
+//! `farsa draw`: a moment of a trial as a picture, and a champion's for the report.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -7,7 +7,7 @@ use farsa_view::{Camera, Recording};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::replay::{Lived, Relived, Which};
+use crate::evaluation::replay::{ReplaySummary, Replayable, Which};
 use crate::run::plan::Plan;
 use crate::store::directory::{Directory, create_result};
 
@@ -26,7 +26,7 @@ enum Format {
 }
 
 impl Format {
-    fn of(path: &Path) -> Result<Self, Error> {
+    fn from_path(path: &Path) -> Result<Self, Error> {
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
         match extension.as_deref() {
             Some("png") => Ok(Self::Png),
@@ -39,9 +39,9 @@ impl Format {
 /// What was drawn.
 #[derive(Debug, Serialize)]
 pub(crate) struct Drawn {
-    /// The whole life, of which the picture is a moment.
+    /// The whole trial, of which the picture is a moment.
     #[serde(flatten)]
-    life: Lived,
+    replay: ReplaySummary,
     /// The moment [s].
     time: f64,
     camera: &'static str,
@@ -52,7 +52,7 @@ pub(crate) struct Drawn {
     pub(crate) summary: String,
 }
 
-/// Draws the moment `time` \[s\] of a life, by default its last, and writes it to a new file.
+/// Draws the moment `time` \[s\] of a trial, by default its last, and writes it to a new file.
 ///
 /// Of the trials the first is drawn if none is named.
 pub(crate) fn draw(
@@ -64,23 +64,23 @@ pub(crate) fn draw(
     size: Option<(u32, u32)>,
     path: &Path,
 ) -> Result<Drawn, Error> {
-    let format = Format::of(path)?;
+    let format = Format::from_path(path)?;
     let camera = camera.map(Camera::named).transpose()?;
     let (width, height) = size.unwrap_or(SIZE);
     if !(16..=LARGEST).contains(&width) || !(16..=LARGEST).contains(&height) {
         return Err(Error::Usage(format!("a picture of {width}x{height}: each side is 16 to {LARGEST} pixels")));
     }
-    let mut relived = Relived::find(plan, directory, which)?;
-    let trial = relived.trials.start;
-    let mut recording = Recording::new(relived.stage());
-    let outcome = relived.live(trial, &mut recording);
+    let mut replayable = Replayable::find(plan, directory, which)?;
+    let trial = replayable.trials.start;
+    let mut recording = Recording::new(replayable.schema());
+    let outcome = replayable.run(trial, &mut recording);
     let tick = tick_at(&recording, time)?;
-    let camera = camera.unwrap_or(Camera::for_view(recording.stage().view));
+    let camera = camera.unwrap_or(Camera::for_view(recording.schema().view));
     let mut picture = recording.picture(tick).ok_or_else(|| {
-        Error::Usage(format!("{}: lives of `{}` have no bodies to draw", directory.path().display(), plan.name()))
+        Error::Usage(format!("{}: trials of `{}` have no bodies to draw", directory.path().display(), plan.name()))
     })?;
     let seconds = recording.times()[tick];
-    let Relived { generation, individual, .. } = relived;
+    let Replayable { generation, individual, .. } = replayable;
     let caption =
         format!("{}, generation {generation}, individual {individual}, trial {trial}, {seconds:.2} s", plan.name());
     picture.caption = Some(caption.clone());
@@ -90,7 +90,7 @@ pub(crate) fn draw(
     };
     create_result(path)?.write_all(&bytes).map_err(Error::io("write", path))?;
     Ok(Drawn {
-        life: relived.lived(plan, directory, std::slice::from_ref(&outcome)),
+        replay: replayable.summary(plan, directory, std::slice::from_ref(&outcome)),
         time: seconds,
         camera: camera.name(),
         width,
@@ -104,12 +104,12 @@ pub(crate) fn draw(
 ///
 /// `prefix` begins every id in it, so that several can stand in one page.
 pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> Result<Option<String>, Error> {
-    let mut relived = Relived::find(plan, directory, Which::default())?;
+    let mut replayable = Replayable::find(plan, directory, Which::default())?;
     let mut best: Option<(f64, u32, Recording)> = None;
-    for trial in relived.trials.clone() {
-        let mut recording = Recording::new(relived.stage());
-        let outcome = relived.live(trial, &mut recording);
-        let fitness = relived.fitness(core::slice::from_ref(&outcome));
+    for trial in replayable.trials.clone() {
+        let mut recording = Recording::new(replayable.schema());
+        let outcome = replayable.run(trial, &mut recording);
+        let fitness = replayable.fitness(core::slice::from_ref(&outcome));
         if best.as_ref().is_none_or(|(other, ..)| fitness > *other) {
             best = Some((fitness, trial, recording));
         }
@@ -118,19 +118,19 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     let Some(last) = recording.times().len().checked_sub(1) else { return Ok(None) };
     let Some(mut picture) = recording.picture(last) else { return Ok(None) };
     picture.caption = Some(format!("{}: champion, trial {trial}, {:.2} s", plan.name(), recording.times()[last]));
-    Ok(Some(picture.svg(Camera::for_view(recording.stage().view), REPORT_SIZE, prefix)))
+    Ok(Some(picture.svg(Camera::for_view(recording.schema().view), REPORT_SIZE, prefix)))
 }
 
 /// The tick that is nearest to a time; the last if none is named.
 fn tick_at(recording: &Recording, time: Option<f64>) -> Result<usize, Error> {
     let times = recording.times();
     let (Some(first), Some(last)) = (times.first(), times.last()) else {
-        return Err(Error::Usage("the life has no step to draw".into()));
+        return Err(Error::Usage("the trial has no step to draw".into()));
     };
     let Some(time) = time else { return Ok(times.len() - 1) };
-    // The start, before the first step, is not recorded: whoever asks for 0 wants the first.
+    // The start, before the first step, is not recorded: a request for 0 means the first.
     if !(0.0..=*last).contains(&time) {
-        return Err(Error::Usage(format!("the time {time} s: the life has moments from {first} to {last} s")));
+        return Err(Error::Usage(format!("the time {time} s: the trial has moments from {first} to {last} s")));
     }
     let tick = times.partition_point(|other| *other < time);
     let nearer = tick > 0 && time - times[tick - 1] < times[tick] - time;
@@ -141,11 +141,11 @@ fn tick_at(recording: &Recording, time: Option<f64>) -> Result<usize, Error> {
 mod tests {
     use super::*;
     use farsa_body::{ArmAndHand, Pose, Recorder};
-    use farsa_view::Stage;
+    use farsa_view::Schema;
 
     fn recording(ticks: u32) -> Recording {
         let robot = ArmAndHand::default().robot().unwrap();
-        let mut recording = Recording::new(Stage::of_robot(&robot));
+        let mut recording = Recording::new(Schema::from_robot(&robot));
         for tick in 1..=ticks {
             recording.pose(ArmAndHand::PALM, Pose::at([0.1 * tick as f32, 0.0, 0.0]));
             recording.tick(0.01 * f64::from(tick));

@@ -1,27 +1,30 @@
-//! `farsa evaluate`: anybody's genotype on random trials.
+//! `farsa evaluate`: a genotype from any source on random trials.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::arguments::{EvaluateArgs, GenotypeVariant};
 use crate::evaluation::genotypes::Shape;
 use crate::evaluation::populations::Populations;
 use crate::evaluation::test;
-use crate::evaluation::test_table::Tried;
-use crate::experiment::definition::Experiment;
+use crate::evaluation::test_table::TrialResult;
 use crate::experiment::outcome::Note;
-use crate::experiment::settings::Value;
-use crate::run::plan;
 use crate::run::plan::Plan;
-use crate::run::pool::Unfinished;
+use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
-use crate::search::evolution::POPULATION;
+use crate::strategy::settings::POPULATION;
 
-/// The setting that `--ir-tables` is short for.
-const INFRARED_TABLES: &str = "robot.infrared_tables";
+/// The genes that a command line gives.
+pub(crate) struct GivenGenes {
+    /// Lists of genes, with the names of populations before them or not.
+    pub(crate) lists: Vec<String>,
+    /// Files of genotypes, likewise.
+    pub(crate) files: Vec<PathBuf>,
+    /// Which genotype of each file; none for its only one.
+    pub(crate) numbers: Vec<usize>,
+}
 
 /// What an evaluation found.
 #[derive(Debug, Serialize)]
@@ -30,7 +33,7 @@ pub(crate) struct Evaluation {
     condition: String,
     trials: usize,
     seed: u64,
-    /// Lives whose numbers were not finite; they count in nothing else.
+    /// Trials whose numbers were not finite; they count in nothing else.
     broken_down: usize,
     /// Of a single population; none of several, which have a place of their own.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -61,13 +64,13 @@ struct Earned {
 }
 
 impl Earned {
-    /// What population number `own` earned, of trials in which nobody broke down, and of all.
-    fn new(name: &str, own: usize, lived: &[&Tried], all: usize) -> Self {
-        let of = |tried: &Tried| match own.checked_sub(1) {
-            None => Some((tried.fitness, tried.outcome.success)),
-            Some(other) => tried.others.get(other).copied(),
+    /// What population number `own` earned, of trials that did not break down, and of all.
+    fn new(name: &str, own: usize, finished: &[&TrialResult], all: usize) -> Self {
+        let of = |results: &TrialResult| match own.checked_sub(1) {
+            None => Some((results.fitness, results.outcome.success)),
+            Some(other) => results.others.get(other).copied(),
         };
-        let earned: Vec<(f64, bool)> = lived.iter().filter_map(|tried| of(tried)).collect();
+        let earned: Vec<(f64, bool)> = finished.iter().filter_map(|results| of(results)).collect();
         let (mean_fitness, standard_error) = mean(&earned.iter().map(|(fitness, _)| *fitness).collect::<Vec<_>>());
         let successes = earned.iter().filter(|(_, success)| *success).count();
         let success_rate = successes as f64 / all.max(1) as f64;
@@ -76,21 +79,22 @@ impl Earned {
 }
 
 impl Evaluation {
-    /// What `tried` says together; `names` are those of the populations.
-    fn new(plan: &Plan<'_>, seed: u64, names: &[String], tried: &[Tried]) -> Self {
-        let finite = |tried: &&Tried| tried.fitness.is_finite() && tried.others.iter().all(|(x, _)| x.is_finite());
-        let lived: Vec<&Tried> = tried.iter().filter(finite).collect();
-        let broken_down = tried.len() - lived.len();
+    /// What `results` says together; `names` are those of the populations.
+    fn new(plan: &Plan<'_>, seed: u64, names: &[String], results: &[TrialResult]) -> Self {
+        let finite =
+            |results: &&TrialResult| results.fitness.is_finite() && results.others.iter().all(|(x, _)| x.is_finite());
+        let finished: Vec<&TrialResult> = results.iter().filter(finite).collect();
+        let broken_down = results.len() - finished.len();
         let mut notes: Vec<(String, f64)> = Vec::new();
-        let known = lived.first().map_or(&[][..], |tried| &tried.outcome.notes);
+        let known = finished.first().map_or(&[][..], |results| &results.outcome.notes);
         for (name, _) in known.iter().filter(|(_, note)| matches!(note, Note::Number(_))) {
-            let values = lived.iter().filter_map(|tried| {
-                let (_, note) = tried.outcome.notes.iter().find(|(other, _)| other == name)?;
+            let values = finished.iter().filter_map(|results| {
+                let (_, note) = results.outcome.notes.iter().find(|(other, _)| other == name)?;
                 if let Note::Number(x) = note { Some(*x) } else { None }
             });
             notes.push((format!("{}_per_trial", word(name)), mean(&values.collect::<Vec<_>>()).0));
         }
-        let earned = names.iter().enumerate().map(|(own, name)| Earned::new(name, own, &lived, tried.len()));
+        let earned = names.iter().enumerate().map(|(own, name)| Earned::new(name, own, &finished, results.len()));
         let earned: Vec<Earned> = earned.collect();
         let alone = if let [alone] = earned.as_slice() { Some(alone) } else { None };
         let mut lines: Vec<(String, String)> = Vec::new();
@@ -117,7 +121,7 @@ impl Evaluation {
         Self {
             experiment: plan.experiment.name().into(),
             condition: plan.condition.clone(),
-            trials: tried.len(),
+            trials: results.len(),
             seed,
             broken_down,
             mean_fitness: alone.map(|alone| alone.mean_fitness),
@@ -153,79 +157,58 @@ fn word(name: &str) -> String {
     name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
 }
 
-/// The plan that the options of the commands about genotypes ask for.
-///
-/// # Errors
-/// [`Error::Unknown`] and [`Error::Setting`]; [`Error::Usage`] for tables that the experiment has no setting for.
-pub(crate) fn plan<'e>(
-    experiments: &[&'e dyn Experiment],
-    experiment: &str,
-    options: &GenotypeVariant,
-) -> Result<Plan<'e>, Error> {
-    let mut plan = options.variant.plan(plan::find(experiments, experiment, "")?)?;
-    if let Some(directory) = &options.ir_tables {
-        if !plan.settings.table().iter().any(|setting| setting.key() == INFRARED_TABLES) {
-            let condition = &plan.condition;
-            let under = if condition.is_empty() { String::new() } else { format!(" under condition `{condition}`") };
-            let why = format!("--ir-tables: {experiment} has no setting `{INFRARED_TABLES}`{under}");
-            return Err(Error::Usage(why));
-        }
-        let text = directory
-            .to_str()
-            .ok_or_else(|| Error::Usage(format!("--ir-tables: {}: the name is not Unicode", directory.display())))?;
-        plan.settings.set("--ir-tables", INFRARED_TABLES, Value::Word(text.into()))?;
-    }
-    Ok(plan)
-}
-
-/// Lives random trials of the genes on the command line; those of several populations live against each other.
+/// Runs random trials of the genes that were given; those of several populations meet each other.
 ///
 /// # Errors
 /// [`Error::Usage`] for genes that are none of the experiment's, and for a population without genes or with genes twice.
-pub(crate) fn evaluate(args: &EvaluateArgs, quiet: bool, experiments: &[&dyn Experiment]) -> Result<Evaluation, Error> {
-    let plan = plan(experiments, &args.experiment, &args.variant)?;
-    let mut pool = args.workers.pool(&plan)?;
+pub(crate) fn evaluate(
+    plan: &Plan<'_>,
+    mut pool: Pool,
+    given: &GivenGenes,
+    trials: usize,
+    seed: u64,
+    quiet: bool,
+) -> Result<Evaluation, Error> {
     let names = pool.evaluator().populations();
-    let genes = genes(args, plan.experiment.name(), &names, Shape::of(pool.genotype()))?;
+    let genes = genes(given, plan.experiment.name(), &names, Shape::from_genotype(pool.genotype()))?;
     let parameters: Option<Vec<Vec<f32>>> = genes.iter().map(|genes| pool.genotype().decode(genes)).collect();
     let parameters = parameters.unwrap_or_default();
     let size = if names.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
-    let trials = args.trials as usize;
     let progress = Progress::new(0, trials as u64, quiet);
-    let tried = test::lives(&mut pool, &parameters, size, trials, args.seed, &progress);
+    let results = test::run_trials(&mut pool, &parameters, size, trials, seed, &progress);
     drop(progress);
-    let tried = tried.map_err(|reason| match reason {
-        Unfinished::Panicked => Error::Other("a life panicked".into()),
+    let results = results.map_err(|reason| match reason {
+        Unfinished::Panicked => Error::Other("a trial panicked".into()),
         Unfinished::Stopped => Error::Other("stopped".into()),
     })?;
-    Ok(Evaluation::new(&plan, args.seed, &names, &tried))
+    Ok(Evaluation::new(plan, seed, &names, &results))
 }
 
 /// The genes of each population, from lists and files.
-fn genes(args: &EvaluateArgs, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<u16>>, Error> {
+fn genes(asked: &GivenGenes, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<u16>>, Error> {
     const OPTIONS: &str = "--genes, --genes-file";
     let populations = Populations { experiment, names };
-    if args.genotype.len() > args.genes_file.len() {
-        let (numbers, files) = (args.genotype.len(), args.genes_file.len());
+    if asked.numbers.len() > asked.files.len() {
+        let (numbers, files) = (asked.numbers.len(), asked.files.len());
         return Err(Error::Usage(format!("--genotype: {numbers} numbers for {files} of --genes-file")));
     }
-    let count = args.genes.len() + args.genes_file.len();
+    let count = asked.lists.len() + asked.files.len();
     if names.len() == 1 && count > 1 {
-        return Err(Error::Usage(format!("{OPTIONS}: {count} genotypes where {experiment} lives with one")));
+        return Err(Error::Usage(format!("{OPTIONS}: {count} genotypes where {experiment} takes one")));
     }
     let mut given = Vec::new();
-    for list in &args.genes {
+    for list in &asked.lists {
         let (population, list) = populations.split("--genes", list)?;
         let of = population.map_or_else(String::new, |population| format!("{}: ", names[population]));
         let genes = shape.list(list).map_err(|error| Error::Usage(format!("--genes: {of}{error}")))?;
         given.push((population, genes));
     }
-    for (number, path) in args.genes_file.iter().enumerate() {
+    for (number, path) in asked.files.iter().enumerate() {
         let (population, path) = populations.file("--genes-file", path)?;
-        given.push((population, one(shape.read(&path)?, args.genotype.get(number).copied(), &path)?));
+        given.push((population, one(shape.read(&path)?, asked.numbers.get(number).copied(), &path)?));
     }
     let unnamed = given.iter().any(|(population, _)| population.is_none());
-    if names.len() > 1 && unnamed && !args.genes.is_empty() && !args.genes_file.is_empty() {
+    if names.len() > 1 && unnamed && !asked.lists.is_empty() && !asked.files.is_empty() {
         // They have no order between them.
         let [first, second, ..] = names else { return Ok(Vec::new()) };
         let why = format!("name the populations: --genes {first}=... --genes-file {second}=...");

@@ -54,7 +54,7 @@ impl fmt::Display for GenotypeError {
 
 impl Shape {
     /// The shape of the genotypes of an experiment.
-    pub(crate) fn of(genotype: &Genotype) -> Self {
+    pub(crate) fn from_genotype(genotype: &Genotype) -> Self {
         Self::new(genotype.genes(), genotype.bits())
     }
 

@@ -1,20 +1,19 @@
 //! `farsa import`: genotypes of the original FARSA as a directory that can be tested, replayed and drawn.
 
+use std::path::{Path, PathBuf};
+
 use farsa_evo::Fitness;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::arguments::ImportArgs;
-use crate::evaluation::evaluate;
 use crate::evaluation::genotypes::Shape;
 use crate::evaluation::populations::Populations;
-use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
-use crate::run::records::{Ancestry, Best, Champions};
-use crate::search::engine::Descent;
-use crate::search::evolution::POPULATION;
+use crate::run::plan::Plan;
+use crate::run::records::{Best, Champions, write_imported};
 use crate::store::directory::{Directory, replace};
 use crate::store::manifest::Manifest;
+use crate::strategy::settings::POPULATION;
 
 /// What was imported.
 #[derive(Debug, Serialize)]
@@ -50,23 +49,26 @@ impl Summary {
 }
 
 /// Makes a directory of the genotypes in some files: the individuals of generation 0, of which the first of each population
-/// is the champion.
+/// is the champion. `asked` is the size of a population that the settings were to have, if any.
 ///
 /// # Errors
 /// [`Error::Damaged`] with the line for a file that is none of the original's or of another experiment, [`Error::Usage`] for
 /// populations that are left without or have fewer genotypes than others; nothing is then written. [`Error::Occupied`] when
 /// there is something at the place already.
-pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Result<Summary, Error> {
-    let mut plan = evaluate::plan(experiments, &args.experiment, &args.variant)?;
-    plan.seed = args.seed;
+pub(crate) fn import(
+    mut plan: Plan<'_>,
+    paths: &[PathBuf],
+    asked: Option<&Value>,
+    out: &Path,
+) -> Result<Summary, Error> {
     let evaluator = plan.evaluator()?;
     let (names, genotype) = (evaluator.populations(), plan.genotype(evaluator.as_ref()));
-    let of = genomes(args, plan.experiment.name(), &names, Shape::of(&genotype))?;
+    let of = genomes(paths, plan.experiment.name(), &names, Shape::from_genotype(&genotype))?;
     let (populations, size) = (names.len(), of.first().map_or(0, Vec::len));
     if populations > 1 {
-        // By this an individual's number tells its population.
+        // So an individual's number gives its population.
         plan.settings.set("FILE", POPULATION, Value::Whole(i64::try_from(size).unwrap_or(i64::MAX)))?;
-        if let Some((_, asked)) = args.variant.variant.set.iter().find(|(key, _)| key == POPULATION)
+        if let Some(asked) = asked
             && *asked != *plan.settings.get(POPULATION)?
         {
             let why = format!("{size} genotypes of each population where --set wants {asked}");
@@ -78,9 +80,9 @@ pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Resu
     let Some(best) = best else {
         return Err(Error::Usage("no file to import".into()));
     };
-    let files: Vec<String> = args.files.iter().map(|path| path.display().to_string()).collect();
+    let files: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
     let summary = Summary {
-        directory: args.out.display().to_string(),
+        directory: out.display().to_string(),
         experiment: plan.experiment.name().into(),
         condition: plan.condition.clone(),
         genotypes: size,
@@ -89,10 +91,10 @@ pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Resu
         files: files.clone(),
     };
     let (text, identity) = (plan.to_toml()?, plan.identity()?);
-    Directory::create(&args.out, |directory| {
+    Directory::create(out, |directory| {
         replace(&directory.config(), text.as_bytes())?;
         Manifest { imported: files, ..Manifest::new(&identity) }.write(&directory.manifest())?;
-        // Nobody has evaluated them yet.
+        // They have not been evaluated yet.
         let best = best.into_iter().enumerate().map(|(population, genes)| Best {
             individual: (population * size) as u32,
             fitness: Fitness::WORST,
@@ -100,15 +102,15 @@ pub(crate) fn import(args: &ImportArgs, experiments: &[&dyn Experiment]) -> Resu
         });
         Champions { identity: identity.clone(), generation: 0, best: best.collect() }.write(&directory.champion())?;
         let genomes = of.into_iter().flatten().collect();
-        Ancestry { identity, descent: Descent::Imported { genomes, populations } }.write(&directory.genotypes())
+        write_imported(&directory.genotypes(), identity, genomes, populations)
     })?;
     Ok(summary)
 }
 
 /// The genotypes of each population, as many of each.
-fn genomes(args: &ImportArgs, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<Vec<u16>>>, Error> {
+fn genomes(paths: &[PathBuf], experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<Vec<u16>>>, Error> {
     let populations = Populations { experiment, names };
-    let given = args.files.iter().map(|path| populations.file("FILE", path)).collect::<Result<_, _>>()?;
+    let given = paths.iter().map(|path| populations.file("FILE", path)).collect::<Result<_, _>>()?;
     let mut all = Vec::new();
     for files in populations.divide("FILE", given)? {
         let mut genomes = Vec::new();

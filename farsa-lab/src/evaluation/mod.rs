@@ -1,16 +1,14 @@
-//! Lives after a run: tests, replays, pictures, genotypes from elsewhere.
+//! Trials after a run: tests, replays, pictures, genotypes from elsewhere.
 //!
-//! - `arguments`: the words of the commands about genotypes from elsewhere
-//! - `draw`: `farsa draw`: a moment of a life as a picture, and a champion's for the report
-//! - `evaluate`: `farsa evaluate`: anybody's genotype on random trials
+//! - `draw`: `farsa draw`: a moment of a trial as a picture, and a champion's for the report
+//! - `evaluate`: `farsa evaluate`: a genotype from any source on random trials
 //! - `genotypes`: Genotypes from elsewhere: the original's `.gen` files, and plain lists of genes
 //! - `import`: `farsa import`: genotypes of the original FARSA as a directory that can be tested, replayed and drawn
 //! - `populations`: For which of several populations something on the command line is
-//! - `replay`: `farsa replay`: a life of the run again, step by step
+//! - `replay`: `farsa replay`: a trial of the run again, step by step
 //! - `test`: `farsa test`: the champion on starts that it has never met
 //! - `test_table`: `test.csv`: a line per trial of a test, and what they say together
 
-pub(crate) mod arguments;
 pub(crate) mod draw;
 pub(crate) mod evaluate;
 pub(crate) mod genotypes;

@@ -1,4 +1,4 @@
-//! `farsa replay`: a life of the run again, step by step.
+//! `farsa replay`: a trial of the run again, step by step.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use farsa_body::Recorder;
 use farsa_evo::Fitness;
-use farsa_view::{Page, Recording, Stage, Table, readable};
+use farsa_view::{Page, Recording, Schema, Table, readable};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -14,11 +14,11 @@ use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::outcome::{Note, Outcome};
 use crate::run::plan::Plan;
-use crate::run::records::Ancestry;
-use crate::search::opponents;
+use crate::run::records::history;
 use crate::store::directory::{Directory, create_result};
+use crate::strategy::opponents;
 
-/// Which lives to live again; individuals are counted through all populations.
+/// Which trials to replay; individuals are counted through all populations.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Which {
     /// The generation; the last finished one if none is named.
@@ -29,8 +29,8 @@ pub(crate) struct Which {
     pub(crate) trial: Option<u32>,
 }
 
-/// An individual of a run, with all that it needs to live again.
-pub(crate) struct Relived {
+/// An individual of a run, with all that a replay needs.
+pub(crate) struct Replayable {
     pub(crate) evaluator: Box<dyn Evaluator>,
     parameters: Vec<f32>,
     /// For every trial that was asked for.
@@ -42,31 +42,35 @@ pub(crate) struct Relived {
     pub(crate) trials: Range<u32>,
 }
 
-impl Relived {
+impl Replayable {
     /// Finds an individual of a run and rebuilds its genes.
     ///
     /// # Errors
     /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
-    /// keeps the run of another version from being lived again.
+    /// keeps the run of another version from being replayed.
     pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, which: Which) -> Result<Self, Error> {
-        let (Ancestry { identity, descent }, path) = Ancestry::read(plan, directory)?;
+        let (identity, history, path) = history(plan, directory)?;
         identity.same_values(&plan.identity()?, &path)?;
-        let finished = descent.finished();
+        let finished = history.finished();
         let generation = which.generation.unwrap_or(finished.saturating_sub(1));
-        let Some(best) = descent.champion(0, generation) else {
+        let Some(best) = history.champion(0, generation) else {
             return Err(Error::Usage(format!(
                 "{}: generation {generation} of {finished} finished ones (the first is 0)",
                 directory.path().display()
             )));
         };
         let individual = which.individual.unwrap_or(best as u32);
-        let genes = descent
-            .genome_of(generation, individual as usize)
-            .map_err(|error| Error::Usage(format!("generation {generation}: {error}")))?;
+        let all = history.populations() * history.size();
+        if individual as usize >= all {
+            return Err(Error::Usage(format!(
+                "generation {generation}: individual {individual} of a population of {all}"
+            )));
+        }
+        let genes = history.genomes(&[(generation, individual as usize)])?;
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
         let others = || Error::damaged(&path, "its genomes are not those of the experiment");
-        let parameters = genotype.decode(&genes).ok_or_else(others)?;
+        let parameters = genes.first().and_then(|genes| genotype.decode(genes)).ok_or_else(others)?;
         let trials = 0..evaluator.trials() as u32;
         let trials = match which.trial {
             None => trials,
@@ -75,23 +79,20 @@ impl Relived {
                 return Err(Error::Usage(format!("trial {trial} of {} (the first is 0)", trials.end)));
             }
         };
-        let met = |trial| {
-            let genes = opponents::met(&descent, generation, individual as usize, trial, evaluator.trials());
-            let genes = genes.map_err(|error| Error::damaged(&path, error))?;
-            genes.iter().map(|genes| genotype.decode(genes).ok_or_else(others)).collect()
-        };
-        let opponents = trials.clone().map(met).collect::<Result<_, _>>()?;
+        let met = opponents::met(&history, generation, individual as usize, trials.clone(), evaluator.trials())?;
+        let decoded = |genes: &Vec<Vec<u16>>| genes.iter().map(|genes| genotype.decode(genes)).collect::<Option<_>>();
+        let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
         Ok(Self { evaluator, parameters, opponents, seed: plan.seed, generation, individual, trials })
     }
 
-    /// The stage of its lives.
-    pub(crate) fn stage(&self) -> Stage {
-        let with = |bodies: &dyn Bodies| bodies.stage_with(&self.parameters);
-        self.evaluator.bodies().map_or_else(|| self.evaluator.stage(), with)
+    /// The schema of its recordings.
+    pub(crate) fn schema(&self) -> Schema {
+        let with = |bodies: &dyn Bodies| bodies.schema_with(&self.parameters);
+        self.evaluator.bodies().map_or_else(|| self.evaluator.schema(), with)
     }
 
-    /// Lives one of the trials that were asked for again.
-    pub(crate) fn live(&mut self, trial: u32, recorder: &mut dyn Recorder) -> Outcome {
+    /// Replays one of the trials that were asked for.
+    pub(crate) fn run(&mut self, trial: u32, recorder: &mut dyn Recorder) -> Outcome {
         let id = EpisodeId { seed: self.seed, generation: self.generation, individual: self.individual, trial };
         let opponents = self.opponents.get((trial - self.trials.start) as usize).map_or(&[][..], Vec::as_slice);
         let opponents: Vec<&[f32]> = opponents.iter().map(Vec::as_slice).collect();
@@ -99,22 +100,22 @@ impl Relived {
         self.evaluator.evaluate(evaluation, Some(recorder))
     }
 
-    /// What the trials that were lived earned, as a fitness.
+    /// The fitness of the replayed trials.
     pub(crate) fn fitness(&self, outcomes: &[Outcome]) -> f64 {
         let finite = outcomes.iter().all(Outcome::is_finite);
         let fitness = if finite { Fitness::nan_as_failed(self.evaluator.fitness(outcomes)) } else { Fitness::WORST };
         fitness.get()
     }
 
-    /// What came of the trials that were lived, the first of the wanted and so on.
-    pub(crate) fn lived(&self, plan: &Plan<'_>, directory: &Directory, outcomes: &[Outcome]) -> Lived {
-        let trials = self.trials.clone().zip(outcomes).map(|(trial, outcome)| LivedTrial {
+    /// The outcomes of the replayed trials, in the order of the requested ones.
+    pub(crate) fn summary(&self, plan: &Plan<'_>, directory: &Directory, outcomes: &[Outcome]) -> ReplaySummary {
+        let trials = self.trials.clone().zip(outcomes).map(|(trial, outcome)| ReplayedTrial {
             trial,
             steps: outcome.steps,
             fitness: self.fitness(std::slice::from_ref(outcome)),
             success: outcome.success,
         });
-        Lived {
+        ReplaySummary {
             directory: directory.path().display().to_string(),
             experiment: plan.experiment.name().into(),
             condition: plan.condition.clone(),
@@ -129,16 +130,16 @@ impl Relived {
     }
 }
 
-/// Which lives were lived and what came of them. A fitness that a life failed to earn is no number in JSON.
+/// Which trials were replayed and their outcomes. The fitness of a failed trial is no number in JSON.
 #[derive(Debug, Serialize)]
-pub(crate) struct Lived {
+pub(crate) struct ReplaySummary {
     directory: String,
     experiment: String,
     condition: String,
     seed: u64,
     generation: u32,
     individual: u32,
-    trials: Vec<LivedTrial>,
+    trials: Vec<ReplayedTrial>,
     /// Of all trials.
     steps: u32,
     /// Of all trials: that of the individual if no trial was left out.
@@ -148,7 +149,7 @@ pub(crate) struct Lived {
 }
 
 #[derive(Debug, Serialize)]
-struct LivedTrial {
+struct ReplayedTrial {
     trial: u32,
     steps: u32,
     /// Of the trial alone.
@@ -156,12 +157,12 @@ struct LivedTrial {
     success: bool,
 }
 
-impl Lived {
+impl ReplaySummary {
     /// The same in a line of words.
     fn text(&self) -> String {
         let Self { generation, individual, trials, steps, fitness, .. } = self;
         let what = match trials.as_slice() {
-            [LivedTrial { trial, .. }] => format!("trial {trial}"),
+            [ReplayedTrial { trial, .. }] => format!("trial {trial}"),
             trials => format!("{} trials", trials.len()),
         };
         format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {fitness:?}")
@@ -172,43 +173,43 @@ impl Lived {
 #[derive(Debug, Serialize)]
 pub(crate) struct Replayed {
     #[serde(flatten)]
-    life: Lived,
+    replay: ReplaySummary,
     /// The same choice in another run, if there is one.
-    compared: Option<Lived>,
-    /// Where the lives went, as the caller knows; none for the standard output.
+    compared: Option<ReplaySummary>,
+    /// Where the recordings went, as the caller knows; none for the standard output.
     pub(crate) file: Option<String>,
     /// The same in words, a line each.
     pub(crate) summary: String,
 }
 
 impl Replayed {
-    fn new(life: Lived, compared: Option<Lived>) -> Self {
-        let lines: Vec<String> = [&life].into_iter().chain(&compared).map(Lived::text).collect();
-        Self { life, compared, file: None, summary: lines.join("\n") }
+    fn new(replay: ReplaySummary, compared: Option<ReplaySummary>) -> Self {
+        let lines: Vec<String> = [&replay].into_iter().chain(&compared).map(ReplaySummary::text).collect();
+        Self { replay, compared, file: None, summary: lines.join("\n") }
     }
 }
 
-/// Writes the lives as CSV, a line per step.
+/// Writes the trials as CSV, a line per step.
 pub(crate) fn replay(
     plan: &Plan<'_>,
     directory: &Directory,
     which: Which,
     out: &mut dyn Write,
 ) -> Result<Replayed, Error> {
-    let mut relived = Relived::find(plan, directory, which)?;
+    let mut replayable = Replayable::find(plan, directory, which)?;
     let failed = |source: io::Error| Error::Io { doing: "write", path: "the replay".into(), source };
-    let mut table = Table::new(out, &relived.stage()).map_err(failed)?;
+    let mut table = Table::new(out, &replayable.schema()).map_err(failed)?;
     let mut outcomes = Vec::new();
-    for trial in relived.trials.clone() {
+    for trial in replayable.trials.clone() {
         table.begin(trial);
-        outcomes.push(relived.live(trial, &mut table));
+        outcomes.push(replayable.run(trial, &mut table));
     }
     table.finish().map_err(failed)?;
-    let life = relived.lived(plan, directory, &outcomes);
-    Ok(Replayed::new(life, None))
+    let replay = replayable.summary(plan, directory, &outcomes);
+    Ok(Replayed::new(replay, None))
 }
 
-/// Writes the lives, and those of the same choice in another run, as a page for a browser.
+/// Writes the trials, and those of the same choice in another run, as a page for a browser.
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -218,32 +219,32 @@ pub(crate) fn page(
 ) -> Result<Replayed, Error> {
     let title = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
     let mut page = Page::new(&title);
-    let mut add = |plan: &Plan<'_>, directory: &Directory| -> Result<Lived, Error> {
-        let mut relived = Relived::find(plan, directory, which)?;
+    let mut add = |plan: &Plan<'_>, directory: &Directory| -> Result<ReplaySummary, Error> {
+        let mut replayable = Replayable::find(plan, directory, which)?;
         let mut outcomes = Vec::new();
-        for trial in relived.trials.clone() {
-            let mut recording = Recording::new(relived.stage());
-            let outcome = relived.live(trial, &mut recording);
-            let Relived { generation, individual, .. } = relived;
-            // What tells lives apart comes first: a narrow screen cuts the rest.
+        for trial in replayable.trials.clone() {
+            let mut recording = Recording::new(replayable.schema());
+            let outcome = replayable.run(trial, &mut recording);
+            let Replayable { generation, individual, .. } = replayable;
+            // What distinguishes trials comes first: a narrow screen cuts the rest.
             let run = [plan.condition.as_str(), "seed"].into_iter().find(|word| !word.is_empty()).unwrap_or_default();
             let name = format!("trial {trial}: {run} {}, generation {generation}, individual {individual}", plan.seed);
-            page.add(&name, facts(&relived, &outcome), recording);
+            page.add(&name, facts(&replayable, &outcome), recording);
             outcomes.push(outcome);
         }
-        Ok(relived.lived(plan, directory, &outcomes))
+        Ok(replayable.summary(plan, directory, &outcomes))
     };
-    let life = add(plan, directory)?;
+    let replay = add(plan, directory)?;
     let compared = compare.map(|(plan, directory)| add(plan, directory)).transpose()?;
     let html = page.html();
     create_result(path)?.write_all(html.as_bytes()).map_err(Error::io("write", path))?;
-    Ok(Replayed::new(life, compared))
+    Ok(Replayed::new(replay, compared))
 }
 
 /// What came of a trial, by name.
-fn facts(relived: &Relived, outcome: &Outcome) -> Vec<(String, String)> {
-    let fitness = relived.fitness(core::slice::from_ref(outcome));
-    let terms = relived.evaluator.terms().into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
+fn facts(replayable: &Replayable, outcome: &Outcome) -> Vec<(String, String)> {
+    let fitness = replayable.fitness(core::slice::from_ref(outcome));
+    let terms = replayable.evaluator.terms().into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
     let notes = outcome.notes.iter().map(|(name, note)| {
         let value = match note {
             Note::Number(x) => readable(*x),
@@ -259,7 +260,7 @@ fn facts(relived: &Relived, outcome: &Outcome) -> Vec<(String, String)> {
     all.into_iter().chain(terms).chain(notes).collect()
 }
 
-/// Whether nobody reads the output any more, as after `| head`.
+/// Whether the reader of the output has gone, as after `| head`.
 pub(crate) fn reader_left(error: &Error) -> bool {
     matches!(error, Error::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
 }

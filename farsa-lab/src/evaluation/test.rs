@@ -8,7 +8,7 @@ use farsa_num::crc32;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::evaluation::test_table::{Findings, Table, Tried};
+use crate::evaluation::test_table::{Findings, Table, TrialResult};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
 use crate::experiment::lanes::Wanted;
@@ -17,8 +17,8 @@ use crate::run::plan::{LARGEST_SEED, Plan};
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
 use crate::run::records::{Best, Champions};
-use crate::search::evolution::POPULATION;
 use crate::store::directory::{Directory, replace};
+use crate::strategy::settings::POPULATION;
 
 /// `test.json`: which champion `test.csv` is about, and how to make it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,7 +50,7 @@ impl Record {
 
 /// What a test found.
 #[derive(Debug, Serialize)]
-pub(crate) struct Exam {
+pub(crate) struct TestRun {
     directory: String,
     generation: u32,
     individual: u32,
@@ -66,7 +66,7 @@ pub(crate) struct Exam {
     table: Table,
 }
 
-impl Exam {
+impl TestRun {
     /// A table for reading, and what it says together.
     pub(crate) fn text(&self) -> String {
         let Self { generation, individual, seed, .. } = self;
@@ -87,10 +87,10 @@ impl Exam {
     }
 }
 
-/// Lives `trials` fresh trials of the champion and writes `test.csv`.
+/// Runs `trials` fresh trials of the champion and writes `test.csv`.
 ///
 /// Trial i of the test is trial i modulo the experiment's number of trials, with random numbers of its own. The champions
-/// of several populations live against each other: each trial is lived once for each of them, with the same numbers.
+/// of several populations meet each other: each trial is run once for each of them, with the same numbers.
 pub(crate) fn test(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -99,7 +99,7 @@ pub(crate) fn test(
     threads: usize,
     lanes: Wanted,
     quiet: bool,
-) -> Result<Exam, Error> {
+) -> Result<TestRun, Error> {
     let path = directory.champion();
     if !path.is_file() && directory.checkpoint().is_file() {
         return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
@@ -114,14 +114,14 @@ pub(crate) fn test(
     let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
     let size = if best.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);
-    let tried = lives(&mut pool, &parameters, size, trials, seed, &progress);
+    let results = run_trials(&mut pool, &parameters, size, trials, seed, &progress);
     drop(progress);
-    let results = tried.map_err(|reason| match reason {
+    let results = results.map_err(|reason| match reason {
         Unfinished::Panicked => Error::Panicked { generation },
         Unfinished::Stopped => Error::Other("stopped".into()),
     })?;
     let Some(&Best { individual, .. }) = best.first() else {
-        return Err(Error::damaged(&path, "there is nobody in it"));
+        return Err(Error::damaged(&path, "it has no individual"));
     };
     let individuals = if best.len() > 1 { best.iter().map(|best| best.individual).collect() } else { Vec::new() };
 
@@ -133,7 +133,7 @@ pub(crate) fn test(
     let text = serde_json::to_string_pretty(&record).map_err(|error| Error::Other(error.to_string()))?;
     replace(&directory.test_record(), format!("{text}\n").as_bytes())?;
     let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
-    Ok(Exam { directory: path, generation, individual, individuals, seed, findings, warning, table })
+    Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, table })
 }
 
 /// The episode of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
@@ -144,14 +144,14 @@ pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
 }
 
 /// Evaluates fresh trials of some parameters, of one individual or one of each population of `size` individuals.
-pub(crate) fn lives(
+pub(crate) fn run_trials(
     pool: &mut Pool,
     champions: &[Vec<f32>],
     size: usize,
     trials: usize,
     seed: u64,
     progress: &Progress,
-) -> Result<Vec<Tried>, Unfinished> {
+) -> Result<Vec<TrialResult>, Unfinished> {
     let (count, kinds) = (champions.len().max(1), pool.evaluator().trials().max(1));
     let others_of = |own: usize| champions.iter().enumerate().filter(move |(other, _)| *other != own);
     let others: Vec<Vec<&[f32]>> =
@@ -171,15 +171,15 @@ pub(crate) fn lives(
         let alone = std::slice::from_ref(outcome);
         if outcome.is_finite() { pool.evaluator().fitness(alone) } else { f64::NAN }
     };
-    let mut tried: Vec<Tried> = Vec::with_capacity(trials);
+    let mut results: Vec<TrialResult> = Vec::with_capacity(trials);
     for (number, outcome) in outcomes.into_iter().flatten().enumerate() {
         let earned = fitness(&outcome);
-        if let Some(first) = tried.last_mut().filter(|_| !number.is_multiple_of(count)) {
+        if let Some(first) = results.last_mut().filter(|_| !number.is_multiple_of(count)) {
             first.others.push((earned, outcome.success));
         } else {
             let trial = (number / count % kinds) as u32;
-            tried.push(Tried { trial, outcome, fitness: earned, others: Vec::new() });
+            results.push(TrialResult { trial, outcome, fitness: earned, others: Vec::new() });
         }
     }
-    Ok(tried)
+    Ok(results)
 }

@@ -15,14 +15,14 @@ const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
 
 /// One trial.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Tried {
+pub(crate) struct TrialResult {
     /// Which of the experiment's trials it was.
     pub(crate) trial: u32,
     /// What came of it.
     pub(crate) outcome: Outcome,
     /// Its fitness; NaN if it broke down.
     pub(crate) fitness: f64,
-    /// Fitness and success of the opponents in the same trial, which is their life in their populations.
+    /// Fitness and success of the opponents in the same trial, which is an episode of theirs in their populations.
     pub(crate) others: Vec<(f64, bool)>,
 }
 
@@ -34,14 +34,14 @@ pub(crate) struct Table {
 
 impl Table {
     /// The table of some trials, with columns for all populations but the first, of these names.
-    pub(crate) fn new(terms: &[String], others: &[String], trials: &[Tried]) -> Self {
+    pub(crate) fn new(terms: &[String], others: &[String], trials: &[TrialResult]) -> Self {
         let mut head: Vec<String> = HEAD.map(str::to_owned).into();
         let terms = own_columns(terms);
         head.extend(terms.iter().cloned());
-        // A life that broke down has no notes: the names are those of the first that has.
+        // A trial that broke down has no notes: the names are those of the first that has.
         let names: Vec<&str> = trials
             .iter()
-            .map(|tried| &tried.outcome.notes)
+            .map(|results| &results.outcome.notes)
             .find(|notes| !notes.is_empty())
             .map_or_else(Vec::new, |notes| notes.iter().map(|(name, _)| *name).collect());
         head.extend(names.iter().map(|&name| name.to_owned()));
@@ -49,7 +49,7 @@ impl Table {
         head.extend(
             others.iter().flat_map(|name| ["fitness", "success"].map(|what| format!("{what} of population {name}"))),
         );
-        let lines = trials.iter().enumerate().map(|(index, Tried { trial, outcome, fitness, others })| {
+        let lines = trials.iter().enumerate().map(|(index, TrialResult { trial, outcome, fitness, others })| {
             let mut line = vec![
                 index.to_string(),
                 trial.to_string(),
@@ -155,7 +155,7 @@ impl Table {
             broken_down: column(4).iter().filter(|text| !text.parse::<f64>().is_ok_and(f64::is_finite)).count(),
             fitness: mean(&column(4)),
             by_trial,
-            notes: notes.map(|(index, name)| (name.clone(), Finding::of(column(index)))).collect(),
+            notes: notes.map(|(index, name)| (name.clone(), Finding::from_fields(column(index)))).collect(),
         }
     }
 }
@@ -165,9 +165,9 @@ impl Table {
 pub(crate) struct Findings {
     pub(crate) trials: usize,
     pub(crate) successes: usize,
-    /// Lives whose numbers were not finite.
+    /// Trials whose numbers were not finite.
     pub(crate) broken_down: usize,
-    /// Mean fitness of the lives that did not break down.
+    /// Mean fitness of the trials that did not break down.
     pub(crate) fitness: f64,
     /// By the number of the experiment's trial.
     pub(crate) by_trial: BTreeMap<u32, Share>,
@@ -194,7 +194,7 @@ pub(crate) enum Finding {
 }
 
 impl Finding {
-    fn of(fields: Vec<String>) -> Self {
+    fn from_fields(fields: Vec<String>) -> Self {
         if fields.iter().all(|field| field.is_empty() || field.parse::<f64>().is_ok()) {
             return Self::Mean(mean(&fields));
         }
@@ -266,12 +266,12 @@ mod tests {
             success,
             notes: vec![("phase", phase.into()), ("height", height.into())],
         };
-        let tried = |trial, outcome, fitness| Tried { trial, outcome, fitness, others: Vec::new() };
+        let results = |trial, outcome, fitness| TrialResult { trial, outcome, fitness, others: Vec::new() };
         let trials = [
-            tried(0, outcome("reach", 1.0, false), 3.5),
-            tried(1, outcome("lift", 6.0, true), 3.5),
-            tried(2, Outcome::failed(), f64::NAN),
-            tried(0, outcome("lift", 8.0, true), 7.0),
+            results(0, outcome("reach", 1.0, false), 3.5),
+            results(1, outcome("lift", 6.0, true), 3.5),
+            results(2, Outcome::failed(), f64::NAN),
+            results(0, outcome("lift", 8.0, true), 7.0),
         ];
         Table::new(&["a".into(), "b".into()], &[], &trials)
     }
@@ -279,9 +279,13 @@ mod tests {
     #[test]
     fn opponents_have_columns_of_their_own() {
         let outcome = Outcome { terms: vec![2.0], steps: 6, notes: vec![("at", 1.0.into())], ..Outcome::default() };
-        let tried =
-            |others: &[(f64, bool)]| Tried { trial: 0, outcome: outcome.clone(), fitness: 2.0, others: others.into() };
-        let trials = [tried(&[(3.0, true), (0.5, false)]), tried(&[(1.0, false), (0.5, false)])];
+        let results = |others: &[(f64, bool)]| TrialResult {
+            trial: 0,
+            outcome: outcome.clone(),
+            fitness: 2.0,
+            others: others.into(),
+        };
+        let trials = [results(&[(3.0, true), (0.5, false)]), results(&[(1.0, false), (0.5, false)])];
         let table = Table::new(&["a".into()], &["prey".into(), "2".into()], &trials);
         assert_eq!(
             table.lines[0][5..].join(","),

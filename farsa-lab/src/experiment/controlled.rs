@@ -6,7 +6,7 @@ use farsa_body::{
 };
 use farsa_nn::Leak;
 use farsa_physics::arena::{Arena, Batch, World};
-use farsa_view::Stage;
+use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::controller_export::{
@@ -97,8 +97,8 @@ impl<S: Channels, M: Channels, O: Objective> Controlled<S, M, O> {
     /// Episodes of this controller, whose parameters are evaluated, with this objective.
     pub fn new(control: Neurocontroller<S, M>, objective: O, trials: Trials) -> Self {
         let names: Vec<&str> = objective.values().into_iter().map(|(name, _)| name).collect();
-        let stage = control.stage().clone().with_scalars(names);
-        Self { control: control.on_stage(stage), objective, trials, steps: 0, sum: 0.0 }
+        let schema = control.schema().clone().with_scalars(names);
+        Self { control: control.with_schema(schema), objective, trials, steps: 0, sum: 0.0 }
     }
 }
 
@@ -139,8 +139,8 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S
         self.control.parameters()
     }
 
-    fn stage(&self) -> Stage {
-        self.control.stage().clone()
+    fn schema(&self) -> Schema {
+        self.control.schema().clone()
     }
 
     fn description(&self) -> Description {
@@ -175,12 +175,12 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Rollout for Controlle
 impl<S: Channels + Send, M: Channels + Send, O: Objective> Exports for Controlled<S, M, O> {
     /// The network, with the numbers of the channels that it reads and writes.
     fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
-        let stage = self.control.stage();
-        let sensors = stage.sensors.iter().enumerate().map(|(channel, sensor)| SensorExport {
+        let schema = self.control.schema();
+        let sensors = schema.sensors.iter().enumerate().map(|(channel, sensor)| SensorExport {
             name: sensor.name.clone(),
             reads: SensorReading::Channel { channel },
         });
-        let motors = stage
+        let motors = schema
             .outputs
             .iter()
             .enumerate()

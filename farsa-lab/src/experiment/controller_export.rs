@@ -4,10 +4,10 @@ use farsa_body::{Axes, Law};
 use farsa_nn::{CtrnnLayout, Leak, LeakyLayout, LeakyParts};
 use serde::Serialize;
 
-/// A controller with all that another program needs to let it live in another world: numbers, and names of the model that
+/// A controller with all that another program needs to run it in another world: numbers, and names of the model that
 /// `farsa export robot` writes.
 ///
-/// Units are SI unless a channel says otherwise. Numbers are those that lives here use: what is single precision here is
+/// Units are SI unless a channel says otherwise. Numbers are those that trials here use: what is single precision here is
 /// written with the digits that single precision needs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ControllerExport {

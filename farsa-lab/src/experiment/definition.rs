@@ -1,15 +1,16 @@
-//! What an experiment is to the command: a name, a table of settings, and lives of genomes.
+//! What an experiment is to the command: a name, a table of settings, and what evaluates parameters.
 
 use std::path::PathBuf;
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
-use crate::experiment::search_kind::Search;
 use crate::experiment::settings::{Setting, Settings};
+use crate::strategy::definition::StrategyDefinition;
+use crate::strategy::truncation::Truncation;
 
 /// An experiment that the `farsa` command lists, explains, runs, tests and replays.
 ///
-/// The experiment says what there is to set and how a genome lives; the command brings evolution, threads, files,
+/// The experiment says what there is to set and how parameters are evaluated; the command brings evolution, threads, files,
 /// checkpoints and replay. See the crate's documentation for a whole one.
 pub trait Experiment: Sync {
     /// The name on the command line and in the run directory: lower-case letters, digits and hyphens.
@@ -25,26 +26,24 @@ pub trait Experiment: Sync {
 
     /// Grows by one whenever the same configuration, seed and genes earn another fitness.
     ///
-    /// A run of another version is neither resumed nor replayed: its lives would be others.
+    /// A run of another version is neither resumed nor replayed: its trials would be others.
     fn values_version(&self) -> u32 {
         1
     }
 
-    /// How a run searches for good genomes under a condition; by default with the truncation algorithm.
-    fn search(&self, condition: &str) -> Search {
+    /// What a run searches with under a condition; by default the truncation algorithm.
+    fn strategy(&self, condition: &str) -> &'static dyn StrategyDefinition {
         let _ = condition;
-        Search::Truncation
+        &Truncation
     }
 
     /// Every setting of the experiment under a condition (`""` if there are none), with its default.
     ///
-    /// The settings of evolution (`evolution.*`, [`evolution::settings`](crate::search::evolution::settings) or, as
-    /// [`search`](Self::search) says,
-    /// [`evolution::one_plus_one_settings`](crate::search::evolution::one_plus_one_settings)) are added by the command;
-    /// a setting here with the same key replaces the one there, which is how an experiment has its own defaults.
+    /// The settings of the [`strategy`](Self::strategy) (`evolution.*`) are added by the command; a setting here with the same
+    /// key replaces the one there, which is how an experiment has its own defaults.
     fn settings(&self, condition: &str) -> Vec<Setting>;
 
-    /// The files whose content lives depend on, such as tables of sensors that a setting names; by default none.
+    /// The files whose content trials depend on, such as tables of sensors that a setting names; by default none.
     ///
     /// A run remembers their checksums and is neither resumed, replayed nor tested with other ones. Relative paths are
     /// relative to the current directory.

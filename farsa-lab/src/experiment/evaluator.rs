@@ -2,7 +2,7 @@
 
 use farsa_body::Recorder;
 use farsa_models::MjcfOptions;
-use farsa_view::Stage;
+use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::controller_export::{ControllerExport, CtrnnExport, StartExport};
@@ -34,8 +34,8 @@ pub trait Task: Send {
     /// The parameters that an evaluation takes, in their order.
     fn parameters(&self) -> Vec<Parameter>;
 
-    /// What an episode records at every step, by name: [`Stage::of_scalars`] if it is a row of numbers.
-    fn stage(&self) -> Stage;
+    /// What an episode records at every step, by name: [`Schema::from_scalars`] if it is a row of numbers.
+    fn schema(&self) -> Schema;
 
     /// What the robot senses, does and computes with, for `farsa info`; by default the number of parameters alone.
     fn description(&self) -> Description {
@@ -81,7 +81,7 @@ pub trait Task: Send {
 
 /// What `farsa export` writes of an experiment; each by default nothing.
 pub trait Exports {
-    /// What a MuJoCo model of the robot on the [`stage`](Task::stage) says beside the robot.
+    /// What a MuJoCo model of the robot in the [`schema`](Task::schema) says beside the robot.
     fn mjcf_options(&self) -> Option<MjcfOptions> {
         None
     }
@@ -108,8 +108,8 @@ pub trait Exports {
 
 /// Bodies that are made of parameters.
 pub trait Bodies {
-    /// The stage of one evaluation's episodes; its channels are those of [`Task::stage`], whatever the parameters.
-    fn stage_with(&self, parameters: &[f32]) -> Stage;
+    /// The schema of one evaluation's episodes; its channels are those of [`Task::schema`], whatever the parameters.
+    fn schema_with(&self, parameters: &[f32]) -> Schema;
 }
 
 /// One trial that is to be evaluated.
@@ -136,8 +136,8 @@ pub struct Evaluation<'p> {
 pub trait Evaluator: Task {
     /// Runs one trial from its start to its end.
     ///
-    /// What [`stage`](Task::stage) names goes to the recorder at every step if there is one; whether there is must not
-    /// change the outcome. A trial that broke down is [`Outcome::failed`].
+    /// What [`schema`](Task::schema) names goes to the recorder at every step if there is one; whether there is must
+    /// not change the outcome. A trial that broke down is [`Outcome::failed`].
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome;
 
     /// How trials are evaluated side by side, if they can be.
@@ -145,7 +145,7 @@ pub trait Evaluator: Task {
         None
     }
 
-    /// How a lesson is taken, where the search is [`Search::Learning`](crate::Search::Learning).
+    /// How it is trained, where the strategy is [`Learning`](crate::Learning).
     fn learner(&mut self) -> Option<&mut dyn Learner> {
         None
     }
@@ -170,23 +170,24 @@ pub trait InLanes {
     );
 }
 
-/// Learns from demonstrations: its state is a row of words that changes by lessons.
+/// Learns from demonstrations: its state is a row of numbers that iterations change.
 pub trait Learner {
-    /// The words from which learning starts: all that a [`lesson`](Self::lesson) depends on besides seed and generation.
-    fn first_words(&self, seed: u64) -> Vec<f64>;
+    /// The state from which learning starts: all that [`iterate`](Self::iterate) depends on besides seed and generation.
+    fn initial_state(&self, seed: u64) -> Vec<f64>;
 
-    /// Changes the words by one lesson and says what it was like; `None` if these are not words to learn from.
+    /// Changes the state by one iteration and says what it was like; `None` for a state that nothing can be learned from.
     ///
-    /// The same words, seed and generation must become the same words, whatever this value did before.
-    fn lesson(&mut self, words: &mut [f64], seed: u64, generation: u32) -> Option<Lesson>;
+    /// The same state, seed and generation must become the same state, whatever this value did before.
+    fn iterate(&mut self, state: &mut [f64], seed: u64, generation: u32) -> Option<Iteration>;
 
-    /// The genes of 16 bits, one for each parameter, of what has been learned in these words.
-    fn learned(&self, words: &[f64]) -> Vec<u16>;
+    /// What has been learned in this state: a value for each of the task's [`parameters`](Task::parameters), which is evaluated
+    /// after it was rounded to the nearest gene.
+    fn learned(&self, state: &[f64]) -> Vec<f64>;
 }
 
-/// What a lesson was like, [`Learner::lesson`].
+/// What an iteration was like, [`Learner::iterate`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Lesson {
+pub struct Iteration {
     /// Root of the mean squared error of motor values before it, on demonstrations that have never been learned from.
     pub before: f64,
     /// The same on the same demonstrations after it.

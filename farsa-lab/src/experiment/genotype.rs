@@ -1,6 +1,7 @@
 //! From genes to the parameters that they stand for.
 
 use farsa_evo::Population;
+use farsa_num::Scalar as _;
 
 use crate::experiment::evaluator::Parameter;
 
@@ -36,6 +37,18 @@ impl Genotype {
     /// The parameters of everyone; `None` for genomes of another length.
     pub(crate) fn decode_all(&self, genomes: &Population) -> Option<Vec<Vec<f32>>> {
         genomes.iter().map(|genes| self.decode(genes)).collect()
+    }
+
+    /// The genes that come nearest to parameters \[[`genes`](Self::genes)\], those at an end for parameters beyond it; `None` for
+    /// another number of parameters.
+    pub fn encode(&self, parameters: &[f64]) -> Option<Vec<u16>> {
+        let largest = self.largest();
+        let gene = |(parameter, [first, other]): (&f64, &[f64; 2])| {
+            let share = (parameter - first) / (other - first);
+            // The conversion to an integer stops at 0 and at its largest value.
+            ((share * f64::from(largest)).clamp(-1.0, f64::from(largest)).round_small() as u16).min(largest)
+        };
+        (parameters.len() == self.ends.len()).then(|| parameters.iter().zip(&self.ends).map(gene).collect())
     }
 
     /// The parameters \[[`genes`](Self::genes)\] that genes stand for; `None` for another number of genes.
@@ -85,6 +98,26 @@ mod tests {
                 assert_eq!(ours.decode(&[gene]).unwrap(), theirs, "{gene} of {low} to {high}");
             }
         }
+    }
+
+    #[test]
+    fn the_nearest_gene_of_what_a_gene_stands_for_is_that_gene() {
+        for (ends, bits) in [([-20.0, 20.0], 16), ([0.0, 1.0], 16), ([5.0, -5.0], 8), ([-0.3, 7.1], 3)] {
+            let genotype = genotype(&[ends], bits);
+            for gene in (0..=genotype.largest()).step_by(if bits > 8 { 11 } else { 1 }) {
+                let parameter = f64::from(genotype.decode(&[gene]).unwrap()[0]);
+                assert_eq!(genotype.encode(&[parameter]), Some(vec![gene]), "{gene} of {ends:?}");
+            }
+            let [first, other] = ends;
+            let beyond = other - first;
+            assert_eq!(genotype.encode(&[first - beyond]), Some(vec![0]));
+            assert_eq!(genotype.encode(&[other + 1e9 * beyond]), Some(vec![genotype.largest()]));
+            // Half way from one gene to the next, and a little less.
+            let step = beyond / f64::from(genotype.largest());
+            assert_eq!(genotype.encode(&[first + 1.49 * step]), Some(vec![1]));
+            assert_eq!(genotype.encode(&[first + 1.51 * step]), Some(vec![2]));
+        }
+        assert_eq!(genotype(&[[0.0, 1.0]], 16).encode(&[]), None);
     }
 
     #[test]

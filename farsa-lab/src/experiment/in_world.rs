@@ -1,7 +1,7 @@
 //! An evaluator made of a world and an episode.
 
 use farsa_body::{Recorder, World};
-use farsa_view::Stage;
+use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
@@ -132,8 +132,8 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
     fn parameters(&self) -> Vec<Parameter> {
         self.rollout.parameters()
     }
-    fn stage(&self) -> Stage {
-        self.rollout.stage()
+    fn schema(&self) -> Schema {
+        self.rollout.schema()
     }
     fn description(&self) -> Description {
         self.rollout.description()

@@ -1,4 +1,4 @@
-//! How many lives a thread lives side by side, and by which instructions.
+//! How many trials a thread runs side by side, and by which instructions.
 
 use farsa_num::Instructions;
 use farsa_physics::articulated::{Batch, LANES};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 
-/// So many lives side by side in each thread, by these instructions; every choice gives the same results.
+/// So many trials side by side in each thread, by these instructions; every choice gives the same results.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes {
     count: usize,
@@ -14,12 +14,12 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// One life after the other.
+    /// One trial after the other.
     pub fn one() -> Self {
         Self { count: 1, instructions: Instructions::baseline() }
     }
 
-    /// So many lives side by side, 1 or one of [`LANES`], by these instructions.
+    /// So many trials side by side, 1 or one of [`LANES`], by these instructions.
     ///
     /// # Errors
     /// [`Error::Usage`] for another number.
@@ -38,35 +38,35 @@ impl Lanes {
         Self { count: usual(instructions), instructions }
     }
 
-    /// Lives side by side.
+    /// Trials side by side.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The instruction set, where there is more than one life.
+    /// The instruction set, where there is more than one trial.
     pub fn instructions(&self) -> Instructions {
         self.instructions
     }
 
     /// What was chosen, as the manifest tells it.
-    pub(crate) fn told(&self) -> Told {
+    pub(crate) fn info(&self) -> LanesInfo {
         let simd = if self.count == 1 { "none" } else { name(self.instructions) };
-        Told { lanes: self.count, simd: simd.into() }
+        LanesInfo { lanes: self.count, simd: simd.into() }
     }
 }
 
 /// Lanes by name, in a run's manifest.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub(crate) struct Told {
+pub(crate) struct LanesInfo {
     pub(crate) lanes: usize,
     pub(crate) simd: String,
 }
 
-impl Default for Told {
+impl Default for LanesInfo {
     /// What sessions did before there were lanes.
     fn default() -> Self {
-        Lanes::one().told()
+        Lanes::one().info()
     }
 }
 
@@ -97,7 +97,7 @@ fn usual(instructions: Instructions) -> usize {
 }
 
 impl Wanted {
-    /// One life after the other, for what nobody chose.
+    /// One trial after the other, for what nobody chose.
     #[cfg(test)]
     pub(crate) const ONE: Self = Self { count: Some(1), simd: None };
 
@@ -127,10 +127,10 @@ mod tests {
     #[test]
     fn the_best_is_what_is_wanted_by_default() {
         let best = Wanted { count: None, simd: None }.on_this_machine().unwrap();
-        assert_eq!(best.told(), Lanes::best().told());
+        assert_eq!(best.info(), Lanes::best().info());
         let baseline = Wanted { count: None, simd: Some("baseline") }.on_this_machine().unwrap();
-        assert_eq!(baseline.told(), Told { lanes: 8, simd: "baseline".into() });
-        assert_eq!(Wanted::ONE.on_this_machine().unwrap().told(), Told::default());
+        assert_eq!(baseline.info(), LanesInfo { lanes: 8, simd: "baseline".into() });
+        assert_eq!(Wanted::ONE.on_this_machine().unwrap().info(), LanesInfo::default());
         let error = Wanted { count: None, simd: Some("neon") }.on_this_machine().unwrap_err();
         assert_eq!(error.exit_code(), 2);
         let odd = Lanes::new(13, Instructions::detect()).unwrap_err().to_string();

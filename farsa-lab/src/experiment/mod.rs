@@ -13,8 +13,8 @@
 //! - `controlled`: an episode of one robot that a network controls, with an objective of one's own
 //! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
 //! - `rescored`: an experiment that there is, under another fitness
-//! - `search_kind`: how an experiment searches, in a word
 //! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
+//! - `with_strategy`: an experiment with another strategy than its own
 
 mod controlled;
 pub(crate) mod controller_export;
@@ -29,8 +29,8 @@ mod network_parameters;
 mod neurocontroller;
 pub(crate) mod outcome;
 mod rescored;
-pub(crate) mod search_kind;
 pub(crate) mod settings;
+pub(crate) mod with_strategy;
 
 pub use controlled::{Controlled, Objective, PlanarWorld, Trials};
 pub use controller_export::{
@@ -39,7 +39,7 @@ pub use controller_export::{
 };
 pub use definition::{Experiment, SimpleExperiment};
 pub use episode::{Episode, EpisodeId, NoWorld, record_row, run_episode, seconds};
-pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Lesson, Parameter, Task};
+pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, Learner, Parameter, Task};
 pub use genotype::Genotype;
 pub use in_lanes::{Batch, run_in_lanes};
 pub use in_world::{InWorld, Rollout};
@@ -48,5 +48,5 @@ pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
 pub use neurocontroller::Neurocontroller;
 pub use outcome::{ChannelGroup, Description, Note, Outcome, mean_of_trials};
 pub use rescored::Rescored;
-pub use search_kind::Search;
 pub use settings::{Setting, Settings, Source, Value};
+pub use with_strategy::WithStrategy;

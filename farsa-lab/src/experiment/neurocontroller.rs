@@ -2,7 +2,7 @@
 
 use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Recorder, Sensor, record_world};
 use farsa_nn::{Controller as _, LeakyLayout};
-use farsa_view::Stage;
+use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::evaluator::Parameter;
@@ -43,7 +43,7 @@ pub struct Neurocontroller<S, M> {
     network: OwnedNetwork,
     x: Vec<f32>,
     y: Vec<f32>,
-    stage: Stage,
+    schema: Schema,
 }
 
 impl<S: Channels, M: Channels> Neurocontroller<S, M> {
@@ -63,7 +63,8 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         let layout = LeakyLayout::new(inputs, hidden, outputs);
         let network = resting_network(&layout)?;
         let (x, y) = (vec![0.0; inputs], vec![0.0; outputs]);
-        Ok(Self { sensors, motors, layout, range, network, x, y, stage: Stage::default() }.on_stage(Stage::default()))
+        Ok(Self { sensors, motors, layout, range, network, x, y, schema: Schema::default() }
+            .with_schema(Schema::default()))
     }
 
     /// The network's parameters with their ranges.
@@ -105,13 +106,13 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         self.motors.drive(&self.y, world);
     }
 
-    /// Records where the bodies of the stage are, what touches, and what was sensed, computed and done last; the caller ends
-    /// the tick, with [`Recorder::tick`].
+    /// Records where the bodies of the schema are, what touches, and what was sensed, computed and done last; the
+    /// caller ends the tick, with [`Recorder::tick`].
     pub fn record<W>(&self, world: &W, recorder: &mut dyn Recorder)
     where
         W: Kinematics<Body = BodyId> + Contacts + ?Sized,
     {
-        record_world(world, self.stage.shown(), recorder);
+        record_world(world, self.schema.shown(), recorder);
         recorder.sensors(&self.x);
         recorder.neurons(self.network.hidden());
         recorder.outputs(&self.y);
@@ -122,21 +123,22 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         recorder.parameters(self.network.parameters());
     }
 
-    /// The same on a stage, to which the network is added; sensors and outputs that it does not name are numbered from 1.
+    /// The same with this schema, to which the network is added; sensors and outputs that it does not name are numbered
+    /// from 1.
     #[must_use]
-    pub fn on_stage(self, stage: Stage) -> Self {
+    pub fn with_schema(self, schema: Schema) -> Self {
         let numbered = |count: usize| (1..=count).map(|number| number.to_string()).collect::<Vec<_>>();
         let (inputs, outputs) = (self.x.len(), self.y.len());
-        let stage = if stage.sensors.len() == inputs { stage } else { stage.with_sensors(numbered(inputs)) };
-        let stage = if stage.outputs.len() == outputs { stage } else { stage.with_outputs(numbered(outputs)) };
-        let mut stage = stage.with_network(&self.layout);
-        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
-        Self { stage, ..self }
+        let schema = if schema.sensors.len() == inputs { schema } else { schema.with_sensors(numbered(inputs)) };
+        let schema = if schema.outputs.len() == outputs { schema } else { schema.with_outputs(numbered(outputs)) };
+        let mut schema = schema.with_network(&self.layout);
+        schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        Self { schema, ..self }
     }
 
     /// What [`record`](Self::record) and the caller record, by name.
-    pub fn stage(&self) -> &Stage {
-        &self.stage
+    pub fn schema(&self) -> &Schema {
+        &self.schema
     }
 
     /// What `farsa info` tells of it, for trials of so many steps of `step_seconds` \[s\].
@@ -162,7 +164,7 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         &self.y
     }
 
-    /// The sensors, such as to give a life noise of its own.
+    /// The sensors, such as to give a trial noise of its own.
     pub fn sensors_mut(&mut self) -> &mut S {
         &mut self.sensors
     }
@@ -207,12 +209,12 @@ mod tests {
         let mut motor = TorqueMotor::new(ActuatorId(0), 20.0).unwrap();
         let (mut x, mut y) = ([0.0; 2], [0.0; 1]);
 
-        // The second life knows nothing of the first.
+        // The second episode knows nothing of the first.
         for _life in 0..2 {
             network.reset();
-            control = control.on_stage(Stage { bodies: vec!["point".into()], ..Stage::of_scalars(["t"]) });
-            assert_eq!(control.stage().columns()[1..4], ["sensor.1", "sensor.2", "neuron.1"]);
-            let mut recording = Recording::new(control.stage().clone());
+            control = control.with_schema(Schema { bodies: vec!["point".into()], ..Schema::from_scalars(["t"]) });
+            assert_eq!(control.schema().columns()[1..4], ["sensor.1", "sensor.2", "neuron.1"]);
+            let mut recording = Recording::new(control.schema().clone());
             assert!(control.load(&decoded));
             control.record_parameters(&mut recording);
             let (mut world, mut other) = (PointWorld::new(1), PointWorld::new(1));

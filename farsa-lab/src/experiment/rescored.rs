@@ -1,7 +1,7 @@
 //! An experiment that there is, under another fitness.
 
 use farsa_body::Recorder;
-use farsa_view::Stage;
+use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Parameter, Task};
@@ -40,8 +40,8 @@ impl Task for Rescored {
     fn parameters(&self) -> Vec<Parameter> {
         self.inner.parameters()
     }
-    fn stage(&self) -> Stage {
-        self.inner.stage()
+    fn schema(&self) -> Schema {
+        self.inner.schema()
     }
     fn description(&self) -> Description {
         self.inner.description()

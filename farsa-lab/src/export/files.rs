@@ -1,6 +1,5 @@
 //! `farsa export`: robots, controllers, genotypes and starts as files for other programs.
 
-use clap::ValueEnum;
 use farsa_models::{MjcfOptions, mjcf, urdf};
 use serde::Serialize;
 
@@ -16,32 +15,25 @@ use crate::run::records::{Best, Champions};
 use crate::store::directory::Directory;
 
 /// The formats of model files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ModelFormat {
-    /// MuJoCo's own: joints, inertias, contact pairs, actuators, starts
+    /// MuJoCo's own.
     Mjcf,
-    /// The robot alone: joints, inertias, shapes
+    /// The robot alone.
     Urdf,
 }
 
 /// The formats of controllers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ControllerFormat {
-    /// Names and numbers, of the body too
+    /// Names and numbers, of the body too.
     Json,
-    /// The network for a board's flash: checked and used where it lies
+    /// The network for a board's flash.
     Bytes,
-    /// The network as constants of a Rust program
+    /// The network as constants of a Rust program.
     Rust,
-    /// The network as tables for Python
+    /// The network as tables for Python.
     Safetensors,
-}
-
-/// The formats of starts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum DataFormat {
-    /// Names and numbers
-    Json,
 }
 
 /// The robot of an experiment under a condition and its settings.
@@ -51,7 +43,7 @@ pub(crate) enum DataFormat {
 pub(crate) fn robot(plan: &Plan<'_>, format: ModelFormat) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
-    let robot = evaluator.stage().robot.ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
+    let robot = evaluator.schema().robot.ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
         ModelFormat::Mjcf => mjcf::write(&robot, &mjcf_options(evaluator.as_ref())),
         ModelFormat::Urdf => urdf::write(&robot),
@@ -109,7 +101,7 @@ struct Trials<'a> {
 /// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
-    let Champions { generation, best, .. } = Champions::of(plan, directory, evaluator.as_ref())?;
+    let Champions { generation, best, .. } = Champions::read_checked(plan, directory, evaluator.as_ref())?;
     let (experiment, names) = (plan.experiment.name(), evaluator.populations());
     let population = Populations { experiment, names: &names }.one("--population", population)?;
     let Some(Best { individual, genes, .. }) = best.get(population) else {
@@ -127,7 +119,7 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
 /// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
     let evaluator = plan.evaluator()?;
-    let Champions { generation, best, .. } = Champions::of(plan, directory, evaluator.as_ref())?;
+    let Champions { generation, best, .. } = Champions::read_checked(plan, directory, evaluator.as_ref())?;
     let name = plan.experiment.name();
     let [Best { individual, genes, .. }] = best.as_slice() else {
         return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));
@@ -139,7 +131,7 @@ pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: Control
     let ctrnn = exports.and_then(|exports| exports.ctrnn(&parameters));
     let controller = match (controller, ctrnn) {
         (Some(controller), _) => controller,
-        // Its body is none that the other formats could tell.
+        // The other formats cannot describe its body.
         (None, Some(network)) if format == ControllerFormat::Bytes => return controller_formats::ctrnn_bytes(&network),
         (None, Some(_)) => return Err(Error::Usage(format!("{name}: its controllers are exported as bytes only"))),
         (None, None) => return Err(Error::Usage(format!("{name}: its controllers cannot be exported"))),
@@ -161,7 +153,7 @@ pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: Control
 /// How the trials of `farsa test` start.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment whose starts cannot be told.
+/// [`Error::Usage`] for an experiment whose starts cannot be exported.
 pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();

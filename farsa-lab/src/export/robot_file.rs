@@ -1,59 +1,14 @@
 //! `farsa robot`: what is in a model file of a robot.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::Path;
 
-use clap::{Args, ValueHint};
 use farsa_body::{JointKind, Law, Servo};
-use farsa_models::{Imported, Meshes, MjcfOptions, ReadError, ReadOptions, Repair, mjcf, urdf};
+use farsa_models::{Imported, MjcfOptions, ReadError, ReadOptions, mjcf, urdf};
 use serde::Serialize;
 
 use crate::error::Error;
 use crate::export::files::ModelFormat;
-
-#[derive(Args)]
-#[command(allow_negative_numbers = true)]
-#[expect(clippy::struct_excessive_bools, reason = "the switches of a command")]
-pub(crate) struct RobotArgs {
-    /// A URDF or MJCF file
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub(crate) file: PathBuf,
-    /// The folder that all files named in it must lie in [default: its own]
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub(crate) root: Option<PathBuf>,
-    /// A folder with packages, for meshes at package://; may be repeated
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub(crate) packages: Vec<PathBuf>,
-    /// Let a URDF's root move freely instead of standing fixed
-    #[arg(long)]
-    pub(crate) floating: bool,
-    /// Leave meshes out
-    #[arg(long)]
-    pub(crate) without_meshes: bool,
-    /// Give what moves without a mass this one [kg]
-    #[arg(long, value_name = "KG", default_value_t = 0.0, value_parser = not_negative)]
-    pub(crate) least_mass: f64,
-    /// Give what moves at least these moments of inertia [kg m2]
-    #[arg(long, value_name = "KGM2", default_value_t = 0.0, value_parser = not_negative)]
-    pub(crate) least_inertia: f64,
-    /// Give impossible moments of inertia their mean
-    #[arg(long)]
-    pub(crate) balance: bool,
-    /// Write the robot back, as a file of this kind
-    #[arg(long, value_enum)]
-    pub(crate) format: Option<ModelFormat>,
-    /// A new file to write it to [default: the standard output]
-    #[arg(long, value_name = "FILE", requires = "format", value_hint = ValueHint::FilePath)]
-    pub(crate) out: Option<PathBuf>,
-    /// Write JSON
-    #[arg(long, conflicts_with = "format")]
-    pub(crate) json: bool,
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
-    number.ok_or_else(|| "must be a number from 0 on".into())
-}
 
 /// What was read.
 #[derive(Serialize)]
@@ -82,20 +37,12 @@ struct JointSummary {
     actuators: Vec<String>,
 }
 
-/// Reads the file that the arguments name.
+/// Reads a model file.
 ///
 /// # Errors
 /// [`Error::Other`] with what is wrong with the file, and the argument that could help.
-pub(crate) fn read(args: &RobotArgs) -> Result<Imported, Error> {
-    let options = ReadOptions {
-        root: args.root.clone(),
-        packages: args.packages.clone(),
-        floating: args.floating,
-        meshes: if args.without_meshes { Meshes::Leave } else { Meshes::Fit },
-        repair: Repair { least_mass: args.least_mass, least_inertia: args.least_inertia, balance: args.balance },
-        ..ReadOptions::default()
-    };
-    Imported::from_file(&args.file, &options).map_err(|error| {
+pub(crate) fn read(file: &Path, options: &ReadOptions) -> Result<Imported, Error> {
+    Imported::from_file(file, options).map_err(|error| {
         let hint = match &error {
             ReadError::Mass { .. } => "; or --least-mass, --least-inertia, --balance",
             ReadError::Mesh { .. } => "; or --without-meshes",
@@ -120,7 +67,8 @@ pub(crate) fn written(reading: &Imported, format: ModelFormat) -> Result<String,
 }
 
 impl Summary {
-    pub(crate) fn of(args: &RobotArgs, reading: &Imported) -> Self {
+    /// What was read of the robot in this file.
+    pub(crate) fn new(file: &Path, reading: &Imported) -> Self {
         let robot = &reading.robot;
         let joints = robot.joints().map(|id| {
             let segment = &robot.segments[id.index()];
@@ -154,7 +102,7 @@ impl Summary {
         });
         Self {
             robot: robot.name.clone(),
-            file: args.file.display().to_string(),
+            file: file.display().to_string(),
             segments: robot.segments.len(),
             joints: joints.collect(),
             colliders: robot.colliders.len(),

@@ -12,7 +12,7 @@ impl Quartiles {
     /// Of values in any order, interpolated linearly between neighbours as R and `NumPy` do by default; none of no values.
     ///
     /// Minus infinity is a value like any other: that of a generation in which all failed.
-    pub(crate) fn of(values: &[f64]) -> Option<Self> {
+    pub(crate) fn from_values(values: &[f64]) -> Option<Self> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let at = |share: f64| {
@@ -29,7 +29,7 @@ impl Quartiles {
 
 /// The median of values in any order.
 pub(crate) fn median(values: &[f64]) -> Option<f64> {
-    Quartiles::of(values).map(|quartiles| quartiles.median)
+    Quartiles::from_values(values).map(|quartiles| quartiles.median)
 }
 
 /// Most values that [`compare`] takes together: beyond it the count of arrangements takes too long.
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn quartiles_are_those_computed_by_hand() {
-        let of = |values: &[f64]| Quartiles::of(values).map(|q| [q.lower, q.median, q.upper]);
+        let of = |values: &[f64]| Quartiles::from_values(values).map(|q| [q.lower, q.median, q.upper]);
         assert_eq!(of(&[]), None);
         assert_eq!(of(&[7.0]), Some([7.0; 3]));
         assert_eq!(of(&[3.0, 1.0]), Some([1.5, 2.0, 2.5]));

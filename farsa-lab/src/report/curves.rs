@@ -18,10 +18,10 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
         && let [run] = runs.as_slice()
     {
         let charts = plot::charts(&run.plan.name(), &run.lines, &run.populations);
-        let of_each = charts.iter().zip(run.of_each()).map(|(chart, (_, name))| {
+        let of_each = charts.iter().zip(run.populations()).map(|(chart, (_, name))| {
             let whose =
                 if name.is_empty() { "every generation".into() } else { format!("the {name} of every generation") };
-            let caption = format!("Best, mean and worst individual of {whose}; failed lives are left out.");
+            let caption = format!("Best, mean and worst individual of {whose}; failed individuals are left out.");
             figure(chart.draw(), caption)
         });
         return of_each.collect();
@@ -33,7 +33,7 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
         "One run each."
     };
     let mut figures = Vec::new();
-    for (population, name) in Group::of_each(groups) {
+    for (population, name) in Group::populations(groups) {
         for (which, title) in [(0, "Best of the generation"), (1, "Mean of the generation")] {
             let title = if name.is_empty() { title.to_owned() } else { format!("{title}, {name}") };
             let chart = Chart { title: title.clone(), axis: "fitness", curves: curves(groups, population, which) };
@@ -71,5 +71,5 @@ pub(crate) fn quartiles(
     generation: usize,
     which: usize,
 ) -> Option<Quartiles> {
-    Quartiles::of(&group.runs.iter().map(|run| run.fitness(population, generation, which)).collect::<Vec<_>>())
+    Quartiles::from_values(&group.runs.iter().map(|run| run.fitness(population, generation, which)).collect::<Vec<_>>())
 }

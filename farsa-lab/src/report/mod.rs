@@ -3,7 +3,7 @@
 //! - `curves`: the curves of a report: one run as it was, many as median and quartiles
 //! - `page`: a page of headings, texts, tables and pictures, written as HTML or as Markdown
 //! - `run`: a run as a report reads it, and runs that differ in their seeds alone
-//! - `section`: what a report tells about the runs of one experiment
+//! - `section`: what a report says about the runs of one experiment
 //! - `settings`: the configurations of the runs in a report: what differs, everything, and the commands that say it again
 //! - `write`: `farsa report`: a page about one or many runs
 

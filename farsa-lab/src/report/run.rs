@@ -8,12 +8,12 @@ use crate::evaluation::test_table::{Findings, Table};
 use crate::experiment::settings::Value;
 use crate::run::plan::Plan;
 use crate::run::records::{Checkpoint, evolved};
-use crate::search::evolution::GENERATIONS;
 use crate::store::directory::Directory;
 use crate::store::log::{self, Line};
 use crate::store::manifest::Manifest;
+use crate::strategy::settings::GENERATIONS;
 
-/// All of a run that a report tells.
+/// All of a run that a report shows.
 pub(crate) struct Run<'e> {
     pub(crate) directory: Directory,
     pub(crate) plan: Plan<'e>,
@@ -74,8 +74,8 @@ impl<'e> Run<'e> {
         self.lines.get(generation).and_then(row).map_or(f64::NAN, |row| row[which])
     }
 
-    /// Whose fitness is told: that of each population, or of the only one, which has no name.
-    pub(crate) fn of_each(&self) -> Vec<(Option<usize>, String)> {
+    /// Whose fitness is shown: that of each population, or of the only one, which has no name.
+    pub(crate) fn populations(&self) -> Vec<(Option<usize>, String)> {
         match self.populations.as_slice() {
             [] => vec![(None, String::new())],
             several => several.iter().enumerate().map(|(number, name)| (Some(number), name.clone())).collect(),
@@ -111,7 +111,7 @@ impl<'e> Run<'e> {
 
 /// Runs that differ in nothing but their seeds and their lengths.
 pub(crate) struct Group<'r> {
-    /// The condition, with the settings that tell it from other groups of the same condition.
+    /// The condition, with the settings that distinguish it from other groups of the same condition.
     pub(crate) label: String,
     pub(crate) runs: Vec<&'r Run<'r>>,
 }
@@ -143,7 +143,7 @@ impl<'r> Group<'r> {
         groups
     }
 
-    /// The condition, with what tells this group from the others of that condition.
+    /// The condition, with what distinguishes this group from the others of that condition.
     fn name(&self, groups: &[Self]) -> String {
         let Some(run) = self.runs.first() else { return String::new() };
         let plan = &run.plan;
@@ -160,10 +160,10 @@ impl<'r> Group<'r> {
         if own.is_empty() { condition.into() } else { format!("{condition}, {}", own.join(", ")) }
     }
 
-    /// Whose fitness the runs tell: where conditions have different populations, those of the one with the most.
-    pub(crate) fn of_each(groups: &[Self]) -> Vec<(Option<usize>, String)> {
+    /// Whose fitness the runs have: where conditions have different populations, those of the one with the most.
+    pub(crate) fn populations(groups: &[Self]) -> Vec<(Option<usize>, String)> {
         let runs = groups.iter().flat_map(|group| &group.runs);
-        runs.map(|run| run.of_each()).max_by_key(Vec::len).unwrap_or_default()
+        runs.map(|run| run.populations()).max_by_key(Vec::len).unwrap_or_default()
     }
 
     /// The last generation that all its runs have.

@@ -1,4 +1,4 @@
-//! What a report tells about the runs of one experiment.
+//! what a report says about the runs of one experiment.
 
 use std::time::{Duration, UNIX_EPOCH};
 
@@ -10,7 +10,7 @@ use crate::report::curves::{figures, quartiles};
 use crate::report::page::{Block, Figure, Table};
 use crate::report::run::{Group, Run, duration, percent, short};
 use crate::report::settings::{command, complete, differences, shell};
-use crate::search::evolution::POPULATION;
+use crate::strategy::settings::POPULATION;
 
 /// The section about an experiment's runs, with a heading unless it is alone on its page; `runs` is not empty.
 pub(crate) fn section(runs: &[&Run<'_>], alone: bool, program: &str) -> Result<Vec<Block>, Error> {
@@ -40,7 +40,7 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, program: &str) -> Result<V
     for (place, run) in runs.iter().enumerate() {
         match champion(run, place) {
             Ok(picture) => pictures.extend(picture),
-            // This program cannot live that champion's lives; all else in its run can be told.
+            // This program cannot replay that champion; everything else in its run can be reported.
             Err(error @ Error::OtherVersion { .. }) => others.push(Block::Text(format!("Not drawn: {error}"))),
             Err(error) => return Err(error),
         }
@@ -145,7 +145,7 @@ fn outcome(groups: &[Group<'_>]) -> Vec<Block> {
         }
         None => "–".into(),
     };
-    let populations = Group::of_each(groups);
+    let populations = Group::populations(groups);
     let mut table = Table::new(&["condition", "runs"]);
     table.head.extend(populations.iter().flat_map(|(_, name)| ["best", "mean"].map(|what| whose(what, name))));
     table.head.push("success of the champions".into());
@@ -160,7 +160,7 @@ fn outcome(groups: &[Group<'_>]) -> Vec<Block> {
         for (population, _) in &populations {
             row.extend([0, 1].map(|which| spread(quartiles(group, *population, last, which), short)));
         }
-        row.push(spread(Quartiles::of(&tested), percent) + &of);
+        row.push(spread(Quartiles::from_values(&tested), percent) + &of);
         table.rows.push(row);
     }
     let mut blocks = vec![
@@ -309,7 +309,7 @@ fn test_command(run: &Run<'_>, program: &str) -> Result<String, Error> {
 
 fn table_of_runs(groups: &[Group<'_>]) -> Table {
     const FITNESS: [&str; 3] = ["last best", "last mean", "highest best"];
-    let populations = Group::of_each(groups);
+    let populations = Group::populations(groups);
     let mut table = Table::new(&["run", "condition", "seed", "generations"]);
     table.head.extend(populations.iter().flat_map(|(_, name)| FITNESS.map(|what| whose(what, name))));
     table.head.extend(["evaluations", "failed", "time"].map(String::from));
@@ -363,7 +363,7 @@ fn sessions(runs: &[&Run<'_>]) -> Table {
     table
 }
 
-/// A champion's picture with its caption; `place` tells it from the others on the page.
+/// A champion's picture with its caption; `place` distinguishes it from the others on the page.
 fn champion(run: &Run<'_>, place: usize) -> Result<Option<Figure>, Error> {
     let prefix = format!("{}-{place}", run.plan.experiment.name());
     let picture = draw::champion(&run.plan, &run.directory, &prefix)?;

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::experiment::settings::Setting;
 use crate::report::page::Table;
 use crate::report::run::{Group, Run};
-use crate::search::evolution::{GENERATIONS, POPULATION};
+use crate::strategy::settings::{GENERATIONS, POPULATION};
 
 /// The settings in which the groups differ, a column for each group; none if they differ in nothing.
 pub(crate) fn differences(groups: &[Group<'_>]) -> Option<Table> {

@@ -1,4 +1,4 @@
-//! `farsa bench`: how fast lives are lived here, and how long a whole study would take.
+//! `farsa bench`: how fast trials run here, and how long a whole study would take.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,30 +10,29 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::lanes::Told;
+use crate::experiment::lanes::LanesInfo;
 use crate::experiment::outcome::Outcome;
 use crate::run::evolve::{Opponents, evaluate_all};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
-use crate::run::records::Ancestry;
-use crate::search::engine::Descent;
-use crate::search::opponents::{Hall, Meeting};
+use crate::run::records::history;
 use crate::store::directory::Directory;
 use crate::store::manifest::Machine;
+use crate::strategy::opponents::{Hall, Meeting};
 
 /// Runs of a study.
 const REPLICATIONS: u64 = 20;
 /// Cores of the larger machine that is spoken of.
 const MANY: usize = 64;
 
-/// The genomes that live.
+/// The genomes that are evaluated.
 pub(crate) struct Sample {
     /// The parameters of each individual.
     parameters: Vec<Vec<f32>>,
     /// Those of their opponents, in the order of the evaluations.
     opponents: Vec<Vec<f32>>,
     populations: usize,
-    /// Seed and generation that their lives are drawn from; later rounds count on from it.
+    /// Seed and generation that their trials are drawn from; later rounds count on from it.
     seed: u64,
     generation: u32,
     /// The run they are from, if they are not random.
@@ -43,42 +42,51 @@ pub(crate) struct Sample {
 impl Sample {
     /// The first generation of a run of this plan.
     pub(crate) fn random(plan: &Plan<'_>) -> Result<Self, Error> {
-        let evolution = plan.evolution(plan.evaluator()?.as_mut())?;
-        Self::new(plan, evolution.ask(), &evolution.descent(), 0)
+        let strategy = plan.strategy()?;
+        Self::new(plan, strategy.ask(), strategy.populations(), &Hall::default(), 0, 0)
     }
 
     /// The last generation that a run has finished, or its first one.
     ///
-    /// A run of other values serves as well: its genomes are lived, not lived again.
-    pub(crate) fn of_run(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
-        let (Ancestry { descent, .. }, path) = Ancestry::read(plan, directory)?;
-        let generation = descent.finished().saturating_sub(1);
-        let damaged = |why: &dyn std::fmt::Display| Error::damaged(&path, why);
-        let genes = plan.evaluator()?.parameters().len();
-        let mut genomes =
-            Population::new(descent.populations() * descent.size(), genes).map_err(|error| damaged(&error))?;
-        for (individual, genome) in genomes.iter_mut().enumerate() {
-            let rebuilt = descent.genome_of(generation, individual).map_err(|error| damaged(&error))?;
-            if rebuilt.len() != genes {
-                return Err(damaged(&"its genomes are not those of the experiment"));
+    /// A run of other values serves as well: its genomes are evaluated, not replayed.
+    pub(crate) fn from_run(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
+        let (_, history, path) = history(plan, directory)?;
+        let finished = history.finished();
+        let run = Some(directory.path().display().to_string());
+        let Some(generation) = finished.checked_sub(1) else {
+            return Ok(Self { run, ..Self::random(plan)? });
+        };
+        let evaluator = plan.evaluator()?;
+        let (genes, genotype) = (evaluator.parameters().len(), plan.genotype(evaluator.as_ref()));
+        let hall = Hall::before(&history, &genotype)?;
+        let mut sample = None;
+        history.visit([generation], |generation, genomes| {
+            if genomes.genome_len() != genes {
+                return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
             }
-            genome.copy_from_slice(&rebuilt);
-        }
-        let sample = Self::new(plan, &genomes, &descent, generation)?;
-        Ok(Self { run: Some(directory.path().display().to_string()), ..sample })
+            sample = Some(Self::new(plan, genomes, history.populations(), &hall, finished, generation)?);
+            Ok(())
+        })?;
+        let sample = sample.ok_or_else(|| history.missing(generation))?;
+        Ok(Self { run, ..sample })
     }
 
-    /// Several populations live against the champions that there are, and against each other.
-    fn new(plan: &Plan<'_>, genomes: &Population, descent: &Descent, generation: u32) -> Result<Self, Error> {
-        let lost = |why: &dyn std::fmt::Display| Error::Other(format!("the opponents of {}: {why}", plan.name()));
-        let populations = descent.populations();
+    /// Several populations are evaluated against the champions that there are, and against each other.
+    fn new(
+        plan: &Plan<'_>,
+        genomes: &Population,
+        populations: usize,
+        hall: &Hall,
+        finished: u32,
+        generation: u32,
+    ) -> Result<Self, Error> {
+        let lost = |why: &str| Error::Other(format!("the opponents of {}: {why}", plan.name()));
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
-        let parameters = genotype.decode_all(genomes).ok_or_else(|| lost(&"genomes of another length"))?;
-        let hall = Hall::before(descent, &genotype).map_err(|error| lost(&error))?;
+        let parameters = genotype.decode_all(genomes).ok_or_else(|| lost("genomes of another length"))?;
         let (trials, size) = (evaluator.trials(), genomes.len() / populations);
-        let meeting = Meeting { generation: descent.finished(), populations, size, trials };
-        let opponents = hall.opponents(meeting, &parameters).ok_or_else(|| lost(&"one is missing"))?;
+        let meeting = Meeting { generation: finished, populations, size, trials };
+        let opponents = hall.opponents(meeting, &parameters).ok_or_else(|| lost("one is missing"))?;
         let opponents = opponents.into_iter().map(<[f32]>::to_vec).collect();
         Ok(Self { parameters, opponents, populations, seed: plan.seed, generation, run: None })
     }
@@ -94,14 +102,14 @@ pub(crate) struct Bench {
     /// The generation of the genomes.
     generation: u32,
     genomes: usize,
-    /// Generations that were lived to their end.
+    /// Generations that were finished.
     rounds: u32,
-    lives: u64,
+    trials: u64,
     steps: u64,
     seconds: f64,
     threads: usize,
     #[serde(flatten)]
-    lanes: Told,
+    lanes: LanesInfo,
     machine: Machine,
     cores: usize,
     /// The part of their time that the threads had a core and something to do, where the system tells.
@@ -122,7 +130,7 @@ struct Study {
     generations: u64,
     population: u64,
     trials: u64,
-    /// The most that a trial has, or what lives had here if the experiment does not say.
+    /// The most that a trial has, or what trials took here if the experiment does not say.
     steps: f64,
     control_steps: f64,
 }
@@ -134,23 +142,23 @@ struct Prediction {
     seconds: f64,
 }
 
-/// Lives whole generations, as a run does, until some seconds are over; a first one that takes longer is cut short.
+/// Evaluates whole generations, as a run does, until some seconds are over; a first one that takes longer is cut short.
 ///
 /// # Errors
-/// [`Error::Panicked`], and [`Error::Other`] if nothing was lived.
+/// [`Error::Panicked`], and [`Error::Other`] if nothing was evaluated.
 pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
     let Sample { parameters, seed, generation, run, .. } = sample;
     let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();
     let opponents = Opponents { parameters: &opponents, each: sample.populations - 1 };
     let limit = Duration::from_secs_f64(seconds);
-    let (lives, steps, stop) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
+    let (trials, steps, stop) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
     let (started, used) = (Instant::now(), processor_seconds());
     let mut rounds = 0;
     while rounds == 0 || started.elapsed() < limit {
         let id = EpisodeId { seed: *seed, generation: generation.saturating_add(rounds), ..EpisodeId::default() };
         let done = |outcome: Option<&Outcome>| {
             if let Some(outcome) = outcome {
-                lives.fetch_add(1, Ordering::Relaxed);
+                trials.fetch_add(1, Ordering::Relaxed);
                 steps.fetch_add(u64::from(outcome.steps), Ordering::Relaxed);
             }
             if rounds == 0 && started.elapsed() >= limit {
@@ -166,16 +174,16 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
     let elapsed = started.elapsed().as_secs_f64();
     let used = used.zip(processor_seconds()).map(|(before, after)| after - before);
 
-    let (lives, steps) = (lives.into_inner(), steps.into_inner());
+    let (trials, steps) = (trials.into_inner(), steps.into_inner());
     if steps == 0 {
-        return Err(Error::Other(format!("{}: none of {lives} lives had a step", plan.experiment.name())));
+        return Err(Error::Other(format!("{}: none of {trials} trials had a step", plan.experiment.name())));
     }
     let machine = Machine::here();
     let (threads, cores) = (pool.threads(), machine.cores());
     let had = threads.min(cores);
     let steps_per_second = steps as f64 / elapsed;
     let per_core = steps_per_second / had as f64;
-    let study = Study::new(plan, &pool, parameters.len(), steps as f64 / lives as f64)?;
+    let study = Study::new(plan, &pool, parameters.len(), steps as f64 / trials as f64)?;
     let predict = |cores: usize| Prediction { cores, seconds: study.control_steps / (per_core * cores as f64) };
     Ok(Bench {
         experiment: plan.experiment.name().into(),
@@ -184,11 +192,11 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
         generation: *generation,
         genomes: parameters.len(),
         rounds,
-        lives,
+        trials,
         steps,
         seconds: elapsed,
         threads,
-        lanes: pool.lanes().told(),
+        lanes: pool.lanes().info(),
         machine,
         cores,
         busy: used.map(|used| (used / (elapsed * had as f64)).min(1.0)),
@@ -201,15 +209,15 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
 }
 
 impl Study {
-    /// The study of a plan; `lived` is the mean number of steps of a life.
-    fn new(plan: &Plan<'_>, pool: &Pool, population: usize, lived: f64) -> Result<Self, Error> {
+    /// The study of a plan; `mean` is the mean number of steps of a trial.
+    fn new(plan: &Plan<'_>, pool: &Pool, population: usize, mean: f64) -> Result<Self, Error> {
         let most = pool.evaluator().description().steps;
         let study = Self {
             replications: REPLICATIONS,
             generations: plan.generations()?.into(),
             population: population as u64,
             trials: pool.evaluator().trials() as u64,
-            steps: if most == 0 { lived } else { most as f64 },
+            steps: if most == 0 { mean } else { most as f64 },
             control_steps: 0.0,
         };
         let runs = (study.replications * study.generations) as f64;
@@ -224,7 +232,7 @@ impl Study {
 impl Bench {
     /// The same as a table for reading.
     pub(crate) fn text(&self) -> String {
-        let Self { experiment, condition, genomes, generation, rounds, lives, steps, seconds, threads, .. } = self;
+        let Self { experiment, condition, genomes, generation, rounds, trials, steps, seconds, threads, .. } = self;
         let mut text = String::new();
         let genomes = match &self.run {
             None => format!("{genomes} random genomes"),
@@ -236,12 +244,12 @@ impl Bench {
             rounds => format!("{rounds} generations"),
         };
         let lanes = match &self.lanes {
-            Told { lanes: 1, .. } => "one life at a time each".into(),
-            Told { lanes, simd } => format!("{lanes} lanes each, {simd}"),
+            LanesInfo { lanes: 1, .. } => "one trial at a time each".into(),
+            LanesInfo { lanes, simd } => format!("{lanes} lanes each, {simd}"),
         };
         // Writing into a string cannot fail.
         let _ = writeln!(text, "{}", [experiment.as_str(), condition].join(" ").trim_end());
-        let _ = writeln!(text, "counted: {rounds} of {genomes}: {lives} lives, {steps} steps, in {seconds:.2} s");
+        let _ = writeln!(text, "counted: {rounds} of {genomes}: {trials} trials, {steps} steps, in {seconds:.2} s");
         let _ = writeln!(text, "threads: {threads}, {lanes}");
         let _ = writeln!(text, "machine: {}", self.machine.describe());
         if let Some(busy) = self.busy {
@@ -273,7 +281,7 @@ impl Bench {
         let _ = writeln!(
             text,
             "\nthe study: {replications} runs x {generations} generations x {population} individuals x {trials} trials \
-             x {} steps\n= {:.3e} control steps; shorter if lives end early, and runs side by side on many cores",
+             x {} steps\n= {:.3e} control steps; shorter if trials end early, and runs side by side on many cores",
             steps_of(study.steps),
             study.control_steps,
         );
@@ -319,11 +327,11 @@ mod tests {
     use crate::experiment::lanes::Wanted;
     use crate::experiment::outcome::Description;
     use crate::experiment::settings::{Setting, Settings, Value};
-    use crate::search::evolution;
+    use crate::strategy::settings::{GENERATIONS, POPULATION};
     use farsa_body::Recorder;
-    use farsa_view::Stage;
+    use farsa_view::Schema;
 
-    /// Lives of 7 steps of at most 10; those of individual 1 break down in their first trial.
+    /// Trials of 7 steps of at most 10; those of individual 1 break down in their first trial.
     struct Toy {
         most: usize,
     }
@@ -333,10 +341,10 @@ mod tests {
             "toy"
         }
         fn summary(&self) -> &'static str {
-            "lives"
+            "trials"
         }
         fn settings(&self, _: &str) -> Vec<Setting> {
-            vec![Setting::whole(evolution::POPULATION, 20, 1..=100)]
+            vec![Setting::whole(POPULATION, 20, 1..=100)]
         }
         fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
             Ok(Box::new(Toy { most: self.most }))
@@ -350,8 +358,8 @@ mod tests {
         fn trials(&self) -> usize {
             3
         }
-        fn stage(&self) -> Stage {
-            Stage::default()
+        fn schema(&self) -> Schema {
+            Schema::default()
         }
         fn description(&self) -> Description {
             Description { steps: self.most, ..Description::default() }
@@ -370,7 +378,7 @@ mod tests {
 
     fn benched(toy: &Toy, threads: usize, seconds: f64) -> Bench {
         let mut plan = Plan::new(toy, None, "").unwrap();
-        plan.settings.set("", evolution::GENERATIONS, Value::Whole(50)).unwrap();
+        plan.settings.set("", GENERATIONS, Value::Whole(50)).unwrap();
         let pool = Pool::new(&plan, threads, Wanted::ONE).unwrap();
         bench(&plan, &Sample::random(&plan).unwrap(), pool, seconds).unwrap()
     }
@@ -384,7 +392,7 @@ mod tests {
             let rounds = u64::from(found.rounds);
             assert!(found.seconds >= 0.05, "{found:?}");
             // Another thread may have begun the other trials of the one that fails.
-            assert!((58 * rounds..=60 * rounds).contains(&found.lives), "{found:?}");
+            assert!((58 * rounds..=60 * rounds).contains(&found.trials), "{found:?}");
             assert_eq!(found.steps, 7 * 57 * rounds);
             let had = threads.min(found.cores) as f64;
             let rate = found.steps as f64 / found.seconds;
@@ -396,16 +404,16 @@ mod tests {
             let ratio = found.predictions[0].seconds / found.predictions[1].seconds;
             assert!((ratio - 64.0 / found.cores as f64).abs() < 1e-9, "{ratio}");
             let text = found.text();
-            assert!(text.contains(&format!("{} lives, {} steps", found.lives, found.steps)), "{text}");
+            assert!(text.contains(&format!("{} trials, {} steps", found.trials, found.steps)), "{text}");
         }
     }
 
     #[test]
     fn a_first_generation_that_takes_too_long_is_cut_short() {
         let found = benched(&Toy { most: 0 }, 1, 0.001);
-        assert!(found.rounds == 0 && (1..58).contains(&found.lives), "{found:?}");
-        // Without a word of the experiment, lives are as long as they were here.
-        assert_eq!(found.study.steps, found.steps as f64 / found.lives as f64);
+        assert!(found.rounds == 0 && (1..58).contains(&found.trials), "{found:?}");
+        // Without a word of the experiment, trials are as long as they were here.
+        assert_eq!(found.study.steps, found.steps as f64 / found.trials as f64);
     }
 
     #[test]

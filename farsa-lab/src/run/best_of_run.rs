@@ -36,10 +36,10 @@ impl BestOfRun {
     /// [`Error`] for a directory without a run, or with one that is damaged, of another experiment or of another version.
     pub fn read(directory: &Path, experiments: &[&dyn Experiment]) -> Result<Self, Error> {
         let directory = Directory::open(directory)?;
-        let plan = Plan::of_file(experiments, &ConfigFile::read(&directory.config())?)?;
+        let plan = Plan::from_file(experiments, &ConfigFile::read(&directory.config())?)?;
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
-        let Champions { generation, best, .. } = Champions::of(&plan, &directory, evaluator.as_ref())?;
+        let Champions { generation, best, .. } = Champions::read_checked(&plan, &directory, evaluator.as_ref())?;
         Ok(Self {
             experiment: plan.experiment.name().into(),
             condition: plan.condition,

@@ -1,46 +1,33 @@
 //! Evolution from the first or any later generation on, with everything kept that is needed to go on.
 
 use std::fs;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Fitness, Statistics};
+use farsa_evo::{Fitness, Record, Statistics, Strategy};
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
 use crate::experiment::outcome::Outcome;
 use crate::figures::plot;
+use crate::run::begin::{lineage, resumed};
+use crate::run::diagnostics::DiagnosticsTable;
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
-use crate::run::records::{Ancestry, Best, Champions, Checkpoint, evolved};
+use crate::run::records::{Best, Champions, Checkpoint, ToldRecord, evolved};
 use crate::run::summary::{Summary, Winner};
-use crate::search::engine::Evolution;
-use crate::search::opponents::{Hall, Meeting};
 use crate::store::directory::{Directory, replace};
 use crate::store::identity::Identity;
-use crate::store::log;
+use crate::store::lineage::{Lineage, rows};
 use crate::store::log::Log;
 use crate::store::manifest::{Manifest, Session};
+use crate::strategy::history::History;
+use crate::strategy::opponents::{Hall, Meeting};
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
-
-/// Makes the directory of a new run, ready for its first generation.
-pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
-    let evolution = plan.evolution(plan.evaluator()?.as_mut())?;
-    let (text, identity) = (plan.to_toml()?, plan.identity()?);
-    Directory::create(path, |directory| {
-        replace(&directory.config(), text.as_bytes())?;
-        Manifest::new(&identity).write(&directory.manifest())?;
-        let populations = evolution.populations();
-        replace(&directory.log(), log::header(populations).as_bytes())?;
-        Ancestry { identity: identity.clone(), descent: evolution.descent() }.write(&directory.lineage())?;
-        Checkpoint { identity, log: Log::start(populations), evolution }.write(&directory.checkpoint())
-    })
-}
 
 /// Evolves the run in a directory up to its last generation and says what came of it.
 ///
@@ -58,47 +45,52 @@ pub(crate) fn go_on(
     // The lock comes before anything is read that another process might be writing.
     let mut log = Log::open(&directory.log())?;
     let path = directory.checkpoint();
-    let Checkpoint { identity, log: mark, evolution } = Checkpoint::read(plan, directory)?;
-    identity.same_values(&plan.identity()?, &path)?;
-    if !evolution.is_like(&plan.evolution(pool.evaluator_mut())?) {
-        return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
-    }
-    let hall = Hall::before(&evolution.descent(), pool.genotype());
-    let hall = hall.map_err(|error| Error::damaged(&path, error))?;
-    let (done, last) = (evolution.generation(), plan.generations()?);
+    let checkpoint = Checkpoint::read(plan, directory)?;
+    checkpoint.identity.same_values(&plan.identity()?, &path)?;
+    let (strategy, record) = resumed(plan, directory, &checkpoint)?;
+    let hall = match record.populations() {
+        1 => Hall::default(),
+        _ => Hall::before(&History::new(directory.record(), record.clone(), plan.fresh()), pool.genotype())?,
+    };
+    let (done, last) = (strategy.generation(), plan.generations()?);
     if last < done {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
     }
     let mut manifest = Manifest::read(&directory.manifest())?;
-    log.rewind(mark)?;
+    log.rewind(checkpoint.log)?;
+    let lineage = lineage(plan, directory, &checkpoint, &record, strategy.as_ref())?;
     let text = plan.to_toml()?;
     if fs::read_to_string(directory.config()).ok().as_ref() != Some(&text) {
         replace(&directory.config(), text.as_bytes())?;
     }
-    manifest.sessions.push(Session::new(pool.threads(), pool.lanes().told(), done));
+    manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), done));
 
-    let individuals = |generations: u32| u64::from(generations).saturating_mul(evolution.ask().len() as u64);
+    let individuals = |generations: u32| u64::from(generations).saturating_mul(strategy.ask().len() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
     let mut run = Run {
         directory,
         title: plan.name(),
         names: pool.evaluator().populations(),
-        identity,
-        evolution,
+        identity: checkpoint.identity,
+        name: plan.definition().name().into(),
+        strategy,
+        record,
         hall,
         log,
+        lineage,
+        diagnostics: DiagnosticsTable::new(plan.definition().diagnostics(), checkpoint.diagnostics),
         manifest,
         champions: None,
         started: Instant::now(),
     };
     let mut saved = Instant::now();
     let mut ended = Ok(());
-    while run.evolution.generation() < last {
+    while run.strategy.generation() < last {
         match run.generation(&mut pool, stop, &progress) {
             Ok(()) => {}
             Err(Unsuccessful::Error(error)) => return Err(error),
             Err(Unsuccessful::Unfinished(Unfinished::Panicked)) => {
-                ended = Err(Error::Panicked { generation: run.evolution.generation() });
+                ended = Err(Error::Panicked { generation: run.strategy.generation() });
                 break;
             }
             Err(Unsuccessful::Unfinished(Unfinished::Stopped)) => {
@@ -124,10 +116,16 @@ struct Run<'d> {
     /// Of the populations.
     names: Vec<String>,
     identity: Identity,
-    evolution: Evolution,
+    /// Of the strategy.
+    name: String,
+    strategy: Box<dyn Strategy>,
+    record: Record,
     /// Whom several populations still have to meet.
     hall: Hall,
     log: Log,
+    /// None for a strategy whose individuals have no parents.
+    lineage: Option<Lineage>,
+    diagnostics: DiagnosticsTable,
     manifest: Manifest,
     /// The best of the last generation, once one is finished in this process.
     champions: Option<Champions>,
@@ -147,11 +145,11 @@ impl From<Error> for Unsuccessful {
 }
 
 impl Run<'_> {
-    /// Lives all lives of a generation and makes the next.
+    /// Evaluates all individuals of a generation and makes the next.
     fn generation(&mut self, pool: &mut Pool, stop: &AtomicBool, progress: &Progress) -> Result<(), Unsuccessful> {
-        let generation = self.evolution.generation();
-        let genomes = self.evolution.ask();
-        let (seed, populations) = (self.identity.seed, self.evolution.populations());
+        let generation = self.strategy.generation();
+        let genomes = self.strategy.ask();
+        let (seed, populations) = (self.identity.seed, self.strategy.populations());
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
         let trials = pool.evaluator().trials();
         let parameters = pool.genotype().decode_all(genomes).ok_or_else(|| lost("genomes of another length"))?;
@@ -161,15 +159,22 @@ impl Run<'_> {
         let opponents = Opponents { parameters: &opponents, each: populations - 1 };
         let fitness =
             fitness_of_all(pool, &parameters, opponents, id, stop, progress).map_err(Unsuccessful::Unfinished)?;
-        let judged = self.evolution.judged(&fitness).map_err(|error| lost(&error.to_string()))?;
-        let statistics = Statistics::from_fitness(&judged).ok_or_else(|| lost("no individual was evaluated"))?;
-        let best = self.evolution.champions(&judged).into_iter().map(|best| {
-            let (fitness, genes) = (*judged.get(best)?, genomes.get(best)?.to_vec());
+        let ranked_by = self.strategy.ranked_by(&fitness);
+        let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
+        let best = self.strategy.champions(&ranked_by).into_iter().map(|best| {
+            let (fitness, genes) = (*ranked_by.get(best)?, genomes.get(best)?.to_vec());
             Some(Best { individual: best as u32, fitness, genes })
         });
         let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
-        self.log.append(&statistics, fitness.len(), &self.evolution.of_each(&judged))?;
-        self.evolution.tell(&fitness, pool.evaluator_mut(), seed).map_err(|error| lost(&error))?;
+        let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
+        let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
+        self.log.append(&statistics, fitness.len(), &each)?;
+        let told = self.record.tell(self.strategy.as_mut(), &fitness);
+        told.map_err(|error| lost(&error.to_string()))?;
+        self.diagnostics.push(self.strategy.as_ref());
+        if let Some(lineage) = &mut self.lineage {
+            lineage.append(&rows(self.strategy.as_ref()))?;
+        }
         self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
         if let Some(session) = self.manifest.sessions.last_mut() {
@@ -184,19 +189,22 @@ impl Run<'_> {
     fn save(&mut self) -> Result<(), Error> {
         let (directory, identity) = (self.directory, &self.identity);
         let mark = self.log.sync()?;
-        let descent = self.evolution.descent();
-        Ancestry { identity: identity.clone(), descent }.write(&directory.lineage())?;
+        let lineage = self.lineage.as_mut().map_or(Ok(0), Lineage::sync)?;
+        let (strategy, record) = (self.name.clone(), self.record.clone());
+        ToldRecord { identity: identity.clone(), strategy, record }.write(&directory.record())?;
         if let Some(champions) = &self.champions {
             champions.write(&directory.champion())?;
         }
-        if let Evolution::Learning(learning) = &self.evolution {
-            let lessons = learning.lessons();
-            replace(&directory.learning(), lessons.csv().as_bytes())?;
-            let plot = lessons.plot(&self.title).map_err(|why| Error::damaged(&directory.learning_plot(), why))?;
-            replace(&directory.learning_plot(), plot.as_bytes())?;
+        self.diagnostics.write(directory, &self.title)?;
+        Checkpoint {
+            identity: identity.clone(),
+            generation: self.strategy.generation(),
+            log: mark,
+            lineage,
+            diagnostics: self.diagnostics.rows().to_vec(),
+            state: self.strategy.snapshot().map(|strategy| strategy.save()),
         }
-        let evolution = self.evolution.clone();
-        Checkpoint { identity: identity.clone(), log: mark, evolution }.write(&directory.checkpoint())?;
+        .write(&directory.checkpoint())?;
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.seconds = self.started.elapsed().as_secs_f64();
         }
@@ -209,13 +217,13 @@ impl Run<'_> {
     fn summary(&self) -> Summary {
         let Identity { experiment, condition, seed, .. } = self.identity.clone();
         let session = self.manifest.sessions.last();
-        let champions: Vec<Winner> = self.champions.iter().flat_map(Winner::of).collect();
+        let champions: Vec<Winner> = self.champions.iter().flat_map(Winner::from_champions).collect();
         Summary {
             directory: self.directory.path().display().to_string(),
             experiment,
             condition,
             seed,
-            generations: self.evolution.generation(),
+            generations: self.strategy.generation(),
             evaluations: session.map_or(0, |session| session.evaluations),
             seconds: session.map_or(0.0, |session| session.seconds),
             champion: champions.first().cloned(),
@@ -233,7 +241,7 @@ pub(crate) struct Opponents<'g> {
 
 impl<'g> Opponents<'g> {
     /// Those of the evaluation with a number.
-    fn of(&self, number: usize) -> &'g [&'g [f32]] {
+    fn get(&self, number: usize) -> &'g [&'g [f32]] {
         self.parameters.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
     }
 }
@@ -286,7 +294,7 @@ pub(crate) fn evaluate_all(
         let (individual, trial) = (number % count, (number / count) as u32);
         let id = EpisodeId { individual: individual as u32, trial, ..of };
         let alive = !failed[individual].load(Ordering::Relaxed);
-        let opponents = opponents.of(number);
+        let opponents = opponents.get(number);
         let own = parameters.get(individual).filter(|_| alive);
         own.map(|parameters| Evaluation { number, parameters, opponents, id })
     };
@@ -309,13 +317,14 @@ mod tests {
     use crate::experiment::lanes::Wanted;
     use crate::experiment::outcome::Description;
     use crate::experiment::settings::{Setting, Settings, Value};
-    use crate::search::evolution;
+    use crate::run::begin::create;
     use crate::store::directory::Directory;
+    use crate::strategy::settings::{GENERATIONS, POPULATION};
     use farsa_body::Recorder;
-    use farsa_view::Stage;
+    use farsa_view::Schema;
     use std::path::PathBuf;
 
-    /// Earns its first gene; panics in one life, if asked to, and fails where the gene is odd.
+    /// Earns its first gene; panics in one trial, if asked to, and fails where the gene is odd.
     #[derive(Clone, Copy)]
     struct Toy {
         version: u32,
@@ -333,7 +342,7 @@ mod tests {
             self.version
         }
         fn settings(&self, _: &str) -> Vec<Setting> {
-            vec![Setting::whole(evolution::GENERATIONS, 4, 1..=100), Setting::whole(evolution::POPULATION, 20, 1..=100)]
+            vec![Setting::whole(GENERATIONS, 4, 1..=100), Setting::whole(POPULATION, 20, 1..=100)]
         }
         fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
             Ok(Box::new(*self))
@@ -344,8 +353,8 @@ mod tests {
         fn parameters(&self) -> Vec<Parameter> {
             vec![Parameter::new("gene", [0.0, 65535.0])]
         }
-        fn stage(&self) -> Stage {
-            Stage::of_scalars(["gene"])
+        fn schema(&self) -> Schema {
+            Schema::from_scalars(["gene"])
         }
         fn description(&self) -> Description {
             Description::default()
@@ -413,7 +422,7 @@ mod tests {
         assert!(resumed.contains("checkpoint.bin: ") && resumed.contains(words), "{resumed}");
         let plan = Plan::new(&new, None, "").unwrap();
         let replayed = said(replay(&plan, &directory, Which::default(), &mut Vec::new()).unwrap_err());
-        assert!(replayed.contains("lineage.bin: ") && replayed.contains(words), "{replayed}");
+        assert!(replayed.contains("record.bin: ") && replayed.contains(words), "{replayed}");
         // The champion's genes are what they are; that it may behave otherwise is worth a warning.
         let tested = test::test(&plan, &directory, 3, 1, 1, Wanted::ONE, true).unwrap().text();
         assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
@@ -437,7 +446,7 @@ mod tests {
                 .contains("no generation is finished")
         );
         assert!(replay(&plan, &directory, Which::default(), &mut Vec::new()).is_err());
-        plan.settings.set("", evolution::GENERATIONS, Value::Whole(2)).unwrap();
+        plan.settings.set("", GENERATIONS, Value::Whole(2)).unwrap();
         go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap();
         assert_eq!(fs::read_to_string(directory.log()).unwrap().lines().count(), 3);
         fs::remove_dir_all(root).unwrap();

@@ -1,23 +1,25 @@
 //! Runs: from a configuration to a champion, on all processors, to be gone on with at any time.
 //!
-//! - `arguments`: the words of the command line that several commands share
-//! - `bench`: `farsa bench`: how fast lives are lived here, and how long a whole study would take
+//! - `begin`: how a run begins, and how it is taken up where its checkpoint left it
+//! - `bench`: `farsa bench`: how fast trials run here, and how long a whole study would take
 //! - `best_of_run`: the best of a run, for comparisons that the command does not make
 //! - `config_file`: a configuration file, and the settings of a command line
+//! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
 //! - `evolve`: evolution from the first or any later generation on, with everything kept that is needed to go on
 //! - `plan`: what is to be run: an experiment, a condition, a seed and all settings
-//! - `pool`: lives on several threads, with results that no thread can be told from
+//! - `pool`: trials on several threads, with the same results on any number of them
 //! - `progress`: what a waiting user sees: a bar on a terminal, plain lines elsewhere
-//! - `records`: the sealed files of a run: where to go on, who descends from whom, who is best, and genotypes from elsewhere
+//! - `records`: the sealed files of a run: where to go on, what the strategy was told, who is best, and genotypes from elsewhere
 //! - `replications`: `farsa run --replications`: one plan under one seed after the other, each in a directory of its own
 //! - `summary`: what came of a run, for the command to tell
-//! - `tests`: tests of whole runs by every search: what is selected, written, resumed and lived again
-//! - `world_choice`: which world an experiment is lived in, where there is a choice
+//! - `tests`: tests of whole runs with every strategy: what is selected, written, resumed and replayed
+//! - `world_choice`: which world an experiment runs in, where there is a choice
 
-pub(crate) mod arguments;
+pub(crate) mod begin;
 pub(crate) mod bench;
 mod best_of_run;
 pub(crate) mod config_file;
+mod diagnostics;
 pub(crate) mod evolve;
 pub(crate) mod plan;
 pub(crate) mod pool;

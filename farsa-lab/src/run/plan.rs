@@ -4,30 +4,30 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use farsa_evo::Strategy;
 use farsa_num::crc32;
 
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
-use crate::experiment::search_kind::Search;
 use crate::experiment::settings::{Settings, Value};
 use crate::run::config_file::ConfigFile;
-use crate::search::engine::Evolution;
-use crate::search::evolution;
-use crate::search::evolution::GENERATIONS;
 use crate::store::identity::{FILE, Identity, VALUES_VERSION};
+use crate::strategy::definition::{StrategyDefinition, StrategyStart};
+use crate::strategy::history::Fresh;
+use crate::strategy::settings::{GENERATIONS, complete};
 
-/// The largest seed of a run; bit 63 marks the lives of a test.
+/// The largest seed of a run; bit 63 marks the trials of a test.
 pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
 
-/// A run before its first life.
+/// A run before its first evaluation.
 pub(crate) struct Plan<'e> {
     pub(crate) experiment: &'e dyn Experiment,
     pub(crate) condition: String,
     pub(crate) seed: u64,
     pub(crate) settings: Settings,
-    /// The settings with another world, for lives that leave that of the run; none of the identity.
+    /// The settings with another world, for trials outside that of the run; none of the identity.
     pub(crate) elsewhere: Option<Settings>,
 }
 
@@ -44,8 +44,8 @@ impl<'e> Plan<'e> {
                 .find(|&&known| known == name)
                 .ok_or_else(|| Error::unknown(place, "condition", name, conditions.iter().copied()))?,
         };
-        let settings =
-            Settings::new(evolution::complete(experiment.settings(condition), experiment.search(condition)))?;
+        let strategy = experiment.strategy(condition).settings();
+        let settings = Settings::new(complete(experiment.settings(condition), strategy))?;
         Ok(Self { experiment, condition: condition.into(), seed: 1, settings, elsewhere: None })
     }
 
@@ -58,7 +58,7 @@ impl<'e> Plan<'e> {
     }
 
     /// What a configuration file says, whole.
-    pub(crate) fn of_file(experiments: &[&'e dyn Experiment], file: &ConfigFile) -> Result<Self, Error> {
+    pub(crate) fn from_file(experiments: &[&'e dyn Experiment], file: &ConfigFile) -> Result<Self, Error> {
         let Some(name) = &file.experiment else {
             return Err(Error::Usage(format!("{}: names no experiment", file.name)));
         };
@@ -69,18 +69,44 @@ impl<'e> Plan<'e> {
         Ok(plan)
     }
 
-    /// How the run searches.
-    pub(crate) fn search(&self) -> Search {
-        self.experiment.search(&self.condition)
+    /// What the run searches with.
+    pub(crate) fn definition(&self) -> &'static dyn StrategyDefinition {
+        self.experiment.strategy(&self.condition)
     }
 
-    /// The search at its first generation.
+    /// The strategy at its first generation.
     ///
     /// # Errors
-    /// Those of [`Evolution::new`].
-    pub(crate) fn evolution(&self, evaluator: &mut dyn Evaluator) -> Result<Evolution, Error> {
-        let bits = self.experiment.gene_bits();
-        Evolution::new(self.experiment.name(), self.search(), &self.settings, self.seed, bits, evaluator)
+    /// Those of [`StrategyDefinition::start`], and [`Error::Other`] for a strategy of other populations or genes than the
+    /// experiment's.
+    pub(crate) fn strategy(&self) -> Result<Box<dyn Strategy>, Error> {
+        let task = self.evaluator()?;
+        let (populations, genes) = (task.populations().len(), task.parameters().len());
+        drop(task);
+        let (gene_bits, settings, seed) = (self.experiment.gene_bits(), &self.settings, self.seed);
+        let evaluator: &dyn Fn() -> Result<Box<dyn Evaluator>, Error> = &|| self.evaluator();
+        if populations == 0 {
+            return Err(Error::Other(format!("{}: no population", self.experiment.name())));
+        }
+        let start = StrategyStart { populations, genes, gene_bits, settings, seed, evaluator };
+        let strategy = self.definition().start(&start).map_err(|error| match error {
+            Error::Other(why) => Error::Other(format!("{}: {why}", self.experiment.name())),
+            other => other,
+        })?;
+        let found = (strategy.populations(), strategy.ask().genome_len());
+        if found != (populations, genes) {
+            let (name, experiment) = (self.definition().name(), self.experiment.name());
+            return Err(Error::Other(format!(
+                "the strategy `{name}` has {} populations of {} genes where {experiment} has {populations} of {genes}",
+                found.0, found.1
+            )));
+        }
+        Ok(strategy)
+    }
+
+    /// How a fresh strategy is made.
+    pub(crate) fn fresh(&self) -> Fresh<'_> {
+        Box::new(|| self.strategy())
     }
 
     /// The experiment made ready for one thread.
@@ -235,7 +261,7 @@ mod tests {
         assert!(text.contains("# Time step. [0.001 to 0.1 s; chosen]\nstep = 0.01\n"), "{text}");
         assert!(text.contains("not the default"), "{text}");
         let file = ConfigFile::parse("config.toml", &text).unwrap();
-        let again = Plan::of_file(&[&Toy], &file).unwrap();
+        let again = Plan::from_file(&[&Toy], &file).unwrap();
         assert_eq!(again.identity().unwrap(), plan.identity().unwrap());
         assert_eq!(again.settings, plan.settings);
         assert_eq!(again.name(), "toy-without-7");
@@ -244,7 +270,7 @@ mod tests {
     #[test]
     fn mistakes_are_found_with_their_line() {
         let error = |text: &str| {
-            let plan = ConfigFile::parse("my.toml", text).and_then(|file| Plan::of_file(&[&Toy], &file));
+            let plan = ConfigFile::parse("my.toml", text).and_then(|file| Plan::from_file(&[&Toy], &file));
             plan.map(|_| ()).unwrap_err().to_string()
         };
         let head = "experiment = \"toy\"\n";
@@ -298,7 +324,7 @@ mod tests {
         let without = plan.identity().unwrap();
         plan.settings.set("", "world.map", Value::Word(path.display().to_string())).unwrap();
         let file = ConfigFile::parse("config.toml", &plan.to_toml().unwrap()).unwrap();
-        assert_eq!(Plan::of_file(&[&Toy], &file).unwrap().settings, plan.settings);
+        assert_eq!(Plan::from_file(&[&Toy], &file).unwrap().settings, plan.settings);
         let run = plan.identity().unwrap();
         assert_eq!((run.settings.len(), run.files().count()), (without.settings.len() + 1, 1));
         run.same_run(&plan.identity().unwrap(), Path::new("d")).unwrap();

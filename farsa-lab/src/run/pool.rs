@@ -1,4 +1,4 @@
-//! Lives on several threads, with results that no thread can be told from.
+//! Trials on several threads, with results that no thread can be told from.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -24,7 +24,7 @@ pub(crate) struct Pool {
 pub(crate) enum Unfinished {
     /// It was told to stop.
     Stopped,
-    /// A life panicked.
+    /// A trial panicked.
     Panicked,
 }
 
@@ -56,7 +56,7 @@ impl Pool {
         self.evaluators.len()
     }
 
-    /// What every thread lives its lives in.
+    /// What every thread evaluates with.
     pub(crate) fn lanes(&self) -> Lanes {
         self.lanes
     }
@@ -69,11 +69,6 @@ impl Pool {
     /// The experiment as the first thread has it.
     pub(crate) fn evaluator(&self) -> &dyn Evaluator {
         self.evaluators[0].as_ref()
-    }
-
-    /// The same, to be changed.
-    pub(crate) fn evaluator_mut(&mut self) -> &mut dyn Evaluator {
-        self.evaluators[0].as_mut()
     }
 
     /// Runs `count` evaluations, each on the thread that is free first, and returns the outcomes in their order.
@@ -143,7 +138,7 @@ mod tests {
     use crate::experiment::evaluator::{Parameter, Task};
     use crate::experiment::outcome::Description;
     use farsa_body::Recorder;
-    use farsa_view::Stage;
+    use farsa_view::Schema;
 
     /// Earns its individual's number and panics from the fifth on, if asked to by its parameter.
     struct Nothing;
@@ -152,8 +147,8 @@ mod tests {
         fn parameters(&self) -> Vec<Parameter> {
             vec![Parameter::new("panic", [0.0, 1.0])]
         }
-        fn stage(&self) -> Stage {
-            Stage::default()
+        fn schema(&self) -> Schema {
+            Schema::default()
         }
         fn description(&self) -> Description {
             Description::default()

@@ -14,7 +14,7 @@ pub(crate) enum Progress {
 }
 
 impl Progress {
-    /// A bar from `done` to `all` lives if anybody can see one, lines otherwise; nothing at all if nobody wants to know.
+    /// A bar from `done` to `all` individuals on a terminal, lines elsewhere, and nothing if `quiet`.
     pub(crate) fn new(done: u64, all: u64, quiet: bool) -> Self {
         if quiet {
             return Self::Quiet;
@@ -36,7 +36,7 @@ impl Progress {
         Self::Bar(bar)
     }
 
-    /// One more life is lived; called from any thread.
+    /// One more individual is evaluated; called from any thread.
     pub(crate) fn advance(&self) {
         if let Self::Bar(bar) = self {
             bar.inc(1);

@@ -1,37 +1,43 @@
-//! The sealed files of a run: where to go on, who descends from whom, who is best, and genotypes from elsewhere.
-//!
-//! Each search has kinds of its own, told by their first bytes; those of the truncation algorithm are as they were when
-//! it was the only one.
+//! The sealed files of a run: where to go on, what the strategy was told, who is best, and genotypes from elsewhere.
 
 use std::path::{Path, PathBuf};
 
-use farsa_evo::{Coevolution, Fitness, Lineage, Lineages, OnePlusOne, OnePlusOneHistory, TruncationGa};
+use farsa_evo::{Fitness, Record};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::run::plan::Plan;
-use crate::search::engine::{Descent, Evolution};
-use crate::search::learning::{Learning, Lessons};
 use crate::store::directory::Directory;
 use crate::store::identity::Identity;
 use crate::store::log::Mark;
 use crate::store::sealed;
 use crate::store::sealed::Sealed;
+use crate::strategy::history::History;
 
-/// `checkpoint.bin`: all that the next generation depends on.
-#[derive(Debug)]
+/// `checkpoint.bin`: where to go on.
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     pub(crate) identity: Identity,
+    /// Number of finished generations.
+    pub(crate) generation: u32,
+    /// How far the log had come.
     pub(crate) log: Mark,
-    pub(crate) evolution: Evolution,
+    /// Bytes of `lineage.csv`.
+    pub(crate) lineage: u64,
+    /// What the strategy said of each generation, where it says something.
+    pub(crate) diagnostics: Vec<Vec<f64>>,
+    /// The state of the strategy, if it can save it; else it is told everything again.
+    pub(crate) state: Option<Vec<u8>>,
 }
 
-/// `lineage.bin`: all that any genome of the run is rebuilt from.
-#[derive(Debug)]
-pub(crate) struct Ancestry {
+/// `record.bin`: what the strategy was told, from which any genome of the run is rebuilt.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct ToldRecord {
     pub(crate) identity: Identity,
-    pub(crate) descent: Descent,
+    /// The name of the strategy.
+    pub(crate) strategy: String,
+    pub(crate) record: Record,
 }
 
 /// `champion.bin`: the best individual of the last generation, equals by index, in each population.
@@ -68,19 +74,6 @@ struct ImportedSeveral {
 }
 
 #[derive(Serialize, Deserialize)]
-struct CheckpointOf<E> {
-    identity: Identity,
-    log: Mark,
-    evolution: E,
-}
-
-#[derive(Serialize, Deserialize)]
-struct AncestryOf<L> {
-    identity: Identity,
-    lineage: L,
-}
-
-#[derive(Serialize, Deserialize)]
 struct ChampionOfOne {
     identity: Identity,
     generation: u32,
@@ -113,14 +106,8 @@ macro_rules! sealed {
 }
 
 sealed! {
-    CheckpointOf<TruncationGa>: b"farsachk", "checkpoint";
-    CheckpointOf<OnePlusOne>: b"farsachs", "checkpoint of a steady-state search";
-    CheckpointOf<Coevolution>: b"farsachc", "checkpoint of a co-evolution";
-    CheckpointOf<Learning>: b"farsachl", "checkpoint of learning";
-    AncestryOf<Lineage>: b"farsalin", "lineage";
-    AncestryOf<OnePlusOneHistory>: b"farsalis", "lineage of a steady-state search";
-    AncestryOf<Lineages>: b"farsalic", "lineage of a co-evolution";
-    AncestryOf<Lessons>: b"farsalil", "record of lessons";
+    Checkpoint: b"farsachp", "checkpoint";
+    ToldRecord: b"farsarec", "record of what a strategy was told";
     ChampionOfOne: b"farsachm", "champion";
     ChampionsOfSeveral: b"farsacmc", "set of champions";
     Imported: b"farsagen", "set of genotypes";
@@ -139,113 +126,111 @@ fn read<T: Owned>(path: &Path, plan: &Plan<'_>, directory: &Directory) -> Result
     Ok(record)
 }
 
-impl Checkpoint {
-    /// Writes the file.
-    pub(crate) fn write(self, path: &Path) -> Result<(), Error> {
-        let Self { identity, log, evolution } = self;
-        match evolution {
-            Evolution::Truncation(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
-            Evolution::OnePlusOne(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
-            Evolution::Several(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
-            Evolution::Learning(evolution) => sealed::write(path, &CheckpointOf { identity, log, evolution }),
-        }
-    }
-
-    /// Reads the checkpoint of the run that a plan describes.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] in a directory of imported genotypes, [`Error::Damaged`], [`Error::OtherConfiguration`] or
-    /// [`Error::OtherFile`] when the plan is another one than that of the record.
-    pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
-        let path = directory.checkpoint();
-        evolved(directory)?;
-        match sealed::magic(&path)? {
-            Some(<CheckpointOf<OnePlusOne> as Sealed>::MAGIC) => {
-                let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
-                Ok(Self { identity, log, evolution: Evolution::OnePlusOne(evolution) })
-            }
-            Some(<CheckpointOf<Coevolution> as Sealed>::MAGIC) => {
-                let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
-                Ok(Self { identity, log, evolution: Evolution::Several(evolution) })
-            }
-            Some(<CheckpointOf<Learning> as Sealed>::MAGIC) => {
-                let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
-                Ok(Self { identity, log, evolution: Evolution::Learning(evolution) })
-            }
-            _ => {
-                let CheckpointOf { identity, log, evolution } = read(&path, plan, directory)?;
-                Ok(Self { identity, log, evolution: Evolution::Truncation(evolution) })
-            }
-        }
-    }
-}
-
-/// Refuses a directory of imported genotypes.
+/// Refuses the directory of a run that cannot go on or be rebuilt here: of imported genotypes, or of an earlier version.
 ///
 /// # Errors
-/// [`Error::Usage`].
+/// [`Error::Usage`] that says what to do.
 pub(crate) fn evolved(directory: &Directory) -> Result<(), Error> {
+    let path = directory.path().display();
     if directory.genotypes().is_file() && !directory.checkpoint().is_file() {
-        let path = directory.path().display();
         return Err(Error::Usage(format!(
             "{path}: holds imported genotypes, which no evolution has made: they can be tested, replayed and drawn"
+        )));
+    }
+    earlier(directory)
+}
+
+/// Refuses the directory of a run of an earlier version, whose generations were rebuilt from a lineage.
+fn earlier(directory: &Directory) -> Result<(), Error> {
+    if directory.earlier_lineage().is_file() && !directory.record().is_file() {
+        let (path, config) = (directory.path().display(), directory.config());
+        return Err(Error::Usage(format!(
+            "{path}: has a lineage.bin of an earlier version of FARSA in place of record.bin: it can be tested and \
+             exported, and `run --config {} --out NEW` makes it again with the same numbers",
+            config.display()
         )));
     }
     Ok(())
 }
 
-impl Ancestry {
-    /// Writes the file; imported genotypes have one of their own.
-    pub(crate) fn write(self, path: &Path) -> Result<(), Error> {
-        let Self { identity, descent } = self;
-        match descent {
-            Descent::Truncation(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
-            Descent::OnePlusOne(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
-            Descent::Several(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
-            Descent::Learned(lineage) => sealed::write(path, &AncestryOf { identity, lineage }),
-            Descent::Imported { genomes, populations: 1 } => sealed::write(path, &Imported { identity, genomes }),
-            Descent::Imported { genomes, populations } => {
-                sealed::write(path, &ImportedSeveral { identity, genomes, populations })
-            }
-        }
-    }
-
-    /// Reads what the genomes of the run that a plan describes are rebuilt from, and says where that stands.
+impl Checkpoint {
+    /// Reads the checkpoint of the run that a plan describes.
     ///
     /// # Errors
-    /// As [`Checkpoint::read`].
-    pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<(Self, PathBuf), Error> {
-        let path = directory.genotypes();
-        if path.is_file() {
-            let (identity, genomes, populations) = if sealed::magic(&path)? == Some(ImportedSeveral::MAGIC) {
-                let ImportedSeveral { identity, genomes, populations } = read(&path, plan, directory)?;
-                (identity, genomes, populations)
-            } else {
-                let Imported { identity, genomes } = read(&path, plan, directory)?;
-                (identity, genomes, 1)
-            };
-            return Ok((Self { identity, descent: Descent::Imported { genomes, populations } }, path));
+    /// [`Error::Usage`] in a directory of imported genotypes or of an earlier version, [`Error::Damaged`],
+    /// [`Error::OtherConfiguration`] or [`Error::OtherFile`] when the plan is another one than that of the record.
+    pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
+        evolved(directory)?;
+        read(&directory.checkpoint(), plan, directory)
+    }
+
+    /// Writes the file.
+    pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
+        sealed::write(path, self)
+    }
+}
+
+impl ToldRecord {
+    /// Reads the record of the run that a plan describes.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy than the experiment's.
+    pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
+        evolved(directory)?;
+        let path = directory.record();
+        let told: Self = read(&path, plan, directory)?;
+        let asked = plan.definition().name();
+        if told.strategy != asked {
+            let why = format!("was made by the strategy `{}`, the experiment has `{asked}`", told.strategy);
+            return Err(Error::damaged(&path, why));
         }
-        let path = directory.lineage();
-        let ancestry = match sealed::magic(&path)? {
-            Some(<AncestryOf<OnePlusOneHistory> as Sealed>::MAGIC) => {
-                let AncestryOf { identity, lineage } = read(&path, plan, directory)?;
-                Self { identity, descent: Descent::OnePlusOne(lineage) }
-            }
-            Some(<AncestryOf<Lineages> as Sealed>::MAGIC) => {
-                let AncestryOf { identity, lineage } = read(&path, plan, directory)?;
-                Self { identity, descent: Descent::Several(lineage) }
-            }
-            Some(<AncestryOf<Lessons> as Sealed>::MAGIC) => {
-                let AncestryOf { identity, lineage } = read(&path, plan, directory)?;
-                Self { identity, descent: Descent::Learned(lineage) }
-            }
-            _ => {
-                let AncestryOf { identity, lineage } = read(&path, plan, directory)?;
-                Self { identity, descent: Descent::Truncation(lineage) }
-            }
+        Ok(told)
+    }
+
+    /// Writes the file.
+    pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
+        sealed::write(path, self)
+    }
+}
+
+/// What the genomes of the run that a plan describes are rebuilt from, whose it is, and where that stands.
+///
+/// # Errors
+/// As [`ToldRecord::read`].
+pub(crate) fn history<'p>(
+    plan: &'p Plan<'_>,
+    directory: &Directory,
+) -> Result<(Identity, History<'p>, PathBuf), Error> {
+    let path = directory.genotypes();
+    if path.is_file() {
+        let (identity, genomes, populations) = if sealed::magic(&path)? == Some(ImportedSeveral::MAGIC) {
+            let ImportedSeveral { identity, genomes, populations } = read(&path, plan, directory)?;
+            (identity, genomes, populations)
+        } else {
+            let Imported { identity, genomes } = read(&path, plan, directory)?;
+            (identity, genomes, 1)
         };
-        Ok((ancestry, path))
+        return Ok((identity, History::from_imported(path.clone(), genomes, populations), path));
+    }
+    let path = directory.record();
+    let ToldRecord { identity, record, .. } = ToldRecord::read(plan, directory)?;
+    Ok((identity, History::new(path.clone(), record, plan.fresh()), path))
+}
+
+/// Writes imported genotypes, those of one population after the other.
+///
+/// # Errors
+/// [`Error::Io`].
+pub(crate) fn write_imported(
+    path: &Path,
+    identity: Identity,
+    genomes: Vec<Vec<u16>>,
+    populations: usize,
+) -> Result<(), Error> {
+    if populations == 1 {
+        sealed::write(path, &Imported { identity, genomes })
+    } else {
+        sealed::write(path, &ImportedSeveral { identity, genomes, populations })
     }
 }
 
@@ -275,12 +260,16 @@ impl Champions {
         Ok(Self { identity, generation, best: vec![Best { individual, fitness, genes }] })
     }
 
-    /// The same where a generation is finished, and this program would compute the champions' lives as they were.
+    /// The same where a generation is finished, and this program would compute the champions' trials as they were.
     ///
     /// # Errors
     /// Those of [`read`](Self::read), [`Error::OtherConfiguration`] for other values, [`Error::Damaged`] for genomes that are none
     /// of the experiment or when there is no champion yet.
-    pub(crate) fn of(plan: &Plan<'_>, directory: &Directory, evaluator: &dyn Evaluator) -> Result<Self, Error> {
+    pub(crate) fn read_checked(
+        plan: &Plan<'_>,
+        directory: &Directory,
+        evaluator: &dyn Evaluator,
+    ) -> Result<Self, Error> {
         let path = directory.champion();
         if !path.is_file() {
             return Err(Error::damaged(&path, "there is none: no generation is finished yet"));

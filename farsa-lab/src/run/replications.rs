@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::figures::statistics::{Quartiles, median};
+use crate::run::begin;
 use crate::run::evolve;
 use crate::run::plan::{LARGEST_SEED, Plan};
 use crate::run::pool::Pool;
@@ -89,7 +90,7 @@ pub(crate) fn run(
             Directory::open(&path)?
         } else {
             tell(format!("{which}: {place}"));
-            evolve::create(&plan, &path)?
+            begin::create(&plan, &path)?
         };
         let summary =
             evolve::go_on(&plan, &directory, pool(&plan)?, stop, program, quiet).map_err(|error| match error {
@@ -111,16 +112,16 @@ pub(crate) fn run(
 fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
     let Ok(directory) = Directory::open(path) else { return vacant(path).map(|()| None) };
     let file = directory.checkpoint();
-    let Checkpoint { identity, evolution, .. } = Checkpoint::read(plan, &directory)?;
+    let Checkpoint { identity, generation: done, .. } = Checkpoint::read(plan, &directory)?;
     identity.same_values(&plan.identity()?, &file)?;
-    let (done, asked) = (evolution.generation(), plan.generations()?);
+    let asked = plan.generations()?;
     if done < asked {
         return Ok(None);
     }
     if done > asked {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", path.display())));
     }
-    let champions = Winner::of(&Champions::read(plan, &directory)?);
+    let champions = Winner::from_champions(&Champions::read(plan, &directory)?);
     Ok(Some(Summary {
         directory: path.display().to_string(),
         experiment: identity.experiment,
@@ -176,7 +177,7 @@ impl Replications {
             let _ = writeln!(text, "{directory:<a$}  {seed:>b$}  {generations:>c$}  {individual:>d$}  {fitness}");
         }
         let fitness = self.replications.iter().filter_map(Replication::fitness).collect::<Vec<_>>();
-        if let Some(Quartiles { lower, median, upper }) = Quartiles::of(&fitness) {
+        if let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&fitness) {
             let _ = writeln!(text, "champions' fitness: median {median:.2}, quartiles {lower:.2} and {upper:.2}");
         }
         text

@@ -12,7 +12,7 @@ pub(crate) struct Summary {
     pub(crate) condition: String,
     pub(crate) seed: u64,
     pub(crate) generations: u32,
-    /// Lives lived by this process, not those of earlier sessions.
+    /// Evaluations by this process, not those of earlier sessions.
     pub(crate) evaluations: u64,
     pub(crate) seconds: f64,
     /// None if there was nothing left to do; of several populations the first one's.
@@ -31,7 +31,7 @@ pub(crate) struct Winner {
 
 impl Winner {
     /// The best of every population.
-    pub(crate) fn of(champions: &Champions) -> Vec<Self> {
+    pub(crate) fn from_champions(champions: &Champions) -> Vec<Self> {
         let Champions { generation, best, .. } = champions;
         let winner = |&Best { individual, fitness, .. }: &Best| Self {
             generation: *generation,

@@ -1,4 +1,4 @@
-//! Which world an experiment is lived in, where there is a choice.
+//! Which world an experiment runs in, where there is a choice.
 
 use crate::error::Error;
 use crate::experiment::settings::Value;
@@ -19,7 +19,7 @@ pub(crate) fn choose(plan: &mut Plan<'_>, world: Option<&str>) -> Result<(), Err
     plan.settings.set("--world", ENGINE, Value::Word(world.into()))
 }
 
-/// Lets the lives of a run be lived in another world than the run's, and says whether it is another.
+/// Lets the trials of a run run in another world than the run's, and says whether it is another.
 ///
 /// # Errors
 /// As [`choose`].

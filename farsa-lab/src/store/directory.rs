@@ -84,14 +84,6 @@ impl Directory {
     pub(crate) fn log(&self) -> PathBuf {
         self.path.join("fitness.csv")
     }
-    /// What lessons were like, in a run that learns.
-    pub(crate) fn learning(&self) -> PathBuf {
-        self.path.join("learning.csv")
-    }
-    /// The same as a picture.
-    pub(crate) fn learning_plot(&self) -> PathBuf {
-        self.path.join("learning.svg")
-    }
     /// The log as a picture.
     pub(crate) fn plot(&self) -> PathBuf {
         self.path.join("fitness.svg")
@@ -104,11 +96,23 @@ impl Directory {
     pub(crate) fn checkpoint(&self) -> PathBuf {
         self.path.join("checkpoint.bin")
     }
-    /// The parents of every generation.
-    pub(crate) fn lineage(&self) -> PathBuf {
+    /// What the strategy was told in every generation.
+    pub(crate) fn record(&self) -> PathBuf {
+        self.path.join("record.bin")
+    }
+    /// What earlier versions rebuilt generations from.
+    pub(crate) fn earlier_lineage(&self) -> PathBuf {
         self.path.join("lineage.bin")
     }
-    /// Genotypes that were imported, in the place of checkpoint and lineage.
+    /// The parents of every individual.
+    pub(crate) fn lineage(&self) -> PathBuf {
+        self.path.join("lineage.csv")
+    }
+    /// What a strategy says of each generation, in a file whose name without `.csv` it gives, and the picture of it.
+    pub(crate) fn diagnostics(&self, file: &str) -> [PathBuf; 2] {
+        ["csv", "svg"].map(|end| self.path.join(format!("{file}.{end}")))
+    }
+    /// Genotypes that were imported, in the place of checkpoint and record.
     pub(crate) fn genotypes(&self) -> PathBuf {
         self.path.join("genotypes.bin")
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::experiment::settings::Value;
 
-/// Grows by one whenever the same configuration, seed and genes come to other lives through a change in the crates that
+/// Grows by one whenever the same configuration, seed and genes come to other trials through a change in the crates that
 /// experiments are built of; see [`Experiment::values_version`](crate::Experiment::values_version) for changes in an experiment itself.
 pub const VALUES_VERSION: u32 = 3;
 
@@ -60,7 +60,7 @@ impl Identity {
         self.settings.iter().filter_map(|(key, value)| Some((key.strip_prefix(FILE)?, value)))
     }
 
-    /// Whether this program lives the lives that the file `path` speaks of.
+    /// Whether this program computes the trials that the file `path` speaks of.
     pub(crate) fn same_values(&self, program: &Self, path: &Path) -> Result<(), Error> {
         let versions = [
             ("FARSA's values".to_owned(), self.values_version, program.values_version),

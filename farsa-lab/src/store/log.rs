@@ -74,7 +74,7 @@ impl Log {
         Ok(Self { path: path.into(), file, text, lines: Vec::new() })
     }
 
-    /// Drops the lines after a mark: their generations will be lived again, to the same lines.
+    /// Drops the lines after a mark: their generations will be evaluated again, to the same lines.
     ///
     /// # Errors
     /// [`Error::Damaged`] when the lines up to the mark are not the ones that were written.

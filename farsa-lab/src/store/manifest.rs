@@ -10,7 +10,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::experiment::lanes::Told;
+use crate::experiment::lanes::LanesInfo;
 use crate::store::directory::replace;
 use crate::store::identity::Identity;
 
@@ -26,7 +26,7 @@ pub(crate) struct Manifest {
     pub(crate) values_version: u32,
     /// [`crate::Experiment::values_version`].
     pub(crate) experiment_version: u32,
-    /// The files that lives depend on, with the CRC-32 of their content.
+    /// The files that trials depend on, with the CRC-32 of their content.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) files: BTreeMap<String, String>,
     /// The files that genotypes were imported from.
@@ -42,9 +42,9 @@ pub(crate) struct Session {
     pub(crate) farsa: String,
     pub(crate) machine: Machine,
     pub(crate) threads: usize,
-    /// Lives side by side in each thread, and by which instructions.
+    /// Trials side by side in each thread, and by which instructions.
     #[serde(flatten)]
-    pub(crate) lanes: Told,
+    pub(crate) lanes: LanesInfo,
     /// Seconds since 1970 began, UTC.
     pub(crate) started_unix: u64,
     pub(crate) seconds: f64,
@@ -99,7 +99,7 @@ impl Manifest {
 
 impl Session {
     /// A session that begins now.
-    pub(crate) fn new(threads: usize, lanes: Told, first_generation: u32) -> Self {
+    pub(crate) fn new(threads: usize, lanes: LanesInfo, first_generation: u32) -> Self {
         Self {
             farsa: env!("CARGO_PKG_VERSION").into(),
             machine: Machine::here(),
@@ -150,11 +150,11 @@ mod tests {
 
     #[test]
     fn a_session_from_before_there_were_lanes_had_one() {
-        let session = Session::new(2, Lanes::best().told(), 7);
+        let session = Session::new(2, Lanes::best().info(), 7);
         let mut json = serde_json::to_value(&session).unwrap();
         assert_eq!(serde_json::from_value::<Session>(json.clone()).unwrap(), session);
         let fields = json.as_object_mut().unwrap();
         assert!(fields.remove("lanes").is_some() && fields.remove("simd").is_some());
-        assert_eq!(serde_json::from_value::<Session>(json).unwrap().lanes, Lanes::one().told());
+        assert_eq!(serde_json::from_value::<Session>(json).unwrap().lanes, Lanes::one().info());
     }
 }

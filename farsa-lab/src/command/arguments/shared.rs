@@ -44,7 +44,7 @@ impl VariantArgs {
     }
 }
 
-/// Who lives the lives.
+/// What evaluates the trials.
 #[derive(Args)]
 pub(crate) struct WorkerArgs {
     #[command(flatten)]
@@ -87,19 +87,19 @@ impl Threads {
 /// In which world.
 #[derive(Args)]
 pub(crate) struct WorldArgs {
-    /// The world to live in, where the experiment has a choice (world.engine): articulated or arena, or rapier if built with
+    /// The world to run in, where the experiment has a choice (world.engine): articulated or arena, or rapier if built with
     /// it [default: the run's own]
     #[arg(long = "world", value_name = "NAME")]
     pub(crate) name: Option<String>,
 }
 
-/// How many lives at once.
+/// How many trials at once.
 #[derive(Args)]
 struct LanesArgs {
-    /// Lives side by side in each thread; the results are the same with any number
+    /// Trials side by side in each thread; the results are the same with any number
     #[arg(long, value_name = "L", default_value = "auto", value_parser = PossibleValuesParser::new(["1", "8", "16", "auto"]))]
     lanes: String,
-    /// Instructions for lives side by side; the results are the same with any
+    /// Instructions for trials side by side; the results are the same with any
     #[arg(long, value_name = "SET", default_value = "auto", value_parser = simd())]
     simd: Simd,
 }

@@ -4,9 +4,15 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint, value_parser};
 
-use crate::run::arguments::{VariantArgs, WorkerArgs};
-use crate::run::plan::LARGEST_SEED;
+use crate::command::arguments::shared::{VariantArgs, WorkerArgs};
+use crate::error::Error;
+use crate::evaluation::evaluate::GivenGenes;
+use crate::experiment::definition::Experiment;
+use crate::experiment::settings::Value;
+use crate::run::plan::{LARGEST_SEED, Plan};
 
+/// The setting that `--ir-tables` is short for.
+const INFRARED_TABLES: &str = "robot.infrared_tables";
 /// A setting's key in a comment would want the marks of code, which a terminal shows as they are.
 const IR_TABLES: &str = "Tables of the infrared sensors (robot.infrared_tables)";
 
@@ -17,6 +23,35 @@ pub(crate) struct GenotypeVariant {
     pub(crate) variant: VariantArgs,
     #[arg(long, value_name = "DIR", help = IR_TABLES, value_hint = ValueHint::DirPath)]
     pub(crate) ir_tables: Option<PathBuf>,
+}
+
+impl GenotypeVariant {
+    /// An experiment under this condition with these settings and tables.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] and [`Error::Setting`]; [`Error::Usage`] for tables that the experiment has no setting for.
+    pub(crate) fn plan<'e>(&self, experiment: &'e dyn Experiment) -> Result<Plan<'e>, Error> {
+        let mut plan = self.variant.plan(experiment)?;
+        if let Some(directory) = &self.ir_tables {
+            if !plan.settings.table().iter().any(|setting| setting.key() == INFRARED_TABLES) {
+                let (name, condition) = (experiment.name(), &plan.condition);
+                let under =
+                    if condition.is_empty() { String::new() } else { format!(" under condition `{condition}`") };
+                let why = format!("--ir-tables: {name} has no setting `{INFRARED_TABLES}`{under}");
+                return Err(Error::Usage(why));
+            }
+            let text = directory.to_str().ok_or_else(|| {
+                Error::Usage(format!("--ir-tables: {}: the name is not Unicode", directory.display()))
+            })?;
+            plan.settings.set("--ir-tables", INFRARED_TABLES, Value::Word(text.into()))?;
+        }
+        Ok(plan)
+    }
+
+    /// What `--set` first says of a setting.
+    pub(crate) fn set(&self, key: &str) -> Option<&Value> {
+        self.variant.set.iter().find(|(set, _)| set == key).map(|(_, value)| value)
+    }
 }
 
 #[derive(Args)]
@@ -49,6 +84,12 @@ pub(crate) struct EvaluateArgs {
     pub(crate) json: bool,
 }
 
+impl EvaluateArgs {
+    pub(crate) fn genes(&self) -> GivenGenes {
+        GivenGenes { lists: self.genes.clone(), files: self.genes_file.clone(), numbers: self.genotype.clone() }
+    }
+}
+
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct ImportArgs {
@@ -61,7 +102,7 @@ pub(crate) struct ImportArgs {
     pub(crate) experiment: String,
     #[command(flatten)]
     pub(crate) variant: GenotypeVariant,
-    /// Where the random numbers of replayed lives come from
+    /// Where the random numbers of replayed trials come from
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: u64,
     /// The new directory

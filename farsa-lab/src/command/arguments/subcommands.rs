@@ -1,4 +1,4 @@
-//! The words of the command line.
+//! All subcommands, and the words of those that are short.
 
 use std::path::PathBuf;
 
@@ -6,14 +6,14 @@ use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
 use clap_complete::Shell;
 use farsa_view::Camera;
 
-use crate::evaluation::arguments::{EvaluateArgs, ImportArgs};
+use crate::command::arguments::export::ExportArgs;
+use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
+use crate::command::arguments::robot::RobotArgs;
+use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
 use crate::evaluation::replay::Which;
-use crate::export::files::{ControllerFormat, DataFormat, ModelFormat};
-use crate::export::robot_file::RobotArgs;
-use crate::run::arguments::{VariantArgs, WorkerArgs, WorldArgs};
 use crate::run::plan::LARGEST_SEED;
 
-/// Evolve robots, test the champions, and see any life of a run again.
+/// Evolve robots, test the champions, and replay any trial of a run.
 #[derive(Parser)]
 #[command(max_term_width = 80)]
 pub(crate) struct Cli {
@@ -28,27 +28,27 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// List the experiments
     List(ListArgs),
-    /// Tell all about an experiment, with every setting and its source
+    /// Describe an experiment, with every setting and its source
     Info(InfoArgs),
     /// Evolve, or go on with a run
     Run(RunArgs),
     /// Put a run's champion to the test on fresh starts
     Test(TestArgs),
-    /// Evaluate anybody's genotype on random trials
+    /// Evaluate a genotype from any source on random trials
     Evaluate(EvaluateArgs),
     /// Make genotypes of the original FARSA a run to test and replay
     Import(ImportArgs),
-    /// Live a life of a run again, exactly
+    /// Replay a trial of a run, exactly
     Replay(ReplayArgs),
-    /// Draw a moment of a life as a picture
+    /// Draw a moment of a trial as a picture
     Draw(DrawArgs),
     /// Write a page about one or many runs
     Report(ReportArgs),
     /// Write a robot, a controller or starts for other simulators
     Export(ExportArgs),
-    /// Tell what is read of a robot in a model file, URDF or MJCF
+    /// Show what is read of a robot in a model file, URDF or MJCF
     Robot(RobotArgs),
-    /// Measure how fast lives are lived here, and foretell a whole study
+    /// Measure how fast trials run here, and estimate a whole study
     Bench(BenchArgs),
     /// Write a shell's completions to the standard output
     Completions(CompletionsArgs),
@@ -121,7 +121,7 @@ pub(crate) struct BenchArgs {
     pub(crate) experiment: Option<String>,
     #[command(flatten)]
     pub(crate) variant: VariantArgs,
-    /// Live the last generation of this run, under its configuration [default: random genomes]
+    /// Run the last generation of this run, under its configuration [default: random genomes]
     #[arg(long, value_name = "DIR", conflicts_with_all = ["experiment", "condition"], value_hint = ValueHint::DirPath)]
     pub(crate) run: Option<PathBuf>,
     #[command(flatten)]
@@ -160,9 +160,9 @@ pub(crate) struct TestArgs {
     pub(crate) json: bool,
 }
 
-/// Which lives of a run.
+/// Which trials of a run.
 #[derive(Args)]
-pub(crate) struct LifeArgs {
+pub(crate) struct WhichArgs {
     /// The generation, from 0 [default: the last]
     #[arg(long, value_name = "N")]
     generation: Option<u32>,
@@ -174,7 +174,7 @@ pub(crate) struct LifeArgs {
     trial: Option<u32>,
 }
 
-impl LifeArgs {
+impl WhichArgs {
     pub(crate) fn which(&self) -> Which {
         Which { generation: self.generation, individual: self.individual, trial: self.trial }
     }
@@ -186,16 +186,16 @@ pub(crate) struct ReplayArgs {
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
     #[command(flatten)]
-    pub(crate) life: LifeArgs,
+    pub(crate) which: WhichArgs,
     #[command(flatten)]
     pub(crate) world: WorldArgs,
     /// A new file for the steps as CSV [default: the standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
-    /// A new file for a page that shows the life in a browser, whole in itself
+    /// A new file for a self-contained page that shows the trial in a browser
     #[arg(long, value_name = "FILE", conflicts_with = "out", value_hint = ValueHint::FilePath)]
     pub(crate) html: Option<PathBuf>,
-    /// Another run, whose same life the page shows beside it
+    /// Another run, whose same trial the page shows beside it
     #[arg(long, value_name = "DIR", requires = "html", value_hint = ValueHint::DirPath)]
     pub(crate) compare: Option<PathBuf>,
     /// Write the summary as JSON: where the steps do not go, the standard error without --out or --html
@@ -266,84 +266,6 @@ pub(crate) struct ReportArgs {
     /// Write the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-#[derive(Args)]
-pub(crate) struct ExportArgs {
-    #[command(subcommand)]
-    pub(crate) what: ExportWhat,
-}
-
-#[derive(Subcommand)]
-pub(crate) enum ExportWhat {
-    /// Write the robot with everything around it as a model file
-    Robot(ExportRobotArgs),
-    /// Write the controller of a run's champion, with what it senses and drives
-    Controller(ExportControllerArgs),
-    /// Write the genes of a run's champion as a .gen file, for `import` and `evaluate`
-    Genotype(ExportGenotypeArgs),
-    /// Write how the trials of `test` start
-    Starts(ExportStartsArgs),
-}
-
-#[derive(Args)]
-pub(crate) struct ExportControllerArgs {
-    /// The run's directory
-    #[arg(value_hint = ValueHint::DirPath)]
-    pub(crate) directory: PathBuf,
-    /// Of which kind the file is
-    #[arg(long, value_enum)]
-    pub(crate) format: ControllerFormat,
-    /// A new file [default: the standard output]
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) out: Option<PathBuf>,
-}
-
-#[derive(Args)]
-pub(crate) struct ExportGenotypeArgs {
-    /// The run's directory
-    #[arg(value_hint = ValueHint::DirPath)]
-    pub(crate) directory: PathBuf,
-    /// Of which population, where there are several
-    #[arg(long, value_name = "NAME")]
-    pub(crate) population: Option<String>,
-    /// A new file [default: the standard output]
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) out: Option<PathBuf>,
-}
-
-#[derive(Args)]
-pub(crate) struct ExportStartsArgs {
-    /// The run's directory
-    #[arg(value_hint = ValueHint::DirPath)]
-    pub(crate) directory: PathBuf,
-    /// Trials of the test
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=1_000_000))]
-    pub(crate) trials: u32,
-    /// The test's seed
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
-    pub(crate) seed: u64,
-    /// Of which kind the file is
-    #[arg(long, value_enum)]
-    pub(crate) format: DataFormat,
-    /// A new file [default: the standard output]
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) out: Option<PathBuf>,
-}
-
-#[derive(Args)]
-#[command(allow_negative_numbers = true)]
-pub(crate) struct ExportRobotArgs {
-    /// The experiment
-    pub(crate) experiment: String,
-    #[command(flatten)]
-    pub(crate) variant: VariantArgs,
-    /// Of which kind the file is
-    #[arg(long, value_enum)]
-    pub(crate) format: ModelFormat,
-    /// A new file [default: the standard output]
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Args)]

@@ -1,9 +1,10 @@
-//! Whom an individual of one of several populations meets, in a run and when a life is lived again.
+//! Whom an individual of one of several populations meets, in a run and when a trial is replayed.
 
-use farsa_evo::EvoError;
+use std::ops::Range;
 
+use crate::error::Error;
 use crate::experiment::genotype::Genotype;
-use crate::search::engine::Descent;
+use crate::strategy::history::History;
 
 /// An individual of another population.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,27 +57,28 @@ impl Meeting {
     }
 }
 
-/// The genomes that an individual met in a trial, rebuilt.
+/// The genomes that an individual met in each of some trials, rebuilt.
 pub(crate) fn met(
-    descent: &Descent,
+    history: &History<'_>,
     generation: u32,
     individual: usize,
-    trial: u32,
+    wanted: Range<u32>,
     trials: usize,
-) -> Result<Vec<Vec<u16>>, EvoError> {
-    let meeting = Meeting { generation, populations: descent.populations(), size: descent.size(), trials };
-    let genome = |opponent| match opponent {
-        Opponent::Champion { population, generation } => champion(descent, population, generation),
-        Opponent::Peer(individual) => descent.genome_of(generation, individual),
-    };
-    meeting.opponents(individual, trial).map(genome).collect()
-}
-
-/// The genome of the best of a population in a finished generation.
-fn champion(descent: &Descent, population: usize, generation: u32) -> Result<Vec<u16>, EvoError> {
-    let latest = descent.finished();
-    let best = descent.champion(population, generation).ok_or(EvoError::NoSuchGeneration { generation, latest })?;
-    descent.genome_of(generation, best)
+) -> Result<Vec<Vec<Vec<u16>>>, Error> {
+    let meeting = Meeting { generation, populations: history.populations(), size: history.size(), trials };
+    let mut places = Vec::new();
+    for trial in wanted {
+        for opponent in meeting.opponents(individual, trial) {
+            places.push(match opponent {
+                Opponent::Peer(individual) => (generation, individual),
+                Opponent::Champion { population, generation } => {
+                    (generation, history.champion(population, generation).ok_or_else(|| history.missing(generation))?)
+                }
+            });
+        }
+    }
+    let each = (meeting.populations - 1).max(1);
+    Ok(history.genomes(&places)?.chunks(each).map(<[_]>::to_vec).collect())
 }
 
 /// The champions of every generation; of a single population nobody is kept.
@@ -87,19 +89,19 @@ pub(crate) struct Hall {
 }
 
 impl Hall {
-    /// The champions before a generation that is not finished yet.
-    pub(crate) fn before(descent: &Descent, genotype: &Genotype) -> Result<Self, EvoError> {
-        let (populations, generation) = (descent.populations(), descent.finished());
+    /// The champions of all finished generations.
+    pub(crate) fn before(history: &History<'_>, genotype: &Genotype) -> Result<Self, Error> {
+        let populations = history.populations();
         let mut hall = Self::default();
         if populations > 1 {
-            for generation in 0..generation {
+            history.visit(0..history.finished(), |generation, genomes| {
                 let all = (0..populations).map(|population| {
-                    let genes = champion(descent, population, generation)?;
-                    let (found, expected) = (genes.len(), genotype.genes());
-                    genotype.decode(&genes).ok_or(EvoError::Lengths { genes: found, ranges: expected, out: expected })
+                    let best = history.champion(population, generation)?;
+                    genotype.decode(genomes.get(best)?)
                 });
-                hall.add(all.collect::<Result<_, _>>()?);
-            }
+                hall.add(all.collect::<Option<_>>().ok_or_else(|| history.missing(generation))?);
+                Ok(())
+            })?;
         }
         Ok(hall)
     }
@@ -135,7 +137,7 @@ impl Hall {
 mod tests {
     use super::*;
     use crate::experiment::evaluator::Parameter;
-    use farsa_evo::{Coevolution, Fitness, GaConfig, Strategy as _};
+    use farsa_evo::{Coevolution, Fitness, GaConfig, Record, Strategy};
 
     #[test]
     fn earlier_champions_come_first_then_peers() {
@@ -165,31 +167,39 @@ mod tests {
     }
 
     #[test]
-    fn a_run_meets_whom_its_lineages_remember() {
+    fn a_run_meets_whom_its_record_remembers() {
         const TRIALS: usize = 3;
         let config = GaConfig { population: 6, parents: 2, mutation_rate: 0.2, ..GaConfig::new(3) };
         let genotype = Genotype::new(&vec![Parameter::new("", [0.0, 65535.0]); 3], 16);
         let mut all = Coevolution::new(&[config; 3], 4).unwrap();
-        let mut hall = Hall::before(&Descent::Several(all.lineages()), &genotype).unwrap();
+        let mut record = Record::new(&mut all).unwrap();
+        let mut hall = Hall::default();
+        let history = |record: &Record| {
+            let fresh = move || Ok(Box::new(Coevolution::new(&[config; 3], 4).unwrap()) as Box<dyn Strategy>);
+            History::new("record".into(), record.clone(), Box::new(fresh))
+        };
         for generation in 0..7 {
-            let descent = Descent::Several(all.lineages());
             let meeting = Meeting { generation, populations: 3, size: 6, trials: TRIALS };
             let peers = genotype.decode_all(all.ask()).unwrap();
             let opponents = hall.opponents(meeting, &peers).unwrap();
-            let resumed = Hall::before(&descent, &genotype).unwrap();
+            let resumed = Hall::before(&history(&record), &genotype).unwrap();
             assert_eq!(resumed.opponents(meeting, &peers).unwrap(), opponents);
-            for (number, parameters) in opponents.chunks(2).enumerate() {
-                let genes = met(&descent, generation, number % 18, (number / 18) as u32, TRIALS).unwrap();
-                let met: Vec<Vec<f32>> = genes.iter().map(|genes| genotype.decode(genes).unwrap()).collect();
-                assert_eq!(met, parameters);
-            }
             assert_eq!(opponents.len(), TRIALS * 18 * 2);
+            let opponents: Vec<Vec<f32>> = opponents.into_iter().map(<[f32]>::to_vec).collect();
             let fitness: Vec<_> =
                 (0..18_u32).map(|i| Fitness::nan_as_failed(f64::from((i * 5 + generation) % 7))).collect();
-            let champions = crate::search::engine::Evolution::Several(all.clone()).champions(&fitness);
-            let best = champions.iter().map(|&best| peers[best].clone()).collect();
-            all.tell(&fitness).unwrap();
+            let best = all.champions(&fitness).iter().map(|&best| peers[best].clone()).collect();
+            record.tell(&mut all, &fitness).unwrap();
             hall.add(best);
+            let history = history(&record);
+            for individual in 0..18 {
+                let genes = met(&history, generation, individual, 0..TRIALS as u32, TRIALS).unwrap();
+                for (trial, genes) in genes.iter().enumerate() {
+                    let first = 2 * (18 * trial + individual);
+                    let met: Vec<Vec<f32>> = genes.iter().map(|genes| genotype.decode(genes).unwrap()).collect();
+                    assert_eq!(met, opponents[first..first + 2]);
+                }
+            }
         }
     }
 }

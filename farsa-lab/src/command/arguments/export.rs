@@ -1,0 +1,125 @@
+//! The words of `farsa export`, and the formats of files.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValue;
+use clap::{Args, Subcommand, ValueEnum, ValueHint, value_parser};
+
+use crate::command::arguments::shared::VariantArgs;
+use crate::export::files::{ControllerFormat, ModelFormat};
+use crate::run::plan::LARGEST_SEED;
+
+#[derive(Args)]
+pub(crate) struct ExportArgs {
+    #[command(subcommand)]
+    pub(crate) what: ExportWhat,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum ExportWhat {
+    /// Write the robot with everything around it as a model file
+    Robot(ExportRobotArgs),
+    /// Write the controller of a run's champion, with what it senses and drives
+    Controller(ExportControllerArgs),
+    /// Write the genes of a run's champion as a .gen file, for `import` and `evaluate`
+    Genotype(ExportGenotypeArgs),
+    /// Write how the trials of `test` start
+    Starts(ExportStartsArgs),
+}
+
+#[derive(Args)]
+pub(crate) struct ExportControllerArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: ControllerFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportGenotypeArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Of which population, where there are several
+    #[arg(long, value_name = "NAME")]
+    pub(crate) population: Option<String>,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct ExportStartsArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// Trials of the test
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) trials: u32,
+    /// The test's seed
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: DataFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct ExportRobotArgs {
+    /// The experiment
+    pub(crate) experiment: String,
+    #[command(flatten)]
+    pub(crate) variant: VariantArgs,
+    /// Of which kind the file is
+    #[arg(long, value_enum)]
+    pub(crate) format: ModelFormat,
+    /// A new file [default: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// The formats of starts.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum DataFormat {
+    /// Names and numbers
+    Json,
+}
+
+impl ValueEnum for ModelFormat {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Mjcf, Self::Urdf]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Self::Mjcf => ("mjcf", "MuJoCo's own: joints, inertias, contact pairs, actuators, starts"),
+            Self::Urdf => ("urdf", "The robot alone: joints, inertias, shapes"),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
+}
+
+impl ValueEnum for ControllerFormat {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Json, Self::Bytes, Self::Rust, Self::Safetensors]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Self::Json => ("json", "Names and numbers, of the body too"),
+            Self::Bytes => ("bytes", "The network for a board's flash: checked and used where it lies"),
+            Self::Rust => ("rust", "The network as constants of a Rust program"),
+            Self::Safetensors => ("safetensors", "The network as tables for Python"),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
+}

@@ -1,0 +1,13 @@
+//! The words of the command line.
+//!
+//! - `export`: those of `farsa export`, and the formats of files
+//! - `genotypes`: those of the commands about genotypes from elsewhere, `farsa evaluate` and `farsa import`
+//! - `robot`: those of `farsa robot`
+//! - `shared`: those that several commands have
+//! - `subcommands`: all subcommands, and the words of those that are short
+
+pub(crate) mod export;
+pub(crate) mod genotypes;
+pub(crate) mod robot;
+pub(crate) mod shared;
+pub(crate) mod subcommands;

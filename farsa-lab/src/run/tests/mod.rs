@@ -1,0 +1,219 @@
+//! Tests of whole runs with every strategy: what is selected, written, resumed and replayed.
+//!
+//! - `reference`: our strategies, against what is computed by hand
+//! - `own_strategy`: a strategy of a user's own
+//! - `files`: what is refused, and what is mended
+
+mod files;
+mod own_strategy;
+mod reference;
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+use farsa_body::Recorder;
+use farsa_num::{Domain, Stream};
+use farsa_view::Schema;
+
+use crate::error::Error;
+use crate::evaluation::replay::{Which, replay};
+use crate::experiment::definition::Experiment;
+use crate::experiment::episode::EpisodeId;
+use crate::experiment::evaluator::{Evaluation, Evaluator, Iteration, Learner, Parameter, Task};
+use crate::experiment::lanes::Wanted;
+use crate::experiment::outcome::{Description, Outcome};
+use crate::experiment::settings::{Setting, Settings, Value};
+use crate::run::begin::create;
+use crate::run::evolve::go_on;
+use crate::run::plan::Plan;
+use crate::run::pool::Pool;
+use crate::store::directory::Directory;
+use crate::strategy::definition::StrategyDefinition;
+use crate::strategy::history::History;
+use crate::strategy::settings::{GENERATIONS as GENERATIONS_KEY, POPULATION};
+use crate::strategy::{Learning, OnePlusOne, Truncation};
+
+const TRIALS: u32 = 3;
+const SIZE: usize = 10;
+
+/// Genes are to match numbers, alone and with noise, or those of others: population 0 seeks, the others flee.
+#[derive(Clone, Copy)]
+struct Numbers {
+    strategy: &'static dyn StrategyDefinition,
+    populations: usize,
+}
+
+const STEADY: Numbers = Numbers { strategy: &OnePlusOne, populations: 1 };
+const LEARNER: Numbers = Numbers { strategy: &Learning, populations: 1 };
+const CHASE_ALONE: Numbers = Numbers { strategy: &Truncation, populations: 1 };
+const CHASE: Numbers = Numbers { strategy: &Truncation, populations: 3 };
+
+impl Experiment for Numbers {
+    fn name(&self) -> &'static str {
+        "numbers"
+    }
+    fn summary(&self) -> &'static str {
+        "genes are to match numbers"
+    }
+    fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
+        self.strategy
+    }
+    fn settings(&self, _: &str) -> Vec<Setting> {
+        if self.strategy.name() != "truncation" {
+            return vec![Setting::text("numbers.file", "")];
+        }
+        let size = i64::try_from(SIZE).unwrap();
+        vec![Setting::whole(POPULATION, size, 1..=100), Setting::whole("evolution.parents", 2, 1..=100)]
+    }
+    fn files(&self, _: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {
+        let file = settings.text("numbers.file").unwrap_or_default();
+        Ok(if file.is_empty() { Vec::new() } else { vec![file.into()] })
+    }
+    fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        Ok(Box::new(*self))
+    }
+    fn gene_bits(&self) -> u32 {
+        8
+    }
+}
+
+impl Numbers {
+    fn alone(genes: &[f32], id: EpisodeId) -> f64 {
+        let noise = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation).uniform_f64();
+        200.0 * noise - f64::from((genes[0] - 100.0).abs()) - f64::from((genes[1] - 7.0).abs())
+    }
+
+    fn against(genes: &[f32], opponents: &[&[f32]], population: usize) -> f64 {
+        let misses = opponents.iter().map(|other| f64::from((genes[0] - other[0]).abs()));
+        let sign = if population == 0 { -1.0 } else { 1.0 };
+        misses.map(|miss| sign * miss).sum()
+    }
+}
+
+/// Parameters are genes as they are.
+fn plain(genes: &[u16]) -> Vec<f32> {
+    genes.iter().copied().map(f32::from).collect()
+}
+
+impl Task for Numbers {
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("first", [0.0, 255.0]), Parameter::new("second", [0.0, 255.0])]
+    }
+    fn populations(&self) -> Vec<String> {
+        (0..self.populations).map(|population| population.to_string()).collect()
+    }
+    fn trials(&self) -> usize {
+        TRIALS as usize
+    }
+    fn schema(&self) -> Schema {
+        Schema::from_scalars(["gene"])
+    }
+    fn description(&self) -> Description {
+        Description::default()
+    }
+}
+
+/// Words half way from where they are to 100 and 7, and a little beside it.
+impl Learner for Numbers {
+    fn initial_state(&self, _: u64) -> Vec<f64> {
+        vec![0.0; 2]
+    }
+    fn iterate(&mut self, state: &mut [f64], seed: u64, generation: u32) -> Option<Iteration> {
+        let beside = Stream::new(seed, Domain::Network, 0, 0, generation).uniform_f64();
+        let [first, second] = state else { return None };
+        let before = (100.0 - *first).abs();
+        (*first, *second) = (0.5 * (*first + 100.0) + beside, 0.5 * (*second + 7.0));
+        Some(Iteration { before, after: (100.0 - *first).abs(), successes: 1.0 })
+    }
+    fn learned(&self, state: &[f64]) -> Vec<f64> {
+        state.iter().map(|value| value.floor()).collect()
+    }
+}
+
+impl Evaluator for Numbers {
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
+        let Evaluation { parameters, opponents, id, .. } = evaluation;
+        assert_eq!(opponents.len(), self.populations - 1);
+        if let Some(recorder) = recorder {
+            recorder.scalars(&[f64::from(opponents.first().unwrap_or(&parameters)[0])]);
+            recorder.tick(0.0);
+        }
+        if self.populations == 1 {
+            return Outcome { terms: vec![Self::alone(parameters, id)], steps: 1, ..Outcome::default() };
+        }
+        let fitness = Self::against(parameters, opponents, id.population(SIZE));
+        Outcome { terms: vec![fitness], steps: 1, success: fitness >= 0.0, ..Outcome::default() }
+    }
+    fn learner(&mut self) -> Option<&mut dyn Learner> {
+        Some(self)
+    }
+}
+
+fn scratch(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("farsa-search-{name}-{}", std::process::id()));
+    let _ = fs::remove_dir_all(&path);
+    path
+}
+
+fn plan(numbers: &Numbers, generations: i64) -> Plan<'_> {
+    let mut plan = Plan::new(numbers, None, "").unwrap();
+    plan.seed = 11;
+    plan.settings.set("", GENERATIONS_KEY, Value::Whole(generations)).unwrap();
+    plan
+}
+
+fn pool(plan: &Plan<'_>, threads: usize) -> Pool {
+    Pool::new(plan, threads, Wanted::ONE).unwrap()
+}
+
+fn run(plan: &Plan<'_>, directory: &Directory, threads: usize) -> String {
+    go_on(plan, directory, pool(plan, threads), &AtomicBool::new(false), "farsa", true).unwrap().text()
+}
+
+/// A whole run, and one of other threads that was stopped twice, which must have the same files; returns the first.
+fn twice(numbers: &Numbers, root: &std::path::Path, generations: i64) -> Directory {
+    let whole = plan(numbers, generations);
+    let directory = create(&whole, &root.join("whole")).unwrap();
+    let text = run(&whole, &directory, 2);
+    let parts = create(&plan(numbers, 1), &root.join("parts")).unwrap();
+    for (generations, threads) in [(1, 3), (generations / 2, 1), (generations, 2)] {
+        let said = run(&plan(numbers, generations), &parts, threads);
+        assert_eq!(said.split_once(": ").unwrap().1 == text.split_once(": ").unwrap().1, threads == 2, "{said} {text}");
+    }
+    for name in ["config.toml", "fitness.csv", "champion.bin", "record.bin", "checkpoint.bin", "lineage.csv"] {
+        let read = |run: &str| fs::read(root.join(run).join(name)).ok();
+        assert!(read("whole") == read("parts"), "{name}");
+        assert_eq!(read("whole").is_some(), name != "lineage.csv" || numbers.strategy.name() != "learning", "{name}");
+    }
+    directory
+}
+
+/// The genes of an individual of a finished generation, rebuilt.
+fn genes_of(history: &History<'_>, generation: u32, individual: usize) -> Vec<u16> {
+    history.genomes(&[(generation, individual)]).unwrap().remove(0)
+}
+
+/// Generation, individual and parents of each line of `lineage.csv`.
+fn lineage(directory: &Directory) -> Vec<(u32, usize, Vec<usize>)> {
+    let text = fs::read_to_string(directory.lineage()).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("generation,individual,parents"));
+    let line = |line: &str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let parents = fields[2].split(' ').map(|parent| parent.parse().unwrap()).collect();
+        (fields[0].parse().unwrap(), fields[1].parse().unwrap(), parents)
+    };
+    lines.map(line).collect()
+}
+
+fn rows(directory: &Directory) -> Vec<Vec<f64>> {
+    let log = fs::read_to_string(directory.log()).unwrap();
+    log.lines().skip(1).map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect()
+}
+
+fn replayed(plan: &Plan<'_>, directory: &Directory, which: Which) -> (String, String) {
+    let mut out = Vec::new();
+    let summary = replay(plan, directory, which, &mut out).unwrap().summary;
+    (String::from_utf8(out).unwrap(), summary)
+}

@@ -1,0 +1,132 @@
+//! The genomes and champions of past generations.
+
+use std::path::PathBuf;
+
+use farsa_evo::{Population, Record, Strategy};
+
+use crate::error::Error;
+
+/// Makes the strategy of a run, at its first generation.
+pub(crate) type Fresh<'h> = Box<dyn Fn() -> Result<Box<dyn Strategy>, Error> + 'h>;
+
+/// The finished generations of a run, and where that stands.
+pub(crate) struct History<'h> {
+    path: PathBuf,
+    past: Past<'h>,
+}
+
+/// What genomes are rebuilt from.
+enum Past<'h> {
+    /// What the strategy was told.
+    Told { record: Record, fresh: Fresh<'h> },
+    /// Genomes from elsewhere, as the only generation: those of one population after the other, as many of each.
+    Imported { genomes: Vec<Vec<u16>>, populations: usize },
+}
+
+impl<'h> History<'h> {
+    /// The generations that a strategy was told of.
+    pub(crate) fn new(path: PathBuf, record: Record, fresh: Fresh<'h>) -> Self {
+        Self { path, past: Past::Told { record, fresh } }
+    }
+
+    /// Imported genomes, those of one population after the other.
+    pub(crate) fn from_imported(path: PathBuf, genomes: Vec<Vec<u16>>, populations: usize) -> Self {
+        Self { path, past: Past::Imported { genomes, populations: populations.max(1) } }
+    }
+
+    /// Number of finished generations.
+    pub(crate) fn finished(&self) -> u32 {
+        match &self.past {
+            Past::Told { record, .. } => record.generations(),
+            Past::Imported { .. } => 1,
+        }
+    }
+
+    /// Populations that evolve beside each other.
+    pub(crate) fn populations(&self) -> usize {
+        match &self.past {
+            Past::Told { record, .. } => record.populations(),
+            Past::Imported { populations, .. } => *populations,
+        }
+    }
+
+    /// Individuals of each population.
+    pub(crate) fn size(&self) -> usize {
+        match &self.past {
+            Past::Told { record, .. } => record.size(),
+            Past::Imported { genomes, populations } => genomes.len() / populations,
+        }
+    }
+
+    /// The best individual of a population in a finished generation, counted through all populations.
+    pub(crate) fn champion(&self, population: usize, generation: u32) -> Option<usize> {
+        match &self.past {
+            Past::Told { record, .. } => record.champion(population, generation),
+            Past::Imported { .. } => {
+                (generation == 0 && population < self.populations()).then_some(population * self.size())
+            }
+        }
+    }
+
+    /// The genomes of finished generations, given in rising order, one after the other; `visit` takes the place of each
+    /// in that order.
+    ///
+    /// # Errors
+    /// [`Error::Damaged`] for a generation that is not finished, and when the record is not one of this strategy.
+    pub(crate) fn visit(
+        &self,
+        generations: impl IntoIterator<Item = u32>,
+        mut visit: impl FnMut(u32, &Population) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let damaged = |error| Error::damaged(&self.path, error);
+        match &self.past {
+            Past::Told { record, fresh } => {
+                let mut strategy = fresh()?;
+                for generation in generations {
+                    let population = record.genomes(strategy.as_mut(), generation).map_err(damaged)?;
+                    visit(generation, &population)?;
+                }
+            }
+            Past::Imported { genomes, .. } => {
+                let genes = genomes.first().map_or(0, Vec::len);
+                let mut population = Population::new(genomes.len(), genes).map_err(damaged)?;
+                for (own, genome) in population.iter_mut().zip(genomes) {
+                    if genome.len() != genes {
+                        return Err(self.missing(0));
+                    }
+                    own.copy_from_slice(genome);
+                }
+                for generation in generations {
+                    if generation > 0 {
+                        return Err(self.missing(generation));
+                    }
+                    visit(generation, &population)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The genomes of individuals of finished generations, in the order asked for.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit), and for an individual that does not exist.
+    pub(crate) fn genomes(&self, wanted: &[(u32, usize)]) -> Result<Vec<Vec<u16>>, Error> {
+        let mut generations: Vec<u32> = wanted.iter().map(|(generation, _)| *generation).collect();
+        generations.sort_unstable();
+        generations.dedup();
+        let mut found: Vec<Vec<u16>> = vec![Vec::new(); wanted.len()];
+        self.visit(generations, |generation, population| {
+            for (found, (_, individual)) in found.iter_mut().zip(wanted).filter(|(_, (own, _))| *own == generation) {
+                *found = population.get(*individual).ok_or_else(|| self.missing(generation))?.to_vec();
+            }
+            Ok(())
+        })?;
+        Ok(found)
+    }
+
+    /// What is said of a generation, or an individual of it, that is not there.
+    pub(crate) fn missing(&self, generation: u32) -> Error {
+        Error::damaged(&self.path, format!("an individual of generation {generation} is missing"))
+    }
+}

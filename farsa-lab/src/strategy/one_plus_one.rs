@@ -1,0 +1,73 @@
+//! One parent and one mutant.
+
+use farsa_evo::{EvoError, OnePlusOneConfig, Strategy};
+
+use crate::error::Error;
+use crate::experiment::settings::{Setting, Settings};
+use crate::strategy::definition::{StrategyDefinition, StrategyStart};
+use crate::strategy::settings::{GENERATIONS, MUTATION, mutation};
+
+const FIRST_RATE: &str = "evolution.first_rate";
+const RATE_STEP: &str = "evolution.rate_step";
+const LAST_RATE: &str = "evolution.last_rate";
+
+/// One parent makes one mutant a generation and the better of the two stays, [`farsa_evo::OnePlusOne`], with the defaults of
+/// the original's discrimination experiment.
+///
+/// The log of such a run is about the mean fitness of the parent over all its evaluations and the fitness of the mutant: the
+/// best of the two is that of the survivor, which is the champion.
+#[derive(Debug, Clone, Copy)]
+pub struct OnePlusOne;
+
+impl StrategyDefinition for OnePlusOne {
+    fn name(&self) -> &'static str {
+        "one-plus-one"
+    }
+
+    fn settings(&self) -> Vec<Setting> {
+        vec![
+            Setting::whole(GENERATIONS, 500, 1..=i64::from(u32::MAX) - 1)
+                .given()
+                .doc("Generations of one parent and one mutant; the one thing that a resumed run may change."),
+            Setting::word(MUTATION, "flip", &["flip", "resample"])
+                .given()
+                .doc("What happens to a bit that mutation hits: it flips, or it is drawn anew."),
+            Setting::number(FIRST_RATE, 0.5, 0.0..=1.0)
+                .given()
+                .doc("Probability that mutation hits a bit of the first mutant."),
+            Setting::number(RATE_STEP, 0.01, 0.0..=1.0)
+                .given()
+                .doc("What that probability falls by from generation to generation."),
+            Setting::number(LAST_RATE, 0.02, 0.0..=1.0).given().doc("The probability below which it does not fall."),
+        ]
+    }
+
+    fn start(&self, start: &StrategyStart<'_>) -> Result<Box<dyn Strategy>, Error> {
+        if start.populations != 1 {
+            return Err(Error::Other(format!("one parent and one mutant of {} populations", start.populations)));
+        }
+        let config = config(start.settings, start.genes, start.gene_bits)?;
+        let search = farsa_evo::OnePlusOne::new(config, start.seed);
+        Ok(Box::new(search.map_err(|error| Error::Other(error.to_string()))?))
+    }
+}
+
+/// The configuration for the genomes of an experiment.
+///
+/// # Errors
+/// [`Error::Setting`] when the values do not go together, [`Error::Other`] for genomes that cannot be.
+fn config(settings: &Settings, genes: usize, gene_bits: u32) -> Result<OnePlusOneConfig, Error> {
+    let config = OnePlusOneConfig {
+        genes,
+        gene_bits,
+        first_rate: settings.number(FIRST_RATE)?,
+        rate_step: settings.number(RATE_STEP)?,
+        last_rate: settings.number(LAST_RATE)?,
+        mutation: mutation(settings)?,
+    };
+    config.validate().map_err(|error| match error {
+        EvoError::RisingRate { .. } => Error::setting(LAST_RATE, error),
+        _ => Error::Other(error.to_string()),
+    })?;
+    Ok(config)
+}

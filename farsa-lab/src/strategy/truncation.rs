@@ -1,0 +1,94 @@
+//! The truncation algorithm, in one population or several.
+
+use farsa_evo::{Coevolution, EvoError, GaConfig, Strategy, TruncationGa};
+
+use crate::error::Error;
+use crate::experiment::settings::{Setting, Settings};
+use crate::strategy::definition::{StrategyDefinition, StrategyStart};
+use crate::strategy::settings::{GENERATIONS, MUTATION, POPULATION, mutation};
+
+const PARENTS: &str = "evolution.parents";
+const RATE: &str = "evolution.mutation_rate";
+
+/// The best of a generation make mutated copies, [`farsa_evo::TruncationGa`]; with several populations within each of them,
+/// [`farsa_evo::Coevolution`]. Defaults of \[Ferrauto2010\].
+#[derive(Debug, Clone, Copy)]
+pub struct Truncation;
+
+impl StrategyDefinition for Truncation {
+    fn name(&self) -> &'static str {
+        "truncation"
+    }
+
+    fn settings(&self) -> Vec<Setting> {
+        vec![
+            Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1)
+                .given()
+                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+            Setting::whole(POPULATION, 100, 1..=1_000_000).given().doc(
+                "Individuals of a generation, a multiple of the parents; with no more than them nothing is ever mutated.",
+            ),
+            Setting::whole(PARENTS, 20, 1..=1_000_000)
+                .given()
+                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+            Setting::word(MUTATION, "resample", &["resample", "flip"])
+                .given()
+                .doc("What happens to a bit that mutation hits: it is drawn anew, or it flips."),
+            Setting::number(RATE, 0.015, 0.0..=1.0).given().doc("Probability that mutation hits a bit."),
+        ]
+    }
+
+    fn start(&self, start: &StrategyStart<'_>) -> Result<Box<dyn Strategy>, Error> {
+        let config = config(start.settings, start.genes, start.gene_bits)?;
+        let refused = |error: EvoError| Error::Other(error.to_string());
+        Ok(if start.populations == 1 {
+            Box::new(TruncationGa::new(config, start.seed).map_err(refused)?)
+        } else {
+            Box::new(Coevolution::new(&vec![config; start.populations], start.seed).map_err(refused)?)
+        })
+    }
+}
+
+/// The truncation algorithm's configuration for the genomes of an experiment.
+///
+/// # Errors
+/// [`Error::Setting`] when the values do not go together.
+fn config(settings: &Settings, genes: usize, gene_bits: u32) -> Result<GaConfig, Error> {
+    let config = GaConfig {
+        genes,
+        gene_bits,
+        population: settings.count(POPULATION)?,
+        parents: settings.count(PARENTS)?,
+        mutation_rate: settings.number(RATE)?,
+        mutation: mutation(settings)?,
+    };
+    config.validate().map_err(|error| {
+        let key = match error {
+            EvoError::NoParents => PARENTS,
+            EvoError::Rate { .. } => RATE,
+            _ => POPULATION,
+        };
+        Error::setting(key, error)
+    })?;
+    Ok(config)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::settings::Value;
+
+    #[test]
+    fn the_defaults_are_those_of_the_library() {
+        let settings = Settings::new(Truncation.settings()).unwrap();
+        assert_eq!(config(&settings, 792, 16).unwrap(), GaConfig::new(792));
+    }
+
+    #[test]
+    fn fewer_individuals_than_parents_are_refused_by_name() {
+        let mut settings = Settings::new(Truncation.settings()).unwrap();
+        settings.set("", POPULATION, Value::Whole(10)).unwrap();
+        let error = config(&settings, 3, 16).unwrap_err().to_string();
+        assert_eq!(error, "`evolution.population`: 20 parents from a population of 10");
+    }
+}
