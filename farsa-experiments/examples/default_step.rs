@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use farsa_body::{Actuated, ActuatorId, Arrange, Pose, Robot, Tabletop, Twist, World as _};
-use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptLife, TRIALS, Timetable};
+use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable};
 use farsa_lab::{EpisodeId, run_episode};
 use farsa_num::{Domain, Stream, sin_cos};
 use farsa_physics::articulated::{Model, Options, Precision, World};
@@ -57,7 +57,7 @@ fn rest<R: Precision>(scene: &Scene, substeps: u32) -> [f64; 3] {
     let at = [0.25, 0.1, scene.config.sphere_radius as f32];
     world.place_body(Tabletop::SPHERE, Pose::at(at), Twist::default());
     world.place_joint(farsa_body::JointId(1), 1.0, 0.0);
-    world.arranged();
+    world.finish_placement();
     for joint in 0..7_u16 {
         world.command(ActuatorId(joint), [0.0, 0.6]);
     }
@@ -72,12 +72,12 @@ fn grasps(config: &Config, substeps: u32) -> usize {
     let scene = Arc::new(Scene::new(config).expect("a scene"));
     let model = Model::<f32>::new(&scene.robot, &scene.config.options()).expect("a model");
     let mut world = World::new(model);
-    let mut life = ScriptLife::new(Arc::clone(&scene), Timetable::default()).expect("a script");
+    let mut episode = ScriptEpisode::new(Arc::clone(&scene), Timetable::default()).expect("a script");
     (0..TRIALS)
         .filter(|trial| {
             let id = EpisodeId { seed: 2010, generation: 0, individual: 0, trial: *trial as u32 };
-            run_episode(&mut life, &mut world, id, None);
-            life.judge().succeeds()
+            run_episode(&mut episode, &mut world, id, None);
+            episode.judge().succeeds()
         })
         .count()
 }

@@ -6,46 +6,51 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use farsa_experiments::MinimalCognition;
-use farsa_experiments::minimal_cognition::{AgentLife, Config, Object, Wiring};
+use farsa_experiments::minimal_cognition::{AgentEpisode, Config, Object, Wiring};
 use farsa_lab::{EpisodeId, Experiment as _, Genotype, read_genotypes};
 
 /// The part of the line that is drawn, to both sides of the object.
 const SIDE: f64 = 100.0;
 
 /// The same trials as `farsa test --trials N --seed 1`: mean scores under circles and under diamonds.
-fn scores(life: &mut AgentLife, trials: u32) -> [f64; 2] {
-    let kinds = life.config().trials;
+fn scores(episode: &mut AgentEpisode, trials: u32) -> [f64; 2] {
+    let kinds = episode.config().trials;
     let mut sums = [0.0; 2];
     for trial in 0..trials {
-        life.arrange(EpisodeId { seed: 1 | 1 << 63, generation: trial / kinds, individual: 0, trial: trial % kinds });
-        while !life.ended() {
-            life.step();
+        episode.arrange(EpisodeId {
+            seed: 1 | 1 << 63,
+            generation: trial / kinds,
+            individual: 0,
+            trial: trial % kinds,
+        });
+        while !episode.ended() {
+            episode.step();
         }
-        sums[usize::from(life.object().name() == "diamond")] += life.score();
+        sums[usize::from(episode.object().name() == "diamond")] += episode.score();
     }
     sums.map(|sum| 2.0 * sum / f64::from(trials))
 }
 
 /// Where the agent is beside the object at every height of it.
-fn way(life: &mut AgentLife, object: Object, offset: f64) -> Vec<[f64; 2]> {
-    life.place(object, offset);
-    let mut way = vec![[-offset, life.height()]];
-    while !life.ended() {
-        life.step();
-        let [object, agent] = life.places();
-        way.push([agent - object, life.height()]);
+fn way(episode: &mut AgentEpisode, object: Object, offset: f64) -> Vec<[f64; 2]> {
+    episode.place(object, offset);
+    let mut way = vec![[-offset, episode.height()]];
+    while !episode.ended() {
+        episode.step();
+        let [object, agent] = episode.places();
+        way.push([agent - object, episode.height()]);
     }
     way
 }
 
 /// How far the way of a trial and that from the other side differ at most, for 100 starts under each object, rising.
-fn left_from_right(life: &mut AgentLife) -> Vec<f64> {
-    let Config { diameter, side, offset, .. } = *life.config();
+fn left_from_right(episode: &mut AgentEpisode) -> Vec<f64> {
+    let Config { diameter, side, offset, .. } = *episode.config();
     let mut apart = Vec::new();
     for object in [Object::circle(diameter), Object::diamond(side)] {
         for i in 0..100 {
             let start = offset * (f64::from(i) + 0.5) / 100.0;
-            let [right, left] = [start, -start].map(|start| way(life, object, start));
+            let [right, left] = [start, -start].map(|start| way(episode, object, start));
             apart.push(right.iter().zip(&left).map(|([a, _], [b, _])| (a + b).abs()).fold(0.0, f64::max));
         }
     }
@@ -54,8 +59,8 @@ fn left_from_right(life: &mut AgentLife) -> Vec<f64> {
 }
 
 /// A panel of ways, its middle at `x`.
-fn panel(svg: &mut String, life: &mut AgentLife, object: Object, color: &str, x: f64) -> std::fmt::Result {
-    let Config { start_height, end_height, offset, clip, .. } = *life.config();
+fn panel(svg: &mut String, episode: &mut AgentEpisode, object: Object, color: &str, x: f64) -> std::fmt::Result {
+    let Config { start_height, end_height, offset, clip, .. } = *episode.config();
     let y = |height: f64| 40.0 + start_height - height;
     writeln!(svg, r#"<text x="{x}" y="24" text-anchor="middle" font-size="13">{}</text>"#, object.name())?;
     for (at, stroke) in [(0.0, "#999"), (-clip, "#ddd"), (clip, "#ddd")] {
@@ -63,7 +68,7 @@ fn panel(svg: &mut String, life: &mut AgentLife, object: Object, color: &str, x:
         writeln!(svg, r#"<line x1="{x}" x2="{x}" y1="{top}" y2="{bottom}" stroke="{stroke}"/>"#)?;
     }
     for i in 0..24 {
-        let places = way(life, object, offset * (2.0 * f64::from(i) / 23.0 - 1.0));
+        let places = way(episode, object, offset * (2.0 * f64::from(i) / 23.0 - 1.0));
         let points = places.iter().step_by(8).chain(places.last());
         let points: Vec<String> =
             points.map(|[at, height]| format!("{:.1},{:.1}", x + at.clamp(-SIDE, SIDE), y(*height))).collect();
@@ -89,10 +94,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let genes = read_genotypes(Path::new(genotype), wiring.genes(), bits)?.pop().ok_or("no genotype")?;
     let parameters = Genotype::new(wiring.parameters(), bits).decode(&genes);
     let parameters = parameters.and_then(|parameters| wiring.expand(&parameters)).ok_or("other genes")?;
-    let mut life = AgentLife::new(config, parameters)?;
-    let [circles, diamonds] = scores(&mut life, 10_000);
+    let mut episode = AgentEpisode::new(config, parameters)?;
+    let [circles, diamonds] = scores(&mut episode, 10_000);
     println!("circles {circles:.4}, diamonds {diamonds:.4}, all {:.4}", 0.5 * (circles + diamonds));
-    let apart = left_from_right(&mut life);
+    let apart = left_from_right(&mut episode);
     let (mirrored, most) = (apart.partition_point(|apart| *apart < 0.01), apart.last().copied().unwrap_or_default());
     println!("left and right: {mirrored} of {} pairs of ways within 0.01, the others within {most:.3}", apart.len());
 
@@ -100,8 +105,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 480 330" font-family="sans-serif" fill="black">"#,
     );
     svg.push_str("\n<rect width=\"480\" height=\"330\" fill=\"white\"/>\n");
-    panel(&mut svg, &mut life, Object::circle(config.diameter), "#009e73", 125.0)?;
-    panel(&mut svg, &mut life, Object::diamond(config.side), "#d55e00", 355.0)?;
+    panel(&mut svg, &mut episode, Object::circle(config.diameter), "#009e73", 125.0)?;
+    panel(&mut svg, &mut episode, Object::diamond(config.side), "#d55e00", 355.0)?;
     svg.push_str("</svg>\n");
     std::fs::write(out, svg)?;
     Ok(())

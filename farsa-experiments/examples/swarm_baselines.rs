@@ -2,15 +2,15 @@
 //!
 //! `cargo run --release -p farsa-experiments --example swarm_baselines -- RUN...` takes directories of runs of `foraging`,
 //! `aggregation` and `predator-prey` and prints tables: means with 95 % confidence intervals (Student's t), those in
-//! docs/results/swarm.md. Everybody lives the same starts, so that differences are taken start by start.
+//! docs/results/swarm.md. All run the same starts, so that differences are taken start by start.
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use farsa_evo::randomize;
-use farsa_experiments::aggregation::{AggregationConfig, AggregationLife, BeaconSeeker, aggregate};
-use farsa_experiments::foraging::{ForagingConfig, ForagingLife, HomingForager, forage};
-use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyLife, chase};
+use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, BeaconSeeker, aggregate};
+use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
+use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};
 use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
 use farsa_lab::{BestOfRun, EpisodeId, Error, Evaluation, Evaluator, Genotype, Note, Outcome, OwnedNetwork};
 use farsa_nn::Controller;
@@ -30,7 +30,7 @@ fn interval(values: &[f64]) -> [f64; 2] {
     [mean, T * farsa_num::Scalar::sqrt(variance / n)]
 }
 
-fn told(values: &[f64]) -> String {
+fn cell(values: &[f64]) -> String {
     let [mean, half] = interval(values);
     format!("{mean:.2} ± {half:.2}")
 }
@@ -55,17 +55,17 @@ fn earned(outcomes: &[Outcome]) -> Vec<f64> {
     outcomes.iter().map(|outcome| outcome.terms.iter().sum()).collect()
 }
 
-/// A row: who, what they earned, how much more the evolved ones earned, and the notes.
+/// A row: the controllers, their fitness, by how much the evolved ones exceed it, and the notes.
 fn row(who: &str, outcomes: &[Outcome], evolved: &[Outcome]) -> String {
     let differences: Vec<f64> = earned(evolved).iter().zip(earned(outcomes)).map(|(a, b)| a - b).collect();
-    let more = if who == "evolved" { String::new() } else { told(&differences) };
-    let mut cells = vec![who.to_owned(), told(&earned(outcomes)), more];
+    let more = if who == "evolved" { String::new() } else { cell(&differences) };
+    let mut cells = vec![who.to_owned(), cell(&earned(outcomes)), more];
     for k in 0..evolved[0].notes.len() {
         let number = |outcome: &Outcome| match &outcome.notes[k].1 {
             Note::Number(x) => *x,
             Note::Text(_) => f64::NAN,
         };
-        cells.push(told(&outcomes.iter().map(number).collect::<Vec<_>>()));
+        cells.push(cell(&outcomes.iter().map(number).collect::<Vec<_>>()));
     }
     format!("| {} |", cells.join(" | "))
 }
@@ -78,17 +78,17 @@ fn team(best: &mut BestOfRun) -> Result<(), Error> {
     let evolved: Vec<Outcome> = ids().map(|id| evaluate(&parameters[0], id)).collect();
     let random: Vec<Outcome> = ids().map(|id| evaluate(&random(&genotype, id, 0), id)).collect();
     let by_hand: Vec<Outcome> = if best.experiment == "foraging" {
-        let config = ForagingConfig::of_condition(condition).read(settings)?;
+        let config = ForagingConfig::for_condition(condition).read(settings)?;
         let mut world = config.world()?;
         let robots = vec![HomingForager::new(&config); config.team.robots];
-        let mut life = ForagingLife::new(config, robots)?;
-        ids().map(|id| forage(&mut life, &mut world, id)).collect()
+        let mut episode = ForagingEpisode::new(config, robots)?;
+        ids().map(|id| forage(&mut episode, &mut world, id)).collect()
     } else {
-        let config = AggregationConfig::of_condition(condition).read(settings)?;
+        let config = AggregationConfig::for_condition(condition).read(settings)?;
         let mut world = config.world()?;
         let robots = vec![BeaconSeeker::new(&config); config.team.robots];
-        let mut life = AggregationLife::new(config, robots)?;
-        ids().map(|id| aggregate(&mut life, &mut world, id)).collect()
+        let mut episode = AggregationEpisode::new(config, robots)?;
+        ids().map(|id| aggregate(&mut episode, &mut world, id)).collect()
     };
     let names: Vec<&str> = evolved[0].notes.iter().map(|(name, _)| *name).collect();
     println!("| controller | fitness | evolved more by | {} |", names.join(" | "));
@@ -99,7 +99,7 @@ fn team(best: &mut BestOfRun) -> Result<(), Error> {
     Ok(())
 }
 
-/// Who drives a robot.
+/// What drives a robot.
 enum Mind {
     Network(OwnedNetwork),
     ByHand(Chaser),
@@ -152,9 +152,9 @@ fn pair(best: &BestOfRun) -> Result<(), Error> {
         for prey in 0..3 {
             for id in ids() {
                 let minds = [mind(predator, 0, id)?, mind(prey, 1, id)?];
-                let mut life = PredatorPreyLife::new(config.clone(), minds)?;
-                rewards[predator][prey].push(chase(&mut life, &mut world, id).terms[0]);
-                captures[predator][prey] += u32::from(life.captured());
+                let mut episode = PredatorPreyEpisode::new(config.clone(), minds)?;
+                rewards[predator][prey].push(chase(&mut episode, &mut world, id).terms[0]);
+                captures[predator][prey] += u32::from(episode.captured());
             }
         }
     }
@@ -162,7 +162,7 @@ fn pair(best: &BestOfRun) -> Result<(), Error> {
     println!("| predator | evolved prey | hand-written prey | prey of random genomes |\n|---|---|---|---|");
     for predator in 0..3 {
         let cells: Vec<String> =
-            (0..3).map(|prey| format!("{}; {}", told(&rewards[predator][prey]), captures[predator][prey])).collect();
+            (0..3).map(|prey| format!("{}; {}", cell(&rewards[predator][prey]), captures[predator][prey])).collect();
         println!("| {} | {} |", WHO[predator], cells.join(" | "));
     }
     println!("\nHow much more the evolved one earns than the other, against the same opponents:\n");
@@ -180,7 +180,7 @@ fn pair(best: &BestOfRun) -> Result<(), Error> {
             let differences: Vec<Vec<f64>> = (0..3).map(|opponent| more(opponent, prey)).collect();
             let means: Vec<f64> =
                 (0..COUNT).map(|start| differences.iter().map(|d| d[start]).sum::<f64>() / 3.0).collect();
-            let cells: Vec<String> = differences.iter().chain([&means]).map(|d| told(d)).collect();
+            let cells: Vec<String> = differences.iter().chain([&means]).map(|d| cell(d)).collect();
             println!("| {role} | {} | {} |", WHO[other], cells.join(" | "));
         }
     }

@@ -5,7 +5,7 @@
 
 use farsa_body::World as _;
 use farsa_experiments::WalkingModel;
-use farsa_experiments::passive_walker::{Config, Launch, Legs, Rules, Walk, Walker, WalkerLife};
+use farsa_experiments::passive_walker::{Config, Launch, Legs, Rules, Walk, Walker, WalkerEpisode};
 use farsa_lab::{Episode as _, EpisodeId};
 use farsa_num::Scalar;
 use farsa_physics::articulated::World;
@@ -39,21 +39,21 @@ fn pace(slope: f64, foot_mass: f64, stiffness: f64, [angle, rate, swing]: [f64; 
     let (model, parts) = config.model::<f64>().map_err(|_| "no such body")?;
     let mut world = World::new(model);
     let launch = Launch { angles: [angle, -angle], rates: [rate, swing] };
-    let mut life = WalkerLife::new(config.walker, parts, config.walk, launch, None);
-    life.start(&mut world, EpisodeId::default());
+    let mut episode = WalkerEpisode::new(config.walker, parts, config.walk, launch, None);
+    episode.start(&mut world, EpisodeId::default());
     let mut periods = [0.0; 2];
     loop {
         world.step();
-        let before = life.gait().steps();
-        if life.judge(&mut world).is_some() {
+        let before = episode.gait().steps();
+        if episode.judge(&mut world).is_some() {
             return Err("falls");
         }
-        let [last, now] = life.gait().footfalls();
-        if life.gait().steps() > before {
+        let [last, now] = episode.gait().footfalls();
+        if episode.gait().steps() > before {
             periods = [periods[1], now.time - last.time];
         }
-        if life.gait().steps() == STEPS && now.rates.is_some() {
-            let pace = life.pace().ok_or("too few steps")?;
+        if episode.gait().steps() == STEPS && now.rates.is_some() {
+            let pace = episode.pace().ok_or("too few steps")?;
             // A walk whose steps alternate between longer and shorter ones is another gait than the model's.
             let alike = (periods[0] / periods[1] - 1.0).abs() < 0.01;
             return if alike { Ok([pace.angle, pace.rate, pace.swing_rate, pace.period]) } else { Err("limps") };

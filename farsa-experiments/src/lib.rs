@@ -13,6 +13,7 @@ pub mod push_box;
 pub mod reach_grasp_lift;
 mod team;
 mod walking;
+mod wheeled;
 mod worlds;
 
 pub use aggregation::Aggregation;

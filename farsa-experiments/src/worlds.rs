@@ -1,4 +1,4 @@
-//! The worlds that experiments can be lived in.
+//! The worlds that experiments can run in.
 
 use std::str::FromStr;
 
@@ -23,14 +23,14 @@ impl Engine {
         Self::NAMES[self as usize]
     }
 
-    /// Why a program without the feature cannot live in this world.
+    /// Why a program without the feature cannot run in this world.
     #[cfg(not(feature = "rapier"))]
     pub(crate) fn missing(self) -> Error {
         missing(self.name())
     }
 }
 
-/// Why a program that was built without the feature of a world's name cannot live in it.
+/// Why a program that was built without the feature of a world's name cannot run in it.
 #[cfg(not(feature = "rapier"))]
 pub(crate) fn missing(name: &str) -> Error {
     Error::Usage(format!(
@@ -42,7 +42,7 @@ pub(crate) fn missing(name: &str) -> Error {
 /// What moves the wheeled robots of an experiment that has a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum PlanarEngine {
-    /// Our kinematic world, `farsa_physics::arena`: wheels do exactly what they are told.
+    /// Our kinematic world, `farsa_physics::arena`: wheels do exactly what is commanded.
     #[default]
     Arena,
     /// rapier, `farsa_physics::rapier::ArenaWorld`: rigid bodies on driven wheels; only where the crate was built with the

@@ -5,26 +5,26 @@ use core::f32::consts::PI;
 
 use farsa_body::{Kinematics as _, World as _};
 use farsa_experiments::Braitenberg;
-use farsa_experiments::braitenberg::{Config, Vehicle, VehicleLife};
+use farsa_experiments::braitenberg::{Config, Vehicle, VehicleEpisode};
 use farsa_lab::{Episode as _, EpisodeId, Evaluation, Experiment as _, Note, Outcome, Settings, Value};
 use farsa_physics::arena::World;
 use proptest::prelude::*;
 
-/// Steps a vehicle from a start to the end; its places and headings, and the life.
-fn drive(vehicle: Vehicle, [distance, direction, heading]: [f32; 3], steps: u32) -> (Vec<[f32; 3]>, VehicleLife) {
-    let config = Config { steps, ..Config::of(vehicle) };
+/// Steps a vehicle from a start to the end; its places and headings, and the episode.
+fn drive(vehicle: Vehicle, [distance, direction, heading]: [f32; 3], steps: u32) -> (Vec<[f32; 3]>, VehicleEpisode) {
+    let config = Config { steps, ..Config::for_vehicle(vehicle) };
     let mut world = World::new(&config.arena()).unwrap();
-    let mut life = VehicleLife::new(config).unwrap();
-    life.place(&mut world, distance, direction, heading);
+    let mut episode = VehicleEpisode::new(config).unwrap();
+    episode.place(&mut world, distance, direction, heading);
     let mut way = Vec::new();
     loop {
-        life.act(&mut world);
+        episode.act(&mut world);
         world.step();
-        let end = life.judge(&mut world);
-        let pose = world.pose(life.parts().body);
+        let end = episode.judge(&mut world);
+        let pose = world.pose(episode.parts().body);
         way.push([pose.position[0] - 1.0, pose.position[1] - 1.0, pose.heading()]);
         if end.is_some() {
-            return (way, life);
+            return (way, episode);
         }
     }
 }
@@ -77,12 +77,12 @@ fn vehicles_end_as_they_are_known_to() {
     );
     assert!(love.done().iter().all(|y| (y - 0.5).abs() < 0.02), "comes to rest: {:?}", love.done());
     for vehicle in [Vehicle::Fear, Vehicle::Explorer] {
-        let life = end(vehicle);
+        let episode = end(vehicle);
         assert!(
-            life.distances()[1] > 0.5 && life.bearings()[1].abs() > 2.5,
+            episode.distances()[1] > 0.5 && episode.bearings()[1].abs() > 2.5,
             "{vehicle:?}: {:?} {}",
-            life.distances(),
-            life.bearings()[1]
+            episode.distances(),
+            episode.bearings()[1]
         );
     }
     // Where it is bright fear hurries and love lingers.
@@ -100,7 +100,7 @@ proptest! {
     #[test]
     fn a_symmetric_start_is_a_straight_line(which in 0_usize..4, distance in 0.1_f32..0.5, away: bool) {
         let heading = if away { 0.0 } else { PI };
-        let (way, life) = drive(Vehicle::ALL[which], [distance, 0.0, heading], 400);
+        let (way, episode) = drive(Vehicle::ALL[which], [distance, 0.0, heading], 400);
         // Love that looks away turns from the lamp, which makes more of every rounding: of 1500 distances the worst ended
         // 3 mm and 7 mrad beside the line. All others kept to it but for 1e-5 rad.
         let unstable = away && Vehicle::ALL[which] == Vehicle::Love;
@@ -109,7 +109,7 @@ proptest! {
             prop_assert!(y.abs() < aside, "{x} {y}");
             prop_assert!((turned.abs() - heading).abs() < turn, "{turned}");
         }
-        let [start, end] = life.distances();
+        let [start, end] = episode.distances();
         prop_assert!(if away { end >= start } else { end <= start }, "{start} {end}");
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use farsa_body::{Arrange as _, Kinematics as _, Pose, Twist};
-use farsa_experiments::discrimination::{Config, CylinderLife, InfraredModel};
+use farsa_experiments::discrimination::{Config, CylinderEpisode, InfraredModel};
 use farsa_experiments::{Discrimination, DiscriminationCylinders};
 use farsa_lab::{Episode as _, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Settings, Value, run_episode};
 use farsa_nn::Perceptron;
@@ -93,11 +93,11 @@ fn trials_start_where_the_rules_allow() {
     for config in [Config::default(), Config::e_puck(), Config::two_cylinders(true)] {
         let hull = config.robot.radius;
         let mut world = config.world().unwrap();
-        let mut life = CylinderLife::new(config.clone(), constant(&config, [0.0; 2])).unwrap();
+        let mut episode = CylinderEpisode::new(config.clone(), constant(&config, [0.0; 2])).unwrap();
         let (mut starts, mut quadrants) = (Vec::new(), [0; 4]);
         for trial in 0..1000 {
-            life.arrange(&mut world, EpisodeId { seed: 3, trial, ..EpisodeId::default() }).unwrap();
-            let robot = world.pose(life.parts().body).position.map(f64::from);
+            episode.arrange(&mut world, EpisodeId { seed: 3, trial, ..EpisodeId::default() }).unwrap();
+            let robot = world.pose(episode.parts().body).position.map(f64::from);
             let to_wall = |[x, y, _]: [f64; 3]| {
                 let [w, h] = config.size;
                 x.min(y).min(w - x).min(h - y)
@@ -105,7 +105,7 @@ fn trials_start_where_the_rules_allow() {
             let apart = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
             assert!(to_wall(robot) - hull > 0.01 - 1e-5, "{robot:?}");
             let places: Vec<_> =
-                life.cylinders().iter().map(|body| world.pose(*body).position.map(f64::from)).collect();
+                episode.cylinders().iter().map(|body| world.pose(*body).position.map(f64::from)).collect();
             for (place, radius) in places.iter().zip(&config.radii) {
                 assert!(to_wall(*place) - radius > 0.05 - 1e-5, "{place:?}");
                 assert!(apart(*place, robot) - radius - hull > 0.1 - 1e-5, "{place:?} {robot:?}");
@@ -113,14 +113,14 @@ fn trials_start_where_the_rules_allow() {
             if let [a, b] = places[..] {
                 assert!(apart(a, b) - config.radii.iter().sum::<f64>() > config.object_to_object - 1e-5);
             }
-            let heading = world.pose(life.parts().body).heading();
+            let heading = world.pose(episode.parts().body).heading();
             quadrants[((heading + core::f32::consts::PI) / core::f32::consts::FRAC_PI_2).min(3.0) as usize] += 1;
             starts.push(robot);
         }
         assert!(quadrants.iter().all(|count| (200..300).contains(count)), "{quadrants:?}");
         let mut again = |id| {
-            life.arrange(&mut world, id).unwrap();
-            world.pose(life.parts().body).position.map(f64::from)
+            episode.arrange(&mut world, id).unwrap();
+            world.pose(episode.parts().body).position.map(f64::from)
         };
         let id = EpisodeId { seed: 3, trial: 5, ..EpisodeId::default() };
         assert_eq!(again(id), starts[5]);
@@ -136,32 +136,32 @@ fn a_step_near_the_cylinder_counts_and_a_collision_ends_the_trial() {
     let config = Config { steps: 40, ..Config::default() };
     let mut world = config.world().unwrap();
     // Full speed ahead, 5.18 mm a step.
-    let mut life = CylinderLife::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
+    let mut episode = CylinderEpisode::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
     // A trial whose cylinder stands in the middle; the robot drives towards it, and from beside it to the wall.
-    let place = |life: &mut CylinderLife<Perceptron<Vec<f32>>>, world: &mut World, trial| {
-        life.start(world, EpisodeId { trial, ..EpisodeId::default() });
-        world.pose(life.cylinders()[0]).position
+    let place = |episode: &mut CylinderEpisode<Perceptron<Vec<f32>>>, world: &mut World, trial| {
+        episode.start(world, EpisodeId { trial, ..EpisodeId::default() });
+        world.pose(episode.cylinders()[0]).position
     };
     let central = |at: [f32; 3]| at[..2].iter().all(|x| (x - 0.2).abs() < 0.05);
-    let trial = (0..1000).find(|trial| central(place(&mut life, &mut world, *trial))).unwrap();
+    let trial = (0..1000).find(|trial| central(place(&mut episode, &mut world, *trial))).unwrap();
     for (start, expected) in [(-0.1, "cylinder"), (0.06, "wall")] {
-        let at = place(&mut life, &mut world, trial);
-        world.place_body(life.parts().body, Pose::planar([at[0] + start, at[1]], 0.0), Twist::default());
-        world.arranged();
+        let at = place(&mut episode, &mut world, trial);
+        world.place_body(episode.parts().body, Pose::planar([at[0] + start, at[1]], 0.0), Twist::default());
+        world.finish_placement();
         let mut distances = Vec::new();
         let fitness = loop {
-            life.act(&mut world);
+            episode.act(&mut world);
             farsa_body::World::step(&mut world);
-            let end = life.judge(&mut world);
-            distances.push(life.trial().distance[0]);
+            let end = episode.judge(&mut world);
+            distances.push(episode.trial().distance[0]);
             if let Some(fitness) = end {
                 break fitness;
             }
         };
         let near = distances.iter().filter(|distance| **distance < 0.08).count() as u32;
-        assert_eq!((life.trial().near[0], life.trial().steps as usize), (near, distances.len()));
+        assert_eq!((episode.trial().near[0], episode.trial().steps as usize), (near, distances.len()));
         assert_eq!(fitness, f64::from(near) / 40.0);
-        assert!(life.trial().collided && distances.len() < 40, "{expected}: {distances:?}");
+        assert!(episode.trial().collided && distances.len() < 40, "{expected}: {distances:?}");
         assert!(distances.iter().all(|distance| *distance >= 0.0), "{expected}");
     }
 }
@@ -182,7 +182,7 @@ fn trials_can_be_repeated_recorded_and_run_by_hand() {
             let id = EpisodeId { seed: 9, generation: 3, individual: 1, trial: 4 };
             let plain = evaluator.evaluate(alone(&own, id), None);
             evaluator.evaluate(alone(&own, EpisodeId { trial: 7, ..id }), None);
-            let mut recording = Recording::new(evaluator.stage());
+            let mut recording = Recording::new(evaluator.schema());
             assert_eq!(evaluator.evaluate(alone(&own, id), Some(&mut recording)), plain);
             let ticks = recording.times().len();
             assert_eq!(ticks, plain.steps as usize);
@@ -198,12 +198,12 @@ fn trials_can_be_repeated_recorded_and_run_by_hand() {
             let layer = Perceptron::new(config.inputs(), 2, 1.0, vec![w as f32; zeros.len()]).unwrap();
             if model == "analytic" {
                 let infrared = InfraredModel::Analytic;
-                let mut life = CylinderLife::new(Config { infrared, ..config.clone() }, layer).unwrap();
-                let fitness = run_episode(&mut life, &mut world, id, None);
+                let mut episode = CylinderEpisode::new(Config { infrared, ..config.clone() }, layer).unwrap();
+                let fitness = run_episode(&mut episode, &mut world, id, None);
                 let evaluated = evaluator.evaluate(alone(&zeros, id), None);
                 assert_eq!(fitness, evaluator.fitness(&[evaluated]));
-                life.start(&mut world, id);
-                assert_eq!(life.trial().steps, 0);
+                episode.start(&mut world, id);
+                assert_eq!(episode.trial().steps, 0);
             }
         }
     }
@@ -214,26 +214,26 @@ fn trials_can_be_repeated_recorded_and_run_by_hand() {
 fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
     let config = Config::e_puck();
     let mut world = config.world().unwrap();
-    let mut life = CylinderLife::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
-    let body = life.parts().body;
+    let mut episode = CylinderEpisode::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
+    let body = episode.parts().body;
     let central = |at: [f32; 3]| at[..2].iter().all(|x| (x - 0.2).abs() < 0.05);
     let trial = (0..1000).find(|&trial| {
-        life.start(&mut world, EpisodeId { trial, ..EpisodeId::default() });
-        central(world.pose(life.cylinders()[0]).position)
+        episode.start(&mut world, EpisodeId { trial, ..EpisodeId::default() });
+        central(world.pose(episode.cylinders()[0]).position)
     });
-    life.start(&mut world, EpisodeId { trial: trial.unwrap(), ..EpisodeId::default() });
-    let at = world.pose(life.cylinders()[0]).position;
+    episode.start(&mut world, EpisodeId { trial: trial.unwrap(), ..EpisodeId::default() });
+    let at = world.pose(episode.cylinders()[0]).position;
     world.place_body(body, Pose::planar([at[0] - 0.13, at[1]], 0.0), Twist::default());
-    world.arranged();
+    world.finish_placement();
     // Centres 130 mm apart, 14.4 mm nearer with each step: below 100 mm from the third on.
     let near: Vec<u32> = (0..5)
         .map(|step| {
-            life.act(&mut world);
+            episode.act(&mut world);
             farsa_body::World::step(&mut world);
-            assert_eq!(life.judge(&mut world), None, "{step}");
+            assert_eq!(episode.judge(&mut world), None, "{step}");
             let travelled = f64::from(world.pose(body).position[0] - at[0]) + 0.13;
             assert!((travelled - 0.0144 * f64::from(step + 1)).abs() < 1e-5, "{step}: {travelled}");
-            life.trial().near[0]
+            episode.trial().near[0]
         })
         .collect();
     assert_eq!(near, [0, 0, 1, 2, 3]);
@@ -241,8 +241,8 @@ fn an_e_puck_drives_and_earns_by_the_numbers_of_its_own() {
     let evaluator = Discrimination.prepare("e-puck", &settings).unwrap();
     let description = evaluator.description();
     assert_eq!((evaluator.trials(), description.steps, description.step_seconds), (10, 500, 0.1));
-    assert_eq!(evaluator.stage().bodies, ["e-puck", "cylinder"]);
-    // Nobody has measured its sensors, and a hull that its wheels stand out of is none.
+    assert_eq!(evaluator.schema().bodies, ["e-puck", "cylinder"]);
+    // Its sensors were never measured, and a hull that the wheels stick out of is refused.
     let mut settings = settings;
     let sampled = settings.set("", "robot.infrared", Value::Word("sampled".into())).unwrap_err().to_string();
     assert!(sampled.contains("rays") && sampled.contains("analytic"), "{sampled}");
@@ -259,14 +259,14 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
     for (condition, config) in [("khepera", Config::default()), ("e-puck", Config::e_puck())] {
         let config = Config { steps: 60, ..config };
         let (mut ours, mut theirs) = (config.world().unwrap(), config.rapier_world().unwrap());
-        let mut life = CylinderLife::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
+        let mut episode = CylinderEpisode::new(config.clone(), constant(&config, [50.0; 2])).unwrap();
         let mut collided = 0;
         for trial in 0..12 {
             let id = EpisodeId { seed: 5, trial, ..EpisodeId::default() };
             let mut ends = Vec::new();
-            life.arrange(&mut ours, id).unwrap();
-            life.arrange(&mut theirs, id).unwrap();
-            for body in [life.parts().body, life.cylinders()[0]] {
+            episode.arrange(&mut ours, id).unwrap();
+            episode.arrange(&mut theirs, id).unwrap();
+            for body in [episode.parts().body, episode.cylinders()[0]] {
                 let (a, b) = (ours.pose(body), theirs.pose(body));
                 assert!(
                     (0..3).all(|k| (a.position[k] - b.position[k]).abs() < 1e-6),
@@ -274,10 +274,10 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
                 );
                 assert!((a.heading() - b.heading()).abs() < 1e-5, "{condition} {trial}");
             }
-            run_episode(&mut life, &mut ours, id, None);
-            ends.push(*life.trial());
-            run_episode(&mut life, &mut theirs, id, None);
-            ends.push(*life.trial());
+            run_episode(&mut episode, &mut ours, id, None);
+            ends.push(*episode.trial());
+            run_episode(&mut episode, &mut theirs, id, None);
+            ends.push(*episode.trial());
             // Straight on until it runs into something: a step later at most, for it must get up to speed.
             let [a, b] = [&ends[0], &ends[1]];
             assert!(a.collided == b.collided && a.steps.abs_diff(b.steps) <= 2, "{condition} {trial}: {a:?} {b:?}");
@@ -292,7 +292,7 @@ fn in_rapier_a_trial_starts_and_ends_as_in_the_kinematic_arena() {
         let id = EpisodeId { seed: 9, generation: 3, individual: 1, trial: 4 };
         let plain = evaluator.evaluate(alone(&own, id), None);
         evaluator.evaluate(alone(&own, EpisodeId { trial: 7, ..id }), None);
-        let mut recording = Recording::new(evaluator.stage());
+        let mut recording = Recording::new(evaluator.schema());
         assert_eq!(evaluator.evaluate(alone(&own, id), Some(&mut recording)), plain);
         assert!(plain.is_finite() && recording.times().len() == plain.steps as usize);
     }

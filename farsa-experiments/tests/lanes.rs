@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use farsa_evo::randomize;
-use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptLife, TRIALS, Timetable, Trial, evaluator};
+use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable, Trial, evaluator};
 use farsa_experiments::{Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PredatorPrey};
 use farsa_lab::{
     Episode, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Settings, Value, run_episode,
@@ -22,22 +22,22 @@ fn every_batch(instructions: impl Iterator<Item = Instructions>) -> impl Iterato
 
 /// A script with a number.
 struct Numbered {
-    life: ScriptLife,
+    episode: ScriptEpisode,
     number: usize,
 }
 
 impl<W> Episode<W> for Numbered
 where
-    ScriptLife: Episode<W>,
+    ScriptEpisode: Episode<W>,
 {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.life.start(world, id);
+        self.episode.start(world, id);
     }
     fn act(&mut self, world: &mut W) {
-        self.life.act(world);
+        self.episode.act(world);
     }
     fn judge(&mut self, world: &mut W) -> Option<f64> {
-        Episode::judge(&mut self.life, world)
+        Episode::judge(&mut self.episode, world)
     }
 }
 
@@ -45,22 +45,22 @@ where
 fn scripted_grasps_in_lanes_are_those_alone() {
     let scene = Arc::new(Scene::new(Config::default()).unwrap());
     let model = Model::<f32>::new(&scene.robot, &scene.config.options()).unwrap();
-    let script = ScriptLife::new(Arc::clone(&scene), Timetable::default()).unwrap();
+    let script = ScriptEpisode::new(Arc::clone(&scene), Timetable::default()).unwrap();
     // More than lanes, and not a multiple: lanes are filled again while others are in the middle of a grasp.
     let id =
         |n: usize| EpisodeId { seed: 7, generation: (n / TRIALS) as u32, individual: 0, trial: (n % TRIALS) as u32 };
     let mut world = World::new(model.clone());
     let alone: Vec<(f64, Trial)> = (0..20)
         .map(|n| {
-            let mut life = script.clone();
-            (run_episode(&mut life, &mut world, id(n), None), *life.judge().trial())
+            let mut episode = script.clone();
+            (run_episode(&mut episode, &mut world, id(n), None), *episode.judge().trial())
         })
         .collect();
     assert!(alone.iter().filter(|(_, trial)| trial.held > 0).count() > 15);
     for (lanes, instructions) in every_batch(articulated::Batch::instructions()) {
         let mut batch = Batch::new(model.clone(), lanes, instructions).unwrap();
         // In some lanes only: the others stay empty.
-        let mut episodes: Vec<_> = (0..lanes - 1).map(|_| Numbered { life: script.clone(), number: 0 }).collect();
+        let mut episodes: Vec<_> = (0..lanes - 1).map(|_| Numbered { episode: script.clone(), number: 0 }).collect();
         let (mut next, mut ended) = (0, vec![None; alone.len()]);
         let begin = |numbered: &mut Numbered| {
             numbered.number = next;
@@ -68,7 +68,7 @@ fn scripted_grasps_in_lanes_are_those_alone() {
             (numbered.number < alone.len()).then(|| id(numbered.number))
         };
         let end = |numbered: &mut Numbered, fitness: f64| {
-            ended[numbered.number] = Some((fitness, *numbered.life.judge().trial()));
+            ended[numbered.number] = Some((fitness, *numbered.episode.judge().trial()));
         };
         run_in_lanes(&mut episodes, &mut batch, begin, end);
         let ended: Vec<_> = ended.into_iter().flatten().collect();

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use farsa_experiments::MinimalCognition;
-use farsa_experiments::minimal_cognition::{AgentLife, Config, INNER, MOTORS, NEURONS, Object, RAYS, Wiring};
+use farsa_experiments::minimal_cognition::{AgentEpisode, Config, INNER, MOTORS, NEURONS, Object, RAYS, Wiring};
 use farsa_lab::{
     EpisodeId, Evaluation, Evaluator, Experiment as _, Genotype, Note, Outcome, Settings, Value, read_genotypes,
 };
@@ -30,9 +30,9 @@ fn decoded(config: &Config, genes: &[u16]) -> Vec<f32> {
     wiring.expand(&genotype.decode(genes).unwrap()).unwrap()
 }
 
-fn life(config: Config, genes: &[u16]) -> AgentLife {
+fn episode(config: Config, genes: &[u16]) -> AgentEpisode {
     let parameters = decoded(&config, genes);
-    AgentLife::new(config, parameters).unwrap()
+    AgentEpisode::new(config, parameters).unwrap()
 }
 
 fn evaluator() -> Box<dyn Evaluator> {
@@ -46,23 +46,23 @@ fn of_genes(evaluator: &dyn Evaluator, genes: &[u16]) -> Vec<f32> {
 }
 
 /// Where the agent is after every step of a trial.
-fn way(life: &mut AgentLife, object: Object, offset: f64) -> Vec<f64> {
-    life.place(object, offset);
+fn way(episode: &mut AgentEpisode, object: Object, offset: f64) -> Vec<f64> {
+    episode.place(object, offset);
     let mut way = Vec::new();
-    while !life.ended() {
-        life.step();
-        way.push(life.places()[1]);
+    while !episode.ended() {
+        episode.step();
+        way.push(episode.places()[1]);
     }
     way
 }
 
-/// The same in double precision, layer by layer, with the rays as the life has them.
+/// The same in double precision, layer by layer, with the rays as the episode has them.
 fn written_out(config: &Config, parameters: &[f32], object: Object, offset: f64) -> Vec<f64> {
     let p: Vec<f64> = parameters.iter().map(|p| f64::from(*p)).collect();
     let (weights, rest) = p.split_at(NEURONS * NEURONS);
     let (biases, rest) = rest.split_at(NEURONS);
     let (gains, time_constants) = rest.split_at(NEURONS);
-    let mut eye = AgentLife::new(*config, parameters.to_vec()).unwrap();
+    let mut eye = AgentEpisode::new(*config, parameters.to_vec()).unwrap();
     let (mut y, mut agent, mut way) = ([0.0; NEURONS], 0.0_f64, Vec::new());
     for step in 0..config.steps() {
         // Only the difference of the places counts for the rays.
@@ -101,9 +101,9 @@ proptest! {
     fn a_mirrored_trial_has_the_mirrored_way(seed in any::<u64>(), offset in 0.0..50.0_f64, diamond in any::<bool>()) {
         let config = calm();
         let object = if diamond { Object::diamond(config.side) } else { Object::circle(config.diameter) };
-        let mut life = life(config, &genes(seed));
-        let right = way(&mut life, object, offset);
-        let left: Vec<f64> = way(&mut life, object, -offset).iter().map(|x| -x).collect();
+        let mut episode = episode(config, &genes(seed));
+        let right = way(&mut episode, object, offset);
+        let left: Vec<f64> = way(&mut episode, object, -offset).iter().map(|x| -x).collect();
         prop_assert!(apart(&right, &left) < 1e-3, "{}", apart(&right, &left));
     }
 
@@ -111,9 +111,9 @@ proptest! {
     fn the_network_is_the_one_written_out(seed in any::<u64>(), offset in -50.0..50.0_f64, diamond in any::<bool>()) {
         let config = calm();
         let object = if diamond { Object::diamond(config.side) } else { Object::circle(config.diameter) };
-        let mut life = life(config, &genes(seed));
-        let found = way(&mut life, object, offset);
-        let expected = written_out(&config, life.parameters(), object, offset);
+        let mut episode = episode(config, &genes(seed));
+        let found = way(&mut episode, object, offset);
+        let expected = written_out(&config, episode.parameters(), object, offset);
         prop_assert!(apart(&found, &expected) < 1e-3, "{}", apart(&found, &expected));
     }
 }
@@ -124,34 +124,34 @@ fn an_agent_that_stays_earns_what_the_offset_says() {
     let config = Config { weight_range: 0.1, ..Config::default() };
     let middle = decoded(&config, &[32_768; 47]);
     let still = middle.iter().enumerate().map(|(i, p)| if i < NEURONS * NEURONS { 0.0 } else { *p }).collect();
-    let mut life = AgentLife::new(config, still).unwrap();
+    let mut episode = AgentEpisode::new(config, still).unwrap();
     for (object, catches) in [(Object::circle(30.0), true), (Object::diamond(30.0), false)] {
         for (offset, part) in [(0.0, 0.0), (-9.0, 0.2), (36.0, 0.8), (45.0, 1.0), (50.0, 1.0)] {
-            assert!(way(&mut life, object, offset).iter().all(|x| *x == 0.0));
+            assert!(way(&mut episode, object, offset).iter().all(|x| *x == 0.0));
             let expected = if catches { 1.0 - part } else { part };
-            assert!((life.score() - expected).abs() < 1e-12, "{object:?} {offset}: {}", life.score());
-            assert_eq!((life.steps(), life.distance()), (817, offset.abs()));
-            assert!(life.height() <= 30.0 && life.height() > 29.7);
+            assert!((episode.score() - expected).abs() < 1e-12, "{object:?} {offset}: {}", episode.score());
+            assert_eq!((episode.steps(), episode.distance()), (817, offset.abs()));
+            assert!(episode.height() <= 30.0 && episode.height() > 29.7);
         }
     }
 }
 
 #[test]
 fn starts_are_spread_over_the_range_and_the_same_for_all_individuals() {
-    let mut life = life(Config::default(), &genes(1));
+    let mut episode = episode(Config::default(), &genes(1));
     let mut sides = 0;
     for generation in 0..50 {
         for trial in 0..24 {
             let id = |individual| EpisodeId { seed: 7, generation, individual, trial };
-            life.arrange(id(3));
-            let (object, [at, agent]) = (life.object(), life.places());
+            episode.arrange(id(3));
+            let (object, [at, agent]) = (episode.object(), episode.places());
             assert_eq!(agent, 0.0);
             assert_eq!(object.name(), ["circle", "diamond"][trial as usize % 2]);
             let part = 50.0 / 12.0 * f64::from(trial / 2);
             assert!((part..part + 50.0 / 12.0).contains(&at.abs()), "{trial}: {at}");
             sides += i32::from(at > 0.0);
-            life.arrange(id(8));
-            assert_eq!((life.object(), life.places()[0]), (object, at));
+            episode.arrange(id(8));
+            assert_eq!((episode.object(), episode.places()[0]), (object, at));
         }
     }
     assert!((450..750).contains(&sides), "{sides} of 1200 to the right");
@@ -186,12 +186,12 @@ fn the_evolved_agent_tells_circles_from_diamonds() {
 #[test]
 fn the_evolved_agent_does_the_same_in_double_precision() {
     let config = Config::default();
-    let mut life = life(config, &champion());
+    let mut episode = episode(config, &champion());
     for id in trials() {
-        life.arrange(id);
-        let (object, [at, _]) = (life.object(), life.places());
-        let expected = written_out(&config, life.parameters(), object, at);
-        let found = way(&mut life, object, at);
+        episode.arrange(id);
+        let (object, [at, _]) = (episode.object(), episode.places());
+        let expected = written_out(&config, episode.parameters(), object, at);
+        let found = way(&mut episode, object, at);
         assert!(apart(&found, &expected) < 1e-3, "{object:?} at {at}: {}", apart(&found, &expected));
     }
 }
@@ -203,16 +203,16 @@ fn a_recorded_episode_is_the_same_and_has_what_the_stage_names() {
     let id = EpisodeId { seed: 5, trial: 3, ..EpisodeId::default() };
     let evaluation = Evaluation { number: 0, parameters: &parameters, opponents: &[], id };
     let plain = evaluator.evaluate(evaluation, None);
-    let stage = evaluator.stage();
-    let mut recording = Recording::new(stage.clone());
+    let schema = evaluator.schema();
+    let mut recording = Recording::new(schema.clone());
     assert_eq!(evaluator.evaluate(evaluation, Some(&mut recording)), plain);
     assert_eq!((recording.times().len(), recording.times()[816]), (817, 81.7));
-    let links = stage.links.iter().map(|links| (links.from[1] - links.from[0]) * (links.to[1] - links.to[0]));
-    let others = stage.node_parameters.iter().map(|parameter| parameter.nodes[1] - parameter.nodes[0]);
+    let links = schema.links.iter().map(|links| (links.from[1] - links.from[0]) * (links.to[1] - links.to[0]));
+    let others = schema.node_parameters.iter().map(|parameter| parameter.nodes[1] - parameter.nodes[0]);
     assert_eq!(recording.controller_parameters().len(), links.sum::<usize>() + others.sum::<usize>());
     for tick in [0, 400, 816] {
         let row: Vec<f64> = recording.row(tick).collect();
-        assert_eq!(row.len(), stage.columns().len());
+        assert_eq!(row.len(), schema.columns().len());
         assert!(row.iter().all(|x| x.is_finite()), "{row:?}");
         assert_eq!(recording.rays_at(tick).len(), RAYS);
     }

@@ -4,24 +4,24 @@
 
 use farsa_body::Kinematics as _;
 use farsa_experiments::PushBox;
-use farsa_experiments::push_box::{HomingPusher, PushConfig, PushLife, PushTrial};
+use farsa_experiments::push_box::{HomingPusher, PushConfig, PushEpisode, PushTrial};
 use farsa_lab::{EpisodeId, Experiment as _, Settings, Value, run_episode};
 use farsa_nn::{Controller, Perceptron};
 use farsa_num::{Domain, Stream};
 
-/// Lives trials of a seed that is no run's and tells what came of them.
+/// Runs trials of a seed that is no run's and returns what came of them.
 fn trials<C: Controller>(config: &PushConfig, count: u32, mut controller: impl FnMut(u32) -> C) -> Vec<PushTrial> {
     let mut world = config.world().unwrap();
-    let mut life = PushLife::new(config.clone(), controller(0)).unwrap();
+    let mut episode = PushEpisode::new(config.clone(), controller(0)).unwrap();
     let one = |trial| {
-        life.set_controller(controller(trial));
+        episode.set_controller(controller(trial));
         let id = EpisodeId { seed: 1 | 1 << 63, trial, ..EpisodeId::default() };
-        run_episode(&mut life, &mut world, id, None);
-        for body in [life.parts().body, life.cube()] {
+        run_episode(&mut episode, &mut world, id, None);
+        for body in [episode.parts().body, episode.cube()] {
             let pose = world.pose(body);
             assert!(pose.position[2].abs() < 2e-3 && pose.rotate([0.0, 0.0, 1.0])[2] > 0.99, "trial {trial}: {pose:?}");
         }
-        *life.trial()
+        *episode.trial()
     };
     (0..count).map(one).collect()
 }
@@ -46,11 +46,11 @@ fn mean(values: &[f64]) -> [f64; 2] {
 fn trials_start_where_the_rules_allow() {
     let config = PushConfig::default();
     let mut world = config.world().unwrap();
-    let mut life = PushLife::new(config.clone(), HomingPusher::new(&config)).unwrap();
+    let mut episode = PushEpisode::new(config.clone(), HomingPusher::new(&config)).unwrap();
     let (mut nearest, mut farthest) = (f64::INFINITY, 0.0_f64);
     for trial in 0..200 {
-        life.arrange(&mut world, EpisodeId { seed: 3, trial, ..EpisodeId::default() });
-        let [robot, cube] = [life.parts().body, life.cube()].map(|body| world.pose(body).position.map(f64::from));
+        episode.arrange(&mut world, EpisodeId { seed: 3, trial, ..EpisodeId::default() });
+        let [robot, cube] = [episode.parts().body, episode.cube()].map(|body| world.pose(body).position.map(f64::from));
         assert_eq!(cube[..2], [0.0; 2]);
         let away = robot[0].hypot(robot[1]) - config.robot.radius - config.around();
         (nearest, farthest) = (nearest.min(away), farthest.max(away));
@@ -60,8 +60,8 @@ fn trials_start_where_the_rules_allow() {
     assert!(nearest < low + 0.01 && farthest > high - 0.01, "{nearest} {farthest}");
     let id = EpisodeId { seed: 3, trial: 5, ..EpisodeId::default() };
     let mut at = |id| {
-        life.arrange(&mut world, id);
-        world.pose(life.parts().body).position
+        episode.arrange(&mut world, id);
+        world.pose(episode.parts().body).position
     };
     let here = at(id);
     assert_eq!(at(EpisodeId { individual: 4, ..id }), here);
@@ -94,7 +94,7 @@ fn a_pusher_by_hand_is_better_than_chance_and_no_box_is_launched() {
             assert!(trial.fastest < 1.25 * config.speed(), "{trial:?}");
             let time = f64::from(trial.steps) * config.time_step;
             assert!(trial.moved <= trial.way + 1e-6 && trial.way <= config.speed() * time, "{trial:?}");
-            assert!(trial.moved < 1e-3 || trial.touched > 0, "moved by nobody: {trial:?}");
+            assert!(trial.moved < 1e-3 || trial.touched > 0, "moved by itself: {trial:?}");
         }
     }
     assert!(means[0] > 2.0 * means[1], "{means:?}");
@@ -107,6 +107,6 @@ fn settings_that_do_not_go_together_are_refused() {
     let error = PushBox.prepare("", &settings).err().unwrap().to_string();
     assert_eq!(error, "`start.farthest`: is 0.001, below start.nearest, 0.01");
     let layer = Perceptron::new(7, 2, 1.0, vec![0.0; 16]).unwrap();
-    let error = PushLife::new(PushConfig::default(), layer).err().unwrap().to_string();
+    let error = PushEpisode::new(PushConfig::default(), layer).err().unwrap().to_string();
     assert_eq!(error, "push-box: a controller of 7 inputs and 2 outputs where 8 and 2 are wanted");
 }

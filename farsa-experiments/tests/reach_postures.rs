@@ -95,7 +95,7 @@ fn after_a_push(scene: &Scene, joints: &[f64], commands: &[[f64; 2]; 7], pushed:
     }
     // The sphere out of the way: it is not asked about.
     world.place_body(Tabletop::SPHERE, Pose::at([0.48, 0.2, 0.025]), Twist::default());
-    world.arranged();
+    world.finish_placement();
     for (i, command) in commands.iter().enumerate() {
         world.command(ActuatorId(i as u16), command.map(|a| a as f32));
     }

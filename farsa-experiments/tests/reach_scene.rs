@@ -7,7 +7,7 @@ use farsa_body::{
     Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Channels, Contacts, Finger, Handles, JointId, Joints,
     Kinematics, Motor, Pose, Sensor, Shape, Tabletop, Twist, World as _,
 };
-use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, OUTPUTS, Phase, ReachLife, Scene};
+use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, OUTPUTS, Phase, ReachEpisode, Scene};
 use farsa_lab::{Episode, EpisodeId, run_episode};
 use farsa_nn::{Controller, LeakyNetwork};
 use farsa_physics::articulated::{Model, World};
@@ -42,7 +42,7 @@ fn joints_are_sensed_in_their_order_and_scale() {
         let [low, high] = scene.robot.segments[i].joint.range.map(|x| x as f32);
         world.place_joint(joint, low + (high - low) * fraction(i), 0.0);
     }
-    world.arranged();
+    world.finish_placement();
     let x = read(&scene, &world);
     assert_eq!(x.len(), 29);
     for i in 0..7 {
@@ -65,13 +65,13 @@ fn the_sphere_is_sensed_in_the_palms_frame_in_centimetres() {
     for (joint, q) in [(0, -0.5), (1, 0.4), (3, -1.0), (5, 0.3)] {
         world.place_joint(JointId(joint), q, 0.0);
     }
-    world.arranged();
+    world.finish_placement();
     let palm = world.pose(ArmAndHand::PALM);
     let centre = palm.transform(scene.arm.palm_centre.map(|x| x as f32));
     // 3 cm to the fingertips, 2 to the thumb's side, 6 out of the palm's back.
     let way = palm.rotate([0.03, 0.02, 0.06]);
     world.place_body(Tabletop::SPHERE, Pose::at([0, 1, 2].map(|k| centre[k] + way[k])), Twist::default());
-    world.arranged();
+    world.finish_placement();
     let x = read(&scene, &world);
     assert!(near(x[23], 3.0) && near(x[24], 2.0) && near(x[25], 6.0), "{:?}", &x[23..26]);
     let world_axes = Scene::new(Config { target_axes: farsa_body::Axes::World, ..Config::default() }).expect("a scene");
@@ -90,7 +90,7 @@ fn labels_name_the_phase_and_only_with_labels() {
         senses.read(&world, &mut x);
         assert_eq!(x[26..], label);
     }
-    let without = scene(Config::of_condition(false));
+    let without = scene(Config::for_condition(false));
     let mut senses = without.senses().unwrap();
     assert_eq!(senses.channels(), 26);
     assert_eq!(senses.names().len(), 26);
@@ -109,7 +109,7 @@ fn each_patch_of_skin_feels_its_own_contacts() {
     for (patch, bodies) in parts.into_iter().chain([vec![ArmAndHand::PALM]]).enumerate() {
         for body in bodies {
             world.clear();
-            world.arranged();
+            world.finish_placement();
             // The sphere against the far end of one part from below, a little into it.
             let collider = scene.robot.colliders.iter().find(|c| c.body == Some(body)).expect("a collider");
             let end = match collider.shape {
@@ -121,7 +121,7 @@ fn each_patch_of_skin_feels_its_own_contacts() {
             let thickness = if palm { 0.010 } else { [0.0065, 0.0060, 0.0055][(body.index() - 8) % 4] };
             let below = [at[0], at[1], at[2] - thickness - 0.0249];
             world.place_body(Tabletop::SPHERE, Pose::at(below), Twist::default());
-            world.arranged();
+            world.finish_placement();
             world.step();
             let x = read(&scene, &world);
             assert!(x[17 + patch] > 0.0, "patch {patch} does not feel {body:?}: {:?}", &x[17..23]);
@@ -251,7 +251,7 @@ fn the_first_observation_is_that_of_the_geometry() {
     for (joint, q) in ArmAndHand::joints().into_iter().zip(posture) {
         world.place_joint(joint, q as f32, 0.0);
     }
-    world.arranged();
+    world.finish_placement();
     let seen = scene.observe(&world);
     assert!(seen.reach_distance < 1e-3, "{}", seen.reach_distance);
     assert!((seen.palm_down - 1.0).abs() < 1e-6);
@@ -284,7 +284,7 @@ fn a_sphere_that_falls_ends_the_trial_and_what_was_earned_stays() {
     let trial = judge.trial();
     // It falls 2.5 cm: sqrt(2 * 0.025 / 9.81) = 0.0714 s, seen after the eighth step.
     assert_eq!((trial.steps, trial.fallen, trial.phase), (8, true, Phase::Reach));
-    assert!(fitness > 0.0 && fitness == trial.ledger.total());
+    assert!(fitness > 0.0 && fitness == trial.rewards.total());
     assert!(!judge.succeeds());
 }
 
@@ -295,10 +295,10 @@ fn a_world_that_breaks_down_fails_the_trial() {
     let mut judge = Judge::new(Arc::clone(&scene));
     judge.start(&mut world, EpisodeId::default());
     world.place_joint(JointId(3), f32::NAN, 0.0);
-    world.arranged();
+    world.finish_placement();
     let fitness = judge.judge(&world).expect("the end");
     assert!(fitness.is_nan());
-    assert!(judge.trial().ledger.total().is_nan());
+    assert!(judge.trial().rewards.total().is_nan());
 }
 
 /// Tells what it is told: the labels it read.
@@ -324,22 +324,22 @@ impl Controller for Listener {
 fn a_controller_steps_once_a_step_and_reads_reach_first() {
     let scene = scene(Config { steps: 50, ..Config::default() });
     let mut world = world(&scene);
-    let mut life = ReachLife::new(Arc::clone(&scene), Listener(Vec::new())).expect("a life");
-    let fitness = run_episode(&mut life, &mut world, EpisodeId::default(), None);
-    assert_eq!(life.judge().trial().steps, 50);
-    assert_eq!(life.controller().0.len(), 50);
-    assert_eq!(life.controller().0[0], [50.0, 0.0, 0.0]);
-    assert_eq!(fitness, life.judge().trial().ledger.total());
+    let mut episode = ReachEpisode::new(Arc::clone(&scene), Listener(Vec::new())).expect("an episode");
+    let fitness = run_episode(&mut episode, &mut world, EpisodeId::default(), None);
+    assert_eq!(episode.judge().trial().steps, 50);
+    assert_eq!(episode.controller().0.len(), 50);
+    assert_eq!(episode.controller().0[0], [50.0, 0.0, 0.0]);
+    assert_eq!(fitness, episode.judge().trial().rewards.total());
     // The same episode again, to the same bits, in a world that has been used.
-    assert_eq!(run_episode(&mut life, &mut world, EpisodeId::default(), None), fitness);
+    assert_eq!(run_episode(&mut episode, &mut world, EpisodeId::default(), None), fitness);
 }
 
 #[test]
 fn a_network_of_another_shape_is_refused() {
-    let layout = Config::of_condition(false).layout();
+    let layout = Config::for_condition(false).layout();
     let network =
         LeakyNetwork::new(layout, farsa_nn::Leak::Filter, vec![0.0; 756], vec![0.0; layout.state_len()]).unwrap();
-    let error = ReachLife::new(scene(Config::default()), network).unwrap_err().to_string();
+    let error = ReachEpisode::new(scene(Config::default()), network).unwrap_err().to_string();
     assert_eq!(error, "reach-grasp-lift: a controller of 26 inputs and 23 outputs for 29 sensors and 23 motors");
 }
 
@@ -347,9 +347,10 @@ fn a_network_of_another_shape_is_refused() {
 fn an_episode_that_is_run_is_the_one_written_out() {
     let scene = scene(Config { steps: 30, ..Config::default() });
     let (mut one, mut two) = (world(&scene), world(&scene));
-    let mut lives = [(); 2].map(|()| ReachLife::new(Arc::clone(&scene), Listener(Vec::new())).expect("a life"));
+    let mut episodes =
+        [(); 2].map(|()| ReachEpisode::new(Arc::clone(&scene), Listener(Vec::new())).expect("an episode"));
     let id = EpisodeId { trial: 1, ..EpisodeId::default() };
-    let [first, second] = &mut lives;
+    let [first, second] = &mut episodes;
     let fitness = run_episode(first, &mut one, id, None);
     second.start(&mut two, id);
     let other = loop {

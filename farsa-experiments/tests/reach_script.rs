@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use farsa_body::{ArmAndHand, Kinematics, World as _};
-use farsa_experiments::reach_grasp_lift::{Config, Ledger, Phase, Scene, ScriptLife, TRIALS, Timetable, Trial};
+use farsa_experiments::reach_grasp_lift::{Config, Phase, Rewards, Scene, ScriptEpisode, TRIALS, Timetable, Trial};
 use farsa_lab::{Episode, EpisodeId};
 use farsa_physics::articulated::{Model, Precision, World};
 
@@ -20,20 +20,20 @@ struct Grasp {
 fn grasp<R: Precision>(config: Config, timetable: Timetable, id: EpisodeId) -> Grasp {
     let scene = Arc::new(Scene::new(config).expect("a scene"));
     let mut world = World::new(Model::<R>::new(&scene.robot, &scene.config.options()).expect("a model"));
-    let mut life = ScriptLife::new(Arc::clone(&scene), timetable).expect("a script");
-    life.start(&mut world, id);
-    assert!(life.plan().is_some(), "the sphere is out of reach");
+    let mut episode = ScriptEpisode::new(Arc::clone(&scene), timetable).expect("a script");
+    episode.start(&mut world, id);
+    assert!(episode.plan().is_some(), "the sphere is out of reach");
     let (mut relative, mut activation) = (Vec::new(), 0.0_f32);
     let mut end = None;
     while end.is_none() {
-        life.act(&mut world);
+        episode.act(&mut world);
         world.step();
-        end = Episode::judge(&mut life, &mut world);
+        end = Episode::judge(&mut episode, &mut world);
         let palm = world.pose(ArmAndHand::PALM).cast::<f64>();
         relative.push(palm.transform_back(scene.sphere_centre(&world)));
-        activation = life.done()[..14].iter().fold(activation, |most, a| most.max(*a));
+        activation = episode.done()[..14].iter().fold(activation, |most, a| most.max(*a));
     }
-    Grasp { trial: *life.judge().trial(), success: life.judge().succeeds(), relative, activation }
+    Grasp { trial: *episode.judge().trial(), success: episode.judge().succeeds(), relative, activation }
 }
 
 /// How fast the sphere moves in the palm over the last steps: from end to end, and the root mean square of the steps [mm/s].
@@ -76,12 +76,12 @@ fn holds_for_three_seconds_in_double_precision() {
 
 #[test]
 fn scores_3000_over_the_four_trials() {
-    let mut sum = Ledger::default();
+    let mut sum = Rewards::default();
     for trial in 0..TRIALS {
         let grasp = grasp::<f32>(Config::default(), Timetable::default(), id(trial, 0));
         assert_eq!(grasp.trial.steps, 600);
         assert!(grasp.success, "start {}: {:?}", trial + 1, grasp.trial);
-        sum.add(&grasp.trial.ledger);
+        sum.add(&grasp.trial.rewards);
     }
     println!("{sum:?} F = {:.1}", sum.total());
     assert!(sum.total() >= 3000.0, "F = {}", sum.total());

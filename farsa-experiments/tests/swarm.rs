@@ -1,4 +1,4 @@
-//! The experiments on teams: trials repeat, robots stay where they can be, and the books are right.
+//! The experiments on teams: trials repeat, robots stay where they can be, and the scores are right.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
@@ -7,9 +7,9 @@ use std::{env, fs};
 
 use farsa_body::BodyId;
 use farsa_evo::randomize;
-use farsa_experiments::aggregation::{AggregationConfig, AggregationLife, BeaconSeeker, Gathering, aggregate};
-use farsa_experiments::foraging::{ForagingConfig, ForagingLife, HomingForager, forage};
-use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyLife, chase};
+use farsa_experiments::aggregation::{AggregationConfig, AggregationEpisode, BeaconSeeker, Gathering, aggregate};
+use farsa_experiments::foraging::{ForagingConfig, ForagingEpisode, HomingForager, forage};
+use farsa_experiments::predator_prey::{Chaser, PredatorPreyConfig, PredatorPreyEpisode, chase};
 use farsa_experiments::{Aggregation, Foraging, PredatorPrey};
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Note, Outcome, Settings, Value};
 use farsa_num::{Domain, Stream};
@@ -62,7 +62,7 @@ fn note(outcome: &Outcome, name: &str) -> f64 {
 fn recorded(evaluator: &mut dyn Evaluator, own: &[f32], other: &[f32], id: EpisodeId) -> (Outcome, Recording) {
     let plain = evaluator.evaluate(against(own, &[other], id), None);
     evaluator.evaluate(against(other, &[own], EpisodeId { trial: id.trial + 1, ..id }), None);
-    let mut recording = Recording::new(evaluator.stage());
+    let mut recording = Recording::new(evaluator.schema());
     let recorded = evaluator.evaluate(against(own, &[other], id), Some(&mut recording));
     assert_eq!(plain, recorded);
     (plain, recording)
@@ -73,10 +73,10 @@ fn recorded(evaluator: &mut dyn Evaluator, own: &[f32], other: &[f32], id: Episo
 fn rays_belong_to_robots(recording: &Recording, tick: usize, sensors: usize, [radius, range, height]: [f32; 3]) {
     let rays = recording.rays_at(tick);
     // The dead sense nothing.
-    let eye = recording.stage().columns().iter().position(|name| name == "sensor.infrared 1").unwrap();
+    let eye = recording.schema().columns().iter().position(|name| name == "sensor.infrared 1").unwrap();
     let sensors = if recording.row(tick).nth(eye).unwrap().is_nan() { 0 } else { sensors };
     assert!(rays.len() >= sensors, "{tick}: {}", rays.len());
-    // Before the first step nobody knows where the robots were.
+    // Before the first step it is unknown where the robots were.
     let Some(before) = tick.checked_sub(1) else { return };
     let robots: Vec<[f32; 3]> =
         (0..10).map_while(|robot| recording.pose_at(before, BodyId(robot))).map(|pose| pose.position).collect();
@@ -143,14 +143,14 @@ fn trials_repeat_and_robots_stay_between_the_walls_and_apart() {
 #[test]
 fn the_book_of_food_is_what_the_robots_ways_tell() {
     let mut evaluator = prepare(&Foraging, "marxbot", 400);
-    let columns = evaluator.stage().columns();
+    let columns = evaluator.schema().columns();
     let column = |name: &str| columns.iter().position(|c| c == name).unwrap_or_else(|| panic!("{name}"));
     let (mut deaths, mut food) = (0.0, 0.0);
     for number in 0..6 {
         let own = parameters(evaluator.as_ref(), number);
         let (outcome, recording) =
             recorded(evaluator.as_mut(), &own, &own, EpisodeId { trial: number, ..EpisodeId::default() });
-        // From the poses alone: who is where, from the first step on.
+        // From the poses alone: where each robot is, from the first step on.
         let mut left = [[true; 20]; 20];
         let (mut carried, mut away, mut paid, mut lost) = ([0.0; 10], [0; 10], 0.0, 0.0);
         let mut grave: [Option<[f32; 3]>; 10] = [None; 10];
@@ -218,7 +218,7 @@ fn the_reward_of_aggregation_is_that_of_the_last_places() {
         }
         assert!((outcome.terms.iter().sum::<f64>() - reward / 10.0).abs() < 1e-5, "{outcome:?} {reward}");
         assert!((note(&outcome, "share on a nest") - home as f64 / 10.0).abs() < 1e-9);
-        let gathering = Gathering::of(&(0..10).map(place).collect::<Vec<_>>(), radius);
+        let gathering = Gathering::new(&(0..10).map(place).collect::<Vec<_>>(), radius);
         assert_eq!(note(&outcome, "clusters"), gathering.clusters as f64);
     }
 }
@@ -251,19 +251,19 @@ fn robots_that_drive_into_each_other_are_caught_wherever_they_are() {
     let config = PredatorPreyConfig::default();
     let minds = [Chaser::predator(&config), Chaser::prey(&config)];
     let mut world = config.world().unwrap();
-    let mut life = PredatorPreyLife::new(config.clone(), minds).unwrap();
+    let mut episode = PredatorPreyEpisode::new(config.clone(), minds).unwrap();
     for seed in 0..10 {
-        let outcome = chase(&mut life, &mut world, EpisodeId { seed, ..EpisodeId::default() });
+        let outcome = chase(&mut episode, &mut world, EpisodeId { seed, ..EpisodeId::default() });
         // Capture leaves no gap that a step could not close; without it there was one at every step.
-        assert!(!life.captured() || life.gap() < 2.0 * 0.027, "{seed}: {}", life.gap());
+        assert!(!episode.captured() || episode.gap() < 2.0 * 0.027, "{seed}: {}", episode.gap());
         assert!(outcome.is_finite());
     }
     // A predator that steers to a prey that steers to it: no chase lasts long.
     let minds = [Chaser::predator(&config), Chaser::predator(&config)];
-    let mut life = PredatorPreyLife::new(config, minds).unwrap();
+    let mut episode = PredatorPreyEpisode::new(config, minds).unwrap();
     for seed in 0..10 {
-        let outcome = chase(&mut life, &mut world, EpisodeId { seed, ..EpisodeId::default() });
-        assert!(life.captured() && outcome.steps < 60, "{seed}: {outcome:?}");
+        let outcome = chase(&mut episode, &mut world, EpisodeId { seed, ..EpisodeId::default() });
+        assert!(episode.captured() && outcome.steps < 60, "{seed}: {outcome:?}");
     }
 }
 
@@ -280,16 +280,16 @@ fn hand_written_teams_do_what_they_are_for() {
             let own = parameters(evaluator.as_ref(), id.seed as u32);
             random.push(evaluator.evaluate(against(&own, &[], id), None));
         }
-        let config = ForagingConfig::of_condition(condition);
+        let config = ForagingConfig::for_condition(condition);
         let mut world = config.world().unwrap();
-        let mut life = ForagingLife::new(config.clone(), vec![HomingForager::new(&config); 10]).unwrap();
-        let by_hand: Vec<_> = ids().map(|id| forage(&mut life, &mut world, id)).collect();
+        let mut episode = ForagingEpisode::new(config.clone(), vec![HomingForager::new(&config); 10]).unwrap();
+        let by_hand: Vec<_> = ids().map(|id| forage(&mut episode, &mut world, id)).collect();
         assert!(mean(&by_hand) > 2.0 * mean(&random), "{condition}: {} {}", mean(&by_hand), mean(&random));
 
-        let config = AggregationConfig::of_condition(condition);
+        let config = AggregationConfig::for_condition(condition);
         let mut world = config.world().unwrap();
-        let mut life = AggregationLife::new(config.clone(), vec![BeaconSeeker::new(&config); 10]).unwrap();
-        let by_hand: Vec<_> = ids().map(|id| aggregate(&mut life, &mut world, id)).collect();
+        let mut episode = AggregationEpisode::new(config.clone(), vec![BeaconSeeker::new(&config); 10]).unwrap();
+        let by_hand: Vec<_> = ids().map(|id| aggregate(&mut episode, &mut world, id)).collect();
         assert!(mean(&by_hand) > 30.0, "{condition}: {}", mean(&by_hand));
     }
 }
@@ -352,7 +352,7 @@ fn threads_do_not_show_in_a_run() {
             run(experiment, &path, threads);
             path
         });
-        for file in ["champion.bin", "lineage.bin", "checkpoint.bin", "fitness.csv", "config.toml"] {
+        for file in ["champion.bin", "record.bin", "lineage.csv", "checkpoint.bin", "fitness.csv", "config.toml"] {
             assert!(fs::read(one.join(file)).unwrap() == fs::read(two.join(file)).unwrap(), "{experiment}: {file}");
         }
         for path in [one, two] {

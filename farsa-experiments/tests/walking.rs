@@ -7,7 +7,7 @@ use farsa_body::{Arrange as _, Joints as _, World as _};
 #[cfg(feature = "rapier")]
 use farsa_experiments::passive_walker::Pace;
 use farsa_experiments::passive_walker::{
-    Config, End, Gait, Launch, Legs, Posture, Rules, Walk, Walker, WalkerLife, WalkerParts,
+    Config, End, Gait, Launch, Legs, Posture, Rules, Walk, Walker, WalkerEpisode, WalkerParts,
 };
 use farsa_experiments::{BodyEvolution, PassiveWalker};
 use farsa_lab::{
@@ -44,9 +44,9 @@ fn energy_is_that_of_the_world() {
     let mut world = World::new(model);
     for seed in 0..50 {
         posture(seed).place(&mut world, &parts);
-        world.arranged();
+        world.finish_placement();
         let [kinetic, potential] = world.energy();
-        let found = config.walker.energy(&Posture::of(&world, &parts), gravity);
+        let found = config.walker.energy(&Posture::from_world(&world, &parts), gravity);
         // The ports speak f32.
         let bound = 1e-5 * (kinetic.abs() + potential.abs());
         assert!((found - kinetic - potential).abs() < bound, "{seed}: {found} {kinetic} {potential}");
@@ -61,7 +61,7 @@ fn the_foot_of_a_standing_posture_rests_on_the_ground() {
     for stance in [0, 1] {
         let posture = Posture::standing(&walker, stance, [0.3, -0.2], [-0.9, 0.4]);
         posture.place(&mut world, &parts);
-        world.arranged();
+        world.finish_placement();
         let legs = walker.legs[stance];
         let pose = world.pose_of(parts.legs[stance]);
         let centre = pose.transform([0.0, 0.0, legs.foot_radius - legs.length]);
@@ -80,9 +80,9 @@ fn the_foot_of_a_standing_posture_rests_on_the_ground() {
 fn walk(config: &Config, launch: Launch, ticks: u32) -> (Option<End>, u32, f64) {
     let (model, parts) = config.model::<f32>().unwrap();
     let mut world = World::new(model);
-    let mut life = WalkerLife::new(config.walker, parts, Walk { steps: ticks, ..config.walk }, launch, None);
-    let fitness = run_episode(&mut life, &mut world, EpisodeId::default(), None);
-    (life.gait().end(), life.gait().steps(), fitness)
+    let mut episode = WalkerEpisode::new(config.walker, parts, Walk { steps: ticks, ..config.walk }, launch, None);
+    let fitness = run_episode(&mut episode, &mut world, EpisodeId::default(), None);
+    (episode.gait().end(), episode.gait().steps(), fitness)
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn lost_numbers_break_a_walk() {
     let mut gait = Gait::new(config.walker, parts, Rules::default(), Walker::gravity(9.81, 0.03), 0.002);
     gait.start(&mut world, 0, &Posture::standing(&config.walker, 0, [0.2, -0.2], [-0.8, 0.0]));
     world.place_joint(parts.hinges[0], f32::NAN, 0.0);
-    world.arranged();
+    world.finish_placement();
     world.step();
     assert_eq!(gait.judge(&mut world, 0.0), Some(End::Broken));
 }
@@ -132,7 +132,7 @@ fn a_kick_is_energy_from_nowhere_and_a_motor_pays_for_its_own() {
         assert_eq!(gait.judge(&mut world, 0.0), None);
         let angle = world.position(parts.hinges[1]);
         world.place_joint(parts.hinges[1], angle, 6.0);
-        world.arranged();
+        world.finish_placement();
         world.step();
         assert_eq!(gait.judge(&mut world, work), end, "{work}");
     }
@@ -165,18 +165,18 @@ fn a_rigid_body_with_light_feet_walks_as_the_model() {
     let model = config.gait().unwrap();
     let (world, parts) = config.model::<f64>().unwrap();
     let mut world = World::new(world);
-    let mut life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&model), None);
-    life.start(&mut world, EpisodeId::default());
+    let mut episode = WalkerEpisode::new(config.walker, parts, config.walk, config.launch(&model), None);
+    episode.start(&mut world, EpisodeId::default());
     let mut energies = Vec::new();
-    while life.gait().steps() < 13 {
-        let steps = life.gait().steps();
+    while episode.gait().steps() < 13 {
+        let steps = episode.gait().steps();
         world.step();
-        assert_eq!(life.judge(&mut world), None);
-        if life.gait().steps() > steps {
-            energies.push(life.gait().energies()[1]);
+        assert_eq!(episode.judge(&mut world), None);
+        if episode.gait().steps() > steps {
+            energies.push(episode.gait().energies()[1]);
         }
     }
-    let pace = life.pace().unwrap();
+    let pace = episode.pace().unwrap();
     for (found, known) in [(pace.angle, model.angle), (pace.rate, model.rate), (pace.period, model.period)] {
         println!("{found} where the model has {known}");
         assert!((found / known - 1.0).abs() < 0.01, "{found} where the model has {known}");
@@ -189,11 +189,11 @@ fn a_rigid_body_with_light_feet_walks_as_the_model() {
 }
 
 /// An episode and the number of its trial.
-struct Numbered(WalkerLife, u32);
+struct Numbered(WalkerEpisode, u32);
 
 impl<W> Episode<W> for Numbered
 where
-    WalkerLife: Episode<W>,
+    WalkerEpisode: Episode<W>,
 {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.0.start(world, id);
@@ -213,10 +213,10 @@ fn walks_in_lanes_are_those_alone() {
     config.walk = Walk { steps: 800, noise: 0.3, ..config.walk };
     let launch = Launch { angles: [0.3, -0.3], rates: [-1.2, 0.0] };
     let (model, parts): (Model<f32>, WalkerParts) = config.model().unwrap();
-    let life = || WalkerLife::new(config.walker, parts, config.walk, launch, None);
+    let episode = || WalkerEpisode::new(config.walker, parts, config.walk, launch, None);
     let id = |trial| EpisodeId { seed: 4, trial, ..EpisodeId::default() };
     let mut world = World::new(model.clone());
-    let mut one = life();
+    let mut one = episode();
     let mut steps = 0;
     let alone: Vec<u64> = (0..20)
         .map(|trial| {
@@ -227,16 +227,16 @@ fn walks_in_lanes_are_those_alone() {
         .collect();
     assert!(steps > 10, "{steps} steps in all: feet should change places");
     let mut batch = Batch::new(model, 8, Instructions::detect()).unwrap();
-    let mut lives: Vec<Numbered> = (0..8).map(|_| Numbered(life(), 0)).collect();
+    let mut episodes: Vec<Numbered> = (0..8).map(|_| Numbered(episode(), 0)).collect();
     let (mut next, mut found) = (0..20, vec![0; 20]);
     run_in_lanes(
-        &mut lives,
+        &mut episodes,
         &mut batch,
-        |life| {
-            life.1 = next.next()?;
-            Some(id(life.1))
+        |episode| {
+            episode.1 = next.next()?;
+            Some(id(episode.1))
         },
-        |life, fitness| found[life.1 as usize] = fitness.to_bits(),
+        |episode, fitness| found[episode.1 as usize] = fitness.to_bits(),
     );
     assert_eq!(found, alone);
 }
@@ -296,20 +296,20 @@ fn walk_in_rapier(speed_sweeps: u32, steps: u32) -> (f64, Option<Pace>) {
     let options = farsa_physics::rapier::Options { speed_sweeps, ..config.rapier_options() };
     let mut world = farsa_physics::rapier::World::new(&robot, &options).unwrap();
     let launch = config.launch(&config.gait().unwrap());
-    let mut life = WalkerLife::new(config.walker, parts, Walk { steps: u32::MAX, ..config.walk }, launch, None);
-    life.start(&mut world, EpisodeId::default());
+    let mut episode = WalkerEpisode::new(config.walker, parts, Walk { steps: u32::MAX, ..config.walk }, launch, None);
+    episode.start(&mut world, EpisodeId::default());
     let (mut flown, mut since) = (0.0, 0);
-    while since < 200 || life.gait().steps() < steps {
+    while since < 200 || episode.gait().steps() < steps {
         world.step();
-        if life.judge(&mut world).is_some() {
+        if episode.judge(&mut world).is_some() {
             break;
         }
-        since += u32::from(life.gait().steps() > 0);
+        since += u32::from(episode.gait().steps() > 0);
         if since > 0 && since < 200 && parts.soles.iter().all(|sole| !world.touches(*sole)) {
             flown += config.walk.time_step;
         }
     }
-    (flown, life.pace())
+    (flown, episode.pace())
 }
 
 /// One sweep for speeds, each step's begun with the last step's impulses, make a spring of a leg's normal force and friction.

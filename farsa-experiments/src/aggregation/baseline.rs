@@ -10,7 +10,7 @@ use crate::team::steering::{away, eyes};
 /// Stays on a nest and shines red there; elsewhere it steers to what shines red, else drives straight on and turns away from
 /// what its infrared sensors see.
 ///
-/// No memory. Inputs and outputs are those of [`crate::aggregation::AggregationLife`].
+/// No memory. Inputs and outputs are those of [`crate::aggregation::AggregationEpisode`].
 #[derive(Clone, Debug)]
 pub struct BeaconSeeker {
     inputs: usize,

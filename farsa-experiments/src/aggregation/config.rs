@@ -28,8 +28,8 @@ pub struct AggregationConfig {
 
 impl AggregationConfig {
     /// The defaults of a condition.
-    pub fn of_condition(condition: &str) -> Self {
-        let team = TeamConfig::of_condition(condition);
+    pub fn for_condition(condition: &str) -> Self {
+        let team = TeamConfig::for_condition(condition);
         // Six radii: all ten robots fit onto one nest with room to drive by.
         let nest_radius = 6.0 * team.robot.radius;
         Self {
@@ -47,7 +47,7 @@ impl AggregationConfig {
         let length = |key: &str, default: f64| Setting::number(key, default, 0.0..=1000.0).unit("m");
         let reward = |key: &str, default: f64| Setting::number(key, default, 0.0..=1e6).given();
         let mut table = crate::team::config::evolution([120, 30, 6], 0.02);
-        table.extend(self.team.table(true, self.team.of_marxbots()));
+        table.extend(self.team.table(true, self.team.uses_marxbots()));
         table.extend([
             Setting::whole("nest.count", whole(self.nests), 1..=100).doc("Nests; two, so that robots may part."),
             length("nest.radius", self.nest_radius)

@@ -5,7 +5,7 @@ use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::aggregation::config::AggregationConfig;
-use crate::aggregation::life::{AggregationLife, AggregationMission};
+use crate::aggregation::episode::{AggregationEpisode, AggregationScenario};
 use crate::team::config::ROBOTS;
 use crate::team::task::evaluator;
 
@@ -31,16 +31,16 @@ impl Experiment for Aggregation {
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {
-        AggregationConfig::of_condition(condition).table()
+        AggregationConfig::for_condition(condition).table()
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        Ok(Box::new(evaluator(AggregationMission::new(AggregationConfig::of_condition(condition).read(settings)?))?))
+        Ok(Box::new(evaluator(AggregationScenario::new(AggregationConfig::for_condition(condition).read(settings)?))?))
     }
 }
 
-/// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
-pub fn aggregate<C: Controller>(life: &mut AggregationLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    farsa_lab::run_episode(life, world, id, None);
-    life.outcome(0)
+/// Runs one trial of a team of any controllers and returns what came of it, as an outcome of the experiment does.
+pub fn aggregate<C: Controller>(episode: &mut AggregationEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    farsa_lab::run_episode(episode, world, id, None);
+    episode.outcome(0)
 }

@@ -18,7 +18,7 @@ impl Gathering {
     ///
     /// Source: dispersion and clusters \[Gauci2014\]: two robots are of one cluster if no other fits in between them, their
     /// surfaces less than a diameter apart.
-    pub fn of(places: &[[f32; 2]], radius: f64) -> Self {
+    pub fn new(places: &[[f32; 2]], radius: f64) -> Self {
         let count = places.len().max(1) as f64;
         let sum = |k: usize| places.iter().map(|at| f64::from(at[k])).sum::<f64>() / count;
         let centre = [sum(0), sum(1)];
@@ -63,13 +63,13 @@ mod tests {
     #[test]
     fn a_row_is_one_cluster_and_a_gap_parts_it() {
         let row = |gap: f32| [[0.0, 0.0], [0.3, 0.0], [0.6, 0.0], [0.6 + gap, 0.0]];
-        let one = Gathering::of(&row(0.39), 0.1);
+        let one = Gathering::new(&row(0.39), 0.1);
         assert_eq!((one.clusters, one.largest), (1, 4));
-        let two = Gathering::of(&row(0.41), 0.1);
+        let two = Gathering::new(&row(0.41), 0.1);
         assert_eq!((two.clusters, two.largest), (2, 3));
         // Places -1, 1 about the middle: two squared metres by 0.04.
-        assert!((Gathering::of(&[[0.0, 1.0], [2.0, 1.0]], 0.1).dispersion - 50.0).abs() < 1e-9);
-        assert_eq!(Gathering::of(&[[1.0, 1.0]], 0.1), Gathering { dispersion: 0.0, clusters: 1, largest: 1 });
+        assert!((Gathering::new(&[[0.0, 1.0], [2.0, 1.0]], 0.1).dispersion - 50.0).abs() < 1e-9);
+        assert_eq!(Gathering::new(&[[1.0, 1.0]], 0.1), Gathering { dispersion: 0.0, clusters: 1, largest: 1 });
         assert_eq!(mean_distances(&[[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 10.0), [0.25, 0.5, 0.25]);
         assert_eq!(mean_distances(&[[0.0, 0.0]], 10.0), [0.0]);
     }
@@ -78,7 +78,7 @@ mod tests {
         /// Against a search from robot to robot; and dispersion against half the mean of all squared distances.
         #[test]
         fn clusters_are_what_a_walk_reaches(places in prop::collection::vec([0.0_f32..3.0, 0.0_f32..3.0], 1..14)) {
-            let found = Gathering::of(&places, 0.1);
+            let found = Gathering::new(&places, 0.1);
             let mut seen = vec![false; places.len()];
             let mut sizes = Vec::new();
             for start in 0..places.len() {

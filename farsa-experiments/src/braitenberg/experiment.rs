@@ -3,12 +3,12 @@
 use farsa_body::Recorder;
 use farsa_physics::arena::{Batch, World};
 
-use crate::braitenberg::life::{Config, LIGHTS, Vehicle, VehicleLife};
+use crate::braitenberg::episode::{Config, LIGHTS, Vehicle, VehicleEpisode};
 use farsa_lab::{
     ChannelGroup, Description, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome, Parameter,
     Rollout, Setting, Settings, Task, mean_of_trials,
 };
-use farsa_view::{Channel, Links, NodeParameters, Stage};
+use farsa_view::{Channel, Links, NodeParameters, Schema};
 
 /// What four ways of wiring two light-driven wheels look like from outside \[Braitenberg1984, vehicles 2a to 3b\].
 ///
@@ -38,7 +38,7 @@ impl Experiment for Braitenberg {
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {
-        let config = Config::of(vehicle(condition));
+        let config = Config::for_vehicle(vehicle(condition));
         let only_one = |key: &str, doc: &str| Setting::whole(key, 1, 1..=1).derived().doc(doc);
         vec![
             only_one("evolution.generations", "Nothing evolves: one generation."),
@@ -90,7 +90,7 @@ impl Experiment for Braitenberg {
 ///
 /// # Errors
 /// [`Error::Setting`] for starts within the lamp or beyond the walls, [`Error::Other`] for values that make no world.
-pub fn evaluator(config: Config) -> Result<InWorld<World, VehicleLife>, Error> {
+pub fn evaluator(config: Config) -> Result<InWorld<World, VehicleEpisode>, Error> {
     let radius = config.robot().radius;
     let [near, far] = config.start;
     let most = 0.5 * config.size - radius;
@@ -106,10 +106,10 @@ pub fn evaluator(config: Config) -> Result<InWorld<World, VehicleLife>, Error> {
     let batch = move |lanes: Lanes| {
         Batch::new(&arena, lanes.count(), lanes.instructions()).map_err(|error| Error::Other(error.to_string()))
     };
-    Ok(InWorld::new(world, VehicleLife::new(config)?).with_lanes(batch))
+    Ok(InWorld::new(world, VehicleEpisode::new(config)?).with_lanes(batch))
 }
 
-impl Task for VehicleLife {
+impl Task for VehicleEpisode {
     /// Nothing evolves: one parameter that nothing depends on.
     fn parameters(&self) -> Vec<Parameter> {
         vec![Parameter::new("none", [0.0, 1.0])]
@@ -123,16 +123,16 @@ impl Task for VehicleLife {
         vec!["approach [m]".into()]
     }
 
-    fn stage(&self) -> Stage {
+    fn schema(&self) -> Schema {
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
         let places =
             ["x [m]", "y [m]", "heading [rad]", "distance of the lamp [m]", "bearing of the lamp [rad]", "collisions"];
-        let mut stage = Stage::of_arena(&self.config().arena())
+        let mut schema = Schema::from_arena(&self.config().arena())
             .with_sensors((1..=LIGHTS).map(|number| format!("light {number}")))
             .with_outputs(["left wheel", "right wheel"]);
-        stage.outputs.iter_mut().chain(&mut stage.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
+        schema.outputs.iter_mut().chain(&mut schema.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
         let wheels = [LIGHTS, LIGHTS + 2];
-        Stage {
+        Schema {
             scalars: places.map(in_group("place")).into(),
             links: vec![Links { from: [0, LIGHTS], to: wheels, first: 0 }],
             node_parameters: vec![NodeParameters {
@@ -140,7 +140,7 @@ impl Task for VehicleLife {
                 nodes: wheels,
                 first: 2 * LIGHTS,
             }],
-            ..stage
+            ..schema
         }
     }
 
@@ -169,7 +169,7 @@ impl Task for VehicleLife {
     }
 }
 
-impl Rollout for VehicleLife {
+impl Rollout for VehicleEpisode {
     fn load(&mut self, _: &Evaluation<'_>) -> bool {
         true
     }
@@ -179,14 +179,14 @@ impl Rollout for VehicleLife {
     }
 
     fn outcome(&self) -> Outcome {
-        let life = self;
-        let [start, end] = life.distances();
-        let [steps, collisions] = life.steps();
-        let off = life.bearings().map(|bearing| bearing.abs().to_degrees());
+        let episode = self;
+        let [start, end] = episode.distances();
+        let [steps, collisions] = episode.steps();
+        let off = episode.bearings().map(|bearing| bearing.abs().to_degrees());
         // 2b and 3a come near, 2a and 3b leave.
-        let comes = life.config().vehicle.crossed() == life.config().vehicle.excited();
+        let comes = episode.config().vehicle.crossed() == episode.config().vehicle.excited();
         Outcome {
-            terms: vec![life.approach()],
+            terms: vec![episode.approach()],
             steps,
             success: (end < start) == comes,
             notes: vec![

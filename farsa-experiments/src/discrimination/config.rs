@@ -79,7 +79,7 @@ impl Default for Config {
 
 impl Config {
     /// The defaults of `discrimination` for a robot, by the name of the condition.
-    pub fn of_condition(condition: &str) -> Self {
+    pub fn for_condition(condition: &str) -> Self {
         if condition == E_PUCK { Self::e_puck() } else { Self::default() }
     }
 
@@ -102,7 +102,7 @@ impl Config {
     }
 
     /// Whether the robot is the one that infrared tables were measured of, and that most numbers of the source are for.
-    fn of_khepera(&self) -> bool {
+    fn is_khepera(&self) -> bool {
         self.robot.name == MobileRobot::khepera().name
     }
 
@@ -124,18 +124,18 @@ impl Config {
     /// Every value as a setting, with these as defaults.
     pub fn table(&self) -> Vec<Setting> {
         let several = self.radii.len() > 1;
-        let khepera = self.of_khepera();
+        let khepera = self.is_khepera();
         // What the source gives for one cylinder is chosen for two.
         let given = |setting: Setting| if several { setting } else { setting.given() };
         // What it gives for the Khepera alone is chosen for other robots.
-        let of_khepera = |setting: Setting| if khepera { given(setting) } else { setting };
+        let is_khepera = |setting: Setting| if khepera { given(setting) } else { setting };
         let plain = |key: &str, default: f64| Setting::number(key, default, 0.0..=10.0).unit("m");
         let length = |key: &str, default: f64| given(plain(key, default));
         let weights = Setting::number("net.weight_range", self.weight_range, 0.0..=1000.0);
         let weights = if khepera { weights.given() } else { weights };
         let mut table = vec![
             Setting::word(ENGINE, self.engine.name(), &PlanarEngine::NAMES).doc(
-                "What moves the robot: wheels that do exactly what they are told, or rapier, where it has mass and its motors have \
+                "What moves the robot: wheels that do exactly what is commanded, or rapier, where it has mass and its motors have \
                  a largest torque.",
             ),
             given(Setting::numbers("world.size", &self.size, 0.1..=100.0))
@@ -149,15 +149,15 @@ impl Config {
                 .unit("m")
                 .given()
                 .doc("Radius of the cylinder to stay at, and of the other one where there is one."),
-            of_khepera(
+            is_khepera(
                 plain("object.to_wall", self.object_to_wall)
                     .doc("Least distance of a cylinder's surface from the walls."),
             ),
-            of_khepera(
+            is_khepera(
                 plain("start.to_wall", self.robot_to_wall)
                     .doc("Least distance of the robot's hull from the walls at the start."),
             ),
-            of_khepera(
+            is_khepera(
                 plain("start.to_object", self.robot_to_object)
                     .doc("Least distance of the robot's hull from a cylinder's surface at the start."),
             ),
@@ -209,7 +209,7 @@ impl Config {
             robot_to_object: length("start.to_object")?,
             near: length("fitness.near")?,
             cost: if several { settings.number("fitness.cost")? } else { self.cost },
-            robot: if self.of_khepera() {
+            robot: if self.is_khepera() {
                 self.robot
             } else {
                 MobileRobot { radius: length("robot.radius")?, ..self.robot }

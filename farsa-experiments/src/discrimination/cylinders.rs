@@ -1,4 +1,4 @@
-//! The experiment `discrimination-cylinders`: a large and a small cylinder, told apart by moving.
+//! The experiment `discrimination-cylinders`: a large and a small cylinder, distinguished by moving.
 
 use std::path::PathBuf;
 

@@ -7,14 +7,14 @@ use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
 
 use crate::discrimination::config::{Config, EYES, ROBOTS};
-use crate::discrimination::life::CylinderLife;
+use crate::discrimination::episode::CylinderEpisode;
 use crate::infrared::settings::InfraredModel;
 use crate::worlds::PlanarEngine;
 use farsa_lab::{
-    ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, Outcome, Parameter,
-    Rollout, Search, Setting, Settings, Task, mean_of_trials,
+    ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, OnePlusOne, Outcome,
+    Parameter, Rollout, Setting, Settings, StrategyDefinition, Task, mean_of_trials,
 };
-use farsa_view::{Channel, Links, NodeParameters, Stage};
+use farsa_view::{Channel, Links, NodeParameters, Schema};
 
 /// Does a robot that sees walls and a cylinder alike stay near the cylinder? \[FARSA2\]
 ///
@@ -38,12 +38,12 @@ impl Experiment for Discrimination {
         &ROBOTS
     }
 
-    fn search(&self, _: &str) -> Search {
-        Search::OnePlusOne
+    fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
+        &OnePlusOne
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {
-        Config::of_condition(condition).table()
+        Config::for_condition(condition).table()
     }
 
     fn files(&self, _: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {
@@ -55,7 +55,7 @@ impl Experiment for Discrimination {
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        in_its_world(Config::of_condition(condition).read(settings)?)
+        in_its_world(Config::for_condition(condition).read(settings)?)
     }
 }
 
@@ -80,10 +80,10 @@ pub type Layer = Perceptron<Vec<f32>>;
 ///
 /// # Errors
 /// [`Error::Other`] for values that make no world, and [`Error::Setting`] for an arena without room for all.
-pub fn evaluator(config: Config) -> Result<InWorld<World, CylinderLife<Layer>>, Error> {
+pub fn evaluator(config: Config) -> Result<InWorld<World, CylinderEpisode<Layer>>, Error> {
     let (mut world, parked) = (config.world()?, config.parked());
-    let life = life(config, &mut world)?;
-    InWorld::in_arena(&parked, life)
+    let episode = episode(config, &mut world)?;
+    InWorld::in_arena(&parked, episode)
 }
 
 /// Evaluates under a configuration, in rapier.
@@ -93,26 +93,26 @@ pub fn evaluator(config: Config) -> Result<InWorld<World, CylinderLife<Layer>>, 
 #[cfg(feature = "rapier")]
 pub fn evaluator_in_rapier(
     config: Config,
-) -> Result<InWorld<farsa_physics::rapier::ArenaWorld, CylinderLife<Layer>>, Error> {
+) -> Result<InWorld<farsa_physics::rapier::ArenaWorld, CylinderEpisode<Layer>>, Error> {
     let mut world = config.rapier_world()?;
-    let life = life(config, &mut world)?;
-    Ok(InWorld::new(world, life))
+    let episode = episode(config, &mut world)?;
+    Ok(InWorld::new(world, episode))
 }
 
 /// The episode of a configuration, for whose objects the world has room.
-fn life<W>(config: Config, world: &mut W) -> Result<CylinderLife<Layer>, Error>
+fn episode<W>(config: Config, world: &mut W) -> Result<CylinderEpisode<Layer>, Error>
 where
     W: Planar + Kinematics + Arrange + Handles<Body = BodyId, Joint = JointId>,
 {
     let inputs = config.inputs();
     let layer = layer(inputs, vec![0.0; Perceptron::parameter_count(inputs, 2)])?;
-    let mut life = CylinderLife::new(config, layer)?;
+    let mut episode = CylinderEpisode::new(config, layer)?;
     // Seeds of this kind are neither a run's nor a test's.
     for trial in 0..8 {
         let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
-        life.arrange(world, id).map_err(|error| Error::setting("world.size", error))?;
+        episode.arrange(world, id).map_err(|error| Error::setting("world.size", error))?;
     }
-    Ok(life)
+    Ok(episode)
 }
 
 /// Two logistic units over these parameters.
@@ -127,7 +127,7 @@ fn in_order_of_layer(parameters: &[f32], inputs: usize) -> Vec<f32> {
     weights.chain([parameters[0], parameters[1]]).collect()
 }
 
-impl Task for CylinderLife<Layer> {
+impl Task for CylinderEpisode<Layer> {
     /// As the original wrote them, w = range - gene/255 * 2 range.
     fn parameters(&self) -> Vec<Parameter> {
         let (inputs, range) = (self.config().inputs(), self.config().weight_range);
@@ -149,7 +149,7 @@ impl Task for CylinderLife<Layer> {
         terms.iter().map(|&term| term.into()).collect()
     }
 
-    fn stage(&self) -> Stage {
+    fn schema(&self) -> Schema {
         let config = self.config();
         let inputs = config.inputs();
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
@@ -162,10 +162,10 @@ impl Task for CylinderLife<Layer> {
         let scalars = ["x [m]", "y [m]", "heading [rad]"].map(in_group("place")).into_iter();
         let eyes = (1..=EYES).map(|number| format!("infrared {number}"));
         let speeds = ["left wheel", "right wheel"].map(String::from).into_iter().filter(|_| config.wheel_speeds);
-        let mut stage = Stage::of_arena(&config.arena()).with_sensors(eyes.chain(speeds));
-        stage = stage.with_outputs(["left wheel", "right wheel"]);
-        stage.outputs.iter_mut().chain(&mut stage.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
-        Stage {
+        let mut schema = Schema::from_arena(&config.arena()).with_sensors(eyes.chain(speeds));
+        schema = schema.with_outputs(["left wheel", "right wheel"]);
+        schema.outputs.iter_mut().chain(&mut schema.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
+        Schema {
             scalars: scalars
                 .chain(distances.iter().map(|name| in_group("fitness")(name)))
                 .chain(wheels.map(|wheel| wheel.range(-largest, largest)))
@@ -177,7 +177,7 @@ impl Task for CylinderLife<Layer> {
                 nodes: [inputs, inputs + 2],
                 first: 2 * inputs,
             }],
-            ..stage
+            ..schema
         }
     }
 
@@ -213,7 +213,7 @@ impl Task for CylinderLife<Layer> {
     }
 }
 
-impl Rollout for CylinderLife<Layer> {
+impl Rollout for CylinderEpisode<Layer> {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let inputs = self.config().inputs();
         if evaluation.parameters.len() != Perceptron::parameter_count(inputs, 2) {

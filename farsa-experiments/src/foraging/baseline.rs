@@ -10,7 +10,7 @@ use crate::team::steering::{away, eyes};
 /// Drives circles that lead back to the nest before the energy is used up, and straight on through the nest, so that the
 /// circles make a rosette around it; turns away from what its infrared sensors see.
 ///
-/// No memory, no camera, no LEDs. Inputs and outputs are those of [`crate::foraging::ForagingLife`].
+/// No memory, no camera, no LEDs. Inputs and outputs are those of [`crate::foraging::ForagingEpisode`].
 #[derive(Clone, Debug)]
 pub struct HomingForager {
     inputs: usize,

@@ -28,16 +28,16 @@ pub struct ForagingConfig {
 
 impl ForagingConfig {
     /// The defaults of a condition.
-    pub fn of_condition(condition: &str) -> Self {
-        let team = TeamConfig::of_condition(condition);
+    pub fn for_condition(condition: &str) -> Self {
+        let team = TeamConfig::for_condition(condition);
         // The source's 500 mm/s for all: of the smaller robots' own wheels we do not ask what they cannot do.
         let (nest_radius, speed) = match condition {
             "e-puck" => (0.16, team.speed),
             "khepera" => (0.12, team.speed),
             _ => (0.4, 0.5),
         };
-        // The MarXbot's camera sees all around; what shines behind a robot tells it where others are.
-        let field_of_view = if team.of_marxbots() { core::f64::consts::TAU } else { team.field_of_view };
+        // The MarXbot's camera sees all around; what shines behind a robot shows it where others are.
+        let field_of_view = if team.uses_marxbots() { core::f64::consts::TAU } else { team.field_of_view };
         Self {
             team: TeamConfig { speed, field_of_view, trials: 4, ..team },
             nest_radius,
@@ -54,7 +54,7 @@ impl ForagingConfig {
         let mut table = crate::team::config::evolution([400, 40, 8], 0.004);
         table.extend(self.team.table(true, true));
         let speed = Setting::number("robot.speed", self.team.speed, 1e-3..=10.0).unit("m/s");
-        let speed = if self.team.of_marxbots() { speed.given() } else { speed };
+        let speed = if self.team.uses_marxbots() { speed.given() } else { speed };
         table.extend([
             speed.doc(
                 "The fastest that a robot drives; the source's 500 mm/s are a MarXbot's, the others keep their own.",

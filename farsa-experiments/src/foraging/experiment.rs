@@ -5,7 +5,7 @@ use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::foraging::config::ForagingConfig;
-use crate::foraging::life::{ForagingLife, ForagingMission};
+use crate::foraging::episode::{ForagingEpisode, ForagingScenario};
 use crate::team::config::ROBOTS;
 use crate::team::task::evaluator;
 
@@ -33,16 +33,16 @@ impl Experiment for Foraging {
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {
-        ForagingConfig::of_condition(condition).table()
+        ForagingConfig::for_condition(condition).table()
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        Ok(Box::new(evaluator(ForagingMission::new(ForagingConfig::of_condition(condition).read(settings)?))?))
+        Ok(Box::new(evaluator(ForagingScenario::new(ForagingConfig::for_condition(condition).read(settings)?))?))
     }
 }
 
-/// Lives one trial of a team of any controllers and tells what came of it, as an outcome of the experiment does.
-pub fn forage<C: Controller>(life: &mut ForagingLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    farsa_lab::run_episode(life, world, id, None);
-    life.outcome(0)
+/// Runs one trial of a team of any controllers and returns what came of it, as an outcome of the experiment does.
+pub fn forage<C: Controller>(episode: &mut ForagingEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    farsa_lab::run_episode(episode, world, id, None);
+    episode.outcome(0)
 }

@@ -1,11 +1,11 @@
-//! Food on a square field, and the robots that live on it: a book of accounts.
+//! Food on a square field, and the robots that feed on it.
 
 /// What a robot has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forager {
     /// Energy \[0..1\], 0 when it is dead.
     pub energy: f64,
-    /// Whether it lives.
+    /// Whether it is alive.
     pub alive: bool,
     /// Food that it carries.
     pub carried: u32,
@@ -13,10 +13,10 @@ pub struct Forager {
     away: u32,
 }
 
-/// Square cells with one piece of food each, a round nest, and the accounts of robots that carry food there.
+/// Square cells with one piece of food each, a round nest, and the records of robots that carry food there.
 ///
-/// Who enters a cell takes its food; who is in the nest is paid for what it carries and filled with energy; who runs out of
-/// energy is dead, and what it carries is lost.
+/// A robot that enters a cell takes its food; one in the nest delivers what it carries and gets full energy; one that
+/// runs out of energy is dead, and what it carries is lost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     size: f64,
@@ -58,7 +58,7 @@ impl Field {
 
     /// One step of a robot that ended there \[m\]: it pays for the step, takes food, and is paid or dies.
     ///
-    /// A robot that arrives in the nest with its last energy lives. What is not on the field has no food.
+    /// A robot that arrives in the nest with its last energy survives. What is not on the field has no food.
     pub fn step(&mut self, robot: usize, at: [f64; 2]) {
         let nest = self.in_nest(at);
         let Some(forager) = self.robots.get_mut(robot).filter(|forager| forager.alive) else { return };
@@ -80,7 +80,7 @@ impl Field {
         }
     }
 
-    /// The robots' accounts.
+    /// The robots' records.
     pub fn robots(&self) -> &[Forager] {
         &self.robots
     }
@@ -90,7 +90,7 @@ impl Field {
         self.collected
     }
 
-    /// Food that was lost with those who carried it.
+    /// Food that was lost with the robots that carried it.
     pub fn lost(&self) -> u32 {
         self.lost
     }

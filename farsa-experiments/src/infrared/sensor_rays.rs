@@ -12,9 +12,9 @@ pub(crate) struct SensorRays {
     height: f32,
 }
 
-/// Which rays are worth telling.
+/// Which rays are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Told {
+pub(crate) enum RayFilter {
     /// All of them.
     All,
     /// Those of sensors that read something: a crowd has too many others.
@@ -23,7 +23,7 @@ pub(crate) enum Told {
 
 impl SensorRays {
     /// Those of all sensors of a robot.
-    pub(crate) fn of(robot: &MobileRobot) -> Self {
+    pub(crate) fn for_robot(robot: &MobileRobot) -> Self {
         Self {
             rays: robot.infrared.angles.iter().map(|angle| Beam::in_cone(robot.radius, *angle, 0.0, 0, 1)).collect(),
             range: robot.infrared.range as f32,
@@ -36,11 +36,11 @@ impl SensorRays {
         self.rays.len()
     }
 
-    /// Tells a recorder a ray for each sensor: it ends where a thing would be of which rays read as much.
+    /// Records a ray for each sensor: it ends where an object would be that gives the same reading.
     ///
     /// `x` is what each sensor read when the robot was at `pose`.
-    pub(crate) fn tell(&self, pose: Pose, x: &[f32], told: Told, recorder: &mut dyn Recorder) {
-        for (ray, &x) in self.rays.iter().zip(x).filter(|(_, x)| told == Told::All || **x > 0.0) {
+    pub(crate) fn record(&self, pose: Pose, x: &[f32], filter: RayFilter, recorder: &mut dyn Recorder) {
+        for (ray, &x) in self.rays.iter().zip(x).filter(|(_, x)| filter == RayFilter::All || **x > 0.0) {
             let length = self.range * (1.0 - x);
             let end = [0, 1].map(|k| ray.from[k] + length * ray.direction[k]);
             let [from, to] = [ray.from, end].map(|[u, v]| pose.transform([u, v, self.height]));

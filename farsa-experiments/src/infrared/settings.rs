@@ -10,7 +10,7 @@ use farsa_body::{
 };
 use farsa_lab::{Error, Setting, Settings};
 
-use crate::infrared::sensor_rays::{SensorRays, Told};
+use crate::infrared::sensor_rays::{RayFilter, SensorRays};
 
 const MODEL: &str = "robot.infrared";
 const TABLES: &str = "robot.infrared_tables";
@@ -47,8 +47,8 @@ impl InfraredModel {
         ]
     }
 
-    /// The setting that chooses between the models that need no tables, this one by default: for robots that nobody has
-    /// measured.
+    /// The setting that chooses between the models that need no tables, this one by default: for robots that have not
+    /// been measured.
     pub fn without_tables(&self) -> Setting {
         let name = if *self == Self::Rays { RAYS } else { ANALYTIC };
         Setting::word(MODEL, name, &[RAYS, ANALYTIC]).doc(
@@ -130,7 +130,12 @@ impl Infrared {
     ///
     /// # Errors
     /// [`ChannelError`] if the robot or the tables have fewer sensors, or no sensor can be built from their numbers.
-    pub fn of(robot: &MobileRobot, body: BodyId, sensors: usize, model: &InfraredModel) -> Result<Self, ChannelError> {
+    pub fn for_robot(
+        robot: &MobileRobot,
+        body: BodyId,
+        sensors: usize,
+        model: &InfraredModel,
+    ) -> Result<Self, ChannelError> {
         let channels = robot.infrared.angles.len();
         if sensors > channels {
             return Err(ChannelError::Selection { start: 0, end: sensors, channels });
@@ -138,21 +143,21 @@ impl Infrared {
         let mut part = robot.clone();
         part.infrared.angles.truncate(sensors);
         let ring = match model {
-            InfraredModel::Analytic => Ring::Analytic(InfraredAnalytic::of(&part, body)?),
-            InfraredModel::Rays => Ring::Rays(InfraredRays::of(&part, body)?),
+            InfraredModel::Analytic => Ring::Analytic(InfraredAnalytic::for_robot(&part, body)?),
+            InfraredModel::Rays => Ring::Rays(InfraredRays::for_robot(&part, body)?),
             InfraredModel::Sampled(tables) => {
                 let all = SampledInfrared::new(body, robot.radius as f32, Arc::clone(tables))?;
                 Ring::Sampled(all.first(sensors)?)
             }
         };
-        Ok(Self { ring, rays: SensorRays::of(&part) })
+        Ok(Self { ring, rays: SensorRays::for_robot(&part) })
     }
 
-    /// Tells a recorder a ray for each sensor: it ends where a thing would be of which rays read as much.
+    /// Records a ray for each sensor: it ends where an object would be that gives the same reading.
     ///
     /// `x` \[sensors\] is what was read when the robot was at `pose`.
-    pub fn tell(&self, pose: Pose, x: &[f32], recorder: &mut dyn Recorder) {
-        self.rays.tell(pose, x, Told::All, recorder);
+    pub fn record(&self, pose: Pose, x: &[f32], recorder: &mut dyn Recorder) {
+        self.rays.record(pose, x, RayFilter::All, recorder);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Who leads the arm: the scripted grasp, with the network's own commands mixed in.
+//! The demonstrator: the scripted grasp, with the network's own commands mixed in.
 
 use std::sync::Arc;
 
@@ -7,9 +7,9 @@ use farsa_lab::{Episode, EpisodeId, Error, run_episode};
 use farsa_nn::{Controller, Demonstration};
 use farsa_physics::articulated::{Model, World};
 
-use crate::reach_grasp_lift::life::Judge;
+use crate::reach_grasp_lift::episode::Judge;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
-use crate::reach_grasp_lift::script::{Plan, Statics, Timetable};
+use crate::reach_grasp_lift::script::{GraspPlan, Statics, Timetable};
 
 /// The activation that both muscles of a pair have where no torque is wanted.
 const TONUS: f64 = 0.5;
@@ -18,14 +18,15 @@ const PATIENCE: f64 = 0.25;
 /// How far the sphere may roll before it is lifted, beyond which the script knows no way \[m\].
 const ROLLED: f64 = 0.03;
 
-/// Leads the arm through reach, grasp and lift, and tells at every tick what it would do.
+/// Guides the arm through reach, grasp and lift, and says at every tick what it would do.
 ///
 /// The script (IK way-points, inverse statics of the muscles, feedback on the arm's joints) is that of
-/// [`ScriptLife`](crate::reach_grasp_lift::ScriptLife), with two differences. Of the infinitely many pairs of activations
+/// [`ScriptEpisode`](crate::reach_grasp_lift::ScriptEpisode), with two differences. Of the infinitely many pairs of
+/// activations
 /// that give a torque it wants the one nearest to 0.5 in both: a smooth function of the torque, in the middle of the
 /// network's logistic outputs, where the script's own has one muscle at rest and a kink. And its clock stands while the arm is
-/// farther than 0.25 rad from where it is wanted, so that a led arm that is held back is led on from where it is.
-pub(crate) struct Teacher {
+/// farther than 0.25 rad from where it is wanted, so that an arm that is held back is guided on from where it is.
+pub(crate) struct Demonstrator {
     scene: Arc<Scene>,
     world: World<f32>,
     statics: Arc<Statics>,
@@ -34,7 +35,7 @@ pub(crate) struct Teacher {
     motors: Motors,
 }
 
-/// What was sensed and wanted while the arm was led.
+/// What was sensed and wanted in a demonstration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Record {
     /// Sensor values `[ticks x sensors]`.
@@ -52,8 +53,8 @@ impl Record {
     }
 }
 
-impl Teacher {
-    /// A teacher in a scene.
+impl Demonstrator {
+    /// A demonstrator in a scene.
     ///
     /// # Errors
     /// [`Error::Other`] for a robot that cannot be built.
@@ -65,16 +66,16 @@ impl Teacher {
         Ok(Self { scene, world, statics, judge, senses, motors })
     }
 
-    /// Leads the arm through the trial of a id. The motors get the teacher's commands, mixed with `share` \[0..1\] of those
-    /// that the network gives for the same sensor values, which is stepped from rest.
+    /// Guides the arm through the trial of an id. The motors get the demonstrator's commands, mixed with `share`
+    /// \[0..1\] of those that the network gives for the same sensor values; it is stepped from rest.
     ///
     /// The record ends with the trial, or where the sphere has rolled away by 3 cm; it is empty if the sphere lies out of
     /// reach.
-    pub(crate) fn lead<C: Controller>(&mut self, id: EpisodeId, network: &mut C, share: f32, record: &mut Record) {
+    pub(crate) fn roll_out<C: Controller>(&mut self, id: EpisodeId, network: &mut C, share: f32, record: &mut Record) {
         let Self { scene, world, statics, judge, senses, motors } = self;
         (record.success, record.x, record.wanted) = (false, Vec::new(), Vec::new());
         let x = vec![0.0; senses.channels()];
-        let mut led = Led {
+        let mut guided = Guided {
             scene,
             statics,
             judge,
@@ -88,14 +89,14 @@ impl Teacher {
             positions: Vec::new(),
             time: 0.0,
         };
-        run_episode(&mut led, world, id, None);
-        let success = led.plan.is_some() && led.judge.succeeds();
-        led.record.success = success;
+        run_episode(&mut guided, world, id, None);
+        let success = guided.plan.is_some() && guided.judge.succeeds();
+        guided.record.success = success;
     }
 }
 
-/// An episode in which the arm is led.
-struct Led<'a, C> {
+/// An episode in which the arm is guided.
+struct Guided<'a, C> {
     scene: &'a Scene,
     statics: &'a Arc<Statics>,
     judge: &'a mut Judge,
@@ -105,7 +106,7 @@ struct Led<'a, C> {
     share: f32,
     record: &'a mut Record,
     /// The script, with the sphere's place; none if the sphere lies out of reach.
-    plan: Option<(Plan, [f64; 2])>,
+    plan: Option<(GraspPlan, [f64; 2])>,
     x: Vec<f32>,
     /// Of the arm's joints before the step \[rad\].
     positions: Vec<f64>,
@@ -113,14 +114,14 @@ struct Led<'a, C> {
     time: f64,
 }
 
-impl<C: Controller> Episode<World<f32>> for Led<'_, C> {
+impl<C: Controller> Episode<World<f32>> for Guided<'_, C> {
     fn start(&mut self, world: &mut World<f32>, id: EpisodeId) {
         self.judge.start(world, id);
         self.network.reset();
         self.senses.reset();
         self.motors.reset();
         let (start, sphere) = self.scene.start(id);
-        let plan = Plan::new(Timetable::default(), Arc::clone(self.statics), &start, sphere);
+        let plan = GraspPlan::new(Timetable::default(), Arc::clone(self.statics), &start, sphere);
         self.plan = plan.ok().map(|plan| (plan, sphere));
         self.time = 0.0;
     }
@@ -156,14 +157,14 @@ impl<C: Controller> Episode<World<f32>> for Led<'_, C> {
         let lies = z < self.scene.config.sphere_radius + 0.01;
         let rolled = (x - sphere[0]).abs().max((y - sphere[1]).abs()) > ROLLED;
         if lies && rolled {
-            return Some(self.judge.trial().ledger.total());
+            return Some(self.judge.trial().rewards.total());
         }
         self.judge.judge(world)
     }
 }
 
 /// The 23 motor values that the script would give.
-fn wanted(statics: &Statics, plan: &Plan, positions: &[f64], torques: &[f64], time: f64) -> [f32; OUTPUTS] {
+fn wanted(statics: &Statics, plan: &GraspPlan, positions: &[f64], torques: &[f64], time: f64) -> [f32; OUTPUTS] {
     let mut y = [0.0; OUTPUTS];
     let (muscles, hand) = y.split_at_mut(14);
     let pairs = muscles.chunks_exact_mut(2).zip(statics.muscles()).zip(positions.iter().zip(torques));

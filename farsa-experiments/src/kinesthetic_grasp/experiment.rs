@@ -1,33 +1,36 @@
-//! The experiment `kinesthetic-grasp`: the arm is led, and the network learns to do it alone.
+//! The experiment `kinesthetic-grasp`: the arm is guided, and the network learns to do it alone.
 
 use std::sync::Arc;
 
 use farsa_body::Recorder;
 use farsa_physics::articulated::World;
 
-use crate::kinesthetic_grasp::training::{Lessons, School};
+use crate::kinesthetic_grasp::trainer::{Trainer, Training};
 use crate::reach_grasp_lift::config::Config as Reach;
 use crate::reach_grasp_lift::experiment::evaluator;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::task::ReachTask;
 use crate::worlds::Engine;
 use farsa_lab::{
-    Description, ENGINE, Error, Evaluation, Evaluator, Experiment, Exports, InLanes, InWorld, Learner, Outcome,
-    Parameter, Search, Setting, Settings, Task,
+    Description, ENGINE, Error, Evaluation, Evaluator, Experiment, Exports, InLanes, InWorld, Learner, Learning,
+    Outcome, Parameter, Setting, Settings, StrategyDefinition, Task,
 };
-use farsa_view::Stage;
+use farsa_view::Schema;
 
 /// Can the network of [`reach-grasp-lift`](crate::ReachGraspLift) learn its task from demonstrations?
 ///
 /// Robot, sensors, motors, trials and fitness are those of `reach-grasp-lift` with labels. Instead of evolving, one network
-/// takes lessons: the arm is led through reach, grasp and lift by the scripted grasp, (sensors, desired motors) is recorded,
-/// and the network learns the desired motors by back-propagation through time. A generation is a life of the network in the
-/// four trials, which is its fitness, and then a lesson; `learning.csv` in the run's directory has the errors.
+/// is trained: the scripted grasp guides the arm through reach, grasp and lift, (sensors, desired motors) is recorded,
+/// and the network learns the desired motors by back-propagation through time. A generation is an episode of the
+/// network in the
+/// four trials, which is its fitness, and then an iteration of training; `learning.csv` in the run's directory has the
+/// errors.
 ///
-/// What is desired is what the script would do where the arm is, and the arm is led in part by the network's own commands, from
-/// not at all in the first demonstration of a lesson to a share in its last one that grows from lesson to lesson \[Ross2011\]: a
-/// network that has only seen where the script goes does not know what to do where its own small errors take it. What lives
-/// and leads is the mean of the networks after the latest steps of learning \[Polyak1992\].
+/// What is desired is what the script would do where the arm is, and the network's own commands are mixed in: not at
+/// all in the
+/// first demonstration of an iteration, and up to a share in its last one that grows with the iterations \[Ross2011\].
+/// A network that has only seen where the script goes does not know what to do where its own small errors take it. What
+/// is evaluated and mixed in is the mean of the networks after the latest steps of learning \[Polyak1992\].
 ///
 /// Deviations from `reach-grasp-lift`: slope 1 and weights within 20, because with slope 0.2 and weights within 6 two
 /// layers cannot amplify as the script's feedback does; 24 hidden neurons.
@@ -39,14 +42,14 @@ pub struct KinestheticGrasp;
 pub struct Config {
     /// The robot, its world, its network and its trials.
     pub reach: Reach,
-    /// How lessons are given.
-    pub lessons: Lessons,
+    /// How the network is trained.
+    pub training: Training,
 }
 
 impl Default for Config {
     fn default() -> Self {
         let reach = Reach { hidden: 24, slope: 1.0, weight_range: 20.0, ..Reach::default() };
-        Self { reach, lessons: Lessons::default() }
+        Self { reach, training: Training::default() }
     }
 }
 
@@ -54,23 +57,23 @@ impl Config {
     /// The configuration that checked settings describe.
     ///
     /// # Errors
-    /// As of `reach-grasp-lift`; [`Error::Setting`] for a world other than ours, in which nobody leads the arm.
+    /// As of `reach-grasp-lift`; [`Error::Setting`] for a world other than ours, in which the arm is not guided.
     pub fn read(settings: &Settings) -> Result<Self, Error> {
         let reach = Reach::read(true, settings)?;
         if reach.engine != Engine::Articulated {
-            return Err(Error::setting(ENGINE, "the arm is led in our own world alone"));
+            return Err(Error::setting(ENGINE, "the arm is guided in our own world alone"));
         }
         let count = |key: &str| settings.count(key).map(|count| count as u32);
-        let lessons = Lessons {
+        let training = Training {
             demonstrations: count("lessons.demonstrations")?,
-            passes: count("lessons.passes")?,
+            epochs: count("lessons.passes")?,
             batch: count("lessons.batch")?,
             rate: settings.number("lessons.rate")?,
             half_rate: settings.number("lessons.half_rate")?,
-            mean: count("lessons.mean")?,
-            own_say: count("lessons.own_say")?,
+            averaging: count("lessons.mean")?,
+            mixing: count("lessons.own_say")?,
         };
-        Ok(Self { reach, lessons })
+        Ok(Self { reach, training })
     }
 }
 
@@ -79,36 +82,36 @@ impl Experiment for KinestheticGrasp {
         "kinesthetic-grasp"
     }
 
-    // 2: what lives and leads is the mean over the latest steps of learning; more demonstrations, gone through less often.
+    // 2: the network is averaged over the latest gradient steps; more demonstrations, fewer epochs.
     fn values_version(&self) -> u32 {
         2
     }
 
     fn summary(&self) -> &'static str {
-        "the arm is led through reach, grasp and lift, and a network learns by back-propagation to do it alone"
+        "the arm is guided through reach, grasp and lift, and a network learns by back-propagation to do it alone"
     }
 
-    fn search(&self, _: &str) -> Search {
-        Search::Learning
+    fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
+        &Learning
     }
 
     fn settings(&self, _: &str) -> Vec<Setting> {
-        let Config { reach, lessons } = Config::default();
+        let Config { reach, training } = Config::default();
         let whole = |key: &str, value: u32, range| Setting::whole(key, i64::from(value), range);
         let mut table = vec![
             Setting::whole("evolution.generations", 250, 1..=i64::from(u32::MAX) - 1)
-                .doc("Lessons, each after a life that shows what is known so far; the one thing that a resumed run may change."),
-            whole("lessons.demonstrations", lessons.demonstrations, 1..=10_000)
-                .doc("Times that the arm is led in a lesson, each from another start; the four trials take turns."),
-            whole("lessons.passes", lessons.passes, 1..=1000).doc("Times that all of them are gone through."),
-            whole("lessons.batch", lessons.batch, 1..=10_000).doc("Demonstrations of a step of learning."),
-            Setting::number("lessons.rate", lessons.rate, 0.0..=1.0).doc("Size of a step of learning, of Adam."),
-            Setting::number("lessons.half_rate", lessons.half_rate, 1.0..=1e9)
-                .doc("Lessons after which the step has half that size, and a third after twice as many."),
-            whole("lessons.mean", lessons.mean, 1..=1_000_000)
-                .doc("Steps of learning over which the network is averaged before it lives and leads; 1: as the latest one left it."),
-            whole("lessons.own_say", lessons.own_say, 0..=1_000_000)
-                .doc("Lessons until the network leads itself fully in a lesson's last demonstration, 0 if it never does."),
+                .doc("Iterations of training, each after an evaluation of what has been learned; the one thing that a resumed run may change."),
+            whole("lessons.demonstrations", training.demonstrations, 1..=10_000)
+                .doc("Demonstrations in an iteration, each from another start; the four trials take turns."),
+            whole("lessons.passes", training.epochs, 1..=1000).doc("Epochs: how often an iteration learns from each of them."),
+            whole("lessons.batch", training.batch, 1..=10_000).doc("Demonstrations in a gradient step."),
+            Setting::number("lessons.rate", training.rate, 0.0..=1.0).doc("Learning rate of Adam."),
+            Setting::number("lessons.half_rate", training.half_rate, 1.0..=1e9)
+                .doc("Iterations after which the rate is half, and a third after twice as many."),
+            whole("lessons.mean", training.averaging, 1..=1_000_000)
+                .doc("Gradient steps over which the network is averaged; 1: as the latest one left it."),
+            whole("lessons.own_say", training.mixing, 0..=1_000_000)
+                .doc("Iterations until the network alone acts in the last demonstration of an iteration, 0 if it never does."),
         ];
         table.append(&mut reach.table());
         table
@@ -119,20 +122,20 @@ impl Experiment for KinestheticGrasp {
     }
 }
 
-/// Evaluates as `reach-grasp-lift` does, and takes lessons.
+/// Evaluates as `reach-grasp-lift` does, and learns.
 pub struct Trainee {
     evaluator: InWorld<World<f32>, ReachTask>,
-    school: School,
+    trainer: Trainer,
 }
 
 impl Trainee {
-    /// Trials and lessons under a configuration.
+    /// Trials and training under a configuration.
     ///
     /// # Errors
     /// [`Error::Other`] for a configuration whose robot or network cannot be built.
     pub fn new(config: Config) -> Result<Self, Error> {
         let scene = Arc::new(Scene::new(config.reach.clone())?);
-        Ok(Self { evaluator: evaluator(config.reach)?, school: School::new(scene, config.lessons)? })
+        Ok(Self { evaluator: evaluator(config.reach)?, trainer: Trainer::new(scene, config.training)? })
     }
 }
 
@@ -149,8 +152,8 @@ impl Task for Trainee {
         self.evaluator.terms()
     }
 
-    fn stage(&self) -> Stage {
-        self.evaluator.stage()
+    fn schema(&self) -> Schema {
+        self.evaluator.schema()
     }
 
     fn description(&self) -> Description {
@@ -176,6 +179,6 @@ impl Evaluator for Trainee {
     }
 
     fn learner(&mut self) -> Option<&mut dyn Learner> {
-        Some(&mut self.school)
+        Some(&mut self.trainer)
     }
 }

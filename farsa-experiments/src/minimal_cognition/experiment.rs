@@ -6,14 +6,14 @@ use farsa_body::{BodyId, Pose, Recorder};
 use farsa_nn::{CtrnnParameter, CtrnnParts, Span};
 
 use crate::minimal_cognition::config::Config;
-use crate::minimal_cognition::life::AgentLife;
+use crate::minimal_cognition::episode::AgentEpisode;
 use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTORS, NEURONS, RAYS, Wiring};
 use crate::minimal_cognition::object::Object;
 use farsa_lab::{
     ChannelGroup, CtrnnExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
     InWorld, NoWorld, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials, seconds,
 };
-use farsa_view::{Channel, Color, Form, Links, NodeParameters, OKABE_ITO, Prop, Role, Stage, View};
+use farsa_view::{Channel, Color, Geometry, Links, NodeParameters, OKABE_ITO, Role, SceneObject, Schema, View};
 
 /// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]
 ///
@@ -74,7 +74,7 @@ pub fn evaluator(config: Config) -> Result<InWorld<NoWorld, Agent>, Error> {
 #[derive(Clone, Debug)]
 pub struct Agent {
     wiring: Wiring,
-    life: AgentLife,
+    episode: AgentEpisode,
 }
 
 impl Agent {
@@ -86,36 +86,36 @@ impl Agent {
         let wiring = Wiring::new(&config).map_err(|error| Error::Other(format!("minimal-cognition: {error}")))?;
         let first: Vec<f32> = wiring.parameters().iter().map(|parameter| parameter.ends[0] as f32).collect();
         let parameters = wiring.expand(&first).unwrap_or_default();
-        Ok(Self { wiring, life: AgentLife::new(config, parameters)? })
+        Ok(Self { wiring, episode: AgentEpisode::new(config, parameters)? })
     }
 }
 
 /// Records a step that has just passed.
-fn record(life: &AgentLife, recorder: &mut dyn Recorder) {
-    let Config { body, time_step, input_gain, ray_length, .. } = *life.config();
-    let ([object, agent], height) = (life.places(), life.height());
-    recorder.sensors(life.sensed());
-    recorder.neurons(&life.network().neuron_outputs()[..MOTOR_ONES.first]);
-    recorder.outputs(life.done());
+fn record(episode: &AgentEpisode, recorder: &mut dyn Recorder) {
+    let Config { body, time_step, input_gain, ray_length, .. } = *episode.config();
+    let ([object, agent], height) = (episode.places(), episode.height());
+    recorder.sensors(episode.sensed());
+    recorder.neurons(&episode.network().neuron_outputs()[..MOTOR_ONES.first]);
+    recorder.outputs(episode.done());
     let at = |place: [f64; 3]| place.map(|x| x as f32);
     recorder.pose(AGENT, Pose::at(at([agent, 0.0, 0.0])));
-    let falling = usize::from(matches!(life.object(), Object::Diamond { .. }));
+    let falling = usize::from(matches!(episode.object(), Object::Diamond { .. }));
     recorder.pose(OBJECTS[falling], Pose::at(at([object, height, 0.0])));
     recorder.pose(OBJECTS[1 - falling], Pose::at(at([0.0, 0.0, AWAY])));
-    for ([sine, cosine], free) in life.rays().iter().zip(life.free()) {
+    for ([sine, cosine], free) in episode.rays().iter().zip(episode.free()) {
         let end = |distance: f64| {
             let distance = 0.5 * body + distance;
             at([agent + distance * sine, distance * cosine, THICK])
         };
         recorder.ray(end(0.0), end(free), free < ray_length && input_gain > 0.0);
     }
-    recorder.scalars(&[agent, object, height, object - agent, life.score()]);
-    recorder.tick(seconds(life.steps(), time_step));
+    recorder.scalars(&[agent, object, height, object - agent, episode.score()]);
+    recorder.tick(seconds(episode.steps(), time_step));
 }
 
-/// The parameters as [`Task::stage`] says where they are: the weights between the layers, then biases, gains and time
+/// The parameters as [`Task::schema`] says where they are: the weights between the layers, then biases, gains and time
 /// constants.
-fn told(parameters: &[f32]) -> Vec<f32> {
+fn in_schema_order(parameters: &[f32]) -> Vec<f32> {
     let CtrnnParts { weights, biases, gains, time_constants, .. } = LAYOUT.split(parameters);
     let linked = LINKED.into_iter().flat_map(|(sources, targets)| {
         let row = move |from| (targets.first..targets.end()).map(move |to| weights[from * NEURONS + to]);
@@ -126,16 +126,16 @@ fn told(parameters: &[f32]) -> Vec<f32> {
 
 impl Episode<NoWorld> for Agent {
     fn start(&mut self, _: &mut NoWorld, id: EpisodeId) {
-        self.life.arrange(id);
+        self.episode.arrange(id);
     }
     fn act(&mut self, _: &mut NoWorld) {
-        self.life.step();
+        self.episode.step();
     }
     fn judge(&mut self, _: &mut NoWorld) -> Option<f64> {
-        self.life.ended().then(|| self.life.score())
+        self.episode.ended().then(|| self.episode.score())
     }
     fn record(&self, _: &NoWorld, recorder: &mut dyn Recorder) {
-        record(&self.life, recorder);
+        record(&self.episode, recorder);
     }
 }
 
@@ -145,39 +145,39 @@ impl Task for Agent {
     }
 
     fn trials(&self) -> usize {
-        self.life.config().trials as usize
+        self.episode.config().trials as usize
     }
 
     fn terms(&self) -> Vec<String> {
         vec!["score".into()]
     }
 
-    fn stage(&self) -> Stage {
-        let Config { width, body, diameter, side, start_height, input_gain, clip, .. } = *self.life.config();
+    fn schema(&self) -> Schema {
+        let Config { width, body, diameter, side, start_height, input_gain, clip, .. } = *self.episode.config();
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
         let numbered = |name: &str, count: usize| (1..=count).map(|i| format!("{name} {i}")).collect::<Vec<_>>();
         let standing = |place: [f64; 2], turned: f64| {
             let planar = Pose::planar(place, turned);
             Pose { position: [place[0], place[1], THICK], ..planar }
         };
-        let round = |diameter: f64| Form::Cylinder { radius: 0.5 * diameter, half_length: THICK };
-        let square = Form::Box { half: [0.5 * side, 0.5 * side, THICK] };
-        let paper = Form::Rectangle { half: [0.5 * width, 0.5 * (start_height + 2.0 * body)] };
-        let thing = |name: &str, form, turned, role, body: BodyId| {
-            Prop::new(name, form, standing([0.0; 2], turned), role).on(body)
+        let round = |diameter: f64| Geometry::Cylinder { radius: 0.5 * diameter, half_length: THICK };
+        let square = Geometry::Box { half: [0.5 * side, 0.5 * side, THICK] };
+        let paper = Geometry::Rectangle { half: [0.5 * width, 0.5 * (start_height + 2.0 * body)] };
+        let thing = |name: &str, geometry, turned, role, body: BodyId| {
+            SceneObject::new(name, geometry, standing([0.0; 2], turned), role).on_body(body)
         };
-        let props = vec![
-            Prop::new("ground", paper, Pose::at([0.0, 0.5 * start_height, 0.0]), Role::Ground).with_color(PAPER),
+        let objects = vec![
+            SceneObject::new("ground", paper, Pose::at([0.0, 0.5 * start_height, 0.0]), Role::Ground).with_color(PAPER),
             thing("agent", round(body), 0.0, Role::Robot, AGENT),
-            thing("circle", round(diameter), 0.0, Role::Thing, OBJECTS[0]).with_color(OKABE_ITO[2]),
-            thing("diamond", square, FRAC_PI_4, Role::Thing, OBJECTS[1]).with_color(OKABE_ITO[5]),
+            thing("circle", round(diameter), 0.0, Role::Object, OBJECTS[0]).with_color(OKABE_ITO[2]),
+            thing("diamond", square, FRAC_PI_4, Role::Object, OBJECTS[1]).with_color(OKABE_ITO[5]),
         ];
-        let mut stage =
-            Stage { bodies: ["agent", "circle", "diamond"].map(Into::into).into(), props, ..Stage::default() }
+        let mut schema =
+            Schema { bodies: ["agent", "circle", "diamond"].map(Into::into).into(), objects, ..Schema::default() }
                 .with_sensors(numbered("ray", RAYS))
                 .with_outputs(["right", "left"]);
-        stage.sensors.iter_mut().for_each(|ray| ray.range = Some([0.0, input_gain]));
-        stage.outputs.iter_mut().for_each(|motor| motor.range = Some([0.0, 1.0]));
+        schema.sensors.iter_mut().for_each(|ray| ray.range = Some([0.0, input_gain]));
+        schema.outputs.iter_mut().for_each(|motor| motor.range = Some([0.0, 1.0]));
         let names = numbered("sensory", RAYS).into_iter().chain(numbered("inner", INNER));
         // Nodes are the rays, then the neurons.
         let node = |neuron: usize| RAYS + neuron;
@@ -195,7 +195,7 @@ impl Task for Agent {
         });
         let half = 0.5 * width;
         let place = in_group("place");
-        Stage {
+        Schema {
             neurons: names.map(|name| in_group("neuron")(&name).range(0.0, 1.0)).collect(),
             scalars: vec![
                 place("agent").range(-half, half),
@@ -207,12 +207,12 @@ impl Task for Agent {
             links,
             node_parameters: of_neurons.collect(),
             view: View::Top,
-            ..stage
+            ..schema
         }
     }
 
     fn description(&self) -> Description {
-        let config = self.life.config();
+        let config = self.episode.config();
         let Config { input_gain, velocity_gain, time_step, .. } = *config;
         Description {
             sensors: vec![ChannelGroup::new(
@@ -246,14 +246,14 @@ impl Task for Agent {
 
 impl Exports for Agent {
     fn ctrnn(&self, parameters: &[f32]) -> Option<CtrnnExport> {
-        let (stage, network) = (self.stage(), self.life.network());
+        let (schema, network) = (self.schema(), self.episode.network());
         let names = |channels: Vec<Channel>| channels.into_iter().map(|channel| channel.name).collect();
         Some(CtrnnExport {
             layout: network.layout(),
             time_step: network.time_step(),
             parameters: self.wiring.expand(parameters)?,
-            sensors: names(stage.sensors),
-            motors: names(stage.outputs),
+            sensors: names(schema.sensors),
+            motors: names(schema.outputs),
         })
     }
 }
@@ -261,19 +261,19 @@ impl Exports for Agent {
 impl Rollout for Agent {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let Some(parameters) = self.wiring.expand(evaluation.parameters) else { return false };
-        self.life.set_parameters(&parameters).is_ok()
+        self.episode.set_parameters(&parameters).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(&told(self.life.parameters()));
+        recorder.parameters(&in_schema_order(self.episode.parameters()));
     }
 
     /// Success is a circle nearer, or a diamond farther, than half of `fitness.clip`.
     fn outcome(&self) -> Outcome {
-        let (score, steps) = (self.life.score(), self.life.steps());
+        let (score, steps) = (self.episode.score(), self.episode.steps());
         let notes = vec![
-            ("object", Note::from(self.life.object().name())),
-            ("distance at the end", Note::from(self.life.distance())),
+            ("object", Note::from(self.episode.object().name())),
+            ("distance at the end", Note::from(self.episode.distance())),
         ];
         Outcome { terms: vec![score], steps, success: score > 0.5, notes }
     }

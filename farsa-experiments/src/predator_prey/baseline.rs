@@ -17,7 +17,7 @@ enum Aim {
 ///
 /// The bearing of the other is the mean of the camera's sectors by how much of it each sees. A prey that has the other
 /// ahead turns on the spot first, and keeps from walls. No memory. Inputs and outputs are those of
-/// [`crate::predator_prey::PredatorPreyLife`].
+/// [`crate::predator_prey::PredatorPreyEpisode`].
 #[derive(Clone, Debug)]
 pub struct Chaser {
     inputs: usize,

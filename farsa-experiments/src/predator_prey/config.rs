@@ -42,7 +42,7 @@ impl Default for PredatorPreyConfig {
             field_of_view: core::f64::consts::TAU,
             rays: 6,
             hidden: 6,
-            ..TeamConfig::of_condition("marxbot")
+            ..TeamConfig::for_condition("marxbot")
         };
         Self { team, touch: 0.002, collisions: CollisionRule::Circles, population: 40 }
     }
@@ -74,7 +74,7 @@ impl PredatorPreyConfig {
             team: self.team.read(false, settings)?,
             touch: settings.number("capture.touch")?,
             collisions: match settings.word("world.collisions")? {
-                UNDONE => CollisionRule::Undone,
+                UNDONE => CollisionRule::Revert,
                 _ => CollisionRule::Circles,
             },
             population: settings.count("evolution.population")?,

@@ -5,7 +5,7 @@ use farsa_nn::Controller;
 use farsa_physics::arena::World;
 
 use crate::predator_prey::config::PredatorPreyConfig;
-use crate::predator_prey::life::{PredatorPreyLife, PredatorPreyMission};
+use crate::predator_prey::episode::{PredatorPreyEpisode, PredatorPreyScenario};
 use crate::team::task::evaluator;
 
 /// Do a predator and a prey that evolve against each other become better at both? \[FARSA2\]
@@ -30,12 +30,13 @@ impl Experiment for PredatorPrey {
     }
 
     fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        Ok(Box::new(evaluator(PredatorPreyMission::new(PredatorPreyConfig::default().read(settings)?))?))
+        Ok(Box::new(evaluator(PredatorPreyScenario::new(PredatorPreyConfig::default().read(settings)?))?))
     }
 }
 
-/// Lives one trial of any two controllers and tells what came of it for the predator, as an outcome of the experiment does.
-pub fn chase<C: Controller>(life: &mut PredatorPreyLife<C>, world: &mut World, id: EpisodeId) -> Outcome {
-    farsa_lab::run_episode(life, world, id, None);
-    life.outcome(0)
+/// Runs one trial of any two controllers and returns what came of it for the predator, as an outcome of the experiment
+/// does.
+pub fn chase<C: Controller>(episode: &mut PredatorPreyEpisode<C>, world: &mut World, id: EpisodeId) -> Outcome {
+    farsa_lab::run_episode(episode, world, id, None);
+    episode.outcome(0)
 }

@@ -2,15 +2,15 @@
 //!
 //! - `baseline`: a predator and a prey without evolution, to compare evolved ones with
 //! - `config`: the values of `predator-prey`, as settings
-//! - `experiment`: its name, conditions and settings, and what lives its lives
-//! - `life`: a life of `predator-prey`: one robot chases another
+//! - `experiment`: its name, conditions and settings, and what runs its trials
+//! - `episode`: an episode of `predator-prey`: one robot chases another
 
 mod baseline;
 mod config;
+mod episode;
 mod experiment;
-mod life;
 
 pub use baseline::Chaser;
 pub use config::PredatorPreyConfig;
+pub use episode::{PredatorPreyEpisode, PredatorPreyScenario};
 pub use experiment::{PredatorPrey, chase};
-pub use life::{PredatorPreyLife, PredatorPreyMission};

@@ -3,11 +3,11 @@
 use farsa_nn::Controller;
 
 use crate::push_box::config::PushConfig;
-use crate::push_box::life::OUTPUTS;
+use crate::push_box::episode::OUTPUTS;
 
 /// Turns to where its infrared sensors see most and drives ahead; drives in circles while they see nothing.
 ///
-/// No memory. Inputs and outputs are those of [`PushLife`](crate::push_box::PushLife).
+/// No memory. Inputs and outputs are those of [`PushEpisode`](crate::push_box::PushEpisode).
 #[derive(Clone, Debug)]
 pub struct HomingPusher {
     /// Where the sensors look: ahead and to the left.

@@ -4,7 +4,7 @@ use farsa_lab::{Error, Evaluator, Experiment, Setting, Settings};
 
 use crate::push_box::config::PushConfig;
 #[cfg(feature = "rapier")]
-use crate::push_box::life::{OUTPUTS, PushLife};
+use crate::push_box::episode::{OUTPUTS, PushEpisode};
 #[cfg(feature = "rapier")]
 use crate::push_box::task::{Layer, layer};
 
@@ -12,7 +12,7 @@ use crate::push_box::task::{Layer, layer};
 ///
 /// An e-puck on an endless plane has eight infrared sensors, read by rays, and a layer of two logistic units, which drive
 /// its wheels. It starts beside a box, often without sensing it, and earns the distance in metres that the box has come
-/// after 20 s, on the mean over the trials. It lives in rapier alone, as a rigid body on driven wheels
+/// after 20 s, on the mean over the trials. It runs in rapier alone, as a rigid body on driven wheels
 /// (`farsa_physics::rapier::ArenaWorld`): the crate must be built with the feature `rapier`. All values are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PushBox;
@@ -31,7 +31,7 @@ impl Experiment for PushBox {
         if cfg!(feature = "rapier") {
             "an e-puck pushes a box as far as it can, by its infrared sensors alone, in rapier"
         } else {
-            "an e-puck pushes a box as far as it can; lives in rapier, so it needs a build with --features rapier"
+            "an e-puck pushes a box as far as it can; runs in rapier, so it needs a build with --features rapier"
         }
     }
 
@@ -58,8 +58,8 @@ impl Experiment for PushBox {
 #[cfg(feature = "rapier")]
 pub(crate) fn evaluator(
     config: PushConfig,
-) -> Result<farsa_lab::InWorld<farsa_physics::rapier::ArenaWorld, PushLife<Layer>>, Error> {
+) -> Result<farsa_lab::InWorld<farsa_physics::rapier::ArenaWorld, PushEpisode<Layer>>, Error> {
     let inputs = config.inputs();
     let layer = layer(inputs, vec![0.0; farsa_nn::Perceptron::parameter_count(inputs, OUTPUTS)])?;
-    Ok(farsa_lab::InWorld::new(config.world()?, PushLife::new(config, layer)?))
+    Ok(farsa_lab::InWorld::new(config.world()?, PushEpisode::new(config, layer)?))
 }

@@ -3,11 +3,11 @@
 use farsa_body::{Pose, Recorder};
 use farsa_nn::Perceptron;
 
-use crate::push_box::life::{OUTPUTS, PushLife};
+use crate::push_box::episode::{OUTPUTS, PushEpisode};
 use farsa_lab::{
     ChannelGroup, Description, Error, Evaluation, Note, Outcome, Parameter, Rollout, Task, mean_of_trials,
 };
-use farsa_view::{Channel, Form, Links, NodeParameters, Prop, Role, Stage, screen_color};
+use farsa_view::{Channel, Geometry, Links, NodeParameters, Role, SceneObject, Schema, screen_color};
 
 /// The layer of two logistic units that parameters are for.
 pub(crate) type Layer = Perceptron<Vec<f32>>;
@@ -17,7 +17,7 @@ pub(crate) fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error>
     Perceptron::new(inputs, OUTPUTS, 1.0, parameters).map_err(|error| Error::Other(format!("push-box: {error}")))
 }
 
-impl Task for PushLife<Layer> {
+impl Task for PushEpisode<Layer> {
     /// In the layer's order, from +range to -range.
     fn parameters(&self) -> Vec<Parameter> {
         let (inputs, range) = (self.config().inputs(), self.config().weight_range);
@@ -36,7 +36,7 @@ impl Task for PushLife<Layer> {
         vec!["moved [m]".into()]
     }
 
-    fn stage(&self) -> Stage {
+    fn schema(&self) -> Schema {
         let config = self.config();
         let (inputs, scene) = (config.inputs(), config.scene());
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
@@ -45,16 +45,17 @@ impl Task for PushLife<Layer> {
         let of_box = places.map(|place| format!("box {place}"));
         let wheels = ["left wheel [rad/s]", "right wheel [rad/s]"].map(in_group("actuator"));
         let eyes = (1..=inputs).map(|number| format!("infrared {number}"));
-        let mut stage = Stage::of_arena(&scene.arena).with_sensors(eyes).with_outputs(["left wheel", "right wheel"]);
-        stage.outputs.iter_mut().chain(&mut stage.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
+        let mut schema =
+            Schema::from_arena(&scene.arena).with_sensors(eyes).with_outputs(["left wheel", "right wheel"]);
+        schema.outputs.iter_mut().chain(&mut schema.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
         for block in &scene.blocks {
             let half = block.size.map(|x| 0.5 * x);
             let middle = Pose::at([0.0, 0.0, half[2]]);
-            let prop = Prop::new("box", Form::Box { half }, middle, Role::Thing).on(self.cube());
-            stage.props.push(prop.with_color(screen_color(block.color)));
-            stage.bodies.push("box".into());
+            let object = SceneObject::new("box", Geometry::Box { half }, middle, Role::Object).on_body(self.cube());
+            schema.objects.push(object.with_color(screen_color(block.color)));
+            schema.bodies.push("box".into());
         }
-        Stage {
+        Schema {
             scalars: places
                 .into_iter()
                 .chain(of_box.iter().map(String::as_str))
@@ -68,7 +69,7 @@ impl Task for PushLife<Layer> {
                 nodes: [inputs, inputs + OUTPUTS],
                 first: OUTPUTS * inputs,
             }],
-            ..stage
+            ..schema
         }
     }
 
@@ -92,7 +93,7 @@ impl Task for PushLife<Layer> {
     }
 }
 
-impl Rollout for PushLife<Layer> {
+impl Rollout for PushEpisode<Layer> {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let inputs = self.config().inputs();
         if evaluation.parameters.len() != Perceptron::parameter_count(inputs, OUTPUTS) {
@@ -155,11 +156,11 @@ mod tests {
         let of = |id| Evaluation { number: 0, parameters: &parameters, opponents: &[], id };
         let plain = evaluator.evaluate(of(id), None);
         evaluator.evaluate(of(EpisodeId { trial: 3, ..id }), None);
-        let mut recording = Recording::new(evaluator.stage());
+        let mut recording = Recording::new(evaluator.schema());
         assert_eq!(evaluator.evaluate(of(id), Some(&mut recording)), plain);
         assert!(plain.is_finite() && plain.steps == 40, "{plain:?}");
         assert_eq!(recording.times().len(), 40);
-        let columns = evaluator.stage().columns();
+        let columns = evaluator.schema().columns();
         let moved = columns.iter().position(|column| column == "box moved [m]").unwrap();
         assert_eq!(recording.row(39).nth(moved), Some(plain.terms[0]));
         // Shared by the generation's individuals.

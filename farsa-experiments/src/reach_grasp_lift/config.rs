@@ -10,13 +10,13 @@ use crate::worlds::Engine;
 /// Trials of an evaluation, each with its own start \[Ferrauto2010, 2.3.4\].
 pub const TRIALS: usize = 4;
 
-/// Who shares the random displacements of a trial's start.
+/// Which individuals share the random displacements of a trial's start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Displacement {
     /// All individuals of a generation: their fitness is compared on equal terms.
     #[default]
     PerGeneration,
-    /// Nobody: every individual draws its own.
+    /// None: every individual draws its own.
     PerIndividual,
 }
 
@@ -35,7 +35,7 @@ pub enum SphereFrame {
 /// Lengths are metres, angles degrees, other units SI unless a field says otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// Whether the controller is told the phase: condition A `labels`, or B `no-labels`.
+    /// Whether the controller senses the phase: condition A `labels`, or B `no-labels`.
     pub labels: bool,
     /// What moves the bodies.
     pub engine: Engine,
@@ -63,7 +63,7 @@ pub struct Config {
     pub joint_displacement: f64,
     /// Largest displacement of the sphere at the start, along x and y \[cm\].
     pub sphere_displacement: f64,
-    /// Who shares the displacements.
+    /// Which individuals share the displacements.
     pub displacement: Displacement,
     /// Where the axes of J1..J3 meet \[m\].
     pub shoulder: [f64; 3],
@@ -135,7 +135,7 @@ impl Default for Config {
             substeps: options.substeps,
             gravity: -options.gravity[2],
             sweeps: options.sweeps,
-            slip: options.slip,
+            slip: options.friction_compliance,
             limit_frequency: options.limit_frequency,
             steps: 600,
             arm_poses: [
@@ -184,7 +184,7 @@ impl Default for Config {
 
 impl Config {
     /// The defaults under a condition: with the labels (A), or without (B).
-    pub fn of_condition(labels: bool) -> Self {
+    pub fn for_condition(labels: bool) -> Self {
         Self { labels, ..Self::default() }
     }
 
@@ -258,7 +258,7 @@ impl Config {
             substeps: self.substeps,
             gravity: [0.0, 0.0, -self.gravity],
             sweeps: self.sweeps,
-            slip: self.slip,
+            friction_compliance: self.slip,
             limit_frequency: self.limit_frequency,
             ..Options::default()
         }
@@ -288,7 +288,7 @@ mod tests {
         assert_eq!(ArmAndHand { servo: default.servo, ..arm }, default);
         assert_eq!(config.tabletop(), Tabletop::default());
         assert_eq!(config.layout().parameter_count(), 792);
-        assert_eq!(Config::of_condition(false).layout().parameter_count(), 756);
+        assert_eq!(Config::for_condition(false).layout().parameter_count(), 756);
         let undamped = Config { damping: 0.0, ..Config::default() };
         assert_eq!(undamped.arm().robot().unwrap().segments[0].joint.damping, 0.0);
     }

@@ -10,7 +10,8 @@ use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings}
 
 /// Does a caretaker's label help a robot learn to manipulate? \[Ferrauto2010, chapter 2; Massera2010\]
 ///
-/// A simulated iCub-like arm and hand evolves to reach, grasp and lift a sphere, either told the phase of the task by three
+/// A simulated iCub-like arm and hand evolves to reach, grasp and lift a sphere, either with the phase of the task
+/// given by three
 /// more inputs (condition `labels`, A) or not (`no-labels`, B). Every value that the source does not give is a setting
 /// with its reason; [`Config`] lists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -35,7 +36,7 @@ impl Experiment for ReachGraspLift {
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {
-        Config::of_condition(condition != NO_LABELS).table()
+        Config::for_condition(condition != NO_LABELS).table()
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
@@ -87,7 +88,7 @@ mod tests {
     use farsa_view::Recording;
 
     use super::*;
-    use crate::reach_grasp_lift::stage::SCALARS;
+    use crate::reach_grasp_lift::schema::SCALARS;
 
     fn evaluation(parameters: &[f32], id: EpisodeId) -> Evaluation<'_> {
         Evaluation { number: 0, parameters, opponents: &[], id }
@@ -104,7 +105,7 @@ mod tests {
             assert_eq!(description.sensors.iter().map(|group| group.count).sum::<usize>(), sensors);
             assert_eq!(description.motors.iter().map(|group| group.count).sum::<usize>(), 23);
             assert_eq!((description.steps, description.step_seconds), (600, 0.01));
-            assert_eq!(evaluator.stage().columns().len(), SCALARS + sensors + 12 + 23);
+            assert_eq!(evaluator.schema().columns().len(), SCALARS + sensors + 12 + 23);
         }
     }
 
@@ -116,12 +117,12 @@ mod tests {
         let genotype = Genotype::new(&evaluator.parameters(), ReachGraspLift.gene_bits());
         let parameters = genotype.decode(&genes).unwrap();
         let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: 1 };
-        let stage = evaluator.stage();
+        let schema = evaluator.schema();
         let mut evaluate =
             |id, recorder: Option<&mut dyn Recorder>| evaluator.evaluate(evaluation(&parameters, id), recorder);
         let plain = evaluate(id, None);
         evaluate(EpisodeId { trial: 3, ..id }, None);
-        let mut recording = Recording::new(stage.clone());
+        let mut recording = Recording::new(schema.clone());
         let recorded = evaluate(id, Some(&mut recording));
         assert_eq!(plain, recorded);
         assert!(plain.is_finite(), "{plain:?}");
@@ -129,7 +130,7 @@ mod tests {
         assert_eq!(recording.times().len(), ticks);
         assert!((0..ticks).all(|tick| recording.row(tick).all(f64::is_finite)));
         // The rewards of the steps add up to the terms.
-        let columns = stage.columns();
+        let columns = schema.columns();
         let value = |tick: usize, name: &str| {
             let column = columns.iter().position(|c| c == name).unwrap();
             recording.row(tick).nth(column).unwrap()
@@ -139,7 +140,7 @@ mod tests {
             assert_eq!(sum, plain.terms[term]);
         }
         assert_eq!(value(ticks - 1, "reward so far"), plain.terms[..3].iter().sum::<f64>());
-        // Bodies and scalars tell the same.
+        // Bodies and scalars agree.
         for tick in [0, ticks / 2, ticks - 1] {
             for (body, name) in [(ArmAndHand::PALM, "palm.x [m]"), (Tabletop::SPHERE, "sphere.x [m]")] {
                 assert_eq!(f64::from(recording.pose_at(tick, body).unwrap().position[0]), value(tick, name));

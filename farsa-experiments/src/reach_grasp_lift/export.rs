@@ -219,14 +219,14 @@ mod tests {
 
     #[test]
     fn the_description_alone_senses_and_drives_as_the_scene_does() {
-        for config in [Config::default(), Config { target_axes: Axes::World, ..Config::of_condition(false) }] {
+        for config in [Config::default(), Config { target_axes: Axes::World, ..Config::for_condition(false) }] {
             let scene = Scene::new(config).unwrap();
-            let told = described(&scene, &vec![0.0; scene.config.layout().parameter_count()]);
+            let exported = described(&scene, &vec![0.0; scene.config.layout().parameter_count()]);
             let (mut senses, mut motors) = (scene.senses().unwrap(), scene.motors().unwrap());
-            assert_eq!((told.sensors.len(), told.motors.len()), (senses.channels(), OUTPUTS));
+            assert_eq!((exported.sensors.len(), exported.motors.len()), (senses.channels(), OUTPUTS));
             let mut world = World::new(Model::<f32>::new(&scene.robot, &scene.config.options()).unwrap());
             let mut stream = Stream::new(5, Domain::Motor, 0, 0, 0);
-            let (mut x, mut touched) = (vec![0.0; told.sensors.len()], 0);
+            let (mut x, mut touched) = (vec![0.0; exported.sensors.len()], 0);
             for step in 0..600 {
                 if step % 150 == 0 {
                     scene.arrange(&mut world, EpisodeId { seed: 3, trial: step / 150, ..EpisodeId::default() });
@@ -240,7 +240,7 @@ mod tests {
                 let phase = Phase::ALL[step as usize / 50 % 3];
                 senses.set_label(phase);
                 senses.read(&world, &mut x);
-                for (sensor, x) in told.sensors.iter().zip(&x) {
+                for (sensor, x) in exported.sensors.iter().zip(&x) {
                     let read = reading(&scene, &world, phase, &sensor.reads);
                     // Single precision, in centimetres; the sphere may fall far.
                     assert!(
@@ -254,7 +254,7 @@ mod tests {
                     let y: [f32; OUTPUTS] = core::array::from_fn(|_| stream.uniform());
                     let mut commanded = Commanded(vec![[0.0; 2]; scene.robot.actuators.len()]);
                     motors.drive(&y, &mut commanded);
-                    assert_eq!(commanded.0, commands(&scene, &told.motors, &y));
+                    assert_eq!(commanded.0, commands(&scene, &exported.motors, &y));
                     motors.drive(&y, &mut world);
                 }
                 world.step();
@@ -272,30 +272,31 @@ mod tests {
             .kinds()
             .map(|kind| if kind == farsa_nn::LeakyParameter::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) })
             .collect();
-        let told = described(&scene, &parameters).network;
+        let exported = described(&scene, &parameters).network;
         let state = vec![0.0; layout.state_len()];
         let mut network = LeakyNetwork::new(layout, Leak::Filter, parameters, state).unwrap();
-        let sigma = |x: f64| 1.0 / (1.0 + farsa_num::exp(-f64::from(told.slope) * x));
+        let sigma = |x: f64| 1.0 / (1.0 + farsa_num::exp(-f64::from(exported.slope) * x));
         let weight = |weights: &[f32], i: usize| f64::from(weights[i]);
-        let (mut hidden, mut y) = (vec![0.0; told.hidden], vec![0.0; told.outputs]);
+        let (mut hidden, mut y) = (vec![0.0; exported.hidden], vec![0.0; exported.outputs]);
         for _ in 0..50 {
-            let x: Vec<f32> = (0..told.inputs).map(|_| stream.range(-2.0, 2.0)).collect();
+            let x: Vec<f32> = (0..exported.inputs).map(|_| stream.range(-2.0, 2.0)).collect();
             network.step(&x, &mut y);
             let next = |i: usize| {
-                let mut net = f64::from(told.biases[i]);
-                net += (0..told.inputs)
-                    .map(|j| f64::from(x[j]) * weight(&told.sensor_weights, j * told.hidden + i))
+                let mut net = f64::from(exported.biases[i]);
+                net += (0..exported.inputs)
+                    .map(|j| f64::from(x[j]) * weight(&exported.sensor_weights, j * exported.hidden + i))
                     .sum::<f64>();
-                net += (0..told.hidden)
-                    .map(|k| hidden[k] * weight(&told.recurrent_weights, k * told.hidden + i))
+                net += (0..exported.hidden)
+                    .map(|k| hidden[k] * weight(&exported.recurrent_weights, k * exported.hidden + i))
                     .sum::<f64>();
-                let leak = f64::from(told.leaks[i]);
+                let leak = f64::from(exported.leaks[i]);
                 leak * sigma(net) + (1.0 - leak) * hidden[i]
             };
-            hidden = (0..told.hidden).map(next).collect();
+            hidden = (0..exported.hidden).map(next).collect();
             for (i, y) in y.iter().enumerate() {
-                let net: f64 =
-                    (0..told.hidden).map(|j| hidden[j] * weight(&told.output_weights, j * told.outputs + i)).sum();
+                let net: f64 = (0..exported.hidden)
+                    .map(|j| hidden[j] * weight(&exported.output_weights, j * exported.outputs + i))
+                    .sum();
                 assert!((sigma(net) - f64::from(*y)).abs() < 1e-5, "output {i}");
             }
         }
@@ -304,11 +305,14 @@ mod tests {
     #[test]
     fn actuators_have_names_and_laws() {
         let scene = Scene::new(Config::default()).unwrap();
-        let told = described(&scene, &vec![0.0; scene.config.layout().parameter_count()]);
-        assert_eq!(told.actuators.len(), 27);
-        assert!(told.actuators.iter().enumerate().all(|(i, a)| a.joint == format!("J{}", i + 1)));
-        assert!(matches!(told.actuators[6].law, Law::MusclePair(_)) && matches!(told.actuators[7].law, Law::Servo(_)));
-        let judge = told.judge.unwrap();
+        let exported = described(&scene, &vec![0.0; scene.config.layout().parameter_count()]);
+        assert_eq!(exported.actuators.len(), 27);
+        assert!(exported.actuators.iter().enumerate().all(|(i, a)| a.joint == format!("J{}", i + 1)));
+        assert!(
+            matches!(exported.actuators[6].law, Law::MusclePair(_))
+                && matches!(exported.actuators[7].law, Law::Servo(_))
+        );
+        let judge = exported.judge.unwrap();
         assert_eq!((judge.on_fingers.len(), judge.fingertips.len(), judge.success_steps), (15, 5, 100));
         assert!(judge.on_table.contains(&"table".into()) && judge.target == "sphere");
     }

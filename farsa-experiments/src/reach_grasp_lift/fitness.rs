@@ -51,7 +51,7 @@ impl ContactTerm {
     }
 }
 
-/// The choices that the source leaves to whoever judges a trial.
+/// The choices of the judge that the source leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// The reading of the contact term.
@@ -67,9 +67,9 @@ impl Default for Judgement {
     }
 }
 
-/// What has been earned so far, term by term and before the caps.
+/// The reward so far, term by term and before the caps.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub struct Ledger {
+pub struct Rewards {
     /// FR: sum over reach steps of 0.5/(1 + ds/4) + 0.25/(1 + ds) (fOpen + pRot).
     pub reach: f64,
     /// FG: sum over grasp steps of 0.4/(1 + graspQ) and the contact term.
@@ -80,9 +80,9 @@ pub struct Ledger {
     pub bonus: f64,
 }
 
-impl Ledger {
-    /// What one step in `phase` earns \[Ferrauto2010, 2.3.4\].
-    pub fn of_step(phase: Phase, seen: &Observation, term: ContactTerm) -> Self {
+impl Rewards {
+    /// The reward of one step in `phase` \[Ferrauto2010, 2.3.4\].
+    pub fn from_step(phase: Phase, seen: &Observation, term: ContactTerm) -> Self {
         let mut earned = Self::default();
         match phase {
             Phase::Reach => {
@@ -95,7 +95,7 @@ impl Ledger {
         earned
     }
 
-    /// Adds what another ledger holds.
+    /// Adds other rewards.
     pub fn add(&mut self, other: &Self) {
         self.reach += other.reach;
         self.grasp += other.grasp;
@@ -132,16 +132,16 @@ pub struct Trial {
     /// Whether the sphere fell off the table and ended the trial.
     pub fallen: bool,
     /// What the steps earned; the bonus only once the trial has ended.
-    pub ledger: Ledger,
+    pub rewards: Rewards,
 }
 
 impl Trial {
     /// Judges one step: first the phase, which then pays for the step, the one that switches included. Returns what
     /// the step earned.
-    pub fn judge(&mut self, seen: &Observation, by: &Judgement) -> Ledger {
+    pub fn judge(&mut self, seen: &Observation, by: &Judgement) -> Rewards {
         self.phase = self.phase.next(seen);
-        let earned = Ledger::of_step(self.phase, seen, by.contact_term);
-        self.ledger.add(&earned);
+        let earned = Rewards::from_step(self.phase, seen, by.contact_term);
+        self.rewards.add(&earned);
         self.steps += 1;
         self.lifted = if seen.lifted() { self.lifted + 1 } else { 0 };
         self.held = if seen.lifted() && seen.height >= by.success_height { self.held + 1 } else { 0 };
@@ -151,7 +151,7 @@ impl Trial {
 
     /// Ends the trial: the bonus for the phase it reached is paid.
     pub fn end(&mut self) {
-        self.ledger.bonus = self.phase.bonus();
+        self.rewards.bonus = self.phase.bonus();
     }
 
     /// Whether the trial succeeds if it ends now: the sphere was held up in every one of the last `second` steps and
@@ -210,15 +210,15 @@ mod tests {
         Observation { contacts: 4, grasp_distance: 0.0, on_table: false, height: 10.0, ..best_reach() }
     }
 
-    fn individual(trials: &[Vec<Observation>], term: ContactTerm) -> Ledger {
-        let mut sum = Ledger::default();
+    fn individual(trials: &[Vec<Observation>], term: ContactTerm) -> Rewards {
+        let mut sum = Rewards::default();
         for steps in trials {
             let mut trial = Trial::default();
             for seen in steps {
                 trial.judge(seen, &by(term));
             }
             trial.end();
-            sum.add(&trial.ledger);
+            sum.add(&trial.rewards);
         }
         sum
     }
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_reach_step_pays_for_nearness_open_hand_and_palm_down() {
-        let step = |seen: &Observation| Ledger::of_step(Phase::Reach, seen, ContactTerm::Capped).reach;
+        let step = |seen: &Observation| Rewards::from_step(Phase::Reach, seen, ContactTerm::Capped).reach;
         near(step(&best_reach()), 1.0);
         // 0.5/(1 + 9) + 0.25/37 * 2
         near(step(&far_away()), 0.05 + 0.5 / 37.0);
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn a_grasp_step_pays_for_nearness_and_contacts() {
         let step = |term, grasp_distance, contacts| {
-            Ledger::of_step(Phase::Grasp, &Observation { grasp_distance, contacts, ..far_away() }, term).grasp
+            Rewards::from_step(Phase::Grasp, &Observation { grasp_distance, contacts, ..far_away() }, term).grasp
         };
         near(step(ContactTerm::Capped, 0.0, 4), 0.6);
         near(step(ContactTerm::Capped, 0.0, 9), 0.6);
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_lift_step_pays_when_the_sphere_is_on_the_fingers_and_off_the_table() {
         let step = |contacts, on_table| {
-            Ledger::of_step(Phase::Lift, &Observation { contacts, on_table, ..far_away() }, ContactTerm::Capped).lift
+            Rewards::from_step(Phase::Lift, &Observation { contacts, on_table, ..far_away() }, ContactTerm::Capped).lift
         };
         assert_eq!([step(1, false), step(1, true), step(0, false), step(0, true)], [1.0, 0.0, 0.0, 0.0]);
     }
@@ -273,7 +273,7 @@ mod tests {
         assert_eq!(earned.reach, 0.0);
         assert_eq!(trial.judge(&best_lift(), &by(ContactTerm::Capped)).lift, 1.0);
         // Irreversible: far away again, the lift phase pays, and it pays nothing.
-        assert_eq!(trial.judge(&far_away(), &by(ContactTerm::Capped)), Ledger::default());
+        assert_eq!(trial.judge(&far_away(), &by(ContactTerm::Capped)), Rewards::default());
         assert_eq!(trial.phase, Phase::Lift);
     }
 
@@ -360,8 +360,8 @@ mod tests {
 
     #[test]
     fn no_number_earns_no_cap() {
-        let ledger = Ledger { reach: f64::NAN, ..Ledger::default() };
-        assert!(ledger.total().is_nan());
+        let rewards = Rewards { reach: f64::NAN, ..Rewards::default() };
+        assert!(rewards.total().is_nan());
     }
 
     fn observation() -> impl Strategy<Value = Observation> {
@@ -393,12 +393,12 @@ mod tests {
     proptest! {
         #[test]
         fn no_individual_exceeds_4680(trials in prop::collection::vec(trial(), 4), term in prop::sample::select(&ContactTerm::ALL[..])) {
-            let ledger = individual(&trials, term);
-            prop_assert!(ledger.total() <= 4680.0 + 1e-9, "{ledger:?}");
+            let rewards = individual(&trials, term);
+            prop_assert!(rewards.total() <= 4680.0 + 1e-9, "{rewards:?}");
             if term == ContactTerm::Capped {
-                prop_assert!(ledger.total() <= 4665.2 + 1e-9, "{ledger:?}");
+                prop_assert!(rewards.total() <= 4665.2 + 1e-9, "{rewards:?}");
             }
-            prop_assert!(ledger.total() >= -0.25 * 2400.0);
+            prop_assert!(rewards.total() >= -0.25 * 2400.0);
         }
     }
 }

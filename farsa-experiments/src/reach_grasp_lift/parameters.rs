@@ -30,7 +30,7 @@ impl Ranges {
     }
 
     /// What the network takes.
-    pub(crate) fn of_network(&self, parameters: &[f32]) -> Vec<f32> {
+    pub(crate) fn to_network(&self, parameters: &[f32]) -> Vec<f32> {
         let mut parameters = parameters.to_vec();
         if self.evonet {
             for leak in parameters.get_mut(self.layout.range(LeakyParameter::Leak)).unwrap_or_default() {
@@ -59,7 +59,7 @@ mod tests {
     fn genes_become_parameters_of_their_kinds() {
         let layout = Config::default().layout();
         let decode = |ranges: &Ranges, genes: &[u16]| {
-            Genotype::new(&ranges.parameters(), 16).decode(genes).map(|parameters| ranges.of_network(&parameters))
+            Genotype::new(&ranges.parameters(), 16).decode(genes).map(|parameters| ranges.to_network(&parameters))
         };
         let ranges = Ranges::new(layout, Leak::Filter, 6.0).unwrap();
         assert!(decode(&ranges, &[0; 791]).is_none());

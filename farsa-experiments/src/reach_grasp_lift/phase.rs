@@ -1,4 +1,4 @@
-//! The three phases of `reach-grasp-lift` and what is observed of a step to tell them apart.
+//! The three phases of `reach-grasp-lift` and what is observed of a step to distinguish them.
 
 use farsa_num::exp;
 use serde::{Deserialize, Serialize};

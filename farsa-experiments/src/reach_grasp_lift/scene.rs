@@ -206,7 +206,7 @@ impl Scene {
         }
         let at = [x, y, self.config.sphere_radius].map(|x| x as f32);
         world.place_body(Tabletop::SPHERE, Pose::at(at), Twist::default());
-        world.arranged();
+        world.finish_placement();
     }
 
     /// The palm's centre in the world \[m\].
@@ -259,7 +259,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Senses {
-    /// Sets the label that the next reading tells; without labels there is none to set.
+    /// Sets the label of the next reading; without labels there is none to set.
     pub fn set_label(&mut self, phase: Phase) {
         if let Some(label) = &mut self.parts.3 {
             label.set_one_hot(phase.index(), self.label_amplitude);

@@ -8,7 +8,7 @@ use farsa_body::{
 };
 use farsa_lab::{Episode, EpisodeId, Error};
 
-use crate::reach_grasp_lift::life::Judge;
+use crate::reach_grasp_lift::episode::Judge;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene};
 
 /// Postures with the palm exactly down, its centre 5 cm above the sphere in its four places \[deg\]: where the search for a
@@ -148,7 +148,7 @@ impl Statics {
 
 /// The script for one start: postures on the way and when each is reached.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct GraspPlan {
     timetable: Timetable,
     statics: Arc<Statics>,
     /// J1..J7 at the start, at the way-point, around the sphere, lifted.
@@ -165,7 +165,7 @@ fn seven(joints: &[f64]) -> [f64; 7] {
     core::array::from_fn(|i| joints[i])
 }
 
-impl Plan {
+impl GraspPlan {
     /// A plan from the start posture \[J1..J27, rad\] for a sphere that lies at a place of the table \[m\].
     ///
     /// # Errors
@@ -244,19 +244,19 @@ impl Plan {
     }
 }
 
-/// A trial lived by the script: only the experiment's 23 outputs, its starts and its judge.
+/// A trial run by the script: only the experiment's 23 outputs, its starts and its judge.
 #[derive(Clone, Debug)]
-pub struct ScriptLife {
+pub struct ScriptEpisode {
     judge: Judge,
     motors: Motors,
     timetable: Timetable,
     statics: Arc<Statics>,
-    plan: Option<Plan>,
+    plan: Option<GraspPlan>,
     done: [f32; OUTPUTS],
 }
 
-impl ScriptLife {
-    /// Lives by this timetable in a scene.
+impl ScriptEpisode {
+    /// An episode with this timetable in a scene.
     ///
     /// # Errors
     /// [`Error::Other`] for a scene whose arm is not driven by muscles.
@@ -277,7 +277,7 @@ impl ScriptLife {
     }
 
     /// The plan of the trial; `None` if the sphere was out of reach.
-    pub fn plan(&self) -> Option<&Plan> {
+    pub fn plan(&self) -> Option<&GraspPlan> {
         self.plan.as_ref()
     }
 
@@ -287,7 +287,7 @@ impl ScriptLife {
     }
 }
 
-impl<W> Episode<W> for ScriptLife
+impl<W> Episode<W> for ScriptEpisode
 where
     W: Kinematics
         + Joints
@@ -302,7 +302,7 @@ where
         let joints = self.statics.tree.joints();
         let start: Vec<f64> = joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
         let [x, y, _] = world.pose(Tabletop::SPHERE).position.map(f64::from);
-        self.plan = Plan::new(self.timetable, Arc::clone(&self.statics), &start, [x, y]).ok();
+        self.plan = GraspPlan::new(self.timetable, Arc::clone(&self.statics), &start, [x, y]).ok();
     }
 
     fn act(&mut self, world: &mut W) {
@@ -329,7 +329,7 @@ mod tests {
         let scene = Scene::new(Config::default()).unwrap();
         let statics = Arc::new(Statics::new(&scene).unwrap());
         let (start, sphere) = scene.start(EpisodeId::default());
-        let plan = Plan::new(Timetable::default(), statics, &start, sphere).unwrap();
+        let plan = GraspPlan::new(Timetable::default(), statics, &start, sphere).unwrap();
         let mut last = plan.wanted(0.0);
         assert_eq!(last.0, seven(&start));
         for step in 1..800 {

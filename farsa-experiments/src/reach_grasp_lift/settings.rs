@@ -31,7 +31,12 @@ const fn entry(key: &'static str, field: Field, unit: &'static str, source: Sour
 
 /// The settings in the order in which they are listed.
 fn entries() -> Vec<Entry> {
-    use Field::{Number, Numbers, Whole, Word};
+    let parts = [world_entries, start_entries, arm_entries, thing_entries, controller_entries, reward_entries];
+    parts.into_iter().flat_map(|part: fn() -> Vec<Entry>| part()).collect()
+}
+
+fn world_entries() -> Vec<Entry> {
+    use Field::{Number, Whole, Word};
     use Source::{Chosen, Given};
     vec![
         entry(
@@ -72,6 +77,13 @@ fn entries() -> Vec<Entry> {
             "Natural frequency of a joint's stop, from the joint's own inertia.",
         ),
         entry("trial.steps", Whole(|c| &mut c.steps, 1..=1_000_000), "", Given, "Steps of each of the four trials."),
+    ]
+}
+
+fn start_entries() -> Vec<Entry> {
+    use Field::{Number, Numbers, Word};
+    use Source::{Chosen, Given};
+    vec![
         entry(
             "start.arm_poses",
             Numbers(|c| &mut c.arm_poses, -180.0..=180.0),
@@ -129,8 +141,15 @@ fn entries() -> Vec<Entry> {
             ),
             "",
             Chosen,
-            "Who shares the displacements; shared by a generation, its individuals are compared on equal terms.",
+            "Which individuals share the displacements; shared by a generation, its individuals are compared on equal terms.",
         ),
+    ]
+}
+
+fn arm_entries() -> Vec<Entry> {
+    use Field::{Number, Numbers, Word};
+    use Source::{Chosen, Given};
+    vec![
         entry(
             "arm.shoulder",
             Numbers(|c| &mut c.shoulder, -10.0..=10.0),
@@ -223,6 +242,13 @@ fn entries() -> Vec<Entry> {
             Chosen,
             "Passive damping of the hand's joints.",
         ),
+    ]
+}
+
+fn thing_entries() -> Vec<Entry> {
+    use Field::{Number, Numbers};
+    use Source::{Chosen, Given};
+    vec![
         entry("sphere.radius", Number(|c| &mut c.sphere_radius, 0.005..=0.2), "m", Given, "Radius of the sphere."),
         entry("sphere.mass", Number(|c| &mut c.sphere_mass, 0.001..=10.0), "kg", Chosen, "Mass of the sphere."),
         entry(
@@ -274,6 +300,13 @@ fn entries() -> Vec<Entry> {
             Chosen,
             "Normal damping of a contact point.",
         ),
+    ]
+}
+
+fn controller_entries() -> Vec<Entry> {
+    use Field::{Number, Whole, Word};
+    use Source::{Chosen, Given};
+    vec![
         entry(
             "sensors.touch_saturation",
             Number(|c| &mut c.touch_saturation, 1.0..=1000.0),
@@ -319,6 +352,13 @@ fn entries() -> Vec<Entry> {
             Given,
             "Genes are decoded to weights and biases between minus and plus this, to leaks between 0 and 1.",
         ),
+    ]
+}
+
+fn reward_entries() -> Vec<Entry> {
+    use Field::{Number, Word};
+    use Source::Chosen;
+    vec![
         entry(
             "reward.contact_term",
             Word(
@@ -373,7 +413,7 @@ impl Config {
     /// # Errors
     /// [`Error::Unknown`] if the settings are of another table; [`Error::Setting`] for a table's end before its beginning.
     pub fn read(labels: bool, settings: &Settings) -> Result<Self, Error> {
-        let mut config = Self::of_condition(labels);
+        let mut config = Self::for_condition(labels);
         for Entry { key, field, .. } in entries() {
             if key == "sensors.label_amplitude" && !labels {
                 continue;
@@ -409,7 +449,7 @@ mod tests {
     #[test]
     fn settings_of_the_defaults_read_back_as_the_defaults() {
         for labels in [true, false] {
-            let config = Config::of_condition(labels);
+            let config = Config::for_condition(labels);
             let settings = Settings::new(config.table()).unwrap();
             assert_eq!(Config::read(labels, &settings).unwrap(), config);
             assert!(config.table().iter().all(|setting| !setting.doc_text().is_empty()));

@@ -7,23 +7,23 @@ use farsa_models::MjcfOptions;
 use farsa_nn::LeakyNetwork;
 
 use crate::reach_grasp_lift::config::TRIALS;
-use crate::reach_grasp_lift::fitness::Ledger;
-use crate::reach_grasp_lift::life::ReachLife;
+use crate::reach_grasp_lift::episode::ReachEpisode;
+use crate::reach_grasp_lift::fitness::Rewards;
 use crate::reach_grasp_lift::parameters::Ranges;
 use crate::reach_grasp_lift::scene::Scene;
-use crate::reach_grasp_lift::stage::{NetworkLife, Teller};
+use crate::reach_grasp_lift::schema::{EpisodeRecorder, NetworkEpisode};
 use farsa_lab::{
     ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, NetworkExport, Note,
     Outcome, Parameter, Rollout, StartExport, Task,
 };
-use farsa_view::Stage;
+use farsa_view::Schema;
 
-/// A trial lived by a network, with what it records.
+/// A trial run by a network, with what it records.
 #[derive(Clone)]
 pub struct ReachTask {
-    life: NetworkLife,
+    episode: NetworkEpisode,
     ranges: Ranges,
-    teller: Arc<Teller>,
+    episode_recorder: Arc<EpisodeRecorder>,
 }
 
 impl ReachTask {
@@ -37,12 +37,12 @@ impl ReachTask {
         let (zeros, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
         let network = LeakyNetwork::new(layout, config.leak, zeros, state);
         let network = network.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
-        let teller = Arc::new(Teller::new(&scene));
-        Ok(Self { life: ReachLife::new(Arc::new(scene), network)?, ranges, teller })
+        let episode_recorder = Arc::new(EpisodeRecorder::new(&scene));
+        Ok(Self { episode: ReachEpisode::new(Arc::new(scene), network)?, ranges, episode_recorder })
     }
 
     fn scene(&self) -> &Scene {
-        self.life.judge().scene()
+        self.episode.judge().scene()
     }
 }
 
@@ -56,37 +56,37 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
 {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.life.start(world, id);
+        self.episode.start(world, id);
     }
 
     fn act(&mut self, world: &mut W) {
-        self.life.act(world);
+        self.episode.act(world);
     }
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
-        Episode::judge(&mut self.life, world)
+        Episode::judge(&mut self.episode, world)
     }
 
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        self.teller.record(world, &self.life, recorder);
+        self.episode_recorder.record(world, &self.episode, recorder);
     }
 }
 
 impl Rollout for ReachTask {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let parameters = self.ranges.of_network(evaluation.parameters);
-        self.life.controller_mut().copy_parameters(&parameters).is_ok()
+        let parameters = self.ranges.to_network(evaluation.parameters);
+        self.episode.controller_mut().copy_parameters(&parameters).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(self.life.controller().parameters());
+        recorder.parameters(self.episode.controller().parameters());
     }
 
     fn outcome(&self) -> Outcome {
-        let judge = self.life.judge();
+        let judge = self.episode.judge();
         let time_step = judge.scene().config.time_step;
         let trial = judge.trial();
-        let Ledger { reach, grasp, lift, bonus } = trial.ledger;
+        let Rewards { reach, grasp, lift, bonus } = trial.rewards;
         let second = judge.scene().config.steps_per_second();
         // What the printed reward alone would call a success: any height will do.
         let printed = trial.lifted >= second && !trial.fallen;
@@ -119,12 +119,12 @@ impl Task for ReachTask {
         ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Teller::stage(&self.life)
+    fn schema(&self) -> Schema {
+        EpisodeRecorder::schema(&self.episode)
     }
 
     fn description(&self) -> Description {
-        let config = &self.life.judge().scene().config;
+        let config = &self.episode.judge().scene().config;
         let saturation = config.touch_saturation;
         let mut sensors = vec![
             ChannelGroup::new("arm joints", 7, "J1..J7, 0 at the lower and 1 at the upper limit"),
@@ -170,12 +170,12 @@ impl Task for ReachTask {
         }
     }
 
-    /// The sum of the ledgers, each part within the individual's cap.
+    /// The sum of the rewards, each part within the individual's cap.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
-        let mut sum = Ledger::default();
+        let mut sum = Rewards::default();
         for outcome in trials {
             let [reach, grasp, lift, bonus] = outcome.terms[..] else { return f64::NAN };
-            sum.add(&Ledger { reach, grasp, lift, bonus });
+            sum.add(&Rewards { reach, grasp, lift, bonus });
         }
         sum.total()
     }
@@ -192,9 +192,9 @@ impl Exports for ReachTask {
 
     fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
         let config = &self.scene().config;
-        let parameters = self.ranges.of_network(parameters);
+        let parameters = self.ranges.to_network(parameters);
         let network = NetworkExport::new(&config.layout(), config.leak, &parameters);
-        Some(self.scene().controller(network, self.life.senses().names(), self.life.motors().names()))
+        Some(self.scene().controller(network, self.episode.senses().names(), self.episode.motors().names()))
     }
 
     fn start(&self, id: EpisodeId) -> Option<StartExport> {

@@ -41,7 +41,7 @@ pub(crate) const ROBOTS: [&str; 3] = ["marxbot", "e-puck", "khepera"];
 
 impl TeamConfig {
     /// A team of the robot of a condition: the arenas are the source's, the numbers of robots ours.
-    pub fn of_condition(condition: &str) -> Self {
+    pub fn for_condition(condition: &str) -> Self {
         let (robot, size) = match condition {
             "e-puck" => (MobileRobot::e_puck(), 2.5),
             "khepera" => (MobileRobot::khepera(), 2.0),
@@ -64,7 +64,7 @@ impl TeamConfig {
     }
 
     /// Whether the team is of the robot that the source's numbers are for.
-    pub(crate) fn of_marxbots(&self) -> bool {
+    pub(crate) fn uses_marxbots(&self) -> bool {
         self.robot.name == "MarXbot"
     }
 
@@ -155,7 +155,7 @@ pub(crate) const EYES: usize = 8;
 pub(crate) fn evolution([generations, population, parents]: [i64; 3], mutation_rate: f64) -> Vec<Setting> {
     vec![
         Setting::whole("evolution.generations", generations, 1..=i64::from(u32::MAX) - 1)
-            .doc("Generations that are evaluated; enough for what the results tell, in minutes."),
+            .doc("Generations that are evaluated; enough for what the results show, in minutes."),
         Setting::whole("evolution.population", population, 1..=1_000_000)
             .doc("Individuals of a generation, of each population where there are two; a multiple of the parents."),
         Setting::whole("evolution.parents", parents, 1..=1_000_000)

@@ -4,7 +4,7 @@ use farsa_body::{
     Beam, BodyId, ChannelError, ColorBand, InfraredRays, LinearCamera, MobileParts, MobileRobot, Recorder, Sensor as _,
 };
 
-use crate::infrared::sensor_rays::{SensorRays, Told};
+use crate::infrared::sensor_rays::{RayFilter, SensorRays};
 use crate::team::config::{EYES, TeamConfig};
 use farsa_lab::PlanarWorld;
 
@@ -15,7 +15,7 @@ pub(crate) const BLUE: ColorBand = ColorBand { low: [0.0, 0.0, 0.5], high: [1.0,
 
 /// Eight infrared channels and a camera of a robot, all read from the world's ports.
 ///
-/// A ring of more than eight sensors is read in eight groups of neighbours, each of which tells its largest value.
+/// A ring of more than eight sensors is read in eight groups of neighbours, each of which gives its largest value.
 #[derive(Clone, Debug)]
 pub struct RobotEyes {
     body: BodyId,
@@ -23,7 +23,7 @@ pub struct RobotEyes {
     /// Readings of all sensors of the ring.
     ring: Vec<f32>,
     /// What is near: the nearest point of a wall with the unit vector to it, or a body's middle and radius.
-    things: Vec<Thing>,
+    obstacles: Vec<Obstacle>,
     /// From the middle of the robot to where its infrared sensors see \[m\].
     reach: f32,
     camera: LinearCamera<Vec<Beam>, Vec<ColorBand>>,
@@ -31,12 +31,12 @@ pub struct RobotEyes {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Thing {
+enum Obstacle {
     Wall { point: [f32; 2], out: [f32; 2] },
     Round { centre: [f32; 2], radius: f32 },
 }
 
-impl Thing {
+impl Obstacle {
     /// Whether some of it may lie on a way from one place to another; sometimes also if none does.
     fn meets(&self, from: [f32; 2], to: [f32; 2]) -> bool {
         match self {
@@ -74,40 +74,42 @@ impl RobotEyes {
         let (range, view) = (1.5 * config.size as f32, config.field_of_view);
         Ok(Self {
             body: parts.body,
-            infrared: InfraredRays::of(robot, parts.body)?,
+            infrared: InfraredRays::for_robot(robot, parts.body)?,
             ring: vec![0.0; count],
-            things: Vec::with_capacity(64),
+            obstacles: Vec::with_capacity(64),
             reach: (robot.radius + robot.infrared.range) as f32,
-            camera: LinearCamera::of_view(parts.body, view, config.sectors, config.rays, colors.to_vec(), range)?,
-            rays: SensorRays::of(robot),
+            camera: LinearCamera::for_view(parts.body, view, config.sectors, config.rays, colors.to_vec(), range)?,
+            rays: SensorRays::for_robot(robot),
         })
     }
 
     /// Reads the infrared channels and then the camera's \[8 + sectors x colours\].
     pub fn read<W: PlanarWorld>(&mut self, world: &W, out: &mut [f32]) {
         let (near, seen) = out.split_at_mut(EYES);
-        let Self { body, infrared, ring, things, .. } = self;
+        let Self { body, infrared, ring, obstacles, .. } = self;
         let pose = world.pose(*body);
         let [x, y, _] = pose.position;
-        things.clear();
-        world.near([x, y], self.reach, &mut |thing| {
-            let [u, v] = [thing.point[0] - x, thing.point[1] - y];
-            let away = thing.distance.max(f32::MIN_POSITIVE);
+        obstacles.clear();
+        world.query_near([x, y], self.reach, &mut |obstacle| {
+            let [u, v] = [obstacle.point[0] - x, obstacle.point[1] - y];
+            let away = obstacle.distance.max(f32::MIN_POSITIVE);
             let out = [u / away, v / away];
-            if thing.body.is_none() {
-                things.push(Thing::Wall { point: thing.point, out });
-            } else if thing.body != Some(*body) {
-                let far = thing.distance + thing.radius;
-                things.push(Thing::Round { centre: [x + far * out[0], y + far * out[1]], radius: thing.radius });
+            if obstacle.body.is_none() {
+                obstacles.push(Obstacle::Wall { point: obstacle.point, out });
+            } else if obstacle.body != Some(*body) {
+                let far = obstacle.distance + obstacle.radius;
+                obstacles
+                    .push(Obstacle::Round { centre: [x + far * out[0], y + far * out[1]], radius: obstacle.radius });
             }
         });
-        if things.is_empty() {
+        if obstacles.is_empty() {
             // What the rays would read, too: nothing is within their range.
             near.fill(0.0);
             ring.fill(0.0);
         } else {
-            infrared
-                .read_where(world, ring, |[x, y, _], [u, v, _]| things.iter().any(|thing| thing.meets([x, y], [u, v])));
+            infrared.read_where(world, ring, |[x, y, _], [u, v, _]| {
+                obstacles.iter().any(|obstacle| obstacle.meets([x, y], [u, v]))
+            });
             let group = self.ring.len() / EYES;
             for (first, o) in near.iter_mut().enumerate() {
                 let of_group = (0..group).map(|k| (first * group + k + self.ring.len() - group / 2) % self.ring.len());
@@ -117,14 +119,14 @@ impl RobotEyes {
         self.camera.read(world, seen);
     }
 
-    /// Tells a recorder a ray for each infrared sensor, of the robot where it read `x` last and in the same world.
+    /// Records a ray for each infrared sensor, of the robot where it read `x` last and in the same world.
     ///
-    /// One that did not read because its robot does not live tells none.
-    pub(crate) fn tell<W: PlanarWorld>(&self, world: &W, x: &[f32], told: Told, recorder: &mut dyn Recorder) {
+    /// One that did not read because its robot is dead records none.
+    pub(crate) fn record<W: PlanarWorld>(&self, world: &W, x: &[f32], filter: RayFilter, recorder: &mut dyn Recorder) {
         let near = x.get(..EYES).unwrap_or_default();
         let pose = world.pose(self.body);
         if near.iter().all(|x| x.is_finite()) {
-            self.rays.tell(pose, &self.ring, told, recorder);
+            self.rays.record(pose, &self.ring, filter, recorder);
         }
     }
 }
@@ -145,11 +147,11 @@ mod tests {
     #[test]
     fn the_shortcut_reads_what_the_rays_read_and_groups_their_largest() {
         for condition in crate::team::config::ROBOTS {
-            let config = TeamConfig { robots: 2, ..TeamConfig::of_condition(condition) };
+            let config = TeamConfig { robots: 2, ..TeamConfig::for_condition(condition) };
             let arena = farsa_physics::arena::Arena { size: None, ..config.arena() };
             let mut world = World::new(&arena).unwrap();
             let mut eyes = RobotEyes::new(&config, &world.parts(0), &[RED, BLUE]).unwrap();
-            let mut ring = InfraredRays::of(&config.robot, BodyId(0)).unwrap();
+            let mut ring = InfraredRays::for_robot(&config.robot, BodyId(0)).unwrap();
             let (mut all, mut x) = (vec![0.0; config.robot.infrared.angles.len()], vec![0.0; config.seen(2)]);
             let (mut lit, r) = (0, config.robot.radius as f32);
             for i in 0..200_u16 {
@@ -158,7 +160,7 @@ mod tests {
                 let beside = [at[0] + r * (2.05 + 0.2 * (t % 11.0)), at[1]];
                 world.place_body(BodyId(0), Pose::planar(at, t), Twist::default());
                 world.place_body(BodyId(1), Pose::planar(beside, 0.0), Twist::default());
-                world.arranged();
+                world.finish_placement();
                 eyes.read(&world, &mut x);
                 ring.read(&world, &mut all);
                 let count = all.len();
@@ -177,7 +179,7 @@ mod tests {
 
     #[test]
     fn other_rings_are_refused() {
-        let mut config = TeamConfig::of_condition("khepera");
+        let mut config = TeamConfig::for_condition("khepera");
         config.robot.infrared.angles.pop();
         let parts = config.arena().parts(0);
         let error = RobotEyes::new(&config, &parts, &[RED]).unwrap_err();

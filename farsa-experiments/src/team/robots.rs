@@ -1,4 +1,4 @@
-//! Robots with a controller each: what they sense, think and do.
+//! Robots with a controller each: what they sense, compute and do.
 
 use core::f32::consts::PI;
 
@@ -8,7 +8,7 @@ use farsa_nn::Controller;
 use farsa_num::Stream;
 use farsa_physics::arena::{ArenaError, FreePlace};
 
-use crate::infrared::sensor_rays::Told;
+use crate::infrared::sensor_rays::RayFilter;
 use crate::team::config::TeamConfig;
 use crate::team::eyes::RobotEyes;
 use farsa_lab::PlanarWorld;
@@ -47,7 +47,7 @@ const APART: f64 = 0.1;
 
 impl<C: Controller> Team<C> {
     /// The team of a configuration, with a camera for the colours of each robot by its number; one controller for each
-    /// robot, of `inputs` inputs and four outputs, or two where nobody has LEDs to drive.
+    /// robot, of `inputs` inputs and four outputs, or two where no robot has LEDs to drive.
     ///
     /// # Errors
     /// [`Error::Other`] for another number of controllers, controllers of another shape, and sensors that cannot be.
@@ -130,7 +130,7 @@ impl<C: Controller> Team<C> {
             }
             let at = found.ok_or(why)?;
             world.place_body(member.parts.body, Pose::planar(at, stream.range(-PI, PI)), Twist::default());
-            world.arranged();
+            world.finish_placement();
             others.push((member.parts.body, self.apart));
         }
         Ok(())
@@ -141,9 +141,10 @@ impl<C: Controller> Team<C> {
         self.controllers.iter_mut().for_each(Controller::reset);
     }
 
-    /// Every robot senses, thinks and acts; `more` fills the inputs that are not its eyes', and says whether it lives.
+    /// Every robot senses, computes and acts; `more` fills the inputs that are not its eyes', and says whether it is
+    /// alive.
     ///
-    /// Who does not live stands still with its LEDs off, and neither senses nor thinks.
+    /// Dead robots stand still with their LEDs off, and neither sense nor compute.
     pub fn act<W: PlanarWorld>(
         &mut self,
         world: &mut W,
@@ -151,7 +152,7 @@ impl<C: Controller> Team<C> {
     ) {
         let Self { members, controllers, seen, x, y, .. } = self;
         let [inputs, outputs] = [x.len(), y.len()].map(|all| all / members.len().max(1));
-        // All sense before anybody acts.
+        // All sense before any acts.
         for (number, (member, x)) in members.iter_mut().zip(x.chunks_exact_mut(inputs)).enumerate() {
             let (eyes, rest) = x.split_at_mut(*seen);
             if more(world, number, &member.parts, rest) {
@@ -174,12 +175,12 @@ impl<C: Controller> Team<C> {
         }
     }
 
-    /// Tells a recorder the infrared rays of the robots, in the world in which they sensed last: all rays of robot `own`, of
+    /// Records the infrared rays of the robots, in the world in which they sensed last: all rays of robot `own`, of
     /// the others those that met something.
-    pub fn tell_rays<W: PlanarWorld>(&self, world: &W, own: usize, recorder: &mut dyn Recorder) {
+    pub fn record_rays<W: PlanarWorld>(&self, world: &W, own: usize, recorder: &mut dyn Recorder) {
         for (robot, member) in self.members.iter().enumerate() {
-            let told = if robot == own { Told::All } else { Told::Met };
-            member.eyes.tell(world, self.sensed(robot), told, recorder);
+            let filter = if robot == own { RayFilter::All } else { RayFilter::Met };
+            member.eyes.record(world, self.sensed(robot), filter, recorder);
         }
     }
 
@@ -194,7 +195,7 @@ impl<C: Controller> Team<C> {
         self.members.len()
     }
 
-    /// What a robot sensed last \[inputs\]; NaN if it does not live.
+    /// What a robot sensed last \[inputs\]; NaN if it is dead.
     pub fn sensed(&self, robot: usize) -> &[f32] {
         let inputs = self.x.len() / self.members.len().max(1);
         &self.x[robot * inputs..(robot + 1) * inputs]
@@ -217,7 +218,7 @@ impl<C: Controller> Team<C> {
     }
 }
 
-/// What a robot that does not live answers: no speed, no turn, no light.
+/// The outputs of a dead robot: no speed, no turn, no light.
 const STILL: [f32; OUTPUTS] = [0.0, 0.5, 0.0, 0.0];
 
 pub(crate) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {

@@ -1,22 +1,22 @@
-//! What there is to know of a team's mission, and its episodes over parameters.
+//! The task of a team: what is known of a scenario, and its episodes over parameters.
 
 use farsa_body::{BodyId, Recorder};
 use farsa_nn::LeakyLayout;
 use farsa_physics::arena::{Arena, World};
 
 use crate::team::config::{EYES, TeamConfig};
-use crate::team::life::{Mission, TeamLife};
+use crate::team::episode::{Scenario, TeamEpisode};
 use crate::team::robots::OUTPUTS;
 use farsa_lab::{
     ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, InWorld, Outcome, OwnedNetwork, Parameter,
     PlanarWorld, Rollout, Task, mean_of_trials, network_parameters, resting_network, seconds,
 };
-use farsa_view::Stage;
+use farsa_view::Schema;
 
-/// A team on a mission, whose networks have the parameters that are evaluated.
+/// A team in a scenario, whose networks have the parameters that are evaluated.
 #[derive(Clone)]
 pub(crate) struct TeamTask<M> {
-    life: TeamLife<M, OwnedNetwork>,
+    episode: TeamEpisode<M, OwnedNetwork>,
     layout: LeakyLayout,
     /// The population whose outcome is asked for.
     own: usize,
@@ -34,71 +34,71 @@ pub(crate) fn world(arena: Arena) -> Result<World, Error> {
     World::new(&parked(arena)).map_err(|error| Error::Other(error.to_string()))
 }
 
-/// Evaluates a mission.
+/// Evaluates a scenario.
 ///
 /// # Errors
 /// [`Error::Setting`] for an arena without room for all, [`Error::Other`] for values that make no world or team.
-pub(crate) fn evaluator<M: Mission + Clone + 'static>(mission: M) -> Result<InWorld<World, TeamTask<M>>, Error> {
-    let (config, [inputs, outputs], arena) = (mission.robots(), mission.shape(), mission.arena());
+pub(crate) fn evaluator<M: Scenario + Clone + 'static>(scenario: M) -> Result<InWorld<World, TeamTask<M>>, Error> {
+    let (config, [inputs, outputs], arena) = (scenario.robots(), scenario.shape(), scenario.arena());
     let layout = config.layout(inputs, outputs);
-    // Whether the range is one.
+    // An error if the range is empty.
     network_parameters(&layout, config.weight_range, [0.0, 1.0], "net.weight_range")?;
     let networks = (0..config.robots).map(|_| resting_network(&layout)).collect::<Result<_, _>>()?;
     let bodies = (arena.robots.len() + arena.areas.len()) as u16;
     let mut world = world(arena.clone())?;
-    let mut life = TeamLife::on(mission, networks)?;
+    let mut episode = TeamEpisode::from_scenario(scenario, networks)?;
     // Seeds of this kind are neither a run's nor a test's.
     for trial in 0..8 {
         let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
-        life.arrange(&mut world, id).map_err(|error| Error::setting(life.mission().crowded(), error))?;
+        episode.arrange(&mut world, id).map_err(|error| Error::setting(episode.scenario().crowded(), error))?;
     }
-    InWorld::in_arena(&parked(arena), TeamTask { life, layout, own: 0, bodies })
+    InWorld::in_arena(&parked(arena), TeamTask { episode, layout, own: 0, bodies })
 }
 
-impl<M: Mission, W: PlanarWorld> Episode<W> for TeamTask<M> {
+impl<M: Scenario, W: PlanarWorld> Episode<W> for TeamTask<M> {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.life.start(world, id);
+        self.episode.start(world, id);
     }
 
     fn has_started(&self) -> bool {
-        !self.life.failed()
+        !self.episode.failed()
     }
 
     fn act(&mut self, world: &mut W) {
-        self.life.act(world);
+        self.episode.act(world);
     }
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
-        self.life.judge(world)
+        self.episode.judge(world)
     }
 
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
-        self.life.team().tell_rays(world, self.own, recorder);
+        self.episode.team().record_rays(world, self.own, recorder);
     }
 
     /// Records what the robot of the own population sensed, computed and did before the step, and what that led to.
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        let Self { life, own, bodies, .. } = self;
-        let team = life.team();
+        let Self { episode, own, bodies, .. } = self;
+        let team = episode.team();
         recorder.sensors(team.sensed(*own));
         recorder.neurons(team.controllers()[*own].hidden());
         recorder.outputs(team.done(*own));
         (0..*bodies).map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
-        recorder.scalars(&life.mission().scalars(life.moment()));
-        recorder.tick(seconds(life.steps(), life.mission().robots().time_step));
+        recorder.scalars(&episode.scenario().scalars(episode.moment()));
+        recorder.tick(seconds(episode.steps(), episode.scenario().robots().time_step));
     }
 }
 
-impl<M: Mission> Rollout for TeamTask<M> {
-    /// Gives all robots their networks; of several populations robot p that of population p. Without opponents everybody
-    /// meets its like.
+impl<M: Scenario> Rollout for TeamTask<M> {
+    /// Gives all robots their networks; of several populations robot p that of population p. Without opponents each
+    /// robot meets copies of its own network.
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let Evaluation { parameters, opponents, id, .. } = *evaluation;
-        let mission = self.life.mission();
-        let count = mission.population_names().len();
-        let own = id.population(mission.population_size()).min(count - 1);
+        let scenario = self.episode.scenario();
+        let count = scenario.population_names().len();
+        let own = id.population(scenario.population_size()).min(count - 1);
         self.own = own;
-        let networks = self.life.team_mut().controllers_mut();
+        let networks = self.episode.team_mut().controllers_mut();
         if count == 1 {
             return networks.iter_mut().all(|network| network.copy_parameters(parameters).is_ok());
         }
@@ -111,48 +111,48 @@ impl<M: Mission> Rollout for TeamTask<M> {
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(self.life.team().controllers()[self.own].parameters());
+        recorder.parameters(self.episode.team().controllers()[self.own].parameters());
     }
 
     fn outcome(&self) -> Outcome {
-        self.life.outcome(self.own)
+        self.episode.outcome(self.own)
     }
 }
 
-impl<M: Mission> Task for TeamTask<M> {
+impl<M: Scenario> Task for TeamTask<M> {
     fn parameters(&self) -> Vec<Parameter> {
-        let range = self.life.mission().robots().weight_range;
+        let range = self.episode.scenario().robots().weight_range;
         network_parameters(&self.layout, range, [0.0, 1.0], "net.weight_range").unwrap_or_default()
     }
 
     fn populations(&self) -> Vec<String> {
-        self.life.mission().population_names().iter().map(|&name| name.into()).collect()
+        self.episode.scenario().population_names().iter().map(|&name| name.into()).collect()
     }
 
     fn trials(&self) -> usize {
-        self.life.mission().robots().trials
+        self.episode.scenario().robots().trials
     }
 
     fn terms(&self) -> Vec<String> {
-        self.life.mission().terms()
+        self.episode.scenario().terms()
     }
 
     /// Sensors, neurons and outputs are those of the first robot, or of the individual's where populations meet.
-    fn stage(&self) -> Stage {
-        let mission = self.life.mission();
-        let [_, outputs] = mission.shape();
-        let stage = Stage::of_arena(&mission.arena()).with_sensors(mission.input_names());
-        let mut stage = stage.with_outputs(MOTORS.into_iter().take(outputs)).with_network(&self.layout);
-        stage.outputs.iter_mut().chain(&mut stage.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
-        Stage { scalars: mission.channels(), ..stage }
+    fn schema(&self) -> Schema {
+        let scenario = self.episode.scenario();
+        let [_, outputs] = scenario.shape();
+        let schema = Schema::from_arena(&scenario.arena()).with_sensors(scenario.input_names());
+        let mut schema = schema.with_outputs(MOTORS.into_iter().take(outputs)).with_network(&self.layout);
+        schema.outputs.iter_mut().chain(&mut schema.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
+        Schema { scalars: scenario.channels(), ..schema }
     }
 
     fn description(&self) -> Description {
-        let (mission, layout) = (self.life.mission(), &self.layout);
-        let (config, [inputs, outputs]) = (mission.robots(), mission.shape());
+        let (scenario, layout) = (self.episode.scenario(), &self.layout);
+        let (config, [inputs, outputs]) = (scenario.robots(), scenario.shape());
         let whose = if self.populations().len() == 1 { ", the same in all robots" } else { "" };
         Description {
-            sensors: mission.inputs(),
+            sensors: scenario.inputs(),
             motors: motor_groups().into_iter().take(outputs / 2).collect(),
             network: format!("{inputs}-{}-{outputs}, recurrent hidden layer{whose}", layout.hidden()),
             parameters: layout.parameter_count(),

@@ -6,26 +6,26 @@ use farsa_nn::LeakyLayout;
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
 
+use crate::walking::episode::{Brain, Launch, SENSES, Walk, WalkerEpisode};
 use crate::walking::gait::Rules;
-use crate::walking::life::{Brain, Launch, SENSES, Walk, WalkerLife};
+use crate::walking::schema::{drawn, exported, schema};
 #[cfg(feature = "rapier")]
 use crate::walking::settings::rapier_options;
 use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk};
-use crate::walking::stage::{drawn, exported, stage};
 use crate::walking::walker::{Legs, Walker};
 use crate::worlds::Engine;
 use farsa_lab::{
     Bodies, ChannelGroup, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
     Genotype, Note, Outcome, Parameter, Setting, Settings, Task, mean_of_trials, network_parameters, run_episode,
 };
-use farsa_view::Stage;
+use farsa_view::Schema;
 
 /// Which bodies walk far? `[McGeer1990]`
 ///
 /// Genes make the legs, the masses, the soles, and the push that a walker begins with; the distance that it
 /// walks is its fitness. Under `passive` it walks down a slope without motor and controller; under `powered` on flat ground,
 /// and further genes make a small network that drives a motor at the hip. Distance is counted where feet come to
-/// stand; whoever rolls, slides, hops or finds energy earns nothing by it ([`Rules`]).
+/// stand; a body that rolls, slides, hops or finds energy earns nothing by it ([`Rules`]).
 ///
 /// Deviations from the source: its walkers are built, not evolved; hip spacing is a gene that cannot matter, because the
 /// pairs of legs keep the walker in a plane: it shows what genes do that nothing selects.
@@ -124,8 +124,8 @@ impl Config {
         Some((Walker { legs, hip_mass: hip, hip_spacing: spacing, ..self.walker }, launch))
     }
 
-    /// A walker with these parameters, and its life.
-    fn life(&self, parameters: &[f32]) -> Option<(Robot, WalkerLife)> {
+    /// A walker with these parameters, and its episode.
+    fn episode(&self, parameters: &[f32]) -> Option<(Robot, WalkerEpisode)> {
         let (walker, launch) = self.body(parameters)?;
         let (robot, parts) = walker.robot();
         let brain = match self.layout() {
@@ -134,7 +134,7 @@ impl Config {
             }
             None => None,
         };
-        Some((robot, WalkerLife::new(walker, parts, self.walk, launch, brain)))
+        Some((robot, WalkerEpisode::new(walker, parts, self.walk, launch, brain)))
     }
 
     /// A walker in our articulated world.
@@ -266,13 +266,13 @@ impl Walkers {
         self.config.body(parameters).map_or(self.config.walker, |(walker, _)| walker)
     }
 
-    fn with_network(&self, stage: Stage) -> Stage {
-        let Some(layout) = self.config.layout() else { return stage };
+    fn with_network(&self, schema: Schema) -> Schema {
+        let Some(layout) = self.config.layout() else { return schema };
         let senses = ["outer legs", "inner legs against outer", "speed of the outer legs", "speed of the inner legs"];
-        let mut stage = stage.with_sensors(senses.into_iter().chain(["outer touch", "inner touch"]));
-        stage = stage.with_outputs(["hip torque"]).with_network(&layout);
-        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
-        stage
+        let mut schema = schema.with_sensors(senses.into_iter().chain(["outer touch", "inner touch"]));
+        schema = schema.with_outputs(["hip torque"]).with_network(&layout);
+        schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        schema
     }
 }
 
@@ -281,11 +281,11 @@ impl Task for Walkers {
         let of_body = BODY.iter().zip(self.config.ranges);
         // Bodies are computed from numbers that f32 holds.
         let of_body = of_body.map(|(part, ends)| Parameter::new(part.key, ends.map(|end| f64::from(end as f32))));
-        let of_network = self
+        let to_network = self
             .config
             .layout()
             .and_then(|layout| network_parameters(&layout, self.config.weights, [0.0, 1.0], "network.range").ok());
-        of_body.chain(of_network.into_iter().flatten()).collect()
+        of_body.chain(to_network.into_iter().flatten()).collect()
     }
 
     fn trials(&self) -> usize {
@@ -296,11 +296,11 @@ impl Task for Walkers {
         vec!["distance [m]".into()]
     }
 
-    /// The stage of the middle of all bodies.
-    fn stage(&self) -> Stage {
+    /// The schema of the middle of all bodies.
+    fn schema(&self) -> Schema {
         let genotype = Genotype::new(&self.parameters()[..BODY_PARAMETERS], u16::BITS);
         let middle = genotype.decode(&[u16::MAX / 2; BODY_PARAMETERS]).unwrap_or_default();
-        self.with_network(stage(&exported(&self.body(&middle))))
+        self.with_network(schema(&exported(&self.body(&middle))))
     }
 
     fn description(&self) -> Description {
@@ -347,21 +347,21 @@ impl Exports for Walkers {
 }
 
 impl Bodies for Walkers {
-    fn stage_with(&self, parameters: &[f32]) -> Stage {
-        self.with_network(stage(&drawn(&self.body(parameters))))
+    fn schema_with(&self, parameters: &[f32]) -> Schema {
+        self.with_network(schema(&drawn(&self.body(parameters))))
     }
 }
 
 impl Evaluator for Walkers {
     /// Success is ten strides, twenty steps, without a fall.
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
-        let Some((robot, life)) = self.config.life(evaluation.parameters) else { return Outcome::failed() };
+        let Some((robot, episode)) = self.config.episode(evaluation.parameters) else { return Outcome::failed() };
         match self.config.engine {
-            Engine::Articulated => walk_in(self.config.world(&robot), life, evaluation.id, recorder),
+            Engine::Articulated => walk_in(self.config.world(&robot), episode, evaluation.id, recorder),
             #[cfg(feature = "rapier")]
             Engine::Rapier => {
-                let options = rapier_options(&self.config.walk, life.gait().walker(), self.config.substeps, 40);
-                walk_in(farsa_physics::rapier::World::new(&robot, &options).ok(), life, evaluation.id, recorder)
+                let options = rapier_options(&self.config.walk, episode.gait().walker(), self.config.substeps, 40);
+                walk_in(farsa_physics::rapier::World::new(&robot, &options).ok(), episode, evaluation.id, recorder)
             }
             #[cfg(not(feature = "rapier"))]
             Engine::Rapier => Outcome::failed(),
@@ -370,18 +370,23 @@ impl Evaluator for Walkers {
 }
 
 /// A walk in a world; there is none for a body that cannot be.
-fn walk_in<W>(world: Option<W>, mut life: WalkerLife, id: EpisodeId, mut recorder: Option<&mut dyn Recorder>) -> Outcome
+fn walk_in<W>(
+    world: Option<W>,
+    mut episode: WalkerEpisode,
+    id: EpisodeId,
+    mut recorder: Option<&mut dyn Recorder>,
+) -> Outcome
 where
     W: farsa_body::World,
-    WalkerLife: Episode<W>,
+    WalkerEpisode: Episode<W>,
 {
     let Some(mut world) = world else { return Outcome::failed() };
-    if let (Some(recorder), Some(brain)) = (&mut recorder, life.brain()) {
+    if let (Some(recorder), Some(brain)) = (&mut recorder, episode.brain()) {
         recorder.parameters(brain.parameters());
     }
-    run_episode(&mut life, &mut world, id, recorder);
-    let mut outcome = outcome(&life);
-    let gait = life.gait();
+    run_episode(&mut episode, &mut world, id, recorder);
+    let mut outcome = outcome(&episode);
+    let gait = episode.gait();
     let walker = gait.walker();
     outcome.notes.push(("work of the motor [J]", Note::from(gait.energies()[0])));
     outcome.notes.push(("energy gained [J]", Note::from(gait.energies()[1])));

@@ -45,7 +45,7 @@ pub struct Rules {
     pub longest_flight: f64,
     /// How much energy may appear from nowhere, in weight times leg.
     pub largest_gain: f64,
-    /// How long a footfall shakes the walker before its rate can be told \[s\].
+    /// How long a footfall shakes the walker before its rate can be measured \[s\].
     pub settling: f64,
 }
 
@@ -90,11 +90,11 @@ enum Phase {
     Both,
 }
 
-/// The account of a walk.
+/// The record of a walk.
 ///
 /// A leg that swings has no ground from the moment its foot leaves the ground until that foot is ahead of the standing
 /// one and above the ground again: stiff legs would scuff as they pass. A step counts only when the foot ahead carries
-/// and the hind foot has left the ground, so whoever rolls, slides, hops or stands makes none.
+/// and the hind foot has left the ground, so a body that rolls, slides, hops or stands makes none.
 #[derive(Clone, Debug)]
 pub struct Gait {
     walker: Walker,
@@ -120,7 +120,7 @@ pub struct Gait {
 }
 
 impl Gait {
-    /// The account of a walker's walks under a gravity \[m/s2\] in steps of a time \[s\].
+    /// The record of a walker's walks under a gravity \[m/s2\] in steps of a time \[s\].
     pub fn new(walker: Walker, parts: WalkerParts, rules: Rules, gravity: [f64; 3], time_step: f64) -> Self {
         Self {
             walker,
@@ -145,7 +145,7 @@ impl Gait {
         }
     }
 
-    /// Puts a world's walker on its stance foot and opens a new account.
+    /// Puts a world's walker on its stance foot and resets the score.
     pub fn start<W>(&mut self, world: &mut W, stance: usize, posture: &Posture)
     where
         W: Joints + Arrange + Handles<Joint = JointId> + ?Sized,
@@ -155,7 +155,7 @@ impl Gait {
         let fresh = Self::new(self.walker, self.parts, self.rules, self.gravity, self.time_step);
         *self = Self { stance, ..fresh };
         self.ground(world, 1 - stance, false);
-        self.last = Posture::of(world, &self.parts);
+        self.last = Posture::from_world(world, &self.parts);
         self.started = self.sole(&self.last, stance)[0];
         let first = Footfall { foot: stance, place: self.started, ..Footfall::default() };
         self.footfalls = [first; 2];
@@ -168,7 +168,7 @@ impl Gait {
         W: Arrange + Handles<Joint = JointId> + ?Sized,
     {
         world.place_joint(self.parts.plates[foot], if there { 0.0 } else { ASIDE as f32 }, 0.0);
-        world.arranged();
+        world.finish_placement();
     }
 
     /// The lowest point of a sole, x and z \[m\].
@@ -185,12 +185,12 @@ impl Gait {
     {
         self.ticks += 1;
         self.work += work;
-        let now = Posture::of(world, &self.parts);
+        let now = Posture::from_world(world, &self.parts);
         let touching = self.parts.soles.map(|sole| world.touches(sole));
         self.end = self.fault(&now, touching);
         if self.end.is_none() {
             self.follow(world, &now, touching);
-            self.tell_rate(&now);
+            self.set_rate(&now);
         }
         self.last = now;
         self.end
@@ -262,8 +262,8 @@ impl Gait {
         }
     }
 
-    /// Tells the rate after the last footfall once it can be known.
-    fn tell_rate(&mut self, now: &Posture) {
+    /// Sets the rate after the last footfall once it can be known.
+    fn set_rate(&mut self, now: &Posture) {
         let [_, fall] = &mut self.footfalls;
         if self.steps == 0 || fall.rates.is_some() || self.phase == Phase::Both {
             return;

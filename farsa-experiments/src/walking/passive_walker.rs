@@ -1,7 +1,9 @@
 //! The experiment `passive-walker`: two legs walk down a slope by themselves.
 
+pub use crate::walking::{
+    episode::Brain, episode::Launch, episode::Pace, episode::SENSES, episode::Walk, episode::WalkerEpisode,
+};
 pub use crate::walking::{gait::End, gait::Footfall, gait::Gait, gait::Rules};
-pub use crate::walking::{life::Brain, life::Launch, life::Pace, life::SENSES, life::Walk, life::WalkerLife};
 pub use crate::walking::{walker::Legs, walker::Posture, walker::Walker, walker::WalkerParts};
 pub use crate::worlds::Engine;
 
@@ -10,14 +12,14 @@ use farsa_models::MjcfOptions;
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
 
+use crate::walking::schema::{drawn, exported, schema};
 use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk};
 use crate::walking::simplest_model::{ModelGait, SLOPES, WalkingModel};
-use crate::walking::stage::{drawn, exported, stage};
 use farsa_lab::{
     Bodies, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, Note,
     Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials,
 };
-use farsa_view::Stage;
+use farsa_view::Schema;
 
 /// How near does a rigid body with light feet come to the simplest walking model? \[Garcia1998\]
 ///
@@ -72,7 +74,7 @@ impl Config {
             substeps: self.substeps,
             gravity: Walker::gravity(self.walk.gravity, self.walk.slope),
             sweeps: 20,
-            slip: 1e-6,
+            friction_compliance: 1e-6,
             margin: 1e-6 * self.walker.legs[0].length,
             ..Options::default()
         };
@@ -221,33 +223,33 @@ pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapi
 /// A walk on the slope, beside the gait of the simplest walking model.
 pub struct PassiveTrial {
     config: Config,
-    life: WalkerLife,
+    episode: WalkerEpisode,
     gait: ModelGait,
 }
 
 impl PassiveTrial {
     fn new(config: Config, parts: WalkerParts) -> Result<Self, Error> {
         let gait = config.gait()?;
-        let life = WalkerLife::new(config.walker, parts, config.walk, config.launch(&gait), None);
-        Ok(Self { config, life, gait })
+        let episode = WalkerEpisode::new(config.walker, parts, config.walk, config.launch(&gait), None);
+        Ok(Self { config, episode, gait })
     }
 }
 
 impl<W> Episode<W> for PassiveTrial
 where
-    WalkerLife: Episode<W>,
+    WalkerEpisode: Episode<W>,
 {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.life.start(world, id);
+        self.episode.start(world, id);
     }
     fn act(&mut self, world: &mut W) {
-        self.life.act(world);
+        self.episode.act(world);
     }
     fn judge(&mut self, world: &mut W) -> Option<f64> {
-        self.life.judge(world)
+        self.episode.judge(world)
     }
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        self.life.record(world, recorder);
+        self.episode.record(world, recorder);
     }
 }
 
@@ -265,8 +267,8 @@ impl Task for PassiveTrial {
         vec!["distance [m]".into()]
     }
 
-    fn stage(&self) -> Stage {
-        stage(&exported(&self.config.walker))
+    fn schema(&self) -> Schema {
+        schema(&exported(&self.config.walker))
     }
 
     fn description(&self) -> Description {
@@ -300,8 +302,8 @@ impl Exports for PassiveTrial {
 }
 
 impl Bodies for PassiveTrial {
-    fn stage_with(&self, _: &[f32]) -> Stage {
-        stage(&drawn(&self.config.walker))
+    fn schema_with(&self, _: &[f32]) -> Schema {
+        schema(&drawn(&self.config.walker))
     }
 }
 
@@ -311,10 +313,10 @@ impl Rollout for PassiveTrial {
     }
 
     fn outcome(&self) -> Outcome {
-        let mut outcome = outcome(&self.life);
+        let mut outcome = outcome(&self.episode);
         // A walk of fewer steps has no pace: 0 of everything, so that the same notes stand in every trial.
-        let pace = self.life.pace().unwrap_or_default();
-        let unit = self.life.unit_of_time();
+        let pace = self.episode.pace().unwrap_or_default();
+        let unit = self.episode.unit_of_time();
         let of_model = |found: f64, known: f64| 100.0 * (found / known - 1.0);
         outcome.notes.extend([
             ("step angle off the model's [%]", Note::from(of_model(pace.angle, self.gait.angle))),

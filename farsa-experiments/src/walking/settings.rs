@@ -1,10 +1,10 @@
-//! The settings that all experiments with walkers have, and how a walk is lived and told.
+//! The settings that all experiments with walkers have, and how a walk is run and recorded.
 
 use farsa_lab::{ENGINE, Error, Note, Outcome, Setting, Settings};
 use farsa_models::MjcfOptions;
 
+use crate::walking::episode::{Walk, WalkerEpisode};
 use crate::walking::gait::End;
-use crate::walking::life::{Walk, WalkerLife};
 use crate::walking::walker::Walker;
 use crate::worlds::Engine;
 
@@ -74,11 +74,11 @@ pub(crate) fn mjcf_options(walk: &Walk) -> MjcfOptions {
 }
 
 /// The outcome of a walk that has ended; success is ten strides, twenty steps, without a fall.
-pub(crate) fn outcome(life: &WalkerLife) -> Outcome {
-    let gait = life.gait();
+pub(crate) fn outcome(episode: &WalkerEpisode) -> Outcome {
+    let gait = episode.gait();
     let end = gait.end().map_or("time", End::name);
     Outcome {
-        terms: vec![life.distance()],
+        terms: vec![episode.distance()],
         steps: gait.ticks(),
         success: gait.end().is_none() && gait.steps() >= 20,
         notes: vec![("end", Note::from(end)), ("steps made", Note::from(f64::from(gait.steps())))],

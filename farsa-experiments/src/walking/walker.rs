@@ -218,7 +218,7 @@ pub struct Posture {
 
 impl Posture {
     /// How a world's walker stands and moves.
-    pub fn of<W>(world: &W, parts: &WalkerParts) -> Self
+    pub fn from_world<W>(world: &W, parts: &WalkerParts) -> Self
     where
         W: farsa_body::Joints<Joint = JointId> + ?Sized,
     {
@@ -233,7 +233,7 @@ impl Posture {
         }
     }
 
-    /// Puts a world's walker so; [`Arrange::arranged`](farsa_body::Arrange::arranged) must follow.
+    /// Puts a world's walker so; [`Arrange::finish_placement`](farsa_body::Arrange::finish_placement) must follow.
     pub fn place<W>(&self, world: &mut W, parts: &WalkerParts)
     where
         W: farsa_body::Arrange<Joint = JointId> + ?Sized,

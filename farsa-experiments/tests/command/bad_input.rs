@@ -33,7 +33,7 @@ fn worlds() {
         assert!(here.join("r/test-articulated.csv").is_file() && !here.join("r/test.csv").exists());
         ok(farsa(), &here, "test r --trials 4 --world rapier");
         assert!(here.join("r/test.csv").is_file());
-        ok(farsa(), &here, "replay r --trial 0 --world articulated --out life.csv");
+        ok(farsa(), &here, "replay r --trial 0 --world articulated --out trial.csv");
         ok(farsa(), &here, "run discrimination --generations 1 --set trial.count=1 --set trial.steps=5 --out d");
         ok(farsa(), &here, "test d --trials 4 --world rapier");
         assert!(here.join("d/test-rapier.csv").is_file() && !here.join("d/test.csv").exists());

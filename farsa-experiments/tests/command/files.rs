@@ -30,7 +30,7 @@ fn damaged_files_are_named() {
     for (file, arguments, kind) in [
         ("checkpoint.bin", resume, "checkpoint"),
         ("champion.bin", "test r", "champion"),
-        ("lineage.bin", "replay r", "lineage"),
+        ("record.bin", "replay r", "record"),
     ] {
         refused(&here, file, &|bytes| bytes.truncate(bytes.len() / 2), arguments, &["truncated"]);
         refused(&here, file, &|bytes| bytes.truncate(5), arguments, &["truncated"]);
@@ -56,7 +56,7 @@ fn missing_files_are_named() {
     for (file, arguments) in [
         ("checkpoint.bin", "run --resume r"),
         ("champion.bin", "test r"),
-        ("lineage.bin", "replay r"),
+        ("record.bin", "replay r"),
         ("fitness.csv", "run --resume r"),
     ] {
         let (path, away) = (here.join("r").join(file), here.join(file));
@@ -93,7 +93,7 @@ fn a_full_disk_loses_nothing() {
     assert_eq!(said.code, Some(1), "{said:?}");
     assert!(said.err.contains("cannot write r/"), "{said:?}");
     assert!(said.err.contains("generation 5"), "it should come some way: {said:?}");
-    assert_eq!(before[1..4], results(&here.join("r"))[1..4], "champion, lineage and checkpoint as they were");
+    assert_eq!(before[1..4], results(&here.join("r"))[1..4], "champion, record and checkpoint as they were");
     // A new run finds no room and leaves no rest.
     let said = on_a_full_disk(&here, 0, "run cart --out new");
     assert_eq!(said.code, Some(1), "{said:?}");
@@ -114,7 +114,7 @@ fn a_result_that_cannot_be_written_is_an_error() {
     let said = say(own(), &here, "replay r --out /dev/full");
     assert_eq!(said.code, Some(1), "{said:?}");
     assert!(said.err.contains("cannot write"), "{said:?}");
-    // But a reader who has seen enough is none.
+    // But a reader that has stopped is no error.
     let script = "\"$0\" replay r | head -n 2";
     let arguments = [std::ffi::OsStr::new("-c"), script.as_ref(), own().as_os_str()];
     let said = crate::tool::Said::from(command(Path::new("/bin/sh"), &here, &arguments).output().expect("a shell"));

@@ -143,7 +143,7 @@ fn imported_genotypes_are_tested_and_replayed_and_nothing_else() {
     assert!(said.code == Some(1) && said.err.contains("genotypes.bin: truncated"), "{said:?}");
 }
 
-/// Genotypes of predator-prey as files, the same as lists, and the options for short lives.
+/// Genotypes of predator-prey as files, the same as lists, and the options for short trials.
 const SHORT: &str = "--set trial.steps=80 --set trial.count=2";
 
 fn hunters(here: &std::path::Path) -> [String; 3] {
@@ -259,7 +259,7 @@ fn imported_populations_meet_in_replays() {
         let last: Vec<&str> = csv.lines().last().expect("a line").split(',').collect();
         ["time [s]", "gap [m]", "predator's reward", "prey's reward"].map(|name| last[at(name)].to_owned())
     };
-    // In trial 0 the first of each meet: it is one life, whoever it is told of.
+    // In trial 0 the first of each meet: it is one episode, from whichever side it is recorded.
     assert_eq!(rewards(0, 0), rewards(2, 0));
     assert_eq!(rewards(1, 1), rewards(3, 1));
     assert_ne!(rewards(0, 0), rewards(1, 0));

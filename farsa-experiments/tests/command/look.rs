@@ -1,4 +1,4 @@
-//! Lives are looked at: pages and pictures of a run.
+//! Looking at trials: pages and pictures of a run.
 
 use std::fs;
 
@@ -23,9 +23,9 @@ fn a_page_holds_the_lives_that_were_asked_for() {
     let names: Vec<&str> = page["lives"].as_array().expect("lives").iter().filter_map(|l| l["name"].as_str()).collect();
     assert_eq!(names.len(), 6);
     assert!(names[2].starts_with("trial 2: rough 1, generation 1") && names[3].starts_with("trial 0: rough 2"));
-    let life = &page["lives"][0];
-    assert_eq!((&life["ticks"], &life["bodies"]), (&500.into(), &serde_json::json!([])));
-    assert_eq!(life["channels"][2]["unit"], "N");
+    let episode = &page["lives"][0];
+    assert_eq!((&episode["ticks"], &episode["bodies"]), (&500.into(), &serde_json::json!([])));
+    assert_eq!(episode["channels"][2]["unit"], "N");
 
     ok(own(), &here, "replay r1 --generation 0 --individual 3 --trial 1 --html one.html");
     let page = data(&fs::read_to_string(here.join("one.html")).expect("the page"));

@@ -99,13 +99,13 @@ fn quiet_says_nothing_and_errors_stay() {
         "run cart --generations 3 --out r --quiet",
         "--quiet run --resume r --generations 4",
         "test r --trials 3 -q",
-        "replay r --out life.csv --quiet",
+        "replay r --out trial.csv --quiet",
         "report r --html r.html --quiet",
     ] {
         let said = say(own(), &here, arguments);
         assert_eq!((said.code, said.out.as_str(), said.err.as_str()), (Some(0), "", ""), "{arguments}");
     }
-    assert!(here.join("r/test.csv").is_file() && here.join("r.html").is_file() && here.join("life.csv").is_file());
+    assert!(here.join("r/test.csv").is_file() && here.join("r.html").is_file() && here.join("trial.csv").is_file());
     let said = say(own(), &here, "replay r --quiet --trial 0");
     assert!(said.out.starts_with("trial,step,") && said.err.is_empty(), "{said:?}");
     let said = say(own(), &here, "test nowhere --quiet");
@@ -136,38 +136,47 @@ fn json_is_json() {
     let said = say(own(), &here, "replay r --json --trial 0");
     assert!(said.out.starts_with("trial,step,"));
     assert_eq!(parsed(&said.err)["file"], serde_json::Value::Null);
-    let said = say(own(), &here, "replay r --json --out life.csv");
-    let life = parsed(&said.out);
-    assert_eq!((&life["file"], said.err.as_str()), (&"life.csv".into(), ""));
-    assert_eq!((&life["directory"], &life["experiment"], &life["seed"]), (&"r".into(), &"cart".into(), &1.into()));
-    assert_eq!((&life["generation"], &life["individual"]), (&2.into(), &run["champion"]["individual"]));
-    assert_eq!((&life["fitness"], &life["steps"]), (&best.into(), &1500.into()));
-    assert_eq!(life["compared"], serde_json::Value::Null);
-    let trials = life["trials"].as_array().expect("a list");
+    let said = say(own(), &here, "replay r --json --out trial.csv");
+    let episode = parsed(&said.out);
+    assert_eq!((&episode["file"], said.err.as_str()), (&"trial.csv".into(), ""));
+    assert_eq!(
+        (&episode["directory"], &episode["experiment"], &episode["seed"]),
+        (&"r".into(), &"cart".into(), &1.into())
+    );
+    assert_eq!((&episode["generation"], &episode["individual"]), (&2.into(), &run["champion"]["individual"]));
+    assert_eq!((&episode["fitness"], &episode["steps"]), (&best.into(), &1500.into()));
+    assert_eq!(episode["compared"], serde_json::Value::Null);
+    let trials = episode["trials"].as_array().expect("a list");
     let sum: f64 = trials.iter().map(|trial| trial["fitness"].as_f64().expect("a number")).sum();
-    assert!((sum - best).abs() < 1e-12 && trials.len() == 3, "{life}");
+    assert!((sum - best).abs() < 1e-12 && trials.len() == 3, "{episode}");
     assert_eq!((&trials[2]["trial"], &trials[2]["steps"]), (&2.into(), &500.into()));
-    assert_eq!(life["success"], trials.iter().all(|trial| trial["success"] == true));
+    assert_eq!(episode["success"], trials.iter().all(|trial| trial["success"] == true));
 
-    // A life that failed has earned no number; the other run is told of as well.
+    // An episode that failed has earned no number; the other run is told of as well.
     let other = "run cart --generations 1 --seed 5 --set cart.friction=0 --out s";
     ok(own(), &here, other);
     let log = fs::read_to_string(here.join("s/fitness.csv")).expect("the log");
     assert!(!log.ends_with(",0\n"), "some carts leave the track: {log}");
-    let lives = (0..20).map(|individual| {
+    let episodes = (0..20).map(|individual| {
         let page = format!("{individual}.html");
         let line = format!("replay s --generation 0 --individual {individual} --trial 1 --compare r --html {page}");
         parsed(&ok(own(), &here, &format!("{line} --json")))
     });
-    let lives: Vec<serde_json::Value> = lives.collect();
-    for (individual, life) in lives.iter().enumerate() {
-        assert_eq!((&life["individual"], &life["compared"]["individual"]), (&individual.into(), &individual.into()));
-        assert_eq!((&life["directory"], &life["compared"]["directory"]), (&"s".into(), &"r".into()));
-        assert_eq!(life["fitness"].is_null(), life["steps"] == 0, "{life}");
-        let words = life["summary"].as_str().expect("words");
+    let episodes: Vec<serde_json::Value> = episodes.collect();
+    for (individual, episode) in episodes.iter().enumerate() {
+        assert_eq!(
+            (&episode["individual"], &episode["compared"]["individual"]),
+            (&individual.into(), &individual.into())
+        );
+        assert_eq!((&episode["directory"], &episode["compared"]["directory"]), (&"s".into(), &"r".into()));
+        assert_eq!(episode["fitness"].is_null(), episode["steps"] == 0, "{episode}");
+        let words = episode["summary"].as_str().expect("words");
         assert!(words.lines().count() == 2 && words.contains(", trial 1: "), "{words}");
     }
-    assert!(lives.iter().any(|life| life["fitness"].is_null()) && lives.iter().any(|life| life["steps"] == 500));
+    assert!(
+        episodes.iter().any(|episode| episode["fitness"].is_null())
+            && episodes.iter().any(|episode| episode["steps"] == 500)
+    );
 }
 
 #[test]
@@ -192,15 +201,15 @@ fn a_picture_is_told_of() {
 }
 
 #[test]
-fn a_bench_counts_lives() {
+fn a_bench_counts_trials() {
     let here = scratch("bench");
     let parsed = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect(text);
     let short = "--set trial.steps=50 --set evolution.generations=30 --set cart.friction=5 --seconds 0.05";
     let found = parsed(&ok(own(), &here, &format!("bench {short} --threads 1 --json")));
     assert_eq!((&found["experiment"], &found["condition"]), (&"cart".into(), &"rough".into()));
     let number = |key: &str| found[key].as_f64().expect(key);
-    // Nobody leaves the track in half a second, so a generation is 60 lives of 50 steps.
-    assert_eq!((number("lives"), number("steps")), (60.0 * number("rounds"), 3000.0 * number("rounds")));
+    // No cart leaves the track in half a second, so a generation is 60 episodes of 50 steps.
+    assert_eq!((number("trials"), number("steps")), (60.0 * number("rounds"), 3000.0 * number("rounds")));
     assert!(number("rounds") >= 1.0 && number("seconds") > 0.0);
     assert_eq!((number("steps") / number("seconds"), number("threads")), (number("steps_per_second"), 1.0));
     assert_eq!(number("steps_per_second_and_core"), number("steps_per_second"));

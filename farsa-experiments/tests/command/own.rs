@@ -44,7 +44,7 @@ fn it_learns_and_its_best_life_is_seen_again() {
         "some carts leave the track at first, then they learn: {log}"
     );
 
-    // The fitness of every generation's best is earned again by the life that is rebuilt from the lineage.
+    // The fitness of every generation's best is earned again by the episode that is rebuilt from the record.
     for (generation, row) in rows.iter().enumerate() {
         let said = say(own(), &here, &format!("replay runs/cart-rough-3 --generation {generation}"));
         assert_eq!(said.code, Some(0), "{said:?}");
@@ -77,7 +77,7 @@ fn the_configuration_of_a_run_repeats_it() {
     let here = scratch("own-config");
     ok(own(), &here, "run cart --condition smooth --generations 3 --seed 5 --set cart.motor=switched --out a");
     ok(own(), &here, "run --config a/config.toml --out b");
-    for name in ["config.toml", "fitness.csv", "champion.bin", "lineage.bin"] {
+    for name in ["config.toml", "fitness.csv", "champion.bin", "record.bin", "lineage.csv"] {
         let read = |run: &str| fs::read(here.join(run).join(name)).expect(name);
         assert_eq!(read("a"), read("b"), "{name}");
     }

@@ -1,4 +1,4 @@
-//! Many runs by one command: the same as so many commands, and as often interrupted as anybody likes.
+//! Many runs by one command: the same as so many commands, and interrupted any number of times.
 
 use std::fs;
 use std::path::Path;
@@ -28,7 +28,7 @@ fn the_same_as_single_runs() {
     }
     assert!(said.out.contains("champions' fitness: median "), "{said:?}");
 
-    // Again: nothing is lived, nothing is touched, and the summary is the same.
+    // Again: nothing is evaluated, nothing is touched, and the summary is the same.
     let before = content(&here);
     let again = say(own(), &here, &format!("{run} --replications 3"));
     assert_eq!((again.code, &again.out), (Some(0), &said.out));
@@ -72,7 +72,7 @@ fn what_is_in_the_way_stops_them_before_they_begin() {
     fs::write(here.join("runs/cart-rough-3/letter.txt"), "dear").expect("a file");
     refused(run, "runs/cart-rough-3: already holds other files");
     fs::remove_file(here.join("runs/cart-rough-3/letter.txt")).expect("a file");
-    // An empty directory is in nobody's way.
+    // An empty directory is not in the way.
     ok(own(), &here, run);
     refused(&format!("{run} --set cart.friction=2"), "`cart.friction` = 0.5, not 2");
     refused(
@@ -86,7 +86,7 @@ fn what_is_in_the_way_stops_them_before_they_begin() {
     assert!(!here.join("x").exists());
 }
 
-/// Lives long enough that a generation takes a few milliseconds.
+/// Trials long enough that a generation takes a few milliseconds.
 const SLOW: &str = "run cart --set trial.steps=5000 --set cart.friction=5 --generations 600 --seed 2";
 
 fn generations(run: &Path) -> usize {
@@ -99,7 +99,7 @@ fn cut_short(here: &Path, line: &str, signal: &str) -> Said {
     let arguments: Vec<&str> = line.split(' ').collect();
     let mut child = command(own(), here, &arguments);
     if signal == "-KILL" {
-        // Nobody reads what it says: a full pipe would hold it up.
+        // Nothing reads its output: a full pipe would hold it up.
         child.stderr(Stdio::null());
     }
     let mut child = child.spawn().expect("the program");

@@ -160,7 +160,7 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
     ok(farsa(), &here, "report arm --html arm.html --md arm.md");
     assert_eq!(fs::read_to_string(here.join("arm.html")).expect("the page").matches("<figure><svg").count(), 2);
     assert!(fs::read_to_string(here.join("arm.md")).expect("the page").contains("![champion](<arm-champion-1.svg>)"));
-    ok(farsa(), &here, "replay arm --html life.html --compare arm --quiet");
+    ok(farsa(), &here, "replay arm --html trial.html --compare arm --quiet");
     ok(own(), &here, "run cart --generations 1 --out cart --quiet");
     for (program, arguments, words) in [
         (farsa(), "draw arm --out end.png", "end.png: there is one already"),
@@ -168,7 +168,7 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
         (farsa(), "draw arm --camera tpo --out new.svg", "nearest is `top`"),
         (farsa(), "draw arm --size 20 --out new.svg", "not of the form 1200x800"),
         (farsa(), "draw arm --time 7 --out new.svg", "from 0.01 to 0.1 s"),
-        (farsa(), "replay arm --html life.html", "life.html: there is one already"),
+        (farsa(), "replay arm --html trial.html", "trial.html: there is one already"),
         (farsa(), "replay arm --html new.html --out new.csv", "cannot be used with"),
         (farsa(), "replay arm --compare arm", "--html"),
         (own(), "draw cart --out new.svg", "have no bodies to draw"),

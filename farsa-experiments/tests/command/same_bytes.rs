@@ -35,7 +35,7 @@ fn more_generations_later_or_at_once() {
     assert_eq!(results(&here.join("once")), results(&here.join("twice")));
 }
 
-/// Lives long enough that a generation takes a few milliseconds.
+/// Trials long enough that a generation takes a few milliseconds.
 const SLOW: &str = "run cart --set trial.steps=5000 --set cart.friction=5 --seed 2";
 
 fn generations(run: &Path) -> usize {
@@ -63,7 +63,7 @@ fn killed_and_resumed() {
     let mut gone_on_from = Vec::new();
     // Far enough apart that a checkpoint lies between two kills on any machine that takes a second for the whole.
     for wanted in [1, LENGTH / 2] {
-        // Nobody reads what it says: a full pipe would hold it up.
+        // Nothing reads its output: a full pipe would hold it up.
         let mut child = command(own(), &here, &arguments).stderr(Stdio::null()).spawn().expect("the program");
         wait_for(&mut child, &run, wanted);
         child.kill().expect("SIGKILL");
@@ -97,7 +97,7 @@ fn interrupted_and_resumed() {
     assert!(said.err.contains("go on with `own-experiment run --resume stopped`"), "{said:?}");
     let kept = generations(&run);
     assert!((20..300).contains(&kept), "{kept}");
-    // Nothing that was finished is lived again.
+    // Nothing that was finished is evaluated again.
     let again = say(own(), &here, "run --resume stopped");
     assert_eq!(again.code, Some(0), "{again:?}");
     let first = again.err.lines().next().expect("a line");

@@ -94,6 +94,6 @@ pub(crate) fn content(directory: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 
 /// The files that must not depend on threads, interruptions or the clock.
 pub(crate) fn results(directory: &Path) -> Vec<Vec<u8>> {
-    let files = ["fitness.csv", "champion.bin", "lineage.bin", "checkpoint.bin", "config.toml"];
+    let files = ["fitness.csv", "champion.bin", "record.bin", "checkpoint.bin", "config.toml", "lineage.csv"];
     files.map(|name| fs::read(directory.join(name)).expect(name)).into()
 }

@@ -2,7 +2,7 @@
 
 use farsa_body::Recorder;
 use farsa_lab::{Description, Error, Evaluation, Evaluator, Outcome, Parameter, Setting, Settings, SimpleExperiment};
-use farsa_lab::{Stage, Task, cli, record_row};
+use farsa_lab::{Schema, Task, cli, record_row};
 use farsa_num::{Domain, Stream};
 
 fn settings(condition: &str) -> Vec<Setting> {
@@ -34,8 +34,8 @@ impl Task for Track {
     fn trials(&self) -> usize {
         3
     }
-    fn stage(&self) -> Stage {
-        Stage::of_scalars(["position [m]", "speed [m/s]", "force [N]"])
+    fn schema(&self) -> Schema {
+        Schema::from_scalars(["position [m]", "speed [m/s]", "force [N]"])
     }
     fn description(&self) -> Description {
         let (network, steps) = ("2-1, linear".into(), self.steps as usize);

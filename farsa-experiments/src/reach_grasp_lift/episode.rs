@@ -1,4 +1,4 @@
-//! A life of `reach-grasp-lift`: one trial, from the start to the last step or the sphere's fall.
+//! An episode of `reach-grasp-lift`: one trial, from the start to the last step or the sphere's fall.
 
 use std::sync::Arc;
 
@@ -8,27 +8,27 @@ use farsa_body::{
 use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::Controller;
 
-use crate::reach_grasp_lift::fitness::{Ledger, Trial};
+use crate::reach_grasp_lift::fitness::{Rewards, Trial};
 use crate::reach_grasp_lift::phase::Observation;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
 
-/// The judge of one trial: sees every step, keeps the account and says when the trial is over.
+/// The judge of one trial: sees every step, keeps the score and says when the trial is over.
 #[derive(Clone, Debug)]
 pub struct Judge {
     scene: Arc<Scene>,
     trial: Trial,
     seen: Observation,
-    earned: Ledger,
+    earned: Rewards,
 }
 
 impl Judge {
     /// A judge of trials in this scene.
     pub fn new(scene: Arc<Scene>) -> Self {
-        let (trial, seen, earned) = (Trial::default(), Observation::default(), Ledger::default());
+        let (trial, seen, earned) = (Trial::default(), Observation::default(), Rewards::default());
         Self { scene, trial, seen, earned }
     }
 
-    /// Sets the world up for a trial and opens a new account.
+    /// Sets the world up for a trial and resets the score.
     pub fn start<W>(&mut self, world: &mut W, id: EpisodeId)
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
@@ -48,13 +48,13 @@ impl Judge {
         self.seen = self.scene.observe(world);
         self.earned = self.trial.judge(&self.seen, &config.judgement);
         if !self.seen.is_finite() {
-            self.trial.ledger = Ledger { reach: f64::NAN, ..Ledger::default() };
+            self.trial.rewards = Rewards { reach: f64::NAN, ..Rewards::default() };
             return Some(f64::NAN);
         }
         self.trial.fallen = self.seen.height < 0.0;
         if self.trial.fallen || self.trial.steps >= config.steps {
             self.trial.end();
-            return Some(self.trial.ledger.total());
+            return Some(self.trial.rewards.total());
         }
         None
     }
@@ -64,7 +64,7 @@ impl Judge {
         &self.scene
     }
 
-    /// The account of the trial.
+    /// The score of the trial.
     pub fn trial(&self) -> &Trial {
         &self.trial
     }
@@ -75,7 +75,7 @@ impl Judge {
     }
 
     /// What the last step earned.
-    pub fn earned(&self) -> &Ledger {
+    pub fn earned(&self) -> &Rewards {
         &self.earned
     }
 
@@ -85,12 +85,12 @@ impl Judge {
     }
 }
 
-/// A trial lived by a controller: the robot senses, the controller steps, the motors act, every control step.
+/// A trial run by a controller: the robot senses, the controller steps, the motors act, every control step.
 ///
 /// The return of this [`Episode`] is what its one trial would earn alone; that of an individual takes the sums of the
-/// ledgers of its four trials ([`Ledger::total`]).
+/// rewards of its four trials ([`Rewards::total`]).
 #[derive(Clone, Debug)]
-pub struct ReachLife<C> {
+pub struct ReachEpisode<C> {
     judge: Judge,
     senses: Senses,
     motors: Motors,
@@ -99,8 +99,8 @@ pub struct ReachLife<C> {
     y: [f32; OUTPUTS],
 }
 
-impl<C: Controller> ReachLife<C> {
-    /// A life of this controller, whose inputs must be the sensors' channels and whose outputs the motors'.
+impl<C: Controller> ReachEpisode<C> {
+    /// A trial of this controller, whose inputs must be the sensors' channels and whose outputs the motors'.
     ///
     /// # Errors
     /// [`Error::Other`] for a controller of another shape or a scene without sensible channels.
@@ -154,7 +154,7 @@ impl<C: Controller> ReachLife<C> {
     }
 }
 
-impl<W, C> Episode<W> for ReachLife<C>
+impl<W, C> Episode<W> for ReachEpisode<C>
 where
     W: Kinematics
         + Joints

@@ -1,4 +1,4 @@
-//! A life of `predator-prey`: one robot chases another.
+//! An episode of `predator-prey`: one robot chases another.
 
 use core::f32::consts::PI;
 
@@ -9,8 +9,8 @@ use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::predator_prey::config::{NAMES, OUTPUTS, PredatorPreyConfig};
 use crate::team::config::TeamConfig;
+use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::eyes::{BLUE, RED};
-use crate::team::life::{Mission, Moment, TeamLife};
 use crate::team::robots::{Team, distance};
 use crate::team::task::{eye_groups, eye_names};
 use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
@@ -26,37 +26,37 @@ const SEEN: [[ColorBand; 1]; 2] = [[BLUE], [RED]];
 ///
 /// A controller reads 8 infrared channels and for each of the camera's sectors how much of it is the other robot; it writes
 /// speed and turn.
-pub type PredatorPreyLife<C> = TeamLife<PredatorPreyMission, C>;
+pub type PredatorPreyEpisode<C> = TeamEpisode<PredatorPreyScenario, C>;
 
-impl<C: Controller> PredatorPreyLife<C> {
-    /// A life of the predator's controller and the prey's.
+impl<C: Controller> PredatorPreyEpisode<C> {
+    /// An episode of the predator's controller and the prey's.
     ///
     /// # Errors
     /// Those of [`Team::new`].
     pub fn new(config: PredatorPreyConfig, controllers: [C; 2]) -> Result<Self, Error> {
-        Self::on(PredatorPreyMission::new(config), controllers.into())
+        Self::from_scenario(PredatorPreyScenario::new(config), controllers.into())
     }
 
     /// Whether the prey was captured.
     pub fn captured(&self) -> bool {
-        self.mission().captured
+        self.scenario().captured
     }
 
     /// Between the hulls after the last step \[m\].
     pub fn gap(&self) -> f64 {
-        self.mission().gap
+        self.scenario().gap
     }
 }
 
 /// A chase, and how it ends.
 #[derive(Clone, Debug)]
-pub struct PredatorPreyMission {
+pub struct PredatorPreyScenario {
     config: PredatorPreyConfig,
     gap: f64,
     captured: bool,
 }
 
-impl PredatorPreyMission {
+impl PredatorPreyScenario {
     /// A chase under a configuration.
     pub fn new(config: PredatorPreyConfig) -> Self {
         Self { config, gap: 0.0, captured: false }
@@ -68,7 +68,7 @@ impl PredatorPreyMission {
     }
 }
 
-impl Mission for PredatorPreyMission {
+impl Scenario for PredatorPreyScenario {
     fn robots(&self) -> &TeamConfig {
         &self.config.team
     }
@@ -96,7 +96,7 @@ impl Mission for PredatorPreyMission {
     /// Puts both on the middle line, a third and two thirds along it, at headings from the stream of [`Domain::Start`] of
     /// the id's trial, generation, and place within its population.
     ///
-    /// The same place in both populations has the same headings: the two lives of a test are one.
+    /// The same place in both populations has the same headings: the two episodes of a test are one.
     fn arrange<C: Controller, W: PlanarWorld>(
         &mut self,
         _: &Team<C>,
@@ -112,11 +112,11 @@ impl Mission for PredatorPreyMission {
             let at = [size * (robot + 1) as f32 / 3.0, 0.5 * size];
             world.place_body(BodyId(robot as u16), Pose::planar(at, stream.range(-PI, PI)), Twist::default());
         }
-        world.arranged();
+        world.finish_placement();
         Ok(())
     }
 
-    /// Capture is told by either robot's contact: one that also collides with a wall may tell of the wall only.
+    /// Capture is known from either robot's contact: one that also collides with a wall may report the wall only.
     fn judge<W: PlanarWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool {
         let [predator, prey] = [PREDATOR, PREY].map(|robot| moment.places[robot]);
         self.gap = f64::from(distance(predator, prey)) - 2.0 * self.config.team.robot.radius;

@@ -1,4 +1,4 @@
-//! A life of a team: robots with a controller each, and a mission that says what it is about.
+//! An episode of a team: robots with a controller each, and a scenario that says what they are to do.
 
 use farsa_body::ColorBand;
 use farsa_nn::Controller;
@@ -14,12 +14,12 @@ use farsa_view::Channel;
 pub struct Moment<'a> {
     /// The places of the robots after the last step \[m\].
     pub places: &'a [[f32; 2]],
-    /// Steps lived.
+    /// Steps taken.
     pub steps: u32,
 }
 
-/// What a team is to do: all that tells one experiment with a team from another.
-pub trait Mission: Send {
+/// What a team is to do: what differs between experiments with teams.
+pub trait Scenario: Send {
     /// The robots.
     fn robots(&self) -> &TeamConfig;
 
@@ -42,7 +42,7 @@ pub trait Mission: Send {
         usize::MAX
     }
 
-    /// Opens a new account and places everything for a trial, by random numbers of the id's alone.
+    /// Resets the score and places everything for a trial, by random numbers of the id's alone.
     ///
     /// # Errors
     /// [`ArenaError::NoFreePlace`] where something has no room.
@@ -53,18 +53,18 @@ pub trait Mission: Send {
         id: EpisodeId,
     ) -> Result<(), ArenaError>;
 
-    /// The setting that is to blame for too little room.
+    /// The setting that an error names when there is too little room.
     fn crowded(&self) -> &'static str {
         "world.size"
     }
 
-    /// Fills the inputs of the robot at `at` \[m\] that are not its eyes'; false if it does not live.
+    /// Fills the inputs of the robot at `at` \[m\] that are not its eyes'; false if it is dead.
     fn sense<W: PlanarWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
         let _ = (world, robot, at, rest);
         true
     }
 
-    /// Enters the step that has passed into the account; true if the trial is over before its time.
+    /// Scores the step that has passed; true if the trial is over before its time.
     fn judge<W: PlanarWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool;
 
     /// What population `own` has earned so far.
@@ -73,7 +73,7 @@ pub trait Mission: Send {
     /// Names of the terms of the fitness.
     fn terms(&self) -> Vec<String>;
 
-    /// What came of the trial for population `own`.
+    /// The outcome of the trial for population `own`.
     fn outcome(&self, own: usize, moment: Moment<'_>) -> Outcome;
 
     /// Names of a controller's inputs.
@@ -82,17 +82,17 @@ pub trait Mission: Send {
     /// The inputs in groups.
     fn inputs(&self) -> Vec<ChannelGroup>;
 
-    /// What [`scalars`](Self::scalars) tells.
+    /// The channels of [`scalars`](Self::scalars).
     fn channels(&self) -> Vec<Channel>;
 
-    /// What a recorder is told at every step beside robots and poses.
+    /// What is recorded at every step beside robots and poses.
     fn scalars(&self, moment: Moment<'_>) -> Vec<f64>;
 }
 
-/// Robots on a mission, with a controller each.
+/// Robots in a scenario, with a controller each.
 #[derive(Clone, Debug)]
-pub struct TeamLife<M, C> {
-    mission: M,
+pub struct TeamEpisode<M, C> {
+    scenario: M,
     team: Team<C>,
     /// Where the robots are after the last step \[m\].
     places: Vec<[f32; 2]>,
@@ -101,20 +101,20 @@ pub struct TeamLife<M, C> {
     failed: bool,
 }
 
-impl<M: Mission, C: Controller> TeamLife<M, C> {
-    /// A life of these controllers, one for each robot.
+impl<M: Scenario, C: Controller> TeamEpisode<M, C> {
+    /// An episode with these controllers, one for each robot.
     ///
     /// # Errors
     /// Those of [`Team::new`].
-    pub fn on(mission: M, controllers: Vec<C>) -> Result<Self, Error> {
-        let config = mission.robots();
+    pub fn from_scenario(scenario: M, controllers: Vec<C>) -> Result<Self, Error> {
+        let config = scenario.robots();
         Ok(Self {
-            team: Team::new(config, |robot| mission.colors(robot), mission.shape(), controllers)?,
+            team: Team::new(config, |robot| scenario.colors(robot), scenario.shape(), controllers)?,
             places: vec![[0.0; 2]; config.robots],
             most_steps: config.steps,
             steps: 0,
             failed: false,
-            mission,
+            scenario,
         })
     }
 
@@ -123,7 +123,7 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
     /// # Errors
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
     pub fn arrange<W: PlanarWorld>(&mut self, world: &mut W, id: EpisodeId) -> Result<(), ArenaError> {
-        self.mission.arrange(&self.team, world, id)
+        self.scenario.arrange(&self.team, world, id)
     }
 
     /// Where the robots are, and since when.
@@ -133,20 +133,20 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
 
     /// What the first population has earned so far; NaN for a trial that failed.
     pub fn fitness(&self) -> f64 {
-        if self.failed { f64::NAN } else { self.mission.earned(0, self.moment()) }
+        if self.failed { f64::NAN } else { self.scenario.earned(0, self.moment()) }
     }
 
-    /// What came of the trial for population `own`.
+    /// The outcome of the trial for population `own`.
     pub fn outcome(&self, own: usize) -> Outcome {
         if self.failed {
-            return Outcome { terms: vec![f64::NAN; self.mission.terms().len()], ..Outcome::default() };
+            return Outcome { terms: vec![f64::NAN; self.scenario.terms().len()], ..Outcome::default() };
         }
-        self.mission.outcome(own, self.moment())
+        self.scenario.outcome(own, self.moment())
     }
 
-    /// What the robots are to do, with its account.
-    pub fn mission(&self) -> &M {
-        &self.mission
+    /// What the robots are to do, with its score.
+    pub fn scenario(&self) -> &M {
+        &self.scenario
     }
 
     /// The robots.
@@ -159,18 +159,18 @@ impl<M: Mission, C: Controller> TeamLife<M, C> {
         &mut self.team
     }
 
-    /// Steps lived.
+    /// Steps taken.
     pub fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// Whether no place was found for something, or a number was none.
+    /// Whether something had no free place, or a value was not finite.
     pub fn failed(&self) -> bool {
         self.failed
     }
 }
 
-impl<M: Mission, C: Controller, W: PlanarWorld> Episode<W> for TeamLife<M, C> {
+impl<M: Scenario, C: Controller, W: PlanarWorld> Episode<W> for TeamEpisode<M, C> {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.failed = self.arrange(world, id).is_err();
         self.team.reset();
@@ -183,22 +183,22 @@ impl<M: Mission, C: Controller, W: PlanarWorld> Episode<W> for TeamLife<M, C> {
 
     /// All robots sense, compute and act.
     fn act(&mut self, world: &mut W) {
-        let Self { mission, team, .. } = self;
+        let Self { scenario, team, .. } = self;
         team.act(world, |world, robot, parts, rest| {
             let [x, y, _] = world.pose(parts.body).position;
-            mission.sense(world, robot, [x, y], rest)
+            scenario.sense(world, robot, [x, y], rest)
         });
     }
 
     /// Judges the step that has passed; `Some` ends the trial with what the first population earned.
     fn judge(&mut self, world: &mut W) -> Option<f64> {
-        let Self { mission, team, places, .. } = self;
+        let Self { scenario, team, places, .. } = self;
         self.steps += 1;
         for (robot, place) in places.iter_mut().enumerate() {
             *place = team.place(world, robot);
             self.failed |= !place.iter().all(|x| x.is_finite());
         }
-        let over = mission.judge(world, Moment { places, steps: self.steps });
+        let over = scenario.judge(world, Moment { places, steps: self.steps });
         (self.failed || over || self.steps >= self.most_steps).then(|| self.fitness())
     }
 }

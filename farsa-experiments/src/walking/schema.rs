@@ -1,9 +1,9 @@
-//! What is to be seen and told of a walker.
+//! What a recording of a walker holds, and its shapes.
 
 use farsa_body::{BodyId, Collider, Pose, Robot, Shape, Surface};
 
 use farsa_num::sin_cos;
-use farsa_view::{Channel, Stage};
+use farsa_view::{Channel, Schema};
 
 use crate::walking::walker::{Walker, WalkerParts};
 
@@ -67,13 +67,14 @@ pub(crate) fn exported(walker: &Walker) -> Robot {
     })
 }
 
-/// The stage of a walker as it is drawn or exported; its scalars are what [`WalkerLife`](crate::walking::life::WalkerLife) records.
-pub(crate) fn stage(robot: &Robot) -> Stage {
+/// The schema of a walker as it is drawn or exported; its scalars are what
+/// [`WalkerEpisode`](crate::walking::episode::WalkerEpisode) records.
+pub(crate) fn schema(robot: &Robot) -> Schema {
     let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
     let places = ["hip.x [m]", "hip.z [m]"].map(in_group("place"));
     let joints = ["outer legs [rad]", "inner legs [rad]", "outer legs [rad/s]", "inner legs [rad/s]"];
     let stance = Channel::new("stance").group("phase").words(&["outer", "inner"]);
     let walked = ["steps", "distance [m]", "energy gained [J]", "work of the motor [J]"].map(in_group("fitness"));
     let scalars = places.into_iter().chain(joints.map(in_group("joint"))).chain([stance]).chain(walked);
-    Stage { scalars: scalars.collect(), ..Stage::of_robot(robot) }
+    Schema { scalars: scalars.collect(), ..Schema::from_robot(robot) }
 }

@@ -1,19 +1,19 @@
-//! What a life of `reach-grasp-lift` tells a recorder, and the names of it.
+//! What an episode of `reach-grasp-lift` records, by name.
 
 use farsa_body::{
     ArmAndHand, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Law, MusclePair, PairId, Recorder, Tabletop,
     Twist,
 };
 use farsa_nn::LeakyNetwork;
-use farsa_view::{Channel, Stage};
+use farsa_view::{Channel, Schema};
 
-use crate::reach_grasp_lift::fitness::Ledger;
-use crate::reach_grasp_lift::life::ReachLife;
+use crate::reach_grasp_lift::episode::ReachEpisode;
+use crate::reach_grasp_lift::fitness::Rewards;
 use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::scene::Scene;
 
-/// The controller's life in a trial.
-pub(crate) type NetworkLife = ReachLife<LeakyNetwork<Vec<f32>, Vec<f32>>>;
+/// The controller's episode in a trial.
+pub(crate) type NetworkEpisode = ReachEpisode<LeakyNetwork<Vec<f32>, Vec<f32>>>;
 
 /// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces, 27 + 6
 /// speeds of joints and sphere.
@@ -35,27 +35,27 @@ fn on_sphere(scene: &Scene) -> impl Iterator<Item = PairId> {
     scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table])
 }
 
-/// Tells a recorder of lives, and names what it tells.
-pub(crate) struct Teller {
-    /// The arm's muscles, to tell their lengths and torques.
+/// Records the steps of an episode, and names what it records.
+pub(crate) struct EpisodeRecorder {
+    /// The arm's muscles, for their lengths and torques.
     muscles: Vec<MusclePair<f32>>,
     /// The bodies that have a shape, but for the palm and the sphere.
     other_bodies: Vec<BodyId>,
 }
 
-impl Teller {
-    /// Of lives in this scene.
+impl EpisodeRecorder {
+    /// A recorder of episodes in this scene.
     pub(crate) fn new(scene: &Scene) -> Self {
         let laws = scene.robot.actuators.iter().map(|actuator| actuator.law.cast::<f32>());
         let muscles = laws.map_while(|law| if let Law::MusclePair(pair) = law { Some(pair) } else { None }).collect();
-        let told = [Tabletop::SPHERE, ArmAndHand::PALM];
-        let other_bodies = scene.robot.shaped_bodies().filter(|body| !told.contains(body)).collect();
+        let named = [Tabletop::SPHERE, ArmAndHand::PALM];
+        let other_bodies = scene.robot.shaped_bodies().filter(|body| !named.contains(body)).collect();
         Self { muscles, other_bodies }
     }
 
-    /// The names of all that is told of this life.
-    pub(crate) fn stage(life: &NetworkLife) -> Stage {
-        let scene = life.judge().scene();
+    /// The schema of this episode.
+    pub(crate) fn schema(episode: &NetworkEpisode) -> Schema {
+        let scene = episode.judge().scene();
         let forces = on_sphere(scene).map(|pair| {
             let colliders = scene.robot.pairs[pair.index()].colliders.map(|c| scene.robot.colliders[c].name.as_str());
             let other = if colliders[0] == "sphere" { colliders[1] } else { colliders[0] };
@@ -85,28 +85,28 @@ impl Teller {
             .chain((1..=27).map(|n| in_group("speed")(&format!("J{n} [rad/s]"))))
             .chain(moved.map(in_group("speed")))
             .collect();
-        let mut stage = Stage::of_robot(&scene.robot)
-            .with_sensors(life.senses().names())
-            .with_outputs(life.motors().names())
+        let mut schema = Schema::from_robot(&scene.robot)
+            .with_sensors(episode.senses().names())
+            .with_outputs(episode.motors().names())
             .with_network(&scene.config.layout());
-        stage.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
-        Stage {
+        schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        Schema {
             scalars,
             points: ["palm's target", "palm's centre", "centre of the grasp"].map(String::from).into(),
-            ..stage
+            ..schema
         }
     }
 
     /// Records what was sensed, computed and done before the step that has just been judged, and what it led to.
-    pub(crate) fn record<W>(&self, world: &W, life: &NetworkLife, recorder: &mut dyn Recorder)
+    pub(crate) fn record<W>(&self, world: &W, episode: &NetworkEpisode, recorder: &mut dyn Recorder)
     where
         W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId>,
     {
-        let (judge, scene) = (life.judge(), life.judge().scene());
+        let (judge, scene) = (episode.judge(), episode.judge().scene());
         let (trial, seen, earned) = (judge.trial(), judge.seen(), judge.earned());
-        recorder.sensors(life.sensed());
-        recorder.neurons(life.controller().hidden());
-        recorder.outputs(life.done());
+        recorder.sensors(episode.sensed());
+        recorder.neurons(episode.controller().hidden());
+        recorder.outputs(episode.done());
         let (sphere, palm) = (world.pose(Tabletop::SPHERE), world.pose(ArmAndHand::PALM));
         recorder.pose(Tabletop::SPHERE, sphere);
         recorder.pose(ArmAndHand::PALM, palm);
@@ -123,7 +123,7 @@ impl Teller {
             }
         }
 
-        let Ledger { reach, grasp, lift, .. } = trial.ledger;
+        let Rewards { reach, grasp, lift, .. } = trial.rewards;
         let mut scalars = [0.0; SCALARS];
         let rest = scalars.as_mut_slice();
         let rest = put(rest, [trial.phase.index() as f64]);
@@ -136,7 +136,7 @@ impl Teller {
         let joints = ArmAndHand::joints();
         let (positions, speeds) = (joints.map(|joint| world.position(joint)), joints.map(|joint| world.speed(joint)));
         let mut rest = put(rest, positions.map(f64::from));
-        let driven = positions.into_iter().zip(speeds).zip(life.done().chunks_exact(2));
+        let driven = positions.into_iter().zip(speeds).zip(episode.done().chunks_exact(2));
         for (muscle, ((q, qdot), done)) in self.muscles.iter().zip(driven) {
             let torque = muscle.effort(q, qdot, [done[0], done[1]]).torque;
             let [agonist, antagonist] = muscle.lengths(q);

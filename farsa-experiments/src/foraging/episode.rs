@@ -1,4 +1,4 @@
-//! A life of `foraging`: robots carry food from a field to their nest, and must come home to live.
+//! An episode of `foraging`: robots carry food from a field to their nest, and must return to survive.
 
 use farsa_body::{BodyId, ColorBand, Pose, Twist};
 use farsa_nn::Controller;
@@ -8,38 +8,38 @@ use farsa_physics::arena::{Arena, ArenaError};
 use crate::foraging::config::ForagingConfig;
 use crate::foraging::field::Field;
 use crate::team::config::TeamConfig;
-use crate::team::life::{Mission, Moment, TeamLife};
+use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::nest::{COLORS, on_nest};
 use crate::team::robots::{OUTPUTS, Team};
 use crate::team::task::{eye_groups, eye_names};
 use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
-/// Robots that forage, with a controller each, and the book of their food and energy.
+/// Robots that forage, with a controller each, and the record of their food and energy.
 ///
 /// A controller reads 8 infrared channels, the camera's (for each sector red, then blue), whether the ground under the
 /// robot is the nest's, and its energy; it writes what [`Team`] says. The dead stand still in the dark.
-pub type ForagingLife<C> = TeamLife<ForagingMission, C>;
+pub type ForagingEpisode<C> = TeamEpisode<ForagingScenario, C>;
 
-impl<C: Controller> ForagingLife<C> {
-    /// A life of these controllers, one for each robot.
+impl<C: Controller> ForagingEpisode<C> {
+    /// An episode with these controllers, one for each robot.
     ///
     /// # Errors
     /// Those of [`Team::new`].
     pub fn new(config: ForagingConfig, controllers: Vec<C>) -> Result<Self, Error> {
-        Self::on(ForagingMission::new(config), controllers)
+        Self::from_scenario(ForagingScenario::new(config), controllers)
     }
 }
 
-/// A field with food and a nest, and the book of who has what.
+/// A field with food and a nest, and the record of what each robot has.
 #[derive(Clone, Debug)]
-pub struct ForagingMission {
+pub struct ForagingScenario {
     config: ForagingConfig,
     field: Field,
     nest: BodyId,
 }
 
-impl ForagingMission {
+impl ForagingScenario {
     /// A field of a configuration.
     pub fn new(config: ForagingConfig) -> Self {
         let TeamConfig { size, robots, .. } = config.team;
@@ -52,13 +52,13 @@ impl ForagingMission {
         &self.config
     }
 
-    /// The book.
+    /// The record of food and energy.
     pub fn field(&self) -> &Field {
         &self.field
     }
 }
 
-impl Mission for ForagingMission {
+impl Scenario for ForagingScenario {
     fn robots(&self) -> &TeamConfig {
         &self.config.team
     }
@@ -93,7 +93,7 @@ impl Mission for ForagingMission {
         let [low, high] = [config.nest_to_wall, config.team.size - config.nest_to_wall].map(|x| x as f32);
         let at = [0; 2].map(|_| stream.range(low, high.max(low)));
         world.place_body(*nest, Pose::planar(at, 0.0), Twist::default());
-        world.arranged();
+        world.finish_placement();
         field.begin(at.map(f64::from));
         team.scatter(world, Some((at, config.start_within as f32)), &mut stream)
     }

@@ -11,6 +11,8 @@ use farsa_nn::Controller;
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 use farsa_physics::arena::{Arena, Cylinder};
 
+use crate::wheeled::{place_and_heading, record_step};
+
 /// Light sensors of the robot.
 pub const LIGHTS: usize = 8;
 
@@ -129,7 +131,7 @@ pub struct Config {
 
 impl Config {
     /// The defaults of a vehicle.
-    pub fn of(vehicle: Vehicle) -> Self {
+    pub fn for_vehicle(vehicle: Vehicle) -> Self {
         Self {
             vehicle,
             size: 2.0,
@@ -161,7 +163,7 @@ impl Config {
 
 /// A vehicle beside a lamp.
 #[derive(Clone, Debug)]
-pub struct VehicleLife {
+pub struct VehicleEpisode {
     config: Config,
     parts: MobileParts,
     lamp: BodyId,
@@ -178,8 +180,8 @@ pub struct VehicleLife {
     collisions: u32,
 }
 
-impl VehicleLife {
-    /// The life of a vehicle under a configuration.
+impl VehicleEpisode {
+    /// An episode of a vehicle under a configuration.
     ///
     /// # Errors
     /// [`Error::Other`] for values of which no sensor or motor can be built.
@@ -187,7 +189,7 @@ impl VehicleLife {
         let wrong = |error: ChannelError| Error::Other(format!("braitenberg: {error}"));
         let (robot, arena) = (config.robot(), config.arena());
         let (parts, lamp) = (arena.parts(0), arena.cylinder(0));
-        let lights = LightSensors::of(&robot, parts.body, config.reference as f32).map_err(wrong)?;
+        let lights = LightSensors::for_robot(&robot, parts.body, config.reference as f32).map_err(wrong)?;
         let wheels = WheelVelocity::new(parts.motors, robot.max_wheel_speed as f32).map_err(wrong)?;
         let wiring = Wiring::new(config.vehicle, &robot.infrared.angles, config.gain, config.base);
         let (x, y) = ([0.0; LIGHTS], [0.5; 2]);
@@ -205,7 +207,7 @@ impl VehicleLife {
         let middle = (0.5 * self.config.size) as f32;
         let at = [middle + distance * cosine, middle + distance * sine];
         world.place_body(self.parts.body, Pose::planar(at, heading), Twist::default());
-        world.arranged();
+        world.finish_placement();
         (self.steps, self.collisions) = (0, 0);
         self.look(world);
         self.distances[0] = self.distances[1];
@@ -256,7 +258,7 @@ impl VehicleLife {
         self.bearings
     }
 
-    /// Steps lived, and of these how many ended in a collision.
+    /// Steps taken, and of these how many ended in a collision.
     pub fn steps(&self) -> [u32; 2] {
         [self.steps, self.collisions]
     }
@@ -272,7 +274,7 @@ impl VehicleLife {
     }
 }
 
-impl<W> Episode<W> for VehicleLife
+impl<W> Episode<W> for VehicleEpisode
 where
     W: Planar
         + Kinematics
@@ -306,15 +308,8 @@ where
     }
 
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        recorder.sensors(&self.x);
-        recorder.outputs(&self.y);
-        // No contacts: their forces are nominal.
-        for body in [self.parts.body, self.lamp] {
-            recorder.pose(body, world.pose(body));
-        }
-        let pose = world.pose(self.parts.body);
-        let [x, y, _] = pose.position.map(f64::from);
-        let heading = f64::from(pose.heading());
+        record_step(world, &self.x, &self.y, [self.parts.body, self.lamp], recorder);
+        let [x, y, heading] = place_and_heading(world, self.parts.body);
         recorder.scalars(&[x, y, heading, self.distances[1], self.bearings[1], f64::from(self.collisions)]);
         recorder.tick(seconds(self.steps, self.config.time_step));
     }

@@ -1,4 +1,5 @@
-//! A life of `discrimination` and `discrimination-cylinders`: one trial among cylinders, up to its last step or a collision.
+//! An episode of `discrimination` and `discrimination-cylinders`: one trial among cylinders, up to its last step or a
+//! collision.
 
 use core::f32::consts::PI;
 
@@ -13,14 +14,15 @@ use farsa_physics::arena::{ArenaError, FreePlace};
 
 use crate::discrimination::config::{Config, EYES};
 use crate::infrared::settings::Infrared;
+use crate::wheeled::{place_and_heading, record_step, wheel_speeds};
 
 /// Most cylinders of a trial.
 pub const CYLINDERS: usize = 2;
 
-/// The account of a trial.
+/// The score of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Trial {
-    /// Steps lived.
+    /// Steps taken.
     pub steps: u32,
     /// Steps near each cylinder, the one to stay at first.
     pub near: [u32; CYLINDERS],
@@ -28,7 +30,7 @@ pub struct Trial {
     pub spun: [f64; CYLINDERS],
     /// Whether the robot ran into something.
     pub collided: bool,
-    /// Whether no place was found for something at the start, or a number was none.
+    /// Whether no place was found for something at the start, or a value was not finite.
     pub failed: bool,
     /// From the robot's hull to the surface of each cylinder after the last step \[m\].
     pub distance: [f64; CYLINDERS],
@@ -36,7 +38,7 @@ pub struct Trial {
 
 /// The robot among its cylinders with a controller: sensors, motors, and the judge of the trial.
 #[derive(Clone, Debug)]
-pub struct CylinderLife<C> {
+pub struct CylinderEpisode<C> {
     config: Config,
     parts: MobileParts,
     pair: PairId,
@@ -53,8 +55,8 @@ pub struct CylinderLife<C> {
     trial: Trial,
 }
 
-impl<C: Controller> CylinderLife<C> {
-    /// A life of this controller, of [`Config::inputs`] inputs and two outputs, left and right wheel.
+impl<C: Controller> CylinderEpisode<C> {
+    /// A trial of this controller, of [`Config::inputs`] inputs and two outputs, left and right wheel.
     ///
     /// # Errors
     /// [`Error::Other`] for a controller of another shape, for none or too many cylinders, and for tables of too few
@@ -81,7 +83,7 @@ impl<C: Controller> CylinderLife<C> {
             pair: PairId(0),
             radius: robot.radius,
             cylinders: (0..count).map(|i| arena.cylinder(i)).collect(),
-            infrared: Infrared::of(&robot, parts.body, EYES, &config.infrared).map_err(wrong)?,
+            infrared: Infrared::for_robot(&robot, parts.body, EYES, &config.infrared).map_err(wrong)?,
             wheel_speeds: config.wheel_speeds.then_some(speeds),
             wheels: WheelVelocity::new(parts.motors, largest).map_err(wrong)?,
             controller,
@@ -119,14 +121,14 @@ impl<C: Controller> CylinderLife<C> {
             let clear = free(radius, config.object_to_wall).clear_of(&others[..i]);
             places[i] = clear.find(world, &mut stream)?;
             world.place_body(body, Pose::planar(places[i], 0.0), Twist::default());
-            world.arranged();
+            world.finish_placement();
             others[i] = (body, config.object_to_object as f32);
         }
         let others = others.map(|(body, _)| (body, config.robot_to_object as f32));
         let clear = free(self.radius, config.robot_to_wall).clear_of(&others[..cylinders.len()]);
         let at = clear.find(world, &mut stream)?;
         world.place_body(self.parts.body, Pose::planar(at, stream.range(-PI, PI)), Twist::default());
-        world.arranged();
+        world.finish_placement();
         Ok(())
     }
 
@@ -143,7 +145,7 @@ impl<C: Controller> CylinderLife<C> {
         &self.config
     }
 
-    /// The account of the trial.
+    /// The score of the trial.
     pub fn trial(&self) -> &Trial {
         &self.trial
     }
@@ -190,7 +192,7 @@ impl<C: Controller> CylinderLife<C> {
     }
 }
 
-impl<W, C> Episode<W> for CylinderLife<C>
+impl<W, C> Episode<W> for CylinderEpisode<C>
 where
     W: Planar
         + Rays
@@ -202,7 +204,7 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
     C: Controller,
 {
-    /// Opens a new account and arranges the world.
+    /// Resets the score and arranges the world.
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.trial = Trial { failed: self.arrange(world, id).is_err(), ..Trial::default() };
         self.controller.reset();
@@ -247,23 +249,17 @@ where
     }
 
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
-        self.infrared.tell(world.pose(self.parts.body), &self.x, recorder);
+        self.infrared.record(world.pose(self.parts.body), &self.x, recorder);
     }
 
     /// Records what was sensed, computed and done before the step, and what it led to.
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
         let Self { trial, parts, cylinders, config, .. } = self;
-        recorder.sensors(&self.x);
-        recorder.outputs(&self.y);
-        // No contacts: their forces are nominal.
         let bodies = core::iter::once(parts.body).chain(cylinders.iter().copied());
-        bodies.for_each(|body| recorder.pose(body, world.pose(body)));
-        let pose = world.pose(parts.body);
-        let [x, y, _] = pose.position.map(f64::from);
-        let mut scalars = vec![x, y, f64::from(pose.heading())];
+        record_step(world, &self.x, &self.y, bodies, recorder);
+        let mut scalars = place_and_heading(world, parts.body).to_vec();
         scalars.extend(&trial.distance[..cylinders.len()]);
-        let largest = config.robot.max_wheel_speed;
-        scalars.extend(self.y.iter().map(|y| (2.0 * f64::from(*y) - 1.0) * largest));
+        scalars.extend(wheel_speeds(&self.y, config.robot.max_wheel_speed));
         scalars.push(self.fitness());
         recorder.scalars(&scalars);
         recorder.tick(seconds(trial.steps, config.time_step));

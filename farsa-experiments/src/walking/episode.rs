@@ -1,4 +1,5 @@
-//! A life of a walker: a launch, then steps until it falls or its time is over; with or without a network at the hip.
+//! An episode of a walker: a launch, then steps until it falls or its time is over; with or without a network at the
+//! hip.
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints,
@@ -163,25 +164,25 @@ impl Brain {
     }
 }
 
-/// A walker's life.
+/// A walker's episode.
 #[derive(Clone, Debug)]
-pub struct WalkerLife {
+pub struct WalkerEpisode {
     walk: Walk,
     launch: Launch,
     gait: Gait,
     brain: Option<Brain>,
     /// The last step whose pace is known, and how many are.
-    told: u32,
+    noted: u32,
     known: usize,
     paces: [Pace; LAST],
 }
 
-impl WalkerLife {
-    /// A life of a walker with these parts.
+impl WalkerEpisode {
+    /// An episode of a walker with these parts.
     pub fn new(walker: Walker, parts: WalkerParts, walk: Walk, launch: Launch, brain: Option<Brain>) -> Self {
         let gravity = Walker::gravity(walk.gravity, walk.slope);
         let gait = Gait::new(walker, parts, walk.rules, gravity, walk.time_step);
-        Self { walk, launch, gait, brain, told: 0, known: 0, paces: [Pace::default(); LAST] }
+        Self { walk, launch, gait, brain, noted: 0, known: 0, paces: [Pace::default(); LAST] }
     }
 
     /// From the first stance to the last footfall \[m\]: only feet that came to stand count. NaN for a broken walk, 0 for one with energy
@@ -211,7 +212,7 @@ impl WalkerLife {
         Scalar::sqrt(self.gait.walker().legs[0].length / self.walk.gravity)
     }
 
-    /// The account of the feet.
+    /// The record of the feet.
     pub fn gait(&self) -> &Gait {
         &self.gait
     }
@@ -227,7 +228,7 @@ impl WalkerLife {
     }
 }
 
-impl<W> Episode<W> for WalkerLife
+impl<W> Episode<W> for WalkerEpisode
 where
     W: Kinematics
         + Joints
@@ -247,7 +248,7 @@ where
         if let Some(brain) = &mut self.brain {
             brain.reset();
         }
-        (self.told, self.known) = (0, 0);
+        (self.noted, self.known) = (0, 0);
     }
 
     /// Senses, computes and acts, if there is a network.
@@ -262,10 +263,10 @@ where
         let work = self.brain.as_ref().map_or(0.0, |brain| brain.work(world));
         let end = self.gait.judge(world, work);
         let [before, last] = self.gait.footfalls();
-        if let Some([rate, swing_rate]) = last.rates.filter(|_| self.gait.steps() > self.told) {
+        if let Some([rate, swing_rate]) = last.rates.filter(|_| self.gait.steps() > self.noted) {
             let (period, length) = (last.time - before.time, last.place - before.place);
             self.paces[self.known % LAST] = Pace { angle: last.angle, rate, swing_rate, period, length };
-            self.told = self.gait.steps();
+            self.noted = self.gait.steps();
             self.known += 1;
         }
         let over = end.is_some() || self.gait.ticks() >= self.walk.steps;

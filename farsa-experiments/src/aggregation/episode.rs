@@ -1,4 +1,4 @@
-//! A life of `aggregation`: robots look for nests, and for each other.
+//! An episode of `aggregation`: robots look for nests, and for each other.
 
 use farsa_body::{BodyId, ColorBand, Pose, Twist};
 use farsa_nn::Controller;
@@ -8,7 +8,7 @@ use farsa_physics::arena::{Arena, ArenaError};
 use crate::aggregation::config::AggregationConfig;
 use crate::aggregation::measure::{Gathering, mean_distances};
 use crate::team::config::TeamConfig;
-use crate::team::life::{Mission, Moment, TeamLife};
+use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::nest::{COLORS, on_nest};
 use crate::team::robots::{OUTPUTS, Team, distance};
 use crate::team::task::{eye_groups, eye_names};
@@ -19,28 +19,28 @@ use farsa_view::Channel;
 ///
 /// A controller reads 8 infrared channels, the camera's (for each sector red, then blue), and whether the ground under the
 /// robot is a nest's; it writes what [`Team`] says.
-pub type AggregationLife<C> = TeamLife<AggregationMission, C>;
+pub type AggregationEpisode<C> = TeamEpisode<AggregationScenario, C>;
 
-impl<C: Controller> AggregationLife<C> {
-    /// A life of these controllers, one for each robot.
+impl<C: Controller> AggregationEpisode<C> {
+    /// An episode with these controllers, one for each robot.
     ///
     /// # Errors
     /// Those of [`Team::new`].
     pub fn new(config: AggregationConfig, controllers: Vec<C>) -> Result<Self, Error> {
-        Self::on(AggregationMission::new(config), controllers)
+        Self::from_scenario(AggregationScenario::new(config), controllers)
     }
 }
 
-/// Nests, and who is on them.
+/// Nests, and which robots are on them.
 #[derive(Clone, Debug)]
-pub struct AggregationMission {
+pub struct AggregationScenario {
     config: AggregationConfig,
     nests: Vec<BodyId>,
     /// On which nest each robot is.
     homes: Vec<Option<usize>>,
 }
 
-impl AggregationMission {
+impl AggregationScenario {
     /// The nests of a configuration.
     pub fn new(config: AggregationConfig) -> Self {
         let arena = config.arena();
@@ -60,7 +60,7 @@ impl AggregationMission {
 
     /// How close together the robots are.
     pub fn gathering(&self, moment: Moment<'_>) -> Gathering {
-        Gathering::of(moment.places, self.config.team.robot.radius)
+        Gathering::new(moment.places, self.config.team.robot.radius)
     }
 
     /// On which nest each robot is.
@@ -74,7 +74,7 @@ impl AggregationMission {
     }
 }
 
-impl Mission for AggregationMission {
+impl Scenario for AggregationScenario {
     fn robots(&self) -> &TeamConfig {
         &self.config.team
     }
@@ -119,7 +119,7 @@ impl Mission for AggregationMission {
             world.place_body(nest, Pose::planar(at, 0.0), Twist::default());
             taken.push(at);
         }
-        world.arranged();
+        world.finish_placement();
         team.scatter(world, None, &mut stream)
     }
 

@@ -1,4 +1,4 @@
-//! A life of `minimal-cognition`: one object falls, and the agent moves under it.
+//! An episode of `minimal-cognition`: one object falls, and the agent moves under it.
 
 use farsa_lab::{EpisodeId, Error};
 use farsa_nn::{Controller as _, Ctrnn};
@@ -10,7 +10,7 @@ use crate::minimal_cognition::object::Object;
 
 /// An agent under a falling object.
 #[derive(Clone, Debug)]
-pub struct AgentLife {
+pub struct AgentEpisode {
     config: Config,
     /// Sine and cosine of each ray's angle, clockwise from straight up.
     rays: [[f64; 2]; RAYS],
@@ -23,8 +23,8 @@ pub struct AgentLife {
     y: [f32; MOTORS],
 }
 
-impl AgentLife {
-    /// The life of an agent whose network has these parameters.
+impl AgentEpisode {
+    /// An episode of an agent whose network has these parameters.
     ///
     /// # Errors
     /// [`Error::Other`] for parameters that make no network.
@@ -148,7 +148,7 @@ impl AgentLife {
         self.places
     }
 
-    /// Steps lived.
+    /// Steps taken.
     pub fn steps(&self) -> u32 {
         self.steps
     }

@@ -1,4 +1,4 @@
-//! A life of `push-box`: one trial with a robot and a box on an endless plane.
+//! An episode of `push-box`: one trial with a robot and a box on an endless plane.
 
 use core::f32::consts::PI;
 
@@ -12,14 +12,15 @@ use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
 use crate::infrared::settings::{Infrared, InfraredModel};
 use crate::push_box::config::PushConfig;
+use crate::wheeled::{place_and_heading, record_step, wheel_speeds};
 
 /// Values that a controller gives: left and right wheel.
 pub(crate) const OUTPUTS: usize = 2;
 
-/// The account of a trial.
+/// The score of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct PushTrial {
-    /// Steps lived.
+    /// Steps taken.
     pub steps: u32,
     /// Steps in which hull and box touched.
     pub touched: u32,
@@ -35,7 +36,7 @@ pub struct PushTrial {
 
 /// The robot beside its box with a controller: sensors, motors, and the judge of the trial.
 #[derive(Clone, Debug)]
-pub struct PushLife<C> {
+pub struct PushEpisode<C> {
     config: PushConfig,
     parts: MobileParts,
     cube: BodyId,
@@ -50,8 +51,8 @@ pub struct PushLife<C> {
     trial: PushTrial,
 }
 
-impl<C: Controller> PushLife<C> {
-    /// A life of this controller, of [`PushConfig::inputs`] inputs and two outputs, left and right wheel.
+impl<C: Controller> PushEpisode<C> {
+    /// A trial of this controller, of [`PushConfig::inputs`] inputs and two outputs, left and right wheel.
     ///
     /// # Errors
     /// [`Error::Other`] for a controller of another shape.
@@ -69,7 +70,7 @@ impl<C: Controller> PushLife<C> {
             parts,
             cube: scene.block(0),
             pair: scene.block_pair(0),
-            infrared: Infrared::of(robot, parts.body, wanted, &InfraredModel::Rays).map_err(wrong)?,
+            infrared: Infrared::for_robot(robot, parts.body, wanted, &InfraredModel::Rays).map_err(wrong)?,
             wheels: WheelVelocity::new(parts.motors, robot.max_wheel_speed as f32).map_err(wrong)?,
             controller,
             x: vec![0.0; wanted],
@@ -98,7 +99,7 @@ impl<C: Controller> PushLife<C> {
         let (sine, cosine) = sin_cos(stream.range(-PI, PI));
         let at = [away * cosine, away * sine];
         world.place_body(parts.body, Pose::planar(at, stream.range(-PI, PI)), Twist::default());
-        world.arranged();
+        world.finish_placement();
     }
 
     /// What the trial has earned: how far the box has come from where it stood, in metres; NaN for one that failed.
@@ -111,7 +112,7 @@ impl<C: Controller> PushLife<C> {
         &self.config
     }
 
-    /// The account of the trial.
+    /// The score of the trial.
     pub fn trial(&self) -> &PushTrial {
         &self.trial
     }
@@ -153,7 +154,7 @@ impl<C: Controller> PushLife<C> {
     }
 }
 
-impl<W, C> Episode<W> for PushLife<C>
+impl<W, C> Episode<W> for PushEpisode<C>
 where
     W: Planar
         + Rays
@@ -165,7 +166,7 @@ where
         + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
     C: Controller,
 {
-    /// Opens a new account and arranges the world.
+    /// Resets the score and arranges the world.
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.arrange(world, id);
         let [x, y, _] = world.pose(self.cube).position;
@@ -200,22 +201,16 @@ where
     }
 
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
-        self.infrared.tell(world.pose(self.parts.body), &self.x, recorder);
+        self.infrared.record(world.pose(self.parts.body), &self.x, recorder);
     }
 
     /// Records what was sensed, computed and done before the step, and what it led to.
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        recorder.sensors(&self.x);
-        recorder.outputs(&self.y);
+        let bodies = [self.parts.body, self.cube];
+        record_step(world, &self.x, &self.y, bodies, recorder);
         let mut scalars = Vec::with_capacity(9);
-        for body in [self.parts.body, self.cube] {
-            let pose = world.pose(body);
-            recorder.pose(body, pose);
-            let [x, y, _] = pose.position.map(f64::from);
-            scalars.extend([x, y, f64::from(pose.heading())]);
-        }
-        let largest = self.config.robot.max_wheel_speed;
-        scalars.extend(self.y.iter().map(|y| (2.0 * f64::from(*y) - 1.0) * largest));
+        scalars.extend(bodies.into_iter().flat_map(|body| place_and_heading(world, body)));
+        scalars.extend(wheel_speeds(&self.y, self.config.robot.max_wheel_speed));
         scalars.push(self.trial.moved);
         recorder.scalars(&scalars);
         recorder.tick(seconds(self.trial.steps, self.config.time_step));
