@@ -38,7 +38,7 @@ fn one_through_ports(c: &mut Criterion) -> Result<(), ArenaError> {
     let parts = world.parts(0);
     let mut network = Perceptron::new(6, 2, 1.0, parameters()).expect("finite");
     let (mut x, mut y) = ([0.0; 8], [0.0; 2]);
-    let mut infrared = InfraredAnalytic::of(&MobileRobot::khepera(), parts.body).expect("a Khepera's ring");
+    let mut infrared = InfraredAnalytic::for_robot(&MobileRobot::khepera(), parts.body).expect("a Khepera's ring");
     let mut wheels = WheelVelocity::new(parts.motors, MOST).expect("a Khepera's wheels");
     group.bench_function("world/sensor and motor", |b| {
         b.iter(|| {
@@ -81,11 +81,11 @@ where
     let at = [pose.position[0], pose.position[1]];
     let [axis_x, axis_y, _] = pose.rotate([1.0, 0.0, 0.0]);
     out.fill(0.0);
-    world.near(at, radius + 0.033, &mut |near| {
+    world.query_near(at, radius + 0.033, &mut |near| {
         if near.body == Some(robot) {
             return;
         }
-        let model = AnalyticInfrared::of(near.radius);
+        let model = AnalyticInfrared::for_radius(near.radius);
         let distance = near.distance - radius;
         if distance >= model.range() {
             return;
@@ -119,7 +119,7 @@ fn lanes(c: &mut Criterion) -> Result<(), ArenaError> {
             network.set_lane(lane, &own).expect("as many");
             let at = [stream.range(0.06, 0.2), stream.range(0.06, 0.34)];
             batch.lane(lane).place_body(BodyId(0), Pose::planar(at, stream.range(-3.0, 3.0)), Twist::default());
-            batch.lane(lane).arranged();
+            batch.lane(lane).finish_placement();
         }
         let network = network.with_instructions(instructions);
         let parts = batch.parts(0);

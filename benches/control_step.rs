@@ -38,7 +38,7 @@ fn contacts(c: &mut Criterion) {
     for (name, made) in [("free", Loop::free()), ("grasp", Loop::grasp())] {
         let mut whole = made.expect("the default scene");
         for (pairs, name) in [(false, format!("{name}/without pairs")), (true, name.into())] {
-            let mut alone = Step::of(&mut whole, pairs).expect("the default scene");
+            let mut alone = Step::new(&mut whole, pairs).expect("the default scene");
             println!("contacts/{name}: {}", alone.contacts());
             group.bench_function(name, |b| b.iter(|| alone.step()));
         }

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Lets an evolved controller live in MuJoCo, with sensors, network, muscles and judge of this script's own.
+"""Runs an evolved controller in MuJoCo, with sensors, network, muscles and judge of this script's own.
 
-    champion.py check MODEL.xml CONTROLLER.json LIFE.csv
+    champion.py check MODEL.xml CONTROLLER.json TRIAL.csv
     champion.py test MODEL.xml CONTROLLER.json STARTS.json [--step S]... [--beside NAME=test.csv]...
 
 The files are those of `farsa export robot E --format mjcf`, `farsa export controller RUN --format json`, `farsa export
-starts RUN --format json`, `farsa replay RUN --out LIFE.csv` and `farsa test RUN`. Nothing here shares code with FARSA; what
+starts RUN --format json`, `farsa replay RUN --out TRIAL.csv` and `farsa test RUN`. Nothing here shares code with FARSA; what
 is restated (phases, muscles, network) follows the printed equations. See README.md."""
 
 import argparse
@@ -246,7 +246,7 @@ class Motors:
                     self.scene.data.actuator(servo["actuator"]).ctrl[0] = at
 
 
-def live(scene, muscles, controller, start):
+def run(scene, muscles, controller, start):
     """A trial: whether it succeeds, its phase and height at the end."""
     network, sensors = Network(controller["network"]), Sensors(scene, controller["sensors"])
     judge, motors = Judge(scene, controller["judge"]), Motors(scene, controller["motors"], muscles)
@@ -265,9 +265,9 @@ def live(scene, muscles, controller, start):
     return judge.succeeds(), judge.phase, scene.data.body(controller["judge"]["target"]).xpos[2]
 
 
-def check(scene, controller, life):
-    """Sensors, phases and network beside those of a recorded life."""
-    with open(life, newline="", encoding="utf-8") as file:
+def check(scene, controller, trial):
+    """Sensors, phases and network beside those of a recorded trial."""
+    with open(trial, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     sensors, judge = Sensors(scene, controller["sensors"]), Judge(scene, controller["judge"])
     network, target = Network(controller["network"]), controller["judge"]["target"]
@@ -331,13 +331,13 @@ def test(args):
     for step in args.step or [None]:
         substeps = round(controller["time_step"] / step) if step else None
         scene = Scene(args.model, substeps, controller["time_step"])
-        muscles, lived = Muscles(scene, controller["actuators"]), []
+        muscles, successes = Muscles(scene, controller["actuators"]), []
         for number, start in enumerate(starts):
-            success, phase, height = live(scene, muscles, controller, start)
-            lived.append(success)
+            success, phase, height = run(scene, muscles, controller, start)
+            successes.append(success)
             print(f"{number},{success},{phase},{100 * height:.3f}", file=sys.stderr)
         names.append(f"MuJoCo, {1e3 * scene.model.opt.timestep:g} ms")
-        found.append(lived)
+        found.append(successes)
     kinds = 4
     print("| world | success | " + " | ".join(f"start {k + 1}" for k in range(kinds)), end="")
     print(" | both | only the first | only this | neither |\n" + "|---" * (kinds + 6) + "|")
@@ -352,7 +352,7 @@ def test(args):
 def main():
     parser = argparse.ArgumentParser()
     commands = parser.add_subparsers(dest="command", required=True)
-    for name, last in [("check", "life"), ("test", "starts")]:
+    for name, last in [("check", "trial"), ("test", "starts")]:
         command = commands.add_parser(name)
         for argument in ["model", "controller", last]:
             command.add_argument(argument)
@@ -360,7 +360,7 @@ def main():
     command.add_argument("--beside", action="append", default=[], metavar="NAME=FILE")
     args = parser.parse_args()
     if args.command == "check":
-        sys.exit(0 if check(Scene(args.model), load(args.controller), args.life) else 1)
+        sys.exit(0 if check(Scene(args.model), load(args.controller), args.trial) else 1)
     test(args)
 
 

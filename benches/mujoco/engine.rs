@@ -48,7 +48,7 @@ impl Joints for Seen {
 
 impl Seen {
     /// How a pair touches; depth and force 0 when it does not.
-    pub(crate) fn of(&self, pair: PairId) -> Touching {
+    pub(crate) fn contact(&self, pair: PairId) -> Touching {
         let none = Touching { pair, depth: 0.0, force: 0.0 };
         self.touching.iter().find(|touching| touching.pair == pair).copied().unwrap_or(none)
     }

@@ -68,7 +68,7 @@ fn together<S: Scalar<Real = f32>>(simd: S::Simd, model: &Model<f32>, phase: &Ph
     let begin = Instant::now();
     while begin.elapsed().as_secs_f64() < seconds {
         let mut state = start.clone();
-        scratch.place(simd, model, &state);
+        scratch.forward_kinematics(simd, model, &state);
         for (tick, least) in least.iter_mut().enumerate() {
             let begin = Instant::now();
             for lane in 0..S::LANES {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use farsa::body::{ArmAndHand, Finger, Motor as _, Pose, Twist};
 use farsa::num::Scalar;
-use farsa_experiments::reach_grasp_lift::{Motors, Plan, Scene, Statics, Timetable};
+use farsa_experiments::reach_grasp_lift::{GraspPlan, Motors, Scene, Statics, Timetable};
 use farsa_lab::EpisodeId;
 
 use crate::drive::{Press, Sink, hold};
@@ -38,7 +38,7 @@ pub(crate) fn grasps<E: Engine>(scene: &Arc<Scene>, engine: &mut E, starts: u32,
         let id = EpisodeId { seed: 1, generation: start / 4, trial: start % 4, ..EpisodeId::default() };
         let (q, place) = scene.start(id);
         let believed = if blind { scene.config.sphere_start(id.trial as usize) } else { place };
-        let plan = Plan::new(Timetable::default(), Arc::clone(&statics), &q, believed)?;
+        let plan = GraspPlan::new(Timetable::default(), Arc::clone(&statics), &q, believed)?;
         let (held, slip, deepest) = grasp(scene, engine, &motors, &plan, &at_rest(scene, &q, place))?;
         println!("{} {slip:.6} {deepest:.3}", u8::from(held));
     }
@@ -49,7 +49,7 @@ fn grasp<E: Engine>(
     scene: &Scene,
     engine: &mut E,
     motors: &Motors,
-    plan: &Plan,
+    plan: &GraspPlan,
     phase: &Phase,
 ) -> Result<(bool, f64, f64), Failure> {
     let steps = LIFTED + HOLD;
@@ -63,7 +63,7 @@ fn grasp<E: Engine>(
         let outputs = plan.outputs(&seen, step as f64 * scene.config.time_step);
         motors.clone().drive(&outputs, &mut sink);
         seen = engine.step(&sink.words())?;
-        let high = seen.height >= HIGH && seen.of(scene.sphere_on_table).force <= 0.0;
+        let high = seen.height >= HIGH && seen.contact(scene.sphere_on_table).force <= 0.0;
         up = if high { up + 1 } else { 0 };
         if step >= LIFTED {
             deepest = seen.touching.iter().map(|touching| touching.depth).fold(deepest, f64::max);
@@ -82,7 +82,7 @@ pub(crate) fn rest<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(), Failu
     for _ in 0..HOLD {
         seen = engine.step(&hold(&statics, &seen, &q, &nothing))?;
     }
-    let force = seen.of(scene.sphere_on_table).force;
+    let force = seen.contact(scene.sphere_on_table).force;
     println!("{:.4} {force:.4}", (scene.config.sphere_radius - seen.height) * 1e6);
     Ok(())
 }
@@ -112,7 +112,7 @@ pub(crate) fn press<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(), Fail
     let (mut force, mut mean) = (PRESSED, [0.0; 2]);
     for step in 0..steps {
         seen = engine.step(&hold(&statics, &seen, &wanted, &Press { body, point, force }))?;
-        let touching = seen.of(pair);
+        let touching = seen.contact(pair);
         force += 0.02 * (PRESSED - touching.force);
         if let Some(other) = seen.touching.iter().find(|other| ![pair, scene.sphere_on_table].contains(&other.pair)) {
             return Err(format!("pair {} touches too", other.pair.index()).into());

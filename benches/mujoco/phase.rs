@@ -92,7 +92,7 @@ impl Phase {
             world.place_joint(joint, self.q[i], self.v[i]);
         }
         world.place_body(Tabletop::SPHERE, self.sphere.0, self.sphere.1);
-        world.arranged();
+        world.finish_placement();
     }
 }
 

@@ -1,4 +1,4 @@
-//! How the phases come about: our own world, told what to do by scripts, while somebody writes the commands down.
+//! How the phases come about: our own world, driven by scripts whose commands are recorded.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use farsa::body::{ArmAndHand, Arrange, Motor as _, Pose, Tabletop, Twist, World as _};
 use farsa::num::{Domain, Stream, sin_cos};
-use farsa_experiments::reach_grasp_lift::{Scene, ScriptLife, Statics, Timetable};
+use farsa_experiments::reach_grasp_lift::{Scene, ScriptEpisode, Statics, Timetable};
 use farsa_lab::{Episode, EpisodeId};
 
 use crate::drive::{Press, Sink, hold};
@@ -15,7 +15,7 @@ use crate::phase::{Failure, MUSCLES, Phase, STEPS, WORDS, command, world};
 /// The script of the experiment from its first start: reaching, and later holding.
 fn scripted(scene: &Arc<Scene>) -> Result<[Phase; 2], Failure> {
     let mut world = world::<f32>(scene, scene.config.substeps, true)?;
-    let mut script = ScriptLife::new(Arc::clone(scene), Timetable::default())?;
+    let mut script = ScriptEpisode::new(Arc::clone(scene), Timetable::default())?;
     let motors = scene.motors()?;
     script.start(&mut world, EpisodeId::default());
     let mut phases = [Phase::at(&world), Phase::at(&world)];
@@ -49,7 +49,7 @@ fn on_table(scene: &Scene) -> Result<Phase, Failure> {
     }
     let at = [0.35, 0.15, scene.config.sphere_radius as f32];
     world.place_body(Tabletop::SPHERE, Pose::at(at), Twist::default());
-    world.arranged();
+    world.finish_placement();
     let mut phase = Phase::at(&world);
     let settle = 200;
     for tick in 0..settle + STEPS {

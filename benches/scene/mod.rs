@@ -11,7 +11,7 @@ use farsa::body::{
 use farsa::nn::{Controller, Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 use farsa::num::{Domain, Instructions, Stream};
 use farsa::physics::articulated::{Batch, Model, Options, Scratch, World, accelerations};
-use farsa_experiments::reach_grasp_lift::{Config, Motors, Scene, ScriptLife, Senses, Statics, Timetable};
+use farsa_experiments::reach_grasp_lift::{Config, Motors, Scene, ScriptEpisode, Senses, Statics, Timetable};
 use farsa_lab::{Episode, EpisodeId};
 
 type Failure = Box<dyn Error>;
@@ -73,7 +73,7 @@ impl Loop {
     /// The sphere held in the lifted hand, as the script grasps it from the first start.
     pub(crate) fn grasp() -> Result<Self, Failure> {
         let (scene, mut world) = Self::scene()?;
-        let mut script = ScriptLife::new(Arc::clone(&scene), Timetable::default())?;
+        let mut script = ScriptEpisode::new(Arc::clone(&scene), Timetable::default())?;
         script.start(&mut world, EpisodeId::default());
         for _ in 0..560 {
             script.act(&mut world);
@@ -103,7 +103,7 @@ impl Loop {
 
     /// How many pairs are evaluated, how many of them touch, and at how many points.
     pub(crate) fn contacts(&mut self) -> Touching {
-        let mut touching = Touching::of(&self.world);
+        let mut touching = Touching::new(&self.world);
         for _ in 0..WINDOW {
             self.control_step();
             touching.count(&self.world);
@@ -120,7 +120,7 @@ pub(crate) struct Touching {
 }
 
 impl Touching {
-    fn of(world: &World<f32>) -> Self {
+    fn new(world: &World<f32>) -> Self {
         Self { pairs: world.pairs(), ranges: [[usize::MAX, 0]; 3] }
     }
 
@@ -152,7 +152,7 @@ pub(crate) struct Step {
 #[allow(dead_code, reason = "instructions are counted of the whole loop")]
 impl Step {
     /// From the state that a loop is restored to.
-    pub(crate) fn of(whole: &mut Loop, pairs: bool) -> Result<Self, Failure> {
+    pub(crate) fn new(whole: &mut Loop, pairs: bool) -> Result<Self, Failure> {
         whole.world.restore(&whole.start);
         // Commands that are held are given at every step; here they stay in the state.
         whole.motors.drive(&whole.held, &mut whole.world);
@@ -176,7 +176,7 @@ impl Step {
 
     /// How many pairs are evaluated, how many of them touch, and at how many points.
     pub(crate) fn contacts(&mut self) -> Touching {
-        let mut touching = Touching::of(&self.world);
+        let mut touching = Touching::new(&self.world);
         self.step();
         touching.count(&self.world);
         touching
@@ -260,7 +260,7 @@ impl Aba {
 
     /// Places the links and computes their accelerations.
     pub(crate) fn accelerations(&mut self) -> f32 {
-        self.scratch.place((), &self.model, &self.state);
+        self.scratch.forward_kinematics((), &self.model, &self.state);
         let (work, roots) = self.scratch.parts();
         let (links, gravity) = (self.model.links(), self.model.gravity());
         accelerations((), links, gravity, &self.tau, &self.diagonal, work, roots, &mut self.qdd);

@@ -19,7 +19,7 @@ use farsa::body::{
     Actuated, ActuatorId, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor,
 };
 use farsa::nn::{
-    Architecture, BlockLayout, BlockNetwork, Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork, Plan,
+    Architecture, BlockLayout, BlockNetwork, BlockPlan, Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork,
 };
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::Spatial;
@@ -76,7 +76,7 @@ impl Actuated for Board {
 const LAYOUT: LeakyLayout = LeakyLayout::new(1, 2, 1);
 static PARAMETERS: [f32; LAYOUT.parameter_count()] = [1.0, -1.0, 0.5, 0.0, 0.0, 0.5, 2.0, -2.0, 0.1, 0.1, 0.5, 0.5];
 
-const PLAN: Plan = Architecture::elman(1, 2, 1).plan();
+const PLAN: BlockPlan = Architecture::elman(1, 2, 1).plan();
 const BLOCKS: BlockLayout = PLAN.layout();
 const CONTINUOUS: CtrnnLayout = CtrnnLayout::new(1, 2, 1);
 
@@ -129,7 +129,7 @@ extern "C" fn main() -> i32 {
         return what;
     }
     #[cfg(feature = "alloc")]
-    if whole::lives().is_err() {
+    if whole::runs().is_err() {
         return 10;
     }
     0

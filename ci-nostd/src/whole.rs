@@ -5,7 +5,7 @@ use farsa::evo::{Fitness, GaConfig, Strategy, TruncationGa};
 use farsa::physics::articulated::{Model, Options, World};
 
 /// Ten control steps and two generations.
-pub fn lives() -> Result<(), ()> {
+pub fn runs() -> Result<(), ()> {
     let robot = Tabletop::default().scene(&ArmAndHand::default()).map_err(|_| ())?;
     let mut world = World::new(Model::<f32>::new(&robot, &Options::default()).map_err(|_| ())?);
     for _ in 0..10 {

@@ -2,7 +2,7 @@
 //! a network and its motors.
 //!
 //! `Sensor::read` and `Motor::drive` return no error: the loop has no place for one. An adapter keeps its last fault instead,
-//! and whoever runs the loop asks for it once per tick and hands it to the [`Guard`], which then drives what is safe.
+//! and the loop asks for it once per tick and hands it to the [`Guard`], which then drives what is safe.
 #![no_std]
 #![forbid(unsafe_code)]
 

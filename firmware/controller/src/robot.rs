@@ -19,7 +19,7 @@ pub(crate) const RANGES: [[f32; 2]; LAYOUT.sensors()] = {
     ranges
 };
 
-/// The controller with its state: all the memory that a life takes.
+/// The controller with its state: all the memory that an episode takes.
 #[derive(Debug)]
 pub struct Robot {
     sensors: Analog,

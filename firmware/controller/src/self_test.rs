@@ -22,6 +22,6 @@ pub fn self_test<R: Control>(robot: &mut R, steps: u32) -> u64 {
 
 /// Fills the converters with noise: what stands for a robot where there is none.
 pub fn noise_into(board: &mut Board, noise: &mut Stream) {
-    // In integers: who computes in integers has no use for routines of floats.
+    // In integers: a program in integers has no use for routines of floats.
     board.readings.fill_with(|| (noise.next_u32() >> 20) as u16);
 }

@@ -25,7 +25,7 @@ pub fn paint() {
     // Room for this function's own frame.
     let top = black_box(&raw const here).addr().saturating_sub(256);
     for word in words().take_while(|word| word.addr() < top) {
-        // SAFETY: between the variables and the stack there is memory that nobody uses, and its words are aligned.
+        // SAFETY: between the variables and the stack there is unused memory, and its words are aligned.
         unsafe { word.write_volatile(PAINT) };
     }
 }
