@@ -5,7 +5,8 @@
 use std::error::Error;
 
 use farsa::evo::{
-    EvoError, Fitness, GaConfig, GeneRange, Population, RandomSearch, Statistics, Strategy, TruncationGa, decode,
+    EvoError, Fitness, GaConfig, GeneRange, Population, RandomSearch, Record, Statistics, Strategy, TruncationGa,
+    decode,
 };
 use farsa::num::sin_cos;
 
@@ -31,13 +32,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ranges = [GeneRange::new(VARIABLES, -5.12, 5.12)?];
 
     // The best 20 of 100 make five copies each, four of them mutated; and, for comparison, the same number of guesses.
-    let mut evolution = TruncationGa::new(GaConfig::new(VARIABLES), 1)?;
+    let fresh = || TruncationGa::new(GaConfig::new(VARIABLES), 1);
+    let mut evolution = fresh()?;
+    let mut record = Record::new(&mut evolution)?;
     let mut guesses = RandomSearch::new(VARIABLES, 100, 1)?;
     let mut guessed = f64::NEG_INFINITY;
     let mut last = None;
     for generation in 0..generations {
         let values = evaluate(evolution.ask(), &ranges)?;
-        evolution.tell(&values)?;
+        record.tell(&mut evolution, &values)?;
         let random = evaluate(guesses.ask(), &ranges)?;
         guesses.tell(&random)?;
         let summary = Statistics::from_fitness(&values).ok_or(EvoError::NoIndividuals)?;
@@ -52,10 +55,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 
     let summary = last.ok_or("no generations")?;
-    // The lineage rebuilds any genome of the run without evaluating anything.
-    let champion = evolution.genome_of(generations - 1, summary.best_index)?;
+    // The record rebuilds any generation without evaluating anything.
+    let rebuilt = record.genomes(&mut fresh()?, generations - 1)?;
+    let champion = rebuilt.get(summary.best_index).ok_or(EvoError::NoIndividuals)?;
     let mut x = [0.0; VARIABLES];
-    decode(&champion, &ranges, &mut x)?;
+    decode(champion, &ranges, &mut x)?;
     println!("the champion stands at {x:.3?}");
     assert_eq!(fitness(&x).get(), summary.best, "the genome is rebuilt exactly");
     assert!(generations < 50 || summary.best > guessed, "selection is worth something");

@@ -25,12 +25,12 @@ fn skin(robot: &Robot, own: &[usize]) -> Result<Touch<Vec<PairId>>, Box<dyn Erro
 
 fn main() -> Result<(), Box<dyn Error>> {
     let ticks: u32 = std::env::args().nth(1).map_or(Ok(600), |text| text.parse())?;
-    println!("digest of all states: {:#018x}", live(ticks)?);
+    println!("digest of all states: {:#018x}", run(ticks)?);
     Ok(())
 }
 
-/// Lives so many ticks of 10 ms and returns a fingerprint of every state; `tests/golden.rs` watches over its bits.
-pub(crate) fn live(ticks: u32) -> Result<u64, Box<dyn Error>> {
+/// Runs so many ticks of 10 ms and returns a fingerprint of every state; `tests/golden.rs` watches over its bits.
+pub(crate) fn run(ticks: u32) -> Result<u64, Box<dyn Error>> {
     // Body and world.
     let arm = ArmAndHand::default();
     let robot = Tabletop::default().scene(&arm)?;

@@ -37,7 +37,7 @@ fn period(signal: impl Iterator<Item = f64>, time_step: f64) -> Option<f64> {
 }
 
 /// The state of the first neuron above minus its bias, step by step.
-fn lived(integrator: Integrator, time_step: f32, biases: [f32; 2]) -> Result<Vec<f64>, farsa::nn::Error> {
+fn simulate(integrator: Integrator, time_step: f32, biases: [f32; 2]) -> Result<Vec<f64>, farsa::nn::Error> {
     let mut parameters = [1.0; LAYOUT.parameter_count()];
     parameters[..4].copy_from_slice(&WEIGHTS);
     parameters[4..6].copy_from_slice(&biases);
@@ -85,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         let mut off = Vec::new();
         for time_step in [0.2_f32, 0.1, 0.05] {
-            let signal = lived(integrator, time_step, BIASES)?.into_iter();
+            let signal = simulate(integrator, time_step, BIASES)?.into_iter();
             let found = period(signal, time_step.into()).ok_or("it does not oscillate")?;
             off.push((found / known - 1.0).abs());
             let percent = 100.0 * (found / known - 1.0);
@@ -97,7 +97,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Away from the centre one neuron is saturated and nothing turns.
     let shifted = BIASES.map(|bias| bias + 1.0);
-    let at_rest = lived(Integrator::RungeKutta4, 0.05, shifted)?;
+    let at_rest = simulate(Integrator::RungeKutta4, 0.05, shifted)?;
     let tail = &at_rest[at_rest.len() / 2..];
     let range = tail.iter().fold([f64::MAX, f64::MIN], |[low, high], y| [low.min(*y), high.max(*y)]);
     println!("with biases {shifted:?} the first neuron comes to rest: it moves by {:.1e}", range[1] - range[0]);

@@ -108,13 +108,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let walked: Result<Vec<_>, _> = evolution.ask().iter().map(&mut walk).collect();
         let fitness: Vec<Fitness> = walked?.iter().map(|walked| Fitness::nan_as_failed(walked.0)).collect();
         let summary = Statistics::from_fitness(&fitness).ok_or(EvoError::NoIndividuals)?;
-        evolution.tell(&fitness)?;
         if generation % generations.div_ceil(8) == 0 || generation + 1 == generations {
-            let (velocity, footfalls) = walk(&evolution.genome_of(generation, summary.best_index)?)?;
+            let (velocity, footfalls) = walk(evolution.ask().get(summary.best_index).unwrap_or_default())?;
             println!("generation {generation:>3}: mean velocity {velocity:.3}, {footfalls} footfalls");
             let walks = velocity > 0.45 && footfalls >= 4 && velocity <= best;
             assert!(walks || generation + 1 < generations || generations < 100, "it does not walk");
         }
+        evolution.tell(&fitness)?;
     }
     Ok(())
 }

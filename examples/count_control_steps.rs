@@ -1,6 +1,6 @@
 //! A fixed amount of work for counting instructions: `./ci callgrind` runs each case and counts within `measured`.
 //!
-//! `cargo run --release --example count_control_steps free|grasp|free8|grasp8|aba7|aba27|network|muscles|life|recorded`
+//! `cargo run --release --example count_control_steps free|grasp|free8|grasp8|aba7|aba27|network|muscles|trial|recorded`
 
 #[path = "../benches/scene/mod.rs"]
 mod scene;
@@ -53,14 +53,14 @@ fn main() -> Result<(), Box<dyn Error>> {
                 black_box(aba.accelerations());
             });
         }
-        "life" | "recorded" => {
+        "trial" | "recorded" => {
             let mut evaluator = evaluator(Config { steps: 6 * TIMES as u32, ..Config::default() })?;
             let genotype = Genotype::new(&evaluator.parameters(), 16);
             let genes: Vec<u16> = (0..genotype.genes() as u32).map(|i| (i * 40503) as u16).collect();
             let parameters = genotype.decode(&genes).ok_or("other genes")?;
             let evaluation =
                 Evaluation { number: 0, parameters: &parameters, opponents: &[], id: EpisodeId::default() };
-            let mut recording = Recording::new(evaluator.stage());
+            let mut recording = Recording::new(evaluator.schema());
             let recorded = case == "recorded";
             // One episode of as many steps as the other cases have repetitions.
             measured_once(|| {

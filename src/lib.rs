@@ -17,3 +17,5 @@ pub use farsa_nn as nn;
 pub use farsa_num as num;
 /// Worlds: articulated bodies with contacts.
 pub use farsa_physics as physics;
+
+pub mod prelude;

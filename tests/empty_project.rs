@@ -6,6 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+mod readers;
+
 /// The crate, whether with its default features, the program, what it says.
 const PROJECTS: [[&str; 4]; 11] = [
     ["num", "with", "num.rs", "[0.254, 0.538, 0.769]"],
@@ -66,6 +68,8 @@ fn whoever_has_nothing_else_can_use_it() {
             .args(["run", "--quiet", "--offline"])
             .current_dir(&project)
             .env("CARGO_TARGET_DIR", target)
+            // Nobody looks into them.
+            .env("CARGO_PROFILE_DEV_DEBUG", "false")
             .stdin(Stdio::null())
             .output()
             .unwrap();
@@ -82,6 +86,8 @@ fn an_experiment_outside_the_workspace_has_the_command() {
     let source = root().join("farsa-experiments/tests/own-experiment");
     let place = std::env::temp_dir().join(format!("farsa-own-{}", std::process::id()));
     fs::create_dir_all(place.join("src")).unwrap();
+    fs::create_dir_all(place.join(".cargo")).unwrap();
+    fs::write(place.join(".cargo/config.toml"), readers::settings()).unwrap();
     let manifest = fs::read_to_string(source.join("Cargo.toml")).unwrap();
     let manifest = manifest.replace("../../..", &root().display().to_string());
     fs::write(place.join("Cargo.toml"), manifest).unwrap();

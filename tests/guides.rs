@@ -1,5 +1,5 @@
 //! The guides of `docs/guide` are what they say: their programs are those of `examples/guide`, what goes wrong is said so, and
-//! whoever follows them sees what they show.
+//! readers who follow them see what they show.
 
 #![allow(clippy::unwrap_used)]
 
@@ -8,6 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
+
+mod readers;
 
 const GUIDES: [&str; 4] = ["new-robot", "new-sensor", "new-fitness", "new-experiment"];
 
@@ -201,7 +203,10 @@ mod mistakes {
         says("new-robot", &model.expect_err("no world has that"));
         let khepera = MobileRobot::khepera();
         let infrared = InfraredRing { range: 0.0, ..khepera.infrared.clone() };
-        says("new-robot", &InfraredRays::of(&MobileRobot { infrared, ..khepera.clone() }, BodyId(0)).unwrap_err());
+        says(
+            "new-robot",
+            &InfraredRays::for_robot(&MobileRobot { infrared, ..khepera.clone() }, BodyId(0)).unwrap_err(),
+        );
         let mut arena = Arena::walled(1.0, 1.0);
         arena.add_robot(khepera, [0.02, 0.5], 0.0);
         says("new-robot", &World::new(&arena).unwrap_err());
@@ -278,7 +283,7 @@ fn matches(expected: &str, found: &str) -> bool {
     (0..=rest.len()).filter(|at| rest.is_char_boundary(*at)).any(|at| matches(after, &rest[at..]))
 }
 
-/// Who builds what a guide's reader has written.
+/// How what a guide's reader has written is built.
 #[derive(Clone, Copy, PartialEq)]
 enum Builder {
     /// Cargo, in a project of the reader's own.
@@ -364,7 +369,8 @@ fn follow(name: &str, builder: Builder) {
     let kind = if builder == Builder::Reader { "reader" } else { "workspace" };
     // Outside the target directory, which most often is within the workspace: there `cargo new` would enter the project into it.
     let place = std::env::temp_dir().join(format!("farsa-guide-{kind}-{}", std::process::id())).join(name);
-    fs::create_dir_all(&place).expect("an empty folder");
+    fs::create_dir_all(place.join(".cargo")).expect("an empty folder");
+    fs::write(place.join(".cargo/config.toml"), readers::settings()).expect("the settings of cargo");
     // The reader has FARSA beside the project.
     let here = |text: &str| text.replace("../farsa", &root().display().to_string());
     // A file grows as the guide goes on: with a second program `cargo run` alone would not know which.

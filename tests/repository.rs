@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -142,4 +143,91 @@ fn no_dependency_compiles_c_or_looks_for_a_system_library() {
     for name in ["cc", "cmake", "bindgen", "pkg-config", "vcpkg"] {
         assert!(!lock.contains(&format!("name = \"{name}\"\n")), "Cargo.lock: {name}");
     }
+}
+
+/// What is compiled, with its features, of what a crate of the workspace or all of them need.
+fn features(which: &[&str]) -> BTreeSet<String> {
+    let tree = ["tree", "--offline", "--prefix", "none", "--no-dedupe", "--format", "{p} [{f}]"];
+    let output = Command::new(env!("CARGO")).args(tree).args(which).current_dir(root()).output().expect("cargo");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn the_command_the_experiments_and_all_tests_share_one_build() {
+    let tests = features(&["--workspace", "--edges", "normal,dev"]);
+    for which in [&["--workspace", "--edges", "normal"][..], &["-p", "farsa-experiments", "--edges", "normal,dev"]] {
+        // A crate that is asked for one feature less has all that is above it compiled twice.
+        let part = features(which);
+        let other: Vec<&String> = part.difference(&tests).collect();
+        assert!(part.len() > 100 && other.is_empty(), "{which:?}: tests have these with other features: {other:?}");
+    }
+}
+
+#[test]
+fn a_library_that_evaluates_or_draws_has_no_command_line() {
+    for which in [&["-p", "farsa-view"][..], &["-p", "farsa-lab", "--no-default-features"]] {
+        let found = features(&[which, &["--edges", "normal"]].concat());
+        let known = |name: &str| found.iter().any(|line| line.starts_with(name));
+        assert!(known("farsa-body ") && !known("clap") && !known("farsa-experiments "), "{which:?}: {found:?}");
+    }
+}
+
+/// The name of the function that begins in a line of Rust or JavaScript; a method of a class has no word before its name.
+fn function_of(line: &str) -> Option<&str> {
+    let head = line.trim_start();
+    let head = head.strip_prefix("pub(crate) ").or(head.strip_prefix("pub(super) ")).unwrap_or(head);
+    let (words, _) = head.split_once(['(', '<'])?;
+    let mut before: Vec<&str> = words.split_whitespace().collect();
+    let name = before.pop()?;
+    let keyword = ["if", "for", "while", "switch", "catch"].contains(&name);
+    let method = before.is_empty() && line.ends_with(") {") && !keyword;
+    let named = ["fn", "function", "get"].iter().any(|word| before.last() == Some(word));
+    let known = before.iter().all(|word| ["pub", "const", "async", "static", "fn", "function", "get"].contains(word));
+    (known && (named || method) && name.chars().all(|c| c.is_alphanumeric() || c == '_')).then_some(name)
+}
+
+/// The functions of a source, each with its first line and how many lines it has. The code is formatted, so a body ends where
+/// a brace stands below the function's beginning.
+fn functions(text: &str) -> Vec<(&str, usize, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let mut found = Vec::new();
+    for (first, line) in lines.iter().enumerate() {
+        let Some(name) = function_of(line) else { continue };
+        // A declaration ends with a semicolon.
+        let last = lines[first..].iter().position(|other| {
+            indent(other) == indent(line) && (other.trim_start().starts_with('}') || other.ends_with([';', '}']))
+        });
+        if let Some(last) = last.filter(|last| lines[first + last].trim_start() == "}") {
+            found.push((name, first + 1, last + 1));
+        }
+    }
+    found
+}
+
+#[test]
+fn functions_and_files_are_short() {
+    let sample = "fn one() { 1 }\n\nimpl A {\n    pub(crate) fn two<T>(\n        a: T,\n    ) -> A {\n        a\n    }\n    fn three();\n}\n\
+                  class B {\n\tget four() {\n\t}\n\tfive(a) {\n\t\tif (a) {\n\t\t}\n\t}\n}\n";
+    assert_eq!(functions(sample), [("two", 4, 5), ("four", 12, 2), ("five", 14, 4)]);
+    let (mut wrong, mut seen) = (Vec::new(), 0);
+    for (path, text) in files() {
+        let code = path.extension().is_some_and(|extension| extension == "rs" || extension == "js");
+        if !code || !path.components().any(|part| part.as_os_str() == "src") {
+            continue;
+        }
+        let length = text.lines().count();
+        if length > 500 {
+            wrong.push(format!("{} has {length} lines, at most 500", path.display()));
+        }
+        for (name, first, length) in functions(&text) {
+            seen += 1;
+            if length > 100 {
+                wrong.push(format!("{}:{first}: {name} has {length} lines, at most 100", path.display()));
+            }
+        }
+    }
+    assert!(seen > 2000, "only {seen} functions");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

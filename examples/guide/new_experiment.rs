@@ -4,7 +4,7 @@ use farsa::body::{Beam, BodyId, LightSensors, MobileRobot, Pose, Twist, WheelVel
 use farsa::num::{Domain, Stream};
 use farsa::physics::arena::{Arena, Cylinder};
 use farsa_lab::{Controlled, EpisodeId, Error, Evaluator, InWorld, Neurocontroller, Objective, PlanarWorld};
-use farsa_lab::{Setting, Settings, SimpleExperiment, Stage, Trials, cli};
+use farsa_lab::{Schema, Setting, Settings, SimpleExperiment, Trials, cli};
 
 const LAMP: [f64; 2] = [0.8, 0.4]; // metres
 
@@ -17,9 +17,9 @@ fn prepare(settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
     arena.add_robot(khepera.clone(), [0.2, 0.4], 0.0);
     arena.add_cylinder(Cylinder { lamp: 1.0, ..Cylinder::new(LAMP, 0.01) });
     let robot = arena.parts(0);
-    let eyes: LightSensors<Vec<Beam>> = LightSensors::of(&khepera, robot.body, 0.5)?;
+    let eyes: LightSensors<Vec<Beam>> = LightSensors::for_robot(&khepera, robot.body, 0.5)?;
     let wheels = WheelVelocity::new(robot.motors, khepera.max_wheel_speed as f32)?;
-    let control = Neurocontroller::new(eyes, wheels, 4, 8.0)?.on_stage(Stage::of_arena(&arena));
+    let control = Neurocontroller::new(eyes, wheels, 4, 8.0)?.with_schema(Schema::from_arena(&arena));
     let steps = settings.count("trial.steps")? as u32;
     let nearness = Nearness { robot: robot.body, steps: f64::from(steps), away: f64::NAN };
     let trials = Trials { count: 8, steps, time_step: 0.05 };
@@ -38,7 +38,7 @@ impl Objective for Nearness {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         world.clear();
         world.place_body(self.robot, Pose::planar([0.2, 0.4], stream.range(-3.1, 3.1)), Twist::default());
-        world.arranged();
+        world.finish_placement();
     }
     fn reward<W: PlanarWorld>(&mut self, world: &W) -> f64 {
         let [x, y, _] = world.pose(self.robot).position.map(f64::from);

@@ -28,7 +28,7 @@ impl Experiment for Judges {
         let (robots, death) = (settings.count("team.robots")? as f64, settings.number("fitness.death")?);
         let per_survivor = settings.flag("fitness.per_survivor")?;
         let score = move |outcome: &Outcome| {
-            let (food, deaths) = (told(outcome, "food collected"), told(outcome, "deaths"));
+            let (food, deaths) = (noted(outcome, "food collected"), noted(outcome, "deaths"));
             let share = if per_survivor { robots / (robots - deaths) } else { 1.0 };
             vec![food * share, -death * deaths]
         };
@@ -37,8 +37,8 @@ impl Experiment for Judges {
     }
 }
 
-/// What the task tells of a trial under a name; NaN, so that no trial counts, if it tells nothing of that name.
-fn told(outcome: &Outcome, name: &str) -> f64 {
+/// A number among the notes of a trial, by name; NaN, so that no trial counts, if there is none of that name.
+fn noted(outcome: &Outcome, name: &str) -> f64 {
     let note = outcome.notes.iter().find(|(other, _)| *other == name);
     if let Some((_, Note::Number(x))) = note { *x } else { f64::NAN }
 }

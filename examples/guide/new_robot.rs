@@ -11,7 +11,7 @@ use farsa::body::{
 };
 use farsa::physics::articulated::{Model, Options, World};
 use farsa_models::{MjcfOptions, mjcf, urdf};
-use farsa_view::{Camera, Page, Recording, Stage};
+use farsa_view::{Camera, Page, Recording, Schema};
 
 const SHOULDER: [f64; 2] = [-1.5, 1.5]; // rad
 const ELBOW: [f64; 2] = [0.0, 2.0];
@@ -41,7 +41,7 @@ fn arm() -> Result<Robot, RobotError> {
     let hand = Collider::new("hand", Some(forearm), Shape::Sphere { radius: 0.04 }, Pose::at([0.0, 0.0, -lower]));
     let hand = robot.add_collider(hand);
 
-    // A ball on the ground in front of it, and who may touch whom.
+    // A ball on the ground in front of it, and which bodies may touch.
     let start = Joint::floating(Pose::at([0.12, 0.0, 0.05]));
     let ball = robot.add_segment(Segment::new("ball", None, start, MassProperties::sphere(0.1, 0.05)));
     let skin = Collider::new("ball", Some(ball), Shape::Sphere { radius: 0.05 }, Pose::identity());
@@ -65,8 +65,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let robot = arm()?;
     let model = Model::<f32>::new(&robot, &Options::default())?;
     let make = || World::new(model.clone());
-    check_world(make, &Probe::of(&robot))?;
-    check_arrange(make, &Probe::of(&robot))?;
+    check_world(make, &Probe::for_robot(&robot))?;
+    check_arrange(make, &Probe::for_robot(&robot))?;
     println!(
         "{}: {} joints, {} actuators; the world keeps its promises",
         robot.name,
@@ -83,8 +83,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ball = robot.body("ball").ok_or("no ball")?;
     let kick = robot.pair("hand", "ball").ok_or("no such pair")?;
 
-    let stage = Stage::of_robot(&robot).with_outputs(["back", "ahead", "elbow"]).with_scalars(["ball [m]"]);
-    let mut recording = Recording::new(stage);
+    let schema = Schema::from_robot(&robot).with_outputs(["back", "ahead", "elbow"]).with_scalars(["ball [m]"]);
+    let mut recording = Recording::new(schema);
     let mut world = make();
     let (mut kicks, mut seen) = (0, 0);
     for tick in 1..=300_u32 {

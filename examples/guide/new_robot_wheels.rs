@@ -8,7 +8,7 @@ use farsa::body::{
     Recorder as _, Sensor as _, WheelVelocity, World as _,
 };
 use farsa::physics::arena::{Arena, Cylinder, World};
-use farsa_view::{Camera, Recording, Stage};
+use farsa_view::{Camera, Recording, Schema};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let angles = [1.2, 0.6, 0.0, -0.6, -1.2]; // counter-clockwise from ahead
@@ -27,12 +27,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let parts = arena.parts(0);
     let mut world = World::new(&arena)?;
 
-    let mut sensors = InfraredRays::of(&cart, parts.body)?;
+    let mut sensors = InfraredRays::for_robot(&cart, parts.body)?;
     let mut wheels = WheelVelocity::new(parts.motors, cart.max_wheel_speed as f32)?;
     let (mut x, mut y) = ([0.0; 5], [0.0; 2]);
     assert_eq!((sensors.channels(), wheels.channels()), (x.len(), y.len()));
 
-    let mut recording = Recording::new(Stage::of_arena(&arena).with_sensors(["1", "2", "3", "4", "5"]));
+    let mut recording = Recording::new(Schema::from_arena(&arena).with_sensors(["1", "2", "3", "4", "5"]));
     let mut bumps = 0;
     for tick in 1..=600_u32 {
         sensors.read(&world, &mut x);

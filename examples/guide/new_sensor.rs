@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let bearing = Delayed::new(Bearing(parts.body, goal), ticks);
         let mut sensors = (
             Noisy::new(bearing, Noise::Normal(deviation), noise)?,
-            InfraredRays::of(&e_puck, parts.body)?, // left to right: 54 degrees is number 1, -54 degrees number 4
+            InfraredRays::for_robot(&e_puck, parts.body)?, // left to right: 54 degrees is number 1, -54 degrees number 4
         );
         let mut motor = Steer(parts.motors, 5.0);
         let (mut x, mut y) = ([0.0; 10], [0.0; 1]);

@@ -1,4 +1,4 @@
-// Pages of invented lives, in the format of docs/replay-format.md: what the viewer must show is known exactly.
+// Pages of invented trials, in the format of docs/replay-format.md: what the viewer must show is known exactly.
 //
 //   node tests/browser/mock.mjs PAGE.html [arena]
 
@@ -7,7 +7,7 @@ import { crc32 } from "node:zlib";
 
 const VIEWER = new URL("../../farsa-view/src/page/viewer/", import.meta.url);
 // In the order in which the page has them.
-export const SCRIPTS = ["data.js", "scene.js", "strips.js", "network.js", "main.js"];
+export const SCRIPTS = ["data.js", "camera.js", "scene.js", "view.js", "strips.js", "network.js", "player.js", "main.js"];
 export const viewer = (name) => readFileSync(new URL(name, VIEWER), "utf8");
 
 export const crc = (bytes) => {
@@ -46,7 +46,7 @@ const alongX = (name, body, length, radius, axis = [1, 0, 0]) => ({
 });
 
 // An arm of seven joints with a hand of five fingers, that takes a sphere from a table and raises it.
-export function armLife(number) {
+export function armTrial(number) {
   const ticks = 600;
   const bodies = ["shoulder_base", "shoulder", "upper_arm", "elbow", "forearm", "wrist", "palm"];
   const parents = [-1, 0, 1, 2, 3, 4, 5];
@@ -165,7 +165,7 @@ export function armLife(number) {
 }
 
 // A wheeled robot that finds its way between walls in the plane, with distance rays.
-export function arenaLife(number) {
+export function arenaTrial(number) {
   const ticks = 400;
   const times = Array.from({ length: ticks }, (_, t) => 0.05 * t);
   const path = (t) => [0.6 * Math.cos(t / 60 + number) + 0.2 * Math.cos(t / 23), 0.45 * Math.sin(t / 60 + number) + 0.15 * Math.sin(t / 31), 0.03];
@@ -201,9 +201,9 @@ export function arenaLife(number) {
   };
 }
 
-// Encodes a life; `exact` goes along for whoever compares.
-export function encode(life) {
-  const { times, poses, channels, marks, contacts, rays, weights } = life;
+// Encodes a trial; `exact` goes along for whoever compares.
+export function encode(trial) {
+  const { times, poses, channels, marks, contacts, rays, weights } = trial;
   const ticks = times.length;
   const everywhere = [...poses.flat().map((p) => p.position), ...marks.flat(), ...contacts.flat().map((c) => c[1]), ...rays.flat().flatMap((r) => [r.from, r.to])];
   const low = [0, 1, 2].map((i) => everywhere.reduce((m, p) => Math.min(m, p[i]), Infinity));
@@ -240,26 +240,26 @@ export function encode(life) {
   block("weights", Float32Array.from(weights));
   const data = Buffer.concat(parts);
   return {
-    name: life.name, facts: life.facts, ticks, bodies: life.bodies, shapes: life.shapes, channels: headers, pairs: life.pairs, points: life.points,
-    ...(life.network ? { network: life.network } : {}),
+    name: trial.name, facts: trial.facts, ticks, bodies: trial.bodies, shapes: trial.shapes, channels: headers, pairs: trial.pairs, points: trial.points,
+    ...(trial.network ? { network: trial.network } : {}),
     position_origin: low, position_unit: unit, force_unit, blocks, bytes, crc32: crc(data), data: data.toString("base64"),
   };
 }
 
-export const pageOf = (lives, view = "free", title = "An invented life") =>
-  ({ format: "farsa-replay", version: 1, made_by: "mock.mjs", title, view, lives: lives.map(encode) });
+export const pageOf = (trials, view = "free", title = "An invented trial") =>
+  ({ format: "farsa-replay", version: 1, made_by: "mock.mjs", title, view, lives: trials.map(encode) });
 
-// What `farsa replay` would print of the life.
-export function csvOf(life) {
-  const some = ["palm", "sphere"].filter((name) => life.bodies.includes(name)).map((name) => [name, life.bodies.indexOf(name)]);
+// What `farsa replay` would print of the trial.
+export function csvOf(trial) {
+  const some = ["palm", "sphere"].filter((name) => trial.bodies.includes(name)).map((name) => [name, trial.bodies.indexOf(name)]);
   const head = ["trial", "step", "time [s]", ...some.flatMap(([name]) => ["x", "y", "z"].map((x) => `${name}.${x} [m]`)),
-    ...life.channels.map(({ group, name, unit }) => (group === "sensor" ? `sensor.${name}` : unit ? `${name} [${unit}]` : name))];
-  const rows = life.times.map((time, t) => [0, t, time, ...some.flatMap(([, b]) => life.poses[t][b].position), ...life.channels.map((c) => c.values[t])]);
+    ...trial.channels.map(({ group, name, unit }) => (group === "sensor" ? `sensor.${name}` : unit ? `${name} [${unit}]` : name))];
+  const rows = trial.times.map((time, t) => [0, t, time, ...some.flatMap(([, b]) => trial.poses[t][b].position), ...trial.channels.map((c) => c.values[t])]);
   return [head, ...rows].map((row) => row.join(",")).join("\n") + "\n";
 }
 
 if (process.argv[1] === new URL(import.meta.url).pathname) {
   const arena = process.argv[3] === "arena";
-  const lives = arena ? [arenaLife(0), arenaLife(1)] : [armLife(0), armLife(1)];
-  writeFileSync(process.argv[2], compose(pageOf(lives, arena ? "top" : "free")));
+  const trials = arena ? [arenaTrial(0), arenaTrial(1)] : [armTrial(0), armTrial(1)];
+  writeFileSync(process.argv[2], compose(pageOf(trials, arena ? "top" : "free")));
 }

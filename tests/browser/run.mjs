@@ -1,8 +1,8 @@
 // Tests the page of `farsa replay --html` in a real browser.
 //
-//   node tests/browser/run.mjs [PAGE.html LIFE.csv [SCREENSHOTS]]
+//   node tests/browser/run.mjs [PAGE.html TRIAL.csv [SCREENSHOTS]]
 //
-// PAGE.html is a page of a life, LIFE.csv what `farsa replay` says of the same life; without them an invented life takes
+// PAGE.html is a page of a trial, TRIAL.csv what `farsa replay` says of the same trial; without them an invented trial takes
 // their place. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -10,7 +10,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { pathToFileURL } from "node:url";
-import { armLife, arenaLife, compose, csvOf, encode, pageOf, SCRIPTS, viewer } from "./mock.mjs";
+import { armTrial, arenaTrial, compose, csvOf, encode, pageOf, SCRIPTS, viewer } from "./mock.mjs";
 import { coloursIn, decode } from "./png.mjs";
 import { KEY, startDriver } from "./webdriver.mjs";
 
@@ -52,13 +52,13 @@ const mark = '<script type="application/json" id="data">';
 const dataOf = (html) => JSON.parse(html.slice(html.lastIndexOf(mark) + mark.length, html.lastIndexOf("</script>")));
 const withData = (html, data) => html.slice(0, html.lastIndexOf(mark) + mark.length) + JSON.stringify(data).replaceAll("<", "\\u003c") + "</script>\n</body>\n</html>\n";
 
-// The rows of the trial that the page's first life shows, by column.
-function readCsv(text, life) {
+// The rows of the trial that the page shows first, by column.
+function readCsv(text, trial) {
   const [head, ...rows] = text.trim().split(/\r?\n/).map((line) => line.split(","));
-  const wanted = /trial (\d+)/.exec(life.name)?.[1];
-  const trials = [...new Set(rows.map((row) => row[0]))];
-  const trial = trials.includes(wanted) ? wanted : trials[0];
-  return rows.filter((row) => row[0] === trial).map((row) => Object.fromEntries(head.map((name, i) => [name, row[i]])));
+  const wanted = /trial (\d+)/.exec(trial.name)?.[1];
+  const numbers = [...new Set(rows.map((row) => row[0]))];
+  const number = numbers.includes(wanted) ? wanted : numbers[0];
+  return rows.filter((row) => row[0] === number).map((row) => Object.fromEntries(head.map((name, i) => [name, row[i]])));
 }
 
 async function opened(browser, url, { motion = "reduce", scheme = "light" } = {}) {
@@ -89,7 +89,7 @@ async function silent(browser, name) {
 function files() {
   const template = viewer("page.html");
   const size = [template, viewer("viewer.css"), ...SCRIPTS.map(viewer)].reduce((sum, text) => sum + Buffer.byteLength(text), 0);
-  check(`the viewer has ${size} bytes, at most 61440`, size <= 61440);
+  check(`the viewer has ${size} bytes, at most 67584`, size <= 67584);
   for (const name of ["title", "style", "script", "data"]) {
     check(`page.html has one {{${name}}}`, template.split(`{{${name}}}`).length === 2);
   }
@@ -98,77 +98,77 @@ function files() {
   check("nothing is asked of a network", !/https?:|\bfetch\(|XMLHttpRequest|import\(|@import|url\(/.test(template + rest));
 }
 
-// ---- An invented life, of which every number is known.
+// ---- An invented trial, of which every number is known.
 
 async function arithmetic(browser) {
-  const lives = [armLife(0), armLife(1)];
-  lives[1].times = lives[1].times.slice(0, 400);
-  for (const key of ["poses", "marks", "contacts", "rays"]) lives[1][key] = lives[1][key].slice(0, 400);
-  lives[1].channels = lives[1].channels.map((c) => ({ ...c, values: c.values.slice(0, 400) }));
-  await opened(browser, write("invented.html", compose(pageOf(lives))));
-  const encoded = lives.map(encode);
+  const trials = [armTrial(0), armTrial(1)];
+  trials[1].times = trials[1].times.slice(0, 400);
+  for (const key of ["poses", "marks", "contacts", "rays"]) trials[1][key] = trials[1][key].slice(0, 400);
+  trials[1].channels = trials[1].channels.map((c) => ({ ...c, values: c.values.slice(0, 400) }));
+  await opened(browser, write("invented.html", compose(pageOf(trials))));
+  const encoded = trials.map(encode);
   let worst = { position: 0, rotation: 0, force: 0, value: 0 };
   let same = true;
   for (const tick of [0, 1, 150, 361, 399, 599]) {
     const found = await browser.run((tick) => {
       farsa.seek(tick);
-      return farsa.lives.map((life) => ({
-        poses: life.bodies.map((body) => farsa.pose(life, body)), contacts: farsa.contacts(life),
-        values: life.channels.map((c) => [farsa.value(life, c.name, c.group)].map((x) => (Number.isNaN(x) ? "NaN" : x))[0]),
+      return farsa.trials.map((trial) => ({
+        poses: trial.bodies.map((body) => farsa.pose(trial, body)), contacts: farsa.contacts(trial),
+        values: trial.channels.map((c) => [farsa.value(trial, c.name, c.group)].map((x) => (Number.isNaN(x) ? "NaN" : x))[0]),
       }));
     }, tick);
-    lives.forEach((life, n) => {
-      const t = Math.min(tick, life.times.length - 1);
-      life.poses[t].forEach((pose, b) => {
+    trials.forEach((trial, n) => {
+      const t = Math.min(tick, trial.times.length - 1);
+      trial.poses[t].forEach((pose, b) => {
         const { position, rotation } = found[n].poses[b];
         position.forEach((x, i) => (worst.position = Math.max(worst.position, Math.abs(x - pose.position[i]) / (encoded[n].position_unit / 2))));
         const dot = Math.abs(rotation.reduce((sum, x, i) => sum + x * pose.rotation[i], 0));
         worst.rotation = Math.max(worst.rotation, 2 * Math.acos(Math.min(1, dot)));
       });
-      same &&= found[n].contacts.length === life.contacts[t].length;
-      life.contacts[t].forEach(([pair, point, force], i) => {
+      same &&= found[n].contacts.length === trial.contacts[t].length;
+      trial.contacts[t].forEach(([pair, point, force], i) => {
         const contact = found[n].contacts[i];
-        same &&= contact.pair.join() === life.pairs[pair].join() && contact.point.every((x, k) => close(x, point[k], encoded[n].position_unit / 2));
+        same &&= contact.pair.join() === trial.pairs[pair].join() && contact.point.every((x, k) => close(x, point[k], encoded[n].position_unit / 2));
         contact.force.forEach((f, k) => (worst.force = Math.max(worst.force, Math.abs(f - force[k]) / (encoded[n].force_unit / 2))));
       });
-      life.channels.forEach((channel, c) => {
+      trial.channels.forEach((channel, c) => {
         const value = found[n].values[c];
         if (Number.isNaN(channel.values[t])) same &&= value === "NaN";
         else if (encoded[n].channels[c].scale > 0) worst.value = Math.max(worst.value, Math.abs(value - channel.values[t]) / (encoded[n].channels[c].scale / 2));
       });
     });
   }
-  check("invented lives: positions within the stated precision", worst.position <= 1.0001, `${worst.position} times it`);
-  check("invented lives: rotations within 0.1 mrad", worst.rotation < 1e-4, worst.rotation);
-  check("invented lives: forces within the stated precision", worst.force <= 1.0001, `${worst.force} times it`);
-  check("invented lives: values within the stated precision", worst.value <= 1.0001, `${worst.value} times it`);
-  check("invented lives: contacts and missing values are those written", same);
+  check("invented trials: positions within the stated precision", worst.position <= 1.0001, `${worst.position} times it`);
+  check("invented trials: rotations within 0.1 mrad", worst.rotation < 1e-4, worst.rotation);
+  check("invented trials: forces within the stated precision", worst.force <= 1.0001, `${worst.force} times it`);
+  check("invented trials: values within the stated precision", worst.value <= 1.0001, `${worst.value} times it`);
+  check("invented trials: contacts and missing values are those written", same);
 
-  // A shorter life stands still at its end; both keep in step by time.
-  const step = await browser.run(() => (farsa.show(0, 1), farsa.seek(599), [farsa.ticks, farsa.value(1, "reward.lift"), farsa.lives[1].channels.find((c) => c.name === "reward.lift").values[399]]));
-  check("the clock is that of the longer life", step[0] === 600 && step[1] === step[2], step.join());
+  // A shorter trial stands still at its end; both keep in step by time.
+  const step = await browser.run(() => (farsa.show(0, 1), farsa.seek(599), [farsa.ticks, farsa.value(1, "reward.lift"), farsa.trials[1].channels.find((c) => c.name === "reward.lift").values[399]]));
+  check("the clock is that of the longer trial", step[0] === 600 && step[1] === step[2], step.join());
 
   const node = await browser.run(() => {
-    const { nodes, links } = farsa.lives[0].network;
+    const { nodes, links } = farsa.trials[0].network;
     const from = nodes[3];
     const to = nodes[31];
     return { weight: links.find((l) => l.from === from && l.to === to).weight, recurrent: links.find((l) => l.from === nodes[30] && l.to === nodes[29]).weight, bias: to.values };
   });
-  const { weights } = lives[0];
+  const { weights } = trials[0];
   check("weights are those of their links", close(node.weight, weights[3 * 12 + 2], 1e-6) && close(node.recurrent, weights[348 + 12], 1e-6));
   check("biases and leaks are those of their neurons", node.bias.length === 2 && close(node.bias[0][1], weights[768 + 2], 1e-6) && close(node.bias[1][1], weights[803 + 2], 1e-6));
-  const half = await browser.run(() => farsa.lives[0].between(400.5, 27).position);
-  const middle = [0, 1, 2].map((i) => (lives[0].poses[400][27].position[i] + lives[0].poses[401][27].position[i]) / 2);
+  const half = await browser.run(() => farsa.trials[0].between(400.5, 27).position);
+  const middle = [0, 1, 2].map((i) => (trials[0].poses[400][27].position[i] + trials[0].poses[401][27].position[i]) / 2);
   check("between two ticks bodies are between two poses", half.every((x, i) => close(x, middle[i], encoded[0].position_unit)));
-  await silent(browser, "invented lives");
+  await silent(browser, "invented trials");
 
-  await opened(browser, write("arena.html", compose(pageOf([arenaLife(0)], "top"))));
+  await opened(browser, write("arena.html", compose(pageOf([arenaTrial(0)], "top"))));
   const arena = await browser.run(() => [farsa.view, document.querySelector("#top").ariaPressed, document.querySelector("#trails").ariaPressed, document.querySelector("#forces").hidden, document.querySelector("#network").hidden]);
   check("an arena is seen from above with trails, without what it has not", arena.join() === "top,true,true,true,true", arena.join());
   await silent(browser, "arena");
 
   // A network whose sensors drive its outputs, without neurons in between.
-  const reflex = arenaLife(0);
+  const reflex = arenaTrial(0);
   const nodes = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map((channel) => ({ channel, layer: channel < 8 ? 0 : 2, name: `node ${channel}` }));
   reflex.network = { nodes, links: [{ from: [0, 8], to: [8, 10], first: 0 }], values: [{ name: "bias", nodes: [8, 10], first: 16 }] };
   reflex.weights = Array.from({ length: 18 }, (_, i) => Math.sin(i));
@@ -180,16 +180,16 @@ async function arithmetic(browser) {
 
 // ---- The page itself.
 
-async function against(browser, url, table, life) {
+async function against(browser, url, table, trial) {
   await opened(browser, url);
   check("the page is up and says nothing is wrong", await browser.run(() => farsa.ready && farsa.error === null && document.querySelector("#message").hidden));
   check("reduced motion: it does not play by itself", !(await browser.run(() => farsa.playing)));
   check("the page has as many ticks as the table has rows", (await browser.run(() => farsa.ticks)) === table.length, table.length);
-  const unit = life.position_unit / 2;
+  const unit = trial.position_unit / 2;
   const said = await browser.run(() => document.querySelector("#facts").textContent);
-  check("facts and precision are shown", life.facts.every(([name, text]) => said.includes(name) && said.includes(text)) && /Positions within [\d.]+ (mm|cm|m)/.test(said), said);
+  check("facts and precision are shown", trial.facts.every(([name, text]) => said.includes(name) && said.includes(text)) && /Positions within [\d.]+ (mm|cm|m)/.test(said), said);
 
-  const bodies = ["sphere", "palm"].filter((name) => life.bodies.includes(name) && `${name}.x [m]` in table[0]);
+  const bodies = ["sphere", "palm"].filter((name) => trial.bodies.includes(name) && `${name}.x [m]` in table[0]);
   check("sphere and palm are in page and table", bodies.length === 2, bodies.join());
   const slider = await rectOf(browser, "#slider");
   const ticks = new Set();
@@ -213,7 +213,7 @@ async function against(browser, url, table, life) {
       const title = titles.find((title) => title in row);
       if (!title) continue;
       compared++;
-      const channel = life.channels.find((c) => c.group === group && c.name === name);
+      const channel = trial.channels.find((c) => c.group === group && c.name === name);
       const value = Number(row[title]);
       if (channel.words) {
         if (text !== channel.words[value] && text !== row[title]) wrong.push(`${title} ${text} for ${row[title]}`);
@@ -230,7 +230,7 @@ async function against(browser, url, table, life) {
   await silent(browser, "scrubbing");
 }
 
-async function handled(browser, url, life) {
+async function handled(browser, url, trial) {
   await opened(browser, url, { motion: "no-preference" });
   check("it plays by itself", await browser.run(() => farsa.playing));
   const before = await browser.run(() => farsa.tick);
@@ -292,7 +292,7 @@ async function handled(browser, url, life) {
 
   const scene = await rectOf(browser, ".scene");
   const [x, y] = [(scene.left + scene.right) / 2, (scene.top + scene.bottom) / 2];
-  const seen = () => browser.run((p) => farsa.project(p), life.position_origin);
+  const seen = () => browser.run((p) => farsa.project(p), trial.position_origin);
   const views = [await seen()];
   for (const act of [() => browser.drag([[x, y], [x + 60, y + 20]]), () => browser.drag([[x, y], [x + 60, y]], { button: 2 }), () => browser.wheel(x, y, 300)]) {
     await act();
@@ -306,9 +306,9 @@ async function handled(browser, url, life) {
   const back = await seen();
   check("c brings the camera back", Math.hypot(back.x - views[0].x, back.y - views[0].y) < 1);
 
-  if (life.network) {
+  if (trial.network) {
     const graph = await rectOf(browser, "#graph");
-    const node = await browser.run(() => farsa.lives[0].network.nodes.map(({ x, y, name }) => ({ x, y, name })).at(-1));
+    const node = await browser.run(() => farsa.trials[0].network.nodes.map(({ x, y, name }) => ({ x, y, name })).at(-1));
     await browser.drag([[graph.left + node.x, graph.top + node.y]]);
     await settled(browser);
     const about = await browser.run(() => document.querySelector("#about").textContent);
@@ -351,7 +351,7 @@ async function looks(driver, url, name, size, phone) {
       check(`${title}: no text is smaller than 12 pixels`, small.length === 0, small.slice(0, 3).join());
 
       // The sphere is drawn where it is: orange at its place, at the first tick, when nothing holds it.
-      if (scheme === "light" && (await browser.run(() => farsa.lives[0].bodies.includes("sphere")))) {
+      if (scheme === "light" && (await browser.run(() => farsa.trials[0].bodies.includes("sphere")))) {
         await browser.run(() => farsa.seek(0));
         await settled(browser);
         const first = decode(await browser.screenshot());
@@ -377,7 +377,7 @@ async function looks(driver, url, name, size, phone) {
       check(`${name}: a finger plays`, await browser.until(() => farsa.playing));
       await browser.run(() => farsa.pause());
       const scene = await rectOf(browser, ".scene");
-      const seen = () => browser.run(() => farsa.project(farsa.lives[0].json.position_origin));
+      const seen = () => browser.run(() => farsa.project(farsa.trials[0].json.position_origin));
       const before = await seen();
       await browser.drag([[200, scene.top + 150], [120, scene.top + 170], [80, scene.top + 170]], { touch: true });
       await settled(browser);
@@ -425,7 +425,7 @@ async function damaged(browser, html, name) {
     ["a block out of range", changed((d) => (d.lives[0].blocks.channels = 4 * (d.lives[0].bytes >> 2))), /block channels .* out of range/],
     ["a block that is not there", changed((d) => delete d.lives[0].blocks.poses), /block poses .* out of range/],
     ["contacts that are none", changed((d) => (d.lives[0].blocks.contacts = d.lives[0].blocks.times)), /block contacts .* out of range|cannot be shown/],
-    ["no life", changed((d) => (d.lives = [])), /no life/],
+    ["no trial", changed((d) => (d.lives = [])), /no trial/],
     ["no shapes", changed((d) => delete d.lives[0].shapes), /lacks something|cannot be shown/],
     ["data that is no page", withData(html, 7), /farsa-replay/],
   ];
@@ -446,11 +446,11 @@ async function damaged(browser, html, name) {
 
 async function compared(browser, html) {
   const data = dataOf(html);
-  const [life] = data.lives;
-  const url = write("two.html", withData(html, { ...data, lives: [life, data.lives[1] ?? { ...life, name: "the same again" }] }));
+  const [trial] = data.lives;
+  const url = write("two.html", withData(html, { ...data, lives: [trial, data.lives[1] ?? { ...trial, name: "the same again" }] }));
   await opened(browser, url);
-  const options = await browser.run(() => [...document.querySelectorAll("#life option")].length);
-  check("a page of two lives offers both", options === 2, options);
+  const options = await browser.run(() => [...document.querySelectorAll("#trial option")].length);
+  check("a page of two trials offers both", options === 2, options);
   const beside = async (value) => {
     await browser.run((value) => {
       const list = document.querySelector("#beside");
@@ -475,7 +475,7 @@ async function compared(browser, html) {
   if (shots) writeFileSync(join(shots, "two.png"), await browser.screenshot());
   await beside("");
   check("beside nothing: one view again", (await browser.run(() => [...document.querySelectorAll("figure")].filter((f) => f.offsetWidth).length)) === 1);
-  await silent(browser, "two lives");
+  await silent(browser, "two trials");
 }
 
 async function withoutWebGL(driver, url) {
@@ -494,11 +494,11 @@ async function withoutWebGL(driver, url) {
   }
 }
 
-const invented = compose(pageOf([armLife(0)]));
+const invented = compose(pageOf([armTrial(0)]));
 const html = page ? readFileSync(page, "utf8") : invented;
 const url = page ? pathToFileURL(resolve(page)) : write("page.html", html);
-const [life] = dataOf(html).lives;
-const table = readCsv(csv ? readFileSync(csv, "utf8") : csvOf(armLife(0)), life);
+const [trial] = dataOf(html).lives;
+const table = readCsv(csv ? readFileSync(csv, "utf8") : csvOf(armTrial(0)), trial);
 
 files();
 let driver;
@@ -507,16 +507,16 @@ try {
   const browser = await driver.open();
   try {
     await part("arithmetic", () => arithmetic(browser));
-    await part("against the table", () => against(browser, url, table, life));
-    await part("mouse and keys", () => handled(browser, url, life));
-    await part("two lives", () => compared(browser, html));
+    await part("against the table", () => against(browser, url, table, trial));
+    await part("mouse and keys", () => handled(browser, url, trial));
+    await part("two trials", () => compared(browser, html));
     await part("damage", () => damaged(browser, html, "page"));
   } finally {
     await browser.close();
   }
   for (const [size, phone] of [[[1280, 800], false], [[390, 844], true]]) {
     await part("looks", () => looks(driver, url, "page", size, phone));
-    await part("looks of an arena", () => looks(driver, write("arena.html", compose(pageOf([arenaLife(0)], "top"))), "arena", size, phone));
+    await part("looks of an arena", () => looks(driver, write("arena.html", compose(pageOf([arenaTrial(0)], "top"))), "arena", size, phone));
   }
   await part("without WebGL", () => withoutWebGL(driver, url));
 } catch (error) {

@@ -1,6 +1,6 @@
 //! A loop of one's own, recorded: a page to look at it in a browser, and a picture of its end.
 //!
-//! `cargo run --example 07_look_at_a_life [PAGE.html [PICTURE.svg]]`
+//! `cargo run --example 07_look_at_an_episode [PAGE.html [PICTURE.svg]]`
 
 use std::error::Error;
 use std::fs;
@@ -10,7 +10,7 @@ use farsa::body::{
     Tabletop, World as _,
 };
 use farsa::physics::articulated::{Model, Options, World};
-use farsa_view::{Camera, Page, Picture, Recording, Stage};
+use farsa_view::{Camera, Page, Picture, Recording, Schema};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arm = ArmAndHand::default();
@@ -24,9 +24,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut motors = groups.collect::<Result<Vec<_>, _>>()?;
     let (mut x, mut y) = ([0.0; 3], [0.0; 9]);
 
-    let stage = Stage::of_robot(&robot).with_sensors(["J13", "J14", "J15"]).with_scalars(["palm's height [m]"]);
+    let schema = Schema::from_robot(&robot).with_sensors(["J13", "J14", "J15"]).with_scalars(["palm's height [m]"]);
     let outputs: Vec<String> = (1..=9).map(|group| format!("group {group}")).collect();
-    let mut recording = Recording::new(stage.with_outputs(outputs));
+    let mut recording = Recording::new(schema.with_outputs(outputs));
     for tick in 1..=400_u32 {
         sensors.read(&world, &mut x);
         y.fill(if tick / 50 % 2 == 0 { 0.0 } else { 0.9 });
