@@ -219,7 +219,9 @@ proptest! {
         }
         if let [Some(wall), Some(convex)] = near {
             prop_assert!((wall.0 - convex.0).abs() < 2e-6);
-            prop_assert!((0..2).all(|k| (wall.1[k] - convex.1[k]).abs() < 2e-6), "{near:?}");
+            // Beside a corner two points are equally near to rounding: of relative error e, they lie sqrt(2 e) of the way apart.
+            let slack = 2e-6 + 7e-4 * wall.0;
+            prop_assert!((0..2).all(|k| (wall.1[k] - convex.1[k]).abs() < slack), "{near:?}");
         }
         let rings = [0, 1].map(|i| {
             put(&mut worlds[i], from);
