@@ -32,7 +32,7 @@ pub use mutation::{BitMutation, Mutation, randomize};
 pub use one_plus_one::OnePlusOne;
 pub use population::Population;
 pub use random_search::{Found, RandomSearch};
-pub use record::Record;
+pub use record::{Record, RecordEntry};
 pub use snapshot::Snapshot;
 pub use statistics::Statistics;
 pub use strategy::{Genealogy, Recorded, Strategy};

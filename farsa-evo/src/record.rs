@@ -49,6 +49,15 @@ pub struct Record {
     next_keyframe: usize,
 }
 
+/// What stands in a [`Record`] for one generation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordEntry<'r> {
+    /// The champion of each population, then what was recorded.
+    pub frame: &'r [u8],
+    /// The state that the strategy was in afterwards, where it was saved.
+    pub state: Option<&'r [u8]>,
+}
+
 /// The sizes that a record was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -316,6 +325,65 @@ impl Record {
         Ok(population)
     }
 
+    /// What stands for a generation that was told, for a file that grows by it; [`push`](Self::push) takes it back.
+    pub fn entry(&self, generation: u32) -> Option<RecordEntry<'_>> {
+        let frame = self.frames.chunks_exact(self.shape.frame().max(1)).nth(generation as usize)?;
+        let place = self.keyframes.binary_search_by_key(&(generation + 1), |keyframe| keyframe.generation);
+        let state = place.ok().and_then(|place| self.keyframes.get(place));
+        Some(RecordEntry { frame, state: state.map(|keyframe| keyframe.state.as_slice()) })
+    }
+
+    /// Adds a generation as [`entry`](Self::entry) gave it, after those that there are; a strategy is told nothing.
+    ///
+    /// # Errors
+    /// [`EvoError::StateLength`] for an entry of another size, [`EvoError::LastGeneration`], and those of a generation that no
+    /// strategy was told: [`EvoError::NoSuchIndividual`], [`EvoError::SelectedTwice`], [`EvoError::NanFitness`]. Nothing is added then.
+    pub fn push(&mut self, entry: RecordEntry<'_>) -> Result<(), EvoError> {
+        let (expected, found) = (self.shape.frame(), entry.frame.len());
+        if found != expected {
+            return Err(EvoError::StateLength { expected, found });
+        }
+        let generation = self.generations().checked_add(1).ok_or(EvoError::LastGeneration)?;
+        self.believe(entry.frame)?;
+        self.frames.extend_from_slice(entry.frame);
+        if let Some(state) = entry.state {
+            self.keyframes.push(Keyframe { generation, state: state.into() });
+            self.wait(state.len());
+        }
+        Ok(())
+    }
+
+    /// Refuses a generation that no strategy was told.
+    fn believe(&self, frame: &[u8]) -> Result<(), EvoError> {
+        let Shape { recorded, populations, individuals, .. } = self.shape;
+        let (champions, bytes) = frame.split_at_checked(populations * self.shape.width()).unwrap_or_default();
+        for (population, champion) in self.shape.indices(champions).enumerate() {
+            if !self.shape.has(population, champion) {
+                return Err(EvoError::NoSuchIndividual { individual: champion, population: individuals });
+            }
+        }
+        match recorded {
+            Recorded::Order => {
+                let mut seen = vec![false; individuals];
+                for individual in self.shape.indices(bytes) {
+                    match seen.get_mut(individual) {
+                        None => return Err(EvoError::NoSuchIndividual { individual, population: individuals }),
+                        Some(true) => return Err(EvoError::SelectedTwice { individual }),
+                        Some(seen) => *seen = true,
+                    }
+                }
+            }
+            Recorded::Values => {
+                let (values, _) = bytes.as_chunks::<8>();
+                if values.iter().any(|bytes| f64::from_le_bytes(*bytes).is_nan()) {
+                    return Err(EvoError::NanFitness);
+                }
+            }
+            Recorded::Genomes => {}
+        }
+        Ok(())
+    }
+
     /// Forgets all generations from this one on.
     pub fn truncate(&mut self, generations: u32) {
         self.frames.truncate((generations as usize).saturating_mul(self.shape.frame()));
@@ -375,9 +443,7 @@ impl TryFrom<RawRecord> for Record {
             return Err(EvoError::StateLength { expected: shape.frame(), found: frames.len() });
         }
         record.frames = frames;
-        for generation in 0..record.generations() {
-            record.believe(generation)?;
-        }
+        record.frames.chunks_exact(shape.frame()).try_for_each(|frame| record.believe(frame))?;
         let rising = record.keyframes.windows(2).all(|pair| pair[0].generation < pair[1].generation);
         let last = record.keyframes.last().map_or(0, |keyframe| keyframe.generation);
         if !rising || last > record.generations() {
@@ -385,39 +451,5 @@ impl TryFrom<RawRecord> for Record {
         }
         record.truncate(record.generations());
         Ok(record)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl Record {
-    /// Refuses a generation that no strategy was told.
-    fn believe(&self, generation: u32) -> Result<(), EvoError> {
-        let Shape { recorded, individuals, .. } = self.shape;
-        let (champions, bytes) = self.frame(generation).unwrap_or_default();
-        for (population, champion) in self.shape.indices(champions).enumerate() {
-            if !self.shape.has(population, champion) {
-                return Err(EvoError::NoSuchIndividual { individual: champion, population: individuals });
-            }
-        }
-        match recorded {
-            Recorded::Order => {
-                let mut seen = vec![false; individuals];
-                for individual in self.shape.indices(bytes) {
-                    match seen.get_mut(individual) {
-                        None => return Err(EvoError::NoSuchIndividual { individual, population: individuals }),
-                        Some(true) => return Err(EvoError::SelectedTwice { individual }),
-                        Some(seen) => *seen = true,
-                    }
-                }
-            }
-            Recorded::Values => {
-                let (values, _) = bytes.as_chunks::<8>();
-                if values.iter().any(|bytes| f64::from_le_bytes(*bytes).is_nan()) {
-                    return Err(EvoError::NanFitness);
-                }
-            }
-            Recorded::Genomes => {}
-        }
-        Ok(())
     }
 }

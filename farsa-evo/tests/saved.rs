@@ -5,7 +5,7 @@
 
 use farsa_evo::{
     Champion, Coevolution, Fitness, GaConfig, GeneRange, Mutation, OnePlusOne, OnePlusOneConfig, RandomSearch, Record,
-    Recorded, Snapshot, Statistics, Strategy, TruncationGa,
+    RecordEntry, Recorded, Snapshot, Statistics, Strategy, TruncationGa,
 };
 use postcard::{from_bytes, to_allocvec};
 use serde::{Serialize, de::DeserializeOwned};
@@ -182,6 +182,18 @@ fn a_record_comes_back_and_a_forged_one_is_refused() {
     }
     let read: Record = from_bytes(&to_allocvec(&record).unwrap()).unwrap();
     assert_eq!(read, record);
+    // The same from entries, one generation after the other; an interrupted search goes on as if it had not been.
+    let mut again = Record::new(&mut fresh()).unwrap();
+    for generation in 0..record.generations() {
+        again.push(record.entry(generation).unwrap()).unwrap();
+    }
+    assert_eq!((&again, again.entry(40)), (&record, None));
+    assert!((0..40).any(|generation| record.entry(generation).unwrap().state.is_some()), "states among them");
+    let forged = |frame: &[u8]| again.clone().push(RecordEntry { frame, state: None });
+    assert!(forged(&[3, 3, 1, 0, 2]).is_ok());
+    for frame in [&[4, 3, 1, 0, 2][..], &[3, 3, 1, 0, 3], &[3, 3, 1, 0, 4], &[3, 3, 1, 0], &[3, 3, 1, 0, 2, 0], &[]] {
+        assert!(forged(frame).is_err(), "{frame:?}");
+    }
     let (frames, keyframes) = (vec![3, 3, 1, 0, 2, 0, 0, 1, 2, 3], vec![(1, ga.save())]);
     let good = ForgedRecord { shape: (Recorded::Order, 1, 4, 3), frames, keyframes };
     let read = |change: &dyn Fn(&mut ForgedRecord)| {

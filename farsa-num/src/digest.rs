@@ -76,13 +76,50 @@ impl Default for Digest {
 /// Source: \[Koopman2002\] table 1, polynomial 0x04C11DB7 reflected, initial value and final inversion all ones; no deviation.
 #[inline]
 pub const fn crc32(bytes: &[u8]) -> u32 {
-    let mut crc = u32::MAX;
-    let mut i = 0;
-    while i < bytes.len() {
-        crc = crc >> 8 ^ CRC_TABLE[((crc ^ bytes[i] as u32) & 0xFF) as usize];
-        i += 1;
+    Crc32::new().with(bytes).finish()
+}
+
+/// [`crc32`] of bytes that come one part after the other.
+///
+/// ```
+/// use farsa_num::{Crc32, crc32};
+///
+/// assert_eq!(Crc32::new().with(b"1234").with(b"56789").finish(), crc32(b"123456789"));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crc32(u32);
+
+impl Crc32 {
+    /// The checksum of no bytes.
+    #[inline]
+    pub const fn new() -> Self {
+        Self(u32::MAX)
     }
-    !crc
+
+    /// The checksum of the bytes so far and these.
+    #[inline]
+    #[must_use]
+    pub const fn with(self, bytes: &[u8]) -> Self {
+        let mut crc = self.0;
+        let mut i = 0;
+        while i < bytes.len() {
+            crc = crc >> 8 ^ CRC_TABLE[((crc ^ bytes[i] as u32) & 0xFF) as usize];
+            i += 1;
+        }
+        Self(crc)
+    }
+
+    /// The checksum of all bytes so far, after which more may follow.
+    #[inline]
+    pub const fn finish(self) -> u32 {
+        !self.0
+    }
+}
+
+impl Default for Crc32 {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 const CRC_TABLE: [u32; 256] = {

@@ -18,7 +18,7 @@ mod scalar;
 mod sin_cos;
 
 pub use atan::{acos, asin, atan2};
-pub use digest::{Digest, crc32};
+pub use digest::{Crc32, Digest, crc32};
 pub use exp::{exp, logistic, tanh};
 pub use fearless_simd;
 pub use instructions::Instructions;
