@@ -1,6 +1,5 @@
 //! A configuration file, and the settings of a command line.
 
-use std::fs;
 use std::path::Path;
 
 use toml::Spanned;
@@ -8,6 +7,10 @@ use toml::de::{DeTable, DeValue};
 
 use crate::error::Error;
 use crate::experiment::settings::Value;
+use crate::store::bounded;
+
+/// The most bytes that are read of a configuration.
+const MOST_BYTES: u64 = 16_000_000;
 
 /// A value and where in a file it stands.
 #[derive(Debug)]
@@ -27,13 +30,25 @@ pub(crate) struct ConfigFile {
 }
 
 impl ConfigFile {
-    /// Reads a file.
+    /// Reads a file that the user names.
     ///
     /// # Errors
     /// [`Error::Io`], or [`Error::Setting`] or [`Error::Usage`] with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+        // What is wrong with it is wrong with what was asked for.
+        let text = bounded::read_text(path, MOST_BYTES).map_err(|error| match error {
+            error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
+            other => other,
+        })?;
         Self::parse(&path.display().to_string(), &text)
+    }
+
+    /// Reads the configuration of a run.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), and [`Error::Damaged`].
+    pub(crate) fn read_own(path: &Path) -> Result<Self, Error> {
+        Self::parse(&path.display().to_string(), &bounded::read_own_text(path, MOST_BYTES)?)
     }
 
     /// Reads a text; errors name it.
