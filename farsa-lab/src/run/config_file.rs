@@ -160,4 +160,24 @@ mod tests {
         assert_eq!(assignment("a.b=1\ny=2").unwrap().1, Value::Word("1\ny=2".into()));
         assert!(assignment("a.b").is_err());
     }
+
+    #[test]
+    fn a_file_is_text_that_ends() {
+        let path = std::env::temp_dir().join(format!("farsa config {}", std::process::id()));
+        std::fs::write(&path, b"seed = 1\ncondition = \"\xff\"\n").unwrap();
+        let wrong = |found: Result<ConfigFile, Error>| found.map(|_| ()).unwrap_err();
+        let (given, own) = (wrong(ConfigFile::read(&path)), wrong(ConfigFile::read_own(&path)));
+        let why = format!("{}: line 2: the byte 0xff is no text (UTF-8)", path.display());
+        assert_eq!((given.to_string(), given.exit_code()), (why.clone(), 2));
+        assert_eq!((own.to_string(), own.exit_code()), (why, 1));
+        std::fs::remove_file(&path).unwrap();
+        if cfg!(unix) {
+            let endless = wrong(ConfigFile::read("/dev/zero".as_ref())).to_string();
+            assert_eq!(endless, "/dev/zero: has more than 16000000 bytes, the most that is read of it");
+            assert_eq!(
+                wrong(ConfigFile::read_own("/dev/zero".as_ref())).to_string(),
+                "/dev/zero: is not a regular file"
+            );
+        }
+    }
 }

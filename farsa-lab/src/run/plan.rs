@@ -1,7 +1,6 @@
 //! What is to be run: an experiment, a condition, a seed and all settings.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::Path;
 
 use farsa_evo::Strategy;
@@ -13,6 +12,7 @@ use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::{Settings, Value};
 use crate::run::config_file::ConfigFile;
+use crate::store::bounded;
 use crate::store::identity::{FILE, Identity, VALUES_VERSION};
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
 use crate::strategy::history::Fresh;
@@ -20,6 +20,9 @@ use crate::strategy::settings::{GENERATIONS, complete};
 
 /// The largest seed of a run; bit 63 marks the trials of a test.
 pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
+
+/// The most bytes that are read of a file that an experiment names.
+const MOST_BYTES: u64 = 1_000_000_000;
 
 /// A run before its first evaluation.
 pub(crate) struct Plan<'e> {
@@ -136,14 +139,14 @@ impl<'e> Plan<'e> {
     /// All that the results depend on, the content of files included.
     ///
     /// # Errors
-    /// [`Error::Io`] for a file that cannot be read, and those of [`Experiment::files`].
+    /// [`Error::Io`] and [`Error::Damaged`] for a file that cannot be read, and those of [`Experiment::files`].
     pub(crate) fn identity(&self) -> Result<Identity, Error> {
         let settings = self.settings.table().iter().filter(|setting| setting.key() != GENERATIONS);
         let mut settings: Vec<(String, Value)> = settings
             .filter_map(|setting| Some((setting.key().to_owned(), self.settings.get(setting.key()).ok()?.clone())))
             .collect();
         for path in self.experiment.files(&self.condition, &self.settings)? {
-            let bytes = fs::read(&path).map_err(Error::io("read", &path))?;
+            let bytes = bounded::read_own(&path, MOST_BYTES)?;
             settings.push((format!("{FILE}{}", path.display()), Value::Word(format!("{:08x}", crc32(&bytes)))));
         }
         Ok(Identity {
@@ -218,6 +221,7 @@ pub(crate) fn find<'e>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
     use std::path::PathBuf;
 
     use crate::experiment::settings::Setting;
@@ -335,5 +339,12 @@ mod tests {
         fs::remove_file(&path).unwrap();
         let said = plan.identity().unwrap_err().to_string();
         assert!(said.starts_with(&format!("cannot read {name}: ")), "{said}");
+        fs::File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
+        let said = plan.identity().unwrap_err().to_string();
+        assert_eq!(said, format!("{name}: has more than 1000000000 bytes, the most that is read of it"));
+        fs::remove_file(&path).unwrap();
+        fs::create_dir(&path).unwrap();
+        assert_eq!(plan.identity().unwrap_err().to_string(), format!("{name}: is not a regular file"));
+        fs::remove_dir(&path).unwrap();
     }
 }

@@ -57,6 +57,17 @@ pub(crate) fn read_own_text(path: &Path, limit: u64) -> Result<String, Error> {
     text(path, read_own(path, limit)?)
 }
 
+/// The text of a file that a setting names, of at most `limit` bytes: for [`Experiment::prepare`](crate::Experiment::prepare).
+///
+/// It has to be a regular file, or a link to one: it is read for each thread, and by each command on the run.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Damaged`] for more bytes than the limit, for a pipe, a device or a directory, and with the line of
+/// the first byte that is not UTF-8.
+pub fn read_text_file(path: &Path, limit: u64) -> Result<String, Error> {
+    read_own_text(path, limit)
+}
+
 fn read_within(path: &Path, limit: u64, patience: Duration) -> Result<Vec<u8>, Error> {
     let mut file = open(path).map_err(Error::io("read", path))?;
     let found = file.metadata().map_err(Error::io("read", path))?;

@@ -16,4 +16,5 @@ pub(crate) mod log;
 pub(crate) mod manifest;
 pub(crate) mod sealed;
 
+pub use bounded::read_text_file;
 pub use identity::VALUES_VERSION;
