@@ -6,6 +6,7 @@
 #[cfg(feature = "command")]
 mod command;
 mod error;
+mod escaped;
 mod evaluation;
 mod experiment;
 mod export;
