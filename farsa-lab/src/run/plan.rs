@@ -11,7 +11,7 @@ use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::{Settings, Value};
-use crate::run::config_file::ConfigFile;
+use crate::run::config_file::{ConfigFile, Entry};
 use crate::store::bounded;
 use crate::store::identity::{FILE, Identity, VALUES_VERSION};
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
@@ -57,7 +57,16 @@ impl<'e> Plan<'e> {
         if let Some(seed) = &file.seed {
             self.seed = seed.value;
         }
-        file.values.iter().try_for_each(|(key, entry)| self.settings.set(&entry.place, key, entry.value.clone()))
+        for (key, Entry { value, place }) in &file.entries {
+            match value {
+                Some(value) => self.settings.set(place, key, value.clone())?,
+                None => self.settings.section(place, key)?,
+            }
+        }
+        match &file.beyond {
+            Some(place) => Err(Error::Usage(format!("{place}: more keys than a configuration has"))),
+            None => Ok(()),
+        }
     }
 
     /// What a configuration file says, whole.
@@ -279,6 +288,19 @@ mod tests {
         };
         let head = "experiment = \"toy\"\n";
         for (text, message) in [
+            ("[World]\nStep = 1", "my.toml line 3: unknown key `World.Step`; the nearest is `world.step`"),
+            ("[wrold]", "my.toml line 2: unknown section `wrold`; the nearest is `world`"),
+            ("[robot.am]\n[world]\nstpe = 1", "my.toml line 2: unknown section `robot.am`; the nearest is `robot.arm`"),
+            ("seed = {}", "my.toml line 2: unknown section `seed`; the nearest is `world`"),
+            ("zz = 1\naa = 2", "my.toml line 2: unknown key `zz`; the nearest is `world.map`"),
+            ("\"a\\nerror: b\" = 2", "my.toml line 2: unknown key `a\\nerror: b`; the nearest is `world.map`"),
+            ("world.step = 1\nworld.step = 2", "my.toml line 3: duplicate key `step`"),
+            ("[world]\n[evolution]\n[world]", "my.toml line 4: duplicate key `world`"),
+            (
+                "world = 1\nworld.step = 2",
+                "my.toml line 3: cannot extend value of type integer with a dotted key `world`",
+            ),
+            ("world.step = 0.1\n\"world.step\" = 0.1", "my.toml line 3: `world.step`: stands twice"),
             ("[world]\nstpe = 1", "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`"),
             ("[wrold]\n\nstep = 1", "my.toml line 4: unknown key `wrold.step`; the nearest is `world.step`"),
             ("world.step = nan", "my.toml line 2: `world.step`: NaN is not a number"),
@@ -291,10 +313,25 @@ mod tests {
         ] {
             assert_eq!(error(&format!("{head}{text}")), message);
         }
+        assert_eq!(
+            error("experiment = \"toi\"\n[evolution]\n[robot]\n"),
+            "my.toml line 1: unknown experiment `toi`; the nearest is `toy`"
+        );
+        Plan::from_file(&[&Toy], &ConfigFile::parse("my.toml", &format!("{head}[evolution]\n[robot]\n")).unwrap())
+            .unwrap();
         assert_eq!(error("experiment = \"toi\""), "my.toml line 1: unknown experiment `toi`; the nearest is `toy`");
         assert_eq!(error(""), "my.toml: names no experiment");
         assert!(error(&format!("{head}[world\n")).starts_with("my.toml line 2: "));
         assert!(error(&format!("{head}seed = 1\nseed = 2\n")).starts_with("my.toml line 3: "));
+    }
+
+    #[test]
+    fn many_unknown_keys_are_refused_at_the_first() {
+        // In the order of the alphabet the first would be k0. Lines counted from the top for each take minutes.
+        let keys: String = (0..200_000).rev().map(|number| format!("k{number}=1\n")).collect();
+        let file = ConfigFile::parse("my.toml", &format!("{keys}experiment=\"toy\"\n")).unwrap();
+        let error = Plan::from_file(&[&Toy], &file).map(|_| ()).unwrap_err().to_string();
+        assert_eq!(error, "my.toml line 1: unknown key `k199999`; the nearest is `world.map`");
     }
 
     #[test]
