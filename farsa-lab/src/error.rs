@@ -4,6 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::escaped::{MOST_SHOWN, OneLine, Quoted};
+
 /// What went wrong, with the name of the thing it went wrong with.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -182,54 +184,65 @@ impl From<farsa_view::Error> for Error {
     }
 }
 
-/// The name that takes the fewest changed, added, dropped or swapped letters.
+/// The name that takes the fewest changed, added, dropped or swapped letters; letters of the other case count least. Of a name
+/// longer than any, the beginning is compared.
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    valid.into_iter().min_by_key(|candidate| strsim::damerau_levenshtein(name, candidate))
+    let name: String = name.chars().take(MOST_SHOWN).collect();
+    let lower = name.to_lowercase();
+    let distance = strsim::damerau_levenshtein;
+    valid.into_iter().min_by_key(|valid| (distance(&lower, &valid.to_lowercase()), distance(&name, valid)))
 }
 
 impl fmt::Display for Error {
+    /// In one line: what a message repeats of files and names is escaped where it would begin another.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let start = |f: &mut fmt::Formatter<'_>, place: &str| {
-            if place.is_empty() { Ok(()) } else { write!(f, "{place}: ") }
+            if place.is_empty() { Ok(()) } else { write!(f, "{}: ", OneLine(place)) }
         };
         match self {
             Self::Unknown { place, what, name, nearest } => {
                 start(f, place)?;
-                write!(f, "unknown {what} `{name}`")?;
+                write!(f, "unknown {what} {}", Quoted(name))?;
                 match nearest {
-                    Some(nearest) => write!(f, "; the nearest is `{nearest}`"),
+                    Some(nearest) => write!(f, "; the nearest is {}", Quoted(nearest)),
                     None => write!(f, "; there is none"),
                 }
             }
             Self::Setting { place, key, why } => {
                 start(f, place)?;
-                write!(f, "`{key}`: {why}")
+                write!(f, "{}: {}", Quoted(key), OneLine(why))
             }
             Self::Usage(why) | Self::Other(why) => f.write_str(why),
             Self::OtherConfiguration { directory, key, run, asked } => write!(
                 f,
-                "the run in {} has `{key}` = {run}, not {asked}: another configuration is another run",
-                directory.display()
+                "the run in {} has {} = {}, not {}: another configuration is another run",
+                OneLine(directory.display()),
+                Quoted(key),
+                OneLine(run),
+                OneLine(asked)
             ),
             Self::OtherFile { path, directory, run, found } => write!(
                 f,
-                "{}: is another file than the run in {} was made with (CRC-32 {found}, not {run})",
-                path.display(),
-                directory.display()
+                "{}: is another file than the run in {} was made with (CRC-32 {}, not {})",
+                OneLine(path.display()),
+                OneLine(directory.display()),
+                OneLine(found),
+                OneLine(run)
             ),
             Self::OtherVersion { path, what, file, program } => write!(
                 f,
-                "{}: made with version {file} of {what}, this program has version {program}: \
+                "{}: made with version {file} of {}, this program has version {program}: \
                  the same genes would give other results",
-                path.display()
+                OneLine(path.display()),
+                OneLine(what)
             ),
             Self::Occupied { directory, why } | Self::NoRun { directory, why } => {
-                write!(f, "{}: {why}", directory.display())
+                write!(f, "{}: {}", OneLine(directory.display()), OneLine(why))
             }
-            Self::Damaged { path, why } => write!(f, "{}: {why}", path.display()),
-            Self::Io { doing, path, source } => write!(f, "cannot {doing} {}: {source}", path.display()),
+            Self::Damaged { path, why } => write!(f, "{}: {}", OneLine(path.display()), OneLine(why)),
+            Self::Io { doing, path, source } => write!(f, "cannot {doing} {}: {source}", OneLine(path.display())),
             Self::Panicked { generation } => write!(f, "a trial of generation {generation} panicked"),
-            Self::Interrupted { resume } => write!(f, "interrupted; go on with `{resume}`"),
+            Self::Interrupted { resume } => write!(f, "interrupted; go on with `{}`", OneLine(resume)),
         }
     }
 }
@@ -253,9 +266,42 @@ mod tests {
         assert_eq!(nearest("evolution.poplation", valid), Some("evolution.population"));
         assert_eq!(nearest("step", valid), Some("world.step"));
         assert_eq!(nearest("step", []), None);
+        assert_eq!(nearest("World.Step", valid), Some("world.step"));
+        assert_eq!(nearest("WORLD.STEP", ["W", "WORLD.SEED", "world.step"]), Some("world.step"));
+        assert_eq!(nearest("ab", ["aB", "AB", "ab"]), Some("ab"));
+        assert_eq!(nearest(&format!("world.step{}", "x".repeat(1 << 24)), ["world.stop", "y"]), Some("world.stop"));
         let error = Error::unknown("my.toml line 3", "key", "world.stpe", valid);
         assert_eq!(error.to_string(), "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`");
         assert_eq!(error.exit_code(), 2);
+    }
+
+    #[test]
+    fn what_a_message_repeats_stays_on_its_line() {
+        let (evil, shown) = ("a\nerror: \u{1b}[2J", "a\\nerror: \\u{1b}[2J");
+        let path = || PathBuf::from(evil);
+        for (error, message) in [
+            (
+                Error::unknown(evil, "key", evil, [evil]),
+                format!("{shown}: unknown key `{shown}`; the nearest is `{shown}`"),
+            ),
+            (Error::setting(evil, evil), format!("`{shown}`: {shown}")),
+            (Error::damaged(&path(), evil), format!("{shown}: {shown}")),
+            (Error::NoRun { directory: path(), why: evil.into() }, format!("{shown}: {shown}")),
+            (
+                Error::io("read", &path())(io::ErrorKind::NotFound.into()),
+                format!("cannot read {shown}: entity not found"),
+            ),
+            (
+                Error::OtherConfiguration { directory: path(), key: evil.into(), run: evil.into(), asked: evil.into() },
+                format!(
+                    "the run in {shown} has `{shown}` = {shown}, not {shown}: another configuration is another run"
+                ),
+            ),
+        ] {
+            assert_eq!(error.to_string(), message);
+        }
+        let long = Error::unknown("", "key", &"k".repeat(1 << 20), ["a"]).to_string();
+        assert_eq!(long, format!("unknown key `{}...`; the nearest is `a`", "k".repeat(MOST_SHOWN)));
     }
 
     #[test]

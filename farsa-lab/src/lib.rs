@@ -6,6 +6,7 @@
 #[cfg(feature = "command")]
 mod command;
 mod error;
+mod escaped;
 mod evaluation;
 mod experiment;
 mod export;
@@ -29,7 +30,7 @@ pub use experiment::{
     network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use run::{BestOfRun, ENGINE};
-pub use store::VALUES_VERSION;
+pub use store::{VALUES_VERSION, read_text_file};
 pub use strategy::{
     Diagnostics, DiagnosticsChart, Learning, OnePlusOne, StrategyDefinition, StrategyStart, Truncation,
 };

@@ -1,6 +1,5 @@
 //! Which of the three models reads a robot's infrared sensors, as settings.
 
-use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -8,7 +7,7 @@ use farsa_body::{
     Beam, BodyId, ChannelError, Channels, Handles, InfraredAnalytic, InfraredRays, InfraredTable, InfraredTables,
     Kinematics, MobileRobot, Planar, Pose, Rays, Recorder, SampledInfrared, Sensor,
 };
-use farsa_lab::{Error, Setting, Settings};
+use farsa_lab::{Error, Setting, Settings, read_text_file};
 
 use crate::infrared::sensor_rays::{RayFilter, SensorRays};
 
@@ -22,6 +21,9 @@ const SAMPLED: &str = "sampled";
 /// The measured tables in a directory; for round bodies with the radius at which they were measured \[m\].
 const WALLS: &str = "wall.sam";
 const BODIES: [(&str, f32); 2] = [("small.sam", 0.0125), ("round.sam", 0.027)];
+
+/// The most bytes that are read of a table.
+const MOST_BYTES: u64 = 256_000_000;
 
 /// A model of infrared sensors.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -83,7 +85,7 @@ impl InfraredModel {
     /// The model of these settings, with its tables.
     ///
     /// # Errors
-    /// Those of [`files`](Self::files), [`Error::Io`] for a file that cannot be read, and what is wrong in a table.
+    /// Those of [`files`](Self::files), [`Error::Io`] and [`Error::Damaged`] for a file that cannot be read, and what is wrong in a table.
     pub fn read(settings: &Settings) -> Result<Self, Error> {
         let paths = Self::files(settings)?;
         if paths.is_empty() {
@@ -91,7 +93,7 @@ impl InfraredModel {
         }
         let mut tables = Vec::new();
         for path in paths {
-            let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
+            let text = read_text_file(&path, MOST_BYTES)?;
             let table = InfraredTable::parse(&text);
             tables.push(table.map_err(|error| Error::setting(TABLES, format!("{}: {error}", path.display())))?);
         }

@@ -224,7 +224,7 @@ impl<'e> Invocation<'e, '_> {
     /// A run that exists, with the plan in its configuration.
     fn existing(&self, path: &Path) -> Result<(Directory, Plan<'e>), Error> {
         let directory = Directory::open(path)?;
-        let plan = Plan::from_file(self.experiments, &ConfigFile::read(&directory.config())?)?;
+        let plan = Plan::from_file(self.experiments, &ConfigFile::read_own(&directory.config())?)?;
         Ok((directory, plan))
     }
 

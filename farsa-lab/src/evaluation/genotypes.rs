@@ -1,11 +1,14 @@
 //! Genotypes from elsewhere: the original's `.gen` files, and plain lists of genes.
 
 use std::fmt;
-use std::fs;
 use std::path::Path;
 
 use crate::error::Error;
 use crate::experiment::genotype::Genotype;
+use crate::store::bounded;
+
+/// The most bytes that are read of a file of genotypes.
+const MOST_BYTES: u64 = 256_000_000;
 
 /// What a genotype of an experiment looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,9 +122,9 @@ impl Shape {
     /// The genotypes of a file: one of the original's, or a list of genes.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Damaged`] with the line or the position.
+    /// [`Error::Io`], [`Error::Damaged`] with the line or the position, or for a file that does not end.
     pub(crate) fn read(self, path: &Path) -> Result<Vec<Vec<u16>>, Error> {
-        let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+        let text = bounded::read_text(path, MOST_BYTES)?;
         let original = text.lines().map(str::trim).find(|line| !line.is_empty()).is_some_and(is_title);
         let read = if original || text.lines().any(|line| line.trim() == "END") {
             self.original(&text)
@@ -215,6 +218,20 @@ mod tests {
         assert_eq!(wrong(""), "0 genes where 3 are expected");
         assert_eq!(Shape::new(1, 16).list("65535"), Ok(vec![65535]));
         assert!(Shape::new(1, 16).list("65536").is_err() && Shape::new(1, 1).list("2").is_err());
+    }
+
+    #[test]
+    fn a_file_is_text_within_limits() {
+        let path = std::env::temp_dir().join(format!("farsa genotypes {}", std::process::id()));
+        let read = || read_genotypes(&path, 3, 8).map_err(|error| error.to_string());
+        std::fs::write(&path, "1, 2,3\n").unwrap();
+        assert_eq!(read(), Ok(vec![vec![1, 2, 3]]));
+        let name = path.display();
+        std::fs::write(&path, b"1\n2\n\xff\n").unwrap();
+        assert_eq!(read(), Err(format!("{name}: line 3: the byte 0xff is no text (UTF-8)")));
+        std::fs::File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        assert_eq!(read(), Err(format!("{name}: has more than 256000000 bytes, the most that is read of it")));
+        std::fs::remove_file(&path).unwrap();
     }
 
     #[test]

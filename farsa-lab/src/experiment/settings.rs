@@ -7,6 +7,7 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::escaped::shortened;
 
 /// A value of a setting.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -212,10 +213,11 @@ impl Setting {
     /// Checks a value; a whole number is taken where a number is wanted.
     fn check(&self, value: Value) -> Result<Value, String> {
         let outside = |x: &dyn fmt::Display| Err(format!("{x} is outside {}", self.allowed()));
+        let shown = |value: &Value| shortened(&value.to_string()).into_owned();
         match (&self.allowed, value) {
             (Allowed::Flag, value @ Value::Flag(_)) | (Allowed::Text, value @ Value::Word(_)) => Ok(value),
             // What was written is no longer known: 1.50 and 1.5 are one number, but not one name of a file.
-            (Allowed::Text, value) => Err(format!("{value} is not a text; write it in quotes: \"{value}\"")),
+            (Allowed::Text, value) => Err(format!("{0} is not a text; write it in quotes: \"{0}\"", shown(&value))),
             (Allowed::Whole(range), Value::Whole(n)) if range.contains(&n) => Ok(Value::Whole(n)),
             (Allowed::Whole(_), Value::Whole(n)) => outside(&n),
             (Allowed::Number(_), Value::Whole(n)) => self.check(Value::Number(n as f64)),
@@ -232,6 +234,11 @@ impl Setting {
                     Err(format!("{error} ({})", self.allowed()))
                 }
             }
+            // TOML has them as numbers, and the command line has TOML.
+            (Allowed::Word(choices), Value::Number(x)) if !x.is_finite() => {
+                let word = choices.iter().find(|choice| choice.eq_ignore_ascii_case(&x.to_string())).cloned();
+                word.map(Value::Word).ok_or_else(|| format!("{x} is not {}", self.wanted()))
+            }
             (Allowed::Numbers(range), Value::Numbers(list)) => {
                 if list.len() != self.length() {
                     return Err(format!("{} numbers where {} are wanted", list.len(), self.length()));
@@ -242,7 +249,7 @@ impl Setting {
                     Some(x) => outside(x),
                 }
             }
-            (_, value) => Err(format!("{value} is not {}", self.wanted())),
+            (_, value) => Err(format!("{} is not {}", shown(&value), self.wanted())),
         }
     }
 
@@ -302,6 +309,17 @@ impl Settings {
         let value = setting.check(value).map_err(|why| Error::Setting { place: place.into(), key: key.into(), why })?;
         self.values.insert(key.into(), value);
         Ok(())
+    }
+
+    /// Whether there is a section of this name, or some within it.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest section.
+    pub(crate) fn section(&self, place: &str, name: &str) -> Result<(), Error> {
+        let sections = || self.table.iter().filter_map(|setting| Some(setting.key.rsplit_once('.')?.0));
+        let within =
+            |section: &str| section.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+        if sections().any(within) { Ok(()) } else { Err(Error::unknown(place, "section", name, sections())) }
     }
 
     /// A value, whatever its type.
@@ -461,6 +479,12 @@ mod tests {
             wrong("robot.tables", Value::Number(1.5)),
             "--set: `robot.tables`: 1.5 is not a text; write it in quotes: \"1.5\""
         );
+        assert_eq!(
+            wrong("net.leak", Value::Number(f64::NAN)),
+            "--set: `net.leak`: NaN is not one of filter, two-tap or evonet"
+        );
+        let long = wrong("noise.on", Value::Word("a".repeat(1 << 20)));
+        assert_eq!(long, format!("--set: `noise.on`: \"{}... is not true or false", "a".repeat(199)));
         assert_eq!(wrong("noise.no", Value::Flag(true)), "--set: unknown key `noise.no`; the nearest is `noise.on`");
         assert_eq!(s, settings());
     }
@@ -471,23 +495,6 @@ mod tests {
         assert!(Settings::new(vec![Setting::flag("a.b", true), Setting::flag("a.b", true)]).is_err());
         for key in ["seed", "a.", ".a", "a b.c", "a.B"] {
             assert!(Settings::new(vec![Setting::flag(key, true)]).is_err());
-        }
-    }
-
-    #[test]
-    fn values_print_as_toml() {
-        for (value, text) in [
-            (Value::Number(1.0), "1.0"),
-            (Value::Number(1e-9), "1e-9"),
-            (Value::Numbers(vec![1.0, -0.5]), "[1.0, -0.5]"),
-            (Value::Word("two-tap".into()), "\"two-tap\""),
-            (Value::Whole(-3), "-3"),
-            (
-                Value::Word("C:\\a \"b\"\t\u{1}\u{7f}é\u{301}'".into()),
-                "\"C:\\\\a \\\"b\\\"\\t\\u0001\\u007Fé\u{301}'\"",
-            ),
-        ] {
-            assert_eq!(value.to_string(), text);
         }
     }
 }

@@ -1,13 +1,22 @@
 //! A configuration file, and the settings of a command line.
 
-use std::fs;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::Error;
+use crate::escaped::{CUT, MOST_SHOWN, OneLine, Quoted, shortened};
 use crate::experiment::settings::Value;
+use crate::store::bounded;
+
+/// The most bytes that are read of a configuration.
+const MOST_BYTES: u64 = 16_000_000;
+/// More than any experiment has settings: among as many keys one is unknown.
+const MOST_KEYS: usize = 10_000;
+/// The keys that are no settings.
+const RESERVED: [&str; 3] = ["experiment", "condition", "seed"];
 
 /// A value and where in a file it stands.
 #[derive(Debug)]
@@ -23,76 +32,156 @@ pub(crate) struct ConfigFile {
     pub(crate) experiment: Option<Entry<String>>,
     pub(crate) condition: Option<Entry<String>>,
     pub(crate) seed: Option<Entry<u64>>,
-    pub(crate) values: Vec<(String, Entry<Value>)>,
+    /// Keys and values in their order; an empty section is a key without a value.
+    pub(crate) entries: Vec<(String, Entry<Option<Value>>)>,
+    /// The place of the first key beyond those that are taken.
+    pub(crate) beyond: Option<String>,
 }
 
 impl ConfigFile {
-    /// Reads a file.
+    /// Reads a file that the user names.
     ///
     /// # Errors
     /// [`Error::Io`], or [`Error::Setting`] or [`Error::Usage`] with the line.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+        // What is wrong with it is wrong with what was asked for.
+        let text = bounded::read_text(path, MOST_BYTES).map_err(|error| match error {
+            error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
+            other => other,
+        })?;
         Self::parse(&path.display().to_string(), &text)
+    }
+
+    /// Reads the configuration of a run.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), and [`Error::Damaged`].
+    pub(crate) fn read_own(path: &Path) -> Result<Self, Error> {
+        Self::parse(&path.display().to_string(), &bounded::read_own_text(path, MOST_BYTES)?)
     }
 
     /// Reads a text; errors name it.
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self, Error> {
-        let place = |offset: usize| {
-            let line = text.get(..offset).unwrap_or(text).matches('\n').count() + 1;
-            format!("{name} line {line}")
-        };
+        let lines = Lines::new(text);
+        let place = |offset: usize| format!("{} line {}", OneLine(name), lines.line(offset));
         let table = DeTable::parse(text).map_err(|error| {
-            let place = error.span().map_or_else(|| name.to_owned(), |span| place(span.start));
-            Error::Usage(format!("{place}: {}", error.message()))
+            let span = error.span();
+            let at = span.as_ref().map_or_else(|| OneLine(name).to_string(), |span| place(span.start));
+            // It does not say of which key.
+            let about_key = ["duplicate key", "cannot extend"].iter().any(|start| error.message().starts_with(start));
+            let key = span.and_then(|span| text.get(span)).filter(|key| about_key && !key.is_empty());
+            let key = key.map_or_else(String::new, |key| format!(" {}", Quoted(key)));
+            Error::Usage(format!("{at}: {}{key}", error.message()))
         })?;
-        let mut flat = Vec::new();
-        flatten("", table.get_ref(), &place, &mut flat)?;
-        let mut file = Self { name: name.into(), experiment: None, condition: None, seed: None, values: Vec::new() };
-        for (key, entry) in flat {
-            let wrong = |why: &str| Error::Setting { place: entry.place.clone(), key: key.clone(), why: why.into() };
-            let word = || match &entry.value {
-                Value::Word(word) => Ok(Some(Entry { value: word.clone(), place: entry.place.clone() })),
-                _ => Err(wrong("is not a name in quotes")),
+        let mut keys = Keys::default();
+        keys.collect(table.get_ref(), None);
+        // The table has them in the order of the alphabet.
+        keys.found.sort_unstable_by_key(|key| key.offset);
+        let (mut entries, mut seen) = (Vec::new(), BTreeSet::new());
+        let mut file = Self {
+            name: name.into(),
+            experiment: None,
+            condition: None,
+            seed: None,
+            entries: Vec::new(),
+            beyond: None,
+        };
+        for found in &keys.found {
+            let reserved = found.table.is_none() && found.value.is_some() && RESERVED.contains(&found.name);
+            if entries.len() == MOST_KEYS && !reserved {
+                file.beyond.get_or_insert_with(|| place(found.offset));
+                continue;
+            }
+            let (key, place) = (keys.path(found), place(found.offset));
+            let wrong = |why: &str| Error::Setting { place: place.clone(), key: key.clone(), why: why.into() };
+            let Some(value) = found.value else {
+                entries.push((key, Entry { value: None, place }));
+                continue;
             };
-            match key.as_str() {
-                "experiment" => file.experiment = word()?,
-                "condition" => file.condition = word()?,
-                "seed" => match entry.value {
-                    Value::Whole(seed) if seed >= 0 => {
-                        file.seed = Some(Entry { value: seed.unsigned_abs(), place: entry.place });
-                    }
-                    _ => return Err(wrong("is not a whole number from 0 to 9223372036854775807")),
-                },
-                _ => file.values.push((key, entry)),
+            let value = plain(value).map_err(&wrong)?;
+            if !key.ends_with(CUT) && !seen.insert(key.clone()) {
+                return Err(wrong("stands twice"));
+            }
+            match (key.as_str(), value) {
+                ("experiment", Value::Word(word)) => file.experiment = Some(Entry { value: word, place }),
+                ("condition", Value::Word(word)) => file.condition = Some(Entry { value: word, place }),
+                ("experiment" | "condition", _) => return Err(wrong("is not a name in quotes")),
+                ("seed", Value::Whole(seed)) if seed >= 0 => {
+                    file.seed = Some(Entry { value: seed.unsigned_abs(), place });
+                }
+                ("seed", _) => return Err(wrong("is not a whole number from 0 to 9223372036854775807")),
+                (_, value) => entries.push((key, Entry { value: Some(value), place })),
             }
         }
+        file.entries = entries;
         Ok(file)
     }
 }
 
-/// Appends the values of a table and the tables in it under their full keys.
-fn flatten(
-    prefix: &str,
-    table: &DeTable<'_>,
-    place: &dyn Fn(usize) -> String,
-    flat: &mut Vec<(String, Entry<Value>)>,
-) -> Result<(), Error> {
-    for (name, value) in table {
-        let key = format!("{prefix}{}", name.get_ref());
-        let place_of = place(name.span().start);
-        if let DeValue::Table(inner) = value.get_ref() {
-            flatten(&format!("{key}."), inner, place, flat)?;
-        } else {
-            let value = plain(value).map_err(|why| Error::Setting {
-                place: place_of.clone(),
-                key: key.clone(),
-                why: why.into(),
-            })?;
-            flat.push((key, Entry { value, place: place_of }));
+/// Where the lines of a text begin.
+struct Lines(Vec<usize>);
+
+impl Lines {
+    fn new(text: &str) -> Self {
+        Self(std::iter::once(0).chain(text.match_indices('\n').map(|(end, _)| end + 1)).collect())
+    }
+
+    /// The line of a byte, from 1.
+    fn line(&self, offset: usize) -> usize {
+        self.0.partition_point(|&start| start <= offset)
+    }
+}
+
+/// A key with its value, or an empty table.
+struct Key<'t> {
+    offset: usize,
+    /// The table that it is in, by its number; none for that of the whole file.
+    table: Option<usize>,
+    name: &'t str,
+    value: Option<&'t Spanned<DeValue<'t>>>,
+}
+
+/// The keys of a file, before their names are joined: a long name of a table would stand in each of its keys.
+#[derive(Default)]
+struct Keys<'t> {
+    /// The name of each table and the table that it is in.
+    tables: Vec<(Option<usize>, &'t str)>,
+    found: Vec<Key<'t>>,
+}
+
+impl<'t> Keys<'t> {
+    fn collect(&mut self, table: &'t DeTable<'t>, number: Option<usize>) {
+        for (name, value) in table {
+            let (offset, name) = (name.span().start, name.get_ref().as_ref());
+            match value.get_ref() {
+                DeValue::Table(inner) if inner.is_empty() => {
+                    self.found.push(Key { offset, table: number, name, value: None });
+                }
+                DeValue::Table(inner) => {
+                    self.tables.push((number, name));
+                    self.collect(inner, Some(self.tables.len() - 1));
+                }
+                _ => self.found.push(Key { offset, table: number, name, value: Some(value) }),
+            }
         }
     }
-    Ok(())
+
+    /// The full key; of one that is longer than any setting's, the beginning.
+    fn path(&self, key: &Key<'t>) -> String {
+        let (mut names, mut table) = (vec![key.name], key.table);
+        while let Some(&(above, name)) = table.and_then(|number| self.tables.get(number)) {
+            names.push(name);
+            table = above;
+        }
+        let mut path = String::new();
+        for (number, name) in names.iter().rev().enumerate() {
+            if number > 0 {
+                path.push('.');
+            }
+            path.extend(name.chars().take(MOST_SHOWN + 1));
+        }
+        shortened(&path).into_owned()
+    }
 }
 
 /// A TOML value as a setting's value.
@@ -133,6 +222,7 @@ pub(crate) fn assignment(text: &str) -> Result<(String, Value), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::settings::{Setting, Settings};
 
     #[test]
     fn assignments_are_toml_values_or_words() {
@@ -144,5 +234,83 @@ mod tests {
         assert!(matches!(assignment("a.b=NaN").unwrap().1, Value::Number(x) if x.is_nan()));
         assert_eq!(assignment("a.b=1\ny=2").unwrap().1, Value::Word("1\ny=2".into()));
         assert!(assignment("a.b").is_err());
+    }
+
+    #[test]
+    fn words_may_look_like_numbers() {
+        let choices = &["none", "nan", "inf", "-inf"];
+        let mut s = Settings::new(vec![Setting::word("fault.kind", "none", choices)]).unwrap();
+        for (given, word) in [("nan", "nan"), ("NaN", "nan"), ("inf", "inf"), ("+inf", "inf"), ("-inf", "-inf")] {
+            let (key, value) = assignment(&format!("fault.kind={given}")).unwrap();
+            s.set("--set", &key, value).unwrap();
+            assert_eq!(s.word("fault.kind").unwrap(), word);
+        }
+    }
+
+    #[test]
+    fn values_print_as_toml() {
+        for (value, text) in [
+            (Value::Number(1.0), "1.0"),
+            (Value::Number(1e-9), "1e-9"),
+            (Value::Numbers(vec![1.0, -0.5]), "[1.0, -0.5]"),
+            (Value::Word("two-tap".into()), "\"two-tap\""),
+            (Value::Whole(-3), "-3"),
+            (
+                Value::Word("C:\\a \"b\"\t\u{1}\u{7f}é\u{301}'".into()),
+                "\"C:\\\\a \\\"b\\\"\\t\\u0001\\u007Fé\u{301}'\"",
+            ),
+        ] {
+            assert_eq!(value.to_string(), text);
+            assert_eq!(assignment(&format!("a.b={text}")).unwrap().1, value);
+        }
+    }
+
+    #[test]
+    fn keys_stand_in_the_order_of_the_file() {
+        let text = "seed = 3\n[w]\nz = 1\na = 2\n\n[w.empty]\n[b]\n\"\".seed = {}\nx = { y.z = 4 }\n";
+        let file = ConfigFile::parse("my\n.toml", text).unwrap();
+        let keys: Vec<_> = file.entries.iter().map(|(key, entry)| (key.as_str(), entry.place.as_str())).collect();
+        let place = |line: u32| format!("my\\n.toml line {line}");
+        let places = [3, 4, 6, 8, 9].map(place);
+        let expected = ["w.z", "w.a", "w.empty", "b..seed", "b.x.y.z"];
+        assert_eq!(keys, expected.into_iter().zip(places.iter().map(String::as_str)).collect::<Vec<_>>());
+        assert_eq!(file.entries.iter().filter(|(_, entry)| entry.value.is_none()).count(), 2);
+        assert_eq!(file.seed.map(|seed| seed.value), Some(3));
+        // Not the seed of the run.
+        assert!(ConfigFile::parse("my.toml", "\"\".seed = 3").unwrap().seed.is_none());
+    }
+
+    #[test]
+    fn names_and_keys_do_not_multiply() {
+        use std::fmt::Write as _;
+        // Each name of the table in each of its keys would be 2e10 bytes.
+        let mut text = format!("[{}]\n", "a".repeat(1_000_000));
+        for number in 0..2 * MOST_KEYS {
+            writeln!(text, "k{number} = {number}").unwrap();
+        }
+        let file = ConfigFile::parse("my.toml", &text).unwrap();
+        assert_eq!(file.entries.len(), MOST_KEYS);
+        assert!(file.entries.iter().all(|(key, _)| key.len() == MOST_SHOWN + CUT.len()));
+        assert_eq!(file.beyond.as_deref(), Some("my.toml line 10002"));
+    }
+
+    #[test]
+    fn a_file_is_text_that_ends() {
+        let path = std::env::temp_dir().join(format!("farsa config {}", std::process::id()));
+        std::fs::write(&path, b"seed = 1\ncondition = \"\xff\"\n").unwrap();
+        let wrong = |found: Result<ConfigFile, Error>| found.map(|_| ()).unwrap_err();
+        let (given, own) = (wrong(ConfigFile::read(&path)), wrong(ConfigFile::read_own(&path)));
+        let why = format!("{}: line 2: the byte 0xff is no text (UTF-8)", path.display());
+        assert_eq!((given.to_string(), given.exit_code()), (why.clone(), 2));
+        assert_eq!((own.to_string(), own.exit_code()), (why, 1));
+        std::fs::remove_file(&path).unwrap();
+        if cfg!(unix) {
+            let endless = wrong(ConfigFile::read("/dev/zero".as_ref())).to_string();
+            assert_eq!(endless, "/dev/zero: has more than 16000000 bytes, the most that is read of it");
+            assert_eq!(
+                wrong(ConfigFile::read_own("/dev/zero".as_ref())).to_string(),
+                "/dev/zero: is not a regular file"
+            );
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! What is to be run: an experiment, a condition, a seed and all settings.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::Path;
 
 use farsa_evo::Strategy;
@@ -12,7 +11,8 @@ use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::{Settings, Value};
-use crate::run::config_file::ConfigFile;
+use crate::run::config_file::{ConfigFile, Entry};
+use crate::store::bounded;
 use crate::store::identity::{FILE, Identity, VALUES_VERSION};
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
 use crate::strategy::history::Fresh;
@@ -20,6 +20,9 @@ use crate::strategy::settings::{GENERATIONS, complete};
 
 /// The largest seed of a run; bit 63 marks the trials of a test.
 pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
+
+/// The most bytes that are read of a file that an experiment names.
+const MOST_BYTES: u64 = 1_000_000_000;
 
 /// A run before its first evaluation.
 pub(crate) struct Plan<'e> {
@@ -54,7 +57,16 @@ impl<'e> Plan<'e> {
         if let Some(seed) = &file.seed {
             self.seed = seed.value;
         }
-        file.values.iter().try_for_each(|(key, entry)| self.settings.set(&entry.place, key, entry.value.clone()))
+        for (key, Entry { value, place }) in &file.entries {
+            match value {
+                Some(value) => self.settings.set(place, key, value.clone())?,
+                None => self.settings.section(place, key)?,
+            }
+        }
+        match &file.beyond {
+            Some(place) => Err(Error::Usage(format!("{place}: more keys than a configuration has"))),
+            None => Ok(()),
+        }
     }
 
     /// What a configuration file says, whole.
@@ -136,14 +148,14 @@ impl<'e> Plan<'e> {
     /// All that the results depend on, the content of files included.
     ///
     /// # Errors
-    /// [`Error::Io`] for a file that cannot be read, and those of [`Experiment::files`].
+    /// [`Error::Io`] and [`Error::Damaged`] for a file that cannot be read, and those of [`Experiment::files`].
     pub(crate) fn identity(&self) -> Result<Identity, Error> {
         let settings = self.settings.table().iter().filter(|setting| setting.key() != GENERATIONS);
         let mut settings: Vec<(String, Value)> = settings
             .filter_map(|setting| Some((setting.key().to_owned(), self.settings.get(setting.key()).ok()?.clone())))
             .collect();
         for path in self.experiment.files(&self.condition, &self.settings)? {
-            let bytes = fs::read(&path).map_err(Error::io("read", &path))?;
+            let bytes = bounded::read_own(&path, MOST_BYTES)?;
             settings.push((format!("{FILE}{}", path.display()), Value::Word(format!("{:08x}", crc32(&bytes)))));
         }
         Ok(Identity {
@@ -218,6 +230,7 @@ pub(crate) fn find<'e>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
     use std::path::PathBuf;
 
     use crate::experiment::settings::Setting;
@@ -275,6 +288,19 @@ mod tests {
         };
         let head = "experiment = \"toy\"\n";
         for (text, message) in [
+            ("[World]\nStep = 1", "my.toml line 3: unknown key `World.Step`; the nearest is `world.step`"),
+            ("[wrold]", "my.toml line 2: unknown section `wrold`; the nearest is `world`"),
+            ("[robot.am]\n[world]\nstpe = 1", "my.toml line 2: unknown section `robot.am`; the nearest is `robot.arm`"),
+            ("seed = {}", "my.toml line 2: unknown section `seed`; the nearest is `world`"),
+            ("zz = 1\naa = 2", "my.toml line 2: unknown key `zz`; the nearest is `world.map`"),
+            ("\"a\\nerror: b\" = 2", "my.toml line 2: unknown key `a\\nerror: b`; the nearest is `world.map`"),
+            ("world.step = 1\nworld.step = 2", "my.toml line 3: duplicate key `step`"),
+            ("[world]\n[evolution]\n[world]", "my.toml line 4: duplicate key `world`"),
+            (
+                "world = 1\nworld.step = 2",
+                "my.toml line 3: cannot extend value of type integer with a dotted key `world`",
+            ),
+            ("world.step = 0.1\n\"world.step\" = 0.1", "my.toml line 3: `world.step`: stands twice"),
             ("[world]\nstpe = 1", "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`"),
             ("[wrold]\n\nstep = 1", "my.toml line 4: unknown key `wrold.step`; the nearest is `world.step`"),
             ("world.step = nan", "my.toml line 2: `world.step`: NaN is not a number"),
@@ -287,10 +313,25 @@ mod tests {
         ] {
             assert_eq!(error(&format!("{head}{text}")), message);
         }
+        assert_eq!(
+            error("experiment = \"toi\"\n[evolution]\n[robot]\n"),
+            "my.toml line 1: unknown experiment `toi`; the nearest is `toy`"
+        );
+        Plan::from_file(&[&Toy], &ConfigFile::parse("my.toml", &format!("{head}[evolution]\n[robot]\n")).unwrap())
+            .unwrap();
         assert_eq!(error("experiment = \"toi\""), "my.toml line 1: unknown experiment `toi`; the nearest is `toy`");
         assert_eq!(error(""), "my.toml: names no experiment");
         assert!(error(&format!("{head}[world\n")).starts_with("my.toml line 2: "));
         assert!(error(&format!("{head}seed = 1\nseed = 2\n")).starts_with("my.toml line 3: "));
+    }
+
+    #[test]
+    fn many_unknown_keys_are_refused_at_the_first() {
+        // In the order of the alphabet the first would be k0. Lines counted from the top for each take minutes.
+        let keys: String = (0..200_000).rev().map(|number| format!("k{number}=1\n")).collect();
+        let file = ConfigFile::parse("my.toml", &format!("{keys}experiment=\"toy\"\n")).unwrap();
+        let error = Plan::from_file(&[&Toy], &file).map(|_| ()).unwrap_err().to_string();
+        assert_eq!(error, "my.toml line 1: unknown key `k199999`; the nearest is `world.map`");
     }
 
     #[test]
@@ -335,5 +376,12 @@ mod tests {
         fs::remove_file(&path).unwrap();
         let said = plan.identity().unwrap_err().to_string();
         assert!(said.starts_with(&format!("cannot read {name}: ")), "{said}");
+        fs::File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
+        let said = plan.identity().unwrap_err().to_string();
+        assert_eq!(said, format!("{name}: has more than 1000000000 bytes, the most that is read of it"));
+        fs::remove_file(&path).unwrap();
+        fs::create_dir(&path).unwrap();
+        assert_eq!(plan.identity().unwrap_err().to_string(), format!("{name}: is not a regular file"));
+        fs::remove_dir(&path).unwrap();
     }
 }
