@@ -95,10 +95,21 @@ pub enum Error {
         /// Its reason.
         source: io::Error,
     },
-    /// A trial panicked, which is a mistake in the experiment.
+    /// The strategy panicked, which is a mistake in it; a trial that panics is a failed trial.
     Panicked {
         /// The generation.
         generation: u32,
+        /// Its message, and the place in the source.
+        why: String,
+    },
+    /// A trial that was replayed panicked, as the process has said already.
+    TrialPanicked {
+        /// The generation.
+        generation: u32,
+        /// The individual.
+        individual: u32,
+        /// Its trial.
+        trial: u32,
     },
     /// Anything else an experiment has to complain about.
     Other(String),
@@ -145,6 +156,7 @@ impl Error {
             | Self::Damaged { .. }
             | Self::Io { .. }
             | Self::Panicked { .. }
+            | Self::TrialPanicked { .. }
             | Self::Other(_) => 1,
             Self::Interrupted { .. } => 130,
         }
@@ -241,7 +253,12 @@ impl fmt::Display for Error {
             }
             Self::Damaged { path, why } => write!(f, "{}: {}", OneLine(path.display()), OneLine(why)),
             Self::Io { doing, path, source } => write!(f, "cannot {doing} {}: {source}", OneLine(path.display())),
-            Self::Panicked { generation } => write!(f, "a trial of generation {generation} panicked"),
+            Self::Panicked { generation, why } => {
+                write!(f, "the strategy panicked in generation {generation}: {}", OneLine(why))
+            }
+            Self::TrialPanicked { generation, individual, trial } => {
+                write!(f, "trial {trial} of individual {individual} of generation {generation} panicked")
+            }
             Self::Interrupted { resume } => write!(f, "interrupted; go on with `{}`", OneLine(resume)),
         }
     }

@@ -23,11 +23,11 @@ pub use error::Error;
 pub use evaluation::read_genotypes;
 pub use experiment::{
     ActuatorExport, Batch, Bodies, ChannelGroup, Controlled, ControllerExport, CtrnnExport, Description, Episode,
-    EpisodeId, Evaluation, Evaluator, Experiment, Exports, Genotype, InLanes, InWorld, Iteration, JudgeExport, Lanes,
-    Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Objective, Outcome, OwnedNetwork,
-    Parameter, PlanarWorld, PointExport, Rescored, Rollout, SensorExport, SensorReading, ServoExport, Setting,
-    Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, WithStrategy, mean_of_trials,
-    network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
+    EpisodeId, Evaluation, Evaluator, Experiment, Exports, Failure, Genotype, InLanes, InWorld, Iteration, JudgeExport,
+    Lanes, Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Objective, Outcome,
+    OwnedNetwork, Parameter, PlanarWorld, PointExport, Rescored, Rollout, SensorExport, SensorReading, ServoExport,
+    Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, WithStrategy,
+    mean_of_trials, network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use run::{BestOfRun, ENGINE};
 pub use store::{VALUES_VERSION, read_text_file};

@@ -168,6 +168,7 @@ impl Scenario for AggregationScenario {
                 ("clusters", Note::from(gathering.clusters as f64)),
                 ("share in the largest cluster", Note::from(gathering.largest as f64 / robots)),
             ],
+            ..Outcome::default()
         }
     }
 

@@ -196,6 +196,7 @@ impl Rollout for VehicleEpisode {
                 ("lamp off ahead at the end [deg]", Note::from(off[1])),
                 ("steps in collision", Note::from(f64::from(collisions))),
             ],
+            ..Outcome::default()
         }
     }
 }

@@ -249,7 +249,13 @@ impl Rollout for CylinderEpisode<Layer> {
             notes.push(("wheels' difference near the first [rad/s]", Note::from(mean(0))));
             notes.push(("wheels' difference near the other [rad/s]", Note::from(mean(1))));
         }
-        Outcome { terms, steps: trial.steps, success: !trial.collided && trial.distance[0] < config.near, notes }
+        Outcome {
+            terms,
+            steps: trial.steps,
+            success: !trial.collided && trial.distance[0] < config.near,
+            notes,
+            ..Outcome::default()
+        }
     }
 }
 

@@ -136,6 +136,7 @@ impl Scenario for ForagingScenario {
                 ("deaths", Note::from(field.deaths() as f64)),
                 ("energy at the end", Note::from(energy / robots)),
             ],
+            ..Outcome::default()
         }
     }
 

@@ -275,6 +275,6 @@ impl Rollout for Agent {
             ("object", Note::from(self.episode.object().name())),
             ("distance at the end", Note::from(self.episode.distance())),
         ];
-        Outcome { terms: vec![score], steps, success: score > 0.5, notes }
+        Outcome { terms: vec![score], steps, success: score > 0.5, notes, ..Outcome::default() }
     }
 }

@@ -149,6 +149,7 @@ impl Scenario for PredatorPreyScenario {
                 ("time [s]", Note::from(f64::from(moment.steps) * self.config.team.time_step)),
                 ("gap at the end [m]", Note::from(self.gap)),
             ],
+            ..Outcome::default()
         }
     }
 

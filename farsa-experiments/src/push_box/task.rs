@@ -122,6 +122,7 @@ impl Rollout for PushEpisode<Layer> {
                 ("share of time touching", Note::from(f64::from(trial.touched) / f64::from(config.steps))),
                 ("fastest of the box [m/s]", Note::from(trial.fastest)),
             ],
+            ..Outcome::default()
         }
     }
 }

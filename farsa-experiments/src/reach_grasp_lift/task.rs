@@ -102,6 +102,7 @@ impl Rollout for ReachTask {
                 ("height [cm]", Note::from(judge.seen().height)),
                 ("highest [cm]", Note::from(trial.highest)),
             ],
+            ..Outcome::default()
         }
     }
 }

@@ -82,5 +82,6 @@ pub(crate) fn outcome(episode: &WalkerEpisode) -> Outcome {
         steps: gait.ticks(),
         success: gait.end().is_none() && gait.steps() >= 20,
         notes: vec![("end", Note::from(end)), ("steps made", Note::from(f64::from(gait.steps())))],
+        ..Outcome::default()
     }
 }

@@ -3,7 +3,6 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::FromArgMatches as _;
 
@@ -13,6 +12,7 @@ use crate::command::arguments::export::{
 use crate::command::arguments::subcommands::{
     BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
+use crate::command::interrupt::{START_AGAIN, stop_on_signals, under_scheduler};
 use crate::command::{info, manual};
 use crate::error::Error;
 use crate::evaluation::{draw, evaluate, import, replay, test};
@@ -29,12 +29,14 @@ use crate::run::plan::{self, Plan};
 use crate::run::replications::{self, Replications};
 use crate::run::summary::Summary;
 use crate::run::{evolve, world_choice};
-use crate::store::directory::{Directory, create_result, create_results};
+use crate::store::directory::Directory;
+use crate::store::replace::{create_result, create_results};
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 
 /// Runs the command over these experiments with the process's arguments: the whole of a `main`.
 ///
-/// The exit code is 0; 2 for a wrong command line or configuration; 130 after Ctrl-C; 1 otherwise.
+/// The exit code is 0; 2 for a wrong command line or configuration; 130 after Ctrl-C, SIGTERM or SIGHUP, or 75 when a
+/// scheduler of a cluster has started it; 1 otherwise.
 pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
     let program = program();
     let parsed = manual::command(&program, experiments).try_get_matches();
@@ -53,7 +55,8 @@ pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
         Err(error) if replay::reader_left(&error) => ExitCode::SUCCESS,
         Err(error) => {
             let _ = writeln!(io::stderr(), "error: {error}");
-            ExitCode::from(error.exit_code())
+            let again = matches!(error, Error::Interrupted { .. }) && under_scheduler();
+            ExitCode::from(if again { START_AGAIN } else { error.exit_code() })
         }
     }
 }
@@ -249,8 +252,8 @@ impl<'e> Invocation<'e, '_> {
     fn replicate(&self, args: &RunArgs, count: u32) -> Result<Replications, Error> {
         let (_, plan) = self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
-        let pool = |plan: &Plan<'_>| args.workers.pool(plan);
-        replications::run(plan, count, &root, &pool, stop_on_interrupt, self.program, self.quiet)
+        let pool = |plan: &Plan<'e>| args.workers.pool(plan);
+        replications::run(plan, count, &root, &pool, stop_on_signals, self.program, self.quiet)
     }
 
     fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {
@@ -265,7 +268,7 @@ impl<'e> Invocation<'e, '_> {
             }
             None => begin::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
         };
-        evolve::go_on(&plan, &directory, pool, stop_on_interrupt(), self.program, self.quiet)
+        evolve::go_on(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
     }
 
     /// What the command line and its file ask for, and the directory that is to be gone on with.
@@ -339,17 +342,4 @@ fn same_names(args: &RunArgs, file: Option<&ConfigFile>, plan: &Plan<'_>, direct
         }
     }
     Ok(())
-}
-
-/// Becomes true at the first Ctrl-C; the second ends the process, which loses no more than a kill.
-fn stop_on_interrupt() -> &'static AtomicBool {
-    static STOP: AtomicBool = AtomicBool::new(false);
-    // Without a handler Ctrl-C ends the process, and resuming works all the same.
-    let _ = ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-        let _ = writeln!(io::stderr(), "stopping after the trials that are running; again to stop at once");
-    });
-    &STOP
 }

@@ -11,7 +11,7 @@ use farsa_view::Camera;
 use crate::command::arguments::subcommands::Cli;
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
-use crate::store::directory::create_results;
+use crate::store::replace::create_results;
 
 /// Without headings and spare lines, so that a screen of 24 lines has room for the tour, which follows.
 const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n{options}\n";

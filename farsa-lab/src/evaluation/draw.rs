@@ -1,6 +1,5 @@
 //! `farsa draw`: a moment of a trial as a picture, and a champion's for the report.
 
-use std::io::Write as _;
 use std::path::Path;
 
 use farsa_view::{Camera, Recording};
@@ -9,7 +8,8 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::evaluation::replay::{ReplaySummary, Replayable, Which};
 use crate::run::plan::Plan;
-use crate::store::directory::{Directory, create_result};
+use crate::store::directory::Directory;
+use crate::store::replace::create_results;
 
 /// Width and height of a picture where none are asked for.
 const SIZE: (u32, u32) = (1200, 800);
@@ -73,7 +73,7 @@ pub(crate) fn draw(
     let mut replayable = Replayable::find(plan, directory, which)?;
     let trial = replayable.trials.start;
     let mut recording = Recording::new(replayable.schema());
-    let outcome = replayable.run(trial, &mut recording);
+    let outcome = replayable.run(trial, &mut recording)?;
     let tick = tick_at(&recording, time)?;
     let camera = camera.unwrap_or(Camera::for_view(recording.schema().view));
     let mut picture = recording.picture(tick).ok_or_else(|| {
@@ -88,7 +88,7 @@ pub(crate) fn draw(
         Format::Png => picture.png(camera, [width, height])?,
         Format::Svg => picture.svg(camera, [width, height], "p").into_bytes(),
     };
-    create_result(path)?.write_all(&bytes).map_err(Error::io("write", path))?;
+    create_results(&[(path.to_owned(), bytes)])?;
     Ok(Drawn {
         replay: replayable.summary(plan, directory, std::slice::from_ref(&outcome)),
         time: seconds,
@@ -108,7 +108,7 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     let mut best: Option<(f64, u32, Recording)> = None;
     for trial in replayable.trials.clone() {
         let mut recording = Recording::new(replayable.schema());
-        let outcome = replayable.run(trial, &mut recording);
+        let outcome = replayable.run(trial, &mut recording)?;
         let fitness = replayable.fitness(core::slice::from_ref(&outcome));
         if best.as_ref().is_none_or(|(other, ..)| fitness > *other) {
             best = Some((fitness, trial, recording));

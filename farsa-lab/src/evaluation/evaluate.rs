@@ -12,7 +12,7 @@ use crate::evaluation::test;
 use crate::evaluation::test_table::TrialResult;
 use crate::experiment::outcome::Note;
 use crate::run::plan::Plan;
-use crate::run::pool::{Pool, Unfinished};
+use crate::run::pool::Pool;
 use crate::run::progress::Progress;
 use crate::strategy::settings::POPULATION;
 
@@ -177,10 +177,7 @@ pub(crate) fn evaluate(
     let progress = Progress::new(0, trials as u64, quiet);
     let results = test::run_trials(&mut pool, &parameters, size, trials, seed, &progress);
     drop(progress);
-    let results = results.map_err(|reason| match reason {
-        Unfinished::Panicked => Error::Other("a trial panicked".into()),
-        Unfinished::Stopped => Error::Other("stopped".into()),
-    })?;
+    let results = results?;
     Ok(Evaluation::new(plan, seed, &names, &results))
 }
 

@@ -11,8 +11,9 @@ use crate::evaluation::populations::Populations;
 use crate::experiment::settings::Value;
 use crate::run::plan::Plan;
 use crate::run::records::{Best, Champions, write_imported};
-use crate::store::directory::{Directory, replace};
+use crate::store::directory::Directory;
 use crate::store::manifest::Manifest;
+use crate::store::replace::replace;
 use crate::strategy::settings::POPULATION;
 
 /// What was imported.

@@ -13,9 +13,11 @@ use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::outcome::{Note, Outcome};
+use crate::run::contained::caught;
 use crate::run::plan::Plan;
 use crate::run::records::history;
-use crate::store::directory::{Directory, create_result};
+use crate::store::directory::Directory;
+use crate::store::replace::create_results;
 use crate::strategy::opponents;
 
 /// Which trials to replay; individuals are counted through all populations.
@@ -92,12 +94,17 @@ impl Replayable {
     }
 
     /// Replays one of the trials that were asked for.
-    pub(crate) fn run(&mut self, trial: u32, recorder: &mut dyn Recorder) -> Outcome {
+    ///
+    /// # Errors
+    /// [`Error::TrialPanicked`]; the panic is printed as any other, with a backtrace if the user wants one.
+    pub(crate) fn run(&mut self, trial: u32, recorder: &mut dyn Recorder) -> Result<Outcome, Error> {
         let id = EpisodeId { seed: self.seed, generation: self.generation, individual: self.individual, trial };
         let opponents = self.opponents.get((trial - self.trials.start) as usize).map_or(&[][..], Vec::as_slice);
         let opponents: Vec<&[f32]> = opponents.iter().map(Vec::as_slice).collect();
         let evaluation = Evaluation { number: 0, parameters: &self.parameters, opponents: &opponents, id };
-        self.evaluator.evaluate(evaluation, Some(recorder))
+        let (generation, individual) = (self.generation, self.individual);
+        let panicked = |()| Error::TrialPanicked { generation, individual, trial };
+        caught(|| self.evaluator.evaluate(evaluation, Some(recorder))).map_err(panicked)
     }
 
     /// The fitness of the replayed trials.
@@ -109,11 +116,13 @@ impl Replayable {
 
     /// The outcomes of the replayed trials, in the order of the requested ones.
     pub(crate) fn summary(&self, plan: &Plan<'_>, directory: &Directory, outcomes: &[Outcome]) -> ReplaySummary {
+        let terms = self.evaluator.terms();
         let trials = self.trials.clone().zip(outcomes).map(|(trial, outcome)| ReplayedTrial {
             trial,
             steps: outcome.steps,
             fitness: self.fitness(std::slice::from_ref(outcome)),
             success: outcome.success,
+            failure: outcome.why_failed(&terms),
         });
         ReplaySummary {
             directory: directory.path().display().to_string(),
@@ -155,6 +164,9 @@ struct ReplayedTrial {
     /// Of the trial alone.
     fitness: f64,
     success: bool,
+    /// Why it failed, if it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failure: Option<String>,
 }
 
 impl ReplaySummary {
@@ -165,7 +177,14 @@ impl ReplaySummary {
             [ReplayedTrial { trial, .. }] => format!("trial {trial}"),
             trials => format!("{} trials", trials.len()),
         };
-        format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {fitness:?}")
+        let mut text =
+            format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {fitness:?}");
+        for ReplayedTrial { trial, failure, .. } in trials {
+            if let Some(why) = failure {
+                text.push_str(&format!("; trial {trial} failed: {why}"));
+            }
+        }
+        text
     }
 }
 
@@ -200,11 +219,20 @@ pub(crate) fn replay(
     let failed = |source: io::Error| Error::Io { doing: "write", path: "the replay".into(), source };
     let mut table = Table::new(out, &replayable.schema()).map_err(failed)?;
     let mut outcomes = Vec::new();
+    let mut ended = Ok(());
     for trial in replayable.trials.clone() {
         table.begin(trial);
-        outcomes.push(replayable.run(trial, &mut table));
+        match replayable.run(trial, &mut table) {
+            Ok(outcome) => outcomes.push(outcome),
+            Err(error) => {
+                ended = Err(error);
+                break;
+            }
+        }
     }
+    // The steps before a panic are worth having.
     table.finish().map_err(failed)?;
+    ended?;
     let replay = replayable.summary(plan, directory, &outcomes);
     Ok(Replayed::new(replay, None))
 }
@@ -224,7 +252,7 @@ pub(crate) fn page(
         let mut outcomes = Vec::new();
         for trial in replayable.trials.clone() {
             let mut recording = Recording::new(replayable.schema());
-            let outcome = replayable.run(trial, &mut recording);
+            let outcome = replayable.run(trial, &mut recording)?;
             let Replayable { generation, individual, .. } = replayable;
             // What distinguishes trials comes first: a narrow screen cuts the rest.
             let run = [plan.condition.as_str(), "seed"].into_iter().find(|word| !word.is_empty()).unwrap_or_default();
@@ -237,7 +265,7 @@ pub(crate) fn page(
     let replay = add(plan, directory)?;
     let compared = compare.map(|(plan, directory)| add(plan, directory)).transpose()?;
     let html = page.html();
-    create_result(path)?.write_all(html.as_bytes()).map_err(Error::io("write", path))?;
+    create_results(&[(path.to_owned(), html)])?;
     Ok(Replayed::new(replay, compared))
 }
 

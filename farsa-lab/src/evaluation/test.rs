@@ -1,8 +1,9 @@
 //! `farsa test`: the champion on starts that it has never met.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::sync::atomic::AtomicBool;
+use std::thread;
+use std::time::Duration;
 
 use farsa_num::crc32;
 use serde::{Deserialize, Serialize};
@@ -17,7 +18,11 @@ use crate::run::plan::{LARGEST_SEED, Plan};
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
 use crate::run::records::{Best, Champions};
-use crate::store::directory::{Directory, replace};
+use crate::store::bounded::read_own_text;
+use crate::store::directory::Directory;
+use crate::store::draft;
+use crate::store::lock::Lock;
+use crate::store::replace::replace;
 use crate::strategy::settings::POPULATION;
 
 /// `test.json`: which champion `test.csv` is about, and how to make it again.
@@ -31,21 +36,50 @@ pub(crate) struct Record {
     table_crc: u32,
 }
 
-impl Record {
-    /// The record of the test that a directory holds; none if it was made before there were records.
-    ///
-    /// # Errors
-    /// [`Error::Io`], [`Error::Damaged`].
-    pub(crate) fn read(directory: &Directory) -> Result<Option<Self>, Error> {
-        let path = directory.test_record();
-        if !path.is_file() {
-            return Ok(None);
-        }
-        let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
-        let record: Self = serde_json::from_str(&text).map_err(|error| Error::damaged(&path, error))?;
-        let table = fs::read(directory.test()).map_err(Error::io("read", &directory.test()))?;
-        Ok((crc32(&table) == record.table_crc).then_some(record))
+/// Bytes of the largest table and of the largest record that are read.
+const LARGEST: [u64; 2] = [1 << 30, 1 << 20];
+/// How often, and with which pauses, the two files are read again while another process writes them.
+const ATTEMPTS: usize = 20;
+const PAUSE: Duration = Duration::from_millis(25);
+
+/// The test that a directory holds, with its record; none of both where there is no test, and no record of a table that was made
+/// before there were records, or by a process that was killed before it wrote one.
+///
+/// # Errors
+/// [`Error::Io`], [`Error::Damaged`].
+pub(crate) fn read(directory: &Directory) -> Result<Option<(Table, Option<Record>)>, Error> {
+    let (table, record) = (directory.test(), directory.test_record());
+    if !table.is_file() {
+        return Ok(None);
     }
+    for attempt in 1..=ATTEMPTS {
+        let text = read_own_text(&table, LARGEST[0])?;
+        let found: Option<Record> = if record.is_file() {
+            let text = read_own_text(&record, LARGEST[1])?;
+            Some(serde_json::from_str(&text).map_err(|error| Error::damaged(&record, error))?)
+        } else {
+            None
+        };
+        let own = found.filter(|record| record.table_crc == crc32(text.as_bytes()));
+        if own.is_some() || attempt == ATTEMPTS || !record.is_file() {
+            return Ok(Some((Table::from_text(&table, &text)?, own)));
+        }
+        // One file is of a test that is just being written.
+        thread::sleep(PAUSE);
+    }
+    Ok(None)
+}
+
+/// Writes both files of a test, which no other process does meanwhile.
+fn write(directory: &Directory, table: &Table, record: impl FnOnce(u32) -> Record) -> Result<(), Error> {
+    let (path, json) = (directory.test(), directory.test_record());
+    let bytes = table.csv(&path)?;
+    let record = record(crc32(&bytes));
+    let text = serde_json::to_string_pretty(&record).map_err(|error| Error::Other(error.to_string()))?;
+    let _lock = Lock::of_tests(directory)?;
+    [&path, &json].into_iter().for_each(|path| draft::sweep_of(path));
+    replace(&path, &bytes)?;
+    replace(&json, format!("{text}\n").as_bytes())
 }
 
 /// What a test found.
@@ -100,6 +134,8 @@ pub(crate) fn test(
     lanes: Wanted,
     quiet: bool,
 ) -> Result<TestRun, Error> {
+    // Where nothing can be written, that is said before anything is computed.
+    drop(Lock::of_tests(directory)?);
     let path = directory.champion();
     if !path.is_file() && directory.checkpoint().is_file() {
         return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
@@ -116,10 +152,7 @@ pub(crate) fn test(
     let progress = Progress::new(0, trials as u64, quiet);
     let results = run_trials(&mut pool, &parameters, size, trials, seed, &progress);
     drop(progress);
-    let results = results.map_err(|reason| match reason {
-        Unfinished::Panicked => Error::Panicked { generation },
-        Unfinished::Stopped => Error::Other("stopped".into()),
-    })?;
+    let results = results?;
     let Some(&Best { individual, .. }) = best.first() else {
         return Err(Error::damaged(&path, "it has no individual"));
     };
@@ -128,10 +161,7 @@ pub(crate) fn test(
     let terms = pool.evaluator().terms();
     let names = pool.evaluator().populations();
     let table = Table::new(&terms, names.get(1..best.len()).unwrap_or(&[]), &results);
-    let bytes = table.write(&directory.test())?;
-    let record = Record { generation, individual, trials, seed, table_crc: crc32(&bytes) };
-    let text = serde_json::to_string_pretty(&record).map_err(|error| Error::Other(error.to_string()))?;
-    replace(&directory.test_record(), format!("{text}\n").as_bytes())?;
+    write(directory, &table, |table_crc| Record { generation, individual, trials, seed, table_crc })?;
     let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
     Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, table })
 }
@@ -145,7 +175,7 @@ pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
 
 /// Evaluates fresh trials of some parameters, of one individual or one of each population of `size` individuals.
 pub(crate) fn run_trials(
-    pool: &mut Pool,
+    pool: &mut Pool<'_>,
     champions: &[Vec<f32>],
     size: usize,
     trials: usize,

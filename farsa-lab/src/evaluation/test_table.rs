@@ -8,7 +8,6 @@ use serde::{Serialize, Serializer};
 
 use crate::error::Error;
 use crate::experiment::outcome::{Note, Outcome};
-use crate::store::directory::replace;
 
 /// The columns that every test has; the terms of the fitness, if there are more than one, and the notes follow.
 const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
@@ -71,13 +70,12 @@ impl Table {
         Self { lines: std::iter::once(head).chain(lines).collect() }
     }
 
-    /// Reads the file.
+    /// What the text of the file at `path` says.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Damaged`] when it is not the table of a test.
-    pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = std::fs::read_to_string(path).map_err(Error::io("read", path))?;
-        Self::parse(&text).map_err(|why| Error::damaged(path, why))
+    /// [`Error::Damaged`] when it is not the table of a test.
+    pub(crate) fn from_text(path: &Path, text: &str) -> Result<Self, Error> {
+        Self::parse(text).map_err(|why| Error::damaged(path, why))
     }
 
     fn parse(text: &str) -> Result<Self, String> {
@@ -105,16 +103,14 @@ impl Table {
         if text.ends_with('\n') && lines.len() > 1 { Ok(Self { lines }) } else { Err("truncated".into()) }
     }
 
-    /// Writes the file and returns what is in it.
-    pub(crate) fn write(&self, path: &Path) -> Result<Vec<u8>, Error> {
+    /// The content of the file, which is to be written to `path`.
+    pub(crate) fn csv(&self, path: &Path) -> Result<Vec<u8>, Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         self.lines
             .iter()
             .try_for_each(|line| writer.write_record(line))
             .map_err(|error| Error::damaged(path, error))?;
-        let bytes = writer.into_inner().map_err(|error| Error::damaged(path, error.to_string()))?;
-        replace(path, &bytes)?;
-        Ok(bytes)
+        writer.into_inner().map_err(|error| Error::damaged(path, error.to_string()))
     }
 
     /// The table with columns that stand under each other; numbers are cut to two places.
@@ -265,6 +261,7 @@ mod tests {
             steps: 6,
             success,
             notes: vec![("phase", phase.into()), ("height", height.into())],
+            ..Outcome::default()
         };
         let results = |trial, outcome, fitness| TrialResult { trial, outcome, fitness, others: Vec::new() };
         let trials = [

@@ -168,7 +168,7 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Rollout for Controlle
     fn outcome(&self) -> Outcome {
         let Self { objective, steps, sum, .. } = self;
         let notes = objective.values().into_iter().map(|(name, value)| (name, Note::from(value))).collect();
-        Outcome { terms: vec![*sum], steps: *steps, success: objective.success(), notes }
+        Outcome { terms: vec![*sum], steps: *steps, success: objective.success(), notes, ..Outcome::default() }
     }
 }
 

@@ -56,6 +56,27 @@ pub trait Episode<W: ?Sized> {
     }
 }
 
+impl<W: ?Sized, E: Episode<W> + ?Sized> Episode<W> for &mut E {
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        (**self).start(world, id);
+    }
+    fn has_started(&self) -> bool {
+        (**self).has_started()
+    }
+    fn act(&mut self, world: &mut W) {
+        (**self).act(world);
+    }
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        (**self).judge(world)
+    }
+    fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
+        (**self).record_action(world, recorder);
+    }
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        (**self).record(world, recorder);
+    }
+}
+
 /// Runs one episode alone in `world` and returns its return; what it records does not change it.
 pub fn run_episode<W, E>(episode: &mut E, world: &mut W, id: EpisodeId, mut recorder: Option<&mut dyn Recorder>) -> f64
 where

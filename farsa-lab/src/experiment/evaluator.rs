@@ -47,6 +47,16 @@ pub trait Task: Send {
         1
     }
 
+    /// The step at which an episode that has not ended is stopped and counts as failed, so that one without an end ends.
+    ///
+    /// By default the most steps that the [`description`](Self::description) names, or ten million where it names none.
+    fn step_budget(&self) -> u64 {
+        match self.description().steps {
+            0 => 10_000_000,
+            steps => steps as u64,
+        }
+    }
+
     /// Names of the terms of the fitness that [`Outcome::terms`] holds, in its order.
     fn terms(&self) -> Vec<String> {
         vec!["fitness".into()]
@@ -137,7 +147,9 @@ pub trait Evaluator: Task {
     /// Runs one trial from its start to its end.
     ///
     /// What [`schema`](Task::schema) names goes to the recorder at every step if there is one; whether there is must
-    /// not change the outcome. A trial that broke down is [`Outcome::failed`].
+    /// not change the outcome. A trial that broke down is [`Outcome::failed`]; one that panics counts as such, and this value is
+    /// then dropped and made again. [`InWorld`](crate::InWorld) ends a trial at its [step budget](Task::step_budget); a loop of
+    /// one's own has to end by itself.
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome;
 
     /// How trials are evaluated side by side, if they can be.

@@ -8,6 +8,7 @@ use crate::experiment::episode::{Episode, EpisodeId, run_episode};
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Parameter, Task};
 use crate::experiment::in_lanes::{Batch, run_in_lanes};
 use crate::experiment::lanes::Lanes;
+use crate::experiment::limited::Limited;
 use crate::experiment::outcome::{Description, Outcome};
 
 /// A task's episode as it is evaluated: it takes parameters before it starts and tells its outcome after its end.
@@ -40,22 +41,22 @@ struct InBatch<B, R> {
 
 /// An episode with the number of its evaluation.
 struct Numbered<R> {
-    rollout: R,
+    limited: Limited<R>,
     number: usize,
 }
 
 impl<W: ?Sized, R: Episode<W>> Episode<W> for Numbered<R> {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
-        self.rollout.start(world, id);
+        self.limited.start(world, id);
     }
     fn has_started(&self) -> bool {
-        self.rollout.has_started()
+        self.limited.has_started()
     }
     fn act(&mut self, world: &mut W) {
-        self.rollout.act(world);
+        self.limited.act(world);
     }
     fn judge(&mut self, world: &mut W) -> Option<f64> {
-        self.rollout.judge(world)
+        self.limited.judge(world)
     }
 }
 
@@ -71,17 +72,21 @@ where
     ) {
         // Two closures report outcomes in turn.
         let done = std::cell::RefCell::new(done);
-        let begin = |Numbered { rollout, number }: &mut Numbered<R>| {
+        let begin = |Numbered { limited, number }: &mut Numbered<R>| {
             loop {
                 let evaluation = next()?;
                 *number = evaluation.number;
-                if rollout.load(&evaluation) {
+                if limited.episode.load(&evaluation) {
                     return Some(evaluation.id);
                 }
                 done.borrow_mut()(evaluation.number, Outcome::failed());
             }
         };
-        let end = |ended: &mut Numbered<R>, _: f64| done.borrow_mut()(ended.number, ended.rollout.outcome());
+        let end = |ended: &mut Numbered<R>, _: f64| {
+            let limited = &ended.limited;
+            let outcome = limited.stopped().unwrap_or_else(|| limited.episode.outcome());
+            done.borrow_mut()(ended.number, outcome);
+        };
         run_in_lanes(&mut self.episodes, &mut self.batch, begin, end);
     }
 }
@@ -92,6 +97,8 @@ type Make<R> = Box<dyn Fn(Lanes, &R) -> Result<Box<dyn SideBySide<R>>, Error> + 
 pub struct InWorld<W, R> {
     world: W,
     rollout: R,
+    /// Most steps of an episode, once one was run.
+    budget: Option<u64>,
     make: Option<Make<R>>,
     lanes: Option<Box<dyn SideBySide<R>>>,
 }
@@ -99,7 +106,7 @@ pub struct InWorld<W, R> {
 impl<W, R> InWorld<W, R> {
     /// Evaluates this episode in this world.
     pub fn new(world: W, rollout: R) -> Self {
-        Self { world, rollout, make: None, lanes: None }
+        Self { world, rollout, budget: None, make: None, lanes: None }
     }
 
     /// And side by side in batches that `batch` makes of the world's description.
@@ -111,7 +118,9 @@ impl<W, R> InWorld<W, R> {
     {
         self.make = Some(Box::new(move |lanes, rollout: &R| {
             let batch = batch(lanes)?;
-            let episodes = (0..lanes.count()).map(|_| Numbered { rollout: rollout.clone(), number: 0 }).collect();
+            let (budget, count) = (rollout.step_budget(), lanes.count());
+            let limited = (0..count).map(|_| Limited::new(rollout.clone(), budget));
+            let episodes = limited.map(|limited| Numbered { limited, number: 0 }).collect();
             Ok(Box::new(InBatch { batch, episodes }))
         }));
         self
@@ -124,6 +133,7 @@ impl<W, R> InWorld<W, R> {
 
     /// The episode and the world, to run one by hand.
     pub fn parts_mut(&mut self) -> (&mut R, &mut W) {
+        self.budget = None;
         (&mut self.rollout, &mut self.world)
     }
 }
@@ -140,6 +150,9 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
     }
     fn trials(&self) -> usize {
         self.rollout.trials()
+    }
+    fn step_budget(&self) -> u64 {
+        self.rollout.step_budget()
     }
     fn terms(&self) -> Vec<String> {
         self.rollout.terms()
@@ -170,8 +183,10 @@ where
         if let Some(recorder) = &mut recorder {
             self.rollout.record_parameters(*recorder);
         }
-        run_episode(&mut self.rollout, &mut self.world, evaluation.id, recorder);
-        self.rollout.outcome()
+        let budget = *self.budget.get_or_insert_with(|| self.rollout.step_budget());
+        let mut limited = Limited::new(&mut self.rollout, budget);
+        run_episode(&mut limited, &mut self.world, evaluation.id, recorder);
+        limited.stopped().unwrap_or_else(|| self.rollout.outcome())
     }
 
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {

@@ -7,6 +7,7 @@
 //! - `in_lanes`: the loop that runs many episodes side by side, one in each lane of a batch of worlds
 //! - `in_world`: an evaluator made of a world and an episode
 //! - `lanes`: how many episodes a thread runs side by side, and by which instructions
+//! - `limited`: an episode that ends at the latest after so many steps
 //! - `genotype`: from genes to the parameters that they stand for
 //! - `network_parameters`: the parameters of a network with a bias and a leak for every neuron
 //! - `neurocontroller`: sensors, a network and motors, for episodes of one's own
@@ -25,6 +26,7 @@ pub(crate) mod genotype;
 mod in_lanes;
 mod in_world;
 pub(crate) mod lanes;
+mod limited;
 mod network_parameters;
 mod neurocontroller;
 pub(crate) mod outcome;
@@ -46,7 +48,7 @@ pub use in_world::{InWorld, Rollout};
 pub use lanes::Lanes;
 pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
 pub use neurocontroller::Neurocontroller;
-pub use outcome::{ChannelGroup, Description, Note, Outcome, mean_of_trials};
+pub use outcome::{ChannelGroup, Description, Failure, Note, Outcome, mean_of_trials};
 pub use rescored::Rescored;
 pub use settings::{Setting, Settings, Source, Value};
 pub use with_strategy::WithStrategy;

@@ -1,5 +1,7 @@
 //! What comes of a trial, and what is told of a robot and its controller.
 
+use std::fmt;
+
 /// What came of one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outcome {
@@ -11,6 +13,27 @@ pub struct Outcome {
     pub success: bool,
     /// What else `farsa test` tells about the trial, by name: `("phase", "lift".into())`; the same names in every trial.
     pub notes: Vec<(&'static str, Note)>,
+    /// Why the trial failed, where that is known; a trial with a failure counts as failed whatever its terms are.
+    pub failure: Option<Failure>,
+}
+
+/// Why a trial failed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Failure {
+    /// It panicked: the message and the place in the source.
+    Panicked(String),
+    /// It had not ended after so many steps, [`Task::step_budget`](crate::Task::step_budget).
+    Endless(u64),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Panicked(why) => write!(f, "panicked: {why}"),
+            Self::Endless(steps) => write!(f, "had not ended after {steps} steps, the most that the experiment names"),
+        }
+    }
 }
 
 impl Outcome {
@@ -19,9 +42,24 @@ impl Outcome {
         Self { terms: vec![f64::NAN], ..Self::default() }
     }
 
-    /// Whether all terms are finite.
+    /// A trial that panicked, with its message.
+    pub(crate) fn panicked(why: &str) -> Self {
+        Self { failure: Some(Failure::Panicked(why.into())), ..Self::failed() }
+    }
+
+    /// Whether nothing failed and all terms are finite.
     pub fn is_finite(&self) -> bool {
-        self.terms.iter().all(|term| term.is_finite())
+        self.failure.is_none() && self.terms.iter().all(|term| term.is_finite())
+    }
+
+    /// Why the trial counts as failed, in words, if it does; `names` are those of the terms.
+    pub(crate) fn why_failed(&self, names: &[String]) -> Option<String> {
+        if let Some(failure) = &self.failure {
+            return Some(failure.to_string());
+        }
+        let (place, term) = self.terms.iter().enumerate().find(|(_, term)| !term.is_finite())?;
+        let name = names.get(place).map_or("", String::as_str);
+        Some(format!("the term `{name}` of the fitness is {term}"))
     }
 }
 

@@ -49,6 +49,9 @@ impl Task for Rescored {
     fn trials(&self) -> usize {
         self.inner.trials()
     }
+    fn step_budget(&self) -> u64 {
+        self.inner.step_budget()
+    }
     fn terms(&self) -> Vec<String> {
         self.names.clone()
     }

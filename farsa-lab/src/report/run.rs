@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use crate::error::Error;
-use crate::evaluation::test::Record;
+use crate::evaluation::test::{self, Record};
 use crate::evaluation::test_table::{Findings, Table};
 use crate::experiment::settings::Value;
 use crate::run::plan::Plan;
 use crate::run::records::{Checkpoint, evolved};
+use crate::run::told::Told;
 use crate::store::directory::Directory;
-use crate::store::log::{self, Line};
+use crate::store::log::Line;
 use crate::store::manifest::Manifest;
 use crate::strategy::settings::GENERATIONS;
 
@@ -40,23 +41,16 @@ impl<'e> Run<'e> {
     /// configuration was changed by hand; [`Error::Io`].
     pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
         evolved(&directory)?;
-        let manifest = Manifest::read(&directory.manifest())?;
-        // The checkpoint first: of a run under way the log knows at least as much.
-        let Checkpoint { log: mark, .. } = Checkpoint::read(&plan, &directory)?;
-        let lines = log::read(&directory.log(), mark)?;
+        let Told { identity, lines, .. } = Told::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
+        let manifest = Manifest::read_or_new(&directory.manifest(), &identity)?;
         if lines.is_empty() {
-            return Err(Error::damaged(&directory.log(), "no generation is finished yet"));
+            return Err(Error::damaged(&directory.record(), "no generation is finished yet"));
         }
-        let path = directory.test();
         let evaluator = plan.evaluator()?;
-        let populations = evaluator.populations();
+        let (populations, terms) = (evaluator.populations(), evaluator.terms());
         let populations = if populations.len() > 1 { populations } else { Vec::new() };
-        let test = if path.is_file() {
-            let findings = Table::read(&path)?.findings(&evaluator.terms());
-            Some(Tested { findings, record: Record::read(&directory)? })
-        } else {
-            None
-        };
+        let tested = |(table, record): (Table, Option<Record>)| Tested { findings: table.findings(&terms), record };
+        let test = test::read(&directory)?.map(tested);
         Ok(Self { directory, plan, manifest, populations, lines, test })
     }
 

@@ -11,7 +11,8 @@ use crate::report::run::Run;
 use crate::report::section::section;
 use crate::report::settings::shell;
 use crate::run::plan::Plan;
-use crate::store::directory::{Directory, create_results};
+use crate::store::directory::Directory;
+use crate::store::replace::create_results;
 
 /// What was written about which runs.
 #[derive(Debug, Serialize)]

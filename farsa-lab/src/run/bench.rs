@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::lanes::LanesInfo;
 use crate::experiment::outcome::Outcome;
-use crate::run::evolve::{Opponents, evaluate_all};
+use crate::run::fitness::{Opponents, evaluate_all};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::records::history;
@@ -168,7 +168,7 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
         match evaluate_all(&mut pool, parameters, opponents, id, &stop, done) {
             Ok(_) => rounds += 1,
             Err(Unfinished::Stopped) => break,
-            Err(Unfinished::Panicked) => return Err(Error::Panicked { generation: id.generation }),
+            Err(Unfinished::Error(error)) => return Err(error),
         }
     }
     let elapsed = started.elapsed().as_secs_f64();

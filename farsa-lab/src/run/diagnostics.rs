@@ -7,7 +7,8 @@ use farsa_evo::Strategy;
 use crate::error::Error;
 use crate::figures::plot;
 use crate::figures::plot::{Chart, Curve};
-use crate::store::directory::{Directory, replace};
+use crate::store::directory::Directory;
+use crate::store::replace::replace;
 use crate::strategy::definition::Diagnostics;
 
 /// The rows of a run's strategy so far.
@@ -27,11 +28,6 @@ impl DiagnosticsTable {
         if self.diagnostics.is_some() {
             self.rows.push(strategy.diagnostics());
         }
-    }
-
-    /// The rows so far.
-    pub(crate) fn rows(&self) -> &[Vec<f64>] {
-        &self.rows
     }
 
     /// Writes both files, where there is something to write.

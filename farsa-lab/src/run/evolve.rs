@@ -1,33 +1,42 @@
 //! Evolution from the first or any later generation on, with everything kept that is needed to go on.
 
-use std::fs;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Fitness, Record, Statistics, Strategy};
+use farsa_evo::{Record, Statistics, Strategy};
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::evaluator::Evaluation;
-use crate::experiment::outcome::Outcome;
 use crate::figures::plot;
 use crate::run::begin::{lineage, resumed};
+use crate::run::contained::contained;
 use crate::run::diagnostics::DiagnosticsTable;
+use crate::run::fitness::{Opponents, fitness_of_all};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
-use crate::run::records::{Best, Champions, Checkpoint, ToldRecord, evolved};
+use crate::run::records::{Best, Champions, Checkpoint, evolved};
 use crate::run::summary::{Summary, Winner};
-use crate::store::directory::{Directory, replace};
+use crate::run::told::{Told, ToldFile};
+use crate::store::bounded::read_own_text;
+use crate::store::directory::Directory;
+use crate::store::draft;
+use crate::store::failures::{FailedEvaluation, Failures};
+use crate::store::growing::Mark;
 use crate::store::identity::Identity;
 use crate::store::lineage::{Lineage, rows};
-use crate::store::log::Log;
+use crate::store::lock::Lock;
+use crate::store::log::{Line, Log};
 use crate::store::manifest::{Manifest, Session};
+use crate::store::replace::replace;
 use crate::strategy::history::History;
 use crate::strategy::opponents::{Hall, Meeting};
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
+/// Bytes of the largest configuration that is compared with what is written.
+const LARGEST_CONFIG: u64 = 16 << 20;
 
 /// Evolves the run in a directory up to its last generation and says what came of it.
 ///
@@ -36,64 +45,37 @@ const UNSAVED: Duration = Duration::from_secs(1);
 pub(crate) fn go_on(
     plan: &Plan<'_>,
     directory: &Directory,
-    mut pool: Pool,
+    mut pool: Pool<'_>,
     stop: &AtomicBool,
     program: &str,
     quiet: bool,
 ) -> Result<Summary, Error> {
     evolved(directory)?;
     // The lock comes before anything is read that another process might be writing.
-    let mut log = Log::open(&directory.log())?;
-    let path = directory.checkpoint();
-    let checkpoint = Checkpoint::read(plan, directory)?;
-    checkpoint.identity.same_values(&plan.identity()?, &path)?;
-    let (strategy, record) = resumed(plan, directory, &checkpoint)?;
-    let hall = match record.populations() {
-        1 => Hall::default(),
-        _ => Hall::before(&History::new(directory.record(), record.clone(), plan.fresh()), pool.genotype())?,
-    };
-    let (done, last) = (strategy.generation(), plan.generations()?);
+    let _lock = Lock::of_run(directory)?;
+    draft::sweep(directory.path());
+    let last = plan.generations()?;
+    let (mut run, done) = Run::resume(plan, directory, &pool, program)?;
     if last < done {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
     }
-    let mut manifest = Manifest::read(&directory.manifest())?;
-    log.rewind(checkpoint.log)?;
-    let lineage = lineage(plan, directory, &checkpoint, &record, strategy.as_ref())?;
-    let text = plan.to_toml()?;
-    if fs::read_to_string(directory.config()).ok().as_ref() != Some(&text) {
-        replace(&directory.config(), text.as_bytes())?;
-    }
-    manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), done));
-
-    let individuals = |generations: u32| u64::from(generations).saturating_mul(strategy.ask().len() as u64);
+    let individuals = |generations: u32| u64::from(generations).saturating_mul(run.strategy.ask().len() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
-    let mut run = Run {
-        directory,
-        title: plan.name(),
-        names: pool.evaluator().populations(),
-        identity: checkpoint.identity,
-        name: plan.definition().name().into(),
-        strategy,
-        record,
-        hall,
-        log,
-        lineage,
-        diagnostics: DiagnosticsTable::new(plan.definition().diagnostics(), checkpoint.diagnostics),
-        manifest,
-        champions: None,
-        started: Instant::now(),
-    };
+    if let Some(kept) = &run.kept {
+        let (log, kept) = (directory.log(), kept.display());
+        progress
+            .note(&format!("{}: had been changed: that is kept as {kept}, and the log written anew", log.display()));
+    }
     let mut saved = Instant::now();
     let mut ended = Ok(());
     while run.strategy.generation() < last {
-        match run.generation(&mut pool, stop, &progress) {
+        let generation = run.strategy.generation();
+        // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
+        let result = contained(|| run.generation(&mut pool, stop, &progress));
+        match result.map_err(|why| Error::Panicked { generation, why })? {
             Ok(()) => {}
-            Err(Unsuccessful::Error(error)) => return Err(error),
-            Err(Unsuccessful::Unfinished(Unfinished::Panicked)) => {
-                ended = Err(Error::Panicked { generation: run.strategy.generation() });
-                break;
-            }
-            Err(Unsuccessful::Unfinished(Unfinished::Stopped)) => {
+            Err(Unfinished::Error(error)) => return Err(error),
+            Err(Unfinished::Stopped) => {
                 let resume = format!("{program} run --resume {}", directory.path().display());
                 ended = Err(Error::Interrupted { resume });
                 break;
@@ -104,27 +86,36 @@ pub(crate) fn go_on(
             saved = Instant::now();
         }
     }
-    drop(progress);
     run.save()?;
+    if let Some(total) = run.told_of_failures() {
+        progress.note(&total);
+    }
+    drop(progress);
     ended.map(|()| run.summary())
 }
 
 /// A run in progress.
 struct Run<'d> {
     directory: &'d Directory,
+    /// What the user calls this program.
+    program: &'d str,
     title: String,
     /// Of the populations.
     names: Vec<String>,
     identity: Identity,
-    /// Of the strategy.
-    name: String,
     strategy: Box<dyn Strategy>,
     record: Record,
     /// Whom several populations still have to meet.
     hall: Hall,
+    told: ToldFile,
     log: Log,
+    /// Where the log that somebody had changed is kept.
+    kept: Option<PathBuf>,
     /// None for a strategy whose individuals have no parents.
     lineage: Option<Lineage>,
+    failures: Failures,
+    /// Evaluations that failed in this process, and the first of them.
+    failed: (u64, Option<FailedEvaluation>),
     diagnostics: DiagnosticsTable,
     manifest: Manifest,
     /// The best of the last generation, once one is finished in this process.
@@ -132,21 +123,59 @@ struct Run<'d> {
     started: Instant,
 }
 
-/// Why a generation is not finished.
-enum Unsuccessful {
-    Unfinished(Unfinished),
-    Error(Error),
-}
-
-impl From<Error> for Unsuccessful {
-    fn from(error: Error) -> Self {
-        Self::Error(error)
+impl<'d> Run<'d> {
+    /// Takes up the run in a directory where its checkpoint left it, and says how many generations are finished.
+    fn resume(
+        plan: &Plan<'_>,
+        directory: &'d Directory,
+        pool: &Pool<'_>,
+        program: &'d str,
+    ) -> Result<(Self, u32), Error> {
+        let path = directory.checkpoint();
+        let checkpoint = Checkpoint::read(plan, directory)?;
+        checkpoint.identity.same_values(&plan.identity()?, &path)?;
+        let mut told = Told::read(plan, directory, &checkpoint)?;
+        let strategy = resumed(plan, directory, &checkpoint, &told.record)?;
+        let hall = match told.record.populations() {
+            1 => Hall::default(),
+            _ => Hall::before(&History::new(directory.record(), told.record.clone(), plan.fresh()), pool.genotype())?,
+        };
+        let done = strategy.generation();
+        let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
+        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), done));
+        let lineage = lineage(plan, directory, &checkpoint, &told.record, strategy.as_ref())?;
+        let text = plan.to_toml()?;
+        if read_own_text(&directory.config(), LARGEST_CONFIG).ok().as_ref() != Some(&text) {
+            replace(&directory.config(), text.as_bytes())?;
+        }
+        let file = told.file(directory)?;
+        let Told { record, lines, diagnostics, .. } = told;
+        let (log, kept) = Log::resume(&directory.log(), lines, record.populations())?;
+        let run = Self {
+            directory,
+            program,
+            title: plan.name(),
+            names: pool.evaluator().populations(),
+            identity: checkpoint.identity,
+            strategy,
+            record,
+            hall,
+            told: file,
+            log,
+            kept,
+            lineage,
+            failures: Failures::resume(&directory.failures(), checkpoint.failures)?,
+            failed: (0, None),
+            diagnostics: DiagnosticsTable::new(plan.definition().diagnostics(), diagnostics),
+            manifest,
+            champions: None,
+            started: Instant::now(),
+        };
+        Ok((run, done))
     }
-}
 
-impl Run<'_> {
     /// Evaluates all individuals of a generation and makes the next.
-    fn generation(&mut self, pool: &mut Pool, stop: &AtomicBool, progress: &Progress) -> Result<(), Unsuccessful> {
+    fn generation(&mut self, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Unfinished> {
         let generation = self.strategy.generation();
         let genomes = self.strategy.ask();
         let (seed, populations) = (self.identity.seed, self.strategy.populations());
@@ -157,8 +186,7 @@ impl Run<'_> {
         let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
         let id = EpisodeId { seed, generation, ..EpisodeId::default() };
         let opponents = Opponents { parameters: &opponents, each: populations - 1 };
-        let fitness =
-            fitness_of_all(pool, &parameters, opponents, id, stop, progress).map_err(Unsuccessful::Unfinished)?;
+        let (fitness, failed) = fitness_of_all(pool, &parameters, opponents, id, stop, progress)?;
         let ranked_by = self.strategy.ranked_by(&fitness);
         let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
         let best = self.strategy.champions(&ranked_by).into_iter().map(|best| {
@@ -168,9 +196,12 @@ impl Run<'_> {
         let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
         let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
         let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
-        self.log.append(&statistics, fitness.len(), &each)?;
         let told = self.record.tell(self.strategy.as_mut(), &fitness);
         told.map_err(|error| lost(&error.to_string()))?;
+        let line = Line::new(&statistics, fitness.len(), &each);
+        self.told.append(&self.record, &line, self.strategy.as_ref())?;
+        self.log.append(line)?;
+        self.failures.append(&failed, self.program)?;
         self.diagnostics.push(self.strategy.as_ref());
         if let Some(lineage) = &mut self.lineage {
             lineage.append(&rows(self.strategy.as_ref()))?;
@@ -182,29 +213,42 @@ impl Run<'_> {
             session.evaluations += fitness.len() as u64;
         }
         progress.generation(generation, &statistics);
+        self.tell_of(failed, progress);
         Ok(())
+    }
+
+    /// Tells the user of the first evaluation that failed, and counts the others.
+    fn tell_of(&mut self, failed: Vec<FailedEvaluation>, progress: &Progress) {
+        self.failed.0 += failed.len() as u64;
+        if let (None, Some(first)) = (&self.failed.1, failed.into_iter().next()) {
+            let FailedEvaluation { generation, individual, why, .. } = &first;
+            let command = first.command(self.program, &self.directory.path().display().to_string());
+            progress.note(&format!("generation {generation}: individual {individual} failed: {why}; see `{command}`"));
+            self.failed.1 = Some(first);
+        }
+    }
+
+    /// How many evaluations failed, if any did.
+    fn told_of_failures(&self) -> Option<String> {
+        let (count, path) = (self.failed.0, self.directory.failures());
+        (count > 0).then(|| format!("{count} evaluations failed: {}", path.display()))
     }
 
     /// Keeps everything; the checkpoint, which speaks of the others, comes after what it speaks of.
     fn save(&mut self) -> Result<(), Error> {
         let (directory, identity) = (self.directory, &self.identity);
-        let mark = self.log.sync()?;
-        let lineage = self.lineage.as_mut().map_or(Ok(0), Lineage::sync)?;
-        let (strategy, record) = (self.name.clone(), self.record.clone());
-        ToldRecord { identity: identity.clone(), strategy, record }.write(&directory.record())?;
+        self.log.sync()?;
+        let record = self.told.sync()?;
+        let lineage = self.lineage.as_mut().map_or(Ok(Mark::default()), Lineage::sync)?;
+        let failures = self.failures.sync()?;
         if let Some(champions) = &self.champions {
             champions.write(&directory.champion())?;
         }
         self.diagnostics.write(directory, &self.title)?;
-        Checkpoint {
-            identity: identity.clone(),
-            generation: self.strategy.generation(),
-            log: mark,
-            lineage,
-            diagnostics: self.diagnostics.rows().to_vec(),
-            state: self.strategy.snapshot().map(|strategy| strategy.save()),
-        }
-        .write(&directory.checkpoint())?;
+        let generation = self.strategy.generation();
+        let state = self.strategy.snapshot().map(|strategy| strategy.save());
+        Checkpoint { identity: identity.clone(), generation, record, lineage, failures, state }
+            .write(&directory.checkpoint())?;
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.seconds = self.started.elapsed().as_secs_f64();
         }
@@ -232,97 +276,22 @@ impl Run<'_> {
     }
 }
 
-/// The opponents of a generation's evaluations, in their order, so many for each.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Opponents<'g> {
-    pub(crate) parameters: &'g [&'g [f32]],
-    pub(crate) each: usize,
-}
-
-impl<'g> Opponents<'g> {
-    /// Those of the evaluation with a number.
-    fn get(&self, number: usize) -> &'g [&'g [f32]] {
-        self.parameters.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
-    }
-}
-
-/// Evaluates all trials of all individuals and says what fitness each comes to.
-///
-/// A trial that failed makes its individual the worst, whatever comes of the others.
-fn fitness_of_all(
-    pool: &mut Pool,
-    parameters: &[Vec<f32>],
-    opponents: Opponents<'_>,
-    of: EpisodeId,
-    stop: &AtomicBool,
-    progress: &Progress,
-) -> Result<Vec<Fitness>, Unfinished> {
-    let (count, trials) = (parameters.len(), pool.evaluator().trials());
-    let ended = AtomicUsize::new(0);
-    let done = |_: Option<&Outcome>| {
-        if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
-            progress.advance();
-        }
-    };
-    let mut outcomes = evaluate_all(pool, parameters, opponents, of, stop, done)?;
-    let evaluator = pool.evaluator();
-    let fitness = (0..count).map(|individual| {
-        let own = outcomes.iter_mut().skip(individual).step_by(count);
-        let outcomes: Option<Vec<Outcome>> = own.map(Option::take).collect();
-        let finite = outcomes.filter(|outcomes| outcomes.iter().all(Outcome::is_finite));
-        let fitness = finite.map_or(f64::NAN, |outcomes| evaluator.fitness(&outcomes));
-        if fitness.is_finite() { Fitness::nan_as_failed(fitness) } else { Fitness::WORST }
-    });
-    Ok(fitness.collect())
-}
-
-/// Evaluates all trials of all individuals, the first of all before the second of any: trial t of individual i has number
-/// t x individuals + i. `of.trial` and `of.individual` are set for each; `done` hears of every one that ends.
-///
-/// Episodes side by side cost least when they are alike. What an individual has left after a trial that failed is left out.
-pub(crate) fn evaluate_all(
-    pool: &mut Pool,
-    parameters: &[Vec<f32>],
-    opponents: Opponents<'_>,
-    of: EpisodeId,
-    stop: &AtomicBool,
-    done: impl Fn(Option<&Outcome>) + Sync,
-) -> Result<Vec<Option<Outcome>>, Unfinished> {
-    let (count, trials) = (parameters.len(), pool.evaluator().trials());
-    let failed: Vec<AtomicBool> = parameters.iter().map(|_| AtomicBool::new(false)).collect();
-    let task = |number: usize| {
-        let (individual, trial) = (number % count, (number / count) as u32);
-        let id = EpisodeId { individual: individual as u32, trial, ..of };
-        let alive = !failed[individual].load(Ordering::Relaxed);
-        let opponents = opponents.get(number);
-        let own = parameters.get(individual).filter(|_| alive);
-        own.map(|parameters| Evaluation { number, parameters, opponents, id })
-    };
-    let heard = |number: usize, outcome: Option<&Outcome>| {
-        if outcome.is_some_and(|outcome| !outcome.is_finite()) {
-            failed[number % count].store(true, Ordering::Relaxed);
-        }
-        done(outcome);
-    };
-    pool.evaluate(count * trials, stop, task, heard)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::evaluation::replay::{Which, replay};
     use crate::evaluation::test;
     use crate::experiment::definition::Experiment;
-    use crate::experiment::evaluator::{Evaluator, Parameter, Task};
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
     use crate::experiment::lanes::Wanted;
-    use crate::experiment::outcome::Description;
+    use crate::experiment::outcome::{Description, Outcome};
     use crate::experiment::settings::{Setting, Settings, Value};
     use crate::run::begin::create;
     use crate::store::directory::Directory;
     use crate::strategy::settings::{GENERATIONS, POPULATION};
     use farsa_body::Recorder;
     use farsa_view::Schema;
-    use std::path::PathBuf;
+    use std::fs;
 
     /// Earns its first gene; panics in one trial, if asked to, and fails where the gene is odd.
     #[derive(Clone, Copy)]
@@ -381,7 +350,7 @@ mod tests {
         path
     }
 
-    fn pool(plan: &Plan<'_>, threads: usize) -> Pool {
+    fn pool<'e>(plan: &Plan<'e>, threads: usize) -> Pool<'e> {
         Pool::new(plan, threads, Wanted::ONE).unwrap()
     }
 
@@ -391,19 +360,27 @@ mod tests {
     }
 
     #[test]
-    fn a_panic_keeps_the_finished_generations() {
+    fn a_panic_is_a_failed_evaluation() {
         let root = scratch("panic");
-        let (careless, careful) = (Toy { version: 1, panics: true }, Toy { version: 1, panics: false });
-        let directory = create(&Plan::new(&careless, None, "").unwrap(), &root.join("run")).unwrap();
-        let error = finish(careless, &directory).unwrap_err();
-        assert!(matches!(error, Error::Panicked { generation: 2 }) && error.exit_code() == 1, "{error}");
-        finish(careful, &directory).unwrap();
-        let whole = create(&Plan::new(&careful, None, "").unwrap(), &root.join("whole")).unwrap();
-        finish(careful, &whole).unwrap();
-        let log = fs::read_to_string(whole.log()).unwrap();
-        assert_eq!(fs::read_to_string(directory.log()).unwrap(), log);
-        assert!(!log.contains(",0\n"), "in every generation some fail: {log}");
+        let careless = Toy { version: 1, panics: true };
+        let plan = Plan::new(&careless, None, "").unwrap();
+        let directory = create(&plan, &root.join("run")).unwrap();
+        finish(careless, &directory).unwrap();
+        let log = fs::read_to_string(directory.log()).unwrap();
+        assert_eq!(log.lines().count(), 5);
         assert!(!log.contains("inf"), "{log}");
+        let failures = fs::read_to_string(directory.failures()).unwrap();
+        let panicked: Vec<&str> = failures.lines().filter(|line| line.contains("panicked")).collect();
+        let [line] = panicked.as_slice() else { panic!("{failures}") };
+        assert!(line.starts_with("2,3,0,\"panicked: as planned (") && line.contains("evolve.rs:"), "{line}");
+        assert!(line.ends_with(",\"farsa replay . --generation 2 --individual 3 --trial 0\""), "{line}");
+        // As many as the log counts, each once.
+        let counted: u64 =
+            log.lines().skip(1).map(|line| line.split(',').nth(5).unwrap().parse::<u64>().unwrap()).sum();
+        assert_eq!(failures.lines().count() as u64 - 1, counted);
+        let which = Which { generation: Some(2), individual: Some(3), trial: Some(0) };
+        let error = replay(&plan, &directory, which, &mut Vec::new()).unwrap_err();
+        assert_eq!(error.to_string(), "trial 0 of individual 3 of generation 2 panicked");
         fs::remove_dir_all(root).unwrap();
     }
 

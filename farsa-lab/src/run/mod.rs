@@ -4,8 +4,10 @@
 //! - `bench`: `farsa bench`: how fast trials run here, and how long a whole study would take
 //! - `best_of_run`: the best of a run, for comparisons that the command does not make
 //! - `config_file`: a configuration file, and the settings of a command line
+//! - `contained`: code of an experiment that panics, caught
 //! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
 //! - `evolve`: evolution from the first or any later generation on, with everything kept that is needed to go on
+//! - `fitness`: the fitness of a generation: all trials of all individuals, and which of them failed
 //! - `plan`: what is to be run: an experiment, a condition, a seed and all settings
 //! - `pool`: trials on several threads, with the same results on any number of them
 //! - `progress`: what a waiting user sees: a bar on a terminal, plain lines elsewhere
@@ -13,14 +15,17 @@
 //! - `replications`: `farsa run --replications`: one plan under one seed after the other, each in a directory of its own
 //! - `summary`: what came of a run, for the command to tell
 //! - `tests`: tests of whole runs with every strategy: what is selected, written, resumed and replayed
+//! - `told`: `record.bin`: what the strategy was told in every generation, and what came of it
 //! - `world_choice`: which world an experiment runs in, where there is a choice
 
 pub(crate) mod begin;
 pub(crate) mod bench;
 mod best_of_run;
 pub(crate) mod config_file;
+pub(crate) mod contained;
 mod diagnostics;
 pub(crate) mod evolve;
+pub(crate) mod fitness;
 pub(crate) mod plan;
 pub(crate) mod pool;
 pub(crate) mod progress;
@@ -29,6 +34,7 @@ pub(crate) mod replications;
 pub(crate) mod summary;
 #[cfg(test)]
 mod tests;
+pub(crate) mod told;
 pub(crate) mod world_choice;
 
 pub use best_of_run::BestOfRun;

@@ -1,54 +1,89 @@
 //! Trials on several threads, with results that no thread can be told from.
 
 use std::cell::RefCell;
+use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
 use crate::error::Error;
+use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::{Evaluation, Evaluator};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::lanes::{Lanes, Wanted};
 use crate::experiment::outcome::Outcome;
+use crate::experiment::settings::Settings;
+use crate::run::contained::contained;
 use crate::run::plan::Plan;
 
 /// An experiment made ready for every thread.
-pub(crate) struct Pool {
+pub(crate) struct Pool<'e> {
     /// At least one.
     evaluators: Vec<Box<dyn Evaluator>>,
     genotype: Genotype,
+    maker: Maker<'e>,
+}
+
+/// Makes an evaluator like the others: one in which a trial panicked is not used again.
+struct Maker<'e> {
+    experiment: &'e dyn Experiment,
+    condition: String,
+    settings: Settings,
     lanes: Lanes,
 }
 
+impl Maker<'_> {
+    fn make(&self) -> Result<Box<dyn Evaluator>, Error> {
+        let mut evaluator = self.experiment.prepare(&self.condition, &self.settings)?;
+        if let Some(in_lanes) = evaluator.in_lanes() {
+            in_lanes.use_lanes(self.lanes)?;
+        }
+        Ok(evaluator)
+    }
+}
+
 /// Why a round has no results.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug)]
 pub(crate) enum Unfinished {
     /// It was told to stop.
     Stopped,
-    /// A trial panicked.
-    Panicked,
+    /// There is no thread, or no evaluator after a panic.
+    Error(Error),
 }
 
-impl Pool {
+impl From<Error> for Unfinished {
+    fn from(error: Error) -> Self {
+        Self::Error(error)
+    }
+}
+
+impl From<Unfinished> for Error {
+    fn from(reason: Unfinished) -> Self {
+        match reason {
+            Unfinished::Stopped => Self::Other("stopped".into()),
+            Unfinished::Error(error) => error,
+        }
+    }
+}
+
+impl<'e> Pool<'e> {
     /// A pool of at least one thread.
     ///
     /// # Errors
     /// [`Error::Usage`] for more lanes or other instructions than the machine or the experiment have.
-    pub(crate) fn new(plan: &Plan<'_>, threads: usize, wanted: Wanted) -> Result<Self, Error> {
+    pub(crate) fn new(plan: &Plan<'e>, threads: usize, wanted: Wanted) -> Result<Self, Error> {
         let asked = wanted.on_this_machine()?;
-        let mut evaluators = (0..threads.max(1)).map(|_| plan.evaluator()).collect::<Result<Vec<_>, _>>()?;
-        let mut lanes = asked;
-        for evaluator in &mut evaluators {
-            match evaluator.in_lanes() {
-                Some(in_lanes) => in_lanes.use_lanes(asked)?,
-                None => lanes = Lanes::one(),
-            }
-        }
-        let genotype = plan.genotype(evaluators[0].as_ref());
+        let mut first = plan.evaluator()?;
+        let lanes = if first.in_lanes().is_some() { asked } else { Lanes::one() };
         if wanted.count.is_some_and(|count| count != lanes.count()) {
             let (name, only) = (plan.experiment.name(), lanes.count());
             return Err(Error::Usage(format!("--lanes {}: {name} has {only} only", asked.count())));
         }
-        Ok(Self { evaluators, genotype, lanes })
+        let genotype = plan.genotype(first.as_ref());
+        let settings = plan.elsewhere.as_ref().unwrap_or(&plan.settings).clone();
+        let maker = Maker { experiment: plan.experiment, condition: plan.condition.clone(), settings, lanes };
+        drop(first);
+        let evaluators = (0..threads.max(1)).map(|_| maker.make()).collect::<Result<_, _>>()?;
+        Ok(Self { evaluators, genotype, maker })
     }
 
     /// Number of threads.
@@ -58,7 +93,7 @@ impl Pool {
 
     /// What every thread evaluates with.
     pub(crate) fn lanes(&self) -> Lanes {
-        self.lanes
+        self.maker.lanes
     }
 
     /// How genes stand for the experiment's parameters.
@@ -73,7 +108,8 @@ impl Pool {
 
     /// Runs `count` evaluations, each on the thread that is free first, and returns the outcomes in their order.
     ///
-    /// `task` makes the evaluation of a number, or says that it is not needed any more; `done` hears of every number.
+    /// `task` makes the evaluation of a number, or says that it is not needed any more; `done` hears of every number. A trial
+    /// that panics is a failed one.
     pub(crate) fn evaluate<'g>(
         &mut self,
         count: usize,
@@ -81,53 +117,132 @@ impl Pool {
         task: impl Fn(usize) -> Option<Evaluation<'g>> + Sync,
         done: impl Fn(usize, Option<&Outcome>) + Sync,
     ) -> Result<Vec<Option<Outcome>>, Unfinished> {
-        let drawn = AtomicUsize::new(0);
-        let busy = |evaluator: &mut dyn Evaluator| {
-            // Two closures of one evaluator write here in turn.
-            let results = RefCell::new(Vec::new());
-            let put = |number: usize, outcome: Option<Outcome>| {
-                done(number, outcome.as_ref());
-                results.borrow_mut().push((number, outcome));
-            };
-            let mut next = || {
-                while !stop.load(Ordering::Relaxed) {
-                    let number = drawn.fetch_add(1, Ordering::Relaxed);
-                    if number >= count {
-                        break;
-                    }
-                    match task(number) {
-                        None => put(number, None),
-                        task => return task,
-                    }
-                }
-                None
-            };
-            match evaluator.in_lanes() {
-                Some(lanes) => lanes.evaluate_all(&mut next, &mut |number, outcome| put(number, Some(outcome))),
-                None => {
-                    while let Some(evaluation) = next() {
-                        put(evaluation.number, Some(evaluator.evaluate(evaluation, None)));
+        let maker = &self.maker;
+        let work = Work { count, drawn: AtomicUsize::new(0), ended: AtomicBool::new(false), stop, task, done, maker };
+        let (work, all) = (&work, self.evaluators.len());
+        let results = thread::scope(|scope| {
+            let mut threads = Vec::with_capacity(all);
+            for evaluator in &mut self.evaluators {
+                let name = "trials".to_owned();
+                match thread::Builder::new().name(name).spawn_scoped(scope, move || work.busy(evaluator)) {
+                    Ok(thread) => threads.push(thread),
+                    Err(source) => {
+                        work.ended.store(true, Ordering::Relaxed);
+                        return Err(no_thread(threads.len() + 1, all, source));
                     }
                 }
             }
-            results.into_inner()
-        };
-        let busy = &busy;
-        let mut results: Vec<(usize, Option<Outcome>)> = thread::scope(|scope| {
-            let threads: Vec<_> =
-                self.evaluators.iter_mut().map(|evaluator| scope.spawn(move || busy(evaluator.as_mut()))).collect();
             let joined: Vec<_> = threads.into_iter().map(thread::ScopedJoinHandle::join).collect();
-            joined.into_iter().collect::<Result<Vec<_>, _>>()
-        })
-        .map_err(|_| Unfinished::Panicked)?
-        .into_iter()
-        .flatten()
-        .collect();
+            let ours = || Error::Other("a thread of trials panicked outside a trial".into());
+            joined.into_iter().map(|result| result.unwrap_or_else(|_| Err(ours()))).collect::<Result<Vec<_>, _>>()
+        });
+        let mut results: Vec<_> = results.map_err(Unfinished::Error)?.into_iter().flatten().collect();
         if results.len() < count {
             return Err(Unfinished::Stopped);
         }
         results.sort_unstable_by_key(|(number, _)| *number);
         Ok(results.into_iter().map(|(_, result)| result).collect())
+    }
+}
+
+/// That the system refused a thread.
+fn no_thread(number: usize, all: usize, source: io::Error) -> Error {
+    let least = number.saturating_sub(1).max(1);
+    Error::Other(format!("cannot start thread {number} of {all}: {source}; --threads {least} or less may do"))
+}
+
+/// What the threads of a round share.
+struct Work<'w, T, D> {
+    count: usize,
+    drawn: AtomicUsize,
+    /// Whether a thread has found that the round cannot be finished.
+    ended: AtomicBool,
+    stop: &'w AtomicBool,
+    task: T,
+    done: D,
+    maker: &'w Maker<'w>,
+}
+
+/// A number and what came of it.
+type Numbered = (usize, Option<Outcome>);
+
+impl<'g, T, D> Work<'_, T, D>
+where
+    T: Fn(usize) -> Option<Evaluation<'g>> + Sync,
+    D: Fn(usize, Option<&Outcome>) + Sync,
+{
+    /// What one thread does: it evaluates until nothing is left.
+    fn busy(&self, evaluator: &mut Box<dyn Evaluator>) -> Result<Vec<Numbered>, Error> {
+        // Two closures of one evaluator write here in turn.
+        let results = RefCell::new(Vec::new());
+        let put = |number: usize, outcome: Option<Outcome>| {
+            (self.done)(number, outcome.as_ref());
+            results.borrow_mut().push((number, outcome));
+        };
+        // Evaluations that have begun and not ended: one, or as many as there are lanes.
+        let running: RefCell<Vec<Evaluation<'g>>> = RefCell::new(Vec::new());
+        let mut next = || {
+            while !self.stop.load(Ordering::Relaxed) && !self.ended.load(Ordering::Relaxed) {
+                let number = self.drawn.fetch_add(1, Ordering::Relaxed);
+                if number >= self.count {
+                    break;
+                }
+                match (self.task)(number) {
+                    None => put(number, None),
+                    Some(evaluation) => {
+                        running.borrow_mut().push(evaluation);
+                        return Some(evaluation);
+                    }
+                }
+            }
+            None
+        };
+        let mut end = |number: usize, outcome: Outcome| {
+            running.borrow_mut().retain(|evaluation| evaluation.number != number);
+            put(number, Some(outcome));
+        };
+        loop {
+            let Err(why) = contained(|| round(evaluator.as_mut(), &mut next, &mut end)) else { break };
+            let broken = running.take();
+            self.renew(evaluator)?;
+            if self.maker.lanes.count() == 1 {
+                broken.iter().for_each(|evaluation| put(evaluation.number, Some(Outcome::panicked(&why))));
+                continue;
+            }
+            // One of those side by side has panicked: alone each comes to what it would have come to.
+            for evaluation in broken {
+                let outcome = contained(|| evaluator.evaluate(evaluation, None));
+                if outcome.is_err() {
+                    self.renew(evaluator)?;
+                }
+                put(evaluation.number, Some(outcome.unwrap_or_else(|why| Outcome::panicked(&why))));
+            }
+        }
+        Ok(results.into_inner())
+    }
+
+    /// Puts a new evaluator in the place of one in which a trial panicked.
+    fn renew(&self, evaluator: &mut Box<dyn Evaluator>) -> Result<(), Error> {
+        let made = contained(|| self.maker.make());
+        let made = made.unwrap_or_else(|why| Err(Error::Other(format!("the experiment cannot be prepared: {why}"))));
+        // What is left of the old one may panic once more while it is dropped.
+        let old = std::mem::replace(evaluator, made.inspect_err(|_| self.ended.store(true, Ordering::Relaxed))?);
+        let _ = contained(|| drop(old));
+        Ok(())
+    }
+}
+
+/// Evaluates until `next` has no more, in lanes if there are any.
+fn round<'g>(
+    evaluator: &mut dyn Evaluator,
+    next: &mut dyn FnMut() -> Option<Evaluation<'g>>,
+    end: &mut dyn FnMut(usize, Outcome),
+) {
+    if let Some(lanes) = evaluator.in_lanes() {
+        return lanes.evaluate_all(next, end);
+    }
+    while let Some(evaluation) = next() {
+        end(evaluation.number, evaluator.evaluate(evaluation, None));
     }
 }
 
@@ -137,11 +252,27 @@ mod tests {
     use crate::experiment::episode::EpisodeId;
     use crate::experiment::evaluator::{Parameter, Task};
     use crate::experiment::outcome::Description;
+    use crate::experiment::settings::Setting;
     use farsa_body::Recorder;
     use farsa_view::Schema;
 
     /// Earns its individual's number and panics from the fifth on, if asked to by its parameter.
     struct Nothing;
+
+    impl Experiment for Nothing {
+        fn name(&self) -> &'static str {
+            "nothing"
+        }
+        fn summary(&self) -> &'static str {
+            "nothing"
+        }
+        fn settings(&self, _: &str) -> Vec<Setting> {
+            Vec::new()
+        }
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+            Ok(Box::new(Nothing))
+        }
+    }
 
     impl Task for Nothing {
         fn parameters(&self) -> Vec<Parameter> {
@@ -157,14 +288,13 @@ mod tests {
 
     impl Evaluator for Nothing {
         fn evaluate(&mut self, evaluation: Evaluation<'_>, _: Option<&mut dyn Recorder>) -> Outcome {
-            assert!(evaluation.parameters[0] == 0.0 || evaluation.id.individual < 5);
+            assert!(evaluation.parameters[0] == 0.0 || evaluation.id.individual < 5, "as planned");
             Outcome { steps: evaluation.id.individual, ..Outcome::default() }
         }
     }
 
-    fn pool(threads: usize) -> Pool {
-        let evaluators = (0..threads).map(|_| Box::new(Nothing) as Box<dyn Evaluator>).collect();
-        Pool { evaluators, genotype: Genotype::new(&Nothing.parameters(), 1), lanes: Lanes::one() }
+    fn pool(threads: usize) -> Pool<'static> {
+        Pool::new(&Plan::new(&Nothing, None, "").unwrap(), threads, Wanted::ONE).unwrap()
     }
 
     fn task(number: usize, parameters: &[f32]) -> Evaluation<'_> {
@@ -189,14 +319,25 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_or_a_panic_leaves_no_results() {
+    fn a_stop_leaves_no_results() {
         let stop = AtomicBool::new(false);
         let done = |number, _: Option<&Outcome>| {
             stop.fetch_or(number == 7, Ordering::Relaxed);
         };
         let stopped = pool(2).evaluate(50, &stop, |number| Some(task(number, &[0.0])), done);
         assert!(matches!(stopped, Err(Unfinished::Stopped)));
-        let panicked = pool(2).evaluate(9, &AtomicBool::new(false), |number| Some(task(number, &[1.0])), |_, _| {});
-        assert!(matches!(panicked, Err(Unfinished::Panicked)));
+    }
+
+    #[test]
+    fn a_panic_is_an_outcome_and_the_others_are_what_they_are() {
+        for threads in 1..4 {
+            let all = |number| Some(task(number, &[1.0]));
+            let Ok(results) = pool(threads).evaluate(9, &AtomicBool::new(false), all, |_, _| {}) else { panic!() };
+            for (number, outcome) in results.into_iter().map(Option::unwrap).enumerate() {
+                assert_eq!(outcome.is_finite(), number < 5);
+                let why = outcome.why_failed(&[]).unwrap_or_default();
+                assert_eq!(why.contains("panicked: as planned (") && why.contains("pool.rs:"), number >= 5, "{why}");
+            }
+        }
     }
 }

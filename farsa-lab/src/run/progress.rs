@@ -1,6 +1,7 @@
 //! What a waiting user sees: a bar on a terminal, plain lines elsewhere.
 
 use std::io::{self, IsTerminal as _, Write as _};
+use std::thread;
 use std::time::Duration;
 
 use farsa_evo::Statistics;
@@ -32,7 +33,10 @@ impl Progress {
             };
             bar.set_style(style.with_key("rate", rate));
         }
-        bar.enable_steady_tick(Duration::from_millis(250));
+        // A bar that ticks has a thread of its own, without which it moves only when something has happened.
+        if thread::Builder::new().spawn(|| {}).is_ok_and(|thread| thread.join().is_ok()) {
+            bar.enable_steady_tick(Duration::from_millis(250));
+        }
         Self::Bar(bar)
     }
 
@@ -40,6 +44,15 @@ impl Progress {
     pub(crate) fn advance(&self) {
         if let Self::Bar(bar) = self {
             bar.inc(1);
+        }
+    }
+
+    /// Something that is worth a line of its own.
+    pub(crate) fn note(&self, text: &str) {
+        match self {
+            Self::Quiet => {}
+            Self::Bar(bar) => bar.suspend(|| note(text)),
+            Self::Lines => note(text),
         }
     }
 
@@ -59,6 +72,11 @@ impl Progress {
             }
         }
     }
+}
+
+fn note(text: &str) {
+    // A user who closed the error stream does not want to know.
+    let _ = writeln!(io::stderr(), "{text}");
 }
 
 impl Drop for Progress {

@@ -2,42 +2,42 @@
 
 use std::path::{Path, PathBuf};
 
-use farsa_evo::{Fitness, Record};
+use farsa_evo::Fitness;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::run::plan::Plan;
+use crate::run::told::Told;
 use crate::store::directory::Directory;
+use crate::store::growing::Mark;
 use crate::store::identity::Identity;
-use crate::store::log::Mark;
 use crate::store::sealed;
 use crate::store::sealed::Sealed;
 use crate::strategy::history::History;
 
-/// `checkpoint.bin`: where to go on.
+/// `checkpoint.bin`: where to go on; it does not grow.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Checkpoint {
     pub(crate) identity: Identity,
     /// Number of finished generations.
     pub(crate) generation: u32,
-    /// How far the log had come.
-    pub(crate) log: Mark,
-    /// Bytes of `lineage.csv`.
-    pub(crate) lineage: u64,
-    /// What the strategy said of each generation, where it says something.
-    pub(crate) diagnostics: Vec<Vec<f64>>,
+    /// How far `record.bin` had come.
+    pub(crate) record: Mark,
+    /// How far `lineage.csv` had come, where there is one.
+    pub(crate) lineage: Mark,
+    /// How far `failures.csv` had come, where there is one.
+    pub(crate) failures: Mark,
     /// The state of the strategy, if it can save it; else it is told everything again.
     pub(crate) state: Option<Vec<u8>>,
 }
 
-/// `record.bin`: what the strategy was told, from which any genome of the run is rebuilt.
+/// The head of `record.bin`: whose the generations are that follow.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct ToldRecord {
+pub(crate) struct RecordHead {
     pub(crate) identity: Identity,
     /// The name of the strategy.
     pub(crate) strategy: String,
-    pub(crate) record: Record,
 }
 
 /// `champion.bin`: the best individual of the last generation, equals by index, in each population.
@@ -89,12 +89,13 @@ struct ChampionsOfSeveral {
     best: Vec<Best>,
 }
 
-/// Gives records their first bytes, their names and their owner.
+/// Gives records their first bytes, their names, their largest sizes and their owner.
 macro_rules! sealed {
-    ($($record:ty: $magic:literal, $kind:literal;)*) => {$(
+    ($($record:ty: $magic:literal, $kind:literal, $largest:expr;)*) => {$(
         impl Sealed for $record {
             const MAGIC: [u8; 8] = *$magic;
             const KIND: &'static str = $kind;
+            const LARGEST: u64 = $largest;
         }
 
         impl Owned for $record {
@@ -106,12 +107,12 @@ macro_rules! sealed {
 }
 
 sealed! {
-    Checkpoint: b"farsachp", "checkpoint";
-    ToldRecord: b"farsarec", "record of what a strategy was told";
-    ChampionOfOne: b"farsachm", "champion";
-    ChampionsOfSeveral: b"farsacmc", "set of champions";
-    Imported: b"farsagen", "set of genotypes";
-    ImportedSeveral: b"farsagec", "set of genotypes of several populations";
+    Checkpoint: b"farsackp", "checkpoint", 256 << 20;
+    RecordHead: b"farsatld", "record of what a strategy was told", 1 << 20;
+    ChampionOfOne: b"farsachm", "champion", 64 << 20;
+    ChampionsOfSeveral: b"farsacmc", "set of champions", 64 << 20;
+    Imported: b"farsagen", "set of genotypes", 1 << 30;
+    ImportedSeveral: b"farsagec", "set of genotypes of several populations", 1 << 30;
 }
 
 /// A record that says which run it belongs to.
@@ -170,33 +171,10 @@ impl Checkpoint {
     }
 }
 
-impl ToldRecord {
-    /// Reads the record of the run that a plan describes.
-    ///
-    /// # Errors
-    /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy than the experiment's.
-    pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
-        evolved(directory)?;
-        let path = directory.record();
-        let told: Self = read(&path, plan, directory)?;
-        let asked = plan.definition().name();
-        if told.strategy != asked {
-            let why = format!("was made by the strategy `{}`, the experiment has `{asked}`", told.strategy);
-            return Err(Error::damaged(&path, why));
-        }
-        Ok(told)
-    }
-
-    /// Writes the file.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
-        sealed::write(path, self)
-    }
-}
-
 /// What the genomes of the run that a plan describes are rebuilt from, whose it is, and where that stands.
 ///
 /// # Errors
-/// As [`ToldRecord::read`].
+/// As [`Told::read`].
 pub(crate) fn history<'p>(
     plan: &'p Plan<'_>,
     directory: &Directory,
@@ -213,7 +191,7 @@ pub(crate) fn history<'p>(
         return Ok((identity, History::from_imported(path.clone(), genomes, populations), path));
     }
     let path = directory.record();
-    let ToldRecord { identity, record, .. } = ToldRecord::read(plan, directory)?;
+    let Told { identity, record, .. } = Told::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
     Ok((identity, History::new(path.clone(), record, plan.fresh()), path))
 }
 

@@ -41,11 +41,11 @@ struct Replication {
 /// # Errors
 /// [`Error::Interrupted`] after the flag of `stop` became true, and what [`run::go_on`] says about the run that failed.
 /// The runs before it are kept, those after it not begun.
-pub(crate) fn run(
-    mut plan: Plan<'_>,
+pub(crate) fn run<'e>(
+    mut plan: Plan<'e>,
     count: u32,
     root: &Path,
-    pool: &dyn Fn(&Plan<'_>) -> Result<Pool, Error>,
+    pool: &dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
     stop: impl FnOnce() -> &'static AtomicBool,
     program: &str,
     quiet: bool,

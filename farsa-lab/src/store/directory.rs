@@ -1,11 +1,12 @@
-//! The files of a run, and how they are replaced without ever being half written.
+//! The files of a run.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write as _};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::process;
 
 use crate::error::Error;
+use crate::store::draft;
+use crate::store::replace::sync_directory;
 
 /// A run's directory.
 #[derive(Debug, Clone)]
@@ -33,24 +34,23 @@ impl Directory {
     /// [`Error::Occupied`] when there is something at the place already, [`Error::Io`].
     pub(crate) fn create(path: &Path, fill: impl FnOnce(&Self) -> Result<(), Error>) -> Result<Self, Error> {
         vacant(path)?;
-        let name = path.file_name().ok_or_else(|| occupied(path, "cannot be the directory of a run"))?;
-        let parent = parent(path);
-        fs::create_dir_all(parent).map_err(Error::io("make", parent))?;
-        let draft = Self::at(parent.join(format!(".{}.{}", name.to_string_lossy(), process::id())));
-        fs::create_dir(&draft.path).map_err(Error::io("make", &draft.path))?;
-        let moved = fill(&draft).and_then(|()| {
-            // Windows moves nothing onto a directory, even an empty one; a full one is in nobody's way by now.
-            if fs::remove_dir(path).is_err() {
-                vacant(path)?;
-            }
-            fs::rename(&draft.path, path).map_err(Error::io("make", path))?;
-            sync_directory(parent)
-        });
-        if moved.is_err() {
-            // Only our own unfinished files; that they may stay is no reason to hide the first error.
-            let _ = fs::remove_dir_all(&draft.path);
+        if path.file_name().is_none() {
+            return Err(occupied(path, "cannot be the directory of a run"));
         }
-        moved.map(|()| Self::at(path.into()))
+        let parent = draft::parent(path);
+        fs::create_dir_all(parent).map_err(Error::io("make", parent))?;
+        draft::sweep_of(path);
+        let (draft, _lock) = draft::directory(path).map_err(Error::io("make", path))?;
+        fill(&Self::at(draft.path().into()))?;
+        // Windows moves nothing onto a directory, even an empty one; a full one is in nobody's way by now.
+        if fs::remove_dir(path).is_err() {
+            vacant(path)?;
+        }
+        fs::rename(draft.path(), path).map_err(Error::io("make", path))?;
+        // It has another name now, under which nobody removes it.
+        let _ = draft.keep();
+        sync_directory(parent)?;
+        Ok(Self::at(path.into()))
     }
 
     /// The directory of a run that exists.
@@ -104,6 +104,10 @@ impl Directory {
     pub(crate) fn earlier_lineage(&self) -> PathBuf {
         self.path.join("lineage.bin")
     }
+    /// The evaluations that failed, once there is one.
+    pub(crate) fn failures(&self) -> PathBuf {
+        self.path.join("failures.csv")
+    }
     /// The parents of every individual.
     pub(crate) fn lineage(&self) -> PathBuf {
         self.path.join("lineage.csv")
@@ -147,94 +151,15 @@ pub(crate) fn vacant(path: &Path) -> Result<(), Error> {
     }
 }
 
-fn parent(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    }
-}
-
-/// Puts new content in place of a file's: written beside it, brought to the disk, then renamed.
-///
-/// A reader, a crash or a full disk meets the old content or the new one, never a part.
-pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(".new");
-    let draft = path.with_file_name(name);
-    let written = File::create(&draft).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&draft, path)
-    });
-    if let Err(source) = written {
-        // A part of a file is worth nothing, and its room may be what the next write needs.
-        let _ = fs::remove_file(&draft);
-        return Err(Error::Io { doing: "write", path: path.into(), source });
-    }
-    sync_directory(parent(path))
-}
-
-/// Brings a rename to the disk, where directories can be opened at all.
-fn sync_directory(path: &Path) -> Result<(), Error> {
-    if cfg!(unix) {
-        File::open(path).and_then(|directory| directory.sync_all()).map_err(Error::io("write", path))?;
-    }
-    Ok(())
-}
-
-/// Opens a file to write a result to: a new file, or a pipe or device that is there.
-///
-/// # Errors
-/// [`Error::Usage`] when there is a file already, [`Error::Io`].
-pub(crate) fn create_result(path: &Path) -> Result<File, Error> {
-    match OpenOptions::new().write(true).create_new(true).open(path) {
-        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-            if fs::metadata(path).is_ok_and(|metadata| metadata.is_file() || metadata.is_dir()) {
-                return Err(Error::Usage(format!("{}: there is one already", path.display())));
-            }
-            OpenOptions::new().write(true).open(path).map_err(Error::io("write", path))
-        }
-        opened => opened.map_err(Error::io("write", path)),
-    }
-}
-
-/// Writes results to new files, all of them or none.
-///
-/// # Errors
-/// As [`create_result`]; no file is then left behind.
-pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<(), Error> {
-    let mut made: Vec<&Path> = Vec::new();
-    let written = results.iter().try_for_each(|(path, content)| {
-        let there = path.exists();
-        let mut file = create_result(path)?;
-        if !there {
-            made.push(path);
-        }
-        file.write_all(content.as_ref()).map_err(Error::io("write", path))
-    });
-    if written.is_err() {
-        for path in made {
-            // Our own file; that it may stay is no reason to hide the first error.
-            let _ = fs::remove_file(path);
-        }
-    }
-    written
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn scratch(name: &str) -> PathBuf {
-        let path = std::env::temp_dir().join(format!("farsa-directory-{name}-{}", process::id()));
-        fs::create_dir_all(&path).unwrap();
-        path
-    }
+    use crate::store::replace::replace;
 
     #[test]
     fn a_directory_is_made_whole_or_not_at_all() {
-        let root = scratch("whole");
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
         let run = root.join("deep/run");
         let failed = Directory::create(&run, |directory| {
             fs::write(directory.config(), "x").unwrap();
@@ -257,27 +182,5 @@ mod tests {
         assert!(Directory::create(&run.join("letter.txt"), |_| Ok(())).is_err());
         assert!(Directory::open(&run).is_err() && Directory::open(&root.join("none")).is_err());
         assert_eq!(fs::read(run.join("letter.txt")).unwrap(), b"dear");
-        fs::remove_dir_all(root).unwrap();
-    }
-
-    #[test]
-    fn what_cannot_be_written_leaves_the_old_content() {
-        let root = scratch("replace");
-        let path = root.join("file");
-        replace(&path, b"old").unwrap();
-        replace(&path, b"new").unwrap();
-        // Something in the way of the new content.
-        fs::create_dir(root.join(".file.new")).unwrap();
-        let error = replace(&path, b"newer").unwrap_err();
-        assert!(error.to_string().starts_with("cannot write "), "{error}");
-        assert_eq!(fs::read(&path).unwrap(), b"new");
-        assert!(create_result(&path).is_err() && create_result(&root).is_err());
-        let results = ["first", "file", "last"].map(|name| (root.join(name), name.to_owned()));
-        assert!(create_results(&results).is_err());
-        assert!(!root.join("first").exists() && !root.join("last").exists());
-        assert_eq!(fs::read(&path).unwrap(), b"new");
-        create_results(&[results[0].clone(), results[2].clone()]).unwrap();
-        assert_eq!(fs::read(root.join("last")).unwrap(), b"last");
-        fs::remove_dir_all(root).unwrap();
     }
 }

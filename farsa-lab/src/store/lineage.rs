@@ -1,25 +1,22 @@
 //! `lineage.csv`: the parents of every individual, appended generation by generation.
 
 use std::fmt::Write as _;
-use std::fs::{File, OpenOptions};
-use std::io::{Seek as _, SeekFrom, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use farsa_evo::Strategy;
 
 use crate::error::Error;
-use crate::store::directory::replace;
+use crate::store::bounded::read_own;
+use crate::store::growing::{Growing, Mark};
 
 /// The first line. Individuals are counted through all populations; parents are of the generation before, with blanks
 /// between them.
-const HEADER: &str = "generation,individual,parents\n";
+pub(crate) const HEADER: &str = "generation,individual,parents\n";
+/// Bytes of the largest lineage that is read.
+const LARGEST: u64 = 1 << 32;
 
 /// The lineage of a run in progress.
-pub(crate) struct Lineage {
-    path: PathBuf,
-    file: File,
-    bytes: u64,
-}
+pub(crate) struct Lineage(Growing);
 
 /// The lines of the generation that waits for its fitness; none for one without parents.
 pub(crate) fn rows(strategy: &dyn Strategy) -> String {
@@ -36,45 +33,35 @@ pub(crate) fn rows(strategy: &dyn Strategy) -> String {
 }
 
 impl Lineage {
-    /// Makes the file, with its first line alone, and says how many bytes it has.
-    pub(crate) fn create(path: &Path) -> Result<u64, Error> {
-        replace(path, HEADER.as_bytes())?;
-        Ok(HEADER.len() as u64)
-    }
-
-    /// Opens the file for a run that goes on, and forgets what came after so many bytes.
+    /// Opens the file for a run that goes on, and forgets what came after a mark.
     ///
-    /// A file that is gone or shorter, because somebody deleted or cut it, is written again: `rebuild` takes a function that
-    /// appends lines.
-    pub(crate) fn open(
+    /// A file that is gone, or not what was written, is written again: `rebuild` takes a function that appends lines.
+    pub(crate) fn resume(
         path: &Path,
-        bytes: u64,
+        mark: Mark,
         rebuild: impl FnOnce(&mut dyn FnMut(&str) -> Result<(), Error>) -> Result<(), Error>,
     ) -> Result<Self, Error> {
-        let whole = path.metadata().is_ok_and(|found| found.is_file() && found.len() >= bytes);
-        if !whole {
-            Self::create(path)?;
+        let content = read_own(path, LARGEST).unwrap_or_default();
+        if let Some(kept) = mark.within(&content).filter(|_| !mark.is_empty()) {
+            return Ok(Self(Growing::new(path, kept)?));
         }
-        let file = OpenOptions::new().write(true).open(path).map_err(Error::io("open", path))?;
-        let mut lineage = Self { path: path.into(), file, bytes: if whole { bytes } else { HEADER.len() as u64 } };
-        lineage.file.set_len(lineage.bytes).map_err(Error::io("truncate", path))?;
-        lineage.file.seek(SeekFrom::End(0)).map_err(Error::io("write", path))?;
-        if !whole {
-            rebuild(&mut |rows| lineage.append(rows))?;
-        }
+        drop(content);
+        let mut lineage = Self(Growing::new(path, HEADER.as_bytes())?);
+        rebuild(&mut |rows| lineage.append(rows))?;
         Ok(lineage)
     }
 
     /// Appends the lines of a generation.
     pub(crate) fn append(&mut self, rows: &str) -> Result<(), Error> {
-        self.file.write_all(rows.as_bytes()).map_err(Error::io("write", &self.path))?;
-        self.bytes += rows.len() as u64;
-        Ok(())
+        self.0.append(rows.as_bytes())
     }
 
-    /// Brings everything to the disk and says how many bytes there are.
-    pub(crate) fn sync(&mut self) -> Result<u64, Error> {
-        self.file.sync_data().map_err(Error::io("write", &self.path))?;
-        Ok(self.bytes)
+    /// Brings everything to the disk and says how far it has come.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the file.
+    pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
+        self.0.check()?;
+        self.0.sync()
     }
 }

@@ -1,18 +1,20 @@
-//! `fitness.csv`: one line per finished generation, appended and never rewritten.
+//! `fitness.csv`: one line per finished generation, as the record of the run has them.
 
 use std::fmt::Write as _;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use farsa_evo::Statistics;
-use farsa_num::crc32;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::store::bounded::read_own;
+use crate::store::growing::Growing;
 
 /// The first line where there is one population.
 const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n";
+/// Bytes of the largest log that is compared with what is written anew.
+const LARGEST: u64 = 1 << 30;
 
 /// The first line: with several populations three more columns for each of them.
 pub(crate) fn header(populations: usize) -> String {
@@ -28,7 +30,7 @@ pub(crate) fn header(populations: usize) -> String {
 pub(crate) type Row = [f64; 3];
 
 /// What a line says about a generation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Line {
     pub(crate) row: Row,
     /// The same of each population where there are several.
@@ -37,87 +39,65 @@ pub(crate) struct Line {
     pub(crate) failed: u64,
 }
 
-/// How far the log had come when a checkpoint was written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Mark {
-    bytes: u64,
-    crc: u32,
+impl Line {
+    /// What the fitness of a generation comes to; `each` has the statistics of every population where there are several.
+    pub(crate) fn new(statistics: &Statistics, evaluations: usize, each: &[Statistics]) -> Self {
+        let row = |&Statistics { best, mean, worst, .. }: &Statistics| [best, mean, worst];
+        let (evaluations, failed) = (evaluations as u64, statistics.failed as u64);
+        Self { row: row(statistics), each: each.iter().map(row).collect(), evaluations, failed }
+    }
+
+    /// The line of the generation with this number.
+    fn text(&self, generation: usize) -> String {
+        let Self { row: [best, mean, worst], each, evaluations, failed } = self;
+        // The debug form is the shortest that reads back as the same number.
+        let mut text = format!("{generation},{best:?},{mean:?},{worst:?},{evaluations},{failed}");
+        for [best, mean, worst] in each {
+            // Writing into a string cannot fail.
+            let _ = write!(text, ",{best:?},{mean:?},{worst:?}");
+        }
+        text.push('\n');
+        text
+    }
 }
 
-/// The log of a running run; holding it keeps other processes from going on with the same run.
+/// The log of a running run.
 pub(crate) struct Log {
-    path: PathBuf,
-    file: File,
-    text: String,
+    file: Growing,
     lines: Vec<Line>,
 }
 
 impl Log {
-    /// The mark of a log that has only its header.
-    pub(crate) fn start(populations: usize) -> Mark {
-        mark(&header(populations))
+    /// Writes the log of a run that goes on anew, from the lines so far.
+    ///
+    /// A file that says something else than these lines, and lines after them, is kept under another name, which is returned. Other
+    /// ends of lines, as programs for tables write them, are nothing else.
+    pub(crate) fn resume(path: &Path, lines: Vec<Line>, populations: usize) -> Result<(Self, Option<PathBuf>), Error> {
+        let mut text = header(populations);
+        lines.iter().enumerate().for_each(|(generation, line)| text.push_str(&line.text(generation)));
+        let kept =
+            if fs::symlink_metadata(path).is_ok() && !says_the_same(path, &text) { Some(keep(path)?) } else { None };
+        Ok((Self { file: Growing::new(path, text.as_bytes())?, lines }, kept))
     }
 
-    /// Takes possession of a run's log and reads it, whole.
-    pub(crate) fn open(path: &Path) -> Result<Self, Error> {
-        let mut file = OpenOptions::new().read(true).append(true).open(path).map_err(Error::io("open", path))?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let directory = path.parent().unwrap_or(path).into();
-                return Err(Error::Occupied { directory, why: "another process is at this run right now".into() });
-            }
-            Err(TryLockError::Error(source)) => return Err(Error::Io { doing: "lock", path: path.into(), source }),
-        }
-        let mut text = String::new();
-        file.read_to_string(&mut text).map_err(Error::io("read", path))?;
-        Ok(Self { path: path.into(), file, text, lines: Vec::new() })
-    }
-
-    /// Drops the lines after a mark: their generations will be evaluated again, to the same lines.
+    /// Appends a generation.
     ///
     /// # Errors
-    /// [`Error::Damaged`] when the lines up to the mark are not the ones that were written.
-    pub(crate) fn rewind(&mut self, to: Mark) -> Result<(), Error> {
-        let (kept, lines) = up_to(&self.text, to, &self.path)?;
-        self.lines = lines;
-        let kept = kept.len();
-        self.text.truncate(kept);
-        self.file.set_len(to.bytes).map_err(Error::io("truncate", &self.path))?;
-        self.file.seek(SeekFrom::End(0)).map_err(Error::io("write", &self.path))?;
+    /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the file.
+    pub(crate) fn append(&mut self, line: Line) -> Result<(), Error> {
+        self.file.check()?;
+        self.file.append(line.text(self.lines.len()).as_bytes())?;
+        self.lines.push(line);
         Ok(())
     }
 
-    /// Appends a generation; `each` has the statistics of every population where there are several.
-    pub(crate) fn append(
-        &mut self,
-        statistics: &Statistics,
-        evaluations: usize,
-        each: &[Statistics],
-    ) -> Result<(), Error> {
-        let Statistics { best, mean, worst, failed, .. } = *statistics;
-        let start = self.text.len();
-        let generation = self.lines.len();
-        // The debug form is the shortest that reads back as the same number. Writing into a string cannot fail.
-        let _ = write!(self.text, "{generation},{best:?},{mean:?},{worst:?},{evaluations},{failed}");
-        let each: Vec<Row> = each.iter().map(|&Statistics { best, mean, worst, .. }| [best, mean, worst]).collect();
-        for [best, mean, worst] in &each {
-            let _ = write!(self.text, ",{best:?},{mean:?},{worst:?}");
-        }
-        self.text.push('\n');
-        self.lines.push(Line {
-            row: [best, mean, worst],
-            each,
-            evaluations: evaluations as u64,
-            failed: failed as u64,
-        });
-        self.file.write_all(&self.text.as_bytes()[start..]).map_err(Error::io("write", &self.path))
-    }
-
-    /// Brings everything to the disk and says how far it has come.
-    pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
-        self.file.sync_data().map_err(Error::io("write", &self.path))?;
-        Ok(mark(&self.text))
+    /// Brings everything to the disk.
+    ///
+    /// # Errors
+    /// As [`append`](Self::append).
+    pub(crate) fn sync(&mut self) -> Result<(), Error> {
+        self.file.check()?;
+        self.file.sync().map(drop)
     }
 
     /// The generations so far.
@@ -126,80 +106,81 @@ impl Log {
     }
 }
 
-/// Reads the lines up to a mark, whether or not a process is writing more of them.
-///
-/// # Errors
-/// [`Error::Io`], [`Error::Damaged`] when they are not the ones that were written.
-pub(crate) fn read(path: &Path, to: Mark) -> Result<Vec<Line>, Error> {
-    let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
-    up_to(&text, to, path).map(|(_, lines)| lines)
+/// Whether a file holds this text, or a part of it, or the lines of later generations after it: what a process that was killed
+/// leaves.
+fn says_the_same(path: &Path, text: &str) -> bool {
+    let Ok(bytes) = read_own(path, LARGEST) else { return false };
+    // A cut may fall into the middle of anything; from there on it is none of ours.
+    let found = String::from_utf8_lossy(&bytes);
+    let found = found.strip_prefix('\u{feff}').unwrap_or(&found).replace("\r\n", "\n").replace('\r', "\n");
+    let Some(more) = found.strip_prefix(text) else { return text.starts_with(&found) };
+    let later = more.lines().zip(text.lines().count().saturating_sub(1)..);
+    later.into_iter().all(|(line, generation)| {
+        let start = format!("{generation},");
+        line.starts_with(&start) || start.starts_with(line)
+    })
 }
 
-/// The part of a log up to a mark, and what it says.
-fn up_to<'t>(text: &'t str, to: Mark, path: &Path) -> Result<(&'t str, Vec<Line>), Error> {
-    let Some(kept) = usize::try_from(to.bytes).ok().and_then(|bytes| text.get(..bytes)) else {
-        return Err(Error::damaged(path, format!("truncated: {} bytes of {}", text.len(), to.bytes)));
-    };
-    if mark(kept) != to {
-        return Err(Error::damaged(path, "altered: its checksum is not the one in the checkpoint"));
-    }
-    let lines = lines(kept).ok_or_else(|| Error::damaged(path, "is not a log of fitness"))?;
-    Ok((kept, lines))
-}
-
-fn mark(text: &str) -> Mark {
-    Mark { bytes: text.len() as u64, crc: crc32(text.as_bytes()) }
-}
-
-/// The lines' numbers, if it is a log.
-fn lines(text: &str) -> Option<Vec<Line>> {
-    let (first, lines) = text.split_once('\n')?;
-    let columns = first.split(',').count();
-    let populations = columns.saturating_sub(6) / 3;
-    (header(populations).trim_end() == first).then_some(())?;
-    lines
-        .lines()
-        .enumerate()
-        .map(|(index, line)| {
-            let mut fields = line.split(',');
-            (fields.next()?.parse() == Ok(index)).then_some(())?;
-            let mut number = || fields.next()?.parse().ok();
-            let row = [number()?, number()?, number()?];
-            let mut count = || fields.next()?.parse().ok();
-            let (evaluations, failed) = (count()?, count()?);
-            let rest = fields.map(|field| field.parse().ok()).collect::<Option<Vec<f64>>>()?;
-            (rest.len() == columns - 6 || columns == 6).then_some(())?;
-            let each = rest.chunks_exact(3).take(populations).map(|each| [each[0], each[1], each[2]]).collect();
-            Some(Line { row, each, evaluations, failed })
-        })
-        .collect()
+/// Gives a file another name, one that nothing has.
+fn keep(path: &Path) -> Result<PathBuf, Error> {
+    let (stem, end) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
+    let name = |number: u32| format!("{}-changed-{number}.{}", stem.to_string_lossy(), end.to_string_lossy());
+    let free = (1..).map(|number| path.with_file_name(name(number))).find(|other| fs::symlink_metadata(other).is_err());
+    let other = free.unwrap_or_else(|| path.with_extension("changed"));
+    fs::rename(path, &other).map_err(Error::io("rename", path))?;
+    Ok(other)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn line(best: f64) -> Line {
+        Line { row: [best, -0.25, f64::NEG_INFINITY], each: Vec::new(), evaluations: 20, failed: 3 }
+    }
+
     #[test]
-    fn lines_read_back() {
-        let text = format!("{HEADER}0,1.5,-0.25,-inf,20,3\n1,1e-300,0.0,-1.0,20,0\n");
-        let expected = [
-            Line { row: [1.5, -0.25, f64::NEG_INFINITY], each: Vec::new(), evaluations: 20, failed: 3 },
-            Line { row: [1e-300, 0.0, -1.0], each: Vec::new(), evaluations: 20, failed: 0 },
-        ];
-        assert_eq!(lines(&text), Some(expected.into()));
-        assert_eq!(lines("generation\n"), None);
-        for line in ["1,1,1,1,1,1", "0,1,x,1,1,1", "0,1,1,1,1", "0,1,1,1,1,-1"] {
-            assert_eq!(lines(&format!("{HEADER}{line}\n")), None, "{line}");
-        }
-        // Each of two populations has columns of its own.
+    fn lines_hold_the_shortest_numbers_that_read_back() {
+        assert_eq!(line(1e-300).text(7), "7,1e-300,-0.25,-inf,20,3\n");
+        let each = vec![[1.0; 3], [3.0, 3.0, f64::NEG_INFINITY]];
+        let both = Line { row: [3.0, 2.0, 1.0], each, evaluations: 20, failed: 0 };
+        assert_eq!(both.text(0), "0,3.0,2.0,1.0,20,0,1.0,1.0,1.0,3.0,3.0,-inf\n");
         let head = header(2);
         assert_eq!(head.trim_end(), format!("{},best 0,mean 0,worst 0,best 1,mean 1,worst 1", HEADER.trim_end()));
         assert_eq!((header(0), header(1)), (HEADER.into(), HEADER.into()));
-        let each = vec![[1.0; 3], [3.0, 3.0, f64::NEG_INFINITY]];
-        let both = Line { row: [3.0, 2.0, 1.0], each, evaluations: 20, failed: 0 };
-        assert_eq!(lines(&format!("{head}0,3.0,2.0,1.0,20,0,1.0,1.0,1.0,3.0,3.0,-inf\n")), Some(vec![both]));
-        for rest in ["", ",1,1,1,1,1", ",1,1,1,1,1,x", ",1,1,1,1,1,1,1"] {
-            assert_eq!(lines(&format!("{head}0,3.0,2.0,1.0,20,0{rest}\n")), None, "{rest}");
+    }
+
+    #[test]
+    fn a_log_is_written_again_and_nothing_of_anybody_is_lost() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fitness.csv");
+        let lines = vec![line(1.5), line(2.5)];
+        let text = format!("{HEADER}{}{}", lines[0].text(0), lines[1].text(1));
+        let resumed = |content: Option<&[u8]>| {
+            let _ = fs::remove_file(&path);
+            if let Some(content) = content {
+                fs::write(&path, content).unwrap();
+            }
+            let (mut log, kept) = Log::resume(&path, lines.clone(), 1).unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), text);
+            log.append(line(3.5)).unwrap();
+            log.sync().unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), format!("{text}{}", line(3.5).text(2)));
+            kept
+        };
+        // Removed, cut, with what a killed process wrote after its checkpoint, and as programs for tables save it.
+        assert_eq!(resumed(None), None);
+        assert_eq!(resumed(Some(&text.as_bytes()[..60])), None);
+        assert_eq!(resumed(Some(format!("{text}2,3.5,-0.2").as_bytes())), None);
+        assert_eq!(resumed(Some(text.replace('\n', "\r\n").as_bytes())), None);
+        assert_eq!(resumed(Some(format!("\u{feff}{}", text.trim_end()).as_bytes())), None);
+        assert_eq!(resumed(Some(&[text.as_bytes(), b"2,", &[0xff, 0xfe]].concat())), None);
+        // Anything else is somebody's.
+        let changed = text.replace("1.5", "1,5");
+        for (number, content) in (1..).zip([changed, format!("{text}the best so far\n"), "dear diary".into()]) {
+            let kept = resumed(Some(content.as_bytes())).unwrap();
+            assert!(kept.ends_with(format!("fitness-changed-{number}.csv")), "{}", kept.display());
+            assert_eq!(fs::read_to_string(kept).unwrap(), content);
         }
     }
 }

@@ -11,8 +11,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::experiment::lanes::LanesInfo;
-use crate::store::directory::replace;
+use crate::store::bounded::read_own_text;
 use crate::store::identity::Identity;
+use crate::store::replace::replace;
+
+/// The version of the format.
+const FORMAT: u32 = 1;
+/// Bytes of the largest file that is read: a session takes some five hundred.
+const LARGEST: u64 = 64 << 20;
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -67,7 +73,7 @@ impl Manifest {
     /// The manifest of a run that has not begun.
     pub(crate) fn new(identity: &Identity) -> Self {
         Self {
-            format: 1,
+            format: FORMAT,
             experiment: identity.experiment.clone(),
             condition: identity.condition.clone(),
             seed: identity.seed,
@@ -80,9 +86,32 @@ impl Manifest {
     }
 
     /// Reads the file.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Damaged`] for another format or none.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
-        serde_json::from_str(&text).map_err(|error| Error::damaged(path, error))
+        #[derive(Deserialize)]
+        struct Format {
+            format: u32,
+        }
+        let text = read_own_text(path, LARGEST)?;
+        let damaged = |error: serde_json::Error| Error::damaged(path, error);
+        let Format { format } = serde_json::from_str(&text).map_err(damaged)?;
+        if format != FORMAT {
+            return Err(Error::damaged(path, format!("has format {format}, this program reads format {FORMAT}")));
+        }
+        serde_json::from_str(&text).map_err(damaged)
+    }
+
+    /// The file of a run, or a new one where it is lost: no result depends on it.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read): what cannot be read may still be of use to somebody.
+    pub(crate) fn read_or_new(path: &Path, identity: &Identity) -> Result<Self, Error> {
+        match fs::symlink_metadata(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::new(identity)),
+            _ => Self::read(path),
+        }
     }
 
     /// Writes the file.

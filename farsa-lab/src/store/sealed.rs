@@ -12,7 +12,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::Error;
-use crate::store::directory::replace;
+use crate::store::bounded::read_own;
+use crate::store::replace::replace;
 
 /// The version of the layout and of all contents.
 const FORMAT: u32 = 1;
@@ -25,10 +26,17 @@ pub(crate) trait Sealed: Serialize + DeserializeOwned {
     const MAGIC: [u8; 8];
     /// What it is called in an error.
     const KIND: &'static str;
+    /// Bytes of the largest such file that is read.
+    const LARGEST: u64;
 }
 
 /// Writes a sealed file in place of what was there; see [`replace`].
 pub(crate) fn write<T: Sealed>(path: &Path, content: &T) -> Result<(), Error> {
+    replace(path, &to_bytes(path, content)?)
+}
+
+/// The bytes of a sealed file, which is to be written to `path`.
+pub(crate) fn to_bytes<T: Sealed>(path: &Path, content: &T) -> Result<Vec<u8>, Error> {
     let content = postcard::to_stdvec(content).map_err(|error| Error::Io {
         doing: "write",
         path: path.into(),
@@ -41,11 +49,15 @@ pub(crate) fn write<T: Sealed>(path: &Path, content: &T) -> Result<(), Error> {
     bytes.extend(content);
     let checksum = crc32(&bytes);
     bytes.extend(checksum.to_le_bytes());
-    replace(path, &bytes)
+    Ok(bytes)
 }
 
 /// The first bytes of a file, which say of what kind it is; none if it is too short.
 pub(crate) fn magic(path: &Path) -> Result<Option<[u8; 8]>, Error> {
+    let regular = fs::metadata(path).map_err(Error::io("read", path))?.is_file();
+    if !regular {
+        return Err(Error::damaged(path, "is no regular file"));
+    }
     let mut magic = Vec::new();
     let file = fs::File::open(path).map_err(Error::io("read", path))?;
     file.take(8).read_to_end(&mut magic).map_err(Error::io("read", path))?;
@@ -57,8 +69,20 @@ pub(crate) fn magic(path: &Path) -> Result<Option<[u8; 8]>, Error> {
 /// # Errors
 /// [`Error::Damaged`] when it is not the file that was written, [`Error::Io`].
 pub(crate) fn read<T: Sealed>(path: &Path) -> Result<T, Error> {
-    let bytes = fs::read(path).map_err(Error::io("read", path))?;
+    let bytes = read_own(path, T::LARGEST)?;
     open(&bytes).map_err(|why| Error::damaged(path, why))
+}
+
+/// What a sealed file holds, and the bytes after it.
+///
+/// # Errors
+/// Why it is not what was written.
+pub(crate) fn open_first<T: Sealed>(bytes: &[u8]) -> Result<(T, &[u8]), String> {
+    let length =
+        bytes.get(12..HEAD).and_then(|length| length.first_chunk::<8>()).map(|length| u64::from_le_bytes(*length));
+    let end = length.and_then(|length| usize::try_from(length).ok()?.checked_add(HEAD + CHECKSUM));
+    let (first, rest) = bytes.split_at_checked(end.unwrap_or(bytes.len())).unwrap_or((bytes, &[]));
+    Ok((open(first)?, rest))
 }
 
 fn open<T: Sealed>(bytes: &[u8]) -> Result<T, String> {
@@ -109,6 +133,7 @@ mod tests {
     impl Sealed for Thing {
         const MAGIC: [u8; 8] = *b"farsathg";
         const KIND: &'static str = "thing";
+        const LARGEST: u64 = 1000;
     }
 
     fn sealed() -> Vec<u8> {
@@ -142,6 +167,20 @@ mod tests {
         }
         let longer = [bytes.as_slice(), &[0]].concat();
         assert_eq!(open::<Thing>(&longer).unwrap_err(), "altered: 29 bytes where 28 were written");
+    }
+
+    #[test]
+    fn what_follows_a_sealed_part_is_left() {
+        let bytes = sealed();
+        let longer = [bytes.as_slice(), &[7, 8]].concat();
+        assert_eq!(open_first::<Thing>(&longer).unwrap(), (Thing(vec![1, 2, 3]), &[7, 8][..]));
+        assert!(open_first::<Thing>(&bytes).unwrap().1.is_empty());
+        for length in 0..bytes.len() {
+            assert!(open_first::<Thing>(&bytes[..length]).is_err(), "{length}");
+        }
+        let mut endless = longer;
+        endless[12..20].fill(0xff);
+        assert!(open_first::<Thing>(&endless).is_err());
     }
 
     #[test]

@@ -62,7 +62,13 @@ impl Evaluator for Track {
             }
         }
         let success = x.abs() < 0.1 && v.abs() < 0.1;
-        Outcome { terms: vec![fitness], steps: self.steps, success, notes: vec![("at [m]", x.into())] }
+        Outcome {
+            terms: vec![fitness],
+            steps: self.steps,
+            success,
+            notes: vec![("at [m]", x.into())],
+            ..Outcome::default()
+        }
     }
 }
 

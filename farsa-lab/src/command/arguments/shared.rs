@@ -58,7 +58,7 @@ impl WorkerArgs {
     ///
     /// # Errors
     /// Those of [`Pool::new`].
-    pub(crate) fn pool(&self, plan: &Plan<'_>) -> Result<Pool, Error> {
+    pub(crate) fn pool<'e>(&self, plan: &Plan<'e>) -> Result<Pool<'e>, Error> {
         Pool::new(plan, self.threads(), self.lanes())
     }
 

@@ -9,7 +9,7 @@ use crate::experiment::lanes::Wanted;
 use crate::experiment::settings::Value;
 use crate::run::begin::create;
 use crate::run::evolve::go_on;
-use crate::run::tests::{CHASE, Numbers, STEADY, plan, pool, run, scratch};
+use crate::run::tests::{CHASE, LEARNER, Numbers, STEADY, plan, pool, run, scratch};
 use crate::store::directory::Directory;
 use crate::strategy::Truncation;
 
@@ -97,7 +97,7 @@ fn a_record_shorter_than_its_checkpoint_is_refused() {
     fs::write(directory.record(), short).unwrap();
     let plan = plan(&STEADY, 4);
     let said = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
-    assert!(said.to_string().contains("record.bin: 0 generations where checkpoint.bin speaks of 2"), "{said}");
+    assert!(said.to_string().contains("record.bin: truncated: "), "{said}");
     fs::remove_dir_all(root).unwrap();
 }
 
@@ -121,5 +121,153 @@ fn the_strategy_of_a_run_stays_what_it_was() {
     rising.settings.set("", "evolution.last_rate", Value::Number(0.75)).unwrap();
     let error = create(&rising, &root.join("none")).unwrap_err().to_string();
     assert_eq!(error, "`evolution.last_rate`: a mutation rate cannot fall from 0.5 to 0.75");
+    fs::remove_dir_all(root).unwrap();
+}
+
+/// The files of a run and what is in them, but for what depends on the clock.
+fn contents(directory: &Directory) -> Vec<(String, Vec<u8>)> {
+    let entries = fs::read_dir(directory.path()).unwrap().map(|entry| entry.unwrap());
+    let named = entries.map(|entry| (entry.file_name().into_string().unwrap(), entry.path()));
+    let mut all: Vec<_> = named.map(|(name, path)| (name, fs::read(path).unwrap())).collect();
+    all.retain(|(name, _)| name != "manifest.json");
+    all.sort();
+    all
+}
+
+#[test]
+fn what_is_lost_is_written_again() {
+    let root = scratch("lost");
+    let [whole, other] = ["whole", "other"].map(|name| create(&plan(&STEADY, 5), &root.join(name)).unwrap());
+    run(&plan(&STEADY, 8), &whole, 1);
+    run(&plan(&STEADY, 5), &other, 1);
+    for lost in [other.log(), other.manifest(), other.plot(), other.lineage()] {
+        fs::remove_file(lost).unwrap();
+    }
+    // Going on with a run that has nothing to do brings back all.
+    run(&plan(&STEADY, 5), &other, 1);
+    assert_eq!(contents(&other).len(), contents(&whole).len());
+    let text = fs::read_to_string(other.log()).unwrap();
+    fs::write(other.log(), text.replace('\n', "\r\n")).unwrap();
+    run(&plan(&STEADY, 8), &other, 1);
+    assert_eq!(contents(&other), contents(&whole));
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn a_manifest_of_another_format_is_refused_and_kept() {
+    let root = scratch("format");
+    let directory = create(&plan(&STEADY, 2), &root).unwrap();
+    let text = fs::read_to_string(directory.manifest()).unwrap();
+    for (from, to, words) in
+        [("\"format\": 1", "\"format\": 2", "has format 2, this program reads format 1"), ("{", "", "manifest.json: ")]
+    {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text);
+        fs::write(directory.manifest(), &changed).unwrap();
+        let plan = plan(&STEADY, 2);
+        let error = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+        assert!(error.to_string().contains(words), "{error}");
+        assert_eq!(fs::read_to_string(directory.manifest()).unwrap(), changed);
+    }
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn a_log_that_disappears_is_noticed_at_once() {
+    let root = scratch("removed");
+    let directory = create(&plan(&STEADY, 1), &root).unwrap();
+    let endless = plan(&STEADY, i64::from(u32::MAX) - 1);
+    let log = directory.log();
+    let removed = std::thread::spawn(move || {
+        while fs::read_to_string(&log).unwrap().lines().count() < 20 {}
+        fs::remove_file(log).unwrap();
+    });
+    let error = go_on(&endless, &directory, pool(&endless, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+    removed.join().unwrap();
+    assert!(error.to_string().contains("fitness.csv: was removed while the run went on"), "{error}");
+    // What was saved before goes on.
+    let error = go_on(&endless, &directory, pool(&endless, 1), &AtomicBool::new(true), "farsa", true).unwrap_err();
+    assert!(error.to_string().contains("interrupted") && directory.log().is_file(), "{error}");
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn a_checkpoint_does_not_grow_and_a_record_grows_by_what_is_new() {
+    let root = scratch("growth");
+    let directory = create(&plan(&LEARNER, 10), &root).unwrap();
+    let size = |generations| {
+        run(&plan(&LEARNER, generations), &directory, 1);
+        [directory.checkpoint(), directory.record()].map(|path| fs::metadata(path).unwrap().len())
+    };
+    let [first, second, third] = [10, 60, 110].map(size);
+    assert!(second[0] - first[0] < 8 && third[0] - second[0] < 8, "{first:?} {second:?} {third:?}");
+    assert!(third[1] - second[1] < (second[1] - first[1]) + 50 * 8, "{first:?} {second:?} {third:?}");
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn the_log_of_a_run_that_somebody_changed_is_kept() {
+    let root = scratch("changed");
+    let directory = create(&plan(&STEADY, 3), &root).unwrap();
+    run(&plan(&STEADY, 3), &directory, 1);
+    let text = fs::read_to_string(directory.log()).unwrap();
+    let changed = text.replace("worst", "remarks");
+    fs::write(directory.log(), &changed).unwrap();
+    run(&plan(&STEADY, 4), &directory, 1);
+    assert!(fs::read_to_string(directory.log()).unwrap().starts_with(&text));
+    assert_eq!(fs::read_to_string(root.join("fitness-changed-1.csv")).unwrap(), changed);
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn links_in_a_strangers_run_are_not_followed() {
+    use std::os::unix::fs::symlink;
+    let root = scratch("links");
+    let directory = create(&plan(&STEADY, 3), &root.join("run")).unwrap();
+    run(&plan(&STEADY, 3), &directory, 1);
+    let victim = root.join("victim");
+    let precious = "precious\n".repeat(1000);
+    fs::write(&victim, &precious).unwrap();
+    let names =
+        ["config.toml", "manifest.json", "fitness.csv", "fitness.svg", "champion.bin", "checkpoint.bin", "record.bin"];
+    for name in names.into_iter().chain(["lineage.csv", "test.csv", "test.json"]) {
+        let _ = symlink(&victim, directory.path().join(format!(".{name}.new")));
+    }
+    // These are not read, or read and found to be something else.
+    for name in ["fitness.csv", "fitness.svg", "lineage.csv", "failures.csv", "test.csv", "test.json"] {
+        let _ = fs::remove_file(directory.path().join(name));
+        symlink(&victim, directory.path().join(name)).unwrap();
+    }
+    run(&plan(&STEADY, 5), &directory, 1);
+    test::test(&plan(&STEADY, 5), &directory, 2, 1, 1, Wanted::ONE, true).unwrap();
+    assert_eq!(fs::read_to_string(&victim).unwrap(), precious);
+    // A lock that is a link would be a file that is made elsewhere.
+    fs::remove_file(directory.path().join(".run.lock")).unwrap();
+    symlink(root.join("made"), directory.path().join(".run.lock")).unwrap();
+    let plan = plan(&STEADY, 6);
+    let error = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
+    assert!(error.to_string().contains("is no regular file") && !root.join("made").exists(), "{error}");
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn tests_at_the_same_time_leave_the_files_of_one() {
+    let root = scratch("together");
+    let directory = create(&plan(&STEADY, 3), &root).unwrap();
+    run(&plan(&STEADY, 3), &directory, 1);
+    std::thread::scope(|scope| {
+        for seed in 1..5 {
+            let directory = &directory;
+            scope.spawn(move || {
+                for _ in 0..10 {
+                    let trials = 3 + seed as usize;
+                    test::test(&plan(&STEADY, 3), directory, trials, seed, 1, Wanted::ONE, true).unwrap();
+                    let (_, record) = test::read(directory).unwrap().unwrap();
+                    assert!(record.is_some(), "the two files are of the same test");
+                }
+            });
+        }
+    });
     fs::remove_dir_all(root).unwrap();
 }

@@ -3,7 +3,9 @@
 //! - `reference`: our strategies, against what is computed by hand
 //! - `own_strategy`: a strategy of a user's own
 //! - `files`: what is refused, and what is mended
+//! - `faults`: evaluations that panic, that are no number and that do not end
 
+mod faults;
 mod files;
 mod own_strategy;
 mod reference;
@@ -163,7 +165,7 @@ fn plan(numbers: &Numbers, generations: i64) -> Plan<'_> {
     plan
 }
 
-fn pool(plan: &Plan<'_>, threads: usize) -> Pool {
+fn pool<'e>(plan: &Plan<'e>, threads: usize) -> Pool<'e> {
     Pool::new(plan, threads, Wanted::ONE).unwrap()
 }
 

@@ -1,0 +1,90 @@
+//! An episode that ends at the latest after so many steps.
+
+use farsa_body::Recorder;
+
+use crate::experiment::episode::{Episode, EpisodeId};
+use crate::experiment::outcome::{Failure, Outcome};
+
+/// An episode that is stopped when it has not ended after so many steps.
+pub(crate) struct Limited<E> {
+    pub(crate) episode: E,
+    budget: u64,
+    left: u64,
+    stopped: bool,
+}
+
+impl<E> Limited<E> {
+    /// An episode that has at most `budget` steps.
+    pub(crate) fn new(episode: E, budget: u64) -> Self {
+        Self { episode, budget, left: budget, stopped: false }
+    }
+
+    /// The outcome of an episode that was stopped; none of one that ended by itself.
+    pub(crate) fn stopped(&self) -> Option<Outcome> {
+        let steps = u32::try_from(self.budget).unwrap_or(u32::MAX);
+        let outcome = || Outcome { steps, failure: Some(Failure::Endless(self.budget)), ..Outcome::failed() };
+        self.stopped.then(outcome)
+    }
+}
+
+impl<W: ?Sized, E: Episode<W>> Episode<W> for Limited<E> {
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        (self.left, self.stopped) = (self.budget, false);
+        self.episode.start(world, id);
+    }
+
+    fn has_started(&self) -> bool {
+        self.episode.has_started()
+    }
+
+    fn act(&mut self, world: &mut W) {
+        self.episode.act(world);
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        let end = self.episode.judge(world);
+        self.left = self.left.saturating_sub(1);
+        self.stopped = end.is_none() && self.left == 0;
+        if self.stopped { Some(f64::NAN) } else { end }
+    }
+
+    fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.episode.record_action(world, recorder);
+    }
+
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.episode.record(world, recorder);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::episode::{NoWorld, run_episode};
+
+    /// Ends after so many steps.
+    struct Steps(u32, u32);
+
+    impl Episode<NoWorld> for Steps {
+        fn start(&mut self, _: &mut NoWorld, id: EpisodeId) {
+            *self = Self(0, id.trial);
+        }
+        fn act(&mut self, _: &mut NoWorld) {
+            self.0 += 1;
+        }
+        fn judge(&mut self, _: &mut NoWorld) -> Option<f64> {
+            (self.0 == self.1).then(|| f64::from(self.0))
+        }
+    }
+
+    #[test]
+    fn an_episode_ends_with_its_budget_and_the_next_has_a_new_one() {
+        let mut episode = Limited::new(Steps(0, 0), 5);
+        for (wanted, stopped) in [(3, false), (5, false), (6, true), (0, true), (4, false)] {
+            let id = EpisodeId { trial: wanted, ..EpisodeId::default() };
+            let end = run_episode(&mut episode, &mut NoWorld, id, None);
+            assert_eq!(end.is_nan(), stopped, "{wanted}");
+            assert_eq!((episode.stopped().is_some(), episode.episode.0), (stopped, if stopped { 5 } else { wanted }));
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! `record.bin`: what the strategy was told in every generation, and what came of it. The file only grows.
+//!
+//! After a sealed head, which says whose it is, stands an entry for each generation. How much of the file counts, and its checksum,
+//! stands in the checkpoint, which is written after it.
+
+use std::path::Path;
+
+use farsa_evo::{Record, RecordEntry, Strategy};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::run::plan::Plan;
+use crate::run::records::{Checkpoint, RecordHead, evolved};
+use crate::store::directory::Directory;
+use crate::store::growing::{self, Growing, Mark};
+use crate::store::identity::Identity;
+use crate::store::log::Line;
+use crate::store::sealed;
+
+/// Bytes of the largest record that is read.
+const LARGEST: u64 = 1 << 32;
+
+/// A generation.
+#[derive(Serialize, Deserialize)]
+struct Entry<'e> {
+    /// [`RecordEntry::frame`].
+    #[serde(borrow)]
+    frame: &'e [u8],
+    /// [`RecordEntry::state`].
+    #[serde(borrow)]
+    state: Option<&'e [u8]>,
+    /// Its line in the log.
+    line: Line,
+    /// What the strategy said of it.
+    diagnostics: Vec<f64>,
+}
+
+/// All finished generations of a run, as its record has them.
+pub(crate) struct Told {
+    pub(crate) identity: Identity,
+    pub(crate) record: Record,
+    /// Their lines in the log.
+    pub(crate) lines: Vec<Line>,
+    /// What the strategy said of each, where it says something.
+    pub(crate) diagnostics: Vec<Vec<f64>>,
+    /// The part of the file that this was read from.
+    content: Vec<u8>,
+}
+
+impl Told {
+    /// Reads the record of the run that a plan describes, up to a checkpoint. Its sizes are those of the plan's strategy: nothing is
+    /// allocated because the file says so.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy than the experiment's.
+    pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Self, Error> {
+        evolved(directory)?;
+        let path = directory.record();
+        let damaged = |why: String| Error::damaged(&path, why);
+        let content = growing::read(&path, checkpoint.record, LARGEST)?;
+        let (head, mut rest) = sealed::open_first::<RecordHead>(&content).map_err(damaged)?;
+        let RecordHead { identity, strategy } = head;
+        plan.same_run(&identity, directory.path())?;
+        let asked = plan.definition().name();
+        if strategy != asked {
+            let why = format!("was made by the strategy `{strategy}`, the experiment has `{asked}`");
+            return Err(damaged(why));
+        }
+        let mut record = Record::new(plan.strategy()?.as_mut()).map_err(|error| damaged(error.to_string()))?;
+        let each = if record.populations() > 1 { record.populations() } else { 0 };
+        let (mut lines, mut diagnostics) = (Vec::new(), Vec::new());
+        while !rest.is_empty() {
+            let generation = record.generations();
+            let (entry, more) = postcard::take_from_bytes::<Entry<'_>>(rest)
+                .map_err(|error| damaged(format!("holds no generation {generation}: {error}")))?;
+            let Entry { frame, state, line, diagnostics: said } = entry;
+            if line.each.len() != each {
+                let found = line.each.len();
+                return Err(damaged(format!(
+                    "generation {generation} has {found} populations where {each} are expected"
+                )));
+            }
+            let pushed = record.push(RecordEntry { frame, state });
+            pushed.map_err(|error| damaged(format!("generation {generation}: {error}")))?;
+            lines.push(line);
+            if plan.definition().diagnostics().is_some() {
+                diagnostics.push(said);
+            }
+            rest = more;
+        }
+        let (found, expected) = (record.generations(), checkpoint.generation);
+        if found != expected {
+            return Err(damaged(format!("{found} generations where checkpoint.bin speaks of {expected}")));
+        }
+        Ok(Self { identity, record, lines, diagnostics, content })
+    }
+
+    /// Opens the file for a run that goes on, and forgets what came after the checkpoint.
+    pub(crate) fn file(&mut self, directory: &Directory) -> Result<ToldFile, Error> {
+        let content = std::mem::take(&mut self.content);
+        Growing::new(&directory.record(), &content).map(ToldFile)
+    }
+}
+
+/// The record of a run in progress.
+pub(crate) struct ToldFile(Growing);
+
+impl ToldFile {
+    /// Makes the file of a run without a generation, and says how far it has come.
+    pub(crate) fn create(path: &Path, identity: &Identity, strategy: &str) -> Result<Mark, Error> {
+        let head = RecordHead { identity: identity.clone(), strategy: strategy.into() };
+        Growing::new(path, &sealed::to_bytes(path, &head)?)?.sync()
+    }
+
+    /// Appends the last generation of a record.
+    pub(crate) fn append(&mut self, record: &Record, line: &Line, strategy: &dyn Strategy) -> Result<(), Error> {
+        let last = record.generations().checked_sub(1).and_then(|last| record.entry(last));
+        let Some(RecordEntry { frame, state }) = last else { return Ok(()) };
+        let entry = Entry { frame, state, line: line.clone(), diagnostics: strategy.diagnostics() };
+        let bytes = postcard::to_stdvec(&entry).map_err(|error| Error::Other(format!("record.bin: {error}")))?;
+        self.0.append(&bytes)
+    }
+
+    /// Brings everything to the disk and says how far it has come.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the file.
+    pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
+        self.0.check()?;
+        self.0.sync()
+    }
+}

@@ -1,0 +1,133 @@
+//! `failures.csv`: the evaluations that failed, each with its first trial that did, why, and how to see it again.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::store::bounded::read_own;
+use crate::store::growing::{Growing, Mark};
+
+const HEADER: &str = "generation,individual,trial,why,command\n";
+/// Bytes of the largest file that is read.
+const LARGEST: u64 = 1 << 32;
+
+/// An evaluation that failed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct FailedEvaluation {
+    pub(crate) generation: u32,
+    /// Counted through all populations.
+    pub(crate) individual: u32,
+    /// The first trial that failed; none when the trials were well and their fitness was not.
+    pub(crate) trial: Option<u32>,
+    pub(crate) why: String,
+}
+
+impl FailedEvaluation {
+    /// What the user types to see it again, from a directory in which `directory` is the run's.
+    pub(crate) fn command(&self, program: &str, directory: &str) -> String {
+        let Self { generation, individual, trial, .. } = self;
+        let which = format!("--generation {generation} --individual {individual}");
+        let trial = trial.map_or_else(String::new, |trial| format!(" --trial {trial}"));
+        format!("{program} replay {directory} {which}{trial}")
+    }
+
+    fn line(&self, program: &str) -> String {
+        let Self { generation, individual, trial, why } = self;
+        let trial = trial.map_or_else(String::new, |trial| trial.to_string());
+        let quoted = |text: &str| {
+            let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+            format!("\"{}\"", plain.replace('"', "\"\""))
+        };
+        format!("{generation},{individual},{trial},{},{}\n", quoted(why), quoted(&self.command(program, ".")))
+    }
+}
+
+/// The failures of a run in progress; there is no file before the first.
+pub(crate) struct Failures {
+    path: PathBuf,
+    file: Option<Growing>,
+}
+
+impl Failures {
+    /// The failures of a run that goes on, up to a mark.
+    ///
+    /// Nothing else says what they were: a file that somebody has changed stays as it is, and grows.
+    pub(crate) fn resume(path: &Path, mark: Mark) -> Result<Self, Error> {
+        let content = read_own(path, LARGEST).unwrap_or_default();
+        let file = match mark.within(&content) {
+            Some([]) if content.is_empty() || content.starts_with(HEADER.as_bytes()) => {
+                Growing::remove(path)?;
+                None
+            }
+            Some(kept) if !kept.is_empty() => Some(Growing::new(path, kept)?),
+            _ if content.is_empty() => Some(Growing::new(path, HEADER.as_bytes())?),
+            _ => Some(Growing::new(path, &content)?),
+        };
+        Ok(Self { path: path.into(), file })
+    }
+
+    /// Appends what failed in a generation.
+    pub(crate) fn append(&mut self, failed: &[FailedEvaluation], program: &str) -> Result<(), Error> {
+        if failed.is_empty() {
+            return Ok(());
+        }
+        let lines: String = failed.iter().map(|failed| failed.line(program)).collect();
+        match &mut self.file {
+            Some(file) => file.append(lines.as_bytes()),
+            None => {
+                self.file = Some(Growing::new(&self.path, format!("{HEADER}{lines}").as_bytes())?);
+                Ok(())
+            }
+        }
+    }
+
+    /// Brings everything to the disk and says how far it has come.
+    pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
+        self.file.as_mut().map_or(Ok(Mark::default()), Growing::sync)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn failed(generation: u32, trial: Option<u32>) -> FailedEvaluation {
+        FailedEvaluation { generation, individual: 3, trial, why: "panicked: \"no\"\nreason (x.rs:1)".into() }
+    }
+
+    #[test]
+    fn lines_name_the_trial_and_the_command() {
+        let line = failed(2, Some(1)).line("farsa");
+        let command = "farsa replay . --generation 2 --individual 3 --trial 1";
+        assert_eq!(line, format!("2,3,1,\"panicked: \"\"no\"\" reason (x.rs:1)\",\"{command}\"\n"));
+        assert!(failed(2, None).line("mine").ends_with(",\"mine replay . --generation 2 --individual 3\"\n"));
+    }
+
+    #[test]
+    fn there_is_a_file_once_something_failed_and_it_is_rewound() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("failures.csv");
+        let mut failures = Failures::resume(&path, Mark::default()).unwrap();
+        failures.append(&[], "farsa").unwrap();
+        assert!(failures.sync().unwrap().is_empty() && !path.exists());
+        failures.append(&[failed(1, None), failed(1, Some(2))], "farsa").unwrap();
+        let mark = failures.sync().unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.starts_with(HEADER) && text.lines().count() == 3);
+        failures.append(&[failed(2, None)], "farsa").unwrap();
+        drop(failures);
+        let mut failures = Failures::resume(&path, mark).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+        assert_eq!(failures.sync().unwrap(), mark);
+        // Of a run that was killed before its first save with a failure.
+        Failures::resume(&path, Mark::default()).unwrap();
+        assert!(!path.exists());
+        // Somebody's remarks stay; a file that is gone begins anew.
+        fs::write(&path, "mine\n").unwrap();
+        Failures::resume(&path, mark).unwrap().append(&[failed(3, None)], "farsa").unwrap();
+        assert!(fs::read_to_string(&path).unwrap().starts_with("mine\n3,3,,"));
+        fs::remove_file(&path).unwrap();
+        Failures::resume(&path, mark).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), HEADER);
+    }
+}

@@ -1,0 +1,169 @@
+//! Files that grow at their end as a run goes on.
+
+use std::fs::{self, File};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use farsa_num::Crc32;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::store::bounded::read_own;
+use crate::store::replace::{replace_and_keep, sync_directory};
+
+/// How far a file had come when a checkpoint was written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub(crate) struct Mark {
+    bytes: u64,
+    crc: u32,
+}
+
+impl Mark {
+    /// The mark of a file with this content.
+    pub(crate) fn of(content: &[u8]) -> Self {
+        Self { bytes: content.len() as u64, crc: Crc32::new().with(content).finish() }
+    }
+
+    /// Whether there was nothing in the file, or no file.
+    pub(crate) fn is_empty(self) -> bool {
+        self.bytes == 0
+    }
+
+    /// The part of a file's content up to this mark; none if it is not what was written.
+    pub(crate) fn within(self, content: &[u8]) -> Option<&[u8]> {
+        let kept = content.get(..usize::try_from(self.bytes).ok()?)?;
+        (Self::of(kept) == self).then_some(kept)
+    }
+}
+
+/// Reads what a file of a run held up to a mark, whether or not a process is adding to it.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Damaged`] when that is not what was written.
+pub(crate) fn read(path: &Path, mark: Mark, limit: u64) -> Result<Vec<u8>, Error> {
+    let mut content = read_own(path, limit)?;
+    let (found, expected) = (content.len() as u64, mark.bytes);
+    if found < expected {
+        return Err(Error::damaged(path, format!("truncated: {found} bytes of {expected}")));
+    }
+    let Some(kept) = mark.within(&content).map(<[u8]>::len) else {
+        return Err(Error::damaged(path, "altered: its checksum is not the one in the checkpoint"));
+    };
+    content.truncate(kept);
+    Ok(content)
+}
+
+/// A file that this process adds to.
+pub(crate) struct Growing {
+    path: PathBuf,
+    file: File,
+    bytes: u64,
+    crc: Crc32,
+}
+
+impl Growing {
+    /// Puts a file with this content in the place of what is there, which is never written to: it may be a link.
+    pub(crate) fn new(path: &Path, content: &[u8]) -> Result<Self, Error> {
+        let file = replace_and_keep(path, content)?;
+        Ok(Self { path: path.into(), file, bytes: content.len() as u64, crc: Crc32::new().with(content) })
+    }
+
+    /// Adds to the end.
+    pub(crate) fn append(&mut self, content: &[u8]) -> Result<(), Error> {
+        self.file.write_all(content).map_err(Error::io("write", &self.path))?;
+        self.bytes += content.len() as u64;
+        self.crc = self.crc.with(content);
+        Ok(())
+    }
+
+    /// Brings everything to the disk and says how far it has come.
+    pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
+        self.file.sync_data().map_err(Error::io("write", &self.path))?;
+        Ok(Mark { bytes: self.bytes, crc: self.crc.finish() })
+    }
+
+    /// Refuses to go on with a file that somebody has removed, replaced, cut or added to.
+    ///
+    /// # Errors
+    /// [`Error::Damaged`].
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let changed = |what: &str| {
+            let why = format!("was {what} while the run went on; what was saved before goes on with `run --resume`");
+            Err(Error::damaged(&self.path, why))
+        };
+        let Ok(found) = fs::symlink_metadata(&self.path) else { return changed("removed") };
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt as _;
+            let own = self.file.metadata().map_err(Error::io("read", &self.path))?;
+            if (found.dev(), found.ino()) != (own.dev(), own.ino()) {
+                return changed("replaced");
+            }
+        }
+        if found.len() == self.bytes { Ok(()) } else { changed("changed by another program") }
+    }
+
+    /// Removes the file.
+    pub(crate) fn remove(path: &Path) -> Result<(), Error> {
+        match fs::remove_file(path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::io("remove", path)(error)),
+            _ => sync_directory(crate::store::draft::parent(path)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_marked_is_read_whatever_follows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log");
+        let mut log = Growing::new(&path, b"head\n").unwrap();
+        let start = log.sync().unwrap();
+        assert_eq!(start, Mark::of(b"head\n"));
+        log.append(b"one\n").unwrap();
+        let mark = log.sync().unwrap();
+        log.append(b"to").unwrap();
+        log.check().unwrap();
+        assert_eq!(read(&path, mark, 100).unwrap(), b"head\none\n");
+        assert_eq!(read(&path, start, 100).unwrap(), b"head\n");
+        fs::write(&path, "head\n0ne\n").unwrap();
+        assert!(read(&path, mark, 100).unwrap_err().to_string().contains("altered"));
+        fs::write(&path, "head").unwrap();
+        assert!(read(&path, mark, 100).unwrap_err().to_string().contains("truncated: 4 bytes of 9"));
+    }
+
+    #[test]
+    fn a_file_that_somebody_touched_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log");
+        let said = |change: &dyn Fn()| {
+            let mut log = Growing::new(&path, b"head\n").unwrap();
+            log.append(b"one\n").unwrap();
+            log.check().unwrap();
+            change();
+            log.check().unwrap_err().to_string()
+        };
+        assert!(said(&|| fs::remove_file(&path).unwrap()).contains("was removed while"));
+        assert!(said(&|| fs::write(&path, "").unwrap()).contains("was changed by another program"));
+        let replaced = said(&|| {
+            fs::copy(&path, folder.path().join("copy")).unwrap();
+            fs::rename(folder.path().join("copy"), &path).unwrap();
+        });
+        assert!(replaced.contains("was replaced while") || !cfg!(unix), "{replaced}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_in_the_place_of_a_file_is_replaced_and_not_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, victim) = (folder.path().join("log"), folder.path().join("victim"));
+        fs::write(&victim, "precious").unwrap();
+        std::os::unix::fs::symlink(&victim, &path).unwrap();
+        Growing::new(&path, b"head\n").unwrap().append(b"one\n").unwrap();
+        assert_eq!(fs::read(&victim).unwrap(), b"precious");
+        assert_eq!(fs::read(&path).unwrap(), b"head\none\n");
+    }
+}

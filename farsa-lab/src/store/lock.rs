@@ -1,0 +1,74 @@
+//! Locks that keep processes out of each other's files, and that end with the process that holds them.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::Path;
+use std::thread;
+use std::time::Duration;
+
+use crate::error::Error;
+use crate::store::directory::Directory;
+
+/// The file whose lock is held as long as a process goes on with a run.
+pub(crate) const RUN_LOCK: &str = ".run.lock";
+/// The file whose lock is held while the files of a test are written, which belong together.
+const TEST_LOCK: &str = ".test.lock";
+/// How often, and with which pauses, the lock of a test is asked for: it is held for as long as two small files take.
+const ATTEMPTS: usize = 200;
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// A lock that is held until this value is dropped.
+#[derive(Debug)]
+pub(crate) struct Lock {
+    _file: File,
+}
+
+impl Lock {
+    /// Takes possession of a run.
+    ///
+    /// # Errors
+    /// [`Error::Occupied`] when another process has it, [`Error::Io`].
+    pub(crate) fn of_run(directory: &Directory) -> Result<Self, Error> {
+        let path = directory.path().join(RUN_LOCK);
+        let file = open(&path).map_err(Error::io("lock", &path))?;
+        match file.try_lock() {
+            Ok(()) => Ok(Self { _file: file }),
+            Err(TryLockError::WouldBlock) => {
+                let why = "another process is at this run right now".into();
+                Err(Error::Occupied { directory: directory.path().into(), why })
+            }
+            Err(TryLockError::Error(source)) => Err(Error::Io { doing: "lock", path, source }),
+        }
+    }
+
+    /// Waits for the files of a run's tests.
+    ///
+    /// # Errors
+    /// [`Error::Occupied`] when another process has them for more than ten seconds, [`Error::Io`].
+    pub(crate) fn of_tests(directory: &Directory) -> Result<Self, Error> {
+        let path = directory.path().join(TEST_LOCK);
+        let file = open(&path).map_err(Error::io("lock", &path))?;
+        for _ in 0..ATTEMPTS {
+            match file.try_lock() {
+                Ok(()) => return Ok(Self { _file: file }),
+                Err(TryLockError::WouldBlock) => thread::sleep(PAUSE),
+                Err(TryLockError::Error(source)) => return Err(Error::Io { doing: "lock", path, source }),
+            }
+        }
+        let why = "another process has been writing a test here for ten seconds".into();
+        Err(Error::Occupied { directory: directory.path().into(), why })
+    }
+}
+
+/// Opens a file to be locked, or makes it; nothing is written, and no link or pipe is opened.
+pub(crate) fn open(path: &Path) -> io::Result<File> {
+    match OpenOptions::new().write(true).create_new(true).open(path) {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+            if !fs::symlink_metadata(path)?.is_file() {
+                return Err(io::Error::other("is no regular file"));
+            }
+            OpenOptions::new().write(true).open(path)
+        }
+        opened => opened,
+    }
+}
