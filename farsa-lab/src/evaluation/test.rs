@@ -134,8 +134,6 @@ pub(crate) fn test(
     lanes: Wanted,
     quiet: bool,
 ) -> Result<TestRun, Error> {
-    // Where nothing can be written, that is said before anything is computed.
-    drop(Lock::of_tests(directory)?);
     let path = directory.champion();
     if !path.is_file() && directory.checkpoint().is_file() {
         return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
@@ -147,6 +145,8 @@ pub(crate) fn test(
     let Some(parameters) = parameters else {
         return Err(Error::damaged(&path, "its genome is not one of the experiment"));
     };
+    // Where nothing can be written, that is said before anything is computed.
+    drop(Lock::of_tests(directory)?);
     let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
     let size = if best.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);

@@ -53,12 +53,14 @@ pub(crate) fn go_on(
     evolved(directory)?;
     // The lock comes before anything is read that another process might be writing.
     let _lock = Lock::of_run(directory)?;
-    draft::sweep(directory.path());
-    let last = plan.generations()?;
-    let (mut run, done) = Run::resume(plan, directory, &pool, program)?;
+    let path = directory.checkpoint();
+    let checkpoint = Checkpoint::read(plan, directory)?;
+    checkpoint.identity.same_values(&plan.identity()?, &path)?;
+    let (done, last) = (checkpoint.generation, plan.generations()?);
     if last < done {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
     }
+    let mut run = Run::resume(plan, directory, checkpoint, &pool, program)?;
     let individuals = |generations: u32| u64::from(generations).saturating_mul(run.strategy.ask().len() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
     if let Some(kept) = &run.kept {
@@ -124,34 +126,32 @@ struct Run<'d> {
 }
 
 impl<'d> Run<'d> {
-    /// Takes up the run in a directory where its checkpoint left it, and says how many generations are finished.
+    /// Takes up the run in a directory where its checkpoint left it. Nothing is written before all is read.
     fn resume(
         plan: &Plan<'_>,
         directory: &'d Directory,
+        checkpoint: Checkpoint,
         pool: &Pool<'_>,
         program: &'d str,
-    ) -> Result<(Self, u32), Error> {
-        let path = directory.checkpoint();
-        let checkpoint = Checkpoint::read(plan, directory)?;
-        checkpoint.identity.same_values(&plan.identity()?, &path)?;
+    ) -> Result<Self, Error> {
         let mut told = Told::read(plan, directory, &checkpoint)?;
         let strategy = resumed(plan, directory, &checkpoint, &told.record)?;
         let hall = match told.record.populations() {
             1 => Hall::default(),
             _ => Hall::before(&History::new(directory.record(), told.record.clone(), plan.fresh()), pool.genotype())?,
         };
-        let done = strategy.generation();
         let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
-        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), done));
-        let lineage = lineage(plan, directory, &checkpoint, &told.record, strategy.as_ref())?;
+        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), strategy.generation()));
         let text = plan.to_toml()?;
+        draft::sweep(directory.path());
         if read_own_text(&directory.config(), LARGEST_CONFIG).ok().as_ref() != Some(&text) {
             replace(&directory.config(), text.as_bytes())?;
         }
         let file = told.file(directory)?;
+        let lineage = lineage(plan, directory, &checkpoint, &told.record, strategy.as_ref())?;
         let Told { record, lines, diagnostics, .. } = told;
         let (log, kept) = Log::resume(&directory.log(), lines, record.populations())?;
-        let run = Self {
+        Ok(Self {
             directory,
             program,
             title: plan.name(),
@@ -170,8 +170,7 @@ impl<'d> Run<'d> {
             manifest,
             champions: None,
             started: Instant::now(),
-        };
-        Ok((run, done))
+        })
     }
 
     /// Evaluates all individuals of a generation and makes the next.

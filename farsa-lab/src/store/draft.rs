@@ -46,7 +46,15 @@ fn builder<T>(path: &Path, mode: u32, make: impl Fn(&Builder<'_, '_>, &Path) -> 
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
     let _ = mode;
-    make(&builder, parent(path))
+    make(&builder, parent(path)).map_err(plain)
+}
+
+/// The system's own error, without the name that nobody knows.
+fn plain(error: io::Error) -> io::Error {
+    match error.get_ref().and_then(|inner| inner.source()) {
+        Some(inner) => io::Error::new(error.kind(), inner.to_string()),
+        None => error,
+    }
 }
 
 /// Whether the lock on a draft that was just made is ours, and the draft still there.

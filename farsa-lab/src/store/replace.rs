@@ -17,7 +17,7 @@ pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 /// The same, and keeps the file open at its end.
 pub(crate) fn replace_and_keep(path: &Path, bytes: &[u8]) -> Result<File, Error> {
     let written = draft::file(path).and_then(|mut draft| {
-        draft.write_all(bytes)?;
+        draft.as_file_mut().write_all(bytes)?;
         draft.as_file().sync_all()?;
         let file = draft.persist(path).map_err(|error| error.error)?;
         // It has its name, and is no draft any more. Where there are no locks there is nothing to release.
@@ -67,7 +67,7 @@ pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<
         }
         draft::sweep_of(path);
         let whole = draft::file(path).and_then(|mut draft| {
-            draft.write_all(content)?;
+            draft.as_file_mut().write_all(content)?;
             draft.as_file().sync_all()?;
             Ok(draft)
         });
