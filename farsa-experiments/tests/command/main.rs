@@ -11,4 +11,5 @@ mod replications;
 mod report;
 mod robot;
 mod same_bytes;
+mod strangers;
 mod tool;
