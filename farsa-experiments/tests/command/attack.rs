@@ -117,19 +117,6 @@ fn a_configuration_of_many_keys_is_refused_with_its_first() {
     assert!(said.err.contains("m.toml line 2: unknown key `k0`"), "{said:?}");
 }
 
-#[test]
-fn control_characters_are_shown_and_not_obeyed() {
-    let here = scratch("escapes");
-    fs::write(here.join("e.toml"), "experiment = \"cart\"\n\"\\u001b[2J\\u009b\" = 1\n").expect("a file");
-    fs::write(here.join("f.toml"), "experiment = \"\\u001b]0;x\\u0007\\nerror: forged\"\n").expect("a file");
-    for file in ["e.toml", "f.toml"] {
-        let said = say(own(), &here, &format!("run --config {file}"));
-        assert_eq!(said.code, Some(2), "{said:?}");
-        assert!(!said.err.trim_end().contains(|c: char| c.is_control()), "{said:?}");
-        assert!(said.err.contains("\\u{1b}"), "{said:?}");
-    }
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn threads_that_cannot_be_made_are_an_error() {

@@ -131,7 +131,7 @@ fn a_configuration_file() {
     fs::write(here.join("my.toml"), "seed = 3").expect("the file");
     refused(own(), &here, "run --config my.toml", 2, &["neither the command line nor the file names an experiment"]);
     fs::write(here.join("my.toml"), [0xff, 0xfe]).expect("the file");
-    refused(own(), &here, "run cart --config my.toml", 2, &["my.toml: line 1: "]);
+    refused(own(), &here, "run cart --config my.toml", 2, &["my.toml: line 1: the byte 0xff is no text"]);
 }
 
 #[test]

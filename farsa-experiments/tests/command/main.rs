@@ -12,4 +12,5 @@ mod replications;
 mod report;
 mod robot;
 mod same_bytes;
+mod strangers;
 mod tool;

@@ -15,6 +15,7 @@ use crate::command::arguments::subcommands::{
 use crate::command::interrupt::{START_AGAIN, stop_on_signals, under_scheduler};
 use crate::command::{info, manual};
 use crate::error::Error;
+use crate::escaped::escaped;
 use crate::evaluation::{draw, evaluate, import, replay, test};
 use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
@@ -54,7 +55,7 @@ pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
         // The reader has seen enough: `farsa replay ... | head`.
         Err(error) if replay::reader_left(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            let _ = writeln!(io::stderr(), "error: {error}");
+            let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
             let again = matches!(error, Error::Interrupted { .. }) && under_scheduler();
             ExitCode::from(if again { START_AGAIN } else { error.exit_code() })
         }
@@ -81,11 +82,11 @@ impl<'e> Invocation<'e, '_> {
     fn execute(&self, command: Command) -> Result<(), Error> {
         let Self { program, experiments, quiet } = *self;
         match command {
-            Command::List(ListArgs { json: false }) => say(&info::list(experiments)),
+            Command::List(ListArgs { json: false }) => tell(&info::list(experiments)),
             Command::List(ListArgs { json: true }) => say(&info::list_as_json(experiments)?),
             Command::Info(InfoArgs { experiment, condition, json }) => {
                 let plan = Plan::new(self.find(&experiment)?, condition.as_deref(), "")?;
-                say(&if json { info::as_json(&plan)? } else { info::as_text(&plan)? })
+                if json { say(&info::as_json(&plan)?) } else { tell(&info::as_text(&plan)?) }
             }
             Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
                 let found = self.replicate(&args, count)?;
@@ -109,7 +110,7 @@ impl<'e> Invocation<'e, '_> {
                 let plan = args.variant.plan(self.find(&args.experiment)?)?;
                 let (pool, trials) = (args.workers.pool(&plan)?, args.trials as usize);
                 let found = evaluate::evaluate(&plan, pool, &args.genes(), trials, args.seed, quiet)?;
-                say(&if args.json { pretty(&found)? } else { found.text() })
+                if args.json { say(&pretty(&found)?) } else { tell(&found.text()) }
             }
             Command::Import(args) => {
                 let mut plan = args.variant.plan(self.find(&args.experiment)?)?;
@@ -140,7 +141,8 @@ impl<'e> Invocation<'e, '_> {
                 let reading = robot_file::read(&args.file, &args.options())?;
                 let found = robot_file::Summary::new(&args.file, &reading);
                 match (args.format, args.out) {
-                    (None, _) => say(&if args.json { pretty(&found)? } else { found.text() }),
+                    (None, _) if args.json => say(&pretty(&found)?),
+                    (None, _) => tell(&found.text()),
                     (Some(format), None) => say(&robot_file::written(&reading, format)?),
                     (Some(format), Some(path)) => {
                         create_results(&[(path, robot_file::written(&reading, format)?)])?;
@@ -166,7 +168,7 @@ impl<'e> Invocation<'e, '_> {
         match (json, self.quiet) {
             (true, _) => say(&all()?),
             (false, true) => Ok(()),
-            (false, false) => say(text),
+            (false, false) => tell(text),
         }
     }
 
@@ -214,7 +216,7 @@ impl<'e> Invocation<'e, '_> {
             }
             let _ = write!(io::stderr(), "{summary}");
         } else if !self.quiet {
-            let _ = writeln!(io::stderr(), "{}", found.summary);
+            let _ = writeln!(io::stderr(), "{}", escaped(&found.summary));
         }
         Ok(())
     }
@@ -323,6 +325,12 @@ impl<'e> Invocation<'e, '_> {
     }
 }
 
+/// Prints what a person reads; names from elsewhere in it do not reach the terminal as they are.
+fn tell(text: &str) -> Result<(), Error> {
+    say(&*escaped(text))
+}
+
+/// Prints data, as they are.
 fn say(text: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_ref()).and_then(|()| out.flush()).map_err(Error::io("write", "the output".as_ref()))

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use crate::error::Error;
+use crate::escaped::Quoted;
 use crate::experiment::genotype::Genotype;
 use crate::store::bounded;
 
@@ -41,7 +42,8 @@ impl fmt::Display for GenotypeError {
         match self {
             Self::Gene { line, position, text, largest } => {
                 place(f, line)?;
-                write!(f, "gene {position} (the first is 0) is `{text}`, not a whole number from 0 to {largest}")
+                let text = Quoted(text);
+                write!(f, "gene {position} (the first is 0) is {text}, not a whole number from 0 to {largest}")
             }
             Self::Count { line, found, expected } => {
                 place(f, line)?;
@@ -201,6 +203,10 @@ mod tests {
         ] {
             assert_eq!(wrong(&format!("{head}{rest}")), why, "{rest:?}");
         }
+        let (evil, long) =
+            (wrong(&format!("{head}\u{1b}[2J\u{9b}\n")), wrong(&format!("{head}{}\n", "9".repeat(1 << 20))));
+        assert!(evil.starts_with("line 3: gene 0 (the first is 0) is `\\u{1b}[2J\\u{9b}`, not"), "{evil}");
+        assert!(long.len() < 300, "{}", long.len());
         assert_eq!(wrong(" \n\n"), "there is no genotype in it");
     }
 

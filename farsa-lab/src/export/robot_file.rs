@@ -8,6 +8,7 @@ use farsa_models::{Imported, MjcfOptions, ReadError, ReadOptions, mjcf, urdf};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::escaped::{OneLine, shortened};
 use crate::export::files::ModelFormat;
 
 /// What was read.
@@ -114,12 +115,17 @@ impl Summary {
 
     pub(crate) fn text(&self) -> String {
         let Self { robot, file, segments, joints, colliders, pairs, mass, notes } = self;
+        // Names are columns: a long one would widen every line.
+        let line = |text: &str| OneLine(shortened(text)).to_string();
         let mut text = format!(
-            "{file}: {robot}\n{segments} segments of {mass:.4} kg, {} joints, {colliders} colliders, {pairs} pairs\n",
+            "{}: {}\n{segments} segments of {mass:.4} kg, {} joints, {colliders} colliders, {pairs} pairs\n",
+            OneLine(file),
+            line(robot),
             joints.len()
         );
         // Writing into a string cannot fail.
-        let width = |of: fn(&JointSummary) -> &str| joints.iter().map(|j| of(j).chars().count()).max().unwrap_or(0);
+        let width =
+            |of: fn(&JointSummary) -> &str| joints.iter().map(|j| line(of(j)).chars().count()).max().unwrap_or(0);
         let (names, carried) = (width(|joint| &joint.name), width(|joint| &joint.segment));
         for joint in joints {
             let range = match joint.range {
@@ -133,10 +139,10 @@ impl Summary {
             let _ = writeln!(
                 text,
                 "  {:names$}  {:6} {:carried$} on {}: {range}{}{}",
-                joint.name,
+                line(&joint.name),
                 joint.kind,
-                joint.segment,
-                joint.parent,
+                line(&joint.segment),
+                line(&joint.parent),
                 if actuators.is_empty() { "" } else { ", " },
                 actuators
             );
@@ -145,8 +151,37 @@ impl Summary {
             text.push_str("left out or replaced:\n");
         }
         for note in notes {
-            let _ = writeln!(text, "  {note}");
+            let _ = writeln!(text, "  {}", OneLine(note));
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stay_in_their_lines() {
+        let names = ["\u{1b}[2J\u{9b}", "a\nerror: b", &"n".repeat(1 << 20)].map(str::to_owned);
+        let joint = |name: &String| JointSummary {
+            name: name.clone(),
+            kind: "turns",
+            segment: name.clone(),
+            parent: name.clone(),
+            range: [Some(-1.0), None],
+            armature: 0.0,
+            damping: 0.0,
+            mass: 1.0,
+            actuators: Vec::new(),
+        };
+        let [robot, file, _] = names.clone();
+        let joints = names.iter().map(joint).collect();
+        let summary =
+            Summary { robot, file, segments: 4, joints, colliders: 0, pairs: 0, mass: 1.0, notes: names[..2].into() };
+        let text = summary.text();
+        assert_eq!(text.lines().count(), 2 + 3 + 1 + 2, "{text}");
+        assert!(text.starts_with("a\\nerror: b: \\u{1b}[2J\\u{9b}\n4 segments"), "{text}");
+        assert!(!text.contains(['\u{1b}', '\u{9b}']) && text.lines().all(|line| line.len() < 700), "{text}");
     }
 }

@@ -34,6 +34,11 @@ const COLORS: [RGBColor; 6] = [
 /// More points than these are not seen; every k-th is drawn then.
 const MOST_POINTS: usize = 1500;
 
+/// Larger values are drawn as this part of themselves, so that neither their range nor what plotters computes from it
+/// overflows: it would look for places of labels for ever. A power of two changes no digit.
+const LARGE: f64 = 1e300;
+const PART_OF_LARGE: f64 = 1.0 / 65536.0;
+
 /// Curves that share a pair of axes.
 #[derive(Debug, Default)]
 pub(crate) struct Chart {
@@ -128,7 +133,7 @@ impl Chart {
     fn picture<'s>(&self, area: &DrawingArea<SVGBackend<'s>, Shift>) -> Result<(), Box<dyn std::error::Error + 's>> {
         let (head, body) = area.split_vertically(self.head());
         self.legend(&head)?;
-        let (low, high) = self.limits();
+        let Limits { low, high, part } = self.limits();
         let generations = self.curves.iter().map(|curve| curve.values.len()).max().unwrap_or(0);
         let mut chart = ChartBuilder::on(&body)
             .margin_left(8)
@@ -146,28 +151,29 @@ impl Chart {
             .light_line_style(TRANSPARENT)
             .bold_line_style(GRID_COLOR)
             .axis_style(INK_COLOR)
-            .y_label_formatter(&|y| ((y * 1e6).round() / 1e6 + 0.0).to_string())
+            .y_label_formatter(&|y| label(y / part))
             .label_style(FONT.into_font().color(&INK_COLOR))
             .draw()?;
         let (named, nameless): (Vec<_>, Vec<_>) = self.curves.iter().partition(|curve| curve.name.is_some());
         // The first curve comes last, on top of the others.
         for curve in named.iter().rev() {
             let color = COLORS[curve.color % COLORS.len()];
-            for part in parts(&curve.band, |pair| pair.iter().all(|x| x.is_finite())) {
-                let there = part.iter().map(|&(x, [low, _])| (x, low));
-                let back = part.iter().rev().map(|&(x, [_, high])| (x, high));
+            for run in parts(&curve.band, |pair| pair.iter().all(|x| x.is_finite())) {
+                let there = run.iter().map(|&(x, [low, _])| (x, low * part));
+                let back = run.iter().rev().map(|&(x, [_, high])| (x, high * part));
                 chart.draw_series([Polygon::new(there.chain(back).collect::<Vec<_>>(), color.mix(0.22))])?;
             }
         }
         let thin = nameless.iter().map(|curve| (curve, COLORS[curve.color % COLORS.len()].mix(0.45).stroke_width(1)));
         let thick = named.iter().rev().map(|curve| (curve, COLORS[curve.color % COLORS.len()].stroke_width(2)));
         for (curve, style) in thin.chain(thick) {
-            for part in parts(&curve.values, f64::is_finite) {
+            for run in parts(&curve.values, f64::is_finite) {
+                let points: Vec<(usize, f64)> = run.into_iter().map(|(x, y)| (x, y * part)).collect();
                 // A line of one point is not seen.
                 let dot =
-                    if part.len() == 1 { part.first().map(|&at| Circle::new(at, 3, style.filled())) } else { None };
+                    if points.len() == 1 { points.first().map(|&at| Circle::new(at, 3, style.filled())) } else { None };
                 chart.draw_series(dot)?;
-                chart.draw_series(LineSeries::new(part, style))?;
+                chart.draw_series(LineSeries::new(points, style))?;
             }
         }
         Ok(())
@@ -202,17 +208,33 @@ impl Chart {
         places
     }
 
-    fn limits(&self) -> (f64, f64) {
+    fn limits(&self) -> Limits {
         let values = self.curves.iter().flat_map(|curve| curve.values.iter().chain(curve.band.iter().flatten()));
         let finite = || values.clone().copied().filter(|x| x.is_finite());
         let (mut low, mut high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
         if low > high {
             (low, high) = (0.0, 1.0);
         }
+        let part = if low.abs().max(high.abs()) > LARGE { PART_OF_LARGE } else { 1.0 };
+        (low, high) = (low * part, high * part);
         // A flat curve needs an axis too.
         let margin = (0.05 * (high - low)).max(1e-9 * high.abs()).max(f64::MIN_POSITIVE.sqrt());
-        (low - margin, high + margin)
+        // A label beyond could not be written.
+        let most = f64::MAX * part;
+        Limits { low: (low - margin).max(-most), high: (high + margin).min(most), part }
     }
+}
+
+/// The ends of the upward axis, in a part of the values.
+struct Limits {
+    low: f64,
+    high: f64,
+    part: f64,
+}
+
+/// A value at the axis: six digits after the point, and no more digits than a value has.
+fn label(y: f64) -> String {
+    if y.abs() < 1e15 { ((y * 1e6).round() / 1e6 + 0.0).to_string() } else { format!("{y:e}") }
 }
 
 /// Every how many generations a point is drawn.
@@ -231,6 +253,75 @@ fn parts<T: Copy>(values: &[T], drawable: impl Fn(T) -> bool) -> Vec<Vec<(usize,
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn values_of_any_size_can_be_drawn() {
+        let neighbours = |x: f64| [x, f64::from_bits(x.to_bits() + 1)];
+        for values in [
+            [1.7e308, -1.7e308],
+            [f64::MAX, f64::MIN],
+            [f64::MAX; 2],
+            [f64::MIN; 2],
+            [1.7e308, 0.0],
+            [1e300, -1e300],
+            [5e-324, 0.0],
+            [5e-324; 2],
+            [-5e-324, f64::MIN_POSITIVE],
+            [1e300, 5e-324],
+            neighbours(1.0),
+            neighbours(-1e300),
+            neighbours(1.7e308),
+            neighbours(5e-324),
+            neighbours(4.5e15),
+            [1.7e308, f64::INFINITY],
+            [f64::NEG_INFINITY, f64::INFINITY],
+            [f64::NAN, -1.7e308],
+        ] {
+            drawn(&values);
+        }
+        // However large, a value is where it belongs.
+        let curve = |scale: f64| {
+            let svg = drawn(&[-1e308 * scale, 0.5e308 * scale, 1e308 * scale]);
+            let line = svg.lines().find(|line| line.contains("<polyline") && line.contains("stroke-width=\"2\""));
+            line.unwrap().to_owned()
+        };
+        assert_eq!(curve(1.0), curve(1e-308));
+        assert_eq!(
+            [0.1 + 0.2, -1e-9, 999_999_999.5, 2e15, 1.7e308].map(label),
+            ["0.3", "0", "999999999.5", "2e15", "1.7e308"]
+        );
+    }
+
+    /// A chart of these values, also as a band, beside a chart of others; it must have limits, and be finite.
+    fn drawn(values: &[f64]) -> String {
+        let curve = |values: &[f64], band: &[f64]| Curve {
+            name: Some("c".into()),
+            values: values.into(),
+            band: band.windows(2).map(|pair| [pair[0], pair[1]]).collect(),
+            ..Curve::default()
+        };
+        let curves = || vec![curve(values, values), curve(&[1.0, f64::NAN, 2.0], &[])];
+        let charts = [(vec![curve(values, &[])]), curves()].map(|curves| Chart { curves, ..Chart::default() });
+        for chart in &charts {
+            let Limits { low, high, .. } = chart.limits();
+            // Otherwise plotters would not end.
+            assert!((high - low).is_finite() && high > low, "{values:?}: {low:e} to {high:e}");
+        }
+        let svg = stack(&charts).unwrap();
+        assert!(svg.ends_with("</svg>\n") && svg.len() < 30_000, "{values:?}: {}", svg.len());
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{values:?}: {svg}");
+        svg
+    }
+
+    proptest! {
+        #[test]
+        fn no_values_keep_it_from_ending(
+            values in prop::collection::vec(prop_oneof![any::<f64>(), (-1.0..1.0).prop_map(|x| x * f64::MAX)], 1..5),
+        ) {
+            drawn(&values);
+        }
+    }
 
     #[test]
     fn every_log_can_be_drawn() {

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::escaped::escaped;
 use crate::figures::statistics::{Quartiles, median};
 use crate::run::begin;
 use crate::run::evolve;
@@ -65,7 +66,7 @@ pub(crate) fn run<'e>(
     let tell = |line: String| {
         if !quiet {
             // A user who closed the error stream does not want to know.
-            let _ = writeln!(io::stderr(), "{line}");
+            let _ = writeln!(io::stderr(), "{}", escaped(&line));
         }
     };
     let stop = stop();
