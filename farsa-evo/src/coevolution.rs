@@ -195,6 +195,8 @@ impl TryFrom<SavedStrategy<Vec<GaConfig>>> for Coevolution {
     type Error = EvoError;
 
     fn try_from(saved: SavedStrategy<Vec<GaConfig>>) -> Result<Self, EvoError> {
+        let product = |config: &GaConfig| config.population.saturating_mul(config.genes);
+        saved.holds(saved.config.iter().map(product).fold(0, usize::saturating_add), 1)?;
         let mut strategy = Self::new(&saved.config, saved.seed)?;
         strategy.restore(&saved.state)?;
         Ok(strategy)

@@ -215,6 +215,7 @@ impl TryFrom<SavedStrategy<OnePlusOneConfig>> for OnePlusOne {
     type Error = EvoError;
 
     fn try_from(saved: SavedStrategy<OnePlusOneConfig>) -> Result<Self, EvoError> {
+        saved.holds(2, saved.config.genes)?;
         let mut strategy = Self::new(saved.config, saved.seed)?;
         strategy.restore(&saved.state)?;
         Ok(strategy)

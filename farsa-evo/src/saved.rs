@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use crate::error::EvoError;
 use crate::mutation::Mutation;
 use crate::snapshot::Snapshot;
 
@@ -16,6 +17,16 @@ pub(crate) struct SavedStrategy<C> {
 impl<C> SavedStrategy<C> {
     pub(crate) fn new(config: C, seed: u64, strategy: &dyn Snapshot) -> Self {
         Self { config, seed, state: strategy.save() }
+    }
+
+    /// Refuses a state that is too short for the genes of all `individuals`, before they take memory: a configuration that was
+    /// forged may ask for any number of them.
+    ///
+    /// # Errors
+    /// [`EvoError::StateLength`].
+    pub(crate) fn holds(&self, individuals: usize, genes: usize) -> Result<(), EvoError> {
+        let (expected, found) = (individuals.saturating_mul(genes).saturating_mul(2), self.state.len());
+        if expected <= found { Ok(()) } else { Err(EvoError::StateLength { expected, found }) }
     }
 }
 

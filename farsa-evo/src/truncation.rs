@@ -193,6 +193,7 @@ impl TryFrom<SavedStrategy<GaConfig>> for TruncationGa {
     type Error = EvoError;
 
     fn try_from(saved: SavedStrategy<GaConfig>) -> Result<Self, EvoError> {
+        saved.holds(saved.config.population, saved.config.genes)?;
         let mut strategy = Self::new(saved.config, saved.seed)?;
         strategy.restore(&saved.state)?;
         Ok(strategy)

@@ -235,6 +235,29 @@ fn fitness_round_trips() {
     assert!(from_bytes::<Fitness>(&to_allocvec(&Some(f64::NAN)).unwrap()).is_err());
 }
 
+/// A strategy as it is saved, free of its checks.
+#[derive(Serialize)]
+struct ForgedStrategy<C> {
+    config: C,
+    seed: u64,
+    state: Vec<u8>,
+}
+
+#[test]
+fn a_forged_size_takes_no_memory() {
+    // Half a gigabyte of genes in some thirty bytes; a hundred thousand of them would take hours if they were made.
+    let config = GaConfig { population: 1 << 27, parents: 1, ..GaConfig::new(2) };
+    for _ in 0..100_000 {
+        let state = Vec::from([0; 12]);
+        let forged = to_allocvec(&ForgedStrategy { config, seed: 1, state: state.clone() }).unwrap();
+        assert!(forged.len() < 60 && from_bytes::<TruncationGa>(&forged).is_err());
+        let forged = to_allocvec(&ForgedStrategy { config: vec![config; 2], seed: 1, state: state.clone() }).unwrap();
+        assert!(from_bytes::<Coevolution>(&forged).is_err());
+        let config = OnePlusOneConfig::new(1 << 27);
+        assert!(from_bytes::<OnePlusOne>(&to_allocvec(&ForgedStrategy { config, seed: 1, state }).unwrap()).is_err());
+    }
+}
+
 #[test]
 fn torn_bytes_are_refused() {
     let mut ga = TruncationGa::new(GaConfig::new(12), 6).unwrap();

@@ -7,6 +7,8 @@ use std::time::Duration;
 use farsa_evo::Statistics;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
+use crate::escaped::escaped;
+
 /// The progress of a run or a test, on the standard error.
 pub(crate) enum Progress {
     Quiet,
@@ -76,7 +78,7 @@ impl Progress {
 
 fn note(text: &str) {
     // A user who closed the error stream does not want to know.
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{}", escaped(text));
 }
 
 impl Drop for Progress {
