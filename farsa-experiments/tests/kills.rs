@@ -13,9 +13,9 @@ use farsa_num::{Domain, Stream};
 
 /// Experiments with what makes their generations short, of one population and of two.
 const RUNS: [(&str, &str); 3] = [
-    ("discrimination", "--population 20 --set evolution.parents=4"),
-    ("minimal-cognition", "--population 10 --set evolution.parents=2"),
-    ("predator-prey", "--population 6 --set evolution.parents=2"),
+    ("discrimination", "--set trial.count=2 --set trial.steps=50"),
+    ("foraging", "--population 10 --set evolution.parents=2 --set trial.count=1 --set trial.steps=30"),
+    ("predator-prey", "--population 6 --set evolution.parents=2 --set trial.count=2 --set trial.steps=40"),
 ];
 
 fn farsa(here: &Path, arguments: &str) -> Command {
@@ -49,7 +49,7 @@ fn delay(stream: &mut Stream) -> Duration {
     let seconds = if kind < 0.55 {
         0.06 * x
     } else if kind < 0.85 {
-        1.0 + 0.12 * x
+        1.0 + 0.25 * x
     } else {
         1.3 * x
     };
@@ -91,7 +91,7 @@ fn killed_again_and_again(here: &Path, (name, options): (&str, &str), kills: u32
             latest = now;
         }
     }
-    let last = latest + 200;
+    let last = latest + 20;
     let end = if here.join("r").exists() {
         // The number of generations may have been passed by then.
         let end = finished(here).unwrap_or(0).max(last);
@@ -117,7 +117,7 @@ fn killed_again_and_again(here: &Path, (name, options): (&str, &str), kills: u32
 
 #[test]
 fn a_run_that_is_killed_again_and_again_is_the_run_that_was_not() {
-    let kills = std::env::var("FARSA_KILLS").ok().map_or(45, |kills| kills.parse().expect("FARSA_KILLS is a number"));
+    let kills = std::env::var("FARSA_KILLS").ok().map_or(60, |kills| kills.parse().expect("FARSA_KILLS is a number"));
     let root = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("kills");
     thread::scope(|scope| {
         for (own, run) in (0..).zip(RUNS) {
