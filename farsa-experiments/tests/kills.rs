@@ -75,11 +75,11 @@ fn killed_again_and_again(here: &Path, (name, options): (&str, &str), kills: u32
     let _ = fs::remove_dir_all(here);
     fs::create_dir_all(here).unwrap();
     let mut stream = Stream::new(20_261_123, Domain::General, own, 0, 0);
-    let start = format!("run {name} {options} --generations 4000000 --threads 1 --out r");
+    let start = format!("run {name} {options} --generations 4000000 --threads 1 --out r -q");
     let mut latest = 0;
     for kill in 0..kills {
         // Whatever was left behind, the next start takes it up; only a directory that is not there yet is made.
-        let arguments = if here.join("r").exists() { "run --resume r --threads 1" } else { &start };
+        let arguments = if here.join("r").exists() { "run --resume r --threads 1 -q" } else { &start };
         let mut child = farsa(here, arguments).spawn().unwrap();
         thread::sleep(delay(&mut stream));
         child.kill().unwrap();
