@@ -1,6 +1,7 @@
 //! Tests of whole runs with every strategy: what is selected, written, resumed and replayed.
 //!
 //! - `reference`: our strategies, against what is computed by hand
+//! - `pool`: a pool's threads: outcomes in their order, stops, and panics alone and in lanes
 //! - `own_strategy`: a strategy of a user's own
 //! - `files`: what is refused, and what is mended
 //! - `faults`: evaluations that panic, that are no number and that do not end
@@ -8,6 +9,7 @@
 mod faults;
 mod files;
 mod own_strategy;
+mod pool;
 mod reference;
 
 use std::fs;
