@@ -18,8 +18,7 @@ pub struct Limits {
     pub attributes: usize,
     /// Elements in the `default` classes of an MJCF.
     pub defaults: usize,
-    /// Geoms of an MJCF that may touch others, and degrees of freedom of a robot with contacts: what takes time as their
-    /// square or cube.
+    /// Geoms of an MJCF that may touch others, each of which is compared with each.
     pub contacts: usize,
     /// Files that are opened: the model, included ones, and meshes each time that they are used.
     pub files: usize,
@@ -27,7 +26,7 @@ pub struct Limits {
 
 impl Default for Limits {
     /// 32 MiB a file and 1 GiB in all, 100 000 elements 200 deep with 64 attributes each, 2000 files; 1000 defaults, 2000
-    /// geoms that may touch and degrees of freedom. A few hundred MiB of memory at most, and seconds.
+    /// geoms that may touch. A few hundred MiB of memory at most, and seconds.
     fn default() -> Self {
         Self {
             bytes: 32 << 20,

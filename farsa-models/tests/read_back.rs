@@ -363,11 +363,7 @@ fn hostile_texts_are_refused_soon() {
     assert_eq!(read(&free).unwrap().robot.segments.len(), 2000);
     let free =
         free.replace("</worldbody>", "<geom name='g' size='1'/><body><joint/><geom size='1'/></body></worldbody>");
-    assert!(
-        message(&free).ends_with("more than 2000 degrees of freedom of a robot with contacts"),
-        "{}",
-        message(&free)
-    );
+    assert_eq!(read(&free).unwrap().robot.pairs.len(), 1, "12 001 degrees of freedom");
     let defaults = format!("<mujoco><default>{}</default></mujoco>", "<geom/>".repeat(2000));
     assert_eq!(message(&defaults), "text line 1: more than 1000 defaults");
     let comments = format!("<mujoco>{}</mujoco>", "<!---->".repeat(1_000_000));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_body::{JointKind, Robot, Shape};
+use farsa_body::{Robot, Shape};
 
 use crate::context::Context;
 use crate::error::ReadError;
@@ -49,8 +49,8 @@ pub(crate) fn contacts<'t>(
         check_pair(element, &mut context.warnings)?;
     }
     let declared = Declared::from_model(model, robot, classes, bodies, &mut context.warnings)?;
-    let most = context.options.limits.contacts;
-    let generated = generated(robot, bodies, &touching(bodies, most)?, &declared)?;
+    let touching = touching(bodies, context.options.limits.contacts)?;
+    let generated = generated(robot, bodies, &touching, &declared)?;
     if declared.pairs.is_empty() && generated.is_empty() {
         return Ok(());
     }
@@ -58,7 +58,6 @@ pub(crate) fn contacts<'t>(
         let what = format!("became {} pairs", generated.len());
         context.warnings.add(model.place(), "contype, conaffinity", what);
     }
-    limit_freedoms(model, robot, most)?;
     let pairs = declared.pairs.into_iter().chain(generated);
     add_pairs(model, robot, pairs, &mut context.warnings)
 }
@@ -200,20 +199,6 @@ fn generated(
         }
     }
     Ok(pairs)
-}
-
-/// Refuses robots whose inverse weights would take long: their mass matrix is factorised, which goes with the cube.
-fn limit_freedoms(model: Element<'_>, robot: &Robot, most: usize) -> Result<(), ReadError> {
-    let freedoms = robot.segments.iter().map(|segment| match segment.joint.kind {
-        JointKind::Fixed => 0,
-        JointKind::Floating => 6,
-        JointKind::Revolute | JointKind::Prismatic => 1,
-    });
-    if freedoms.sum::<usize>() > most {
-        let what = "degrees of freedom of a robot with contacts";
-        return Err(ReadError::TooMuch { place: model.place(), what, limit: most });
-    }
-    Ok(())
 }
 
 /// Adds the pairs with the springs and dampers that their bodies' inverse weights make of MuJoCo's numbers.
