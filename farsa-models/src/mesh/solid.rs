@@ -4,8 +4,25 @@ use farsa_body::{MassProperties, Pose, Shape};
 
 use crate::mesh::triangles::{Mesh, z_to_axis};
 
+/// What stands for a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MeshFit {
+    /// The shape that holds all points, and its place.
+    shape: Shape,
+    place: Pose<f64>,
+    /// The solid of density 1 within the triangles, if they make one.
+    solid: Option<MassProperties>,
+}
+
+impl MeshFit {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let (shape, place) = mesh.fitted();
+        Self { shape, place, solid: mesh.solid(1.0) }
+    }
+}
+
 /// A shape of a model file, in its own frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Solid {
     /// One that a description has as well.
     Native(Shape),
@@ -16,7 +33,7 @@ pub(crate) enum Solid {
     },
     /// Half axes.
     Ellipsoid([f64; 3]),
-    Mesh(Mesh),
+    Mesh(MeshFit),
 }
 
 impl Solid {
@@ -40,14 +57,13 @@ impl Solid {
                 let why = "an ellipsoid became the capsule along its longest axis with the radius of the next";
                 (shape, Pose { rotation, ..here }, Some(why))
             }
-            Self::Mesh(mesh) => {
-                let (shape, at) = mesh.fitted();
+            Self::Mesh(MeshFit { shape, place, .. }) => {
                 let why = match shape {
                     Shape::Sphere { .. } => "a mesh became the ball that holds it",
                     Shape::Capsule { .. } => "a mesh became the capsule that holds it",
                     _ => "a mesh became the box that holds it",
                 };
-                (shape, at, Some(why))
+                (*shape, *place, Some(why))
             }
         }
     }
@@ -63,9 +79,7 @@ impl Solid {
             Self::Native(Shape::Plane) => 0.0,
             Self::Cylinder { radius, half_length } => 2.0 * pi * radius * radius * half_length,
             Self::Ellipsoid([a, b, c]) => 4.0 / 3.0 * pi * a * b * c,
-            Self::Mesh(mesh) => {
-                mesh.solid(1.0).map_or_else(|| Self::Native(mesh.fitted().0).volume(), |solid| solid.mass)
-            }
+            Self::Mesh(mesh) => mesh.solid.map_or_else(|| Self::Native(mesh.shape).volume(), |solid| solid.mass),
         }
     }
 
@@ -79,13 +93,8 @@ impl Solid {
                 let [a, b, c] = axes.map(|x| x * x * mass / 5.0);
                 MassProperties { mass, centre: [0.0; 3], inertia: [b + c, a + c, a + b, 0.0, 0.0, 0.0] }
             }
-            Self::Mesh(mesh) => mesh.solid(1.0).map_or_else(
-                || {
-                    let (shape, at) = mesh.fitted();
-                    MassProperties::from_shape(&shape, mass).placed(&at)
-                },
-                |solid| scaled(&solid, mass / solid.mass),
-            ),
+            Self::Mesh(MeshFit { solid: Some(solid), .. }) => scaled(solid, mass / solid.mass),
+            Self::Mesh(MeshFit { shape, place, .. }) => MassProperties::from_shape(shape, mass).placed(place),
         }
     }
 

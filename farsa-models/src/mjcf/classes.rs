@@ -1,5 +1,6 @@
 //! MJCF's classes of defaults, and elements that ask them for what they do not say.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use crate::error::ReadError;
@@ -32,7 +33,15 @@ pub(crate) struct Classes<'t> {
     parents: Vec<Option<usize>>,
     /// The elements of each.
     elements: Vec<Vec<Element<'t>>>,
+    /// What was asked for before. A model with many elements and many defaults would take long otherwise.
+    answers: RefCell<BTreeMap<Question<'t>, Option<Answer<'t>>>>,
 }
+
+/// A class, a kind of element and an attribute.
+type Question<'t> = (usize, &'t str, &'static str);
+
+/// The default that says an attribute, behind its class and its place there: of two the larger comes first.
+type Answer<'t> = ((usize, usize), Element<'t>);
 
 /// An element with the class that completes it.
 #[derive(Clone, Copy)]
@@ -45,10 +54,10 @@ pub(crate) struct Classed<'t, 'c> {
 impl<'t> Classes<'t> {
     /// The classes in the `default` elements of the model.
     ///
-    /// Every question is asked of them one after the other: there may be no more than `most` elements in them.
+    /// There may be no more than `most` elements in them: each question is asked of them one after the other, once.
     pub(crate) fn from_model(model: Element<'t>, most: usize) -> Result<Self, ReadError> {
         let names = BTreeMap::from([("main".to_owned(), 0)]);
-        let mut classes = Self { names, parents: vec![None], elements: vec![Vec::new()] };
+        let mut classes = Self { names, parents: vec![None], elements: vec![Vec::new()], answers: RefCell::default() };
         let mut waiting: Vec<(Element<'t>, Option<usize>)> =
             model.all("default").map(|element| (element, None)).collect();
         waiting.reverse();
@@ -104,6 +113,32 @@ impl<'t> Classes<'t> {
         known.ok_or_else(|| element.unknown("class", name, self.names.keys().map(String::as_str)))
     }
 
+    /// The default that says an attribute of a kind of element: that of the nearest class, and of it the last, which
+    /// overrides those before it.
+    fn answer(&self, class: usize, tag: &'t str, attribute: &'static str) -> Option<Answer<'t>> {
+        let kind = kind(tag);
+        let mut answers = self.answers.borrow_mut();
+        let (mut answer, mut unasked, mut next) = (None, Vec::new(), Some(class));
+        while let Some(current) = next {
+            if let Some(known) = answers.get(&(current, kind, attribute)) {
+                answer = *known;
+                break;
+            }
+            unasked.push(current);
+            next = self.parents[current];
+        }
+        // Down again from the outermost; a class comes after that in which it stands.
+        for current in unasked.into_iter().rev() {
+            let says =
+                |element: &Element<'t>| kind == self::kind(element.tag()) && element.attribute(attribute).is_some();
+            if let Some(place) = self.elements[current].iter().rposition(says) {
+                answer = Some(((current, place), self.elements[current][place]));
+            }
+            answers.insert((current, kind, attribute), answer);
+        }
+        answer
+    }
+
     /// An element with its own class, or that which its body gives to it.
     pub(crate) fn with<'c>(&'c self, element: Element<'t>, inherited: usize) -> Result<Classed<'t, 'c>, ReadError> {
         let class = element.attribute("class").map_or(Ok(inherited), |name| self.find(element, name))?;
@@ -111,35 +146,27 @@ impl<'t> Classes<'t> {
     }
 }
 
+/// What to look for an element's defaults among.
+fn kind(tag: &str) -> &str {
+    if ACTUATORS.contains(&tag) { ACTUATORS[0] } else { tag }
+}
+
 impl<'t> Classed<'t, '_> {
     /// The element or default that says the attribute: the element itself, else the nearest class.
-    pub(crate) fn source(&self, attribute: &str) -> Option<Element<'t>> {
+    pub(crate) fn source(&self, attribute: &'static str) -> Option<Element<'t>> {
         self.source_of(&[attribute])
     }
 
     /// The nearest that says one of the attributes.
-    pub(crate) fn source_of(&self, attributes: &[&str]) -> Option<Element<'t>> {
-        let says = |element: &Element<'t>| attributes.iter().any(|name| element.attribute(name).is_some());
-        if says(&self.element) {
+    pub(crate) fn source_of(&self, attributes: &[&'static str]) -> Option<Element<'t>> {
+        if attributes.iter().any(|name| self.element.attribute(name).is_some()) {
             return Some(self.element);
         }
-        let tag = self.element.tag();
-        let alike = |element: &Element<'t>| {
-            element.tag() == tag || (ACTUATORS.contains(&tag) && ACTUATORS.contains(&element.tag()))
-        };
-        let mut class = Some(self.class);
-        // The nearest class that says it; within a class the last element, which overrides those before it.
-        while let Some(current) = class {
-            let found = self.classes.elements[current].iter().rev().find(|element| alike(element) && says(element));
-            if let Some(found) = found {
-                return Some(*found);
-            }
-            class = self.classes.parents[current];
-        }
-        None
+        let answers = attributes.iter().filter_map(|name| self.classes.answer(self.class, self.element.tag(), name));
+        answers.max_by_key(|(nearness, _)| *nearness).map(|(_, element)| element)
     }
 
-    pub(crate) fn text(&self, attribute: &str) -> Option<&'t str> {
+    pub(crate) fn text(&self, attribute: &'static str) -> Option<&'t str> {
         self.source(attribute)?.attribute(attribute)
     }
 

@@ -1,5 +1,6 @@
 //! The geoms of an MJCF file and the meshes they are of.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use farsa_body::{Pose, Shape};
@@ -7,7 +8,7 @@ use farsa_body::{Pose, Shape};
 use crate::context::Context;
 use crate::error::ReadError;
 use crate::mesh::principal_axes::rotation_to;
-use crate::mesh::solid::Solid;
+use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
 use crate::mjcf::classes::{Classed, Classes};
 use crate::mjcf::compiler::{Compiler, ROTATIONS, SHOW};
@@ -18,7 +19,13 @@ use crate::xml::tree::Element;
 
 /// The meshes in `asset` elements, by name.
 pub(crate) struct MeshAssets<'t, 'c> {
-    all: BTreeMap<String, Classed<'t, 'c>>,
+    all: BTreeMap<String, MeshAsset<'t, 'c>>,
+}
+
+/// A mesh, which is read when the first geom asks for it.
+struct MeshAsset<'t, 'c> {
+    classed: Classed<'t, 'c>,
+    fit: Cell<Option<MeshFit>>,
 }
 
 impl<'t, 'c> MeshAssets<'t, 'c> {
@@ -27,7 +34,7 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
         classes: &'c Classes<'t>,
         warnings: &mut Warnings,
     ) -> Result<Self, ReadError> {
-        let mut all: BTreeMap<String, Classed<'t, 'c>> = BTreeMap::new();
+        let mut all: BTreeMap<String, MeshAsset<'t, 'c>> = BTreeMap::new();
         for asset in model.all("asset") {
             let ignored =
                 [("texture material", SHOW), ("hfield skin model", "height fields and skins are not described")];
@@ -44,8 +51,9 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
                     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
                 });
                 let name = element.attribute("name").or(file).ok_or_else(|| element.missing("name or file"))?;
-                if let Some(first) = all.insert(name.into(), classes.with(element, 0)?) {
-                    let (place, first) = (element.place(), first.element.place().line);
+                let asset = MeshAsset { classed: classes.with(element, 0)?, fit: Cell::new(None) };
+                if let Some(first) = all.insert(name.into(), asset) {
+                    let (place, first) = (element.place(), first.classed.element.place().line);
                     return Err(ReadError::Twice { place, what: "mesh".into(), name: name.into(), first });
                 }
             }
@@ -54,15 +62,28 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
     }
 
     /// The mesh that a geom names, in the frame of its file.
-    fn load(
+    fn fit(
         &self,
         geom: Element<'t>,
         name: &str,
         compiler: &Compiler,
         context: &mut Context<'_>,
-    ) -> Result<Mesh, ReadError> {
+    ) -> Result<MeshFit, ReadError> {
         let known = self.all.get(name);
-        let classed = known.ok_or_else(|| geom.unknown("mesh", name, self.all.keys().map(String::as_str)))?;
+        let asset = known.ok_or_else(|| geom.unknown("mesh", name, self.all.keys().map(String::as_str)))?;
+        let fit = match asset.fit.get() {
+            Some(fit) => fit,
+            None => MeshFit::new(&asset.load(compiler, context)?),
+        };
+        asset.fit.set(Some(fit));
+        Ok(fit)
+    }
+}
+
+impl MeshAsset<'_, '_> {
+    /// Its points and triangles, scaled and placed.
+    fn load(&self, compiler: &Compiler, context: &mut Context<'_>) -> Result<Mesh, ReadError> {
+        let Self { classed, .. } = self;
         let element = classed.element;
         let place = element.place();
         let mesh = if let Some(file) = element.attribute("file") {
@@ -161,7 +182,7 @@ pub(crate) fn geom<'t>(
             context.warnings.add(element.place(), "geom of a mesh", "left out, as asked for");
             return Ok(None);
         }
-        Some(name) => Some(meshes.load(element, name, compiler, context)?),
+        Some(name) => Some(meshes.fit(element, name, compiler, context)?),
         None if kind == "mesh" => return Err(element.missing("mesh")),
         None => None,
     };

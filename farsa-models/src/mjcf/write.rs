@@ -1,12 +1,13 @@
 //! A robot as a model file of MuJoCo.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use farsa_body::{Actuator, BodyId, Collider, JointKind, Law, Pair, Pose, Robot, RobotError, Segment, Shape};
 use farsa_num::Scalar;
 
 use crate::mjcf::inverse_weight::inverse_weights;
-use crate::xml::write::{Lines, numbers, quoted, segment_names};
+use crate::xml::write::{Lines, colliders_by_body, numbers, quoted, segment_names};
 
 /// What a MuJoCo model says beside the robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,10 +81,8 @@ pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError>
     out.open(&format!("mujoco model={}", quoted(&robot.name)));
     head(robot, &mut out, options);
     out.open("worldbody");
-    for collider in robot.colliders.iter().filter(|collider| collider.body.is_none()) {
-        out.line(&geom(collider));
-    }
-    bodies(robot, &mut out);
+    let nested = nested(robot);
+    bodies(robot, &nested, &mut out);
     out.close("worldbody");
     out.open("contact");
     for pair in &robot.pairs {
@@ -98,7 +97,7 @@ pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError>
     if !options.keyframes.is_empty() {
         out.open("keyframe");
         for keyframe in &options.keyframes {
-            let state = numbers(&state(robot, keyframe));
+            let state = numbers(&state(robot, &nested, keyframe));
             out.line(&format!("<key name={} qpos=\"{state}\"/>", quoted(&keyframe.name)));
         }
         out.close("keyframe");
@@ -128,10 +127,15 @@ fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
     out.close("default");
 }
 
-fn bodies(robot: &Robot, out: &mut Lines) {
+/// The shapes of the world and the bodies with theirs.
+fn bodies(robot: &Robot, nested: &[(usize, usize)], out: &mut Lines) {
     let names = segment_names(robot, "world");
+    let colliders = colliders_by_body(robot);
+    for collider in &colliders[0] {
+        out.line(&geom(collider));
+    }
     let mut open = 0;
-    for (i, depth) in nested(robot) {
+    for &(i, depth) in nested {
         while open > depth {
             out.close("body");
             open -= 1;
@@ -145,7 +149,7 @@ fn bodies(robot: &Robot, out: &mut Lines) {
         if let Some(inertial) = inertial(segment) {
             out.line(&inertial);
         }
-        for collider in robot.colliders.iter().filter(|collider| collider.body == Some(BodyId(i as u16))) {
+        for collider in &colliders[i + 1] {
             out.line(&geom(collider));
         }
     }
@@ -186,20 +190,22 @@ fn actuator_line(robot: &Robot, actuator: &Actuator) -> String {
 }
 
 /// MuJoCo's `qpos`: the joints in the order in which the bodies are nested.
-fn state(robot: &Robot, keyframe: &Keyframe) -> Vec<f64> {
+fn state(robot: &Robot, nested: &[(usize, usize)], keyframe: &Keyframe) -> Vec<f64> {
     let mut joints = vec![0.0; robot.segments.len()];
     for (joint, q) in robot.joints().zip(&keyframe.joints) {
         joints[joint.index()] = *q;
     }
+    // Of a body that is given twice the first counts.
+    let given: BTreeMap<usize, Pose<f64>> =
+        keyframe.bodies.iter().rev().map(|(body, at)| (body.index(), *at)).collect();
     let mut state = Vec::new();
-    for (i, _) in nested(robot) {
+    for &(i, _) in nested {
         let joint = &robot.segments[i].joint;
         match joint.kind {
             JointKind::Revolute | JointKind::Prismatic => state.push(joints[i]),
             JointKind::Fixed => {}
             JointKind::Floating => {
-                let given = keyframe.bodies.iter().find(|(body, _)| body.index() == i);
-                let Pose { position, rotation: [x, y, z, w] } = given.map_or(joint.placement, |(_, pose)| *pose);
+                let Pose { position, rotation: [x, y, z, w] } = given.get(&i).copied().unwrap_or(joint.placement);
                 state.extend(position.into_iter().chain([w, x, y, z]));
             }
         }
@@ -209,15 +215,16 @@ fn state(robot: &Robot, keyframe: &Keyframe) -> Vec<f64> {
 
 /// The segments with how deep they are nested, in depth-first order, in which MuJoCo counts bodies.
 fn nested(robot: &Robot) -> Vec<(usize, usize)> {
+    // Of the world and of each segment, the last first: what is last on the stack comes next.
+    let mut children = vec![Vec::new(); robot.segments.len() + 1];
+    for (i, segment) in robot.segments.iter().enumerate().rev() {
+        children[segment.parent.map_or(0, |parent| parent.index() + 1)].push(i);
+    }
     let mut order = Vec::with_capacity(robot.segments.len());
-    let children = |of: Option<usize>, depth: usize| {
-        let all = robot.segments.iter().enumerate().rev();
-        all.filter(move |(_, segment)| segment.parent.map(BodyId::index) == of).map(move |(i, _)| (i, depth))
-    };
-    let mut open: Vec<(usize, usize)> = children(None, 0).collect();
+    let mut open: Vec<(usize, usize)> = children[0].iter().map(|i| (*i, 0)).collect();
     while let Some((i, depth)) = open.pop() {
         order.push((i, depth));
-        open.extend(children(Some(i), depth + 1));
+        open.extend(children[i + 1].iter().map(|child| (*child, depth + 1)));
     }
     order
 }

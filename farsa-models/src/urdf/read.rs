@@ -10,7 +10,7 @@ use farsa_num::sin_cos;
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};
 use crate::frame::Frame;
-use crate::mesh::solid::Solid;
+use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
 use crate::options::Meshes;
 use crate::repair::repair_masses;
@@ -400,7 +400,7 @@ fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Soli
             let place = shape.place();
             let mesh = Mesh::parse(name, &context.files.content(&place, name)?);
             let mesh = mesh.map_err(|why| ReadError::Mesh { place, path: name.into(), why })?;
-            Solid::Mesh(mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k])))
+            Solid::Mesh(MeshFit::new(&mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k]))))
         }
         other => return Err(shape.unknown("shape", other, kinds)),
     };

@@ -1,10 +1,12 @@
 //! A robot as a URDF file.
 
-use farsa_body::{BodyId, Collider, JointId, JointKind, Law, Pose, Robot, RobotError, Segment, Shape};
+use std::collections::BTreeSet;
+
+use farsa_body::{Collider, Joint, JointKind, Law, Pose, Robot, RobotError, Segment, Shape};
 use farsa_num::{atan2, sin_cos};
 
 use crate::vector::norm;
-use crate::xml::write::{Lines, numbers, quoted, segment_names, unused};
+use crate::xml::write::{Lines, colliders_by_body, numbers, quoted, segment_names, unused};
 
 /// The name of the link that stands for the world.
 const WORLD: &str = "world";
@@ -34,24 +36,26 @@ pub fn write(robot: &Robot) -> Result<String, RobotError> {
     out.line("<?xml version=\"1.0\"?>");
     out.open(&format!("robot name={}", quoted(&robot.name)));
     let names = segment_names(robot, WORLD);
-    link(robot, &mut out, WORLD, None);
+    let colliders = colliders_by_body(robot);
+    link(&mut out, WORLD, None, &colliders[0]);
     for (i, name) in names.iter().enumerate() {
-        link(robot, &mut out, name, Some(i));
+        link(&mut out, name, Some(&robot.segments[i]), &colliders[i + 1]);
     }
     let joints = joint_names(robot, &names);
+    let efforts = efforts(robot);
     for (i, segment) in robot.segments.iter().enumerate() {
         let parent = segment.parent.map_or(WORLD, |parent| names[parent.index()].as_str());
-        joint(robot, &mut out, &joints[i], parent, &names[i], JointId(i as u16));
+        joint(&mut out, &segment.joint, [&joints[i], parent, &names[i]], efforts[i]);
     }
     out.close("robot");
     Ok(out.text)
 }
 
 /// A link with its mass and shapes; the world's without segment.
-fn link(robot: &Robot, out: &mut Lines, name: &str, segment: Option<usize>) {
+fn link(out: &mut Lines, name: &str, segment: Option<&Segment>, colliders: &[&Collider]) {
     out.open(&format!("link name={}", quoted(name)));
     if let Some(Segment { mass, centre, inertia: [xx, yy, zz, xy, xz, yz], .. }) =
-        segment.map(|i| &robot.segments[i]).filter(|segment| segment.mass > 0.0)
+        segment.filter(|segment| segment.mass > 0.0)
     {
         out.open("inertial");
         out.line(&format!("<origin xyz=\"{}\" rpy=\"0.0 0.0 0.0\"/>", numbers(centre)));
@@ -61,8 +65,7 @@ fn link(robot: &Robot, out: &mut Lines, name: &str, segment: Option<usize>) {
         out.line(&format!("<inertia {}/>", upper.join(" ")));
         out.close("inertial");
     }
-    let body = segment.map(|i| BodyId(i as u16));
-    for collider in robot.colliders.iter().filter(|collider| collider.body == body) {
+    for collider in colliders {
         collisions(out, collider);
     }
     out.close("link");
@@ -70,17 +73,16 @@ fn link(robot: &Robot, out: &mut Lines, name: &str, segment: Option<usize>) {
 
 /// The joints' names, the nameless ones' made of their segments'.
 fn joint_names(robot: &Robot, segments: &[String]) -> Vec<String> {
-    let mut names: Vec<String> = robot.segments.iter().map(|segment| segment.joint.name.clone()).collect();
-    for i in 0..names.len() {
-        if names[i].is_empty() {
-            names[i] = unused(&format!("{}_joint", segments[i]), &names.iter().map(String::as_str));
-        }
-    }
-    names
+    let taken: BTreeSet<&str> = robot.segments.iter().map(|segment| segment.joint.name.as_str()).collect();
+    // Made names differ from each other as their segments' do.
+    let name = |(own, segment): (&str, &String)| {
+        if own.is_empty() { unused(&format!("{segment}_joint"), &taken) } else { own.to_owned() }
+    };
+    robot.segments.iter().map(|segment| segment.joint.name.as_str()).zip(segments).map(name).collect()
 }
 
-fn joint(robot: &Robot, out: &mut Lines, name: &str, parent: &str, child: &str, id: JointId) {
-    let joint = &robot.segments[id.index()].joint;
+/// A joint with its name and those of its parent and child.
+fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], effort: f64) {
     let [low, high] = joint.range;
     let endless = low.is_infinite() && high.is_infinite();
     let kind = match joint.kind {
@@ -102,24 +104,24 @@ fn joint(robot: &Robot, out: &mut Lines, name: &str, parent: &str, child: &str, 
         } else {
             format!("lower=\"{:?}\" upper=\"{:?}\" ", low.max(-ENDLESS) + 0.0, high.min(ENDLESS) + 0.0)
         };
-        out.line(&format!("<limit {range}effort=\"{:?}\" velocity=\"{FASTEST:?}\"/>", effort(robot, id)));
+        out.line(&format!("<limit {range}effort=\"{effort:?}\" velocity=\"{FASTEST:?}\"/>"));
         out.line(&format!("<dynamics damping=\"{:?}\" friction=\"0.0\"/>", joint.damping));
     }
     out.close("joint");
 }
 
-/// The sum of what the actuators of a joint may exert.
-fn effort(robot: &Robot, joint: JointId) -> f64 {
-    let own = robot.actuators.iter().filter(|actuator| actuator.joint == joint);
-    let sum = own.fold(0.0, |sum, actuator| {
-        sum + match actuator.law {
+/// The sum of what the actuators of each segment's joint may exert.
+fn efforts(robot: &Robot) -> Vec<f64> {
+    let mut efforts = vec![0.0; robot.segments.len()];
+    for actuator in &robot.actuators {
+        efforts[actuator.joint.index()] += match actuator.law {
             Law::MusclePair(pair) => pair.moment_arm * pair.tension,
             Law::Servo(servo) => servo.limit,
             Law::Torque(motor) => motor.limit,
             Law::Held(_) => ENDLESS,
-        }
-    });
-    sum.min(ENDLESS)
+        };
+    }
+    efforts.into_iter().map(|sum: f64| sum.min(ENDLESS)).collect()
 }
 
 /// The collision elements of one shape.

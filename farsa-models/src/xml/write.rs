@@ -1,10 +1,14 @@
 //! What the writers of model files share: nested lines, numbers and names in XML.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use farsa_body::Robot;
+use farsa_body::{Collider, Robot};
 
-/// Lines of XML, each as far in as it is nested.
+/// Deeper lines stand no further in, or the text would grow with the square of a chain's length.
+const FURTHEST_IN: usize = 32;
+
+/// Lines of XML, each as far in as it is nested, up to 32 levels.
 #[derive(Default)]
 pub(crate) struct Lines {
     pub(crate) text: String,
@@ -15,7 +19,7 @@ impl Lines {
     /// One whole element or comment.
     pub(crate) fn line(&mut self, line: &str) {
         // Writing into a string cannot fail.
-        let _ = writeln!(self.text, "{:1$}{line}", "", 2 * self.depth);
+        let _ = writeln!(self.text, "{:1$}{line}", "", 2 * self.depth.min(FURTHEST_IN));
     }
 
     /// An element, name and attributes, that others follow in.
@@ -61,9 +65,9 @@ pub(crate) fn quoted(name: &str) -> String {
 }
 
 /// `wanted`, or with as many `_` behind as it takes to be none of the names.
-pub(crate) fn unused<'a>(wanted: &str, names: &(impl Iterator<Item = &'a str> + Clone)) -> String {
+pub(crate) fn unused(wanted: &str, names: &BTreeSet<&str>) -> String {
     let mut name = wanted.to_owned();
-    while names.clone().any(|other| other == name) {
+    while names.contains(name.as_str()) {
         name.push('_');
     }
     name
@@ -71,9 +75,18 @@ pub(crate) fn unused<'a>(wanted: &str, names: &(impl Iterator<Item = &'a str> + 
 
 /// The segments' names, changed where one is `reserved` by the format.
 pub(crate) fn segment_names(robot: &Robot, reserved: &str) -> Vec<String> {
-    let all = robot.segments.iter().map(|segment| segment.name.as_str());
+    let all: BTreeSet<&str> = robot.segments.iter().map(|segment| segment.name.as_str()).collect();
     let name = |own: &str| if own == reserved { unused(own, &all) } else { own.to_owned() };
-    all.clone().map(name).collect()
+    robot.segments.iter().map(|segment| name(&segment.name)).collect()
+}
+
+/// The colliders of the world, then those of each segment of a valid robot, in their order.
+pub(crate) fn colliders_by_body(robot: &Robot) -> Vec<Vec<&Collider>> {
+    let mut all = vec![Vec::new(); robot.segments.len() + 1];
+    for collider in &robot.colliders {
+        all[collider.body.map_or(0, |body| body.index() + 1)].push(collider);
+    }
+    all
 }
 
 #[cfg(test)]
@@ -84,6 +97,6 @@ mod tests {
     fn names_and_numbers_are_safe_in_attributes() {
         assert_eq!(quoted("a<b> & \"c\"\n"), "\"a&lt;b&gt; &amp; &quot;c&quot;&#10;\"");
         assert_eq!(numbers(&[-0.0, 1.0, 1e-7, 0.1]), "0.0 1.0 1e-7 0.1");
-        assert_eq!(unused("world", &["world", "world_"].into_iter()), "world__");
+        assert_eq!(unused("world", &BTreeSet::from(["world", "world_"])), "world__");
     }
 }

@@ -1,0 +1,98 @@
+//! The files that a model names.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use farsa_body::Shape;
+use farsa_models::{Imported, Limits, Meshes, ReadError, ReadOptions};
+
+/// A folder of this test's own.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("model/meshes")).unwrap();
+    folder
+}
+
+const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+#[test]
+fn files_outside_are_not_read() {
+    let folder = folder("paths");
+    let model = folder.join("model/robot.xml");
+    fs::write(folder.join("model/meshes/a.obj"), TETRAHEDRON).unwrap();
+    fs::write(folder.join("secret.obj"), TETRAHEDRON).unwrap();
+    let asset = |file: &str| {
+        format!(
+            "<mujoco><asset><mesh name=\"m\" file=\"{file}\"/></asset><worldbody><body><joint/><geom type=\"mesh\" mesh=\"m\"/></body></worldbody></mujoco>"
+        )
+    };
+    let attempt = |file: &str, options: &ReadOptions| {
+        fs::write(&model, asset(file)).unwrap();
+        Imported::from_file(&model, options)
+    };
+    let strict = ReadOptions::default();
+    let reading = attempt("meshes/a.obj", &strict).unwrap();
+    assert!((reading.robot.segments[0].mass - 1000.0 / 6.0).abs() < 1e-9);
+    assert!(attempt("./meshes/../meshes/a.obj", &strict).is_ok());
+    let absolute = folder.join("secret.obj").display().to_string();
+    for (file, why) in [
+        ("../secret.obj", "leads out of the folder that may be read"),
+        ("../nothing.obj", "leads out of the folder that may be read"),
+        ("meshes/../../secret.obj", "leads out of the folder that may be read"),
+        (absolute.as_str(), "is no path relative to the model's folder"),
+        ("meshes/none.obj", "is not there"),
+        ("file:///a.obj", "is an address; only files are read"),
+        ("package://p/secret.obj", "names a package, and no folder with packages was given"),
+    ] {
+        let error = attempt(file, &strict).unwrap_err();
+        assert!(matches!(&error, ReadError::Path { why: found, .. } if *found == why), "{file}: {error}");
+    }
+    assert!(matches!(attempt("meshes", &strict), Err(ReadError::File { .. })), "a folder is no file");
+    let wider = ReadOptions { root: Some(folder.clone()), ..ReadOptions::default() };
+    assert!(attempt("../secret.obj", &wider).is_ok(), "within the root that was given");
+    assert!(attempt("../../secret.obj", &wider).is_err());
+    let packages = ReadOptions { packages: vec![folder.clone()], ..ReadOptions::default() };
+    assert!(attempt("package://model/meshes/a.obj", &packages).is_ok());
+    for file in
+        ["package://../secret.obj", "package://model/../../a.obj", "package:///secret.obj", "package://none/a.obj"]
+    {
+        assert!(attempt(file, &packages).is_err(), "{file}");
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(folder.join("secret.obj"), folder.join("model/meshes/link.obj")).unwrap();
+        let error = attempt("meshes/link.obj", &strict).unwrap_err();
+        assert!(error.to_string().ends_with("leads out of the folder that may be read"), "{error}");
+    }
+    let small = Limits { bytes: 400, ..Limits::default() };
+    fs::write(folder.join("model/meshes/large.obj"), TETRAHEDRON.repeat(100)).unwrap();
+    let error = attempt("meshes/large.obj", &ReadOptions { limits: small, ..ReadOptions::default() }).unwrap_err();
+    assert!(matches!(error, ReadError::TooMuch { what: "bytes in a file", .. }), "{error}");
+    let left = attempt("meshes/none.obj", &ReadOptions { meshes: Meshes::Leave, ..ReadOptions::default() });
+    assert!(matches!(left, Err(ReadError::Mass { .. })), "what moves lost its only mass");
+}
+
+#[test]
+fn included_files_stand_where_they_are_named() {
+    let folder = folder("includes");
+    let model = folder.join("model/robot.xml");
+    let main = "<mujoco><include file='meshes/parts.xml'/><worldbody><body name='a'><include file='leg.xml'/></body></worldbody></mujoco>";
+    fs::write(&model, main).unwrap();
+    fs::write(
+        folder.join("model/meshes/parts.xml"),
+        "<mujocoinclude><default><geom size='0.5'/></default></mujocoinclude>",
+    )
+    .unwrap();
+    fs::write(folder.join("model/leg.xml"), "<mujoco><joint name='k'/>\n<geom name='g' density='1'/></mujoco>")
+        .unwrap();
+    let reading = Imported::from_file(&model, &ReadOptions::default()).unwrap();
+    assert_eq!(reading.robot.colliders[0].shape, Shape::Sphere { radius: 0.5 });
+    assert!(reading.robot.joint("k").is_some());
+    fs::write(folder.join("model/leg.xml"), "<mujoco>\n<include file='leg.xml'/></mujoco>").unwrap();
+    let error = Imported::from_file(&model, &ReadOptions::default()).unwrap_err().to_string();
+    assert_eq!(error, "leg.xml line 2: a second include of `leg.xml`, the first is in line 1");
+    fs::write(folder.join("model/leg.xml"), "<mujoco>\n<join/></mujoco>").unwrap();
+    let error = Imported::from_file(&model, &ReadOptions::default()).unwrap_err().to_string();
+    assert_eq!(error, "leg.xml line 2: unknown element of body `join`; the nearest is `joint`");
+}

@@ -1,0 +1,31 @@
+//! What was written is read as it was; what is wrong, hostile or damaged is refused with its place.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+/// Faults, told with their place and the nearest name, and MuJoCo's rules.
+mod faults;
+/// The files that a model names.
+mod files;
+/// Hostile and damaged texts.
+mod hostile;
+/// Models as large as the limits.
+mod large;
+/// Robots that were written are read as they were.
+mod written;
+
+use std::fs;
+use std::path::Path;
+
+use farsa_models::{Imported, ReadError, ReadOptions};
+
+fn read(text: &str) -> Result<Imported, ReadError> {
+    Imported::from_text(text, &ReadOptions::default())
+}
+
+fn fixture(name: &str) -> String {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures")).join(name);
+    fs::read_to_string(path).unwrap()
+}
+
+fn message(text: &str) -> String {
+    read(text).unwrap_err().to_string()
+}
