@@ -54,6 +54,9 @@ pub struct Imported {
 impl Imported {
     /// Reads a URDF or MJCF file; which of them it is its root element says.
     ///
+    /// The file may be a pipe, which is read to its end or [`Limits::bytes`](crate::Limits::bytes); files that the model names
+    /// must be regular ones.
+    ///
     /// # Errors
     /// What is wrong, with the line: see [`ReadError`].
     pub fn from_file(path: &Path, options: &ReadOptions) -> Result<Self, ReadError> {
