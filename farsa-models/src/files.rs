@@ -1,6 +1,6 @@
-//! The files that a model names: found within its folders only, and read no further than allowed.
+//! The files that a model names: found within its folders only, regular, and read no further than allowed.
 
-use std::fs::File;
+use std::fs::{File, FileType};
 use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 
@@ -23,8 +23,7 @@ pub(crate) struct ModelFiles {
 fn real(path: &Path) -> Result<PathBuf, ReadError> {
     // The folder of a bare file name is the current one.
     let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-    let fault = |error: std::io::Error| ReadError::File { path: path.display().to_string(), why: error.to_string() };
-    path.canonicalize().map_err(fault)
+    path.canonicalize().map_err(|error| fault(path, &error))
 }
 
 impl ModelFiles {
@@ -43,10 +42,14 @@ impl ModelFiles {
         })
     }
 
-    /// The text of the model itself, wherever it is.
+    /// The text of the model itself, wherever it is; from a pipe as well, as the caller names it and not a file.
     pub(crate) fn model(&mut self, path: &Path) -> Result<String, ReadError> {
         let place = SourceLocation { file: path.display().to_string(), line: 1 };
-        text(path, self.bytes(path, &place)?)
+        let kind = path.metadata().map_err(|error| fault(path, &error))?.file_type();
+        match other_kind(kind) {
+            None | Some(PIPE) => text(path, self.bytes(path, &place)?),
+            Some(why) => Err(fault(path, &why)),
+        }
     }
 
     /// The text of a file that the model names.
@@ -67,15 +70,10 @@ impl ModelFiles {
         if self.opened > self.most_files {
             return Err(ReadError::TooMuch { place: place.clone(), what: "files", limit: self.most_files });
         }
-        let fault =
-            |error: std::io::Error| ReadError::File { path: path.display().to_string(), why: error.to_string() };
-        // Opening a pipe would wait for its writer.
-        if !path.metadata().map_err(fault)?.is_file() {
-            return Err(ReadError::File { path: path.display().to_string(), why: "is no file".into() });
-        }
         let mut bytes = Vec::new();
         let most = u64::try_from(self.most_bytes).unwrap_or(u64::MAX);
-        File::open(path).and_then(|file| file.take(most.saturating_add(1)).read_to_end(&mut bytes)).map_err(fault)?;
+        let read = File::open(path).and_then(|file| file.take(most.saturating_add(1)).read_to_end(&mut bytes));
+        read.map_err(|error| fault(path, &error))?;
         if bytes.len() > self.most_bytes {
             return Err(ReadError::TooMuch { place: place.clone(), what: "bytes in a file", limit: self.most_bytes });
         }
@@ -88,24 +86,51 @@ impl ModelFiles {
 
     /// Where a file that the model names is, if it may be read.
     fn find(&self, place: &SourceLocation, name: &str) -> Result<PathBuf, ReadError> {
-        let fault = |why| ReadError::Path { place: place.clone(), path: name.into(), why };
+        let refused = |why| ReadError::Path { place: place.clone(), path: name.into(), why };
+        let path = self.path(name).map_err(refused)?;
+        let kind = path.metadata().map_err(|error| fault(&path, &error))?.file_type();
+        // To open a pipe is to wait for its writer, and a device may have no end: neither is opened.
+        other_kind(kind).map_or(Ok(path), |why| Err(refused(why)))
+    }
+
+    /// Where the model says that a file is.
+    fn path(&self, name: &str) -> Result<PathBuf, &'static str> {
         if let Some(within) = name.strip_prefix("package://") {
             if self.packages.is_empty() {
-                return Err(fault("names a package, and no folder with packages was given"));
+                return Err("names a package, and no folder with packages was given");
             }
             let mut candidates = self.packages.iter().map(|root| (root, root.join(within)));
             let found = candidates.find(|(_, path)| path.exists());
-            let (root, path) = found.ok_or_else(|| fault("is in none of the folders with packages"))?;
-            return inside(root, &path, within).map_err(fault);
+            let (root, path) = found.ok_or("is in none of the folders with packages")?;
+            return inside(root, &path, within);
         }
         if name.contains("://") {
-            return Err(fault("is an address; only files are read"));
+            return Err("is an address; only files are read");
         }
         let (Some(start), Some(root)) = (&self.start, &self.root) else {
-            return Err(fault("names a file, and no folder was given"));
+            return Err("names a file, and no folder was given");
         };
-        inside(root, &start.join(name), name).map_err(fault)
+        inside(root, &start.join(name), name)
     }
+}
+
+const PIPE: &str = "is a pipe; a model's files are regular ones";
+
+/// What something is instead of a regular file.
+fn other_kind(kind: FileType) -> Option<&'static str> {
+    #[cfg(unix)]
+    if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
+        return Some(PIPE);
+    }
+    match (kind.is_file(), kind.is_dir()) {
+        (true, _) => None,
+        (_, true) => Some("is a folder"),
+        _ => Some("is a device or socket; only files are read"),
+    }
+}
+
+fn fault(path: &Path, why: &dyn ToString) -> ReadError {
+    ReadError::File { path: path.display().to_string(), why: why.to_string() }
 }
 
 /// `path` without links, if it is within `root`; `given` is what of it the model says.
@@ -133,6 +158,5 @@ fn inside(root: &Path, path: &Path, given: &str) -> Result<PathBuf, &'static str
 }
 
 fn text(path: &Path, bytes: Vec<u8>) -> Result<String, ReadError> {
-    let why = || "is no text (UTF-8)".into();
-    String::from_utf8(bytes).map_err(|_| ReadError::File { path: path.display().to_string(), why: why() })
+    String::from_utf8(bytes).map_err(|_| fault(path, &"is no text (UTF-8)"))
 }

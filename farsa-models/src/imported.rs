@@ -35,6 +35,9 @@ use crate::xml::tree::Tree;
 ///   with equal spheres at its ends is a capsule, as [`urdf::write`](crate::urdf::write()) writes it. Masses are those of the true shapes.
 /// - *Meshes* (STL, OBJ) become the smallest by volume of a ball, a capsule and a box that hold all their points, the
 ///   latter two along the mesh's own axes or the principal axes of its surface; meshes that can touch nothing are left out.
+/// - *Bounds*: radii and halves of lengths and edges are below 1e9 m, or an error; ends of ranges and efforts from 1e9 on are
+///   none. What was read is written and read back as the same robot, but for what [`mjcf::write`](crate::mjcf::write()) and
+///   [`urdf::write`](crate::urdf::write()) say that their formats lack.
 /// - *Contacts of MuJoCo* are springs and dampers here: stiffness and damping are those at rest at full impedance.
 /// - *Commands* are efforts and joint positions; MuJoCo's, before its gears, are other numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +53,9 @@ pub struct Imported {
 
 impl Imported {
     /// Reads a URDF or MJCF file; which of them it is its root element says.
+    ///
+    /// The file may be a pipe, which is read to its end or [`Limits::bytes`](crate::Limits::bytes); files that the model names
+    /// must be regular ones.
     ///
     /// # Errors
     /// What is wrong, with the line: see [`ReadError`].

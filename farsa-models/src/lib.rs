@@ -1,5 +1,7 @@
 #![doc = include_str!("../README.md")]
 
+/// How large the numbers of a model may be.
+mod bounds;
 /// What the readers of both formats carry along.
 mod context;
 /// What can be wrong with a file.

@@ -2,6 +2,7 @@
 
 use farsa_body::{MassProperties, Pose, Shape};
 
+use crate::bounds::{LARGEST, has_size};
 use crate::mesh::triangles::{Mesh, z_to_axis};
 
 /// What stands for a mesh.
@@ -15,9 +16,13 @@ pub(crate) struct MeshFit {
 }
 
 impl MeshFit {
-    pub(crate) fn new(mesh: &Mesh) -> Self {
+    /// What stands for a mesh, or why nothing can.
+    pub(crate) fn new(mesh: &Mesh) -> Result<Self, String> {
         let (shape, place) = mesh.fitted();
-        Self { shape, place, solid: mesh.solid(1.0) }
+        if !has_size(&shape) {
+            return Err(format!("what holds it has sizes that are not below {LARGEST:e}: {shape:?}"));
+        }
+        Ok(Self { shape, place, solid: mesh.solid(1.0) })
     }
 }
 

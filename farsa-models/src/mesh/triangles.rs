@@ -3,6 +3,7 @@
 use farsa_body::{MassProperties, Pose, Shape};
 use farsa_num::Scalar;
 
+use crate::bounds::LARGEST;
 use crate::mesh::principal_axes::principal_axes;
 use crate::vector::{cross, dot, norm, sub};
 
@@ -28,8 +29,8 @@ impl Mesh {
         if mesh.points.is_empty() {
             return Err("there is no point in it".into());
         }
-        if mesh.points.iter().flatten().any(|x| x.is_nan() || x.abs() >= 1e9) {
-            return Err("a coordinate is no number below 1e9".into());
+        if mesh.points.iter().flatten().any(|x| x.is_nan() || x.abs() >= LARGEST) {
+            return Err(format!("a coordinate is no number below {LARGEST:e}"));
         }
         Ok(mesh)
     }

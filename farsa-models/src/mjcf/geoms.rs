@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use farsa_body::{Pose, Shape};
 
+use crate::bounds::LARGEST;
 use crate::context::Context;
 use crate::error::ReadError;
 use crate::mesh::principal_axes::rotation_to;
@@ -71,10 +72,12 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
     ) -> Result<MeshFit, ReadError> {
         let known = self.all.get(name);
         let asset = known.ok_or_else(|| geom.unknown("mesh", name, self.all.keys().map(String::as_str)))?;
-        let fit = match asset.fit.get() {
-            Some(fit) => fit,
-            None => MeshFit::new(&asset.load(compiler, context)?),
-        };
+        if let Some(fit) = asset.fit.get() {
+            return Ok(fit);
+        }
+        let mesh = asset.load(compiler, context)?;
+        let place = asset.classed.element.place();
+        let fit = MeshFit::new(&mesh).map_err(|why| ReadError::Mesh { place, path: name.into(), why })?;
         asset.fit.set(Some(fit));
         Ok(fit)
     }
@@ -100,8 +103,8 @@ impl MeshAsset<'_, '_> {
             if points.is_empty() {
                 return Err(element.unsupported("a mesh without file or vertices"));
             }
-            if points.iter().flatten().any(|x| x.abs() >= 1e9) {
-                return Err(element.wrong("vertex", "...", "but must be of numbers below 1e9"));
+            if points.iter().flatten().any(|x| x.abs() >= LARGEST) {
+                return Err(element.wrong("vertex", "...", format!("but must be of numbers below {LARGEST:e}")));
             }
             let corner = |x: f64| x as usize;
             let triangles =
@@ -226,12 +229,9 @@ pub(crate) fn geom<'t>(
     }
     // A capsule without length is a ball.
     let least = if kind == "capsule" { 1 } else { needed };
-    if !sizes[..needed].iter().enumerate().all(|(i, x)| (*x > 0.0 || (i >= least && *x == 0.0)) && *x < 1e9) {
-        return Err(source.wrong(
-            "size",
-            source.attribute("size").unwrap_or_default(),
-            "but must be positive, below 1e9",
-        ));
+    if !sizes[..needed].iter().enumerate().all(|(i, x)| (*x > 0.0 || (i >= least && *x == 0.0)) && *x < LARGEST) {
+        let text = source.attribute("size").unwrap_or_default();
+        return Err(source.wrong("size", text, format!("but must be positive, below {LARGEST:e}")));
     }
     let solid = match kind {
         "plane" => Solid::Native(Shape::Plane),

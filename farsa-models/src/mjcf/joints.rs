@@ -2,6 +2,7 @@
 
 use farsa_body::{Joint, JointKind, Pose};
 
+use crate::bounds::range_from_file;
 use crate::context::Context;
 use crate::error::ReadError;
 use crate::mjcf::classes::Classed;
@@ -9,9 +10,6 @@ use crate::mjcf::compiler::{Compiler, SHOW};
 use crate::vector::norm;
 use crate::warnings::Warnings;
 use crate::xml::tree::Element;
-
-/// From here on a limit is none [rad or m]: what `mjcf::write` puts for infinite ones.
-const ENDLESS: f64 = 1e10;
 
 pub(crate) fn check_joint(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
     let read = [
@@ -74,8 +72,7 @@ pub(crate) fn joint(
             let text = source.attribute("range").unwrap_or_default();
             return Err(source.wrong("range", text, "but must not end before it begins"));
         }
-        range =
-            [if low <= -ENDLESS { f64::NEG_INFINITY } else { low }, if high >= ENDLESS { f64::INFINITY } else { high }];
+        range = range_from_file([low, high]);
     }
     for (name, why) in
         [("stiffness", "a joint's spring is not described"), ("frictionloss", "a joint's friction is not described")]

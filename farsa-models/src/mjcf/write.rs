@@ -6,8 +6,9 @@ use std::fmt::Write as _;
 use farsa_body::{Actuator, BodyId, Collider, JointKind, Law, Pair, Pose, Robot, RobotError, Segment, Shape};
 use farsa_num::Scalar;
 
+use crate::bounds::{check_sizes, range_in_file};
 use crate::mjcf::inverse_weight::inverse_weights;
-use crate::xml::write::{Lines, colliders_by_body, numbers, quoted, segment_names};
+use crate::xml::write::{Lines, colliders_by_body, has_inertial, numbers, quoted, segment_names};
 
 /// What a MuJoCo model says beside the robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,8 +42,12 @@ pub struct Keyframe {
     pub bodies: Vec<(BodyId, Pose<f64>)>,
 }
 
-/// The largest impedance that MuJoCo allows.
+/// The least and the largest impedance that MuJoCo allows.
+const SOFTEST: f64 = 0.0001;
 const STIFFEST: f64 = 0.9999;
+
+/// The time constants whose squares are numbers [s].
+const TIME_CONSTANTS: [f64; 2] = [1e-150, 1e150];
 
 /// Time constant [s] and impedance of a contact that yields by force / `stiffness` at rest, for a step of `h` [s].
 ///
@@ -55,8 +60,8 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
     if kw <= 0.0 {
         return (2.0 * h, STIFFEST);
     }
-    let tau = (2.0 * h).max(Scalar::sqrt(2.0 / kw));
-    (tau, (1.0 - 1.0 / (tau * tau * kw)).min(STIFFEST))
+    let tau = (2.0 * h).max(Scalar::sqrt(2.0 / kw)).clamp(TIME_CONSTANTS[0], TIME_CONSTANTS[1]);
+    (tau, (1.0 - 1.0 / (tau * tau * kw)).clamp(SOFTEST, STIFFEST))
 }
 
 /// The robot as a model in MuJoCo's own format, MJCF.
@@ -70,13 +75,16 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
 /// - friction is elliptic and creeps by force / (2 tau stiffness impedance ratio);
 /// - joint stops are MuJoCo's, as stiff as the step allows.
 ///
-/// A plane on a segment that moves is written, and refused by MuJoCo. A segment called `world` gets a `_` appended.
+/// A plane on a segment that moves is written, and refused by MuJoCo; so are chains of more than 496 bodies (4.0.0). A segment
+/// called `world` gets a `_` appended.
 ///
 /// # Errors
-/// What [`Robot::validate`] finds, and [`RobotError::Value`] for options that are not finite, a step or ratio <= 0.
+/// What [`Robot::validate`] finds, and [`RobotError::Value`] for options that are not finite, a step or ratio <= 0, or a
+/// shape of 1e9 m or more, which is not read.
 pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError> {
     check(options)?;
     let weights = inverse_weights(robot)?;
+    check_sizes(robot)?;
     let mut out = Lines::default();
     out.open(&format!("mujoco model={}", quoted(&robot.name)));
     head(robot, &mut out, options);
@@ -274,12 +282,11 @@ fn joint(segment: &Segment) -> Option<String> {
         JointKind::Revolute => "hinge",
         JointKind::Prismatic => "slide",
     };
-    let [low, high] = joint.range;
-    let range = if low.is_infinite() && high.is_infinite() {
+    let range = if joint.range.iter().all(|end| end.is_infinite()) {
         " limited=\"false\"".into()
     } else {
         // MuJoCo's limits have two ends.
-        format!(" limited=\"true\" range=\"{}\"", numbers(&[low.max(-1e10), high.min(1e10)]))
+        format!(" limited=\"true\" range=\"{}\"", numbers(&range_in_file(joint.range)))
     };
     let (axis, armature, damping) = (numbers(&joint.axis), joint.armature, joint.damping);
     Some(format!(
@@ -288,7 +295,7 @@ fn joint(segment: &Segment) -> Option<String> {
 }
 
 fn inertial(segment: &Segment) -> Option<String> {
-    if segment.mass <= 0.0 {
+    if !has_inertial(segment) {
         return None;
     }
     let [xx, yy, zz, crossed @ ..] = segment.inertia;

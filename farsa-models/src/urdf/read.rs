@@ -7,6 +7,7 @@ use farsa_body::{
 };
 use farsa_num::sin_cos;
 
+use crate::bounds::{ENDLESS, LARGEST, has_size, range_from_file};
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};
 use crate::frame::Frame;
@@ -19,9 +20,6 @@ use crate::xml::tree::{Element, Tree};
 
 /// The root link that stands for the world itself.
 const WORLD: &str = "world";
-
-/// As far as this or further is without end [rad, m, N m, N]: what `urdf::write` puts for infinite ones.
-const ENDLESS: f64 = 1e9;
 
 /// Why elements of a URDF are not read.
 const NOTED: [(&str, &str); 3] = [
@@ -187,6 +185,13 @@ fn origin(within: Element<'_>, context: &mut Context<'_>) -> Result<Pose<f64>, R
     // Angles about the fixed axes, x first: the matrix is Rz Ry Rx.
     let turn = about(2, yaw).compose(&about(1, pitch)).compose(&about(0, roll));
     let length = norm(&turn.rotation);
+    if !length.is_finite() {
+        return Err(origin.wrong(
+            "rpy",
+            origin.needed("rpy")?,
+            "but must be of angles below 3.5e13, which have a direction",
+        ));
+    }
     Ok(Pose { position, rotation: turn.rotation.map(|x| x / length) })
 }
 
@@ -257,10 +262,7 @@ fn joint(element: Element<'_>, context: &mut Context<'_>) -> Result<Joint, ReadE
         if kind != "continuous" {
             let end = |name| Ok(limit.list(name, 1, 1)?.map_or(0.0, |list| list[0]));
             let [low, high] = [end("lower")?, end("upper")?];
-            range = [
-                if low <= -ENDLESS { f64::NEG_INFINITY } else { low },
-                if high >= ENDLESS { f64::INFINITY } else { high },
-            ];
+            range = range_from_file([low, high]);
             if low > high {
                 return Err(limit.wrong(
                     "upper",
@@ -342,10 +344,12 @@ fn capsule(
     b: &(String, Solid, Pose<f64>, SourceLocation),
 ) -> Option<Shape> {
     let Solid::Cylinder { radius, half_length } = *tube else { return None };
+    // Far from the origin positions have fewer digits.
+    let far = at.position.iter().fold(half_length, |far, x| far.max(x.abs()));
     let end = |(_, solid, place, _): &(String, Solid, Pose<f64>, SourceLocation), z: f64| {
         let point = at.transform_back(place.position);
         let off = norm(&[point[0], point[1], point[2] - z]);
-        *solid == Solid::Native(Shape::Sphere { radius }) && off <= 1e-9 * (1.0 + half_length)
+        *solid == Solid::Native(Shape::Sphere { radius }) && off <= 1e-9 * (1.0 + far)
     };
     let pair = (end(a, -half_length) && end(b, half_length)) || (end(a, half_length) && end(b, -half_length));
     pair.then_some(Shape::Capsule { radius, half_length })
@@ -360,8 +364,9 @@ fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Soli
     };
     let positive = |name: &'static str| -> Result<f64, ReadError> {
         let value = shape.number(name)?.ok_or_else(|| shape.missing(name))?;
-        let wrong = || shape.wrong(name, shape.attribute(name).unwrap_or_default(), "but must be positive");
-        if value > 0.0 { Ok(value) } else { Err(wrong()) }
+        let text = shape.attribute(name).unwrap_or_default();
+        let wrong = || shape.wrong(name, text, format!("but must be positive, below {LARGEST:e}"));
+        if value > 0.0 && value < LARGEST { Ok(value) } else { Err(wrong()) }
     };
     let solid = match shape.tag() {
         "sphere" => {
@@ -371,18 +376,21 @@ fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Soli
         "box" => {
             shape.check_open(&["size"], &mut context.warnings)?;
             let size = shape.array::<3>("size")?.ok_or_else(|| shape.missing("size"))?;
-            if size.iter().any(|x| *x <= 0.0) {
-                return Err(shape.wrong("size", shape.needed("size")?, "but must be positive"));
+            let cuboid = Shape::Box { half: size.map(|x| x / 2.0) };
+            if !has_size(&cuboid) {
+                let why = format!("but must be positive, below {:e}", 2.0 * LARGEST);
+                return Err(shape.wrong("size", shape.needed("size")?, why));
             }
-            Solid::Native(Shape::Box { half: size.map(|x| x / 2.0) })
+            Solid::Native(cuboid)
         }
         kind @ ("cylinder" | "capsule") => {
             shape.check_open(&["radius", "length"], &mut context.warnings)?;
             let (radius, length) =
                 (positive("radius")?, shape.number("length")?.ok_or_else(|| shape.missing("length"))?);
             let half_length = length / 2.0;
-            if half_length < 0.0 {
-                return Err(shape.wrong("length", shape.needed("length")?, "but must not be negative"));
+            if !(0.0..LARGEST).contains(&half_length) {
+                let why = format!("but must not be negative, and below {:e}", 2.0 * LARGEST);
+                return Err(shape.wrong("length", shape.needed("length")?, why));
             }
             match kind {
                 "capsule" => Solid::Native(Shape::Capsule { radius, half_length }),
@@ -399,8 +407,8 @@ fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Soli
             let scale = shape.array::<3>("scale")?.unwrap_or([1.0; 3]);
             let place = shape.place();
             let mesh = Mesh::parse(name, &context.files.content(&place, name)?);
-            let mesh = mesh.map_err(|why| ReadError::Mesh { place, path: name.into(), why })?;
-            Solid::Mesh(MeshFit::new(&mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k]))))
+            let fit = mesh.and_then(|mesh| MeshFit::new(&mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k]))));
+            Solid::Mesh(fit.map_err(|why| ReadError::Mesh { place, path: name.into(), why })?)
         }
         other => return Err(shape.unknown("shape", other, kinds)),
     };

@@ -5,17 +5,15 @@ use std::collections::BTreeSet;
 use farsa_body::{Collider, Joint, JointKind, Law, Pose, Robot, RobotError, Segment, Shape};
 use farsa_num::{atan2, sin_cos};
 
+use crate::bounds::{ENDLESS, check_sizes, range_in_file};
 use crate::vector::norm;
-use crate::xml::write::{Lines, colliders_by_body, numbers, quoted, segment_names, unused};
+use crate::xml::write::{Lines, colliders_by_body, has_inertial, numbers, quoted, segment_names, unused};
 
 /// The name of the link that stands for the world.
 const WORLD: &str = "world";
 
 /// URDF wants a largest speed, and a description has none [rad/s or m/s].
 const FASTEST: f64 = 1000.0;
-
-/// Stands for no limit where URDF wants one [rad, m, N m or N].
-const ENDLESS: f64 = 1e9;
 
 /// Half the edge length of the block that stands for a plane [m].
 const PLANE: f64 = 50.0;
@@ -29,9 +27,10 @@ const PLANE: f64 = 50.0;
 /// tension); a largest speed, which URDF wants, is 1000.
 ///
 /// # Errors
-/// What [`Robot::validate`] finds.
+/// What [`Robot::validate`] finds, and [`RobotError::Value`] for a shape of 1e9 m or more, which is not read.
 pub fn write(robot: &Robot) -> Result<String, RobotError> {
     robot.validate()?;
+    check_sizes(robot)?;
     let mut out = Lines::default();
     out.line("<?xml version=\"1.0\"?>");
     out.open(&format!("robot name={}", quoted(&robot.name)));
@@ -55,7 +54,7 @@ pub fn write(robot: &Robot) -> Result<String, RobotError> {
 fn link(out: &mut Lines, name: &str, segment: Option<&Segment>, colliders: &[&Collider]) {
     out.open(&format!("link name={}", quoted(name)));
     if let Some(Segment { mass, centre, inertia: [xx, yy, zz, xy, xz, yz], .. }) =
-        segment.filter(|segment| segment.mass > 0.0)
+        segment.filter(|segment| has_inertial(segment))
     {
         out.open("inertial");
         out.line(&format!("<origin xyz=\"{}\" rpy=\"0.0 0.0 0.0\"/>", numbers(centre)));
@@ -83,8 +82,7 @@ fn joint_names(robot: &Robot, segments: &[String]) -> Vec<String> {
 
 /// A joint with its name and those of its parent and child.
 fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], effort: f64) {
-    let [low, high] = joint.range;
-    let endless = low.is_infinite() && high.is_infinite();
+    let endless = joint.range.iter().all(|end| end.is_infinite());
     let kind = match joint.kind {
         JointKind::Revolute if endless => "continuous",
         JointKind::Revolute => "revolute",
@@ -102,7 +100,8 @@ fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], effor
         let range = if kind == "continuous" {
             String::new()
         } else {
-            format!("lower=\"{:?}\" upper=\"{:?}\" ", low.max(-ENDLESS) + 0.0, high.min(ENDLESS) + 0.0)
+            let [low, high] = range_in_file(joint.range);
+            format!("lower=\"{:?}\" upper=\"{:?}\" ", low + 0.0, high + 0.0)
         };
         out.line(&format!("<limit {range}effort=\"{effort:?}\" velocity=\"{FASTEST:?}\"/>"));
         out.line(&format!("<dynamics damping=\"{:?}\" friction=\"0.0\"/>", joint.damping));

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use farsa_body::{Collider, Robot};
+use farsa_body::{Collider, Robot, Segment};
 
 /// Deeper lines stand no further in, or the text would grow with the square of a chain's length.
 const FURTHEST_IN: usize = 32;
@@ -44,7 +44,7 @@ pub(crate) fn numbers(of: &[f64]) -> String {
     text
 }
 
-/// A name as the value of an attribute, quotes included.
+/// A name as the value of an attribute, quotes included; U+FFFD for each character that XML does not have.
 pub(crate) fn quoted(name: &str) -> String {
     let mut text = String::from("\"");
     for c in name.chars() {
@@ -53,6 +53,7 @@ pub(crate) fn quoted(name: &str) -> String {
             '<' => text.push_str("&lt;"),
             '>' => text.push_str("&gt;"),
             '"' => text.push_str("&quot;"),
+            c if (c < ' ' && !"\t\n\r".contains(c)) || "\u{FFFE}\u{FFFF}".contains(c) => text.push('\u{FFFD}'),
             // Line breaks and tabs in attributes are read as spaces otherwise.
             c if c.is_control() => {
                 let _ = write!(text, "&#{};", u32::from(c));
@@ -80,6 +81,11 @@ pub(crate) fn segment_names(robot: &Robot, reserved: &str) -> Vec<String> {
     robot.segments.iter().map(|segment| name(&segment.name)).collect()
 }
 
+/// Whether there is anything to say about a segment's mass.
+pub(crate) fn has_inertial(segment: &Segment) -> bool {
+    segment.mass > 0.0 || segment.inertia.iter().chain(&segment.centre).any(|x| *x != 0.0)
+}
+
 /// The colliders of the world, then those of each segment of a valid robot, in their order.
 pub(crate) fn colliders_by_body(robot: &Robot) -> Vec<Vec<&Collider>> {
     let mut all = vec![Vec::new(); robot.segments.len() + 1];
@@ -96,6 +102,7 @@ mod tests {
     #[test]
     fn names_and_numbers_are_safe_in_attributes() {
         assert_eq!(quoted("a<b> & \"c\"\n"), "\"a&lt;b&gt; &amp; &quot;c&quot;&#10;\"");
+        assert_eq!(quoted("\u{1b}[2J\u{0}\u{FFFF}"), "\"\u{FFFD}[2J\u{FFFD}\u{FFFD}\"");
         assert_eq!(numbers(&[-0.0, 1.0, 1e-7, 0.1]), "0.0 1.0 1e-7 0.1");
         assert_eq!(unused("world", &BTreeSet::from(["world", "world_"])), "world__");
     }

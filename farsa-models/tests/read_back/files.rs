@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use farsa_body::Shape;
-use farsa_models::{Imported, Limits, Meshes, ReadError, ReadOptions};
+use farsa_models::{Imported, Limits, Meshes, ReadError, ReadOptions, SourceLocation};
 
 /// A folder of this test's own.
 fn folder(name: &str) -> PathBuf {
@@ -48,7 +48,8 @@ fn files_outside_are_not_read() {
         let error = attempt(file, &strict).unwrap_err();
         assert!(matches!(&error, ReadError::Path { why: found, .. } if *found == why), "{file}: {error}");
     }
-    assert!(matches!(attempt("meshes", &strict), Err(ReadError::File { .. })), "a folder is no file");
+    let error = attempt("meshes", &strict).unwrap_err();
+    assert!(matches!(error, ReadError::Path { why: "is a folder", .. }), "{error}");
     let wider = ReadOptions { root: Some(folder.clone()), ..ReadOptions::default() };
     assert!(attempt("../secret.obj", &wider).is_ok(), "within the root that was given");
     assert!(attempt("../../secret.obj", &wider).is_err());
@@ -95,4 +96,71 @@ fn included_files_stand_where_they_are_named() {
     fs::write(folder.join("model/leg.xml"), "<mujoco>\n<join/></mujoco>").unwrap();
     let error = Imported::from_file(&model, &ReadOptions::default()).unwrap_err().to_string();
     assert_eq!(error, "leg.xml line 2: unknown element of body `join`; the nearest is `joint`");
+}
+
+/// A pipe into which a thread writes as much of this as is read; it waits if nobody does, and dies with the tests.
+#[cfg(unix)]
+fn pipe(path: &Path, text: String) {
+    assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+    let path = path.to_owned();
+    std::thread::spawn(move || drop(fs::write(path, text)));
+}
+
+#[test]
+#[cfg(unix)]
+fn what_a_model_names_is_never_a_pipe_or_device() {
+    let folder = folder("pipes");
+    pipe(&folder.join("model/mesh.obj"), TETRAHEDRON.into());
+    pipe(&folder.join("model/part.xml"), "<mujocoinclude/>".into());
+    std::os::unix::fs::symlink("model/mesh.obj", folder.join("link.obj")).unwrap();
+    let _socket = std::os::unix::net::UnixListener::bind(folder.join("model/socket.obj"));
+    let mesh = |file: &str| {
+        format!(
+            "<mujoco><asset><mesh name='m' file='{file}'/></asset><worldbody>\n<geom type='mesh' mesh='m'/></worldbody></mujoco>"
+        )
+    };
+    let urdf = |file: &str| {
+        let geometry = format!("<geometry><mesh filename='{file}'/></geometry>");
+        format!("<robot name='r'><link name='a'><collision>{geometry}</collision></link></robot>")
+    };
+    let pipe = "is a pipe; a model's files are regular ones";
+    let device = "is a device or socket; only files are read";
+    for (text, path, why) in [
+        (mesh("model/mesh.obj"), "model/mesh.obj", pipe),
+        (mesh("link.obj"), "link.obj", pipe),
+        (urdf("model/mesh.obj"), "model/mesh.obj", pipe),
+        (urdf("package://model/mesh.obj"), "package://model/mesh.obj", pipe),
+        ("<mujoco><include file='model/part.xml'/></mujoco>".into(), "model/part.xml", pipe),
+        (mesh("model/socket.obj"), "model/socket.obj", device),
+        (urdf("model"), "model", "is a folder"),
+    ] {
+        let options =
+            ReadOptions { root: Some(folder.clone()), packages: vec![folder.clone()], ..ReadOptions::default() };
+        let error = Imported::from_text(&text, &options).unwrap_err();
+        let place = SourceLocation { file: "text".into(), line: 1 };
+        assert_eq!(error, ReadError::Path { place, path: path.into(), why }, "{text}");
+    }
+    let options = ReadOptions { root: Some("/dev".into()), ..ReadOptions::default() };
+    for text in [mesh("zero"), urdf("zero")] {
+        let error = Imported::from_text(&text, &options).unwrap_err();
+        assert!(matches!(error, ReadError::Path { why, .. } if why == device), "{error}");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn the_model_itself_may_come_from_a_pipe() {
+    let folder = folder("piped");
+    let robot = "<robot name='r'><link name='a'/></robot>";
+    pipe(&folder.join("whole.urdf"), robot.into());
+    let reading = Imported::from_file(&folder.join("whole.urdf"), &ReadOptions::default()).unwrap();
+    assert_eq!(reading.robot.segments.len(), 1);
+    pipe(&folder.join("long.urdf"), format!("{robot}{}", " ".repeat(10_000_000)));
+    let limits = Limits { bytes: 1000, ..Limits::default() };
+    let error = Imported::from_file(&folder.join("long.urdf"), &ReadOptions { limits, ..ReadOptions::default() });
+    assert!(matches!(error, Err(ReadError::TooMuch { what: "bytes in a file", limit: 1000, .. })), "{error:?}");
+    for (path, why) in [("/dev/zero", "is a device or socket; only files are read"), ("/dev", "is a folder")] {
+        let error = Imported::from_file(Path::new(path), &ReadOptions::default()).unwrap_err();
+        assert_eq!(error, ReadError::File { path: path.into(), why: why.into() });
+    }
 }

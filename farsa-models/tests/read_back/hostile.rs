@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use farsa_models::{MjcfOptions, mjcf};
 use proptest::prelude::*;
 
+use crate::round_trip::lost;
 use crate::{fixture, message, read};
 
 #[test]
@@ -85,6 +85,7 @@ proptest! {
         let text = String::from_utf8_lossy(&bytes);
         if let Ok(reading) = read(&text) {
             prop_assert!(reading.robot.validate().is_ok());
+            prop_assert_eq!(lost(&reading.robot), Ok(()));
         }
     }
 
@@ -106,7 +107,7 @@ proptest! {
         let text = format!("{}{value}{}", &text[..from], &text[to..]);
         if let Ok(reading) = read(&text) {
             prop_assert!(reading.robot.validate().is_ok());
-            prop_assert!(mjcf::write(&reading.robot, &MjcfOptions::default()).is_ok());
+            prop_assert_eq!(lost(&reading.robot), Ok(()));
         }
     }
 }

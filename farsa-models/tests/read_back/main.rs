@@ -9,6 +9,8 @@ mod files;
 mod hostile;
 /// Models as large as the limits.
 mod large;
+/// Whatever is read is written and read back.
+mod round_trip;
 /// Robots that were written are read as they were.
 mod written;
 

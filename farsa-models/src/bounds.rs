@@ -1,0 +1,69 @@
+//! How large the numbers of a model may be. What is read is within them, so that it is read again when it was written.
+
+use farsa_body::{Robot, RobotError, Shape};
+
+/// A radius, half a length and half an edge are below this [m].
+pub(crate) const LARGEST: f64 = 1e9;
+
+/// As far as this or further is without end [rad, m, N m, N]: what stands for an infinite one where a format wants a number.
+pub(crate) const ENDLESS: f64 = 1e9;
+
+/// Whether a shape has sizes that files may have; those of a file may also be NaN, or too small to have a half.
+pub(crate) fn has_size(shape: &Shape) -> bool {
+    let positive = |size: f64| size > 0.0 && size < LARGEST;
+    match *shape {
+        Shape::Sphere { radius } => positive(radius),
+        Shape::Capsule { radius, half_length } => positive(radius) && (0.0..LARGEST).contains(&half_length),
+        Shape::Box { half } => half.into_iter().all(positive),
+        Shape::Plane => true,
+    }
+}
+
+/// Refuses a valid robot with a shape that could not be read back.
+pub(crate) fn check_sizes(robot: &Robot) -> Result<(), RobotError> {
+    let Some(large) = robot.colliders.iter().find(|collider| !has_size(&collider.shape)) else { return Ok(()) };
+    let value = match large.shape {
+        Shape::Sphere { radius } => radius,
+        Shape::Capsule { radius, half_length } => radius.max(half_length),
+        Shape::Box { half } => half.into_iter().fold(0.0, f64::max),
+        Shape::Plane => 0.0,
+    };
+    Err(RobotError::Value { part: large.name.clone(), field: "size (in files below 1e9)", value })
+}
+
+/// The range that the ends in a file mean.
+pub(crate) fn range_from_file([low, high]: [f64; 2]) -> [f64; 2] {
+    [if low <= -ENDLESS { f64::NEG_INFINITY } else { low }, if high >= ENDLESS { f64::INFINITY } else { high }]
+}
+
+/// The ends that a range has in a file; a range that begins or ends out there keeps the end that it has.
+pub(crate) fn range_in_file([low, high]: [f64; 2]) -> [f64; 2] {
+    [low.max(high.min(-ENDLESS)), high.min(low.max(ENDLESS))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_read_as_they_were_written() {
+        let (none, ends) = (f64::INFINITY, [-3e10, -2e9, -1e9, -1.0, 0.0, 2.0, 1e9, 5e9, 1e300]);
+        let all = ends.into_iter().flat_map(|a| ends.map(|b| [a, b])).filter(|[low, high]| low <= high);
+        let all = all.map(range_from_file).chain([[-none, none], [-none, 0.0], [0.0, none]]);
+        for range in all {
+            let [low, high] = range_in_file(range);
+            assert!(low <= high && low.is_finite() && high.is_finite(), "{range:?}: {low} to {high}");
+            assert_eq!(range_from_file([low, high]), range);
+        }
+    }
+
+    #[test]
+    fn sizes_are_below_the_largest() {
+        let ball = |radius| Shape::Sphere { radius };
+        let sizes = [(5e-324, true), (999_999_999.0, true), (1e9, false), (f64::NAN, false), (0.0, false)];
+        assert!(sizes.iter().all(|(radius, expected)| has_size(&ball(*radius)) == *expected));
+        assert!(has_size(&Shape::Capsule { radius: 1.0, half_length: 0.0 }));
+        assert!(!has_size(&Shape::Capsule { radius: 1.0, half_length: 1e9 }));
+        assert!(!has_size(&Shape::Box { half: [1.0, 1.0, 1e10] }));
+    }
+}
