@@ -32,7 +32,8 @@ fn said(output: &Output) -> String {
 /// The names of all files and directories in a directory, hidden ones too.
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten();
-    let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("a name")).collect();
     names.sort();
     names
 }
@@ -40,7 +41,7 @@ fn names(folder: &Path) -> Vec<String> {
 /// What a run holds, but for the manifest, which has the times of its sessions.
 fn content(run: &Path) -> BTreeMap<String, Vec<u8>> {
     let names = names(run).into_iter().filter(|name| name != "manifest.json");
-    names.map(|name| (name.clone(), fs::read(run.join(name)).unwrap())).collect()
+    names.map(|name| (name.clone(), fs::read(run.join(name)).expect("a file"))).collect()
 }
 
 /// When to kill: often while a process begins and while it saves for the first time, which is after a second.
@@ -59,7 +60,7 @@ fn delay(stream: &mut Stream) -> Duration {
 /// The generations that are finished, as a reader of the run sees them; none before there is one.
 fn finished(here: &Path) -> Option<u32> {
     let _ = fs::remove_file(here.join("page.html"));
-    let output = farsa(here, "report r --json --html page.html").output().unwrap();
+    let output = farsa(here, "report r --json --html page.html").output().expect("the program");
     let _ = fs::remove_file(here.join("page.html"));
     if !output.status.success() {
         let said = said(&output);
@@ -67,23 +68,23 @@ fn finished(here: &Path) -> Option<u32> {
         assert!(early, "a reader of a run that was killed: {said}");
         return None;
     }
-    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    Some(u32::try_from(summary["runs"][0]["generations"].as_u64().expect("generations")).unwrap())
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    Some(u32::try_from(summary["runs"][0]["generations"].as_u64().expect("generations")).expect("a number"))
 }
 
 fn killed_again_and_again(here: &Path, (name, options): (&str, &str), kills: u32, own: u32) {
     let _ = fs::remove_dir_all(here);
-    fs::create_dir_all(here).unwrap();
+    fs::create_dir_all(here).expect("a scratch directory");
     let mut stream = Stream::new(20_261_123, Domain::General, own, 0, 0);
     let start = format!("run {name} {options} --generations 4000000 --threads 1 --out r -q");
     let mut latest = 0;
     for kill in 0..kills {
         // Whatever was left behind, the next start takes it up; only a directory that is not there yet is made.
         let arguments = if here.join("r").exists() { "run --resume r --threads 1 -q" } else { &start };
-        let mut child = farsa(here, arguments).spawn().unwrap();
+        let mut child = farsa(here, arguments).spawn().expect("the program");
         thread::sleep(delay(&mut stream));
-        child.kill().unwrap();
-        let output = child.wait_with_output().unwrap();
+        child.kill().expect("SIGKILL");
+        let output = child.wait_with_output().expect("its end");
         assert_eq!(output.status.code(), None, "{name}, kill {kill}: it ended by itself: {}", said(&output));
         if kill % 5 == 0 {
             let now = finished(here).unwrap_or(0);
@@ -95,16 +96,18 @@ fn killed_again_and_again(here: &Path, (name, options): (&str, &str), kills: u32
     let end = if here.join("r").exists() {
         // The number of generations may have been passed by then.
         let end = finished(here).unwrap_or(0).max(last);
-        let output = farsa(here, &format!("run --resume r --generations {end} -q")).output().unwrap();
+        let output = farsa(here, &format!("run --resume r --generations {end} -q")).output().expect("the program");
         assert!(output.status.success(), "{name}: {}", said(&output));
         end
     } else {
-        let output = farsa(here, &format!("run {name} {options} --generations {last} --out r -q")).output().unwrap();
+        let output = farsa(here, &format!("run {name} {options} --generations {last} --out r -q"))
+            .output()
+            .expect("the program");
         assert!(output.status.success(), "{name}: {}", said(&output));
         last
     };
     let whole = format!("run {name} {options} --generations {end} --out whole -q");
-    let output = farsa(here, &whole).output().unwrap();
+    let output = farsa(here, &whole).output().expect("the program");
     assert!(output.status.success(), "{name}: {}", said(&output));
     assert_eq!(names(here), ["r", "whole"], "{name}: what a killed process left beside the run");
     let (killed, whole) = (content(&here.join("r")), content(&here.join("whole")));

@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use crate::tool::{Said, command, ok, own, say, scratch};
+use crate::tool::{Said, command, ok, own, scratch};
 
 /// Runs a line of a shell.
 fn shell(here: &Path, line: &str) -> Said {
@@ -84,7 +84,7 @@ fn what_nohup_ignores_stays_ignored() {
 #[cfg(target_os = "linux")]
 #[test]
 fn files_without_an_end_end() {
-    let here = scratch("endless");
+    let here = scratch("own-endless");
     ok(own(), &here, "run cart --generations 2 --out r -q");
     for (line, words) in [
         ("$F run --config /dev/zero", "/dev/zero: "),
@@ -107,20 +107,10 @@ fn files_without_an_end_end() {
     );
 }
 
-#[test]
-fn a_configuration_of_many_keys_is_refused_with_its_first() {
-    let here = scratch("keys");
-    let keys: String = (0..200_000).map(|key| format!("k{key}=1\n")).collect();
-    fs::write(here.join("m.toml"), format!("experiment=\"cart\"\n{keys}")).expect("a file");
-    let said = say(own(), &here, "run --config m.toml");
-    assert_eq!(said.code, Some(2), "{said:?}");
-    assert!(said.err.contains("m.toml line 2: unknown key `k0`"), "{said:?}");
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn threads_that_cannot_be_made_are_an_error() {
-    let here = scratch("threads");
+    let here = scratch("too-many-threads");
     let said = shell(&here, "ulimit -v 2000000; $F run cart --generations 1 --threads 4096 --out t");
     assert_eq!(said.code, Some(1), "{said:?}");
     assert!(said.err.contains("cannot start thread ") && said.err.contains(" of 4096"), "{said:?}");

@@ -51,7 +51,7 @@ fn control_characters() {
 #[test]
 fn names_of_files() {
     let here = scratch("names");
-    let evil = format!("d\u{1b}[2J\u{9b}\ne");
+    let evil = "d\u{1b}[2J\u{9b}\ne".to_owned();
     refused(&here, &["test", &evil], 2, "d\\u{1b}[2J\\u{9b}\\ne");
     refused(&here, &["run", "--config", &evil], 1, "cannot read d\\u{1b}[2J\\u{9b}\\ne");
     let short = ["--generations", "1", "--set", "trial.count=1", "--set", "trial.steps=5"];
@@ -67,8 +67,8 @@ fn names_of_files() {
 #[test]
 fn files_without_an_end() {
     let here = scratch("endless");
-    let keys: String = (0..200_000).map(|number| format!("k{number}=1\n")).collect();
-    fs::write(here.join("keys.toml"), format!("experiment=\"discrimination\"\n{keys}")).expect("a file");
+    let keys: Vec<String> = (0..200_000).map(|number| format!("k{number}=1\n")).collect();
+    fs::write(here.join("keys.toml"), format!("experiment=\"discrimination\"\n{}", keys.concat())).expect("a file");
     refused(&here, &["run", "--config", "keys.toml"], 2, "keys.toml line 2: unknown key `k0`");
     fs::File::create(here.join("large")).and_then(|file| file.set_len(1 << 40)).expect("a file with a hole");
     let most = |bytes: u32| format!("large: has more than {bytes} bytes, the most that is read of it");

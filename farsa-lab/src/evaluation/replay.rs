@@ -1,5 +1,6 @@
 //! `farsa replay`: a trial of the run again, step by step.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::Path;
@@ -15,7 +16,7 @@ use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::outcome::{Note, Outcome};
 use crate::run::contained::caught;
 use crate::run::plan::Plan;
-use crate::run::records::history;
+use crate::run::told::history;
 use crate::store::directory::Directory;
 use crate::store::replace::create_results;
 use crate::strategy::opponents;
@@ -181,7 +182,8 @@ impl ReplaySummary {
             format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {fitness:?}");
         for ReplayedTrial { trial, failure, .. } in trials {
             if let Some(why) = failure {
-                text.push_str(&format!("; trial {trial} failed: {why}"));
+                // Writing into a string cannot fail.
+                let _ = write!(text, "; trial {trial} failed: {why}");
             }
         }
         text

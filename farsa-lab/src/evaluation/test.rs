@@ -76,8 +76,9 @@ fn write(directory: &Directory, table: &Table, record: impl FnOnce(u32) -> Recor
     let bytes = table.csv(&path)?;
     let record = record(crc32(&bytes));
     let text = serde_json::to_string_pretty(&record).map_err(|error| Error::Other(error.to_string()))?;
-    let _lock = Lock::of_tests(directory)?;
-    [&path, &json].into_iter().for_each(|path| draft::sweep_of(path));
+    let _lock = Lock::of_tests(directory.path())?;
+    draft::sweep_of(&path);
+    draft::sweep_of(&json);
     replace(&path, &bytes)?;
     replace(&json, format!("{text}\n").as_bytes())
 }
@@ -146,7 +147,7 @@ pub(crate) fn test(
         return Err(Error::damaged(&path, "its genome is not one of the experiment"));
     };
     // Where nothing can be written, that is said before anything is computed.
-    drop(Lock::of_tests(directory)?);
+    drop(Lock::of_tests(directory.path())?);
     let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
     let size = if best.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);

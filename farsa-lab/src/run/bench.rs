@@ -15,7 +15,7 @@ use crate::experiment::outcome::Outcome;
 use crate::run::fitness::{Opponents, evaluate_all};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
-use crate::run::records::history;
+use crate::run::told::history;
 use crate::store::directory::Directory;
 use crate::store::manifest::Machine;
 use crate::strategy::opponents::{Hall, Meeting};

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::fmt::Write as _;
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
@@ -56,7 +57,8 @@ fn message(info: &PanicHookInfo<'_>) -> String {
     let words = said.unwrap_or("no words").split_whitespace().collect::<Vec<_>>().join(" ");
     let mut text: String = words.chars().take(LONGEST).collect();
     if let Some(place) = info.location() {
-        text.push_str(&format!(" ({}:{})", place.file(), place.line()));
+        // Writing into a string cannot fail.
+        let _ = write!(text, " ({}:{})", place.file(), place.line());
     }
     text
 }

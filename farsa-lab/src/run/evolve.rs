@@ -52,7 +52,7 @@ pub(crate) fn go_on(
 ) -> Result<Summary, Error> {
     evolved(directory)?;
     // The lock comes before anything is read that another process might be writing.
-    let _lock = Lock::of_run(directory)?;
+    let _lock = Lock::of_run(directory.path())?;
     let path = directory.checkpoint();
     let checkpoint = Checkpoint::read(plan, directory)?;
     checkpoint.identity.same_values(&plan.identity()?, &path)?;

@@ -128,7 +128,7 @@ impl<'e> Pool<'e> {
                     Ok(thread) => threads.push(thread),
                     Err(source) => {
                         work.ended.store(true, Ordering::Relaxed);
-                        return Err(no_thread(threads.len() + 1, all, source));
+                        return Err(no_thread(threads.len() + 1, all, &source));
                     }
                 }
             }
@@ -146,7 +146,7 @@ impl<'e> Pool<'e> {
 }
 
 /// That the system refused a thread.
-fn no_thread(number: usize, all: usize, source: io::Error) -> Error {
+fn no_thread(number: usize, all: usize, source: &io::Error) -> Error {
     let least = number.saturating_sub(1).max(1);
     Error::Other(format!("cannot start thread {number} of {all}: {source}; --threads {least} or less may do"))
 }
@@ -201,12 +201,13 @@ where
             running.borrow_mut().retain(|evaluation| evaluation.number != number);
             put(number, Some(outcome));
         };
-        loop {
-            let Err(why) = contained(|| round(evaluator.as_mut(), &mut next, &mut end)) else { break };
+        while let Err(why) = contained(|| round(evaluator.as_mut(), &mut next, &mut end)) {
             let broken = running.take();
             self.renew(evaluator)?;
             if self.maker.lanes.count() == 1 {
-                broken.iter().for_each(|evaluation| put(evaluation.number, Some(Outcome::panicked(&why))));
+                for evaluation in broken {
+                    put(evaluation.number, Some(Outcome::panicked(&why)));
+                }
                 continue;
             }
             // One of those side by side has panicked: alone each comes to what it would have come to.

@@ -1,6 +1,6 @@
 //! The sealed files of a run: where to go on, what the strategy was told, who is best, and genotypes from elsewhere.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use farsa_evo::Fitness;
 use serde::{Deserialize, Serialize};
@@ -8,13 +8,11 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::run::plan::Plan;
-use crate::run::told::Told;
 use crate::store::directory::Directory;
 use crate::store::growing::Mark;
 use crate::store::identity::Identity;
 use crate::store::sealed;
 use crate::store::sealed::Sealed;
-use crate::strategy::history::History;
 
 /// `checkpoint.bin`: where to go on; it does not grow.
 #[derive(Debug, Serialize, Deserialize)]
@@ -171,28 +169,18 @@ impl Checkpoint {
     }
 }
 
-/// What the genomes of the run that a plan describes are rebuilt from, whose it is, and where that stands.
+/// The imported genotypes of a directory, those of one population after the other: whose they are, and of how many populations.
 ///
 /// # Errors
-/// As [`Told::read`].
-pub(crate) fn history<'p>(
-    plan: &'p Plan<'_>,
-    directory: &Directory,
-) -> Result<(Identity, History<'p>, PathBuf), Error> {
+/// As [`Checkpoint::read`].
+pub(crate) fn imported(plan: &Plan<'_>, directory: &Directory) -> Result<(Identity, Vec<Vec<u16>>, usize), Error> {
     let path = directory.genotypes();
-    if path.is_file() {
-        let (identity, genomes, populations) = if sealed::magic(&path)? == Some(ImportedSeveral::MAGIC) {
-            let ImportedSeveral { identity, genomes, populations } = read(&path, plan, directory)?;
-            (identity, genomes, populations)
-        } else {
-            let Imported { identity, genomes } = read(&path, plan, directory)?;
-            (identity, genomes, 1)
-        };
-        return Ok((identity, History::from_imported(path.clone(), genomes, populations), path));
+    if sealed::magic(&path)? == Some(ImportedSeveral::MAGIC) {
+        let ImportedSeveral { identity, genomes, populations } = read(&path, plan, directory)?;
+        return Ok((identity, genomes, populations));
     }
-    let path = directory.record();
-    let Told { identity, record, .. } = Told::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
-    Ok((identity, History::new(path.clone(), record, plan.fresh()), path))
+    let Imported { identity, genomes } = read(&path, plan, directory)?;
+    Ok((identity, genomes, 1))
 }
 
 /// Writes imported genotypes, those of one population after the other.

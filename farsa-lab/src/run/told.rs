@@ -3,19 +3,20 @@
 //! After a sealed head, which says whose it is, stands an entry for each generation. How much of the file counts, and its checksum,
 //! stands in the checkpoint, which is written after it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use farsa_evo::{Record, RecordEntry, Strategy};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::run::plan::Plan;
-use crate::run::records::{Checkpoint, RecordHead, evolved};
+use crate::run::records::{Checkpoint, RecordHead, evolved, imported};
 use crate::store::directory::Directory;
 use crate::store::growing::{self, Growing, Mark};
 use crate::store::identity::Identity;
 use crate::store::log::Line;
 use crate::store::sealed;
+use crate::strategy::history::History;
 
 /// Bytes of the largest record that is read.
 const LARGEST: u64 = 1 << 32;
@@ -100,6 +101,24 @@ impl Told {
         let content = std::mem::take(&mut self.content);
         Growing::new(&directory.record(), &content).map(ToldFile)
     }
+}
+
+/// What the genomes of the run that a plan describes are rebuilt from, whose it is, and where that stands.
+///
+/// # Errors
+/// As [`Told::read`].
+pub(crate) fn history<'p>(
+    plan: &'p Plan<'_>,
+    directory: &Directory,
+) -> Result<(Identity, History<'p>, PathBuf), Error> {
+    let path = directory.genotypes();
+    if path.is_file() {
+        let (identity, genomes, populations) = imported(plan, directory)?;
+        return Ok((identity, History::from_imported(path.clone(), genomes, populations), path));
+    }
+    let path = directory.record();
+    let Told { identity, record, .. } = Told::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
+    Ok((identity, History::new(path.clone(), record, plan.fresh()), path))
 }
 
 /// The record of a run in progress.

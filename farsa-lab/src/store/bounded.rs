@@ -149,7 +149,7 @@ fn text(path: &Path, bytes: Vec<u8>) -> Result<String, Error> {
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let (before, after) = error.as_bytes().split_at_checked(at).unwrap_or_default();
-        let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
+        let line = before.split(|&byte| byte == b'\n').count();
         let byte = after.first().copied().unwrap_or_default();
         Error::damaged(path, format!("line {line}: the byte 0x{byte:02x} is no text (UTF-8)"))
     })
@@ -196,9 +196,9 @@ mod tests {
     #[test]
     fn a_file_is_read_up_to_the_limit() {
         let place = Place::new("limit");
-        let path = place.file("a", &[7; 3 * CHUNK]);
+        let path = place.file("a", &vec![7; 3 * CHUNK]);
         for read in [read, read_own] {
-            assert_eq!(read(&path, 3 * CHUNK as u64).unwrap(), [7; 3 * CHUNK]);
+            assert_eq!(read(&path, 3 * CHUNK as u64).unwrap(), vec![7; 3 * CHUNK]);
             let said = read(&path, 3 * CHUNK as u64 - 1).unwrap_err().to_string();
             assert_eq!(said, format!("{}: has more than 196607 bytes, the most that is read of it", path.display()));
             // A hole that no memory could hold.

@@ -71,13 +71,11 @@ impl Failures {
             return Ok(());
         }
         let lines: String = failed.iter().map(|failed| failed.line(program)).collect();
-        match &mut self.file {
-            Some(file) => file.append(lines.as_bytes()),
-            None => {
-                self.file = Some(Growing::new(&self.path, format!("{HEADER}{lines}").as_bytes())?);
-                Ok(())
-            }
+        if let Some(file) = &mut self.file {
+            return file.append(lines.as_bytes());
         }
+        self.file = Some(Growing::new(&self.path, format!("{HEADER}{lines}").as_bytes())?);
+        Ok(())
     }
 
     /// Brings everything to the disk and says how far it has come.

@@ -7,7 +7,6 @@ use std::thread;
 use std::time::Duration;
 
 use crate::error::Error;
-use crate::store::directory::Directory;
 
 /// The file whose lock is held as long as a process goes on with a run.
 pub(crate) const RUN_LOCK: &str = ".run.lock";
@@ -28,14 +27,14 @@ impl Lock {
     ///
     /// # Errors
     /// [`Error::Occupied`] when another process has it, [`Error::Io`].
-    pub(crate) fn of_run(directory: &Directory) -> Result<Self, Error> {
-        let path = directory.path().join(RUN_LOCK);
+    pub(crate) fn of_run(directory: &Path) -> Result<Self, Error> {
+        let path = directory.join(RUN_LOCK);
         let file = open(&path).map_err(Error::io("lock", &path))?;
         match file.try_lock() {
             Ok(()) => Ok(Self { _file: file }),
             Err(TryLockError::WouldBlock) => {
                 let why = "another process is at this run right now".into();
-                Err(Error::Occupied { directory: directory.path().into(), why })
+                Err(Error::Occupied { directory: directory.into(), why })
             }
             Err(TryLockError::Error(source)) => Err(Error::Io { doing: "lock", path, source }),
         }
@@ -45,8 +44,8 @@ impl Lock {
     ///
     /// # Errors
     /// [`Error::Occupied`] when another process has them for more than ten seconds, [`Error::Io`].
-    pub(crate) fn of_tests(directory: &Directory) -> Result<Self, Error> {
-        let path = directory.path().join(TEST_LOCK);
+    pub(crate) fn of_tests(directory: &Path) -> Result<Self, Error> {
+        let path = directory.join(TEST_LOCK);
         let file = open(&path).map_err(Error::io("lock", &path))?;
         for _ in 0..ATTEMPTS {
             match file.try_lock() {
@@ -56,7 +55,7 @@ impl Lock {
             }
         }
         let why = "another process has been writing a test here for ten seconds".into();
-        Err(Error::Occupied { directory: directory.path().into(), why })
+        Err(Error::Occupied { directory: directory.into(), why })
     }
 }
 

@@ -125,8 +125,9 @@ fn says_the_same(path: &Path, text: &str) -> bool {
 fn keep(path: &Path) -> Result<PathBuf, Error> {
     let (stem, end) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
     let name = |number: u32| format!("{}-changed-{number}.{}", stem.to_string_lossy(), end.to_string_lossy());
-    let free = (1..).map(|number| path.with_file_name(name(number))).find(|other| fs::symlink_metadata(other).is_err());
-    let other = free.unwrap_or_else(|| path.with_extension("changed"));
+    let mut others = (1..u32::MAX).map(|number| path.with_file_name(name(number)));
+    let other = others.find(|other| fs::symlink_metadata(other).is_err());
+    let other = other.unwrap_or_else(|| path.with_extension("changed"));
     fs::rename(path, &other).map_err(Error::io("rename", path))?;
     Ok(other)
 }
