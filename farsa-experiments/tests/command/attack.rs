@@ -123,9 +123,9 @@ fn threads_that_cannot_be_made_are_an_error() {
 fn a_directory_left_by_a_process_of_the_same_number_is_in_nobodys_way() {
     let here = scratch("number");
     // The names that earlier versions gave, and a draft without its maker.
-    let said = shell(&here, "mkdir .r.$$ .r.abcdef.new; exec $F run cart --generations 2 --out r -q");
+    let said = shell(&here, "mkdir .r.$$ .r.0123456789ab.new; exec $F run cart --generations 2 --out r -q");
     assert_eq!(said.code, Some(0), "{said:?}");
-    assert!(here.join("r/champion.bin").is_file() && !here.join(".r.abcdef.new").exists());
+    assert!(here.join("r/champion.bin").is_file() && !here.join(".r.0123456789ab.new").exists());
 }
 
 #[cfg(unix)]

@@ -7,6 +7,7 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
+use std::hash::{BuildHasher as _, Hasher as _, RandomState};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -16,8 +17,8 @@ use crate::store::lock::{self, RUN_LOCK};
 
 /// What the names of drafts end with.
 const SUFFIX: &str = ".new";
-/// Letters and digits before it.
-const RANDOM: usize = 6;
+/// Letters before it, which no one can foresee.
+const RANDOM: usize = 12;
 /// Bytes of the final name that a draft's name begins with: 255 are allowed.
 const LONGEST: usize = 200;
 /// How often a draft is made again when somebody has swept it before it was locked.
@@ -39,9 +40,12 @@ fn prefix(path: &Path) -> OsString {
 }
 
 fn builder<T>(path: &Path, mode: u32, make: impl Fn(&Builder<'_, '_>, &Path) -> io::Result<T>) -> io::Result<T> {
-    let prefix = prefix(path);
+    let mut prefix = prefix(path);
+    // The keys of this hash are the system's random numbers.
+    let random = RandomState::new().build_hasher().finish();
+    prefix.push(format!("{:0RANDOM$x}", random >> (64 - 4 * RANDOM)));
     let mut builder = Builder::new();
-    builder.prefix(&prefix).suffix(SUFFIX).rand_bytes(RANDOM);
+    builder.prefix(&prefix).suffix(SUFFIX).rand_bytes(0);
     // As if it had been made under its final name: the user's mask takes away what others may not do.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
@@ -70,7 +74,10 @@ fn swept() -> io::Error {
 /// Makes an empty file beside `path`, which is removed unless it is persisted.
 pub(crate) fn file(path: &Path) -> io::Result<NamedTempFile> {
     for _ in 0..ATTEMPTS {
-        let draft = builder(path, 0o666, |builder, folder| builder.tempfile_in(folder))?;
+        let draft = match builder(path, 0o666, |builder, folder| builder.tempfile_in(folder)) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+            draft => draft?,
+        };
         if held(draft.as_file(), draft.path()) {
             return Ok(draft);
         }
@@ -82,7 +89,10 @@ pub(crate) fn file(path: &Path) -> io::Result<NamedTempFile> {
 /// locks it.
 pub(crate) fn directory(path: &Path) -> io::Result<(TempDir, File)> {
     for _ in 0..ATTEMPTS {
-        let draft = builder(path, 0o777, |builder, folder| builder.tempdir_in(folder))?;
+        let draft = match builder(path, 0o777, |builder, folder| builder.tempdir_in(folder)) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+            draft => draft?,
+        };
         let place = draft.path().join(RUN_LOCK);
         match lock::open(&place) {
             Ok(file) if held(&file, &place) => return Ok((draft, file)),
@@ -128,7 +138,7 @@ fn entries(folder: &Path) -> impl Iterator<Item = (PathBuf, String)> {
 fn is_draft(name: &str, prefix: &str) -> bool {
     let Some((start, random)) = name.strip_suffix(SUFFIX).and_then(|rest| rest.rsplit_once('.')) else { return false };
     let whole = start.len() + 1 >= prefix.len() && name.starts_with(prefix) && start.len() > 1;
-    whole && random.len() == RANDOM && random.bytes().all(|letter| letter.is_ascii_alphanumeric())
+    whole && random.len() == RANDOM && random.bytes().all(|letter| letter.is_ascii_hexdigit())
 }
 
 /// Opens a regular file that nobody holds a lock on.
@@ -177,21 +187,27 @@ mod tests {
             ".champion.bin.new",
             ".notes.new",
             ".champion.bin.abc.new",
-            ".a.abcdef.new~",
-            "..abcdef.new",
+            ".a.0123456789ab.new~",
+            "..0123456789ab.new",
         ] {
             fs::write(at(name), "x").unwrap();
         }
         let victim = at("victim");
         fs::write(&victim, "precious").unwrap();
         #[cfg(unix)]
-        std::os::unix::fs::symlink(&victim, at(".link.abcdef.new")).unwrap();
+        std::os::unix::fs::symlink(&victim, at(".link.0123456789ab.new")).unwrap();
         sweep(folder.path());
         assert!(!dead.exists() && alive.path().exists());
-        let mut left =
-            vec!["..abcdef.new", ".a.abcdef.new~", ".champion.bin.abc.new", ".notes.new", "champion.bin", "victim"];
+        let mut left = vec![
+            "..0123456789ab.new",
+            ".a.0123456789ab.new~",
+            ".champion.bin.abc.new",
+            ".notes.new",
+            "champion.bin",
+            "victim",
+        ];
         if cfg!(unix) {
-            left.push(".link.abcdef.new");
+            left.push(".link.0123456789ab.new");
         }
         let own = alive.path().file_name().unwrap().to_str().unwrap().to_owned();
         left.push(&own);
@@ -210,9 +226,9 @@ mod tests {
         let dead = dead.keep();
         fs::write(dead.join("config.toml"), "x").unwrap();
         drop(lock);
-        let bare = folder.path().join(".run.abcdef.new");
+        let bare = folder.path().join(".run.0123456789ab.new");
         fs::create_dir(&bare).unwrap();
-        let other = folder.path().join(".run.ghijkl.new");
+        let other = folder.path().join(".run.ba9876543210.new");
         fs::create_dir(&other).unwrap();
         fs::write(other.join("letter.txt"), "dear").unwrap();
         let (next, _other_lock) = directory(&folder.path().join("next")).unwrap();
