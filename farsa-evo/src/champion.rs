@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use crate::error::EvoError;
 use crate::fitness::Fitness;
+use crate::gene::Gene;
 use crate::population::Population;
 use crate::statistics::Statistics;
 
@@ -29,7 +30,7 @@ use crate::statistics::Statistics;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Champion {
+pub struct Champion<G = u16> {
     /// Its generation.
     pub generation: u32,
     /// Its index in that generation.
@@ -37,10 +38,10 @@ pub struct Champion {
     /// Its fitness, in the experiment's own unit.
     pub fitness: Fitness,
     /// Its genome \[genes\].
-    pub genome: Vec<u16>,
+    pub genome: Vec<G>,
 }
 
-impl Champion {
+impl<G: Gene> Champion<G> {
     /// Replaces the best so far by the best of a generation, if that is better, given the fitness \[individuals\] of its
     /// population. Among equals the earliest stays.
     ///
@@ -49,7 +50,7 @@ impl Champion {
     pub fn keep(
         best: &mut Option<Self>,
         generation: u32,
-        population: &Population,
+        population: &Population<G>,
         fitness: &[Fitness],
     ) -> Result<(), EvoError> {
         let counts = EvoError::FitnessCount { expected: population.len(), found: fitness.len() };

@@ -67,6 +67,15 @@ pub enum EvoError {
         /// Genes of each of them.
         genes: usize,
     },
+    /// A number of a configuration that cannot be.
+    Setting {
+        /// What it is called.
+        name: &'static str,
+        /// The number asked for.
+        value: f64,
+        /// What is possible.
+        allowed: &'static str,
+    },
     /// A range of gene values that is not finite, or whose low end is above its high end.
     Range {
         /// Value of gene 0.
@@ -189,6 +198,7 @@ impl fmt::Display for EvoError {
                 let limit = MAX_GENES;
                 write!(f, "{population} genomes of {genes} genes are more than {limit} genes")
             }
+            Self::Setting { name, value, allowed } => write!(f, "{name} is {value}, where {allowed} is possible"),
             Self::Range { low, high } => write!(f, "genes cannot range from {low} to {high}"),
             Self::Lengths { genes, ranges, out } => {
                 write!(f, "{genes} genes, ranges for {ranges}, room for {out} values")

@@ -7,27 +7,19 @@ use core::slice::{ChunksExact, ChunksExactMut};
 use farsa_num::Digest;
 
 use crate::error::{EvoError, MAX_GENES};
+use crate::gene::Gene;
 
 /// The genomes of one generation, one after the other in one piece of memory [individuals x genes].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Population {
+pub struct Population<G = u16> {
     genome_len: usize,
-    genes: Vec<u16>,
+    genes: Vec<G>,
 }
 
 impl Population {
-    /// The most genes a population may have together, 2^28 (512 MiB), so that a damaged configuration is refused
-    /// before it is allocated.
+    /// The most genes a population may have together, 2^28 (512 MiB of words, 2 GiB of reals), so that a damaged configuration
+    /// is refused before it is allocated.
     pub const MAX_GENES: usize = MAX_GENES;
-
-    /// `individuals` genomes of `genome_len` genes, all zero.
-    ///
-    /// # Errors
-    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`] or [`EvoError::TooLarge`].
-    pub fn new(individuals: usize, genome_len: usize) -> Result<Self, EvoError> {
-        Self::check(individuals, genome_len)?;
-        Ok(Self { genome_len, genes: vec![0; individuals * genome_len] })
-    }
 
     /// Whether [`Population::new`] would accept these sizes.
     pub(crate) fn check(individuals: usize, genome_len: usize) -> Result<(), EvoError> {
@@ -38,9 +30,20 @@ impl Population {
             return Err(EvoError::NoGenes);
         }
         match individuals.checked_mul(genome_len) {
-            Some(total) if total <= Self::MAX_GENES => Ok(()),
+            Some(total) if total <= MAX_GENES => Ok(()),
             _ => Err(EvoError::TooLarge { population: individuals, genes: genome_len }),
         }
+    }
+}
+
+impl<G: Gene> Population<G> {
+    /// `individuals` genomes of `genome_len` genes, all zero.
+    ///
+    /// # Errors
+    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`] or [`EvoError::TooLarge`].
+    pub fn new(individuals: usize, genome_len: usize) -> Result<Self, EvoError> {
+        Population::check(individuals, genome_len)?;
+        Ok(Self { genome_len, genes: vec![G::default(); individuals * genome_len] })
     }
 
     /// Number of individuals.
@@ -59,47 +62,54 @@ impl Population {
     }
 
     /// The genome \[genes\] of one individual, none beyond the last.
-    pub fn get(&self, individual: usize) -> Option<&[u16]> {
+    pub fn get(&self, individual: usize) -> Option<&[G]> {
         self.iter().nth(individual)
     }
 
     /// The genomes \[genes\], individual after individual.
-    pub fn iter(&self) -> ChunksExact<'_, u16> {
+    pub fn iter(&self) -> ChunksExact<'_, G> {
         self.genes.chunks_exact(self.genome_len)
     }
 
     /// The genomes \[genes\], to be changed.
-    pub fn iter_mut(&mut self) -> ChunksExactMut<'_, u16> {
+    pub fn iter_mut(&mut self) -> ChunksExactMut<'_, G> {
         self.genes.chunks_exact_mut(self.genome_len)
     }
 
+    /// All genes [individuals x genes], to be changed.
+    pub(crate) fn as_mut_slice(&mut self) -> &mut [G] {
+        &mut self.genes
+    }
+
     /// All genes [individuals x genes].
-    pub fn as_slice(&self) -> &[u16] {
+    pub fn as_slice(&self) -> &[G] {
         &self.genes
     }
 
     /// The [`Digest`] of all genes as little-endian bytes, to notice that two populations differ.
     pub fn digest(&self) -> u64 {
-        let mut digest = Digest::new();
+        let (mut digest, mut bytes) = (Digest::new(), Vec::with_capacity(G::BYTES));
         for gene in &self.genes {
-            digest.add_bytes(&gene.to_le_bytes());
+            bytes.clear();
+            gene.push_bytes(&mut bytes);
+            digest.add_bytes(&bytes);
         }
         digest.finish()
     }
 }
 
-impl<'a> IntoIterator for &'a Population {
-    type Item = &'a [u16];
-    type IntoIter = ChunksExact<'a, u16>;
+impl<'a, G: Gene> IntoIterator for &'a Population<G> {
+    type Item = &'a [G];
+    type IntoIter = ChunksExact<'a, G>;
 
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
     }
 }
 
-impl<'a> IntoIterator for &'a mut Population {
-    type Item = &'a mut [u16];
-    type IntoIter = ChunksExactMut<'a, u16>;
+impl<'a, G: Gene> IntoIterator for &'a mut Population<G> {
+    type Item = &'a mut [G];
+    type IntoIter = ChunksExactMut<'a, G>;
 
     fn into_iter(self) -> Self::IntoIter {
         self.iter_mut()
@@ -112,7 +122,7 @@ mod tests {
 
     #[test]
     fn genomes_lie_one_after_the_other() {
-        let mut population = Population::new(3, 2).unwrap();
+        let mut population = Population::<u16>::new(3, 2).unwrap();
         for (index, genome) in population.iter_mut().enumerate() {
             genome.fill(index as u16);
         }
@@ -123,10 +133,10 @@ mod tests {
 
     #[test]
     fn sizes_are_checked() {
-        assert_eq!(Population::new(0, 5), Err(EvoError::NoIndividuals));
-        assert_eq!(Population::new(5, 0), Err(EvoError::NoGenes));
+        assert_eq!(Population::<f64>::new(0, 5), Err(EvoError::NoIndividuals));
+        assert_eq!(Population::<f64>::new(5, 0), Err(EvoError::NoGenes));
         for (population, genes) in [(usize::MAX, 2), (Population::MAX_GENES, 2), (1, Population::MAX_GENES + 1)] {
-            assert_eq!(Population::new(population, genes), Err(EvoError::TooLarge { population, genes }));
+            assert_eq!(Population::<u16>::new(population, genes), Err(EvoError::TooLarge { population, genes }));
         }
     }
 }

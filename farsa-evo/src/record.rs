@@ -6,6 +6,7 @@ use core::cmp::Reverse;
 
 use crate::error::EvoError;
 use crate::fitness::Fitness;
+use crate::gene::Gene;
 use crate::population::Population;
 use crate::strategy::{Recorded, Strategy};
 
@@ -67,6 +68,8 @@ struct Shape {
     /// Of all populations.
     individuals: usize,
     genes: usize,
+    /// Of a gene.
+    gene_bytes: usize,
 }
 
 /// The state of a strategy at a generation.
@@ -78,9 +81,9 @@ struct Keyframe {
 }
 
 impl Shape {
-    fn from_strategy(strategy: &(impl Strategy + ?Sized)) -> Self {
-        let (recorded, populations) = (strategy.recorded(), strategy.populations());
-        Self { recorded, populations, individuals: strategy.ask().len(), genes: strategy.ask().genome_len() }
+    fn from_strategy<G: Gene>(strategy: &(impl Strategy<G> + ?Sized)) -> Self {
+        let (recorded, populations, genomes) = (strategy.recorded(), strategy.populations(), strategy.ask());
+        Self { recorded, populations, individuals: genomes.len(), genes: genomes.genome_len(), gene_bytes: G::BYTES }
     }
 
     /// Whether every population has as many individuals, at least one.
@@ -109,7 +112,7 @@ impl Shape {
         let each = match self.recorded {
             Recorded::Order => self.width(),
             Recorded::Values => 8,
-            Recorded::Genomes => 2 * self.genes,
+            Recorded::Genomes => self.gene_bytes * self.genes,
         };
         self.populations * self.width() + self.individuals * each
     }
@@ -130,7 +133,7 @@ impl Record {
     /// # Errors
     /// [`EvoError::AlreadyTold`]; [`EvoError::UnevenPopulations`]; [`EvoError::NoSnapshot`] for a strategy of which genomes
     /// are recorded and that cannot save its state: nothing could make it go on.
-    pub fn new(strategy: &mut (impl Strategy + ?Sized)) -> Result<Self, EvoError> {
+    pub fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
         if strategy.generation() != 0 {
             return Err(EvoError::AlreadyTold { generation: strategy.generation() });
         }
@@ -150,7 +153,7 @@ impl Record {
 
     /// Waits with the next state until as many bytes of frames have been added as it is likely to take.
     fn wait(&mut self, state: usize) {
-        let genomes = 2 * self.shape.individuals * self.shape.genes;
+        let genomes = self.shape.gene_bytes * self.shape.individuals * self.shape.genes;
         self.next_keyframe = self.frames.len() + genomes.max(state);
     }
 
@@ -160,7 +163,11 @@ impl Record {
     /// [`EvoError::OtherRecord`] for a strategy that is not at the end of this record, or that names another number of
     /// champions than it has populations; [`EvoError::NoSuchIndividual`] for a champion that is not of its population;
     /// [`EvoError::Stuck`]; and those of [`Strategy::tell`]. Nothing is recorded then.
-    pub fn tell(&mut self, strategy: &mut (impl Strategy + ?Sized), fitness: &[Fitness]) -> Result<(), EvoError> {
+    pub fn tell<G: Gene>(
+        &mut self,
+        strategy: &mut (impl Strategy<G> + ?Sized),
+        fitness: &[Fitness],
+    ) -> Result<(), EvoError> {
         self.check(strategy)?;
         if strategy.generation() != self.generations() {
             return Err(EvoError::OtherRecord { what: "generations", recorded: self.generations() as usize });
@@ -183,7 +190,7 @@ impl Record {
         match self.shape.recorded {
             Recorded::Order => order(fitness).into_iter().for_each(|index| self.shape.push_index(&mut frame, index)),
             Recorded::Values => frame.extend(fitness.iter().flat_map(|fitness| fitness.get().to_le_bytes())),
-            Recorded::Genomes => frame.extend(strategy.ask().as_slice().iter().flat_map(|gene| gene.to_le_bytes())),
+            Recorded::Genomes => strategy.ask().as_slice().iter().for_each(|gene| gene.push_bytes(&mut frame)),
         }
         tell(strategy, fitness)?;
         self.frames.extend(frame);
@@ -200,7 +207,7 @@ impl Record {
     ///
     /// # Errors
     /// [`EvoError::OtherRecord`].
-    pub fn check(&self, strategy: &(impl Strategy + ?Sized)) -> Result<(), EvoError> {
+    pub fn check<G: Gene>(&self, strategy: &(impl Strategy<G> + ?Sized)) -> Result<(), EvoError> {
         let (ours, theirs) = (self.shape, Shape::from_strategy(strategy));
         let other = |what, recorded| Err(EvoError::OtherRecord { what, recorded });
         if ours.populations != theirs.populations {
@@ -209,6 +216,8 @@ impl Record {
             other("individuals", ours.individuals)
         } else if ours.genes != theirs.genes {
             other("genes", ours.genes)
+        } else if ours.gene_bytes != theirs.gene_bytes {
+            other("bytes of a gene", ours.gene_bytes)
         } else if ours.recorded != theirs.recorded {
             other("bytes of another kind", ours.frame())
         } else {
@@ -283,7 +292,11 @@ impl Record {
     /// for a strategy of another kind or size, [`EvoError::GenomesOnly`] where genomes are recorded,
     /// [`EvoError::StateContent`] for a saved state of another generation, [`EvoError::Stuck`], and whatever the strategy
     /// refuses.
-    pub fn rebuild(&self, strategy: &mut (impl Strategy + ?Sized), generation: u32) -> Result<(), EvoError> {
+    pub fn rebuild<G: Gene>(
+        &self,
+        strategy: &mut (impl Strategy<G> + ?Sized),
+        generation: u32,
+    ) -> Result<(), EvoError> {
         self.check(strategy)?;
         let latest = self.generations();
         if generation > latest || generation < strategy.generation() {
@@ -311,7 +324,11 @@ impl Record {
     ///
     /// # Errors
     /// Those of [`rebuild`](Self::rebuild).
-    pub fn genomes(&self, strategy: &mut (impl Strategy + ?Sized), generation: u32) -> Result<Population, EvoError> {
+    pub fn genomes<G: Gene>(
+        &self,
+        strategy: &mut (impl Strategy<G> + ?Sized),
+        generation: u32,
+    ) -> Result<Population<G>, EvoError> {
         if self.shape.recorded != Recorded::Genomes {
             self.rebuild(strategy, generation)?;
             return Ok(strategy.ask().clone());
@@ -319,9 +336,10 @@ impl Record {
         let latest = self.generations();
         let (_, bytes) = self.frame(generation).ok_or(EvoError::NoSuchGeneration { generation, latest })?;
         let mut population = Population::new(self.shape.individuals, self.shape.genes)?;
-        let (genes, _) = bytes.as_chunks::<2>();
-        let all = population.iter_mut().flatten();
-        all.zip(genes).for_each(|(gene, bytes)| *gene = u16::from_le_bytes(*bytes));
+        for (gene, bytes) in population.as_mut_slice().iter_mut().zip(bytes.chunks_exact(G::BYTES)) {
+            let found = || bytes.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte));
+            *gene = G::from_bytes(bytes).ok_or_else(|| EvoError::StateContent { what: "a gene", found: found() })?;
+        }
         Ok(population)
     }
 
@@ -392,13 +410,13 @@ impl Record {
         // was never interrupted.
         let last = self.keyframes.last().map(|keyframe| (keyframe.generation as usize, keyframe.state.len()));
         let (told, state) = last.unwrap_or_default();
-        let genomes = 2 * self.shape.individuals * self.shape.genes;
+        let genomes = self.shape.gene_bytes * self.shape.individuals * self.shape.genes;
         self.next_keyframe = told * self.shape.frame() + genomes.max(state);
     }
 }
 
 /// Tells a strategy, which must then be at the next generation: else it could be told for ever.
-fn tell(strategy: &mut (impl Strategy + ?Sized), fitness: &[Fitness]) -> Result<(), EvoError> {
+fn tell<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized), fitness: &[Fitness]) -> Result<(), EvoError> {
     let generation = strategy.generation();
     strategy.tell(fitness)?;
     let found = strategy.generation();
@@ -436,6 +454,9 @@ impl TryFrom<RawRecord> for Record {
     fn try_from(raw: RawRecord) -> Result<Self, EvoError> {
         let RawRecord { shape, frames, keyframes } = raw;
         Population::check(shape.individuals, shape.genes)?;
+        if ![u16::BYTES, f64::BYTES].contains(&shape.gene_bytes) {
+            return Err(EvoError::StateContent { what: "the bytes of a gene", found: shape.gene_bytes as u64 });
+        }
         shape.check()?;
         let mut record = Self { keyframes, ..Self::empty(shape) };
         let whole = frames.len().is_multiple_of(shape.frame());

@@ -54,6 +54,18 @@ impl<'s> StateReader<'s> {
         Fitness::try_from(self.take().map(f64::from_le_bytes)?)
     }
 
+    /// A finite number.
+    pub(crate) fn real(&mut self) -> Result<f64, EvoError> {
+        let x = self.take().map(f64::from_le_bytes)?;
+        let refused = EvoError::StateContent { what: "a finite number", found: x.to_bits() };
+        if x.is_finite() { Ok(x) } else { Err(refused) }
+    }
+
+    /// A row of finite numbers.
+    pub(crate) fn reals(&mut self, row: &mut [f64]) -> Result<(), EvoError> {
+        row.iter_mut().try_for_each(|x| self.real().map(|found| *x = found))
+    }
+
     /// The genes of a population, none of them above the largest.
     pub(crate) fn genes(&mut self, population: &mut Population, largest: u16) -> Result<(), EvoError> {
         for genome in population.iter_mut() {
@@ -71,6 +83,11 @@ impl<'s> StateReader<'s> {
 /// Appends the genes of a population.
 pub(crate) fn push_genes(state: &mut Vec<u8>, population: &Population) {
     state.extend(population.as_slice().iter().flat_map(|gene| gene.to_le_bytes()));
+}
+
+/// Appends a row of numbers.
+pub(crate) fn push_reals(state: &mut Vec<u8>, row: &[f64]) {
+    state.extend(row.iter().flat_map(|x| x.to_le_bytes()));
 }
 
 /// The largest gene of so many bits, 1 to 16.

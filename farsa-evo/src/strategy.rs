@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use crate::champion::Champion;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
+use crate::gene::Gene;
 use crate::population::Population;
 use crate::snapshot::Snapshot;
 use crate::statistics::Statistics;
@@ -22,7 +23,7 @@ pub enum Recorded {
     Genomes,
 }
 
-/// A search over genomes of 16-bit genes that is asked for a generation and told how well it did.
+/// A search over genomes that is asked for a generation and told how well it did. Its genes are 16-bit words or reals.
 ///
 /// The caller evaluates [`ask`](Strategy::ask)'s genomes in any order and on any number of threads, then calls
 /// [`tell`](Strategy::tell) once. A strategy is a pure function of its configuration, its seed and what it was told, so a
@@ -31,12 +32,12 @@ pub enum Recorded {
 ///
 /// Three methods are required; the others have defaults that fit a strategy of one population that depends on the values of
 /// fitness.
-pub trait Strategy {
+pub trait Strategy<G: Gene = u16> {
     /// The number of the generation that waits for its fitness, from 0.
     fn generation(&self) -> u32;
 
     /// The genomes of the current generation [individuals x genes], those of one population after the other.
-    fn ask(&self) -> &Population;
+    fn ask(&self) -> &Population<G>;
 
     /// Takes the fitness \[individuals\] of the current generation and makes the next one.
     ///
@@ -106,7 +107,7 @@ pub trait Strategy {
     ///
     /// # Errors
     /// [`EvoError::NoBest`] for no generations, [`EvoError::LastGeneration`].
-    fn maximize(&mut self, generations: u32, mut evaluate: impl FnMut(&[u16]) -> f64) -> Result<Champion, EvoError>
+    fn maximize(&mut self, generations: u32, mut evaluate: impl FnMut(&[G]) -> f64) -> Result<Champion<G>, EvoError>
     where
         Self: Sized,
     {

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use farsa_evo::{
     Champion, Coevolution, EvoError, Fitness, GaConfig, Genealogy as _, Mutation, OnePlusOne, OnePlusOneConfig,
-    Population, RandomSearch, Record, Recorded, Snapshot, Statistics, Strategy, TruncationGa,
+    Population, RandomSearch, Record, Recorded, Snapshot, Statistics, Strategy, TruncationGa, check_strategy,
 };
 use proptest::prelude::*;
 use proptest::strategy::Strategy as _;
@@ -411,4 +411,13 @@ fn the_champion_is_the_earliest_best_of_all_generations() {
     let better = best.unwrap();
     assert_eq!((better.generation, better.individual, better.fitness.get()), (5, 5, 8.0));
     assert_eq!(Some(&better.genome[..]), evolution.ask().get(5));
+}
+
+#[test]
+fn every_strategy_conforms() {
+    let config = GaConfig { population: 12, parents: 4, ..GaConfig::new(5) };
+    check_strategy(|| TruncationGa::new(config, 3), 30).unwrap();
+    check_strategy(|| OnePlusOne::new(OnePlusOneConfig::new(5), 3), 30).unwrap();
+    check_strategy(|| Coevolution::new(&[config, config], 3), 30).unwrap();
+    check_strategy(|| RandomSearch::new(5, 12, 3), 30).unwrap();
 }

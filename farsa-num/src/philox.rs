@@ -213,6 +213,27 @@ impl Stream {
         [(radius * c) as f32, (radius * s) as f32]
     }
 
+    /// The same two numbers to the precision of `f64`, of magnitude below 8.58. Draws four words.
+    ///
+    /// Source: \[Box1958\]. Deviation: the radius takes its uniform in (0, 1], a multiple of 2^-53.
+    #[inline]
+    pub fn normal_pair_f64(&mut self) -> [f64; 2] {
+        // 1 - u of a uniform in [0, 1) is exact, and above 0.
+        let u = 1.0 - self.uniform_f64();
+        let angle = self.uniform_f64() * core::f64::consts::TAU;
+        let radius = libm::sqrt(-2.0 * ln(u));
+        let (s, c) = sin_cos(angle);
+        [radius * c, radius * s]
+    }
+
+    /// Fills a row with independent standard normal numbers, two of [`normal_pair_f64`](Self::normal_pair_f64) at a time; an odd
+    /// last one leaves its partner unused.
+    pub fn fill_normal(&mut self, row: &mut [f64]) {
+        for pair in row.chunks_mut(2) {
+            pair.iter_mut().zip(self.normal_pair_f64()).for_each(|(x, normal)| *x = normal);
+        }
+    }
+
     /// How many failures come before the next success, given ln(1 - p) of the probability p of a success. Draws two words.
     ///
     /// For skip sampling: visiting only the genes that mutate. `u64::MAX` where ln(1 - p) is not below 0 (p = 0, or NaN);

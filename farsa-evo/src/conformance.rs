@@ -1,0 +1,119 @@
+//! What every strategy has to keep to, as a check for strategies of one's own.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use farsa_num::{Domain, Stream};
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::gene::Gene;
+use crate::record::Record;
+use crate::strategy::{Recorded, Strategy};
+
+/// Checks that the strategy that `fresh` makes, always with the same configuration and seed, keeps to what [`Strategy`] says,
+/// over so many generations.
+///
+/// Asked twice it answers the same. A fresh one that is told the same does the same, through a [`Record`] and through saved
+/// states. It refuses another number of values and is unchanged by that. It counts generations, and names a champion of each
+/// population. Where it says that only the order counts ([`Recorded::Order`]), other values of the same order change nothing.
+/// Failed evaluations, all of them at once too, end nothing.
+///
+/// ```
+/// use farsa_evo::{GaConfig, TruncationGa, check_strategy};
+///
+/// let config = GaConfig { population: 10, parents: 5, ..GaConfig::new(4) };
+/// check_strategy(|| TruncationGa::new(config, 7), 20)?;
+/// # Ok::<(), String>(())
+/// ```
+///
+/// # Errors
+/// What it does not keep to, and in which generation.
+pub fn check_strategy<G, S>(fresh: impl Fn() -> Result<S, EvoError>, generations: u32) -> Result<(), String>
+where
+    G: Gene,
+    S: Strategy<G>,
+{
+    let made = || fresh().map_err(|error| format!("cannot be made: {error}"));
+    let (mut strategy, mut again) = (made()?, made()?);
+    let mut record = Record::new(&mut strategy).map_err(|error| format!("no record: {error}"))?;
+    let mut asked: Vec<u64> = Vec::new();
+    for generation in 0..generations {
+        let wrong = |what: &str| format!("generation {generation}: {what}");
+        if strategy.generation() != generation {
+            return Err(wrong("another number of generation"));
+        }
+        let digest = strategy.ask().digest();
+        if digest != strategy.ask().digest() || digest != again.ask().digest() {
+            return Err(wrong("other genomes where the same are asked for"));
+        }
+        asked.push(digest);
+        let count = strategy.ask().len();
+        if !count.is_multiple_of(strategy.populations()) {
+            return Err(wrong("populations of unequal sizes"));
+        }
+        let fitness = values(generation, count);
+        if strategy.tell(&fitness[1..]).is_ok() || strategy.ask().digest() != digest {
+            return Err(wrong("takes too few values, or is changed by them"));
+        }
+        let champions = strategy.champions(&strategy.ranked_by(&fitness));
+        let size = count / strategy.populations();
+        if !champions.iter().copied().map(|best| best / size).eq(0..strategy.populations()) {
+            return Err(wrong("names other champions than one of each population"));
+        }
+        record.tell(&mut strategy, &fitness).map_err(|error| wrong(&format!("cannot be told: {error}")))?;
+        // Another fitness of the same order has to do where only the order counts.
+        let told: Vec<Fitness> = match strategy.recorded() {
+            Recorded::Order => fitness.iter().map(|fitness| rising(*fitness)).collect(),
+            _ => fitness,
+        };
+        again.tell(&told).map_err(|error| wrong(&format!("cannot be told by value: {error}")))?;
+        saved(&mut strategy, made()?).map_err(|what| wrong(&what))?;
+    }
+    if strategy.recorded() == Recorded::Genomes {
+        return Ok(());
+    }
+    for (generation, digest) in (0..).zip(&asked) {
+        let mut rebuilt = made()?;
+        let done = record.rebuild(&mut rebuilt, generation);
+        done.map_err(|error| format!("generation {generation}: cannot be rebuilt: {error}"))?;
+        if rebuilt.ask().digest() != *digest {
+            return Err(format!("generation {generation}: has other genomes when it is rebuilt"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a fresh strategy that takes the state of another is that other, and none that takes a part of it is.
+fn saved<G: Gene, S: Strategy<G>>(strategy: &mut S, mut other: S) -> Result<(), String> {
+    let Some(state) = strategy.snapshot().map(|snapshot| snapshot.save()) else { return Ok(()) };
+    let mut restore = |state: &[u8]| other.snapshot().map(|snapshot| snapshot.restore(state));
+    if let Some(Err(error)) = restore(&state) {
+        return Err(format!("cannot be restored: {error}"));
+    }
+    let short = restore(&state[..state.len().saturating_sub(1)]);
+    if short.is_some_and(|result| result.is_ok()) {
+        return Err("takes a state that is too short".into());
+    }
+    let same = other.generation() == strategy.generation() && other.ask().digest() == strategy.ask().digest();
+    if same { Ok(()) } else { Err("is another after its state was restored".into()) }
+}
+
+/// Fitness of no meaning: in every fifth generation all alike, in every seventh all failed, else some failed and some equal.
+fn values(generation: u32, count: usize) -> Vec<Fitness> {
+    let mut stream = Stream::new(u64::from(generation), Domain::General, 0, 0, 0);
+    let mut one = || match (generation % 5, generation % 7) {
+        (_, 6) => Fitness::WORST,
+        (4, _) => Fitness::nan_as_failed(1.5),
+        _ if stream.uniform_f64() < 0.1 => Fitness::WORST,
+        _ => Fitness::nan_as_failed(0.5 * f64::from(stream.below(40)) - 10.0),
+    };
+    (0..count).map(|_| one()).collect()
+}
+
+/// Another fitness of the same order.
+fn rising(fitness: Fitness) -> Fitness {
+    let x = fitness.get();
+    Fitness::nan_as_failed(if fitness.is_failed() { x } else { x * x * x + 7.0 * x })
+}
