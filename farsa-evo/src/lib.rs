@@ -8,6 +8,7 @@ mod champion;
 mod coevolution;
 mod config;
 mod conformance;
+mod covariance;
 mod decode;
 mod error;
 mod fitness;
