@@ -70,7 +70,9 @@ fn tridiagonalize(matrix: &mut [f64], n: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>
             continue;
         }
         let scale = scale.max(vector[last].abs());
-        vector.iter_mut().for_each(|x| *x /= scale);
+        for x in vector.iter_mut() {
+            *x /= scale;
+        }
         let square = dot(vector, vector);
         let length = if vector[last] < 0.0 { Scalar::sqrt(square) } else { -Scalar::sqrt(square) };
         off[last] = scale * length;
