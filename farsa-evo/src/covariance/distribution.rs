@@ -1,0 +1,218 @@
+//! A normal distribution that is adapted to what its samples are worth.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::{Domain, Scalar, Stream, exp};
+
+use crate::covariance::coefficients::Coefficients;
+use crate::covariance::linear::{add_rows, add_scaled, dot};
+use crate::error::EvoError;
+use crate::population::Population;
+use crate::snapshot::{StateReader, push_reals};
+
+/// The limits of a step size.
+pub(super) const STEP_SIZES: [f64; 2] = [1e-100, 1e100];
+/// The limits of an initial mean's genes.
+pub(super) const MEANS: [f64; 2] = [-1e100, 1e100];
+/// The limits of the largest variance; beyond them the step size takes what is too much or too little.
+const VARIANCES: [f64; 2] = [1e-30, 1e30];
+/// The limit of all numbers of a saved state.
+const STATE: f64 = 1e140;
+
+/// A covariance matrix that is adapted.
+pub(super) trait Covariance: Sized {
+    /// The identity of so many genes, which learns at these rates.
+    fn identity(genes: usize, coefficients: &Coefficients) -> Self;
+
+    /// Turns standard normal rows [rows x genes] into rows of this covariance.
+    fn shape(&self, normals: &[f64], steps: &mut [f64]);
+
+    /// The vector that `shape` makes of this one, with all variances 1.
+    fn turn(&self, normals: &[f64]) -> Vec<f64>;
+
+    /// Keeps so much of the matrix and adds the squares of rows [factors x genes], each times its factor.
+    fn update(&mut self, keep: f64, factors: &[f64], rows: &[f64]);
+
+    /// The smallest and the largest variance along an axis.
+    fn extremes(&self) -> [f64; 2];
+
+    /// Multiplies all variances.
+    fn scale(&mut self, factor: f64);
+
+    /// Bytes of a saved state.
+    fn state_length(genes: usize) -> usize;
+
+    /// Appends the state.
+    fn save(&self, state: &mut Vec<u8>);
+
+    /// Takes a state; on error half of it.
+    fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError>;
+}
+
+/// A normal distribution, its evolution paths and the samples that wait for their fitness.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Distribution<C> {
+    pub(super) coefficients: Coefficients,
+    /// The mean m \[genes\].
+    pub(super) mean: Vec<f64>,
+    /// The step size sigma.
+    pub(super) sigma: f64,
+    /// The covariance C.
+    pub(super) covariance: C,
+    /// The path of the step size `p_sigma` \[genes\].
+    step_path: Vec<f64>,
+    /// The path of the covariance `p_c` \[genes\].
+    path: Vec<f64>,
+    /// Updates so far, g.
+    updates: u32,
+    /// The standard normal rows z [individuals x genes].
+    normals: Vec<f64>,
+    /// The steps y = B D z [individuals x genes].
+    steps: Vec<f64>,
+}
+
+impl<C: Covariance> Distribution<C> {
+    pub(super) fn new(mean: Vec<f64>, sigma: f64, coefficients: Coefficients) -> Self {
+        let n = mean.len();
+        let covariance = C::identity(n, &coefficients);
+        let (normals, steps) = (vec![0.0; coefficients.population() * n], vec![0.0; coefficients.population() * n]);
+        let (step_path, path) = (vec![0.0; n], vec![0.0; n]);
+        Self { coefficients, mean, sigma, covariance, step_path, path, updates: 0, normals, steps }
+    }
+
+    /// Draws the individuals of a generation, each from a stream of its own.
+    pub(super) fn sample(&mut self, seed: u64, generation: u32, points: &mut Population<f64>) {
+        let n = self.mean.len();
+        let domain = if generation == 0 { Domain::InitialGenome } else { Domain::Mutation };
+        for (individual, row) in self.normals.chunks_exact_mut(n).enumerate() {
+            Stream::new(seed, domain, 0, individual as u32, generation).fill_normal(row);
+        }
+        self.covariance.shape(&self.normals, &mut self.steps);
+        for (point, step) in points.iter_mut().zip(self.steps.chunks_exact(n)) {
+            for ((x, y), mean) in point.iter_mut().zip(step).zip(&self.mean) {
+                *x = mean + self.sigma * y;
+            }
+        }
+    }
+
+    /// Adapts the distribution to its samples, given their numbers, best first.
+    pub(super) fn update(&mut self, ranked: &[usize]) {
+        let (n, c) = (self.mean.len(), &self.coefficients);
+        let mut weights = vec![0.0; ranked.len()];
+        ranked.iter().zip(&c.weights).for_each(|(&individual, weight)| weights[individual] = *weight);
+        // The mean of the parents, in order of rank.
+        let (mut step, mut normal) = (vec![0.0; n], vec![0.0; n]);
+        for &individual in ranked.iter().take(c.parents) {
+            let row = individual * n..(individual + 1) * n;
+            add_scaled(&mut step, weights[individual], &self.steps[row.clone()]);
+            add_scaled(&mut normal, weights[individual], &self.normals[row]);
+        }
+        add_scaled(&mut self.mean, self.sigma, &step);
+        self.updates = self.updates.saturating_add(1);
+
+        let rate = c.step_path_rate;
+        let gain = Scalar::sqrt(rate * (2.0 - rate) * c.effective);
+        for (path, x) in self.step_path.iter_mut().zip(self.covariance.turn(&normal)) {
+            *path = (1.0 - rate) * *path + gain * x;
+        }
+        let length = Scalar::sqrt(dot(&self.step_path, &self.step_path));
+        let stalls = c.stalls(n, self.updates, length);
+        let rate = c.path_rate;
+        let gain = if stalls { 0.0 } else { Scalar::sqrt(rate * (2.0 - rate) * c.effective) };
+        for (path, y) in self.path.iter_mut().zip(&step) {
+            *path = (1.0 - rate) * *path + gain * y;
+        }
+
+        let lost = if stalls { c.rank_one * rate * (2.0 - rate) } else { 0.0 };
+        let keep = 1.0 + lost - c.rank_one - c.rank_mu * c.weights.iter().sum::<f64>();
+        let mut factors: Vec<f64> = Vec::with_capacity(weights.len() + 1);
+        for (&weight, normal) in weights.iter().zip(self.normals.chunks_exact(n)) {
+            let square = dot(normal, normal);
+            let shorter = if weight >= 0.0 {
+                1.0
+            } else if square > 0.0 {
+                n as f64 / square
+            } else {
+                0.0
+            };
+            factors.push(c.rank_mu * weight * shorter);
+        }
+        factors.push(c.rank_one);
+        let mut rows = core::mem::take(&mut self.steps);
+        rows.extend_from_slice(&self.path);
+        self.covariance.update(keep, &factors, &rows);
+        rows.truncate(ranked.len() * n);
+        self.steps = rows;
+
+        let growth = exp(c.step_path_rate / c.damping * (length / c.expected - 1.0));
+        self.sigma = (self.sigma * growth).clamp(STEP_SIZES[0], STEP_SIZES[1]);
+        self.normalize();
+    }
+
+    /// Moves variance from the covariance to the step size when there is very much or very little, which leaves the
+    /// distribution as it is.
+    fn normalize(&mut self) {
+        let [_, largest] = self.covariance.extremes();
+        if !(VARIANCES[0]..=VARIANCES[1]).contains(&largest) {
+            let root = Scalar::sqrt(largest);
+            self.covariance.scale(1.0 / largest);
+            for x in &mut self.path {
+                *x /= root;
+            }
+            self.sigma = (self.sigma * root).clamp(STEP_SIZES[0], STEP_SIZES[1]);
+        }
+    }
+
+    /// The ratio of the longest to the shortest axis of the distribution.
+    pub(super) fn axis_ratio(&self) -> f64 {
+        let [smallest, largest] = self.covariance.extremes();
+        Scalar::sqrt(largest / smallest)
+    }
+
+    /// Bytes of a saved state.
+    pub(super) fn state_length(genes: usize) -> usize {
+        4 + 8 * (1 + 3 * genes) + C::state_length(genes)
+    }
+
+    /// Appends the state; samples are not part of it.
+    pub(super) fn save(&self, state: &mut Vec<u8>) {
+        state.extend(self.updates.to_le_bytes());
+        push_reals(state, &[self.sigma]);
+        for row in [&self.mean, &self.step_path, &self.path] {
+            push_reals(state, row);
+        }
+        self.covariance.save(state);
+    }
+
+    /// Takes a state; on error half of it.
+    pub(super) fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError> {
+        self.updates = reader.u32()?;
+        let mut sigma = [0.0];
+        bounded(reader, &mut sigma, STEP_SIZES)?;
+        [self.sigma] = sigma;
+        bounded(reader, &mut self.mean, [-STATE, STATE])?;
+        bounded(reader, &mut self.step_path, [-STATE, STATE])?;
+        bounded(reader, &mut self.path, [-STATE, STATE])?;
+        self.covariance.restore(reader)
+    }
+}
+
+/// Reads a row of numbers within limits.
+pub(super) fn bounded(reader: &mut StateReader<'_>, row: &mut [f64], limits: [f64; 2]) -> Result<(), EvoError> {
+    reader.reals(row)?;
+    let wrong = row.iter().find(|x| !(limits[0]..=limits[1]).contains(*x));
+    wrong.map_or(Ok(()), |x| Err(EvoError::StateContent { what: "a number within its limits", found: x.to_bits() }))
+}
+
+/// The weighted sum of rows for each of many sums [sums x n], the rows taken in blocks that stay in the cache.
+pub(super) fn multiply(factors: &[f64], rows: &[f64], n: usize, sums: &mut [f64]) {
+    const BLOCK: usize = 16;
+    sums.fill(0.0);
+    for (block, rows) in rows.chunks(BLOCK * n).enumerate() {
+        for (sum, factors) in sums.chunks_exact_mut(n).zip(factors.chunks_exact(n)) {
+            let factors = &factors[block * BLOCK..n.min((block + 1) * BLOCK)];
+            add_rows(sum, factors, rows, n);
+        }
+    }
+}

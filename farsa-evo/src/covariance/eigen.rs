@@ -1,0 +1,293 @@
+//! Eigenvalues and eigenvectors of a symmetric matrix.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::Scalar;
+
+use crate::covariance::linear::{add_scaled, dot};
+
+/// The most QL iterations of one eigenvalue; two are usual.
+const ITERATIONS: usize = 60;
+/// Columns of eigenvectors that are rotated together, so that they stay in the cache.
+const STRIP: usize = 32;
+
+/// A symmetric matrix as the sum of its eigenvalues times the squares of its eigenvectors.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SymmetricEigen {
+    /// The eigenvalues \[n\], rising.
+    pub(super) values: Vec<f64>,
+    /// The eigenvectors [n x n], of length 1, one after the other in the order of their values.
+    pub(super) vectors: Vec<f64>,
+}
+
+/// A rotation of the eigenvectors with the numbers `index` and `index` + 1.
+struct Rotation {
+    index: usize,
+    cosine: f64,
+    sine: f64,
+}
+
+impl SymmetricEigen {
+    /// The decomposition of a matrix [n x n], of which the lower triangle is read; none if a number of it is not finite, or if
+    /// the iterations do not come to an end.
+    ///
+    /// Householder's reduction to a tridiagonal matrix, then QL iterations with implicit shifts: of the order of n^3
+    /// operations, in a fixed order and with no function but the square root.
+    ///
+    /// Source: \[Smith1976\] procedures TRED2 and IMTQL2. Deviations: the transformation is kept transposed, so that all loops
+    /// run along rows; rotations are collected and applied strip by strip; lengths are scaled by the larger component.
+    pub(super) fn from_lower(matrix: &[f64], n: usize) -> Option<Self> {
+        let lower = |(row, elements): (usize, &[f64])| elements.iter().take(row + 1).all(|x| x.is_finite());
+        if !matrix.chunks_exact(n.max(1)).enumerate().all(lower) {
+            return None;
+        }
+        let mut reduced = matrix.to_vec();
+        let (mut diagonal, mut off, halves) = tridiagonalize(&mut reduced, n);
+        let mut vectors = accumulate(&reduced, &halves, n);
+        drop(reduced);
+        iterate(&mut diagonal, &mut off, &mut vectors)?;
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by(|&a, &b| diagonal[a].total_cmp(&diagonal[b]));
+        let values = order.iter().map(|&index| diagonal[index]).collect();
+        let vectors = order.iter().flat_map(|&index| &vectors[index * n..(index + 1) * n]).copied().collect();
+        Some(Self { values, vectors })
+    }
+}
+
+/// The diagonal \[n\], what stands beside it (number i couples i and i + 1) and half the squared lengths of the Householder
+/// vectors; the vectors themselves replace the lower triangle, row i having i elements.
+fn tridiagonalize(matrix: &mut [f64], n: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let (mut off, mut halves, mut product) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    for row in (1..n).rev() {
+        let (above, below) = matrix.split_at_mut(row * n);
+        let (vector, product) = (&mut below[..row], &mut product[..row]);
+        let last = row - 1;
+        // Scaled, so that no square overflows, and none underflows that counts.
+        let scale = vector[..last].iter().fold(0.0_f64, |scale, x| scale.max(x.abs()));
+        if scale == 0.0 {
+            off[last] = vector[last];
+            continue;
+        }
+        let scale = scale.max(vector[last].abs());
+        for x in vector.iter_mut() {
+            *x /= scale;
+        }
+        let square = dot(vector, vector);
+        let length = if vector[last] < 0.0 { Scalar::sqrt(square) } else { -Scalar::sqrt(square) };
+        off[last] = scale * length;
+        let half = square - vector[last] * length;
+        vector[last] -= length;
+        halves[row] = half;
+        // A u: the lower triangle once along its rows and once along its columns.
+        for (index, elements) in above.chunks_exact(n).enumerate() {
+            product[index] = dot(&elements[..=index], &vector[..=index]);
+            add_scaled(&mut product[..index], vector[index], &elements[..index]);
+        }
+        let shift = dot(vector, product) / (half + half) / half;
+        product.iter_mut().zip(&*vector).for_each(|(p, u)| *p = *p / half - shift * u);
+        for (index, elements) in above.chunks_exact_mut(n).enumerate() {
+            let (u, q) = (vector[index], product[index]);
+            for ((x, other_q), other_u) in elements[..=index].iter_mut().zip(&*product).zip(&*vector) {
+                *x -= u * other_q + q * other_u;
+            }
+        }
+    }
+    ((0..n).map(|index| matrix[index * n + index]).collect(), off, halves)
+}
+
+/// The product of the Householder reflections, transposed [n x n].
+fn accumulate(reduced: &[f64], halves: &[f64], n: usize) -> Vec<f64> {
+    let mut vectors = vec![0.0; n * n];
+    (0..n).for_each(|index| vectors[index * n + index] = 1.0);
+    for row in (1..n).filter(|&row| halves[row] > 0.0) {
+        let vector = &reduced[row * n..][..row];
+        for elements in vectors.chunks_exact_mut(n).take(row) {
+            let projection = dot(&elements[..row], vector) / halves[row];
+            add_scaled(elements, -projection, vector);
+        }
+    }
+    vectors
+}
+
+/// The QL iterations: the diagonal becomes the eigenvalues, the rows of `vectors` the eigenvectors.
+fn iterate(diagonal: &mut [f64], off: &mut [f64], vectors: &mut [f64]) -> Option<()> {
+    let n = diagonal.len();
+    let mut rotations: Vec<Rotation> = Vec::new();
+    for first in 0..n {
+        for iteration in 0.. {
+            let negligible = |&i: &usize| off[i].abs() <= f64::EPSILON * (diagonal[i].abs() + diagonal[i + 1].abs());
+            let end = (first..n - 1).find(negligible).unwrap_or(n - 1);
+            if end == first {
+                break;
+            }
+            if iteration == ITERATIONS {
+                return None;
+            }
+            let slope = (diagonal[first + 1] - diagonal[first]) / (2.0 * off[first]);
+            let root = length(slope, 1.0);
+            let root = if slope < 0.0 { slope - root } else { slope + root };
+            let mut g = diagonal[end] - diagonal[first] + off[first] / root;
+            let (mut sine, mut cosine, mut shift, mut split) = (1.0, 1.0, 0.0, false);
+            for index in (first..end).rev() {
+                let (f, b) = (sine * off[index], cosine * off[index]);
+                let r = length(f, g);
+                off[index + 1] = r;
+                if r == 0.0 {
+                    diagonal[index + 1] -= shift;
+                    split = true;
+                    break;
+                }
+                (sine, cosine) = (f / r, g / r);
+                g = diagonal[index + 1] - shift;
+                let r = (diagonal[index] - g) * sine + 2.0 * cosine * b;
+                shift = sine * r;
+                diagonal[index + 1] = g + shift;
+                g = cosine * r - b;
+                rotations.push(Rotation { index, cosine, sine });
+            }
+            if !split {
+                diagonal[first] -= shift;
+                off[first] = g;
+            }
+            off[end] = 0.0;
+        }
+        if rotations.len() >= 8 * n {
+            rotate(vectors, n, &rotations);
+            rotations.clear();
+        }
+    }
+    rotate(vectors, n, &rotations);
+    diagonal.iter().all(|x| x.is_finite()).then_some(())
+}
+
+/// Applies rotations to rows [n x n], in their order.
+fn rotate(rows: &mut [f64], n: usize, rotations: &[Rotation]) {
+    let mut strip = vec![[0.0; STRIP]; n];
+    for start in (0..n).step_by(STRIP) {
+        let end = n.min(start + STRIP);
+        let width = end - start;
+        for (part, row) in strip.iter_mut().zip(rows.chunks_exact(n)) {
+            part[..width].copy_from_slice(&row[start..end]);
+        }
+        for &Rotation { index, cosine, sine } in rotations {
+            let [lower, upper] = &mut strip[index..index + 2] else { continue };
+            for (x, y) in lower.iter_mut().zip(upper) {
+                (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
+            }
+        }
+        for (part, row) in strip.iter().zip(rows.chunks_exact_mut(n)) {
+            row[start..end].copy_from_slice(&part[..width]);
+        }
+    }
+}
+
+/// The length of a vector, without overflow.
+fn length(a: f64, b: f64) -> f64 {
+    let (large, small) = if a.abs() > b.abs() { (a.abs(), b.abs()) } else { (b.abs(), a.abs()) };
+    if large == 0.0 {
+        return 0.0;
+    }
+    let ratio = small / large;
+    large * Scalar::sqrt(1.0 + ratio * ratio)
+}
+
+#[cfg(test)]
+mod tests {
+    use farsa_num::Stream;
+
+    use super::*;
+
+    /// The eigenvalues, rising, by cyclic Jacobi rotations.
+    fn jacobi(matrix: &[f64], n: usize) -> Vec<f64> {
+        let mut a = matrix.to_vec();
+        for _ in 0..60 {
+            for p in 0..n {
+                for q in p + 1..n {
+                    if a[p * n + q] == 0.0 {
+                        continue;
+                    }
+                    let theta = (a[q * n + q] - a[p * n + p]) / (2.0 * a[p * n + q]);
+                    let t = if theta < 0.0 { -1.0 } else { 1.0 } / (theta.abs() + Scalar::sqrt(theta * theta + 1.0));
+                    let c = 1.0 / Scalar::sqrt(t * t + 1.0);
+                    let s = t * c;
+                    for k in 0..n {
+                        let (x, y) = (a[k * n + p], a[k * n + q]);
+                        (a[k * n + p], a[k * n + q]) = (c * x - s * y, s * x + c * y);
+                    }
+                    for k in 0..n {
+                        let (x, y) = (a[p * n + k], a[q * n + k]);
+                        (a[p * n + k], a[q * n + k]) = (c * x - s * y, s * x + c * y);
+                    }
+                }
+            }
+        }
+        let mut values: Vec<f64> = (0..n).map(|k| a[k * n + k]).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    }
+
+    /// Compares with Jacobi's values, rebuilds the matrix, and multiplies the eigenvectors.
+    fn check(matrix: &[f64], n: usize) {
+        let SymmetricEigen { values, vectors } = SymmetricEigen::from_lower(matrix, n).unwrap();
+        let size = matrix.iter().fold(0.0_f64, |size, x| size.max(x.abs())).max(1e-300);
+        for (found, expected) in values.iter().zip(jacobi(matrix, n)) {
+            assert!((found - expected).abs() <= 1e-12 * size * n as f64, "n = {n}: {found} for {expected}");
+        }
+        for i in 0..n {
+            for j in 0..n {
+                let rebuilt: f64 = (0..n).map(|k| values[k] * vectors[k * n + i] * vectors[k * n + j]).sum();
+                assert!((rebuilt - matrix[i * n + j]).abs() <= 1e-12 * size, "n = {n}: element {i}, {j}");
+                let product: f64 = (0..n).map(|k| vectors[i * n + k] * vectors[j * n + k]).sum();
+                assert!((product - f64::from(u8::from(i == j))).abs() <= 1e-12, "n = {n}: vectors {i}, {j}");
+            }
+        }
+    }
+
+    fn symmetric(n: usize, mut element: impl FnMut(usize, usize) -> f64) -> Vec<f64> {
+        let mut matrix = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                let x = element(i, j);
+                (matrix[i * n + j], matrix[j * n + i]) = (x, x);
+            }
+        }
+        matrix
+    }
+
+    #[test]
+    fn random_matrices_are_rebuilt() {
+        let mut stream = Stream::from_seed(1);
+        for n in (1..24).chain([31, 32, 33, 47, 60]) {
+            check(&symmetric(n, |_, _| stream.normal_pair_f64()[0]), n);
+        }
+    }
+
+    #[test]
+    fn degenerate_matrices_are_rebuilt() {
+        for n in [1, 2, 3, 8, 40] {
+            check(&symmetric(n, |_, _| 0.0), n);
+            check(&symmetric(n, |_, _| 1.0), n);
+            check(&symmetric(n, |i, j| f64::from(u8::from(i == j))), n);
+            check(&symmetric(n, |i, j| f64::from(u8::from(i == j)) * (1 + i / 2) as f64), n);
+            check(&symmetric(n, |i, j| f64::from(u8::from(i == j + 1))), n);
+            check(&symmetric(n, |i, j| 1e-200 / (1 + i + j) as f64), n);
+            check(&symmetric(n, |i, j| 1e100 / (1 + i + j) as f64), n);
+            check(&symmetric(n, |i, j| if i == j { [1e-9, 1.0, 1e9][i % 3] } else { 0.0 }), n);
+            check(&symmetric(n, |i, j| if i / 3 == j / 3 { 1.0 + (i % 3 + j % 3) as f64 } else { 0.0 }), n);
+        }
+    }
+
+    #[test]
+    fn only_the_lower_triangle_is_read_and_no_infinity_is_taken() {
+        let mut matrix = symmetric(5, |i, j| (i * j) as f64 - 2.0);
+        let plain = SymmetricEigen::from_lower(&matrix, 5);
+        assert!(plain.is_some());
+        (matrix[3], matrix[9]) = (f64::NAN, 7.0);
+        assert_eq!(SymmetricEigen::from_lower(&matrix, 5), plain);
+        for wrong in [f64::NAN, f64::INFINITY] {
+            matrix[15] = wrong;
+            assert_eq!(SymmetricEigen::from_lower(&matrix, 5), None);
+        }
+    }
+}

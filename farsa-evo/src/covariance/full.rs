@@ -1,0 +1,128 @@
+//! A full covariance matrix.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::Scalar;
+
+use crate::covariance::coefficients::Coefficients;
+use crate::covariance::distribution::{Covariance, bounded, multiply};
+use crate::covariance::eigen::SymmetricEigen;
+use crate::covariance::linear::add_rows;
+use crate::error::EvoError;
+use crate::snapshot::{StateReader, push_reals};
+
+/// The smallest variance along an axis as a fraction of the largest: below it there is nothing but rounding.
+const SMALLEST: f64 = 1e-16;
+/// The limit of the elements of a saved matrix.
+const ELEMENT: f64 = 1e100;
+/// The limits of the roots of saved eigenvalues.
+const DEVIATIONS: [f64; 2] = [1e-40, 1e40];
+
+/// A covariance matrix and its eigenvectors, which are computed only now and then.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FullCovariance {
+    n: usize,
+    /// The matrix C [n x n], of which the lower triangle counts.
+    matrix: Vec<f64>,
+    /// The standard deviations D along the axes \[n\], rising, as of the latest decomposition.
+    deviations: Vec<f64>,
+    /// The axes B [n x n], one after the other.
+    axes: Vec<f64>,
+    /// Updates since the latest decomposition.
+    age: u32,
+    /// The age at which the matrix is not yet decomposed again.
+    interval: f64,
+}
+
+impl FullCovariance {
+    /// The matrix [n x n].
+    pub(super) fn matrix(&self) -> Vec<f64> {
+        let element = |i: usize, j: usize| self.matrix[i.max(j) * self.n + i.min(j)];
+        (0..self.n).flat_map(|i| (0..self.n).map(move |j| element(i, j))).collect()
+    }
+
+    /// Computes axes and deviations from the matrix; leaves them as they are if it has no positive eigenvalue.
+    fn decompose(&mut self) {
+        let Some(SymmetricEigen { values, vectors }) = SymmetricEigen::from_lower(&self.matrix, self.n) else { return };
+        let largest = values.last().copied().unwrap_or_default();
+        let smallest = SMALLEST * largest;
+        if smallest > 0.0 {
+            self.deviations = values.iter().map(|value| Scalar::sqrt(value.max(smallest))).collect();
+            (self.axes, self.age) = (vectors, 0);
+        }
+    }
+}
+
+impl Covariance for FullCovariance {
+    fn identity(n: usize, coefficients: &Coefficients) -> Self {
+        let mut matrix = vec![0.0; n * n];
+        matrix.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
+        let interval = 1.0 / ((coefficients.rank_one + coefficients.rank_mu) * n as f64 * 10.0);
+        Self { n, axes: matrix.clone(), matrix, deviations: vec![1.0; n], age: 0, interval }
+    }
+
+    fn shape(&self, normals: &[f64], steps: &mut [f64]) {
+        let scale = |row: &[f64]| row.iter().zip(&self.deviations).map(|(z, d)| d * z).collect::<Vec<f64>>();
+        let scaled: Vec<f64> = normals.chunks_exact(self.n).flat_map(scale).collect();
+        multiply(&scaled, &self.axes, self.n, steps);
+    }
+
+    fn turn(&self, normals: &[f64]) -> Vec<f64> {
+        let mut turned = vec![0.0; self.n];
+        add_rows(&mut turned, normals, &self.axes, self.n);
+        turned
+    }
+
+    fn update(&mut self, keep: f64, factors: &[f64], rows: &[f64]) {
+        let n = self.n;
+        let mut weighted = vec![0.0; factors.len()];
+        for (index, elements) in self.matrix.chunks_exact_mut(n).enumerate() {
+            let column = rows.iter().skip(index).step_by(n);
+            weighted.iter_mut().zip(factors).zip(column).for_each(|((weighted, factor), y)| *weighted = factor * y);
+            let elements = &mut elements[..=index];
+            for x in elements.iter_mut() {
+                *x *= keep;
+            }
+            add_rows(elements, &weighted, rows, n);
+        }
+        self.age = self.age.saturating_add(1);
+        if f64::from(self.age) > self.interval {
+            self.decompose();
+        }
+    }
+
+    fn extremes(&self) -> [f64; 2] {
+        let square = |d: Option<&f64>| d.map_or(1.0, |d| d * d);
+        [square(self.deviations.first()), square(self.deviations.last())]
+    }
+
+    fn scale(&mut self, factor: f64) {
+        let root = Scalar::sqrt(factor);
+        self.matrix.iter_mut().for_each(|x| *x *= factor);
+        self.deviations.iter_mut().for_each(|d| *d *= root);
+    }
+
+    fn state_length(n: usize) -> usize {
+        4 + 8 * (n * (n + 1) / 2 + n + n * n)
+    }
+
+    fn save(&self, state: &mut Vec<u8>) {
+        state.extend(self.age.to_le_bytes());
+        for (index, elements) in self.matrix.chunks_exact(self.n).enumerate() {
+            push_reals(state, &elements[..=index]);
+        }
+        push_reals(state, &self.deviations);
+        push_reals(state, &self.axes);
+    }
+
+    fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError> {
+        self.age = reader.u32()?;
+        for (index, elements) in self.matrix.chunks_exact_mut(self.n).enumerate() {
+            bounded(reader, &mut elements[..=index], [-ELEMENT, ELEMENT])?;
+        }
+        bounded(reader, &mut self.deviations, DEVIATIONS)?;
+        // A unit vector, but for rounding.
+        bounded(reader, &mut self.axes, [-1.001, 1.001])
+    }
+}

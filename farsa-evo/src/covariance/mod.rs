@@ -1,0 +1,21 @@
+//! Evolution strategies that adapt the covariance matrix of a normal distribution.
+//!
+//! - `cma_es`: [`CmaEs`], with a full matrix.
+//! - `separable_cma_es`: [`SeparableCmaEs`], with a diagonal one.
+//! - `distribution`: the distribution that is drawn from and adapted, whatever its covariance.
+//! - `full`, `diagonal`: the two kinds of covariance.
+//! - `coefficients`: weights and learning rates.
+//! - `eigen`: eigenvalues and eigenvectors of a symmetric matrix.
+//! - `linear`: sums over rows of numbers.
+
+mod cma_es;
+mod coefficients;
+mod diagonal;
+mod distribution;
+mod eigen;
+mod full;
+mod linear;
+mod separable_cma_es;
+
+pub use cma_es::{CmaEs, CmaEsConfig};
+pub use separable_cma_es::{SeparableCmaEs, SeparableCmaEsConfig};
