@@ -24,6 +24,7 @@ mod snapshot;
 mod statistics;
 mod strategy;
 mod truncation;
+mod word_map;
 
 pub use champion::Champion;
 pub use coevolution::Coevolution;
@@ -46,3 +47,4 @@ pub use snapshot::Snapshot;
 pub use statistics::Statistics;
 pub use strategy::{Genealogy, Recorded, Strategy};
 pub use truncation::TruncationGa;
+pub use word_map::{WordCode, WordGene, WordMap};
