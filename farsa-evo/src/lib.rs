@@ -25,6 +25,7 @@ mod snapshot;
 mod statistics;
 mod strategy;
 mod truncation;
+mod word_map;
 
 pub use champion::Champion;
 pub use coevolution::Coevolution;
@@ -48,3 +49,4 @@ pub use snapshot::Snapshot;
 pub use statistics::Statistics;
 pub use strategy::{Genealogy, Recorded, Strategy};
 pub use truncation::TruncationGa;
+pub use word_map::{WordCode, WordGene, WordMap};
