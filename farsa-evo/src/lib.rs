@@ -17,6 +17,7 @@ mod mutation;
 mod one_plus_one;
 mod population;
 mod random_search;
+mod real;
 mod record;
 #[cfg(feature = "serde")]
 mod saved;
@@ -41,6 +42,10 @@ pub use mutation::{BitMutation, Mutation, randomize};
 pub use one_plus_one::OnePlusOne;
 pub use population::Population;
 pub use random_search::{Found, RandomSearch};
+pub use real::{
+    Crossover, EvolutionStrategy, EvolutionStrategyConfig, RealGa, RealGaConfig, RealMutation, Recombination,
+    Selection, SteadyState, SteadyStateConfig, StepSizes, Survival,
+};
 pub use record::{Record, RecordEntry};
 pub use snapshot::Snapshot;
 pub use statistics::Statistics;

@@ -57,10 +57,16 @@ fn names_of_files() {
     let short = ["--generations", "1", "--set", "trial.count=1", "--set", "trial.steps=5"];
     let arguments = [&["run", "discrimination", "--out", &evil], short.as_slice()].concat();
     let run = |arguments: &[&str]| Said::from(command(farsa(), &here, arguments).output().expect("the program"));
-    for arguments in [arguments.as_slice(), &["replay", &evil, "--out", "a.csv"], &["test", &evil, "--trials", "2"]] {
+    for arguments in [
+        arguments.as_slice(),
+        &["run", "--resume", &evil],
+        &["replay", &evil, "--out", "a.csv"],
+        &["test", &evil, "--trials", "2"],
+    ] {
         let said = run(arguments);
         assert_eq!(said.code, Some(0), "{said:?}");
         plain(&said);
+        assert!(!format!("\n{}{}", said.out, said.err).contains("\ne:"), "{said:?}");
     }
 }
 

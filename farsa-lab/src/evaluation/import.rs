@@ -6,6 +6,7 @@ use farsa_evo::Fitness;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::escaped::OneLine;
 use crate::evaluation::genotypes::Shape;
 use crate::evaluation::populations::Populations;
 use crate::experiment::settings::Value;
@@ -34,9 +35,10 @@ pub(crate) struct Summary {
 impl Summary {
     /// The same in a line of words.
     pub(crate) fn text(&self) -> String {
-        let Self { directory, genotypes, genes, files, populations, .. } = self;
+        let Self { genotypes, genes, populations, .. } = self;
+        let (directory, files) = (OneLine(&self.directory), OneLine(self.files.join(", ")));
         if !populations.is_empty() {
-            let (of, files) = (populations.join(" and of "), files.join(", "));
+            let of = populations.join(" and of ");
             return format!(
                 "{directory}: {genotypes} of {of}, of {genes} genes each, from {files}; the first are the champions"
             );
@@ -45,7 +47,7 @@ impl Summary {
             1 => ("genotype", ""),
             _ => ("genotypes", "; individual 0 is the champion"),
         };
-        format!("{directory}: {genotypes} {what} of {genes} genes from {}{champion}", files.join(", "))
+        format!("{directory}: {genotypes} {what} of {genes} genes from {files}{champion}")
     }
 }
 

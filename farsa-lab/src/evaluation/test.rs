@@ -97,6 +97,9 @@ pub(crate) struct TestRun {
     findings: Findings,
     /// That the champion may behave otherwise than in its run.
     warning: Option<String>,
+    /// Why the first of the trials that failed did, if any did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failure: Option<String>,
     #[serde(skip)]
     table: Table,
 }
@@ -117,6 +120,9 @@ impl TestRun {
         text.push_str(&self.findings.text());
         if let Some(warning) = &self.warning {
             let _ = writeln!(text, "warning: {warning}");
+        }
+        if let Some(failure) = &self.failure {
+            let _ = writeln!(text, "{failure}");
         }
         text
     }
@@ -161,10 +167,13 @@ pub(crate) fn test(
 
     let terms = pool.evaluator().terms();
     let names = pool.evaluator().populations();
+    let failed =
+        results.iter().enumerate().find_map(|(number, found)| Some((number, found.outcome.why_failed(&terms)?)));
+    let failure = failed.map(|(number, why)| format!("line {number} of the test failed: {why}"));
     let table = Table::new(&terms, names.get(1..best.len()).unwrap_or(&[]), &results);
     write(directory, &table, |table_crc| Record { generation, individual, trials, seed, table_crc })?;
     let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
-    Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, table })
+    Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, failure, table })
 }
 
 /// The episode of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.

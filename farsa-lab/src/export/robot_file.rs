@@ -1,6 +1,7 @@
 //! `farsa robot`: what is in a model file of a robot.
 
 use std::fmt::Write as _;
+use std::fs;
 use std::path::Path;
 
 use farsa_body::{JointKind, Law, Servo};
@@ -10,6 +11,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::escaped::{OneLine, shortened};
 use crate::export::files::ModelFormat;
+use crate::store::bounded::read_text;
 
 /// What was read.
 #[derive(Serialize)]
@@ -43,7 +45,15 @@ struct JointSummary {
 /// # Errors
 /// [`Error::Other`] with what is wrong with the file, and the argument that could help.
 pub(crate) fn read(file: &Path, options: &ReadOptions) -> Result<Imported, Error> {
-    Imported::from_file(file, options).map_err(|error| {
+    // A pipe is waited for, but not for ever.
+    let piped = fs::metadata(file).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    let read = if piped {
+        let text = read_text(file, u64::try_from(options.limits.bytes).unwrap_or(u64::MAX))?;
+        Imported::from_text(&text, options)
+    } else {
+        Imported::from_file(file, options)
+    };
+    read.map_err(|error| {
         let hint = match &error {
             ReadError::Mass { .. } => "; or --least-mass, --least-inertia, --balance",
             ReadError::Mesh { .. } => "; or --without-meshes",

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::escaped::OneLine;
 use crate::report::page::{Block, Page};
 use crate::report::run::Run;
 use crate::report::section::section;
@@ -39,7 +40,7 @@ impl Summary {
     /// The same in a line of words.
     pub(crate) fn text(&self) -> String {
         let runs = if self.runs.len() == 1 { "run" } else { "runs" };
-        format!("{} {runs}: {}\n", self.runs.len(), self.files.join(", "))
+        format!("{} {runs}: {}\n", self.runs.len(), OneLine(self.files.join(", ")))
     }
 }
 

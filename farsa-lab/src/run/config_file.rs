@@ -66,7 +66,8 @@ impl ConfigFile {
         let place = |offset: usize| format!("{} line {}", OneLine(name), lines.line(offset));
         let table = DeTable::parse(text).map_err(|error| {
             let span = error.span();
-            let at = span.as_ref().map_or_else(|| OneLine(name).to_string(), |span| place(span.start));
+            let offset = span.as_ref().map_or_else(|| deepest(text), |span| Some(span.start));
+            let at = offset.map_or_else(|| OneLine(name).to_string(), place);
             // It does not say of which key.
             let about_key = ["duplicate key", "cannot extend"].iter().any(|start| error.message().starts_with(start));
             let key = span.and_then(|span| text.get(span)).filter(|key| about_key && !key.is_empty());
@@ -116,6 +117,19 @@ impl ConfigFile {
         file.entries = entries;
         Ok(file)
     }
+}
+
+/// Where the line begins that has a key of too many parts, of which toml does not say where it stands.
+fn deepest(text: &str) -> Option<usize> {
+    // As many parts as toml refuses.
+    let many = |line: &str| line.matches('.').count() >= 79;
+    let refused = |line: &str| DeTable::parse_recoverable(line).1.iter().any(|error| error.span().is_none());
+    let mut start = 0;
+    text.split_inclusive('\n').find_map(|line| {
+        let here = start;
+        start += line.len();
+        (many(line) && refused(line)).then_some(here)
+    })
 }
 
 /// Where the lines of a text begin.

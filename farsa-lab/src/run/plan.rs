@@ -322,6 +322,10 @@ mod tests {
         assert_eq!(error("experiment = \"toi\""), "my.toml line 1: unknown experiment `toi`; the nearest is `toy`");
         assert_eq!(error(""), "my.toml: names no experiment");
         assert!(error(&format!("{head}[world\n")).starts_with("my.toml line 2: "));
+        let deep = format!("{head}# {}\n{} = 1\n", ".".repeat(99), vec!["a"; 100].join("."));
+        assert_eq!(error(&deep), "my.toml line 3: recursion limit");
+        let deep = format!("{head}{}", "x = {a=".repeat(1000));
+        assert!(error(&deep).starts_with("my.toml line 2: "), "{}", error(&deep));
         assert!(error(&format!("{head}seed = 1\nseed = 2\n")).starts_with("my.toml line 3: "));
     }
 

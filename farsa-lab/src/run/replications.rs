@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::escaped::escaped;
+use crate::escaped::{OneLine, escaped};
 use crate::figures::statistics::{Quartiles, median};
 use crate::run::begin;
 use crate::run::evolve;
@@ -75,7 +75,7 @@ pub(crate) fn run<'e>(
     for (number, seed) in (1..=count).zip(first..=last) {
         plan.seed = seed;
         let path = root.join(plan.name());
-        let place = path.display();
+        let place = OneLine(path.display());
         let which = format!("replication {number} of {count}");
         // Asked again: another process may have been at it meanwhile.
         if let Some(summary) = finished(&plan, &path)? {
@@ -167,7 +167,7 @@ impl Replications {
             let [individual, fitness] = champion.as_ref().map_or_else(Default::default, |champion| {
                 [champion.individual.to_string(), format!("{:?}", champion.fitness)]
             });
-            [directory.clone(), seed.to_string(), generations.to_string(), individual, fitness]
+            [OneLine(directory).to_string(), seed.to_string(), generations.to_string(), individual, fitness]
         }));
         let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
         let widths = [0, 1, 2, 3, 4].map(width);

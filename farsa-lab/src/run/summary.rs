@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::escaped::OneLine;
 use crate::run::records::{Best, Champions};
 
 /// What came of a run; the champion is that of the last generation.
@@ -45,7 +46,7 @@ impl Winner {
 impl Summary {
     /// The same in a line of words.
     pub(crate) fn text(&self) -> String {
-        let Self { directory, generations, .. } = self;
+        let (directory, generations) = (OneLine(&self.directory), self.generations);
         if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
             let all = self.champions.iter().enumerate().map(|(population, Winner { individual, fitness, .. })| {
                 format!("population {population} individual {individual}, fitness {fitness:?}")

@@ -8,9 +8,11 @@ use farsa_view::Schema;
 
 use super::{pool, scratch};
 use crate::error::Error;
+use crate::evaluation::test;
 use crate::experiment::definition::Experiment;
 use crate::experiment::episode::{Episode, EpisodeId, NoWorld};
 use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
+use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::settings::{Setting, Settings, Value};
 use crate::run::begin::create;
@@ -189,5 +191,18 @@ fn a_thousand_generations_with_a_tenth_of_all_evaluations_failing() {
     }
     assert_eq!(lines.next(), None);
     assert!((1700..2200).contains(&count) && kinds.iter().all(|kind| *kind > 350), "{count}: {kinds:?}");
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn a_trial_of_a_test_that_breaks_says_why() {
+    let root = scratch("faulty-test");
+    let experiment = faulty();
+    let directory = create(&plan(&experiment, 2), &root).unwrap();
+    run(2, 1, &directory);
+    let plan = plan(&experiment, 2);
+    let found = test::test(&plan, &directory, 200, 3, 2, Wanted::ONE, true).unwrap().text();
+    let line = found.lines().last().unwrap();
+    assert!(line.starts_with("line ") && line.contains(" of the test failed: "), "{found}");
     fs::remove_dir_all(root).unwrap();
 }

@@ -1,0 +1,97 @@
+//! The range of each gene, and how what leaves it comes back.
+
+use farsa_num::Stream;
+
+use crate::error::EvoError;
+use crate::population::Population;
+
+/// The largest size of a bound, so that sums and differences of genes stay finite.
+const LARGEST: f64 = 1e100;
+
+/// Refuses a number of a configuration that cannot be.
+pub(crate) fn check_setting(
+    possible: bool,
+    name: &'static str,
+    value: f64,
+    allowed: &'static str,
+) -> Result<(), EvoError> {
+    if possible { Ok(()) } else { Err(EvoError::Setting { name, value, allowed }) }
+}
+
+/// Refuses a probability outside 0 to 1.
+pub(crate) fn check_rate(name: &'static str, rate: f64) -> Result<(), EvoError> {
+    check_setting((0.0..=1.0).contains(&rate), name, rate, "0 to 1")
+}
+
+/// Refuses sizes of no population, and bounds that are not low to high.
+pub(crate) fn check_bounds(population: usize, bounds: &[[f64; 2]]) -> Result<(), EvoError> {
+    Population::check(population, bounds.len())?;
+    for &[low, high] in bounds {
+        for (name, end) in [("the low end of a gene", low), ("the high end of a gene", high)] {
+            check_setting((-LARGEST..=LARGEST).contains(&end), name, end, "-1e100 to 1e100")?;
+        }
+        check_setting(low <= high, "the high end of a gene", high, "its low end or more")?;
+    }
+    Ok(())
+}
+
+/// Draws genes \[genes\] uniformly within their bounds.
+pub(crate) fn draw_within(genes: &mut [f64], bounds: &[[f64; 2]], stream: &mut Stream) {
+    for (gene, &[low, high]) in genes.iter_mut().zip(bounds) {
+        *gene = stream.range_f64(low, high);
+    }
+}
+
+/// A finite number as the ends of a range reflect it, as often as it takes; the low end of a range of no width.
+pub(crate) fn reflect(x: f64, [low, high]: [f64; 2]) -> f64 {
+    if low <= x && x <= high {
+        return x;
+    }
+    let width = high - low;
+    if width <= 0.0 {
+        return low;
+    }
+    // The remainder is exact.
+    let rest = (x - low) % (2.0 * width);
+    let rest = if rest < 0.0 { rest + 2.0 * width } else { rest };
+    let within = if rest > width { 2.0 * width - rest } else { rest };
+    (low + within).clamp(low, high)
+}
+
+/// Whether each genome's genes are within their bounds, for a state that is read.
+pub(crate) fn check_within(population: &Population<f64>, bounds: &[[f64; 2]]) -> Result<(), EvoError> {
+    for genes in population {
+        for (&gene, &[low, high]) in genes.iter().zip(bounds) {
+            if !(low..=high).contains(&gene) {
+                return Err(EvoError::StateContent { what: "a gene within its bounds", found: gene.to_bits() });
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn what_leaves_a_range_is_reflected() {
+        let range = [-1.0, 3.0];
+        let want =
+            [(0.5, 0.5), (3.5, 2.5), (-1.5, -0.5), (7.0, -1.0), (8.0, 0.0), (-5.0, 3.0), (-6.0, 2.0), (11.5, 2.5)];
+        for (x, inside) in want {
+            assert_eq!(reflect(x, range), inside, "{x}");
+        }
+        assert_eq!(reflect(9.0, [2.0, 2.0]), 2.0);
+    }
+
+    proptest! {
+        #[test]
+        fn a_reflected_number_is_within(x in -1e101_f64..1e101, low in -1e100_f64..1e100, width in 0.0_f64..1e3) {
+            let range = [low, (low + width).min(1e100)];
+            let inside = reflect(x, range);
+            prop_assert!(range[0] <= inside && inside <= range[1]);
+        }
+    }
+}

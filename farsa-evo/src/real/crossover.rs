@@ -1,0 +1,86 @@
+//! How the genes of two parents are mixed.
+
+use farsa_num::{Stream, exp, ln};
+
+use crate::error::EvoError;
+use crate::real::bounds::{check_rate, check_setting, reflect};
+
+/// How the genes of a child come from its two parents; each child is drawn by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Crossover {
+    /// There is one parent, and its genes are copied.
+    None,
+    /// Each gene is one parent's or the other's \[Syswerda1989\].
+    Uniform {
+        /// The probability, 0 to 1, that a gene is the second parent's.
+        rate: f64,
+    },
+    /// BLX-alpha: each gene is uniform in the interval between the parents' genes, which is widened at both ends by
+    /// alpha times its width \[Eshelman1993\]. What is out of bounds is reflected, where the source says nothing of
+    /// bounds.
+    Blend {
+        /// The widening alpha, 0 to 10; 0.5 in the source.
+        alpha: f64,
+    },
+    /// SBX: each gene lies near one of the parents' genes, as near as the two are to each other \[Deb1995\], in the
+    /// form within bounds of K. Deb's program NSGA-II: with probability 1/2 a gene is crossed, else the first parent's.
+    /// Deviations: one child of the pair is made, either with probability 1/2 for each gene; genes count as equal from
+    /// 1e-14 of their range on, not from 1e-14.
+    SimulatedBinary {
+        /// The distribution index eta, 0 to 1000: the larger, the nearer to the parents.
+        eta: f64,
+    },
+}
+
+impl Crossover {
+    pub(crate) fn check(self) -> Result<(), EvoError> {
+        match self {
+            Self::None => Ok(()),
+            Self::Uniform { rate } => check_rate("the rate of uniform crossover", rate),
+            Self::Blend { alpha } => {
+                check_setting((0.0..=10.0).contains(&alpha), "alpha of blend crossover", alpha, "0 to 10")
+            }
+            Self::SimulatedBinary { eta } => {
+                check_setting((0.0..=1000.0).contains(&eta), "eta of simulated binary crossover", eta, "0 to 1000")
+            }
+        }
+    }
+
+    /// Mixes genes \[genes\], which are the first parent's, with the second's.
+    pub(crate) fn apply(self, genes: &mut [f64], second: &[f64], bounds: &[[f64; 2]], stream: &mut Stream) {
+        for ((gene, &other), &range) in genes.iter_mut().zip(second).zip(bounds) {
+            *gene = match self {
+                Self::None => *gene,
+                Self::Uniform { rate } => {
+                    if stream.uniform_f64() < rate {
+                        other
+                    } else {
+                        *gene
+                    }
+                }
+                Self::Blend { alpha } => {
+                    let (low, high) = (gene.min(other), gene.max(other));
+                    let beyond = alpha * (high - low);
+                    reflect(low - beyond + (high - low + 2.0 * beyond) * stream.uniform_f64(), range)
+                }
+                Self::SimulatedBinary { eta } => simulated_binary(*gene, other, range, eta, stream),
+            };
+        }
+    }
+}
+
+fn simulated_binary(first: f64, second: f64, [low, high]: [f64; 2], eta: f64, stream: &mut Stream) -> f64 {
+    let (y1, y2) = (first.min(second), first.max(second));
+    let gap = y2 - y1;
+    if stream.uniform_f64() >= 0.5 || gap <= 1e-14 * (high - low) {
+        return first;
+    }
+    let (u, upper) = (stream.uniform_f64(), stream.uniform_f64() < 0.5);
+    let room = if upper { high - y2 } else { y1 - low };
+    let beta = 1.0 + 2.0 * room / gap;
+    let alpha = 2.0 - exp(-(eta + 1.0) * ln(beta));
+    let power = if u <= 1.0 / alpha { ln(u * alpha) } else { -ln(2.0 - u * alpha) };
+    let spread = exp(power / (eta + 1.0)) * gap;
+    (0.5 * (y1 + y2 + if upper { spread } else { -spread })).clamp(low, high)
+}
