@@ -13,6 +13,7 @@ mod decode;
 mod error;
 mod fitness;
 mod gene;
+mod gradient;
 mod mutation;
 mod one_plus_one;
 mod population;
@@ -36,6 +37,10 @@ pub use decode::{GeneRange, decode};
 pub use error::EvoError;
 pub use fitness::Fitness;
 pub use gene::Gene;
+pub use gradient::{
+    Ars, ArsConfig, ObservationStatistics, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes,
+    SnesConfig, Xnes, XnesConfig,
+};
 pub use mutation::{BitMutation, Mutation, randomize};
 pub use one_plus_one::OnePlusOne;
 pub use population::Population;

@@ -1,0 +1,212 @@
+//! Augmented random search.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::Scalar;
+
+use super::clip_up::norm;
+use super::noise::{Noise, Spread};
+use super::rewards::{rewards, scaled};
+use super::settings::{at_least, bounded, point, positive, read_length, read_point};
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::strategy::{Strategy, next_generation};
+
+/// What an [`Ars`] needs to know; a plain value that is checked where it is used.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ArsConfig {
+    /// The parameters (M) that the search starts from \[genes\], within 1e100 of zero.
+    pub mean: Vec<f64>,
+    /// Number of directions (N): a generation has twice as many individuals.
+    pub directions: usize,
+    /// Number of top directions (b) that the step is made of, 1 to all of them.
+    pub top_directions: usize,
+    /// Step size (alpha), 1e-100 to 1e100.
+    pub step_size: f64,
+    /// Standard deviation of the exploration noise (nu), 1e-100 to 1e100.
+    pub noise: f64,
+}
+
+impl ArsConfig {
+    /// ARS V1: all directions count. The step size of 0.02 and the noise of 0.03 are what the program of the authors of
+    /// \[Mania2018\] begins with; the paper chooses both for each task.
+    pub const fn new(mean: Vec<f64>, directions: usize) -> Self {
+        Self { mean, directions, top_directions: directions, step_size: 0.02, noise: 0.03 }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`] or [`EvoError::Setting`].
+    pub fn validate(&self) -> Result<(), EvoError> {
+        Population::check(self.directions.saturating_mul(2), self.mean.len())?;
+        at_least("top_directions", self.top_directions, 1, "1 to the number of directions")?;
+        if self.top_directions > self.directions {
+            let (name, allowed) = ("top_directions", "1 to the number of directions");
+            return Err(EvoError::Setting { name, value: self.top_directions as f64, allowed });
+        }
+        point("mean", &self.mean)?;
+        positive("step_size", self.step_size)?;
+        positive("noise", self.noise)
+    }
+}
+
+/// Augmented random search: mirrored noise of one size around one point, which moves by the differences of rewards
+/// along the best directions, divided by the standard deviation of these rewards.
+///
+/// The simplest of the strategies for many genes. It depends on the values of fitness, though not on their unit or
+/// zero.
+///
+/// Source: \[Mania2018\] algorithm 1, V1, and V1-t with fewer top directions. V2 is the same with observations that
+/// [`ObservationStatistics`](crate::ObservationStatistics) normalise. Deviations: sums go through the directions by
+/// index; a failed evaluation counts as the worst finite value of its generation and an infinite one as the best; the
+/// rewards are divided by the largest magnitude of them beforehand; where they are all the same, or none is finite, the
+/// point stays; it stays within 1e100 of zero.
+///
+/// ```
+/// use farsa_evo::{Ars, ArsConfig, Strategy};
+///
+/// let config = ArsConfig { top_directions: 4, noise: 0.1, step_size: 0.1, ..ArsConfig::new(vec![0.0; 2], 8) };
+/// let mut search = Ars::new(config, 1)?;
+/// search.maximize(200, |x| -(x[0] - 3.0) * (x[0] - 3.0) - (x[1] + 1.0) * (x[1] + 1.0))?;
+/// assert!((search.mean()[0] - 3.0).abs() < 0.2 && (search.mean()[1] + 1.0).abs() < 0.2);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+///
+/// Individuals 2k and 2k + 1 are direction k, which adds and subtracts the noise of the stream (seed,
+/// [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0, k, generation), in generation 0 with
+/// [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome). [`diagnostics`](Strategy::diagnostics) are the
+/// Euclidean lengths of the latest step and of the point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ars {
+    config: ArsConfig,
+    seed: u64,
+    generation: u32,
+    mean: Vec<f64>,
+    /// Length of the latest step.
+    step: f64,
+    population: Population<f64>,
+}
+
+impl Ars {
+    /// A search at its first generation.
+    ///
+    /// # Errors
+    /// Those of [`ArsConfig::validate`].
+    pub fn new(config: ArsConfig, seed: u64) -> Result<Self, EvoError> {
+        config.validate()?;
+        let population = Population::new(2 * config.directions, config.mean.len())?;
+        let mean = config.mean.clone();
+        let mut strategy = Self { config, seed, generation: 0, mean, step: 0.0, population };
+        strategy.sample();
+        Ok(strategy)
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &ArsConfig {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The point \[genes\] around which the individuals lie.
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    fn noise(&self) -> Noise {
+        Noise { seed: self.seed, generation: self.generation }
+    }
+
+    fn sample(&mut self) {
+        self.noise().mirror(&mut self.population, &self.mean, Spread::Same(self.config.noise));
+    }
+
+    /// The top directions by the fitness of the better of their two individuals, equals by index; in order of index.
+    fn top(&self, fitness: &[Fitness]) -> Vec<usize> {
+        let better: Vec<Fitness> = fitness.chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
+        let mut top = super::utilities::ranking(&better);
+        top.truncate(self.config.top_directions);
+        top.sort_unstable();
+        top
+    }
+
+    /// Moves the point by the rewards [top directions x 2] of the top directions.
+    fn update(&mut self, top: &[usize], rewards: &[f64]) {
+        let count = rewards.len() as f64;
+        let mean = rewards.iter().sum::<f64>() / count;
+        let variance = rewards.iter().map(|reward| (reward - mean) * (reward - mean)).sum::<f64>() / count;
+        let deviation = Scalar::sqrt(variance);
+        self.step = 0.0;
+        if deviation > 0.0 {
+            let mut step = vec![0.0; self.mean.len()];
+            for (row, pair) in top.iter().zip(rewards.chunks_exact(2)) {
+                self.noise().add(*row, (pair[0] - pair[1]) / deviation, &mut step);
+            }
+            let scale = self.config.step_size / top.len() as f64;
+            for (mean, step) in self.mean.iter_mut().zip(&mut step) {
+                *step *= scale;
+                *mean = bounded(*mean + *step);
+            }
+            self.step = norm(&step);
+        }
+    }
+}
+
+impl Strategy<f64> for Ars {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    fn ask(&self) -> &Population<f64> {
+        &self.population
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        let next = next_generation(self.generation, self.population.len(), fitness)?;
+        self.step = 0.0;
+        if let Some(rewards) = rewards(fitness) {
+            let top = self.top(fitness);
+            let used = top.iter().filter_map(|row| rewards.get(2 * row..2 * row + 2)).flatten().copied().collect();
+            self.update(&top, &scaled(used));
+        }
+        self.generation = next;
+        self.sample();
+        Ok(())
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn diagnostics(&self) -> Vec<f64> {
+        vec![self.step, norm(&self.mean)]
+    }
+}
+
+impl Snapshot for Ars {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::new();
+        state.extend(self.generation.to_le_bytes());
+        push_reals(&mut state, &[self.step]);
+        push_reals(&mut state, &self.mean);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let genes = self.mean.len();
+        let mut reader = StateReader::new(state, 12 + 8 * genes)?;
+        let (generation, step) = (reader.u32()?, read_length(&mut reader)?);
+        let mean = read_point(&mut reader, genes)?;
+        (self.generation, self.step, self.mean) = (generation, step, mean);
+        self.sample();
+        Ok(())
+    }
+}

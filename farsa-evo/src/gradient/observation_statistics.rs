@@ -1,0 +1,187 @@
+//! Running mean and variance of observations, channel by channel.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::Scalar;
+
+use super::settings::{LARGEST, point, within};
+use crate::error::EvoError;
+use crate::population::Population;
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+
+/// The largest sum of squares that is taken over from elsewhere.
+const LARGEST_SQUARES: f64 = 1e250;
+
+/// The standard deviation below which a channel says nothing, as in the program of the authors of \[Mania2018\].
+const LEAST_DEVIATION: f64 = 1e-7;
+
+/// Running mean and variance of every channel of what a network observes, to normalise it with.
+///
+/// It is a value of its own beside the strategies: statistics of parts (of an episode, an individual) are made anywhere
+/// and [`merge`](Self::merge)d in a fixed order. Merged parts and a whole agree to a relative 1e-12, not in their bits;
+/// parts that are merged in the same order agree in their bits.
+///
+/// Source: \[Welford1962\] for one row, \[Chan1983\] for parts; normalisation as V2 of \[Mania2018\] algorithm 1, where
+/// a channel with a standard deviation below 1e-7 is 0. Deviations: the variance is the mean square (divided by n, not
+/// n - 1); a limit.
+///
+/// ```
+/// use farsa_evo::ObservationStatistics;
+///
+/// let mut statistics = ObservationStatistics::new(2)?;
+/// for row in [[1.0, 5.0], [3.0, 5.0]] {
+///     statistics.push(&row);
+/// }
+/// assert_eq!((statistics.count(), statistics.mean()), (2, &[2.0, 5.0][..]));
+/// let mut row = [4.0, 9.0];
+/// statistics.normalise(&mut row, 10.0);
+/// assert_eq!(row, [2.0, 0.0]);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObservationStatistics {
+    count: u64,
+    mean: Vec<f64>,
+    /// Sums of the squared distances from the mean (m2).
+    squares: Vec<f64>,
+}
+
+impl ObservationStatistics {
+    /// No observation yet, of so many channels.
+    ///
+    /// # Errors
+    /// [`EvoError::Setting`] for none, or more than [`Population::MAX_GENES`].
+    pub fn new(channels: usize) -> Result<Self, EvoError> {
+        if channels == 0 || channels > Population::MAX_GENES {
+            return Err(EvoError::Setting { name: "channels", value: channels as f64, allowed: "1 to 2^28" });
+        }
+        Ok(Self { count: 0, mean: vec![0.0; channels], squares: vec![0.0; channels] })
+    }
+
+    /// Number of channels.
+    pub fn channels(&self) -> usize {
+        self.mean.len()
+    }
+
+    /// Number of observations.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The mean of each channel, 0 before the first observation.
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    /// The sum of the squared distances from the mean of each channel.
+    pub fn squares(&self) -> &[f64] {
+        &self.squares
+    }
+
+    /// The variance of each channel, 0 before the first observation.
+    pub fn variance(&self) -> impl Iterator<Item = f64> + '_ {
+        let count = self.count.max(1) as f64;
+        self.squares.iter().map(move |squares| squares / count)
+    }
+
+    /// Adds an observation \[channels\], and says whether it did: one with a number that is not finite, or of another
+    /// length, is left out.
+    pub fn push(&mut self, row: &[f32]) -> bool {
+        debug_assert_eq!(row.len(), self.channels(), "a row of other channels");
+        if row.len() != self.channels() || self.count == u64::MAX || !row.iter().all(|x| x.is_finite()) {
+            return false;
+        }
+        self.count += 1;
+        let count = self.count as f64;
+        for ((mean, squares), x) in self.mean.iter_mut().zip(&mut self.squares).zip(row) {
+            let x = f64::from(*x);
+            let distance = x - *mean;
+            *mean += distance / count;
+            *squares += distance * (x - *mean);
+        }
+        true
+    }
+
+    /// Adds a batch: its number of observations, their mean \[channels\] and their sum of squared distances from it
+    /// \[channels\].
+    ///
+    /// # Errors
+    /// [`EvoError::Setting`] for other channels, a mean not within 1e100 of zero, a sum of squares that is negative or
+    /// above 1e250, and more than 2^64 - 1 observations; nothing is added then.
+    pub fn add(&mut self, count: u64, mean: &[f64], squares: &[f64]) -> Result<(), EvoError> {
+        for channels in [mean.len(), squares.len()] {
+            if channels != self.channels() {
+                let (value, allowed) = (channels as f64, "the number that the statistics have");
+                return Err(EvoError::Setting { name: "channels", value, allowed });
+            }
+        }
+        point("mean", mean)?;
+        squares.iter().try_for_each(|x| within("squares", *x, [0.0, LARGEST_SQUARES], "0 to 1e250"))?;
+        let (before, added) = (self.count as f64, count as f64);
+        let too_many = EvoError::Setting { name: "count", value: before + added, allowed: "up to 2^64 - 1" };
+        let total = self.count.checked_add(count).ok_or(too_many)?;
+        if count == 0 {
+            return Ok(());
+        }
+        self.count = total;
+        let share = added / total as f64;
+        let own = self.mean.iter_mut().zip(&mut self.squares);
+        for ((mean, squares), (other, other_squares)) in own.zip(mean.iter().zip(squares)) {
+            let distance = other - *mean;
+            *mean += distance * share;
+            *squares = (*squares + (other_squares + distance * distance * (before * share))).min(LARGEST_SQUARES);
+        }
+        Ok(())
+    }
+
+    /// Adds other statistics.
+    ///
+    /// # Errors
+    /// Those of [`add`](Self::add).
+    pub fn merge(&mut self, other: &Self) -> Result<(), EvoError> {
+        self.add(other.count, &other.mean, &other.squares)
+    }
+
+    /// Normalises an observation \[channels\] in place: less the mean, divided by the standard deviation, at most
+    /// `limit` from zero.
+    ///
+    /// A channel with a standard deviation below 1e-7 becomes 0, so that all are 0 until there are two observations. A
+    /// NaN stays one. A `limit` that is not above 0 limits nothing.
+    pub fn normalise(&self, row: &mut [f32], limit: f32) {
+        debug_assert_eq!(row.len(), self.channels(), "a row of other channels");
+        let limit = if limit > 0.0 { limit } else { f32::INFINITY };
+        for ((x, mean), variance) in row.iter_mut().zip(&self.mean).zip(self.variance()) {
+            let deviation = Scalar::sqrt(variance);
+            let distance = f64::from(*x) - mean;
+            let silent = deviation < LEAST_DEVIATION && !x.is_nan();
+            *x = if silent { 0.0 } else { ((distance / deviation) as f32).clamp(-limit, limit) };
+        }
+    }
+}
+
+impl Snapshot for ObservationStatistics {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::with_capacity(8 + 16 * self.channels());
+        state.extend(self.count.to_le_bytes());
+        push_reals(&mut state, &self.mean);
+        push_reals(&mut state, &self.squares);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let channels = self.channels();
+        let mut reader = StateReader::new(state, 8 + 16 * channels)?;
+        let count = reader.u64()?;
+        let mean = super::settings::read_point(&mut reader, channels)?;
+        let squares = super::settings::read(&mut reader, channels, "a sum of squares", [0.0, LARGEST_SQUARES])?;
+        if count == 0 && mean.iter().chain(&squares).any(|x| *x != 0.0) {
+            return Err(EvoError::StateContent { what: "a number of observations", found: count });
+        }
+        (self.count, self.mean, self.squares) = (count, mean, squares);
+        Ok(())
+    }
+}
+
+// The mean of anything that `add` and `push` take stays where `restore` takes it back.
+const _: () = assert!(LARGEST > f32::MAX as f64);

@@ -1,0 +1,192 @@
+//! The evolution strategy of `OpenAI`.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::centred_ranks::centred_ranks;
+use super::clip_up::norm;
+use super::noise::{Noise, Spread};
+use super::optimizer::{Memory, Optimizer};
+use super::settings::{bounded, point, positive, read_length, read_point, within};
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::strategy::{Recorded, Strategy, next_generation};
+
+/// What an [`OpenAiEs`] needs to know; a plain value that is checked where it is used.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OpenAiEsConfig {
+    /// The parameters (theta) that the search starts from \[genes\], within 1e100 of zero.
+    pub mean: Vec<f64>,
+    /// Number of antithetic pairs: a generation has twice as many individuals (n).
+    pub pairs: usize,
+    /// Standard deviation of the noise (sigma), 1e-100 to 1e100.
+    pub sigma: f64,
+    /// Learning rate (alpha), 1e-100 to 1e100.
+    pub learning_rate: f64,
+    /// What is subtracted from the gradient for each unit of a parameter, 0 to 1e9.
+    pub weight_decay: f64,
+    /// How the gradient becomes a step.
+    pub optimizer: Optimizer,
+}
+
+impl OpenAiEsConfig {
+    /// The parameters of the program of the authors of \[Salimans2017\] for its humanoid: noise of 0.02,
+    /// [`Optimizer::ADAM`] with a learning rate of 0.01, a weight decay of 0.005 / sigma (0.005 there, where the
+    /// gradient is not divided by sigma).
+    pub const fn new(mean: Vec<f64>, pairs: usize) -> Self {
+        let (sigma, weight_decay) = (0.02, 0.25);
+        Self { mean, pairs, sigma, learning_rate: 0.01, weight_decay, optimizer: Optimizer::ADAM }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`] or [`EvoError::Setting`].
+    pub fn validate(&self) -> Result<(), EvoError> {
+        Population::check(self.pairs.saturating_mul(2), self.mean.len())?;
+        point("mean", &self.mean)?;
+        positive("sigma", self.sigma)?;
+        positive("learning_rate", self.learning_rate)?;
+        within("weight_decay", self.weight_decay, [0.0, 1e9], "0 to 1e9")?;
+        self.optimizer.validate()
+    }
+}
+
+/// The evolution strategy of `OpenAI`: mirrored noise of one size around one point, which an optimizer moves.
+///
+/// For genomes of very many genes: the noise is drawn anew for the update, and beside the genomes only the point and
+/// what the optimizer remembers are kept. It does not learn scales; sigma stays as it is. Only the order of fitness
+/// counts.
+///
+/// Source: \[Salimans2017\] algorithm 1, gradient 1 / (n sigma) times the sum of centred ranks times noise, with the
+/// antithetic sampling, the rank transformation and the weight decay of its section 2. Deviations: noise is drawn, not
+/// read from a table; sums go through the pairs by index; the point stays within 1e100 of zero.
+///
+/// ```
+/// use farsa_evo::{OpenAiEs, OpenAiEsConfig, Strategy};
+///
+/// let paper = OpenAiEsConfig::new(vec![0.0; 2], 10);
+/// let config = OpenAiEsConfig { sigma: 0.1, learning_rate: 0.05, weight_decay: 0.0, ..paper };
+/// let mut search = OpenAiEs::new(config, 1)?;
+/// search.maximize(200, |x| -(x[0] - 3.0) * (x[0] - 3.0) - (x[1] + 1.0) * (x[1] + 1.0))?;
+/// assert!((search.mean()[0] - 3.0).abs() < 0.2 && (search.mean()[1] + 1.0).abs() < 0.2);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+///
+/// Individuals 2k and 2k + 1 are pair k, which adds and subtracts the noise of the stream (seed,
+/// [`Domain::Mutation`](farsa_num::Domain::Mutation), trial 0, k, generation), in generation 0 with
+/// [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome). [`diagnostics`](Strategy::diagnostics) are the
+/// Euclidean lengths of the latest step and of the point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenAiEs {
+    config: OpenAiEsConfig,
+    seed: u64,
+    generation: u32,
+    mean: Vec<f64>,
+    memory: Memory,
+    /// Length of the latest step.
+    step: f64,
+    population: Population<f64>,
+}
+
+impl OpenAiEs {
+    /// A search at its first generation.
+    ///
+    /// # Errors
+    /// Those of [`OpenAiEsConfig::validate`].
+    pub fn new(config: OpenAiEsConfig, seed: u64) -> Result<Self, EvoError> {
+        config.validate()?;
+        let population = Population::new(2 * config.pairs, config.mean.len())?;
+        let (mean, memory) = (config.mean.clone(), Memory::new(config.optimizer, config.mean.len()));
+        let mut strategy = Self { config, seed, generation: 0, mean, memory, step: 0.0, population };
+        strategy.sample();
+        Ok(strategy)
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &OpenAiEsConfig {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The point \[genes\] around which the individuals lie.
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    fn noise(&self) -> Noise {
+        Noise { seed: self.seed, generation: self.generation }
+    }
+
+    fn sample(&mut self) {
+        self.noise().mirror(&mut self.population, &self.mean, Spread::Same(self.config.sigma));
+    }
+}
+
+impl Strategy<f64> for OpenAiEs {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    fn ask(&self) -> &Population<f64> {
+        &self.population
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        let next = next_generation(self.generation, self.population.len(), fitness)?;
+        let OpenAiEsConfig { sigma, learning_rate, weight_decay, optimizer, .. } = self.config;
+        let mut gradient = vec![0.0; self.mean.len()];
+        for (row, pair) in centred_ranks(fitness).chunks_exact(2).enumerate() {
+            self.noise().add(row, pair[0] - pair[1], &mut gradient);
+        }
+        let scale = 1.0 / (fitness.len() as f64 * sigma);
+        for (g, mean) in gradient.iter_mut().zip(&self.mean) {
+            *g = scale * *g - weight_decay * mean;
+        }
+        self.memory.step(optimizer, learning_rate, &mut gradient);
+        self.mean.iter_mut().zip(&gradient).for_each(|(mean, step)| *mean = bounded(*mean + step));
+        (self.generation, self.step) = (next, norm(&gradient).min(f64::MAX));
+        self.sample();
+        Ok(())
+    }
+
+    fn recorded(&self) -> Recorded {
+        Recorded::Order
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn diagnostics(&self) -> Vec<f64> {
+        vec![self.step, norm(&self.mean)]
+    }
+}
+
+impl Snapshot for OpenAiEs {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::new();
+        state.extend(self.generation.to_le_bytes());
+        push_reals(&mut state, &[self.step]);
+        push_reals(&mut state, &self.mean);
+        self.memory.push(&mut state);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let (genes, optimizer) = (self.mean.len(), self.config.optimizer);
+        let mut reader = StateReader::new(state, 12 + 8 * genes + Memory::bytes(optimizer, genes))?;
+        let (generation, step) = (reader.u32()?, read_length(&mut reader)?);
+        let (mean, memory) = (read_point(&mut reader, genes)?, Memory::read(optimizer, &mut reader, genes)?);
+        (self.generation, self.step, self.mean, self.memory) = (generation, step, mean, memory);
+        self.sample();
+        Ok(())
+    }
+}

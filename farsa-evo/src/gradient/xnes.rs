@@ -1,0 +1,263 @@
+//! The exponential natural evolution strategy.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::{Scalar, exp, ln};
+
+use super::matrix_exponential::{exponential, mirror, multiply};
+use super::noise::Noise;
+use super::settings::{
+    LARGEST, at_least, bounded, bounded_size, learning_rate, point, positive, read, read_point, read_sizes,
+};
+use super::utilities::{default_population, utilities, weights};
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::population::Population;
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::strategy::{Recorded, Strategy, next_generation};
+
+/// The most genes: a matrix of 8 MiB, and some 10^10 products a generation.
+const MOST_GENES: usize = 1024;
+
+/// What an [`Xnes`] needs to know; a plain value that is checked where it is used.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct XnesConfig {
+    /// The mean (mu) of the first generation [genes, at most 1024], within 1e100 of zero.
+    pub mean: Vec<f64>,
+    /// The standard deviation (sigma) of every gene of the first generation, 1e-100 to 1e100.
+    pub sigma: f64,
+    /// Number of individuals of a generation (lambda), at least 2.
+    pub population: usize,
+    /// Learning rate of the mean (eta delta), 0 to 10.
+    pub mean_learning_rate: f64,
+    /// Learning rate of the step size (eta sigma), 0 to 10.
+    pub sigma_learning_rate: f64,
+    /// Learning rate of the shape (eta B), 0 to 10.
+    pub shape_learning_rate: f64,
+}
+
+impl XnesConfig {
+    /// The parameters of \[Wierstra2014\] table 1 for d genes: 4 + floor(3 ln d) individuals, learning rates 1 of the
+    /// mean and (9 + 3 ln d) / (5 d sqrt d) of step size and shape.
+    pub fn new(mean: Vec<f64>, sigma: f64) -> Self {
+        let d = mean.len() as f64;
+        let rate = (9.0 + 3.0 * ln(d)) / (5.0 * d * Scalar::sqrt(d));
+        Self {
+            population: default_population(mean.len()),
+            mean_learning_rate: 1.0,
+            sigma_learning_rate: rate,
+            shape_learning_rate: rate,
+            mean,
+            sigma,
+        }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`EvoError::NoIndividuals`], [`EvoError::NoGenes`], [`EvoError::TooLarge`] or [`EvoError::Setting`].
+    pub fn validate(&self) -> Result<(), EvoError> {
+        Population::check(self.population, self.mean.len())?;
+        at_least("population", self.population, 2, "2 or more")?;
+        let genes = self.mean.len();
+        if genes > MOST_GENES {
+            return Err(EvoError::Setting { name: "genes", value: genes as f64, allowed: "1 to 1024" });
+        }
+        point("mean", &self.mean)?;
+        positive("sigma", self.sigma)?;
+        learning_rate("mean_learning_rate", self.mean_learning_rate)?;
+        learning_rate("sigma_learning_rate", self.sigma_learning_rate)?;
+        learning_rate("shape_learning_rate", self.shape_learning_rate)
+    }
+}
+
+/// The exponential natural evolution strategy: a normal distribution with a full covariance, moved along the natural
+/// gradient of the expected fitness in coordinates in which it is the identity.
+///
+/// It learns scales and correlations, for up to some hundred genes: a generation takes time in proportion to the cube
+/// of their number. Only the order of fitness counts.
+///
+/// Source: \[Glasmachers2010\] (xNES), as in \[Wierstra2014\] algorithm 5, with the utilities and parameters of its
+/// table 1. A genome is mu + sigma B s; B is multiplied from the right by the exponential of a symmetric matrix without
+/// trace. Deviations: sums go through the individuals by index; means stay within 1e100 of zero, sigma within 1e-100 to
+/// 1e100, and B stays as it was where an element would pass 1e100.
+///
+/// ```
+/// use farsa_evo::{Strategy, Xnes, XnesConfig};
+///
+/// let mut search = Xnes::new(XnesConfig::new(vec![0.0; 2], 1.0), 1)?;
+/// // A valley along the diagonal.
+/// search.maximize(200, |x| -(x[0] + x[1] - 2.0) * (x[0] + x[1] - 2.0) - 1e4 * (x[0] - x[1]) * (x[0] - x[1]))?;
+/// assert!((search.mean()[0] - 1.0).abs() < 1e-3 && (search.mean()[1] - 1.0).abs() < 1e-3);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+///
+/// Individual i of a generation draws from the stream (seed, [`Domain::Mutation`](farsa_num::Domain::Mutation), trial
+/// 0, i, generation), that of generation 0 with [`Domain::InitialGenome`](farsa_num::Domain::InitialGenome).
+/// [`diagnostics`](Strategy::diagnostics) is sigma.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Xnes {
+    config: XnesConfig,
+    seed: u64,
+    generation: u32,
+    utilities: Vec<f64>,
+    mean: Vec<f64>,
+    sigma: f64,
+    /// The normalised factor B of the covariance [genes x genes].
+    shape: Vec<f64>,
+    population: Population<f64>,
+}
+
+impl Xnes {
+    /// A search at its first generation.
+    ///
+    /// # Errors
+    /// Those of [`XnesConfig::validate`].
+    pub fn new(config: XnesConfig, seed: u64) -> Result<Self, EvoError> {
+        config.validate()?;
+        let genes = config.mean.len();
+        let population = Population::new(config.population, genes)?;
+        let (mean, sigma, mut shape) = (config.mean.clone(), config.sigma, vec![0.0; genes * genes]);
+        shape.iter_mut().step_by(genes + 1).for_each(|diagonal| *diagonal = 1.0);
+        let utilities = utilities(config.population);
+        let mut strategy = Self { config, seed, generation: 0, utilities, mean, sigma, shape, population };
+        strategy.sample();
+        Ok(strategy)
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &XnesConfig {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The mean \[genes\] of the generation that waits for its fitness.
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    /// The step size of the generation that waits for its fitness.
+    pub fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
+    /// The shape B [genes x genes, row after row]: the covariance of a generation is sigma^2 B B^T.
+    pub fn shape(&self) -> &[f64] {
+        &self.shape
+    }
+
+    fn noise(&self) -> Noise {
+        Noise { seed: self.seed, generation: self.generation }
+    }
+
+    fn sample(&mut self) {
+        let noise = self.noise();
+        let mut numbers = vec![0.0; self.mean.len()];
+        for (individual, genes) in self.population.iter_mut().enumerate() {
+            noise.fill(individual, &mut numbers);
+            let turned = rows_times(&self.shape, &numbers);
+            for ((gene, mean), turned) in genes.iter_mut().zip(&self.mean).zip(turned) {
+                *gene = mean + self.sigma * turned;
+            }
+        }
+    }
+
+    /// The natural gradient of the mean \[genes\], and that of the exponent [genes x genes].
+    fn gradients(&self, fitness: &[Fitness]) -> (Vec<f64>, Vec<f64>) {
+        let (noise, genes) = (self.noise(), self.mean.len());
+        let (mut first, mut second) = (vec![0.0; genes], vec![0.0; genes * genes]);
+        let mut numbers = vec![0.0; genes];
+        for (individual, weight) in weights(fitness, &self.utilities).into_iter().enumerate() {
+            noise.fill(individual, &mut numbers);
+            for (i, (row, x)) in second.chunks_exact_mut(genes).zip(&numbers).enumerate() {
+                let scaled = weight * x;
+                row[i..].iter_mut().zip(&numbers[i..]).for_each(|(sum, y)| *sum += scaled * y);
+                row[i] -= weight;
+            }
+            first.iter_mut().zip(&numbers).for_each(|(sum, x)| *sum += weight * x);
+        }
+        mirror(&mut second, genes);
+        (first, second)
+    }
+}
+
+/// The products of the rows of a matrix [n x n] with a vector \[n\].
+fn rows_times<'m>(matrix: &'m [f64], vector: &'m [f64]) -> impl Iterator<Item = f64> + 'm {
+    matrix.chunks_exact(vector.len()).map(move |row| row.iter().zip(vector).map(|(x, y)| x * y).sum())
+}
+
+impl Strategy<f64> for Xnes {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    fn ask(&self) -> &Population<f64> {
+        &self.population
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        let next = next_generation(self.generation, self.population.len(), fitness)?;
+        let genes = self.mean.len();
+        let (first, mut second) = self.gradients(fitness);
+        let step = self.config.mean_learning_rate * self.sigma;
+        let moves: Vec<f64> = rows_times(&self.shape, &first).collect();
+        self.mean.iter_mut().zip(moves).for_each(|(mean, turned)| *mean = bounded(*mean + step * turned));
+
+        let growth = second.iter().step_by(genes + 1).sum::<f64>() / genes as f64;
+        self.sigma = bounded_size(self.sigma * exp(0.5 * self.config.sigma_learning_rate * growth));
+        second.iter_mut().step_by(genes + 1).for_each(|diagonal| *diagonal -= growth);
+        for x in &mut second {
+            *x *= 0.5 * self.config.shape_learning_rate;
+        }
+        if let Some(factor) = exponential(&second, genes) {
+            let shape = multiply(&self.shape, &factor, genes);
+            if shape.iter().all(|x| x.abs() <= LARGEST) {
+                self.shape = shape;
+            }
+        }
+        self.generation = next;
+        self.sample();
+        Ok(())
+    }
+
+    fn recorded(&self) -> Recorded {
+        Recorded::Order
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn diagnostics(&self) -> Vec<f64> {
+        vec![self.sigma]
+    }
+}
+
+impl Snapshot for Xnes {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::new();
+        state.extend(self.generation.to_le_bytes());
+        push_reals(&mut state, &self.mean);
+        push_reals(&mut state, &[self.sigma]);
+        push_reals(&mut state, &self.shape);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let genes = self.mean.len();
+        let mut reader = StateReader::new(state, 4 + 8 * (genes + 1 + genes * genes))?;
+        let generation = reader.u32()?;
+        let (mean, sigma) = (read_point(&mut reader, genes)?, read_sizes(&mut reader, 1)?);
+        let shape = read(&mut reader, genes * genes, "an element of a shape", [-LARGEST, LARGEST])?;
+        (self.generation, self.mean, self.shape) = (generation, mean, shape);
+        self.sigma = sigma.first().copied().unwrap_or(self.sigma);
+        self.sample();
+        Ok(())
+    }
+}

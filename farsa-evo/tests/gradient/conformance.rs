@@ -1,0 +1,180 @@
+//! What every strategy keeps to, for several configurations of each.
+
+use farsa_evo::{
+    Ars, ArsConfig, Fitness, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Recorded, Snapshot,
+    Snes, SnesConfig, Strategy, Xnes, XnesConfig, check_strategy,
+};
+use proptest::prelude::{Just, ProptestConfig, prop, prop_oneof, proptest};
+use proptest::strategy::Strategy as Generator;
+
+fn mean(genes: usize) -> Vec<f64> {
+    (0..genes).map(|gene| gene as f64 - 1.5).collect()
+}
+
+#[test]
+fn natural_evolution_strategies_conform() {
+    for genes in [1, 2, 7, 300] {
+        let config = SnesConfig::new(mean(genes), 0.5);
+        check_strategy(|| Snes::new(config.clone(), 3), 16).unwrap();
+        let config = SnesConfig { population: 2, sigma_learning_rate: 10.0, ..config };
+        check_strategy(|| Snes::new(config.clone(), 4), 16).unwrap();
+    }
+    for genes in [1, 2, 7, 30] {
+        let config = XnesConfig::new(mean(genes), 0.5);
+        check_strategy(|| Xnes::new(config.clone(), 3), 16).unwrap();
+        let config = XnesConfig { population: 2, shape_learning_rate: 10.0, ..config };
+        check_strategy(|| Xnes::new(config.clone(), 4), 16).unwrap();
+    }
+}
+
+#[test]
+fn mirrored_strategies_conform() {
+    for genes in [1, 2, 300] {
+        for pairs in [1, 9] {
+            let config = OpenAiEsConfig::new(mean(genes), pairs);
+            check_strategy(|| OpenAiEs::new(config.clone(), 3), 16).unwrap();
+            let config = OpenAiEsConfig { optimizer: Optimizer::MOMENTUM, ..config };
+            check_strategy(|| OpenAiEs::new(config.clone(), 3), 16).unwrap();
+            let config = PgpeConfig::new(mean(genes), 0.3, pairs);
+            check_strategy(|| Pgpe::new(config.clone(), 3), 16).unwrap();
+            let config = PgpeConfig { fitness: PgpeFitness::Raw, ..config };
+            check_strategy(|| Pgpe::new(config.clone(), 3), 16).unwrap();
+            for top_directions in [1, pairs] {
+                let config = ArsConfig { top_directions, ..ArsConfig::new(mean(genes), pairs) };
+                check_strategy(|| Ars::new(config.clone(), 3), 16).unwrap();
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_to_be_recorded_is_said() {
+    let pgpe = |fitness| Pgpe::new(PgpeConfig { fitness, ..PgpeConfig::new(mean(2), 0.3, 2) }, 0).unwrap().recorded();
+    assert_eq!([PgpeFitness::CentredRanks, PgpeFitness::Raw].map(pgpe), [Recorded::Order, Recorded::Values]);
+    assert_eq!(Snes::new(SnesConfig::new(mean(2), 1.0), 0).unwrap().recorded(), Recorded::Order);
+    assert_eq!(Xnes::new(XnesConfig::new(mean(2), 1.0), 0).unwrap().recorded(), Recorded::Order);
+    assert_eq!(OpenAiEs::new(OpenAiEsConfig::new(mean(2), 1), 0).unwrap().recorded(), Recorded::Order);
+    assert_eq!(Ars::new(ArsConfig::new(mean(2), 1), 0).unwrap().recorded(), Recorded::Values);
+}
+
+/// Tells a strategy the worst that there is, and looks whether all stays finite and can be saved.
+fn survives<S>(mut strategy: S, mut other: S, values: &[f64])
+where
+    S: Strategy<f64> + Snapshot + PartialEq + std::fmt::Debug,
+{
+    let mut values = values.iter().copied().cycle();
+    for _ in 0..30 {
+        let told: Vec<f64> = (0..strategy.ask().len()).map(|_| values.next().unwrap()).collect();
+        strategy.tell_values(&told).unwrap();
+        assert!(strategy.ask().as_slice().iter().all(|gene| gene.is_finite()), "{strategy:?}");
+        assert!(strategy.diagnostics().iter().all(|number| number.is_finite()), "{strategy:?}");
+        other.restore(&strategy.save()).unwrap();
+        assert_eq!(other, strategy);
+    }
+}
+
+/// Selection that always drives the same way, as far as numbers go.
+fn driven<S>(mut strategy: S, mut other: S, away: bool)
+where
+    S: Strategy<f64> + Snapshot + PartialEq + std::fmt::Debug,
+{
+    for _ in 0..60 {
+        let sign = if away { 1.0 } else { -1.0 };
+        let told: Vec<f64> = strategy.ask().iter().map(|x| sign * x.iter().map(|x| x.abs()).sum::<f64>()).collect();
+        strategy.tell_values(&told).unwrap();
+        assert!(strategy.ask().as_slice().iter().all(|gene| gene.is_finite()));
+    }
+    other.restore(&strategy.save()).unwrap();
+    assert_eq!(other, strategy);
+}
+
+fn any_value() -> impl Generator<Value = f64> {
+    prop_oneof![
+        3 => -10.0..10.0f64,
+        1 => Just(f64::NAN),
+        1 => Just(f64::NEG_INFINITY),
+        1 => Just(f64::INFINITY),
+        1 => Just(f64::MAX),
+        1 => Just(-f64::MAX),
+        1 => Just(1e-310),
+    ]
+}
+
+/// A size of any magnitude.
+fn any_size() -> impl Generator<Value = f64> {
+    prop_oneof![4 => 0.01..2.0f64, 1 => Just(1e-100), 1 => Just(1e100), 1 => 1e-9..1e9f64]
+}
+
+fn any_mean() -> impl Generator<Value = Vec<f64>> {
+    prop::collection::vec(prop_oneof![4 => -2.0..2.0f64, 1 => Just(1e100), 1 => Just(-1e100)], 1..6)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn natural_evolution_strategies_stay_finite(
+        mean in any_mean(), sigma in any_size(), population in 2..9usize,
+        rates in [0.0..=10.0f64, 0.0..=10.0, 0.0..=10.0],
+        values in prop::collection::vec(any_value(), 1..40), seed: u64, away: bool,
+    ) {
+        let config = SnesConfig {
+            mean: mean.clone(), sigma, population, mean_learning_rate: rates[0], sigma_learning_rate: rates[1],
+        };
+        let fresh = || Snes::new(config.clone(), seed).unwrap();
+        survives(fresh(), fresh(), &values);
+        driven(fresh(), fresh(), away);
+        let config = XnesConfig {
+            mean, sigma, population, mean_learning_rate: rates[0], sigma_learning_rate: rates[1],
+            shape_learning_rate: rates[2],
+        };
+        let fresh = || Xnes::new(config.clone(), seed).unwrap();
+        survives(fresh(), fresh(), &values);
+        driven(fresh(), fresh(), away);
+    }
+
+    #[test]
+    fn mirrored_strategies_stay_finite(
+        mean in any_mean(), sizes in [any_size(), any_size(), any_size()], pairs in 1..6usize,
+        decays in [0.0..1.0f64, 0.0..1.0], rate in 0.0..=10.0f64,
+        weight_decay in prop_oneof![0.0..1.0f64, Just(1e9)],
+        values in prop::collection::vec(any_value(), 1..40), seed: u64, choice: bool, away: bool,
+    ) {
+        let adam = Optimizer::Adam { first_decay: decays[0], second_decay: decays[1], epsilon: sizes[2] };
+        let optimizer = if choice { adam } else { Optimizer::Momentum { momentum: decays[0] } };
+        let config = OpenAiEsConfig {
+            mean: mean.clone(), pairs, sigma: sizes[0], learning_rate: sizes[1], weight_decay, optimizer,
+        };
+        let fresh = || OpenAiEs::new(config.clone(), seed).unwrap();
+        survives(fresh(), fresh(), &values);
+        driven(fresh(), fresh(), away);
+        let config = PgpeConfig {
+            mean: mean.clone(), sigma: sizes[0], pairs, step_size: sizes[1], max_speed: sizes[2], momentum: decays[0],
+            sigma_learning_rate: rate, sigma_max_change: decays[1],
+            fitness: if choice { PgpeFitness::Raw } else { PgpeFitness::CentredRanks },
+        };
+        let fresh = || Pgpe::new(config.clone(), seed).unwrap();
+        survives(fresh(), fresh(), &values);
+        driven(fresh(), fresh(), away);
+        let top_directions = if choice { pairs } else { 1 };
+        let config = ArsConfig { mean, directions: pairs, top_directions, step_size: sizes[0], noise: sizes[1] };
+        let fresh = || Ars::new(config.clone(), seed).unwrap();
+        survives(fresh(), fresh(), &values);
+        driven(fresh(), fresh(), away);
+    }
+}
+
+/// Raw fitness of a generation in which nothing can be compared changes nothing but the noise.
+#[test]
+fn failures_alone_move_nothing_by_value() {
+    let mut ars = Ars::new(ArsConfig::new(mean(3), 4), 1).unwrap();
+    let config = PgpeConfig { fitness: PgpeFitness::Raw, ..PgpeConfig::new(mean(3), 0.3, 4) };
+    let mut pgpe = Pgpe::new(config, 1).unwrap();
+    for _ in 0..3 {
+        ars.tell(&[Fitness::WORST; 8]).unwrap();
+        pgpe.tell(&[Fitness::WORST; 8]).unwrap();
+    }
+    ars.tell_values(&[2.5; 8]).unwrap();
+    assert_eq!(ars.mean(), mean(3));
+    assert_eq!((pgpe.mean(), pgpe.sigmas()), (&mean(3)[..], &[0.3; 3][..]));
+}
