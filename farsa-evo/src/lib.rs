@@ -32,7 +32,9 @@ pub use champion::Champion;
 pub use coevolution::Coevolution;
 pub use config::{GaConfig, OnePlusOneConfig};
 pub use conformance::check_strategy;
-pub use covariance::{CmaEs, CmaEsConfig, SeparableCmaEs, SeparableCmaEsConfig};
+pub use covariance::{
+    CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs, SeparableCmaEsConfig,
+};
 pub use decode::{GeneRange, decode};
 pub use error::EvoError;
 pub use fitness::Fitness;

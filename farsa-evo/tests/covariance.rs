@@ -345,6 +345,8 @@ fn any_fitness(count: usize) -> impl proptest::strategy::Strategy<Value = Vec<f6
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn genes_stay_finite(
         genes in 1..7_usize, population in 2..12_usize, active: bool, seed: u64, exponent in -99..99_i32,

@@ -57,11 +57,16 @@ impl CmaEsConfig {
     }
 
     fn coefficients(&self) -> Coefficients {
+        self.coefficients_of(self.population)
+    }
+
+    /// The coefficients of another number of individuals.
+    pub(super) fn coefficients_of(&self, population: usize) -> Coefficients {
         let rates = |one: f64, mu: f64| {
             let one = self.rank_one_rate.unwrap_or(one);
-            (one, self.rank_mu_rate.unwrap_or(mu.min(1.0 - one)))
+            (one, self.rank_mu_rate.unwrap_or(mu).min(1.0 - one))
         };
-        Coefficients::new(self.mean.len(), self.population, self.active, self.damping, rates)
+        Coefficients::new(self.mean.len(), population, self.active, self.damping, rates)
     }
 }
 

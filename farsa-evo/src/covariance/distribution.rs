@@ -63,7 +63,7 @@ pub(super) struct Distribution<C> {
     /// The path of the step size `p_sigma` \[genes\].
     step_path: Vec<f64>,
     /// The path of the covariance `p_c` \[genes\].
-    path: Vec<f64>,
+    pub(super) path: Vec<f64>,
     /// Updates so far, g.
     updates: u32,
     /// The standard normal rows z [individuals x genes].
@@ -83,10 +83,14 @@ impl<C: Covariance> Distribution<C> {
 
     /// Draws the individuals of a generation, each from a stream of its own.
     pub(super) fn sample(&mut self, seed: u64, generation: u32, points: &mut Population<f64>) {
+        self.sample_from(|individual| stream(seed, generation, individual), points);
+    }
+
+    /// Draws the individuals, each from the stream that belongs to it.
+    pub(super) fn sample_from(&mut self, stream: impl Fn(usize) -> Stream, points: &mut Population<f64>) {
         let n = self.mean.len();
-        let domain = if generation == 0 { Domain::InitialGenome } else { Domain::Mutation };
         for (individual, row) in self.normals.chunks_exact_mut(n).enumerate() {
-            Stream::new(seed, domain, 0, individual as u32, generation).fill_normal(row);
+            stream(individual).fill_normal(row);
         }
         self.covariance.shape(&self.normals, &mut self.steps);
         for (point, step) in points.iter_mut().zip(self.steps.chunks_exact(n)) {
@@ -196,6 +200,12 @@ impl<C: Covariance> Distribution<C> {
         bounded(reader, &mut self.path, [-STATE, STATE])?;
         self.covariance.restore(reader)
     }
+}
+
+/// The stream of an individual of a generation.
+pub(super) fn stream(seed: u64, generation: u32, individual: usize) -> Stream {
+    let domain = if generation == 0 { Domain::InitialGenome } else { Domain::Mutation };
+    Stream::new(seed, domain, 0, individual as u32, generation)
 }
 
 /// Reads a row of numbers within limits.

@@ -42,6 +42,17 @@ impl FullCovariance {
         (0..self.n).flat_map(|i| (0..self.n).map(move |j| element(i, j))).collect()
     }
 
+    /// The standard deviations \[n\] of the genes.
+    pub(super) fn gene_deviations(&self) -> impl Iterator<Item = f64> + '_ {
+        self.matrix.iter().step_by(self.n + 1).map(|variance| Scalar::sqrt(variance.max(0.0)))
+    }
+
+    /// An axis \[n\] and the standard deviation along it.
+    pub(super) fn axis(&self, index: usize) -> (&[f64], f64) {
+        let axis = self.axes.chunks_exact(self.n).nth(index).unwrap_or_default();
+        (axis, self.deviations.get(index).copied().unwrap_or_default())
+    }
+
     /// Computes axes and deviations from the matrix; leaves them as they are if it has no positive eigenvalue.
     fn decompose(&mut self) {
         let Some(SymmetricEigen { values, vectors }) = SymmetricEigen::from_lower(&self.matrix, self.n) else { return };

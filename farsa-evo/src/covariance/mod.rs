@@ -2,6 +2,8 @@
 //!
 //! - `cma_es`: [`CmaEs`], with a full matrix.
 //! - `separable_cma_es`: [`SeparableCmaEs`], with a diagonal one.
+//! - `restarts`: [`CmaEsRestarts`], runs of `cma_es` one after the other.
+//! - `termination`: when such a run ends.
 //! - `distribution`: the distribution that is drawn from and adapted, whatever its covariance.
 //! - `full`, `diagonal`: the two kinds of covariance.
 //! - `coefficients`: weights and learning rates.
@@ -15,7 +17,10 @@ mod distribution;
 mod eigen;
 mod full;
 mod linear;
+mod restarts;
 mod separable_cma_es;
+mod termination;
 
 pub use cma_es::{CmaEs, CmaEsConfig};
+pub use restarts::{CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};
 pub use separable_cma_es::{SeparableCmaEs, SeparableCmaEsConfig};
