@@ -87,8 +87,8 @@ pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result
 /// follow the better ones. Genes are unbounded reals.
 ///
 /// It asks for nothing but the order of the individuals, searches alike however the axes of the genes are turned, and learns
-/// how genes are scaled and which depend on each other. An update takes n^2 operations an individual, and the axes of the distribution, computed every
-/// 1 / (10 n (`c_1` + `c_mu`)) generations, n^3: it is for up to about a thousand genes.
+/// how genes are scaled and which depend on each other. An update takes n^2 operations an individual, and the axes of the
+/// distribution, computed every 1 / (10 n (`c_1` + `c_mu`)) generations, n^3: it is for up to about a thousand genes.
 ///
 /// Equals rank by index; failed evaluations rank last. A generation of which all evaluations failed leaves the distribution
 /// as it is, and the next one draws from it again. This is why values are recorded and not the order alone, in which such a
