@@ -18,7 +18,8 @@ use crate::strategy::{Strategy, next_generation};
 pub struct CmaEsConfig {
     /// The initial mean m, a number for each gene, of magnitude up to 10^100.
     pub mean: Vec<f64>,
-    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes; the optimum should lie within about 3 of it.
+    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes: about a third of how far the optimum may lie
+    /// from the mean in each gene.
     pub sigma: f64,
     /// Number of individuals lambda, at least 2. \[Hansen2016\] eq. 48.
     pub population: usize,
@@ -85,9 +86,9 @@ pub(super) fn check_start(mean: &[f64], sigma: f64, population: usize) -> Result
 /// Covariance matrix adaptation: individuals are drawn from a normal distribution, whose mean, step size and covariance
 /// follow the better ones. Genes are unbounded reals.
 ///
-/// It asks for nothing but the order of the individuals, and finds the same however the genes are scaled, turned or
-/// translated. An update takes n^2 operations an individual, and the axes of the distribution, computed every
-/// 1 / (10 n (`c_1` + `c_mu`)) generations, n^3: it is for up to about a thousand genes.
+/// It asks for nothing but the order of the individuals, searches alike however the axes of the genes are turned, and learns
+/// how genes are scaled and which depend on each other. An update takes n^2 operations an individual, and the axes of the
+/// distribution, computed every 1 / (10 n (`c_1` + `c_mu`)) generations, n^3: it is for up to about a thousand genes.
 ///
 /// Equals rank by index; failed evaluations rank last. A generation of which all evaluations failed leaves the distribution
 /// as it is, and the next one draws from it again. This is why values are recorded and not the order alone, in which such a

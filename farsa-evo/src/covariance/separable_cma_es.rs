@@ -19,7 +19,8 @@ use crate::strategy::{Strategy, next_generation};
 pub struct SeparableCmaEsConfig {
     /// The initial mean m, a number for each gene, of magnitude up to 10^100.
     pub mean: Vec<f64>,
-    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes; the optimum should lie within about 3 of it.
+    /// The initial step size sigma, 10^-100 to 10^100, in the unit of the genes: about a third of how far the optimum may lie
+    /// from the mean in each gene.
     pub sigma: f64,
     /// Number of individuals lambda, at least 2.
     pub population: usize,
