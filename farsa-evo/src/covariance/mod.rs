@@ -3,6 +3,7 @@
 //! - `cma_es`: [`CmaEs`], with a full matrix.
 //! - `separable_cma_es`: [`SeparableCmaEs`], with a diagonal one.
 //! - `restarts`: [`CmaEsRestarts`], runs of `cma_es` one after the other.
+//! - `search`: what `cma_es` and `separable_cma_es` do alike.
 //! - `termination`: when such a run ends.
 //! - `distribution`: the distribution that is drawn from and adapted, whatever its covariance.
 //! - `full`, `diagonal`: the two kinds of covariance.
@@ -18,6 +19,7 @@ mod eigen;
 mod full;
 mod linear;
 mod restarts;
+mod search;
 mod separable_cma_es;
 mod termination;
 

@@ -7,6 +7,7 @@ use crate::covariance::cma_es::check_start;
 use crate::covariance::coefficients::{Coefficients, default_population, ranked};
 use crate::covariance::diagonal::DiagonalCovariance;
 use crate::covariance::distribution::Distribution;
+use crate::covariance::search::search;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::population::Population;
@@ -124,49 +125,4 @@ impl SeparableCmaEs {
     }
 }
 
-impl Strategy<f64> for SeparableCmaEs {
-    fn generation(&self) -> u32 {
-        self.generation
-    }
-
-    fn ask(&self) -> &Population<f64> {
-        &self.population
-    }
-
-    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
-        self.generation = next_generation(self.generation, self.config.population, fitness)?;
-        if fitness.iter().any(|fitness| !fitness.is_failed()) {
-            self.distribution.update(&ranked(fitness));
-        }
-        self.distribution.sample(self.seed, self.generation, &mut self.population);
-        Ok(())
-    }
-
-    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
-        Some(self)
-    }
-
-    /// The step size and the axis ratio.
-    fn diagnostics(&self) -> Vec<f64> {
-        vec![self.sigma(), self.axis_ratio()]
-    }
-}
-
-impl Snapshot for SeparableCmaEs {
-    fn save(&self) -> Vec<u8> {
-        let mut state = Vec::from(self.generation.to_le_bytes());
-        self.distribution.save(&mut state);
-        state
-    }
-
-    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
-        let length = 4 + Distribution::<DiagonalCovariance>::state_length(self.config.mean.len());
-        let mut reader = StateReader::new(state, length)?;
-        let generation = reader.u32()?;
-        let mut distribution = self.distribution.clone();
-        distribution.restore(&mut reader)?;
-        (self.generation, self.distribution) = (generation, distribution);
-        self.distribution.sample(self.seed, generation, &mut self.population);
-        Ok(())
-    }
-}
+search!(SeparableCmaEs, DiagonalCovariance);
