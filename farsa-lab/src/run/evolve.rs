@@ -126,7 +126,7 @@ struct Run<'d> {
 }
 
 impl<'d> Run<'d> {
-    /// Takes up the run in a directory where its checkpoint left it. Nothing is written before all is read.
+    /// Takes up the run in a directory where its checkpoint left it. Nothing is written before all that can be refused is read.
     fn resume(
         plan: &Plan<'_>,
         directory: &'d Directory,

@@ -13,8 +13,8 @@ use crate::store::growing::Growing;
 
 /// The first line where there is one population.
 const HEADER: &str = "generation,best,mean,worst,evaluations,failed\n";
-/// Bytes of the largest log that is compared with what is written anew.
-const LARGEST: u64 = 1 << 30;
+/// Bytes of the largest log that is compared with what is written anew: no record that is read has as long a log.
+const LARGEST: u64 = 1 << 32;
 
 /// The first line: with several populations three more columns for each of them.
 pub(crate) fn header(populations: usize) -> String {
