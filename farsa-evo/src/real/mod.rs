@@ -10,12 +10,12 @@
 //!   themselves.
 //! - `steady_state`: parents and one child each, of which the better half stays.
 
-mod bounds;
+pub(crate) mod bounds;
 mod crossover;
 mod evolution_strategy;
 mod evolution_strategy_config;
 mod mutation;
-mod ranking;
+pub(crate) mod ranking;
 mod real_ga;
 mod real_ga_config;
 mod selection;
