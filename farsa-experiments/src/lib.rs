@@ -4,6 +4,7 @@
 pub mod aggregation;
 pub mod braitenberg;
 pub mod discrimination;
+pub mod double_pole;
 pub mod foraging;
 mod infrared;
 pub mod kinesthetic_grasp;
@@ -19,6 +20,7 @@ mod worlds;
 pub use aggregation::Aggregation;
 pub use braitenberg::Braitenberg;
 pub use discrimination::{Discrimination, DiscriminationCylinders};
+pub use double_pole::DoublePole;
 pub use foraging::Foraging;
 pub use kinesthetic_grasp::KinestheticGrasp;
 pub use minimal_cognition::MinimalCognition;

@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use farsa_experiments::{
-    Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, KinestheticGrasp,
-    MinimalCognition, PassiveWalker, PredatorPrey, PushBox, ReachGraspLift,
+    Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, DoublePole, Foraging,
+    KinestheticGrasp, MinimalCognition, PassiveWalker, PredatorPrey, PushBox, ReachGraspLift,
 };
 use farsa_lab::cli;
 
@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         &DiscriminationCylinders,
         &Braitenberg,
         &MinimalCognition,
+        &DoublePole,
         &Foraging,
         &Aggregation,
         &PredatorPrey,
