@@ -128,7 +128,7 @@ impl<'e> Plan<'e> {
     /// Those of [`StrategyDefinition::start`], and [`Error::Other`] for a strategy of other populations or genes than the
     /// experiment's.
     pub(crate) fn strategy(&self) -> Result<Search, Error> {
-        let task = self.prepared(2)?;
+        let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
         let (populations, genes) = (task.populations().len(), task.parameters().len());
         drop(task);
         let (gene_bits, settings, seed) = (self.experiment.gene_bits(), &self.settings, self.seed);
@@ -160,20 +160,24 @@ impl<'e> Plan<'e> {
 
     /// The experiment made ready for one thread.
     pub(crate) fn evaluator(&self) -> Result<Box<dyn Evaluator>, Error> {
-        // An experiment of several populations is told their size, and a strategy that chooses it itself has to be asked.
-        let size = if self.settings.count(POPULATION).is_ok_and(|size| size == 0) { self.size()? } else { 0 };
-        self.prepared(size)
+        self.experiment.prepare(&self.condition, &self.settings_of_trials()?)
     }
 
-    /// The same where populations have this size, if the settings leave it to the strategy.
-    fn prepared(&self, size: usize) -> Result<Box<dyn Evaluator>, Error> {
-        let settings = self.elsewhere.as_ref().unwrap_or(&self.settings);
+    /// The settings that trials are evaluated with: those of the plan, or those with another world; a size of populations that is
+    /// left to the strategy is what that chooses, because an experiment of several populations counts by it.
+    pub(crate) fn settings_of_trials(&self) -> Result<Settings, Error> {
+        let chosen_by_strategy = self.settings.count(POPULATION).is_ok_and(|size| size == 0);
+        let size = if chosen_by_strategy { self.size()? } else { 0 };
+        self.settings_with(size)
+    }
+
+    /// The same where a size that is left to the strategy is this one.
+    fn settings_with(&self, size: usize) -> Result<Settings, Error> {
+        let mut settings = self.elsewhere.as_ref().unwrap_or(&self.settings).clone();
         if settings.count(POPULATION).is_ok_and(|size| size == 0) {
-            let mut settings = settings.clone();
             settings.set("", POPULATION, Value::Whole(i64::try_from(size).unwrap_or(i64::MAX)))?;
-            return self.experiment.prepare(&self.condition, &settings);
         }
-        self.experiment.prepare(&self.condition, settings)
+        Ok(settings)
     }
 
     /// How genes stand for the parameters that an evaluator of this plan wants.

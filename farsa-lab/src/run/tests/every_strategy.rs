@@ -115,6 +115,19 @@ fn reals_search_what_words_search() {
 }
 
 #[test]
+fn an_experiment_is_told_the_size_that_a_strategy_chooses() {
+    let chase = Numbers { strategy: &Truncation, populations: 2 };
+    let strategy = *strategies().iter().find(|strategy| strategy.name() == "cma-es").unwrap();
+    let mut plan = Plan::with_strategy(&chase, None, "", Some(strategy)).unwrap();
+    // 4 + 3 ln 2, rounded down.
+    let told = |plan: &Plan<'_>| plan.settings_of_trials().unwrap().count(POPULATION).unwrap();
+    assert_eq!((plan.size().unwrap(), told(&plan)), (6, 6));
+    assert_eq!(plan.settings.count(POPULATION).unwrap(), 0);
+    plan.settings.set("", POPULATION, Value::Whole(9)).unwrap();
+    assert_eq!((plan.size().unwrap(), told(&plan)), (9, 9));
+}
+
+#[test]
 fn the_name_of_a_strategy_is_part_of_a_run() {
     let alone = Numbers { strategy: &Truncation, populations: 1 };
     let by = |name: &str| *strategies().iter().find(|strategy| strategy.name() == name).unwrap();
