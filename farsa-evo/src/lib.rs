@@ -14,12 +14,14 @@ mod error;
 mod fitness;
 mod gene;
 mod gradient;
+mod judgement;
 mod mutation;
 mod one_plus_one;
 mod population;
 mod random_search;
 mod real;
 mod record;
+mod record_shape;
 #[cfg(feature = "serde")]
 mod saved;
 mod side_by_side;
@@ -44,6 +46,7 @@ pub use gradient::{
     Ars, ArsConfig, ObservationStatistics, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes,
     SnesConfig, Xnes, XnesConfig,
 };
+pub use judgement::{JudgementShape, Judgements};
 pub use mutation::{BitMutation, Mutation, randomize};
 pub use one_plus_one::OnePlusOne;
 pub use population::Population;
