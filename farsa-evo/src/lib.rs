@@ -17,6 +17,7 @@ mod gradient;
 mod judgement;
 mod mutation;
 mod one_plus_one;
+mod pareto;
 mod population;
 mod random_search;
 mod real;
@@ -49,6 +50,7 @@ pub use gradient::{
 pub use judgement::{JudgementShape, Judgements};
 pub use mutation::{BitMutation, Mutation, randomize};
 pub use one_plus_one::OnePlusOne;
+pub use pareto::{Nsga2, Nsga2Config, crowding_distances, dominates, hypervolume, non_dominated_fronts};
 pub use population::Population;
 pub use random_search::{Found, RandomSearch};
 pub use real::{

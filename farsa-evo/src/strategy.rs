@@ -177,3 +177,14 @@ pub(crate) fn next_generation(generation: u32, population: usize, fitness: &[Fit
     }
     generation.checked_add(1).ok_or(EvoError::LastGeneration)
 }
+
+/// The number of the next generation, if there are judgements of this shape for each of `population` individuals.
+pub(crate) fn next_judged(
+    generation: u32,
+    population: usize,
+    shape: JudgementShape,
+    judgements: &Judgements,
+) -> Result<u32, EvoError> {
+    judgements.check(shape, population)?;
+    generation.checked_add(1).ok_or(EvoError::LastGeneration)
+}
