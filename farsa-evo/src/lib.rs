@@ -15,6 +15,7 @@ mod fitness;
 mod gene;
 mod gradient;
 mod judgement;
+mod map_elites;
 mod mutation;
 mod one_plus_one;
 mod pareto;
@@ -48,6 +49,9 @@ pub use gradient::{
     SnesConfig, Xnes, XnesConfig,
 };
 pub use judgement::{JudgementShape, Judgements};
+pub use map_elites::{
+    Addition, Archive, Cells, CvtArchive, CvtCells, Elite, Emitter, GridArchive, GridCells, MapElites, MapElitesConfig,
+};
 pub use mutation::{BitMutation, Mutation, randomize};
 pub use one_plus_one::OnePlusOne;
 pub use pareto::{Nsga2, Nsga2Config, crowding_distances, dominates, hypervolume, non_dominated_fronts};
