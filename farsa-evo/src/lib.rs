@@ -17,6 +17,7 @@ mod gradient;
 mod judgement;
 mod map_elites;
 mod mutation;
+mod novelty;
 mod one_plus_one;
 mod pareto;
 mod population;
@@ -53,6 +54,7 @@ pub use map_elites::{
     Addition, Archive, Cells, CvtArchive, CvtCells, Elite, Emitter, GridArchive, GridCells, MapElites, MapElitesConfig,
 };
 pub use mutation::{BitMutation, Mutation, randomize};
+pub use novelty::{ArchiveRule, NoveltyConfig, NoveltySearch};
 pub use one_plus_one::OnePlusOne;
 pub use pareto::{Nsga2, Nsga2Config, crowding_distances, dominates, hypervolume, non_dominated_fronts};
 pub use population::Population;
