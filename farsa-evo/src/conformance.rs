@@ -9,7 +9,8 @@ use farsa_num::{Domain, Stream};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
-use crate::judgement::{JudgementShape, Judgements};
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
 use crate::record::Record;
 use crate::strategy::{Recorded, Strategy};
 

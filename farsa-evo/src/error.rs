@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::judgement::JudgementShape;
+use crate::judgement_shape::JudgementShape;
 
 /// The most genes of a population, 2^28 (512 MiB).
 pub(crate) const MAX_GENES: usize = 1 << 28;

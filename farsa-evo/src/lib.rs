@@ -15,6 +15,7 @@ mod fitness;
 mod gene;
 mod gradient;
 mod judgement;
+mod judgement_shape;
 mod map_elites;
 mod mutation;
 mod novelty;
@@ -49,7 +50,8 @@ pub use gradient::{
     Ars, ArsConfig, ObservationStatistics, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes,
     SnesConfig, Xnes, XnesConfig,
 };
-pub use judgement::{JudgementShape, Judgements};
+pub use judgement::Judgements;
+pub use judgement_shape::JudgementShape;
 pub use map_elites::{
     Addition, Archive, Cells, CvtArchive, CvtCells, Elite, Emitter, GridArchive, GridCells, MapElites, MapElitesConfig,
 };

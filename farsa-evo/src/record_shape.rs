@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::error::EvoError;
 use crate::gene::Gene;
-use crate::judgement::JudgementShape;
+use crate::judgement_shape::JudgementShape;
 #[cfg(feature = "serde")]
 use crate::population::Population;
 use crate::strategy::{Recorded, Strategy};

@@ -7,7 +7,8 @@ use farsa_num::{Domain, Stream};
 
 use crate::error::EvoError;
 use crate::fitness::Fitness;
-use crate::judgement::{JudgementShape, Judgements};
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
 use crate::map_elites::archive::Archive;
 use crate::map_elites::cells::Cells;
 use crate::map_elites::emitter::Emitter;

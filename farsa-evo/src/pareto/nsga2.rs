@@ -8,7 +8,8 @@ use farsa_num::{Domain, Stream};
 
 use crate::error::EvoError;
 use crate::fitness::Fitness;
-use crate::judgement::{JudgementShape, Judgements};
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
 use crate::pareto::crowding_distances::crowding_distances;
 use crate::pareto::non_dominated_fronts::non_dominated_fronts;
 use crate::pareto::nsga2_config::Nsga2Config;
