@@ -37,7 +37,11 @@ impl JudgementShape {
 /// assert_eq!(told.fitness()[0].get(), 0.5);
 /// # Ok::<(), farsa_evo::EvoError>(())
 /// ```
+///
+/// Under the feature `serde` a failed evaluation's objectives are absent numbers, as those of [`Fitness`].
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawJudgements", into = "RawJudgements"))]
 pub struct Judgements {
     shape: JudgementShape,
     /// Objectives, then descriptor values, of each individual [individuals x width].
@@ -150,6 +154,32 @@ impl Judgements {
         let start = individual.saturating_mul(width);
         let row = self.values.get(start..start.saturating_add(width)).unwrap_or_default();
         row.split_at_checked(self.shape.objectives).unwrap_or_default()
+    }
+}
+
+/// Judgements as they are saved.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "Judgements")]
+struct RawJudgements {
+    shape: JudgementShape,
+    values: Vec<Option<f64>>,
+}
+
+#[cfg(feature = "serde")]
+impl From<Judgements> for RawJudgements {
+    fn from(Judgements { shape, values }: Judgements) -> Self {
+        let present = |x: f64| (x > f64::NEG_INFINITY).then_some(x);
+        Self { shape, values: values.into_iter().map(present).collect() }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawJudgements> for Judgements {
+    type Error = EvoError;
+
+    fn try_from(RawJudgements { shape, values }: RawJudgements) -> Result<Self, EvoError> {
+        Self::new(shape, values.into_iter().map(|x| x.unwrap_or(f64::NEG_INFINITY)).collect())
     }
 }
 

@@ -130,6 +130,10 @@ fn a_record_rebuilds_any_generation() {
     assert_eq!(read.push(farsa_evo::RecordEntry { frame: &damaged, state: None }), Err(EvoError::NanFitness));
     #[cfg(feature = "serde")]
     {
+        let bytes = postcard::to_allocvec(&told).unwrap();
+        assert_eq!(postcard::from_bytes::<Vec<Judgements>>(&bytes).unwrap(), told);
+        let nan = postcard::to_allocvec(&(SHAPE, [Some(1.0), Some(f64::NAN), Some(0.0)].as_slice())).unwrap();
+        assert!(postcard::from_bytes::<Judgements>(&nan).is_err());
         let mut bytes = postcard::to_allocvec(&record).unwrap();
         assert_eq!(postcard::from_bytes::<Record>(&bytes).unwrap(), record);
         // The kind, the objectives, the descriptor values; then populations and the rest.

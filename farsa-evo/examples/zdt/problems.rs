@@ -8,7 +8,7 @@ use farsa_num::{exp, sin_cos};
 /// What fronts are measured from, in objectives that are minimised: (1.1, 1.1).
 pub(crate) const REFERENCE: [f64; 2] = [-1.1, -1.1];
 
-/// One of the problems of \[Zitzler2000\] section 4: ZDT5, of bit strings, is not among them.
+/// One of the problems of \[Zitzler2000\]: ZDT5, of bit strings, is not among them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Zdt {
     One,

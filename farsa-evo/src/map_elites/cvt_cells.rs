@@ -24,7 +24,7 @@ const LARGEST: f64 = 1e100;
 /// it is. Point `i` is drawn from the stream (seed, [`Domain::General`], trial 0, `i`, 0). The nearest centroid is found with a
 /// k-d tree \[Bentley1975\], exactly; among equals it is the first.
 ///
-/// Source: \[Vassiliades2018\] algorithm 2; no deviation but the end of k-means, of which it says nothing.
+/// Source: \[Vassiliades2018\]. How k-means begins and ends is ours.
 ///
 /// ```
 /// use farsa_evo::{Cells, CvtCells};
@@ -45,8 +45,8 @@ pub struct CvtCells {
 }
 
 impl CvtCells {
-    /// So many cells over these ranges \[d\], low to high, of so many points, at least as many as cells. The source has 25 000
-    /// points; ten for each cell are enough.
+    /// So many cells over these ranges \[d\], low to high, of so many points, at least as many as cells; ten for each cell are
+    /// enough.
     ///
     /// # Errors
     /// [`EvoError::NoGenes`] for no ranges, [`EvoError::NoIndividuals`] for no cells, [`EvoError::TooLarge`],

@@ -20,7 +20,7 @@ pub enum Emitter {
         sigma: f64,
     },
     /// An elite, plus normal numbers, plus a normal number times the difference to another elite: the directional variation
-    /// of \[Mouret2018\] eq. 2, where the deviations are 0.01 and 0.2 and the range of genes is 1.
+    /// of \[Mouret2018\], where the deviations are 0.01 and 0.2 and the range of genes is 1.
     IsoLine {
         /// Individuals of a generation, at least 1.
         batch: usize,
@@ -29,7 +29,7 @@ pub enum Emitter {
         /// The standard deviation along the line between the elites `sigma_2`, 0 to 10.
         line_sigma: f64,
     },
-    /// The improvement emitter of \[Fontaine2020\] algorithm 3: CMA-ES whose parents are all that the archive took, the first of
+    /// The improvement emitter of \[Fontaine2020\]: CMA-ES whose parents are all that the archive took, the first of
     /// their cells before those that are better than an elite, by objective and by the difference of objectives. When the
     /// archive takes none it starts again from an elite. Deviations: individuals out of bounds are drawn again up to a
     /// hundred times and then put at the bounds (the source has none); it also starts again where the distribution has

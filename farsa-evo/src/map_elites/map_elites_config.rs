@@ -24,7 +24,8 @@ impl MapElitesConfig {
         Self { bounds, emitters: Vec::from([Emitter::IsoLine { batch: 100, iso_sigma: 0.01, line_sigma: 0.2 }]) }
     }
 
-    /// CMA-ME: so many improvement emitters that start in the middle of the bounds. The source has 15 with 37 individuals each.
+    /// CMA-ME: so many improvement emitters of \[Fontaine2020\], all starting in the middle of the bounds, each with a batch of
+    /// individuals and a step size in the unit of the genes.
     pub fn cma_me(bounds: Vec<[f64; 2]>, emitters: usize, batch: usize, sigma: f64) -> Self {
         let mean: Vec<f64> = bounds.iter().map(|[low, high]| 0.5 * (low + high)).collect();
         let emitters = (0..emitters).map(|_| Emitter::Improvement { batch, mean: mean.clone(), sigma }).collect();

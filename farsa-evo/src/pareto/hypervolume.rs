@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 ///
 /// What is not above the reference in both objectives adds nothing; neither does a point with a NaN.
 ///
-/// Source: \[Zitzler1999\] section III, the size of the space covered. Deviation: with a reference point and larger values
+/// Source: \[Zitzler1999\], the size of the space covered. Deviation: with a reference point and larger values
 /// being better.
 ///
 /// ```
