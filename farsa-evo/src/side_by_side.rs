@@ -7,11 +7,13 @@ use farsa_num::{Domain, Stream};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
 use crate::population::Population;
 use crate::snapshot::{Snapshot, StateReader};
 use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
 
-/// Two or more searches of the same kind and size, each told the fitness of its own individuals.
+/// Two or more searches of the same kind and size, each told the fitness, or the judgements, of its own individuals.
 ///
 /// The individuals of all stand in one [`Population`], one search after the other: individual `i` of population `p` is number
 /// `p * size + i`. Who meets whom is the caller's business. For bit strings of unequal lengths there is
@@ -102,10 +104,26 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for SideBySide<S, G> {
 
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
         // Checked for all before any is told: none of them can refuse afterwards.
+        self.judged_by().check(JudgementShape::FITNESS)?;
         next_generation(self.generation(), self.population.len(), fitness)?;
         let size = self.size();
         for (member, fitness) in self.members.iter_mut().zip(fitness.chunks(size)) {
             member.tell(fitness)?;
+        }
+        self.gather();
+        Ok(())
+    }
+
+    fn judged_by(&self) -> JudgementShape {
+        self.members.first().map_or(JudgementShape::FITNESS, Strategy::judged_by)
+    }
+
+    fn tell_judgements(&mut self, judgements: &Judgements) -> Result<(), EvoError> {
+        judgements.check(self.judged_by(), self.population.len())?;
+        self.generation().checked_add(1).ok_or(EvoError::LastGeneration)?;
+        let numbers = self.size() * judgements.shape().width();
+        for (member, own) in self.members.iter_mut().zip(judgements.values().chunks(numbers)) {
+            member.tell_judgements(&Judgements::nan_as_failed(judgements.shape(), own.to_vec())?)?;
         }
         self.gather();
         Ok(())
