@@ -11,6 +11,7 @@ use crate::judgement::Judgements;
 use crate::judgement_shape::JudgementShape;
 use crate::population::Population;
 use crate::record_shape::{Kept, Shape};
+use crate::snapshot::Snapshot;
 use crate::strategy::Strategy;
 
 /// What a strategy was told in every generation, in the form that it depends on.
@@ -20,7 +21,8 @@ use crate::strategy::Strategy;
 /// some hundred bytes where only their order counts, and eight hundred where values do.
 ///
 /// So that a long search is rebuilt quickly, the record also keeps the state of a strategy that can save it
-/// ([`Snapshot`](crate::Snapshot)), as often as that at most doubles the size of the record.
+/// ([`Snapshot`](crate::Snapshot)), as often as that at most doubles the size of the record, or as the strategy asks for because
+/// it takes long to be told again.
 ///
 /// ```
 /// use farsa_evo::{Fitness, GaConfig, Record, Strategy, TruncationGa};
@@ -163,8 +165,11 @@ impl Record {
         }
         next(strategy, told)?;
         self.frames.extend(frame);
-        let due = self.shape.recorded != Kept::Genomes && self.frames.len() >= self.next_keyframe;
-        if let Some(strategy) = strategy.snapshot().filter(|_| due) {
+        let since = self.generations() - self.keyframes.last().map_or(0, |keyframe| keyframe.generation);
+        let enough = self.frames.len() >= self.next_keyframe;
+        let due = |strategy: &&mut dyn Snapshot| enough || since >= strategy.generations_between_states();
+        let kept = self.shape.recorded != Kept::Genomes;
+        if let Some(strategy) = strategy.snapshot().filter(|strategy| kept && due(strategy)) {
             let state = strategy.save();
             self.wait(state.len());
             self.keyframes.push(Keyframe { generation: self.generations(), state });

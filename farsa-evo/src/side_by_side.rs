@@ -178,6 +178,10 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Genealogy for SideBySide<S, G> {
 }
 
 impl<G: Gene, S: Strategy<G> + Snapshot> Snapshot for SideBySide<S, G> {
+    fn generations_between_states(&self) -> u32 {
+        self.members.iter().map(Snapshot::generations_between_states).min().unwrap_or(u32::MAX)
+    }
+
     /// The states of the searches, each with its length in front.
     fn save(&self) -> Vec<u8> {
         let mut all = Vec::new();
