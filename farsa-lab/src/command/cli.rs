@@ -255,7 +255,8 @@ impl<'e> Invocation<'e, '_> {
         let (_, plan) = self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
         let pool = |plan: &Plan<'e>| args.workers.pool(plan);
-        replications::run(plan, count, &root, &pool, stop_on_signals, self.program, self.quiet)
+        let which = replications::Which { count, only: args.replication };
+        replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
     }
 
     fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {

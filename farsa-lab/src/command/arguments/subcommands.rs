@@ -100,9 +100,12 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR", conflicts_with = "resume", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
     /// So many runs with seeds from --seed on, one after the other; the same command again skips what is finished and
-    /// goes on with what is not
+    /// goes on with what is not, and a second one at the same time takes the next run that nobody has
     #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
     pub(crate) replications: Option<u32>,
+    /// Only the K-th of them, from 1: for one task of an array
+    #[arg(long, value_name = "K", requires = "replications", value_parser = value_parser!(u32).range(1..))]
+    pub(crate) replication: Option<u32>,
     /// Take settings from a TOML file; --set goes before it
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
