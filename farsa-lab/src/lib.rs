@@ -16,6 +16,7 @@ mod report;
 mod run;
 mod store;
 mod strategy;
+mod sweep;
 
 #[cfg(feature = "command")]
 pub use command::cli;

@@ -13,4 +13,5 @@ mod report;
 mod robot;
 mod same_bytes;
 mod strangers;
+mod sweep;
 mod tool;

@@ -12,6 +12,7 @@ use crate::command::arguments::export::{
 use crate::command::arguments::subcommands::{
     BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
+use crate::command::arguments::sweep::SweepArgs;
 use crate::command::interrupt::{START_AGAIN, stop_on_signals, under_scheduler};
 use crate::command::{info, manual};
 use crate::error::Error;
@@ -33,6 +34,8 @@ use crate::run::{evolve, world_choice};
 use crate::store::directory::Directory;
 use crate::store::replace::{create_result, create_results};
 use crate::strategy::settings::{GENERATIONS, POPULATION};
+use crate::sweep::SweepFile;
+use crate::sweep::work::{self, Sweep};
 
 /// Runs the command over these experiments with the process's arguments: the whole of a `main`.
 ///
@@ -95,6 +98,10 @@ impl<'e> Invocation<'e, '_> {
             Command::Run(args) => {
                 let found = self.start_or_resume(&args)?;
                 self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
+            }
+            Command::Sweep(args) => {
+                let found = self.sweep(&args)?;
+                self.summary(args.json, &found.text(), &|| pretty(&found))
             }
             Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
                 let (mut directory, mut plan) = self.existing(&directory)?;
@@ -257,6 +264,18 @@ impl<'e> Invocation<'e, '_> {
         let pool = |plan: &Plan<'e>| args.workers.pool(plan);
         let which = replications::Which { count, only: args.replication };
         replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
+    }
+
+    /// The runs of all points of a file, or what there is of them.
+    fn sweep(&self, args: &SweepArgs) -> Result<work::Found, Error> {
+        let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
+        let sweep = Sweep::new(&file, self.experiments, &root)?;
+        let ready = |plan: &Plan<'e>| args.workers.check(plan);
+        if args.list {
+            return sweep.list(which, &ready);
+        }
+        let pool = |plan: &Plan<'e>| args.workers.pool(plan);
+        sweep.work(which, &ready, &pool, stop_on_signals, (self.program, self.quiet))
     }
 
     fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {

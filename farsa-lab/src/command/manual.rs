@@ -57,6 +57,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
                 format!("run {experiment}{other} --replications 20"),
             ],
         ),
+        ("sweep", vec!["sweep friction.toml --list".into(), "sweep friction.toml --point 3".into()]),
         ("test", vec![format!("test {run} --trials 1000 --seed 2")]),
         (
             "evaluate",

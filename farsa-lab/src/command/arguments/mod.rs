@@ -5,9 +5,11 @@
 //! - `robot`: those of `farsa robot`
 //! - `shared`: those that several commands have
 //! - `subcommands`: all subcommands, and the words of those that are short
+//! - `sweep`: those of `farsa sweep`
 
 pub(crate) mod export;
 pub(crate) mod genotypes;
 pub(crate) mod robot;
 pub(crate) mod shared;
 pub(crate) mod subcommands;
+pub(crate) mod sweep;

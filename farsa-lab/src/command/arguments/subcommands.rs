@@ -10,6 +10,7 @@ use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
 use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
+use crate::command::arguments::sweep::SweepArgs;
 use crate::evaluation::replay::Which;
 use crate::run::plan::LARGEST_SEED;
 
@@ -32,6 +33,8 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Evolve, or go on with a run
     Run(RunArgs),
+    /// Run an experiment at many settings, those of a file
+    Sweep(SweepArgs),
     /// Put a run's champion to the test on fresh starts
     Test(TestArgs),
     /// Evaluate a genotype from any source on random trials
