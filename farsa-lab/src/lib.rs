@@ -12,6 +12,7 @@ mod experiment;
 mod export;
 mod figures;
 mod json;
+mod merge;
 mod report;
 mod run;
 mod store;

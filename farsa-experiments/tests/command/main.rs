@@ -7,6 +7,7 @@ mod files;
 mod genotypes;
 mod look;
 mod manners;
+mod merge;
 mod own;
 mod replications;
 mod report;

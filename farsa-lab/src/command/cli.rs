@@ -103,6 +103,17 @@ impl<'e> Invocation<'e, '_> {
                 let found = self.sweep(&args)?;
                 self.summary(args.json, &found.text(), &|| pretty(&found))
             }
+            Command::Merge(args) => {
+                let found = args.merge().make(experiments)?;
+                if !args.prints() {
+                    return self.summary(args.json, &found.text(), &|| pretty(&found));
+                }
+                if !quiet {
+                    // The standard output is the table's.
+                    let _ = write!(io::stderr(), "{}", escaped(&found.text()));
+                }
+                say(&found.table)
+            }
             Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
                 let (mut directory, mut plan) = self.existing(&directory)?;
                 let other = world_choice::visit(&mut plan, world.name.as_deref())?;

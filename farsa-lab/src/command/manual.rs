@@ -58,6 +58,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
             ],
         ),
         ("sweep", vec!["sweep friction.toml --list".into(), "sweep friction.toml --point 3".into()]),
+        ("merge", vec!["merge runs > runs.csv".into(), "merge node1/runs node2/runs --out runs --csv runs.csv".into()]),
         ("test", vec![format!("test {run} --trials 1000 --seed 2")]),
         (
             "evaluate",

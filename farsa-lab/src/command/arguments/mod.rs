@@ -2,6 +2,7 @@
 //!
 //! - `export`: those of `farsa export`, and the formats of files
 //! - `genotypes`: those of the commands about genotypes from elsewhere, `farsa evaluate` and `farsa import`
+//! - `merge`: those of `farsa merge`
 //! - `robot`: those of `farsa robot`
 //! - `shared`: those that several commands have
 //! - `subcommands`: all subcommands, and the words of those that are short
@@ -9,6 +10,7 @@
 
 pub(crate) mod export;
 pub(crate) mod genotypes;
+pub(crate) mod merge;
 pub(crate) mod robot;
 pub(crate) mod shared;
 pub(crate) mod subcommands;

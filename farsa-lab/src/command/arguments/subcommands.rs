@@ -8,6 +8,7 @@ use farsa_view::Camera;
 
 use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
+use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
 use crate::command::arguments::sweep::SweepArgs;
@@ -35,6 +36,8 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Run an experiment at many settings, those of a file
     Sweep(SweepArgs),
+    /// Bring runs of several places together, as a table or as copies
+    Merge(MergeArgs),
     /// Put a run's champion to the test on fresh starts
     Test(TestArgs),
     /// Evaluate a genotype from any source on random trials
