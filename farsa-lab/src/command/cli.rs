@@ -10,7 +10,7 @@ use crate::command::arguments::export::{
     DataFormat, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs, ExportStartsArgs, ExportWhat,
 };
 use crate::command::arguments::subcommands::{
-    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, RunArgs, TestArgs,
 };
 use crate::command::arguments::sweep::SweepArgs;
 use crate::command::interrupt::{START_AGAIN, stop_on_signals, under_scheduler};
@@ -143,10 +143,10 @@ impl<'e> Invocation<'e, '_> {
                 let found = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
                 self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
             }
-            Command::Report(ReportArgs { directories, html, md, json }) => {
-                let runs = directories.iter().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
-                let found = write::report(runs, html.as_deref(), md.as_deref(), program)?;
-                self.summary(json, &found.text(), &|| pretty(&found))
+            Command::Report(args) => {
+                let runs = args.directories.iter().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
+                let found = write::report(runs, args.html.as_deref(), args.md.as_deref(), args.success(), program)?;
+                self.summary(args.json, &found.text(), &|| pretty(&found))
             }
             Command::Export(ExportArgs { what }) => {
                 let (content, out) = self.exported(what)?;

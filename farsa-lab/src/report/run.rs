@@ -166,6 +166,11 @@ impl<'r> Group<'r> {
     }
 }
 
+/// The name of a column about one of several populations.
+pub(crate) fn whose(what: &str, name: &str) -> String {
+    if name.is_empty() { what.into() } else { format!("{what}, {name}") }
+}
+
 /// A number for reading: five digits, or as many as the whole part has.
 pub(crate) fn short(x: f64) -> String {
     if !x.is_finite() {

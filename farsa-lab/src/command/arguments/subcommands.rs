@@ -13,6 +13,7 @@ use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
 use crate::command::arguments::sweep::SweepArgs;
 use crate::evaluation::replay::Which;
+use crate::report::outcome::Success;
 use crate::run::plan::LARGEST_SEED;
 
 /// Evolve robots, test the champions, and replay any trial of a run.
@@ -262,6 +263,7 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 }
 
 #[derive(Args)]
+#[command(allow_negative_numbers = true)]
 pub(crate) struct ReportArgs {
     /// The runs' directories
     #[arg(required = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
@@ -272,9 +274,31 @@ pub(crate) struct ReportArgs {
     /// A new file for the page as Markdown, with its pictures beside it as NAME-*.svg
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) md: Option<PathBuf>,
+    /// A run is a success if at least this share, from 0 to 1, of its champion's test is [default: 0.5]
+    #[arg(long, value_name = "S", value_parser = share)]
+    success_share: Option<f64>,
+    /// A run is a success if the best of a generation reaches this fitness
+    #[arg(long, value_name = "F", conflicts_with = "success_share", value_parser = finite)]
+    success_fitness: Option<f64>,
     /// Write the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl ReportArgs {
+    /// When a run is a success, if that was said.
+    pub(crate) fn success(&self) -> Option<Success> {
+        self.success_fitness.map(Success::Fitness).or(self.success_share.map(Success::Share))
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "not a share from 0 to 1".into())
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "not a number".into())
 }
 
 #[derive(Args)]
