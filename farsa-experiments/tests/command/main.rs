@@ -2,6 +2,7 @@
 
 mod attack;
 mod bad_input;
+mod cluster;
 mod export;
 mod files;
 mod genotypes;
