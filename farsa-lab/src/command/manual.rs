@@ -44,7 +44,15 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
         .disable_help_subcommand(true)
         .help_template(format!("{TEMPLATE}{tour}"))
         .after_help(tour);
-    for (name, lines) in [
+    for (name, lines) in examples_of_each(program, experiment, &run, &other) {
+        command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
+    }
+    command
+}
+
+/// Examples for each subcommand: about an experiment, one of its runs and, as an option, another of its conditions.
+fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> Vec<(&'static str, Vec<String>)> {
+    vec![
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),
         (
@@ -94,6 +102,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
             vec![
                 format!("report {run} --html report.html"),
                 "report runs/* --html report.html --md report.md".to_owned(),
+                "report runs/* --html report.html --success-share 0.8".to_owned(),
             ],
         ),
         (
@@ -114,10 +123,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
         ("bench", vec![format!("bench {experiment}"), format!("bench --run {run} --threads 1 --lanes 1 --seconds 60")]),
         ("completions", vec![format!("completions bash > ~/.local/share/bash-completion/completions/{program}")]),
         ("man", vec!["man | man -l -".into(), "man --out ~/.local/share/man/man1".into()]),
-    ] {
-        command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
-    }
-    command
+    ]
 }
 
 /// The version of this crate, under whose name a program of somebody else must not give it.

@@ -185,6 +185,11 @@ fn tests(groups: &[Group<'_>], measures: &[Measure], counts: &[Option<Proportion
             }
         }
     }
+    // What few will read where there are many pairs.
+    let shown = |table: Table| match table.rows.len() {
+        rows @ 41.. => Block::Fold(format!("All {rows} comparisons"), vec![Block::Table(table)]),
+        _ => Block::Table(table),
+    };
     let mut blocks = Vec::new();
     if !ranks.rows.is_empty() {
         let how = if exact { "exact" } else { "exact up to 200 runs and beyond from the normal distribution" };
@@ -192,14 +197,14 @@ fn tests(groups: &[Group<'_>], measures: &[Measure], counts: &[Option<Proportion
             "Do they differ? Mann-Whitney U test, two-sided, {how}, not corrected for the number of comparisons; \
              P(first larger) is the probability that a run of the first is above one of the second, equals as half."
         )));
-        blocks.push(Block::Table(ranks));
+        blocks.push(shown(ranks));
     }
     if !tables.rows.is_empty() {
         blocks.push(Block::Text(
             "Does one succeed more often? Fisher's exact test, two-sided, not corrected for the number of comparisons."
                 .into(),
         ));
-        blocks.push(Block::Table(tables));
+        blocks.push(shown(tables));
     }
     blocks
 }
