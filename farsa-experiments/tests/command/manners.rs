@@ -5,10 +5,12 @@ use std::path::Path;
 
 use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 14] = [
+const SUBCOMMANDS: [&str; 16] = [
     "list",
     "info",
     "run",
+    "sweep",
+    "merge",
     "test",
     "evaluate",
     "import",

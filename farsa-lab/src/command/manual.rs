@@ -13,8 +13,9 @@ use crate::error::Error;
 use crate::experiment::definition::Experiment;
 use crate::store::replace::create_results;
 
-/// Without headings and spare lines, so that a screen of 24 lines has room for the tour, which follows.
-const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n{options}\n";
+/// Without headings and spare lines, and the options in one, so that a screen of 24 lines has room for the tour, which follows.
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\
+    Options: -q, --quiet: no progress and no summary; -h, --help; -V, --version\n";
 
 /// The command line under the name of the program, with examples about its own first experiment.
 pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command {
