@@ -22,6 +22,7 @@ mod real;
 mod record;
 #[cfg(feature = "serde")]
 mod saved;
+mod side_by_side;
 mod snapshot;
 mod statistics;
 mod strategy;
@@ -52,6 +53,7 @@ pub use real::{
     Selection, SteadyState, SteadyStateConfig, StepSizes, Survival,
 };
 pub use record::{Record, RecordEntry};
+pub use side_by_side::SideBySide;
 pub use snapshot::Snapshot;
 pub use statistics::Statistics;
 pub use strategy::{Genealogy, Recorded, Strategy};

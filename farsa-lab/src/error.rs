@@ -196,13 +196,17 @@ impl From<farsa_view::Error> for Error {
     }
 }
 
-/// The name that takes the fewest changed, added, dropped or swapped letters; letters of the other case count least. Of a name
+/// The name that takes the fewest changed, added, dropped or swapped letters, of several one that begins like this; letters of
+/// the other case count least. Of a name
 /// longer than any, the beginning is compared.
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name: String = name.chars().take(MOST_SHOWN).collect();
     let lower = name.to_lowercase();
     let distance = strsim::damerau_levenshtein;
-    valid.into_iter().min_by_key(|valid| (distance(&lower, &valid.to_lowercase()), distance(&name, valid)))
+    valid.into_iter().min_by_key(|valid| {
+        let other = valid.to_lowercase();
+        (distance(&lower, &other), !other.starts_with(&lower), distance(&name, valid))
+    })
 }
 
 impl fmt::Display for Error {

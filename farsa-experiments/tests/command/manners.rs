@@ -5,7 +5,8 @@ use std::path::Path;
 
 use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 16] = [
+const SUBCOMMANDS: [&str; 17] = [
+    "strategies",
     "list",
     "info",
     "run",

@@ -38,27 +38,27 @@ fn a_table_says_what_differs_and_what_came_of_each() {
     assert_eq!(said.code, Some(0), "{said:?}");
     assert_eq!(said.err, "4 runs\nnode2/runs/cart-rough-2: the same run as node1/runs/cart-rough-2\n");
     let rows = rows(&said.out);
-    let head = "directory,experiment,condition,seed,cart.friction,generations,finished,evaluations,failed,best,mean,\
+    let head = "directory,experiment,condition,strategy,seed,cart.friction,generations,finished,evaluations,failed,best,mean,\
                 highest best,test generation,test trials,test success,test fitness";
     assert_eq!(rows[0].join(","), head);
-    let starts: Vec<String> = rows[1..].iter().map(|row| row[..9].join(",")).collect();
+    let starts: Vec<String> = rows[1..].iter().map(|row| row[..10].join(",")).collect();
     assert_eq!(
         starts,
         [
-            "node1/runs/cart-rough-1,cart,rough,1,0.5,3,yes,60,0",
-            "node1/runs/cart-rough-2,cart,rough,2,0.5,3,yes,60,0",
-            "node2/runs/cart-rough-3,cart,rough,3,0.5,3,yes,60,0",
-            "node2/sweep/friction=2.0/cart-rough-1,cart,rough,1,2.0,3,yes,60,0",
+            "node1/runs/cart-rough-1,cart,rough,truncation,1,0.5,3,yes,60,0",
+            "node1/runs/cart-rough-2,cart,rough,truncation,2,0.5,3,yes,60,0",
+            "node2/runs/cart-rough-3,cart,rough,truncation,3,0.5,3,yes,60,0",
+            "node2/sweep/friction=2.0/cart-rough-1,cart,rough,truncation,1,2.0,3,yes,60,0",
         ]
     );
     for row in &rows[1..] {
         let log = fs::read_to_string(here.join(&row[0]).join("fitness.csv")).expect("the log");
         let log: Vec<Vec<&str>> = log.lines().skip(1).map(|line| line.split(',').collect()).collect();
-        assert_eq!((row[9].as_str(), row[10].as_str()), (log[2][1], log[2][2]));
+        assert_eq!((row[10].as_str(), row[11].as_str()), (log[2][1], log[2][2]));
         let best = log.iter().map(|line| line[1].parse::<f64>().expect("a number")).fold(f64::NEG_INFINITY, f64::max);
-        assert_eq!(row[11].parse::<f64>().expect("a number"), best);
+        assert_eq!(row[12].parse::<f64>().expect("a number"), best);
     }
-    let tested: Vec<(&str, &str)> = rows[1..].iter().map(|row| (row[12].as_str(), row[13].as_str())).collect();
+    let tested: Vec<(&str, &str)> = rows[1..].iter().map(|row| (row[13].as_str(), row[14].as_str())).collect();
     assert_eq!(tested, [("", ""), ("2", "5"), ("", ""), ("", "")]);
     assert_eq!(content(&here), before, "reading changes nothing");
 
@@ -66,7 +66,7 @@ fn a_table_says_what_differs_and_what_came_of_each() {
     let said = say(own(), &here, "merge node2 --csv table.csv");
     assert_eq!(said.out, "3 runs\nnode2/runs/cart-rough-2: not finished: 2 of 3 generations\n");
     let table = fs::read_to_string(here.join("table.csv")).expect("the table");
-    assert!(table.contains("node2/runs/cart-rough-2,cart,rough,2,0.5,2,no,40,0,"), "{table}");
+    assert!(table.contains("node2/runs/cart-rough-2,cart,rough,truncation,2,0.5,2,no,40,0,"), "{table}");
 }
 
 #[test]

@@ -192,3 +192,40 @@ fn a_sweep_is_refused_before_it_begins() {
     );
     assert!(!Path::new(&here.join("runs/my/friction=3.0")).exists());
 }
+
+#[test]
+fn strategies_are_points_and_groups_of_a_report() {
+    let here = scratch("sweep-strategies");
+    let file = "experiment = \"cart\"\nreplications = 3\n[evolution]\ngenerations = 5\n[trial]\nsteps = 60\n[grid]\n\
+                strategy.name = [\"truncation\", \"cma-es\", \"xnes\"]\n";
+    fs::write(here.join("which.toml"), file).expect("the file");
+    ok(own(), &here, "sweep which.toml -q");
+    for strategy in ["truncation", "cma-es", "xnes"] {
+        let folder = here.join("runs/which").join(format!("strategy={strategy}"));
+        let mut runs: Vec<_> =
+            fs::read_dir(&folder).expect("the point").map(|run| run.expect("a run").path()).collect();
+        runs.sort();
+        assert_eq!(runs.len(), 3);
+        for (seed, run) in (1..).zip(&runs) {
+            let line = format!("run cart --strategy {strategy} --generations 5 --set trial.steps=60 --seed {seed}");
+            ok(own(), &here, &format!("{line} --out single/{strategy}-{seed} -q"));
+            let files = ["fitness.csv", "champion.bin", "record.bin", "config.toml"];
+            for file in files {
+                let [a, b] = [run.join(file), here.join(format!("single/{strategy}-{seed}")).join(file)];
+                assert_eq!(fs::read(a).expect(file), fs::read(b).expect(file), "{strategy} {seed} {file}");
+            }
+        }
+    }
+    let table = ok(own(), &here, "merge runs/which -q");
+    for (strategy, runs) in [("truncation", 3), ("cma-es", 3), ("xnes", 3)] {
+        assert_eq!(table.matches(&format!(",cart,rough,{strategy},")).count(), runs, "{table}");
+    }
+    let runs: Vec<String> =
+        table.lines().skip(1).filter_map(|line| line.split(',').next().map(str::to_owned)).collect();
+    // A directory with a comma in its name stands in quotes; these have none.
+    assert_eq!(runs.len(), 9);
+    ok(own(), &here, &format!("report {} --success-fitness 2 --md which.md", runs.join(" ")));
+    let md = fs::read_to_string(here.join("which.md")).expect("the page");
+    assert!(md.contains("| condition | rough, cma-es | rough, truncation | rough, xnes |"), "{md}");
+    assert!(md.contains("| rough, cma-es | rough, truncation | "), "{md}");
+}

@@ -10,11 +10,12 @@ use crate::command::arguments::export::{
     DataFormat, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs, ExportStartsArgs, ExportWhat,
 };
 use crate::command::arguments::subcommands::{
-    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, RunArgs, TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, RunArgs, StrategiesArgs,
+    TestArgs,
 };
 use crate::command::arguments::sweep::SweepArgs;
 use crate::command::interrupt::{START_AGAIN, stop_on_signals, under_scheduler};
-use crate::command::{info, manual};
+use crate::command::{info, manual, strategies};
 use crate::error::Error;
 use crate::escaped::escaped;
 use crate::evaluation::{draw, evaluate, import, replay, test};
@@ -27,7 +28,8 @@ use crate::report::write;
 use crate::run::begin;
 use crate::run::bench::{self, Bench, Sample};
 use crate::run::config_file::{ConfigFile, Entry};
-use crate::run::plan::{self, Plan};
+use crate::run::laboratory::Laboratory;
+use crate::run::plan::Plan;
 use crate::run::replications::{self, Replications};
 use crate::run::summary::Summary;
 use crate::run::{evolve, world_choice};
@@ -42,8 +44,19 @@ use crate::sweep::work::{self, Sweep};
 /// The exit code is 0; 2 for a wrong command line or configuration; 130 after Ctrl-C, SIGTERM or SIGHUP, or 75 when a
 /// scheduler of a cluster has started it; 1 otherwise.
 pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
+    Laboratory::new(experiments).main()
+}
+
+impl Laboratory<'_> {
+    /// Runs the command over this laboratory with the process's arguments, as [`main`] does.
+    pub fn main(&self) -> ExitCode {
+        execute(self)
+    }
+}
+
+fn execute(laboratory: &Laboratory<'_>) -> ExitCode {
     let program = program();
-    let parsed = manual::command(&program, experiments).try_get_matches();
+    let parsed = manual::command(&program, laboratory).try_get_matches();
     let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
@@ -52,7 +65,7 @@ pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    let invocation = Invocation { program: &program, experiments, quiet: cli.quiet };
+    let invocation = Invocation { program: &program, laboratory, quiet: cli.quiet };
     match invocation.execute(cli.command) {
         Ok(()) => ExitCode::SUCCESS,
         // The reader has seen enough: `farsa replay ... | head`.
@@ -77,18 +90,24 @@ fn program() -> String {
 struct Invocation<'e, 'a> {
     /// What the user calls this program.
     program: &'a str,
-    experiments: &'a [&'e dyn Experiment],
+    laboratory: &'a Laboratory<'e>,
     quiet: bool,
 }
 
 impl<'e> Invocation<'e, '_> {
     fn execute(&self, command: Command) -> Result<(), Error> {
-        let Self { program, experiments, quiet } = *self;
+        let Self { program, laboratory, quiet } = *self;
         match command {
-            Command::List(ListArgs { json: false }) => tell(&info::list(experiments)),
-            Command::List(ListArgs { json: true }) => say(&info::list_as_json(experiments)?),
-            Command::Info(InfoArgs { experiment, condition, json }) => {
-                let plan = Plan::new(self.find(&experiment)?, condition.as_deref(), "")?;
+            Command::List(ListArgs { json: false }) => tell(&info::list(laboratory.experiments())),
+            Command::List(ListArgs { json: true }) => say(&info::list_as_json(laboratory.experiments())?),
+            Command::Strategies(StrategiesArgs { strategy, json }) => {
+                let one = strategy.map(|name| laboratory.strategy(&name, "")).transpose()?;
+                let all = one.as_ref().map_or_else(|| laboratory.strategies(), std::slice::from_ref);
+                if json { say(&strategies::as_json(all)?) } else { tell(&strategies::as_text(all)) }
+            }
+            Command::Info(InfoArgs { experiment, condition, strategy, json }) => {
+                let strategy = strategy.map(|name| laboratory.strategy(&name, "--strategy")).transpose()?;
+                let plan = Plan::with_strategy(self.find(&experiment)?, condition.as_deref(), "", strategy)?;
                 if json { say(&info::as_json(&plan)?) } else { tell(&info::as_text(&plan)?) }
             }
             Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
@@ -104,7 +123,7 @@ impl<'e> Invocation<'e, '_> {
                 self.summary(args.json, &found.text(), &|| pretty(&found))
             }
             Command::Merge(args) => {
-                let found = args.merge().make(experiments)?;
+                let found = args.merge().make(laboratory)?;
                 if !args.prints() {
                     return self.summary(args.json, &found.text(), &|| pretty(&found));
                 }
@@ -172,10 +191,10 @@ impl<'e> Invocation<'e, '_> {
                 let found = self.bench(&args)?;
                 self.summary(args.json, &found.text(), &|| pretty(&found))
             }
-            Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, experiments)),
-            Command::Man(ManArgs { out: None }) => say(&manual::page(program, experiments)?),
+            Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, laboratory)),
+            Command::Man(ManArgs { out: None }) => say(&manual::page(program, laboratory)?),
             Command::Man(ManArgs { out: Some(path) }) => {
-                let pages = manual::pages(&path, program, experiments)?;
+                let pages = manual::pages(&path, program, laboratory)?;
                 self.summary(false, &format!("{}: {pages} pages\n", path.display()), &|| Ok(String::new()))
             }
         }
@@ -241,19 +260,19 @@ impl<'e> Invocation<'e, '_> {
 
     /// The experiment of this name.
     fn find(&self, name: &str) -> Result<&'e dyn Experiment, Error> {
-        plan::find(self.experiments, name, "")
+        self.laboratory.experiment(name, "")
     }
 
     /// A run that exists, with the plan in its configuration.
     fn existing(&self, path: &Path) -> Result<(Directory, Plan<'e>), Error> {
         let directory = Directory::open(path)?;
-        let plan = Plan::from_file(self.experiments, &ConfigFile::read_own(&directory.config())?)?;
+        let plan = Plan::from_file(self.laboratory, &ConfigFile::read_own(&directory.config())?)?;
         Ok((directory, plan))
     }
 
     fn bench(&self, args: &BenchArgs) -> Result<Bench, Error> {
         let run = args.run.as_deref().map(|path| self.existing(path)).transpose()?;
-        let (evolved, plan) = match (run, &args.experiment, self.experiments.first()) {
+        let (evolved, plan) = match (run, &args.experiment, self.laboratory.experiments().first()) {
             (Some((directory, mut plan)), ..) => {
                 let evolved = Sample::from_run(&plan, &directory)?;
                 args.variant.apply(&mut plan)?;
@@ -280,7 +299,7 @@ impl<'e> Invocation<'e, '_> {
     /// The runs of all points of a file, or what there is of them.
     fn sweep(&self, args: &SweepArgs) -> Result<work::Found, Error> {
         let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
-        let sweep = Sweep::new(&file, self.experiments, &root)?;
+        let sweep = Sweep::new(&file, self.laboratory, &root)?;
         let ready = |plan: &Plan<'e>| args.workers.check(plan);
         if args.list {
             return sweep.list(which, &ready);
@@ -343,15 +362,20 @@ impl<'e> Invocation<'e, '_> {
                 }
                 experiment
             }
-            (None, Some(entry)) => plan::find(self.experiments, &entry.value, &entry.place)?,
+            (None, Some(entry)) => self.laboratory.experiment(&entry.value, &entry.place)?,
             (None, None) => {
                 return Err(Error::Usage("neither the command line nor the file names an experiment".into()));
             }
         };
+        let strategy = match (&args.strategy, file.and_then(|file| file.strategy.as_ref())) {
+            (Some(name), _) => Some(self.laboratory.strategy(name, "--strategy")?),
+            (None, Some(entry)) => Some(self.laboratory.strategy(&entry.value, &entry.place)?),
+            (None, None) => None,
+        };
         match (&args.variant.condition, file.and_then(|file| file.condition.as_ref())) {
-            (Some(name), _) => Plan::new(experiment, Some(name), ""),
-            (None, Some(entry)) => Plan::new(experiment, Some(&entry.value), &entry.place),
-            (None, None) => Plan::new(experiment, None, ""),
+            (Some(name), _) => Plan::with_strategy(experiment, Some(name), "", strategy),
+            (None, Some(entry)) => Plan::with_strategy(experiment, Some(&entry.value), &entry.place, strategy),
+            (None, None) => Plan::with_strategy(experiment, None, "", strategy),
         }
     }
 }
@@ -372,9 +396,12 @@ fn same_names(args: &RunArgs, file: Option<&ConfigFile>, plan: &Plan<'_>, direct
     let in_file = |entry: Option<&Entry<String>>| entry.map(|entry| entry.value.clone());
     let experiment = args.experiment.clone().or_else(|| in_file(file?.experiment.as_ref()));
     let condition = args.variant.condition.clone().or_else(|| in_file(file?.condition.as_ref()));
-    for (key, run, asked) in
-        [("experiment", plan.experiment.name(), experiment), ("condition", plan.condition.as_str(), condition)]
-    {
+    let strategy = args.strategy.clone().or_else(|| in_file(file?.strategy.as_ref()));
+    for (key, run, asked) in [
+        ("experiment", plan.experiment.name(), experiment),
+        ("condition", plan.condition.as_str(), condition),
+        ("strategy", plan.definition().name(), strategy),
+    ] {
         if let Some(asked) = asked.filter(|asked| asked != run) {
             let directory = directory.path().into();
             return Err(Error::OtherConfiguration { directory, key: key.into(), run: run.into(), asked });

@@ -6,8 +6,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
 use crate::merge::gather::{Gathered, same_version};
+use crate::run::laboratory::Laboratory;
 use crate::store::directory::{Directory, vacant};
 use crate::store::replace::sync_directory;
 
@@ -31,7 +31,7 @@ impl<'r, 'e> Copy<'r, 'e> {
     pub(crate) fn all(
         runs: impl Iterator<Item = &'r Gathered<'e>>,
         root: &Path,
-        experiments: &[&'e dyn Experiment],
+        laboratory: &Laboratory<'e>,
     ) -> Result<Vec<Self>, Error> {
         let mut names: BTreeMap<&Path, &Gathered<'_>> = BTreeMap::new();
         let copies = runs.map(|run| {
@@ -41,7 +41,7 @@ impl<'r, 'e> Copy<'r, 'e> {
                 return Err(Error::Usage(format!("{first} and {second} are different runs of one name, {name}")));
             }
             let to = root.join(&run.name);
-            let there = is_there(run, &to, experiments)?;
+            let there = is_there(run, &to, laboratory)?;
             Ok(Self { run, to, there })
         });
         copies.collect()
@@ -51,13 +51,13 @@ impl<'r, 'e> Copy<'r, 'e> {
     ///
     /// # Errors
     /// [`Error::Io`]; [`Error::Usage`] for a link or a pipe in the run; what reading the copy says.
-    pub(crate) fn make(&self, experiments: &[&'e dyn Experiment]) -> Result<(), Error> {
+    pub(crate) fn make(&self, laboratory: &Laboratory<'e>) -> Result<(), Error> {
         let from = self.run.directory.path();
         Directory::create(&self.to, |draft| {
             // What the checkpoint says of the other files stays true while they grow.
             copy_file(&self.run.directory.checkpoint(), &draft.checkpoint())?;
             copy_folder(from, draft.path(), 0)?;
-            let copy = Gathered::read(experiments, draft.clone(), self.run.name.clone())?;
+            let copy = Gathered::read(laboratory, draft.clone(), self.run.name.clone())?;
             if copy.lines == self.run.lines { Ok(()) } else { Err(changed(from)) }
         })
         .map(drop)
@@ -69,9 +69,9 @@ fn changed(path: &Path) -> Error {
 }
 
 /// Whether a run is at its place already; false if there is nothing.
-fn is_there(run: &Gathered<'_>, to: &Path, experiments: &[&dyn Experiment]) -> Result<bool, Error> {
+fn is_there(run: &Gathered<'_>, to: &Path, laboratory: &Laboratory<'_>) -> Result<bool, Error> {
     let Ok(directory) = Directory::open(to) else { return vacant(to).map(|()| false) };
-    let there = Gathered::read(experiments, directory, run.name.clone())?;
+    let there = Gathered::read(laboratory, directory, run.name.clone())?;
     there.identity.same_run(&run.identity, to)?;
     same_version(&there, run)?;
     if there.lines == run.lines {

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
 use crate::run::config_file::ConfigFile;
+use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::records::Checkpoint;
 use crate::run::told::Told;
@@ -42,8 +42,8 @@ impl<'e> Gathered<'e> {
     ///
     /// # Errors
     /// Those of [`Plan::from_file`], [`Checkpoint::read`] and [`Told::read`].
-    pub(crate) fn read(experiments: &[&'e dyn Experiment], directory: Directory, name: PathBuf) -> Result<Self, Error> {
-        let plan = Plan::from_file(experiments, &ConfigFile::read_own(&directory.config())?)?;
+    pub(crate) fn read(laboratory: &Laboratory<'e>, directory: Directory, name: PathBuf) -> Result<Self, Error> {
+        let plan = Plan::from_file(laboratory, &ConfigFile::read_own(&directory.config())?)?;
         let Told { identity, lines, .. } = Told::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
         let asked = plan.generations()? as usize;
         Ok(Self { directory, name, plan, identity, lines, asked })
@@ -65,7 +65,7 @@ impl<'e> Gathering<'e> {
     /// # Errors
     /// [`Error::NoRun`] for a directory without a run, [`Error::Other`] for runs of one experiment that were made with other
     /// versions of the values, and for one run with two results; those of [`Gathered::read`].
-    pub(crate) fn new(experiments: &[&'e dyn Experiment], roots: &[PathBuf]) -> Result<Self, Error> {
+    pub(crate) fn new(laboratory: &Laboratory<'e>, roots: &[PathBuf]) -> Result<Self, Error> {
         let mut gathering = Self { runs: Vec::new(), twins: Vec::new() };
         let mut known: BTreeMap<String, usize> = BTreeMap::new();
         let mut seen: Vec<PathBuf> = Vec::new();
@@ -84,7 +84,7 @@ impl<'e> Gathering<'e> {
                 });
             }
             for (directory, name) in found {
-                gathering.add(Gathered::read(experiments, directory, name)?, &mut known)?;
+                gathering.add(Gathered::read(laboratory, directory, name)?, &mut known)?;
             }
         }
         for (index, run) in gathering.runs.iter().enumerate() {
@@ -164,6 +164,7 @@ fn find(path: &Path, name: &Path, depth: usize, found: &mut Vec<(Directory, Path
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::definition::Experiment;
     use std::sync::atomic::AtomicBool;
 
     use farsa_body::Recorder;
@@ -239,8 +240,8 @@ mod tests {
         run(Toy { bonus: 0.5, ..plain }, &at("c/toy-1"));
         run(plain, &at("d/deep/down/toy-1"));
         let gather = |names: [&str; 2]| {
-            let experiments: [&dyn Experiment; 1] = [&plain];
-            let found = Gathering::new(&experiments, &names.map(at)).map_err(|error| error.to_string());
+            let laboratory = Laboratory::new(&[&plain]);
+            let found = Gathering::new(&laboratory, &names.map(at)).map_err(|error| error.to_string());
             found.map(|found| (found.runs.len(), found.twins.len()))
         };
         let [a, b, c] = ["a", "b", "c"].map(|name| at(name).join("toy-1").display().to_string());

@@ -8,10 +8,10 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::escaped::OneLine;
-use crate::experiment::definition::Experiment;
 use crate::merge::copy::Copy;
 use crate::merge::gather::{Gathered, Gathering};
 use crate::merge::run_table;
+use crate::run::laboratory::Laboratory;
 use crate::store::replace::create_results;
 
 /// What is asked for.
@@ -53,16 +53,16 @@ impl Merge<'_> {
     /// # Errors
     /// Those of [`Gathering::new`] and [`Copy::all`], after which nothing was written; [`Error::Usage`] for a place of the
     /// copies within a directory that is read. Copies before one that fails are whole, and the same command goes on.
-    pub(crate) fn make(&self, experiments: &[&dyn Experiment]) -> Result<Merged, Error> {
+    pub(crate) fn make(&self, laboratory: &Laboratory<'_>) -> Result<Merged, Error> {
         if let Some(out) = self.out {
             apart(out, self.directories)?;
         }
         if let Some(csv) = self.csv.filter(|csv| fs::symlink_metadata(csv).is_ok_and(|found| found.is_file())) {
             return Err(Error::Usage(format!("{}: there is one already", csv.display())));
         }
-        let Gathering { runs, twins } = Gathering::new(experiments, self.directories)?;
+        let Gathering { runs, twins } = Gathering::new(laboratory, self.directories)?;
         let finished = runs.iter().filter(|run| run.is_finished());
-        let copies = self.out.map_or(Ok(Vec::new()), |out| Copy::all(finished, out, experiments))?;
+        let copies = self.out.map_or(Ok(Vec::new()), |out| Copy::all(finished, out, laboratory))?;
         let mut places = copies.iter();
         let rows: Vec<(&Gathered<'_>, &Path)> = runs
             .iter()
@@ -73,7 +73,7 @@ impl Merge<'_> {
             .collect();
         let table = run_table::csv(&rows)?;
         for copy in copies.iter().filter(|copy| !copy.there) {
-            copy.make(experiments)?;
+            copy.make(laboratory)?;
         }
         if let Some(csv) = self.csv {
             create_results(&[(csv.to_path_buf(), &table)])?;

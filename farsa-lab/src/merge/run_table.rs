@@ -7,7 +7,7 @@ use crate::evaluation::test;
 use crate::experiment::settings::Value;
 use crate::merge::gather::Gathered;
 use crate::store::log::Line;
-use crate::strategy::settings::GENERATIONS;
+use crate::strategy::settings::{GENERATIONS, STRATEGY};
 
 /// A line for each run as CSV, each at the place that is given beside it.
 ///
@@ -16,7 +16,7 @@ use crate::strategy::settings::GENERATIONS;
 pub(crate) fn csv(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> {
     let keys = differing(runs);
     let populations = populations(runs)?;
-    let mut head: Vec<String> = ["directory", "experiment", "condition", "seed"].map(str::to_owned).into();
+    let mut head: Vec<String> = ["directory", "experiment", "condition", "strategy", "seed"].map(str::to_owned).into();
     head.extend(keys.iter().map(|&key| key.to_owned()));
     head.extend(
         ["generations", "finished", "evaluations", "failed", "best", "mean", "highest best"].map(str::to_owned),
@@ -38,6 +38,7 @@ fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) 
         place.display().to_string(),
         plan.experiment.name().to_owned(),
         plan.condition.clone(),
+        plan.definition().name().to_owned(),
         plan.seed.to_string(),
     ];
     row.extend(keys.iter().map(|key| plan.settings.get(key).map(plain).unwrap_or_default()));
@@ -96,7 +97,9 @@ fn differing<'r>(runs: &[(&'r Gathered<'_>, &Path)]) -> Vec<&'r str> {
     for (run, _) in runs {
         let settings = &run.plan.settings;
         for key in settings.table().iter().map(crate::experiment::settings::Setting::key) {
-            let Some(value) = settings.get(key).ok().filter(|_| key != GENERATIONS) else { continue };
+            let Some(value) = settings.get(key).ok().filter(|_| ![GENERATIONS, STRATEGY].contains(&key)) else {
+                continue;
+            };
             match keys.iter_mut().find(|known| known.0 == key) {
                 Some((_, first, differs)) => *differs |= *first != value,
                 None => keys.push((key, value, false)),

@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::escaped::{CUT, MOST_SHOWN, OneLine, Quoted, shortened};
 use crate::experiment::settings::Value;
 use crate::store::bounded;
+use crate::strategy::settings::STRATEGY;
 
 /// The most bytes that are read of a configuration.
 pub(crate) const MOST_BYTES: u64 = 16_000_000;
@@ -33,6 +34,8 @@ pub(crate) struct ConfigFile {
     pub(crate) name: String,
     pub(crate) experiment: Option<Entry<String>>,
     pub(crate) condition: Option<Entry<String>>,
+    /// `name` in the section `strategy`.
+    pub(crate) strategy: Option<Entry<String>>,
     pub(crate) seed: Option<Entry<u64>>,
     /// Keys and values in their order; an empty section is a key without a value.
     pub(crate) entries: Vec<(String, Entry<Option<Value>>)>,
@@ -97,6 +100,7 @@ impl ConfigFile {
             name: name.into(),
             experiment: None,
             condition: None,
+            strategy: None,
             seed: None,
             entries: Vec::new(),
             beyond: None,
@@ -135,7 +139,8 @@ impl ConfigFile {
         match (key, value) {
             ("experiment", Value::Word(word)) => self.experiment = Some(Entry { value: word, place }),
             ("condition", Value::Word(word)) => self.condition = Some(Entry { value: word, place }),
-            ("experiment" | "condition", _) => return Err(wrong("is not a name in quotes")),
+            (STRATEGY, Value::Word(word)) => self.strategy = Some(Entry { value: word, place }),
+            ("experiment" | "condition" | STRATEGY, _) => return Err(wrong("is not a name in quotes")),
             ("seed", Value::Whole(seed)) if seed >= 0 => {
                 self.seed = Some(Entry { value: seed.unsigned_abs(), place });
             }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Record, Statistics, Strategy};
+use farsa_evo::{Record, Statistics};
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
@@ -32,6 +32,7 @@ use crate::store::manifest::{Manifest, Session};
 use crate::store::replace::replace;
 use crate::strategy::history::History;
 use crate::strategy::opponents::{Hall, Meeting};
+use crate::strategy::search::Search;
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
@@ -77,7 +78,7 @@ pub(crate) fn go_on_holding(
         return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
     }
     let mut run = Run::resume(plan, directory, checkpoint, &pool, program)?;
-    let individuals = |generations: u32| u64::from(generations).saturating_mul(run.strategy.ask().len() as u64);
+    let individuals = |generations: u32| u64::from(generations).saturating_mul(run.strategy.individuals() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
     if let Some(kept) = &run.kept {
         let (log, kept) = (directory.log(), kept.display());
@@ -121,7 +122,7 @@ struct Run<'d> {
     /// Of the populations.
     names: Vec<String>,
     identity: Identity,
-    strategy: Box<dyn Strategy>,
+    strategy: Search,
     record: Record,
     /// Whom several populations still have to meet.
     hall: Hall,
@@ -164,7 +165,7 @@ impl<'d> Run<'d> {
             replace(&directory.config(), text.as_bytes())?;
         }
         let file = told.file(directory)?;
-        let lineage = lineage(plan, directory, &checkpoint, &told.record, strategy.as_ref())?;
+        let lineage = lineage(plan, directory, &checkpoint, &told.record, &strategy)?;
         let Told { record, lines, diagnostics, .. } = told;
         let (log, kept) = Log::resume(&directory.log(), lines, record.populations())?;
         Ok(Self {
@@ -192,12 +193,12 @@ impl<'d> Run<'d> {
     /// Evaluates all individuals of a generation and makes the next.
     fn generation(&mut self, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Unfinished> {
         let generation = self.strategy.generation();
-        let genomes = self.strategy.ask();
+        let individuals = self.strategy.individuals();
         let (seed, populations) = (self.identity.seed, self.strategy.populations());
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
         let trials = pool.evaluator().trials();
-        let parameters = pool.genotype().decode_all(genomes).ok_or_else(|| lost("genomes of another length"))?;
-        let meeting = Meeting { generation, populations, size: genomes.len() / populations, trials };
+        let parameters = self.strategy.parameters(pool.genotype()).ok_or_else(|| lost("genomes of another length"))?;
+        let meeting = Meeting { generation, populations, size: individuals / populations, trials };
         let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
         let id = EpisodeId { seed, generation, ..EpisodeId::default() };
         let opponents = Opponents { parameters: &opponents, each: populations - 1 };
@@ -205,21 +206,21 @@ impl<'d> Run<'d> {
         let ranked_by = self.strategy.ranked_by(&fitness);
         let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
         let best = self.strategy.champions(&ranked_by).into_iter().map(|best| {
-            let (fitness, genes) = (*ranked_by.get(best)?, genomes.get(best)?.to_vec());
+            let (fitness, genes) = (*ranked_by.get(best)?, self.strategy.genome(best)?);
             Some(Best { individual: best as u32, fitness, genes })
         });
         let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
         let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
         let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
-        let told = self.record.tell(self.strategy.as_mut(), &fitness);
+        let told = self.strategy.tell(&mut self.record, &fitness);
         told.map_err(|error| lost(&error.to_string()))?;
         let line = Line::new(&statistics, fitness.len(), &each);
-        self.told.append(&self.record, &line, self.strategy.as_ref())?;
+        self.told.append(&self.record, &line, &self.strategy)?;
         self.log.append(line)?;
         self.failures.append(&failed, self.program)?;
-        self.diagnostics.push(self.strategy.as_ref());
+        self.diagnostics.push(&self.strategy);
         if let Some(lineage) = &mut self.lineage {
-            lineage.append(&rows(self.strategy.as_ref()))?;
+            lineage.append(&rows(&self.strategy))?;
         }
         self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         self.champions = Some(Champions { identity: self.identity.clone(), generation, best });

@@ -8,6 +8,7 @@
 //! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
 //! - `evolve`: evolution from the first or any later generation on, with everything kept that is needed to go on
 //! - `fitness`: the fitness of a generation: all trials of all individuals, and which of them failed
+//! - `laboratory`: the experiments and strategies that a command knows by name, [`Laboratory`]
 //! - `plan`: what is to be run: an experiment, a condition, a seed and all settings
 //! - `pool`: trials on several threads, with the same results on any number of them
 //! - `progress`: what a waiting user sees: a bar on a terminal, plain lines elsewhere
@@ -28,6 +29,7 @@ pub(crate) mod contained;
 mod diagnostics;
 pub(crate) mod evolve;
 pub(crate) mod fitness;
+pub(crate) mod laboratory;
 pub(crate) mod plan;
 pub(crate) mod pool;
 pub(crate) mod progress;
@@ -42,4 +44,5 @@ pub(crate) mod told;
 pub(crate) mod world_choice;
 
 pub use best_of_run::BestOfRun;
+pub use laboratory::Laboratory;
 pub use world_choice::ENGINE;

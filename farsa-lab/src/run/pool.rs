@@ -79,7 +79,7 @@ impl<'e> Pool<'e> {
             return Err(Error::Usage(format!("--lanes {}: {name} has {only} only", asked.count())));
         }
         let genotype = plan.genotype(first.as_ref());
-        let settings = plan.elsewhere.as_ref().unwrap_or(&plan.settings).clone();
+        let settings = plan.settings_of_trials()?;
         let maker = Maker { experiment: plan.experiment, condition: plan.condition.clone(), settings, lanes };
         drop(first);
         let evaluators = (0..threads.max(1)).map(|_| maker.make()).collect::<Result<_, _>>()?;

@@ -86,7 +86,8 @@ pub(crate) fn run<'e>(
     drop(pool(plan)?);
     let member = |index: usize| {
         let (number, seed) = seeds[index];
-        let plan = Plan { seed, ..plan.clone() };
+        let mut plan = plan.clone();
+        plan.seed = seed;
         let path = root.join(plan.name());
         Ok(Member { plan, path, name: format!("replication {number} of {}", which.count) })
     };

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use farsa_evo::{Record, RecordEntry, Strategy};
+use farsa_evo::{Record, RecordEntry};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -17,6 +17,7 @@ use crate::store::identity::Identity;
 use crate::store::log::Line;
 use crate::store::sealed;
 use crate::strategy::history::History;
+use crate::strategy::search::Search;
 
 /// Bytes of the largest record that is read.
 const LARGEST: u64 = 1 << 32;
@@ -67,7 +68,7 @@ impl Told {
             let why = format!("was made by the strategy `{strategy}`, the experiment has `{asked}`");
             return Err(damaged(why));
         }
-        let mut record = Record::new(plan.strategy()?.as_mut()).map_err(|error| damaged(error.to_string()))?;
+        let mut record = plan.strategy()?.record().map_err(|error| damaged(error.to_string()))?;
         let each = if record.populations() > 1 { record.populations() } else { 0 };
         let (mut lines, mut diagnostics) = (Vec::new(), Vec::new());
         while !rest.is_empty() {
@@ -132,7 +133,7 @@ impl ToldFile {
     }
 
     /// Appends the last generation of a record.
-    pub(crate) fn append(&mut self, record: &Record, line: &Line, strategy: &dyn Strategy) -> Result<(), Error> {
+    pub(crate) fn append(&mut self, record: &Record, line: &Line, strategy: &Search) -> Result<(), Error> {
         let last = record.generations().checked_sub(1).and_then(|last| record.entry(last));
         let Some(RecordEntry { frame, state }) = last else { return Ok(()) };
         let entry = Entry { frame, state, line: line.clone(), diagnostics: strategy.diagnostics() };

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use farsa_num::crc32;
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
 use crate::run::config_file::Entry;
+use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
+use crate::strategy::settings::STRATEGY;
 use crate::sweep::sweep_file::{Axis, SweepFile};
 
 /// The most points, and runs of all points.
@@ -20,7 +21,7 @@ const LONGEST: usize = 160;
 /// The points of a file, each with a name of its own and settings that are allowed.
 pub(crate) struct Points<'f, 'e> {
     file: &'f SweepFile,
-    experiments: &'f [&'e dyn Experiment],
+    laboratory: &'f Laboratory<'e>,
     names: Vec<String>,
 }
 
@@ -29,7 +30,7 @@ impl<'f, 'e> Points<'f, 'e> {
     ///
     /// # Errors
     /// [`Error::Usage`] for too many points, and for two that are the same; those of [`Plan::from_file`], with the line.
-    pub(crate) fn new(file: &'f SweepFile, experiments: &'f [&'e dyn Experiment]) -> Result<Self, Error> {
+    pub(crate) fn new(file: &'f SweepFile, laboratory: &'f Laboratory<'e>) -> Result<Self, Error> {
         let rows = file.axes.iter().map(|axis| axis.rows.len());
         let count = rows.clone().try_fold(1_usize, usize::checked_mul).filter(|count| *count <= MOST_POINTS);
         let name = &file.base.name;
@@ -41,7 +42,7 @@ impl<'f, 'e> Points<'f, 'e> {
         if count * seeds > MOST_RUNS {
             return Err(Error::Usage(format!("{name}: more than {MOST_RUNS} runs: {count} points of {seeds}")));
         }
-        let mut points = Self { file, experiments, names: Vec::new() };
+        let mut points = Self { file, laboratory, names: Vec::new() };
         let mut known: BTreeMap<String, usize> = BTreeMap::new();
         for point in 0..count {
             let name = points.name_of(point)?;
@@ -73,7 +74,7 @@ impl<'f, 'e> Points<'f, 'e> {
         for (key, Entry { value, place }) in self.values(point) {
             file.put(&key.value, value.clone(), place)?;
         }
-        let mut plan = Plan::from_file(self.experiments, &file)?;
+        let mut plan = Plan::from_file(self.laboratory, &file)?;
         plan.seed = self.file.seeds.first().copied().unwrap_or(plan.seed);
         Ok(plan)
     }
@@ -107,7 +108,10 @@ impl<'f, 'e> Points<'f, 'e> {
     fn name_of(&self, point: usize) -> Result<String, Error> {
         let plan = self.plan(point)?;
         let keys: Vec<&str> = self.file.axes.iter().flat_map(|axis| &axis.keys).map(|key| key.value.as_str()).collect();
-        let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
+        let last = |key: &str| match key {
+            STRATEGY => "strategy".to_owned(),
+            key => key.rsplit('.').next().unwrap_or_default().to_owned(),
+        };
         let parts = self.values(point).map(|(Entry { value: key, .. }, entry)| {
             let short = last(key);
             let short = if keys.iter().filter(|other| last(other) == short).count() > 1 { key.clone() } else { short };
@@ -141,6 +145,7 @@ fn folder(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::definition::Experiment;
     use crate::experiment::evaluator::Evaluator;
     use crate::experiment::settings::{Setting, Settings};
 
@@ -171,8 +176,8 @@ mod tests {
 
     fn names(text: &str) -> Result<Vec<String>, String> {
         let file = SweepFile::parse("my.toml", &format!("experiment = \"toy\"\n{text}")).map_err(|e| e.to_string())?;
-        let experiments: [&dyn Experiment; 1] = [&Toy];
-        Points::new(&file, &experiments).map(|points| points.names.clone()).map_err(|error| error.to_string())
+        let laboratory = Laboratory::new(&[&Toy]);
+        Points::new(&file, &laboratory).map(|points| points.names.clone()).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -197,8 +202,8 @@ mod tests {
     fn a_point_has_its_own_values_and_those_of_all() {
         let text = "experiment = \"toy\"\nseed = [8, 3]\nworld.map = \"m\"\n[grid]\ncondition = [\"rough\", \"smooth\"]\ntrial.step = [3, 5]\n";
         let file = SweepFile::parse("my.toml", text).unwrap();
-        let experiments: [&dyn Experiment; 1] = [&Toy];
-        let points = Points::new(&file, &experiments).unwrap();
+        let laboratory = Laboratory::new(&[&Toy]);
+        let points = Points::new(&file, &laboratory).unwrap();
         let plan = points.plan(2).unwrap();
         assert_eq!((plan.condition.as_str(), plan.seed, plan.name().as_str()), ("smooth", 8, "toy-smooth-8"));
         assert_eq!((plan.settings.whole("trial.step").unwrap(), plan.settings.text("world.map").unwrap()), (3, "m"));

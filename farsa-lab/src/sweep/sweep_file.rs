@@ -7,6 +7,7 @@ use crate::experiment::settings::Value;
 use crate::run::config_file::{ConfigFile, Entry, Found, MOST_BYTES};
 use crate::run::plan::LARGEST_SEED;
 use crate::store::bounded;
+use crate::strategy::settings::STRATEGY;
 
 /// The most replications of a point; a list is not longer either.
 const MOST_SEEDS: i64 = 10_000;
@@ -74,8 +75,10 @@ impl SweepFile {
         for (index, key) in keys.iter().enumerate() {
             let other = keys.iter().take(index).find(|other| other.value == key.value).map(|other| &other.place);
             let own = base.entries.iter().find(|(other, _)| *other == key.value).map(|(_, entry)| &entry.place);
-            let condition = base.condition.as_ref().filter(|_| key.value == "condition").map(|entry| &entry.place);
-            if let Some(first) = other.or(own).or(condition) {
+            let named = [("condition", &base.condition), (STRATEGY, &base.strategy)];
+            let named = named.into_iter().find(|(name, _)| key.value == *name);
+            let named = named.and_then(|(_, entry)| entry.as_ref()).map(|entry| &entry.place);
+            if let Some(first) = other.or(own).or(named) {
                 let line = first.rsplit(' ').next().unwrap_or_default();
                 return Err(wrong(key, &format!("has a value in line {line} already")));
             }

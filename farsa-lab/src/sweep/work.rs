@@ -7,8 +7,8 @@ use std::sync::atomic::AtomicBool;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
 use crate::figures::statistics::{Quartiles, median};
+use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::queue::{Member, Queue, State, finished};
@@ -17,7 +17,7 @@ use crate::run::text_table::text_table;
 use crate::sweep::points::Points;
 use crate::sweep::sweep_file::SweepFile;
 
-/// A sweep over experiments, and where its runs lie.
+/// A sweep over laboratory, and where its runs lie.
 pub(crate) struct Sweep<'s, 'e> {
     points: Points<'s, 'e>,
     seeds: &'s [u64],
@@ -61,12 +61,8 @@ impl<'s, 'e> Sweep<'s, 'e> {
     ///
     /// # Errors
     /// Those of [`Points::new`].
-    pub(crate) fn new(
-        file: &'s SweepFile,
-        experiments: &'s [&'e dyn Experiment],
-        root: &'s Path,
-    ) -> Result<Self, Error> {
-        let points = Points::new(file, experiments)?;
+    pub(crate) fn new(file: &'s SweepFile, laboratory: &'s Laboratory<'e>, root: &'s Path) -> Result<Self, Error> {
+        let points = Points::new(file, laboratory)?;
         Ok(Self { points, seeds: &file.seeds, root, latest: RefCell::new(None) })
     }
 
@@ -91,11 +87,11 @@ impl<'s, 'e> Sweep<'s, 'e> {
 
     fn member(&self, (point, seed): (usize, usize)) -> Result<Member<'e>, Error> {
         let mut latest = self.latest.borrow_mut();
-        let plan = match &*latest {
+        let mut plan = match &*latest {
             Some((known, plan)) if *known == point => plan.clone(),
             _ => latest.insert((point, self.points.plan(point)?)).1.clone(),
         };
-        let plan = Plan { seed: self.seeds[seed], ..plan };
+        plan.seed = self.seeds[seed];
         let path = self.directory(point).join(plan.name());
         let name = match self.seeds.len() {
             1 => format!("point {} of {}", point + 1, self.points.count()),

@@ -33,6 +33,8 @@ pub(crate) enum Command {
     List(ListArgs),
     /// Describe an experiment, with every setting and its source
     Info(InfoArgs),
+    /// List the strategies, with every setting and its source
+    Strategies(StrategiesArgs),
     /// Evolve, or go on with a run
     Run(RunArgs),
     /// Run an experiment at many settings, those of a file
@@ -71,12 +73,24 @@ pub(crate) struct ListArgs {
 }
 
 #[derive(Args)]
+pub(crate) struct StrategiesArgs {
+    /// One of them alone
+    pub(crate) strategy: Option<String>,
+    /// Write JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
 pub(crate) struct InfoArgs {
     /// The experiment
     pub(crate) experiment: String,
     /// One of its conditions [default: its first]
     #[arg(long, value_name = "NAME")]
     pub(crate) condition: Option<String>,
+    /// A strategy in place of the experiment's own
+    #[arg(long, value_name = "NAME")]
+    pub(crate) strategy: Option<String>,
     /// Write JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -90,6 +104,9 @@ pub(crate) struct RunArgs {
     pub(crate) experiment: Option<String>,
     #[command(flatten)]
     pub(crate) variant: VariantArgs,
+    /// What to search with [default: the experiment's own]; `strategies` lists them
+    #[arg(long, value_name = "NAME")]
+    pub(crate) strategy: Option<String>,
     /// Where all random numbers come from [default: 1]
     #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: Option<u64>,
