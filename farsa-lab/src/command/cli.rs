@@ -9,6 +9,7 @@ use clap::FromArgMatches as _;
 use crate::command::arguments::export::{
     DataFormat, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs, ExportStartsArgs, ExportWhat,
 };
+use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::subcommands::{
     BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, RunArgs, StrategiesArgs,
     TestArgs,
@@ -122,17 +123,7 @@ impl<'e> Invocation<'e, '_> {
                 let found = self.sweep(&args)?;
                 self.summary(args.json, &found.text(), &|| pretty(&found))
             }
-            Command::Merge(args) => {
-                let found = args.merge().make(laboratory)?;
-                if !args.prints() {
-                    return self.summary(args.json, &found.text(), &|| pretty(&found));
-                }
-                if !quiet {
-                    // The standard output is the table's.
-                    let _ = write!(io::stderr(), "{}", escaped(&found.text()));
-                }
-                say(&found.table)
-            }
+            Command::Merge(args) => self.merge(&args),
             Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
                 let (mut directory, mut plan) = self.existing(&directory)?;
                 let other = world_choice::visit(&mut plan, world.name.as_deref())?;
@@ -294,6 +285,18 @@ impl<'e> Invocation<'e, '_> {
         let pool = |plan: &Plan<'e>| args.workers.pool(plan);
         let which = replications::Which { count, only: args.replication };
         replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
+    }
+
+    /// Brings runs together; their table goes to the standard output where no other place was named.
+    fn merge(&self, args: &MergeArgs) -> Result<(), Error> {
+        let found = args.merge().make(self.laboratory)?;
+        if !args.prints() {
+            return self.summary(args.json, &found.text(), &|| pretty(&found));
+        }
+        if !self.quiet {
+            let _ = write!(io::stderr(), "{}", escaped(&found.text()));
+        }
+        say(&found.table)
     }
 
     /// The runs of all points of a file, or what there is of them.
