@@ -12,10 +12,12 @@ mod experiment;
 mod export;
 mod figures;
 mod json;
+mod merge;
 mod report;
 mod run;
 mod store;
 mod strategy;
+mod sweep;
 
 #[cfg(feature = "command")]
 pub use command::cli;

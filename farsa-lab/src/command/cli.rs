@@ -9,10 +9,12 @@ use clap::FromArgMatches as _;
 use crate::command::arguments::export::{
     DataFormat, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs, ExportStartsArgs, ExportWhat,
 };
+use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::subcommands::{
-    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs,
-    StrategiesArgs, TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, RunArgs, StrategiesArgs,
+    TestArgs,
 };
+use crate::command::arguments::sweep::SweepArgs;
 use crate::command::interrupt::{START_AGAIN, stop_on_signals, under_scheduler};
 use crate::command::{info, manual, strategies};
 use crate::error::Error;
@@ -35,6 +37,8 @@ use crate::run::{evolve, world_choice};
 use crate::store::directory::Directory;
 use crate::store::replace::{create_result, create_results};
 use crate::strategy::settings::{GENERATIONS, POPULATION};
+use crate::sweep::SweepFile;
+use crate::sweep::work::{self, Sweep};
 
 /// Runs the command over these experiments with the process's arguments: the whole of a `main`.
 ///
@@ -115,6 +119,11 @@ impl<'e> Invocation<'e, '_> {
                 let found = self.start_or_resume(&args)?;
                 self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
             }
+            Command::Sweep(args) => {
+                let found = self.sweep(&args)?;
+                self.summary(args.json, &found.text(), &|| pretty(&found))
+            }
+            Command::Merge(args) => self.merge(&args),
             Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
                 let (mut directory, mut plan) = self.existing(&directory)?;
                 let other = world_choice::visit(&mut plan, world.name.as_deref())?;
@@ -144,10 +153,10 @@ impl<'e> Invocation<'e, '_> {
                 let found = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
                 self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
             }
-            Command::Report(ReportArgs { directories, html, md, json }) => {
-                let runs = directories.iter().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
-                let found = write::report(runs, html.as_deref(), md.as_deref(), program)?;
-                self.summary(json, &found.text(), &|| pretty(&found))
+            Command::Report(args) => {
+                let runs = args.directories.iter().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
+                let found = write::report(runs, args.html.as_deref(), args.md.as_deref(), args.success(), program)?;
+                self.summary(args.json, &found.text(), &|| pretty(&found))
             }
             Command::Export(ExportArgs { what }) => {
                 let (content, out) = self.exported(what)?;
@@ -274,7 +283,32 @@ impl<'e> Invocation<'e, '_> {
         let (_, plan) = self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
         let pool = |plan: &Plan<'e>| args.workers.pool(plan);
-        replications::run(plan, count, &root, &pool, stop_on_signals, self.program, self.quiet)
+        let which = replications::Which { count, only: args.replication };
+        replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
+    }
+
+    /// Brings runs together; their table goes to the standard output where no other place was named.
+    fn merge(&self, args: &MergeArgs) -> Result<(), Error> {
+        let found = args.merge().make(self.laboratory)?;
+        if !args.prints() {
+            return self.summary(args.json, &found.text(), &|| pretty(&found));
+        }
+        if !self.quiet {
+            let _ = write!(io::stderr(), "{}", escaped(&found.text()));
+        }
+        say(&found.table)
+    }
+
+    /// The runs of all points of a file, or what there is of them.
+    fn sweep(&self, args: &SweepArgs) -> Result<work::Found, Error> {
+        let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
+        let sweep = Sweep::new(&file, self.laboratory, &root)?;
+        let ready = |plan: &Plan<'e>| args.workers.check(plan);
+        if args.list {
+            return sweep.list(which, &ready);
+        }
+        let pool = |plan: &Plan<'e>| args.workers.pool(plan);
+        sweep.work(which, &ready, &pool, stop_on_signals, (self.program, self.quiet))
     }
 
     fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {

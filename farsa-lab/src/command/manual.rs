@@ -13,8 +13,9 @@ use crate::error::Error;
 use crate::run::laboratory::Laboratory;
 use crate::store::replace::create_results;
 
-/// Without headings and spare lines, so that a screen of 24 lines has room for the tour, which follows.
-const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n{options}\n";
+/// Without headings and spare lines, and the options in one, so that a screen of 24 lines has room for the tour, which follows.
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\
+    Options: -q, --quiet: no progress and no summary; -h, --help; -V, --version\n";
 
 /// The command line under the name of the program, with examples about its own first experiment.
 pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
@@ -32,7 +33,6 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
     };
     let tour = [
         format!("run {experiment} --generations 20"),
-        format!("test {run}"),
         format!("replay {run} --html trial.html"),
         format!("report {run} --html report.html"),
     ];
@@ -44,7 +44,15 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
         .disable_help_subcommand(true)
         .help_template(format!("{TEMPLATE}{tour}"))
         .after_help(tour);
-    for (name, lines) in [
+    for (name, lines) in examples_of_each(program, experiment, &run, &other) {
+        command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
+    }
+    command
+}
+
+/// Examples for each subcommand: about an experiment, one of its runs and, as an option, another of its conditions.
+fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> Vec<(&'static str, Vec<String>)> {
+    vec![
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),
         (
@@ -58,6 +66,8 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
                 format!("run {experiment} --strategy cma-es --seed 3"),
             ],
         ),
+        ("sweep", vec!["sweep friction.toml --list".into(), "sweep friction.toml --point 3".into()]),
+        ("merge", vec!["merge runs > runs.csv".into(), "merge node1/runs node2/runs --out runs --csv runs.csv".into()]),
         ("strategies", vec!["strategies".into(), "strategies cma-es".into()]),
         ("test", vec![format!("test {run} --trials 1000 --seed 2")]),
         (
@@ -94,6 +104,7 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
             vec![
                 format!("report {run} --html report.html"),
                 "report runs/* --html report.html --md report.md".to_owned(),
+                "report runs/* --html report.html --success-share 0.8".to_owned(),
             ],
         ),
         (
@@ -114,10 +125,7 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
         ("bench", vec![format!("bench {experiment}"), format!("bench --run {run} --threads 1 --lanes 1 --seconds 60")]),
         ("completions", vec![format!("completions bash > ~/.local/share/bash-completion/completions/{program}")]),
         ("man", vec!["man | man -l -".into(), "man --out ~/.local/share/man/man1".into()]),
-    ] {
-        command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
-    }
-    command
+    ]
 }
 
 /// The version of this crate, under whose name a program of somebody else must not give it.

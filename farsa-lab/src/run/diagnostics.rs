@@ -68,7 +68,7 @@ impl DiagnosticsTable {
                 Curve { name: Some((*label).into()), color, values, band: Vec::new() }
             });
             let curves = curves.collect();
-            Chart { title: format!("{title}: {}", chart.title), axis: chart.axis, curves }
+            Chart { title: format!("{title}: {}", chart.title), axis: chart.axis, curves, ..Chart::default() }
         });
         plot::stack(&charts.collect::<Vec<_>>())
     }

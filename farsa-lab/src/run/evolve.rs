@@ -46,14 +46,30 @@ const LARGEST_CONFIG: u64 = 16 << 20;
 pub(crate) fn go_on(
     plan: &Plan<'_>,
     directory: &Directory,
-    mut pool: Pool<'_>,
+    pool: Pool<'_>,
     stop: &AtomicBool,
     program: &str,
     quiet: bool,
 ) -> Result<Summary, Error> {
     evolved(directory)?;
     // The lock comes before anything is read that another process might be writing.
-    let _lock = Lock::of_run(directory.path())?;
+    let lock = Lock::of_run(directory.path())?;
+    go_on_holding(&lock, plan, directory, pool, stop, program, quiet)
+}
+
+/// The same with a run whose lock is held already.
+///
+/// # Errors
+/// As [`go_on`].
+pub(crate) fn go_on_holding(
+    _lock: &Lock,
+    plan: &Plan<'_>,
+    directory: &Directory,
+    mut pool: Pool<'_>,
+    stop: &AtomicBool,
+    program: &str,
+    quiet: bool,
+) -> Result<Summary, Error> {
     let path = directory.checkpoint();
     let checkpoint = Checkpoint::read(plan, directory)?;
     checkpoint.identity.same_values(&plan.identity()?, &path)?;

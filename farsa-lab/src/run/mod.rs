@@ -12,10 +12,12 @@
 //! - `plan`: what is to be run: an experiment, a condition, a seed and all settings
 //! - `pool`: trials on several threads, with the same results on any number of them
 //! - `progress`: what a waiting user sees: a bar on a terminal, plain lines elsewhere
+//! - `queue`: runs that any number of processes work at: each takes the next one that nobody has
 //! - `records`: the sealed files of a run: where to go on, what the strategy was told, who is best, and genotypes from elsewhere
 //! - `replications`: `farsa run --replications`: one plan under one seed after the other, each in a directory of its own
 //! - `summary`: what came of a run, for the command to tell
 //! - `tests`: tests of whole runs with every strategy: what is selected, written, resumed and replayed
+//! - `text_table`: tables for a terminal
 //! - `told`: `record.bin`: what the strategy was told in every generation, and what came of it
 //! - `world_choice`: which world an experiment runs in, where there is a choice
 
@@ -31,11 +33,13 @@ pub(crate) mod laboratory;
 pub(crate) mod plan;
 pub(crate) mod pool;
 pub(crate) mod progress;
+pub(crate) mod queue;
 pub(crate) mod records;
 pub(crate) mod replications;
 pub(crate) mod summary;
 #[cfg(test)]
 mod tests;
+pub(crate) mod text_table;
 pub(crate) mod told;
 pub(crate) mod world_choice;
 

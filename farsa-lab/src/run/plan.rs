@@ -26,6 +26,7 @@ pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
 const MOST_BYTES: u64 = 1_000_000_000;
 
 /// A run before its first evaluation.
+#[derive(Clone)]
 pub(crate) struct Plan<'e> {
     pub(crate) experiment: &'e dyn Experiment,
     pub(crate) condition: String,

@@ -46,7 +46,11 @@ impl Directory {
         if fs::remove_dir(path).is_err() {
             vacant(path)?;
         }
-        fs::rename(draft.path(), path).map_err(Error::io("make", path))?;
+        if let Err(source) = fs::rename(draft.path(), path) {
+            // Another process may have been faster.
+            vacant(path)?;
+            return Err(Error::io("make", path)(source));
+        }
         // It has another name now, under which nobody removes it.
         let _ = draft.keep();
         sync_directory(parent)?;

@@ -62,6 +62,14 @@ impl WorkerArgs {
         Pool::new(plan, self.threads(), self.lanes())
     }
 
+    /// Whether a plan can be evaluated so; with one thread, which is made sooner than all.
+    ///
+    /// # Errors
+    /// Those of [`Pool::new`].
+    pub(crate) fn check(&self, plan: &Plan<'_>) -> Result<(), Error> {
+        Pool::new(plan, 1, self.lanes()).map(drop)
+    }
+
     pub(crate) fn threads(&self) -> usize {
         self.threads.count()
     }
