@@ -12,6 +12,7 @@ mod experiment;
 mod export;
 mod figures;
 mod json;
+mod ranks;
 mod report;
 mod run;
 mod store;
@@ -29,6 +30,7 @@ pub use experiment::{
     Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, WithStrategy,
     mean_of_trials, network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
+pub use ranks::{Alone, Ranks};
 pub use run::{BestOfRun, ENGINE};
 pub use store::{VALUES_VERSION, read_text_file};
 pub use strategy::{

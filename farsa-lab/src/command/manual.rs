@@ -44,6 +44,10 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
         .disable_help_subcommand(true)
         .help_template(format!("{TEMPLATE}{tour}"))
         .after_help(tour);
+    // By this name go the programs that run on several ranks.
+    if program.ends_with("-mpi") {
+        command = command.mut_subcommand("run", |run| run.mut_arg("groups", |groups| groups.hide(false)));
+    }
     for (name, lines) in [
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),

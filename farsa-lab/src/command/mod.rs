@@ -5,9 +5,11 @@
 //! - `info`: `farsa list` and `farsa info`: what there is and what it is made of
 //! - `interrupt`: signals that ask a run to stop, and the exit code that asks a scheduler to start it again
 //! - `manual`: what the command says about itself: help with examples, completions, and pages of the manual
+//! - `on_ranks`: the command on several ranks: what all do before and around what rank 0 does
 
 mod arguments;
 pub mod cli;
 mod info;
 mod interrupt;
 mod manual;
+mod on_ranks;

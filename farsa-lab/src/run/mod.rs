@@ -8,11 +8,14 @@
 //! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
 //! - `evolve`: evolution from the first or any later generation on, with everything kept that is needed to go on
 //! - `fitness`: the fitness of a generation: all trials of all individuals, and which of them failed
+//! - `following`: what a rank other than the first does in a run: it holds the same search and writes nothing
+//! - `leading`: what ranks do around the generations of a run
 //! - `plan`: what is to be run: an experiment, a condition, a seed and all settings
 //! - `pool`: trials on several threads, with the same results on any number of them
 //! - `progress`: what a waiting user sees: a bar on a terminal, plain lines elsewhere
 //! - `records`: the sealed files of a run: where to go on, what the strategy was told, who is best, and genotypes from elsewhere
 //! - `replications`: `farsa run --replications`: one plan under one seed after the other, each in a directory of its own
+//! - `search`: a search in progress, the same on every rank of a run
 //! - `summary`: what came of a run, for the command to tell
 //! - `tests`: tests of whole runs with every strategy: what is selected, written, resumed and replayed
 //! - `told`: `record.bin`: what the strategy was told in every generation, and what came of it
@@ -26,11 +29,14 @@ pub(crate) mod contained;
 mod diagnostics;
 pub(crate) mod evolve;
 pub(crate) mod fitness;
+pub(crate) mod following;
+pub(crate) mod leading;
 pub(crate) mod plan;
 pub(crate) mod pool;
 pub(crate) mod progress;
 pub(crate) mod records;
 pub(crate) mod replications;
+mod search;
 pub(crate) mod summary;
 #[cfg(test)]
 mod tests;

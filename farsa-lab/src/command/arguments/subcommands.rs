@@ -103,6 +103,9 @@ pub(crate) struct RunArgs {
     /// goes on with what is not
     #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
     pub(crate) replications: Option<u32>,
+    /// So many of them side by side, each on its part of the ranks
+    #[arg(long, value_name = "G", requires = "replications", hide = true, value_parser = value_parser!(u32).range(1..))]
+    pub(crate) groups: Option<u32>,
     /// Take settings from a TOML file; --set goes before it
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
