@@ -14,6 +14,7 @@ use crate::command::arguments::subcommands::{
     BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
 };
 use crate::command::interrupt::{INTERRUPTED, START_AGAIN, stop_on_signals, under_scheduler};
+use crate::command::invocation::Invocation;
 use crate::command::on_ranks::{Part, awaits_orders};
 use crate::command::{info, manual};
 use crate::error::Error;
@@ -84,18 +85,6 @@ fn program() -> String {
     let name = path.and_then(|path| path.file_name()?.to_str().map(str::to_owned));
     // The suffix of Windows is no part of what is typed.
     name.map_or_else(|| "farsa".into(), |name| name.trim_end_matches(std::env::consts::EXE_SUFFIX).into())
-}
-
-/// The command as it was called.
-pub(crate) struct Invocation<'e, 'a> {
-    /// What the user calls this program.
-    pub(crate) program: &'a str,
-    pub(crate) experiments: &'a [&'e dyn Experiment],
-    pub(crate) quiet: bool,
-    /// The ranks that were given the same command.
-    pub(crate) exchange: Rc<Exchange<'e>>,
-    /// How many of them share this one's processors.
-    pub(crate) sharing: usize,
 }
 
 impl<'e> Invocation<'e, '_> {

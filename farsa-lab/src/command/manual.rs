@@ -16,6 +16,15 @@ use crate::store::replace::create_results;
 /// Without headings and spare lines, so that a screen of 24 lines has room for the tour, which follows.
 const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n{options}\n";
 
+/// The words of the command line; those for several ranks are shown by programs that go by such a name.
+fn words(program: &str) -> Command {
+    let command = Cli::command();
+    if program.ends_with("-mpi") {
+        return command.mut_subcommand("run", |run| run.mut_arg("groups", |groups| groups.hide(false)));
+    }
+    command
+}
+
 /// The command line under the name of the program, with examples about its own first experiment.
 pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command {
     let first = experiments.first();
@@ -37,17 +46,13 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
         format!("report {run} --html report.html"),
     ];
     let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
-    let mut command = Cli::command()
+    let mut command = words(program)
         .name(program.to_owned())
         .bin_name(program.to_owned())
         .version(version(program))
         .disable_help_subcommand(true)
         .help_template(format!("{TEMPLATE}{tour}"))
         .after_help(tour);
-    // By this name go the programs that run on several ranks.
-    if program.ends_with("-mpi") {
-        command = command.mut_subcommand("run", |run| run.mut_arg("groups", |groups| groups.hide(false)));
-    }
     for (name, lines) in [
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),

@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use crate::command::arguments::subcommands::{Command, RunArgs};
-use crate::command::cli::Invocation;
 use crate::command::interrupt::stop_on_signals;
+use crate::command::invocation::Invocation;
 use crate::error::Error;
 use crate::ranks::exchange::{Exchange, Order};
 use crate::ranks::facts::Facts;
