@@ -30,3 +30,21 @@ pub use walking::body_evolution::BodyEvolution;
 pub use walking::passive_walker;
 pub use walking::passive_walker::PassiveWalker;
 pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
+
+/// The experiments in the order in which `farsa list` shows them.
+pub fn all() -> [&'static dyn farsa_lab::Experiment; 12] {
+    [
+        &ReachGraspLift,
+        &KinestheticGrasp,
+        &Discrimination,
+        &DiscriminationCylinders,
+        &Braitenberg,
+        &MinimalCognition,
+        &Foraging,
+        &Aggregation,
+        &PredatorPrey,
+        &PushBox,
+        &PassiveWalker,
+        &BodyEvolution,
+    ]
+}

@@ -2,25 +2,8 @@
 
 use std::process::ExitCode;
 
-use farsa_experiments::{
-    Aggregation, BodyEvolution, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, KinestheticGrasp,
-    MinimalCognition, PassiveWalker, PredatorPrey, PushBox, ReachGraspLift,
-};
 use farsa_lab::cli;
 
 fn main() -> ExitCode {
-    cli::main(&[
-        &ReachGraspLift,
-        &KinestheticGrasp,
-        &Discrimination,
-        &DiscriminationCylinders,
-        &Braitenberg,
-        &MinimalCognition,
-        &Foraging,
-        &Aggregation,
-        &PredatorPrey,
-        &PushBox,
-        &PassiveWalker,
-        &BodyEvolution,
-    ])
+    cli::main(&farsa_experiments::all())
 }

@@ -111,6 +111,15 @@ pub enum Error {
         /// Its trial.
         trial: u32,
     },
+    /// What went wrong on another rank of those that run a command together.
+    Rank {
+        /// Its number.
+        rank: usize,
+        /// The exit code of the error there.
+        code: u8,
+        /// Its message.
+        why: String,
+    },
     /// Anything else an experiment has to complain about.
     Other(String),
     /// The user pressed Ctrl-C; all finished generations are kept.
@@ -158,6 +167,7 @@ impl Error {
             | Self::Panicked { .. }
             | Self::TrialPanicked { .. }
             | Self::Other(_) => 1,
+            Self::Rank { code, .. } => *code,
             Self::Interrupted { .. } => 130,
         }
     }
@@ -263,6 +273,7 @@ impl fmt::Display for Error {
             Self::TrialPanicked { generation, individual, trial } => {
                 write!(f, "trial {trial} of individual {individual} of generation {generation} panicked")
             }
+            Self::Rank { rank, why, .. } => write!(f, "rank {rank}: {}", OneLine(why)),
             Self::Interrupted { resume } => write!(f, "interrupted; go on with `{}`", OneLine(resume)),
         }
     }

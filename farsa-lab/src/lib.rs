@@ -13,6 +13,7 @@ mod export;
 mod figures;
 mod json;
 mod merge;
+mod ranks;
 mod report;
 mod run;
 mod store;
@@ -31,6 +32,7 @@ pub use experiment::{
     Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, mean_of_trials,
     network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
+pub use ranks::{Alone, Ranks};
 pub use run::{BestOfRun, ENGINE, Laboratory};
 pub use store::{VALUES_VERSION, read_text_file};
 pub use strategy::{

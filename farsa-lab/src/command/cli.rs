@@ -3,6 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::rc::Rc;
 
 use clap::FromArgMatches as _;
 
@@ -15,7 +16,9 @@ use crate::command::arguments::subcommands::{
     TestArgs,
 };
 use crate::command::arguments::sweep::SweepArgs;
-use crate::command::interrupt::{START_AGAIN, stop_on_signals, under_scheduler};
+use crate::command::interrupt::{INTERRUPTED, START_AGAIN, stop_on_signals, under_scheduler};
+use crate::command::invocation::Invocation;
+use crate::command::on_ranks::{Part, awaits_orders};
 use crate::command::{info, manual, strategies};
 use crate::error::Error;
 use crate::escaped::escaped;
@@ -25,12 +28,15 @@ use crate::experiment::settings::Value;
 use crate::export::files;
 use crate::export::robot_file;
 use crate::json::pretty;
+use crate::ranks::exchange::Exchange;
+use crate::ranks::{Alone, Ranks};
 use crate::report::write;
 use crate::run::begin;
 use crate::run::bench::{self, Bench, Sample};
 use crate::run::config_file::{ConfigFile, Entry};
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
+use crate::run::pool::Pool;
 use crate::run::replications::{self, Replications};
 use crate::run::summary::Summary;
 use crate::run::{evolve, world_choice};
@@ -48,35 +54,51 @@ pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
     Laboratory::new(experiments).main()
 }
 
+/// The same on one of several ranks that were given the same command: together they evaluate the trials of `run`, everything else
+/// is rank 0's. Only rank 0 writes files and says what goes wrong, and all end with its exit code.
+pub fn main_on_ranks(experiments: &[&dyn Experiment], ranks: &dyn Ranks) -> ExitCode {
+    Laboratory::new(experiments).main_on_ranks(ranks)
+}
+
 impl Laboratory<'_> {
     /// Runs the command over this laboratory with the process's arguments, as [`main`] does.
     pub fn main(&self) -> ExitCode {
-        execute(self)
+        execute(self, &Alone)
+    }
+
+    /// The same on one of several ranks, as [`main_on_ranks`] does.
+    pub fn main_on_ranks(&self, ranks: &dyn Ranks) -> ExitCode {
+        execute(self, ranks)
     }
 }
 
-fn execute(laboratory: &Laboratory<'_>) -> ExitCode {
+fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
     let program = program();
+    let exchange = Rc::new(Exchange::new(ranks));
+    let sharing = exchange.sharing().unwrap_or(1);
     let parsed = manual::command(&program, laboratory).try_get_matches();
     let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version are printed this way too, with exit code 0. There is nowhere to complain about a failure.
-            let _ = error.print();
+            let text = error.to_string();
+            let _ = exchange.begin(Err(Error::Usage(text.trim_start_matches("error: ").into())));
+            if !exchange.is_follower() {
+                // Help and version are printed this way too, with exit code 0. There is nowhere to complain about a failure.
+                let _ = error.print();
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    let invocation = Invocation { program: &program, laboratory, quiet: cli.quiet };
-    match invocation.execute(cli.command) {
-        Ok(()) => ExitCode::SUCCESS,
-        // The reader has seen enough: `farsa replay ... | head`.
-        Err(error) if replay::reader_left(&error) => ExitCode::SUCCESS,
-        Err(error) => {
-            let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
-            let again = matches!(error, Error::Interrupted { .. }) && under_scheduler();
-            ExitCode::from(if again { START_AGAIN } else { error.exit_code() })
-        }
-    }
+    let invocation = Invocation { program: &program, laboratory, quiet: cli.quiet, exchange, sharing };
+    let followed = awaits_orders(&cli.command);
+    let result = match invocation.take_part(&cli.command) {
+        Ok(Part::Followed(code)) => return ExitCode::from(code),
+        Ok(Part::Leads) => invocation.execute(cli.command),
+        Err(error) => return ExitCode::from(invocation.told(Err(error))),
+    };
+    let code = invocation.told(result);
+    let dismissed = if followed { invocation.dismiss(code) } else { Ok(()) };
+    ExitCode::from(dismissed.map_or_else(|error| invocation.told(Err(error)), |()| code))
 }
 
 /// What the user calls this program.
@@ -87,17 +109,25 @@ fn program() -> String {
     name.map_or_else(|| "farsa".into(), |name| name.trim_end_matches(std::env::consts::EXE_SUFFIX).into())
 }
 
-/// The command as it was called.
-struct Invocation<'e, 'a> {
-    /// What the user calls this program.
-    program: &'a str,
-    laboratory: &'a Laboratory<'e>,
-    quiet: bool,
-}
-
 impl<'e> Invocation<'e, '_> {
+    /// Says what went wrong, on rank 0, and returns the exit code.
+    fn told(&self, result: Result<(), Error>) -> u8 {
+        match result {
+            Ok(()) => 0,
+            // The reader has seen enough: `farsa replay ... | head`.
+            Err(error) if replay::reader_left(&error) => 0,
+            Err(error) => {
+                if !self.exchange.is_follower() {
+                    let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
+                }
+                let again = error.exit_code() == INTERRUPTED && under_scheduler();
+                if again { START_AGAIN } else { error.exit_code() }
+            }
+        }
+    }
+
     fn execute(&self, command: Command) -> Result<(), Error> {
-        let Self { program, laboratory, quiet } = *self;
+        let Self { program, laboratory, quiet, .. } = *self;
         match command {
             Command::List(ListArgs { json: false }) => tell(&info::list(laboratory.experiments())),
             Command::List(ListArgs { json: true }) => say(&info::list_as_json(laboratory.experiments())?),
@@ -112,8 +142,11 @@ impl<'e> Invocation<'e, '_> {
                 if json { say(&info::as_json(&plan)?) } else { tell(&info::as_text(&plan)?) }
             }
             Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
-                let found = self.replicate(&args, count)?;
-                self.summary(args.json, &found.text(), &|| pretty(&found))
+                let found = match args.groups {
+                    None => Some(self.replicate(&args, count, args.replication)?),
+                    Some(groups) => self.replicate_in_groups(&args, count, groups)?,
+                };
+                found.map_or(Ok(()), |found| self.summary(args.json, &found.text(), &|| pretty(&found)))
             }
             Command::Run(args) => {
                 let found = self.start_or_resume(&args)?;
@@ -278,12 +311,13 @@ impl<'e> Invocation<'e, '_> {
         bench::bench(&plan, &sample, pool, args.seconds)
     }
 
-    /// Runs of one plan with one seed after the other; each is begun, gone on with, or finished already.
-    fn replicate(&self, args: &RunArgs, count: u32) -> Result<Replications, Error> {
-        let (_, plan) = self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())?;
+    /// Runs of one plan with one seed after the other, or only that of a number from 1; each is begun, gone on with, or finished
+    /// already.
+    pub(crate) fn replicate(&self, args: &RunArgs, count: u32, only: Option<u32>) -> Result<Replications, Error> {
+        let (_, plan) = self.planned_from_file(args)?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
-        let pool = |plan: &Plan<'e>| args.workers.pool(plan);
-        let which = replications::Which { count, only: args.replication };
+        let pool = |plan: &Plan<'e>| self.pool(args, plan);
+        let which = replications::Which { count, only };
         replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
     }
 
@@ -315,7 +349,7 @@ impl<'e> Invocation<'e, '_> {
         let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
         let (directory, plan) = self.planned(args, file.as_ref())?;
         // What is refused leaves no directory behind.
-        let pool = args.workers.pool(&plan)?;
+        let pool = self.pool(args, &plan)?;
         let directory = match directory {
             Some(directory) => {
                 same_names(args, file.as_ref(), &plan, &directory)?;
@@ -324,6 +358,16 @@ impl<'e> Invocation<'e, '_> {
             None => begin::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
         };
         evolve::go_on(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
+    }
+
+    /// The threads of this rank.
+    pub(crate) fn pool(&self, args: &RunArgs, plan: &Plan<'e>) -> Result<Pool<'e>, Error> {
+        Ok(args.workers.pool_shared(plan, self.sharing)?.on(self.exchange.clone()))
+    }
+
+    /// What the command line and the file that it names ask for.
+    pub(crate) fn planned_from_file(&self, args: &RunArgs) -> Result<(Option<Directory>, Plan<'e>), Error> {
+        self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())
     }
 
     /// What the command line and its file ask for, and the directory that is to be gone on with.

@@ -17,6 +17,15 @@ use crate::store::replace::create_results;
 const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\
     Options: -q, --quiet: no progress and no summary; -h, --help; -V, --version\n";
 
+/// The words of the command line; those for several ranks are shown by programs that go by such a name.
+fn words(program: &str) -> Command {
+    let command = Cli::command();
+    if program.ends_with("-mpi") {
+        return command.mut_subcommand("run", |run| run.mut_arg("groups", |groups| groups.hide(false)));
+    }
+    command
+}
+
 /// The command line under the name of the program, with examples about its own first experiment.
 pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
     let first = laboratory.experiments().first();
@@ -37,7 +46,7 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
         format!("report {run} --html report.html"),
     ];
     let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
-    let mut command = Cli::command()
+    let mut command = words(program)
         .name(program.to_owned())
         .bin_name(program.to_owned())
         .version(version(program))

@@ -4,19 +4,17 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Record, Statistics};
-
 use crate::error::Error;
-use crate::experiment::episode::EpisodeId;
 use crate::figures::plot;
-use crate::run::begin::{lineage, resumed};
+use crate::run::begin::lineage;
 use crate::run::contained::contained;
 use crate::run::diagnostics::DiagnosticsTable;
-use crate::run::fitness::{Opponents, fitness_of_all};
+use crate::run::leading::{facts, lead, meet, order};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
-use crate::run::records::{Best, Champions, Checkpoint, evolved};
+use crate::run::progression::{Evaluated, Progression};
+use crate::run::records::{Champions, Checkpoint, evolved};
 use crate::run::summary::{Summary, Winner};
 use crate::run::told::{Told, ToldFile};
 use crate::store::bounded::read_own_text;
@@ -30,9 +28,6 @@ use crate::store::lock::Lock;
 use crate::store::log::{Line, Log};
 use crate::store::manifest::{Manifest, Session};
 use crate::store::replace::replace;
-use crate::strategy::history::History;
-use crate::strategy::opponents::{Hall, Meeting};
-use crate::strategy::search::Search;
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
@@ -77,40 +72,25 @@ pub(crate) fn go_on_holding(
     if last < done {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
     }
+    let (order, facts) = (order(plan, directory, &pool, &checkpoint)?, facts(plan)?);
     let mut run = Run::resume(plan, directory, checkpoint, &pool, program)?;
-    let individuals = |generations: u32| u64::from(generations).saturating_mul(run.strategy.individuals() as u64);
+    let individuals =
+        |generations: u32| u64::from(generations).saturating_mul(run.progression.search.individuals() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
     if let Some(kept) = &run.kept {
         let (log, kept) = (directory.log(), kept.display());
         progress
             .note(&format!("{}: had been changed: that is kept as {kept}, and the log written anew", log.display()));
     }
-    let mut saved = Instant::now();
-    let mut ended = Ok(());
-    while run.strategy.generation() < last {
-        let generation = run.strategy.generation();
-        // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
-        let result = contained(|| run.generation(&mut pool, stop, &progress));
-        match result.map_err(|why| Error::Panicked { generation, why })? {
-            Ok(()) => {}
-            Err(Unfinished::Error(error)) => return Err(error),
-            Err(Unfinished::Stopped) => {
-                let resume = format!("{program} run --resume {}", directory.path().display());
-                ended = Err(Error::Interrupted { resume });
-                break;
-            }
+    lead(&mut pool, order, facts, |pool| {
+        let ended = run.evolve(last, pool, stop, &progress);
+        if let Some(total) = run.told_of_failures() {
+            progress.note(&total);
         }
-        if saved.elapsed() >= UNSAVED {
-            run.save()?;
-            saved = Instant::now();
-        }
-    }
-    run.save()?;
-    if let Some(total) = run.told_of_failures() {
-        progress.note(&total);
-    }
+        ended
+    })?;
     drop(progress);
-    ended.map(|()| run.summary())
+    Ok(run.summary())
 }
 
 /// A run in progress.
@@ -122,10 +102,7 @@ struct Run<'d> {
     /// Of the populations.
     names: Vec<String>,
     identity: Identity,
-    strategy: Search,
-    record: Record,
-    /// Whom several populations still have to meet.
-    hall: Hall,
+    progression: Progression,
     told: ToldFile,
     log: Log,
     /// Where the log that somebody had changed is kept.
@@ -152,31 +129,25 @@ impl<'d> Run<'d> {
         program: &'d str,
     ) -> Result<Self, Error> {
         let mut told = Told::read(plan, directory, &checkpoint)?;
-        let strategy = resumed(plan, directory, &checkpoint, &told.record)?;
-        let hall = match told.record.populations() {
-            1 => Hall::default(),
-            _ => Hall::before(&History::new(directory.record(), told.record.clone(), plan.fresh()), pool.genotype())?,
-        };
+        let progression = Progression::resume(plan, directory, &checkpoint, told.record.clone(), pool)?;
         let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
-        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), strategy.generation()));
+        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), progression.search.generation()));
         let text = plan.to_toml()?;
         draft::sweep(directory.path());
         if read_own_text(&directory.config(), LARGEST_CONFIG).ok().as_ref() != Some(&text) {
             replace(&directory.config(), text.as_bytes())?;
         }
         let file = told.file(directory)?;
-        let lineage = lineage(plan, directory, &checkpoint, &told.record, &strategy)?;
-        let Told { record, lines, diagnostics, .. } = told;
-        let (log, kept) = Log::resume(&directory.log(), lines, record.populations())?;
+        let lineage = lineage(plan, directory, &checkpoint, &told.record, &progression.search)?;
+        let Told { lines, diagnostics, .. } = told;
+        let (log, kept) = Log::resume(&directory.log(), lines, progression.record.populations())?;
         Ok(Self {
             directory,
             program,
             title: plan.name(),
             names: pool.evaluator().populations(),
             identity: checkpoint.identity,
-            strategy,
-            record,
-            hall,
+            progression,
             told: file,
             log,
             kept,
@@ -190,39 +161,46 @@ impl<'d> Run<'d> {
         })
     }
 
+    /// Evolves up to a generation, and keeps everything from time to time and at the end.
+    fn evolve(&mut self, last: u32, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Error> {
+        let mut saved = Instant::now();
+        let mut ended = Ok(());
+        while self.progression.search.generation() < last {
+            let generation = self.progression.search.generation();
+            // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
+            let result = contained(|| meet(pool, stop).and_then(|()| self.generation(pool, stop, progress)));
+            match result.map_err(|why| Error::Panicked { generation, why })? {
+                Ok(()) => {}
+                Err(Unfinished::Error(error)) => return Err(error),
+                Err(Unfinished::Stopped) => {
+                    let resume = format!("{} run --resume {}", self.program, self.directory.path().display());
+                    ended = Err(Error::Interrupted { resume });
+                    break;
+                }
+            }
+            if saved.elapsed() >= UNSAVED {
+                self.save()?;
+                saved = Instant::now();
+            }
+        }
+        self.save()?;
+        ended
+    }
+
     /// Evaluates all individuals of a generation and makes the next.
     fn generation(&mut self, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Unfinished> {
-        let generation = self.strategy.generation();
-        let individuals = self.strategy.individuals();
-        let (seed, populations) = (self.identity.seed, self.strategy.populations());
-        let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
-        let trials = pool.evaluator().trials();
-        let parameters = self.strategy.parameters(pool.genotype()).ok_or_else(|| lost("genomes of another length"))?;
-        let meeting = Meeting { generation, populations, size: individuals / populations, trials };
-        let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
-        let id = EpisodeId { seed, generation, ..EpisodeId::default() };
-        let opponents = Opponents { parameters: &opponents, each: populations - 1 };
-        let (fitness, failed) = fitness_of_all(pool, &parameters, opponents, id, stop, progress)?;
-        let ranked_by = self.strategy.ranked_by(&fitness);
-        let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
-        let best = self.strategy.champions(&ranked_by).into_iter().map(|best| {
-            let (fitness, genes) = (*ranked_by.get(best)?, self.strategy.genome(best)?);
-            Some(Best { individual: best as u32, fitness, genes })
-        });
-        let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
-        let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
-        let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
-        let told = self.strategy.tell(&mut self.record, &fitness);
-        told.map_err(|error| lost(&error.to_string()))?;
+        let generation = self.progression.search.generation();
+        let Evaluated { fitness, failed, statistics, each, best } =
+            self.progression.generation(pool, stop, progress)?;
+        let search = &self.progression.search;
         let line = Line::new(&statistics, fitness.len(), &each);
-        self.told.append(&self.record, &line, &self.strategy)?;
+        self.told.append(&self.progression.record, &line, search)?;
         self.log.append(line)?;
         self.failures.append(&failed, self.program)?;
-        self.diagnostics.push(&self.strategy);
+        self.diagnostics.push(search);
         if let Some(lineage) = &mut self.lineage {
-            lineage.append(&rows(&self.strategy))?;
+            lineage.append(&rows(search))?;
         }
-        self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.generations += 1;
@@ -261,8 +239,8 @@ impl<'d> Run<'d> {
             champions.write(&directory.champion())?;
         }
         self.diagnostics.write(directory, &self.title)?;
-        let generation = self.strategy.generation();
-        let state = self.strategy.snapshot().map(|strategy| strategy.save());
+        let generation = self.progression.search.generation();
+        let state = self.progression.search.snapshot().map(|strategy| strategy.save());
         Checkpoint { identity: identity.clone(), generation, record, lineage, failures, state }
             .write(&directory.checkpoint())?;
         if let Some(session) = self.manifest.sessions.last_mut() {
@@ -283,7 +261,7 @@ impl<'d> Run<'d> {
             experiment,
             condition,
             seed,
-            generations: self.strategy.generation(),
+            generations: self.progression.search.generation(),
             evaluations: session.map_or(0, |session| session.evaluations),
             seconds: session.map_or(0.0, |session| session.seconds),
             champion: champions.first().cloned(),

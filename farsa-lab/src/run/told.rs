@@ -57,9 +57,21 @@ impl Told {
     /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy than the experiment's.
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Self, Error> {
         evolved(directory)?;
+        Self::from_content(plan, directory, checkpoint, Self::content(directory, checkpoint)?)
+    }
+
+    /// The same from what the file holds up to the checkpoint.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(crate) fn from_content(
+        plan: &Plan<'_>,
+        directory: &Directory,
+        checkpoint: &Checkpoint,
+        content: Vec<u8>,
+    ) -> Result<Self, Error> {
         let path = directory.record();
         let damaged = |why: String| Error::damaged(&path, why);
-        let content = growing::read(&path, checkpoint.record, LARGEST)?;
         let (head, mut rest) = sealed::open_first::<RecordHead>(&content).map_err(damaged)?;
         let RecordHead { identity, strategy } = head;
         plan.same_run(&identity, directory.path())?;
@@ -95,6 +107,14 @@ impl Told {
             return Err(damaged(format!("{found} generations where checkpoint.bin speaks of {expected}")));
         }
         Ok(Self { identity, record, lines, diagnostics, content })
+    }
+
+    /// What the file holds up to a checkpoint.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Damaged`] when it is not what the checkpoint speaks of.
+    pub(crate) fn content(directory: &Directory, checkpoint: &Checkpoint) -> Result<Vec<u8>, Error> {
+        growing::read(&directory.record(), checkpoint.record, LARGEST)
     }
 
     /// Opens the file for a run that goes on, and forgets what came after the checkpoint.

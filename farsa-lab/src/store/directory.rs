@@ -17,7 +17,8 @@ pub(crate) struct Directory {
 }
 
 impl Directory {
-    fn at(path: PathBuf) -> Self {
+    /// A directory that need not be here, for messages about its files.
+    pub(crate) fn at(path: PathBuf) -> Self {
         Self { path, tests: String::new() }
     }
 

@@ -130,6 +130,9 @@ pub(crate) struct RunArgs {
     /// Only the K-th of them, from 1: for one task of an array
     #[arg(long, value_name = "K", requires = "replications", value_parser = value_parser!(u32).range(1..))]
     pub(crate) replication: Option<u32>,
+    /// So many of them side by side, each on its part of the ranks
+    #[arg(long, value_name = "G", requires = "replications", conflicts_with = "replication", hide = true, value_parser = value_parser!(u32).range(1..))]
+    pub(crate) groups: Option<u32>,
     /// Take settings from a TOML file; --set goes before it
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,

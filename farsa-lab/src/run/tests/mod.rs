@@ -2,6 +2,7 @@
 //!
 //! - `reference`: our strategies, against what is computed by hand
 //! - `pool`: a pool's threads: outcomes in their order, stops, and panics alone and in lanes
+//! - `ranks`: runs on ranks that are threads
 //! - `own_strategy`: a strategy of a user's own
 //! - `files`: what is refused, and what is mended
 //! - `faults`: evaluations that panic, that are no number and that do not end
@@ -11,6 +12,7 @@ mod faults;
 mod files;
 mod own_strategy;
 mod pool;
+mod ranks;
 mod reference;
 
 use std::fs;
