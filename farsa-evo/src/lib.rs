@@ -6,6 +6,7 @@ extern crate alloc;
 
 mod champion;
 mod coevolution;
+mod coevolving;
 mod config;
 mod conformance;
 mod covariance;
@@ -37,6 +38,7 @@ mod word_map;
 
 pub use champion::Champion;
 pub use coevolution::Coevolution;
+pub use coevolving::{Cosyne, CosyneConfig, Permutation};
 pub use config::{GaConfig, OnePlusOneConfig};
 pub use conformance::check_strategy;
 pub use covariance::{

@@ -4,6 +4,7 @@
 pub mod aggregation;
 pub mod braitenberg;
 pub mod discrimination;
+pub mod double_pole;
 pub mod foraging;
 mod infrared;
 pub mod kinesthetic_grasp;
@@ -19,6 +20,7 @@ mod worlds;
 pub use aggregation::Aggregation;
 pub use braitenberg::Braitenberg;
 pub use discrimination::{Discrimination, DiscriminationCylinders};
+pub use double_pole::DoublePole;
 pub use foraging::Foraging;
 pub use kinesthetic_grasp::KinestheticGrasp;
 pub use minimal_cognition::MinimalCognition;
@@ -32,7 +34,7 @@ pub use walking::passive_walker::PassiveWalker;
 pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
 /// The experiments in the order in which `farsa list` shows them.
-pub fn all() -> [&'static dyn farsa_lab::Experiment; 12] {
+pub fn all() -> [&'static dyn farsa_lab::Experiment; 13] {
     [
         &ReachGraspLift,
         &KinestheticGrasp,
@@ -40,6 +42,7 @@ pub fn all() -> [&'static dyn farsa_lab::Experiment; 12] {
         &DiscriminationCylinders,
         &Braitenberg,
         &MinimalCognition,
+        &DoublePole,
         &Foraging,
         &Aggregation,
         &PredatorPrey,

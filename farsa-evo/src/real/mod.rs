@@ -17,7 +17,7 @@ mod evolution_strategy;
 mod evolution_strategy_config;
 mod mutation;
 pub(crate) mod polynomial_mutation;
-mod ranking;
+pub(crate) mod ranking;
 mod real_ga;
 mod real_ga_config;
 mod selection;

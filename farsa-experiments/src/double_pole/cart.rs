@@ -1,0 +1,104 @@
+//! The cart, its poles and their equations of motion.
+
+use farsa_num::sin_cos;
+
+/// A pole on the cart: a thin uniform rod on a hinge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pole {
+    /// Half its length l \[m\].
+    pub half_length: f64,
+    /// Its mass m \[kg\].
+    pub mass: f64,
+    /// Coefficient of friction of its hinge \[N m s\].
+    pub friction: f64,
+}
+
+/// A cart on a straight track with two poles that do not touch each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cart {
+    /// Mass M of the cart \[kg\].
+    pub mass: f64,
+    /// Friction of the cart on its track, whatever its speed \[N\].
+    pub friction: f64,
+    /// Acceleration of gravity \[m/s^2\].
+    pub gravity: f64,
+    /// The poles.
+    pub poles: [Pole; 2],
+}
+
+/// Where a cart and its poles are, and how they move.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CartState {
+    /// Position of the cart \[m\].
+    pub position: f64,
+    /// Its velocity \[m/s\].
+    pub velocity: f64,
+    /// Angles of the poles from upright, towards larger positions \[rad\].
+    pub angles: [f64; 2],
+    /// Their angular velocities \[rad/s\].
+    pub angular_velocities: [f64; 2],
+}
+
+impl CartState {
+    /// This state after a time at constant rates.
+    #[inline]
+    fn moved(&self, rates: &Self, time: f64) -> Self {
+        let of_both = |of: [f64; 2], rates: [f64; 2]| [of[0] + time * rates[0], of[1] + time * rates[1]];
+        Self {
+            position: self.position + time * rates.position,
+            velocity: self.velocity + time * rates.velocity,
+            angles: of_both(self.angles, rates.angles),
+            angular_velocities: of_both(self.angular_velocities, rates.angular_velocities),
+        }
+    }
+}
+
+impl Default for Cart {
+    /// The values of \[Gomez2008\] appendix A; the acceleration of gravity, which is not named there, is that of \[Wieland1991\].
+    fn default() -> Self {
+        let pole = |half_length, mass| Pole { half_length, mass, friction: 0.000_002 };
+        Self { mass: 1.0, friction: 0.0005, gravity: 9.8, poles: [pole(0.5, 0.1), pole(0.05, 0.01)] }
+    }
+}
+
+impl Cart {
+    /// The accelerations of the cart \[m/s^2\] and of the poles \[rad/s^2\] under a force on the cart \[N\].
+    ///
+    /// Source: \[Wieland1991\], as printed in \[Gomez2008\] appendix A; no deviation but the sign of g, which is positive here.
+    #[inline]
+    pub fn accelerations(&self, state: &CartState, force: f64) -> (f64, [f64; 2]) {
+        let CartState { velocity, angles, angular_velocities, .. } = *state;
+        let sign = f64::from(i8::from(velocity > 0.0) - i8::from(velocity < 0.0));
+        let (mut push, mut mass) = (force - self.friction * sign, self.mass);
+        let mut parts = [[0.0; 2]; 2];
+        for (((pole, angle), speed), part) in self.poles.iter().zip(angles).zip(angular_velocities).zip(&mut parts) {
+            let (sine, cosine) = sin_cos(angle);
+            let (l, m) = (pole.half_length, pole.mass);
+            let pull = pole.friction * speed / (m * l) - self.gravity * sine;
+            push += m * l * speed * speed * sine + 0.75 * m * cosine * pull;
+            mass += m * (1.0 - 0.75 * cosine * cosine);
+            *part = [cosine, pull];
+        }
+        let cart = push / mass;
+        let turn = |pole: &Pole, [cosine, pull]: [f64; 2]| -0.75 / pole.half_length * (cart * cosine + pull);
+        (cart, [turn(&self.poles[0], parts[0]), turn(&self.poles[1], parts[1])])
+    }
+
+    /// How fast a state changes under a force \[N\].
+    #[inline]
+    fn rates(&self, state: &CartState, force: f64) -> CartState {
+        let (velocity, angular_velocities) = self.accelerations(state, force);
+        CartState { position: state.velocity, velocity, angles: state.angular_velocities, angular_velocities }
+    }
+
+    /// The state after a step \[s\] under a constant force \[N\], by the classical Runge-Kutta method of fourth order.
+    pub fn step(&self, state: &CartState, force: f64, time_step: f64) -> CartState {
+        let half = 0.5 * time_step;
+        let first = self.rates(state, force);
+        let second = self.rates(&state.moved(&first, half), force);
+        let third = self.rates(&state.moved(&second, half), force);
+        let fourth = self.rates(&state.moved(&third, time_step), force);
+        let sixth = time_step / 6.0;
+        state.moved(&first, sixth).moved(&second, 2.0 * sixth).moved(&third, 2.0 * sixth).moved(&fourth, sixth)
+    }
+}
