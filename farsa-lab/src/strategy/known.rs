@@ -9,7 +9,7 @@ use crate::strategy::reals;
 use crate::strategy::truncation::Truncation;
 
 /// Ours.
-static KNOWN: [&dyn StrategyDefinition; 14] = [
+static KNOWN: [&dyn StrategyDefinition; 15] = [
     &Truncation,
     &OnePlusOne,
     &RANDOM,
@@ -17,6 +17,7 @@ static KNOWN: [&dyn StrategyDefinition; 14] = [
     &reals::REAL_GA,
     &reals::STEADY_STATE,
     &reals::EVOLUTION_STRATEGY,
+    &reals::COSYNE,
     &reals::CMA_ES,
     &reals::SEPARABLE_CMA_ES,
     &reals::XNES,

@@ -4,10 +4,12 @@
 //! half a range.
 //!
 //! - `genetic`: generational, of evolution strategies, and steady state
+//! - `cosyne`: cooperative co-evolution of weights
 //! - `covariance`: covariance matrix adaptation, full and separable
 //! - `natural`: natural evolution strategies
 //! - `gradient`: estimated gradients
 
+mod cosyne;
 mod covariance;
 mod genetic;
 mod gradient;
@@ -18,6 +20,7 @@ use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart};
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 
+pub(super) use cosyne::COSYNE;
 pub(super) use covariance::{CMA_ES, SEPARABLE_CMA_ES};
 pub(super) use genetic::{EVOLUTION_STRATEGY, REAL_GA, STEADY_STATE};
 pub(super) use gradient::{ARS, OPEN_AI_ES, PGPE};
