@@ -147,6 +147,35 @@ fn links_lead_somewhere_and_pictures_are_small() {
     assert!(read("ci").contains("--test guides --test empty_project -- --ignored"), "ci does not follow the guides");
 }
 
+#[test]
+fn the_cluster_guide_and_its_scripts_are_there() {
+    let text = guide("cluster");
+    for target in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+        let (file, heading) = target.split_once('#').unwrap_or((target, ""));
+        let path = if file.is_empty() { "cluster.md" } else { file };
+        let path = root().join("docs/guide").join(path);
+        let linked = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{target}: {error}"));
+        let anchor = |line: &str| {
+            let words = line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+            words.chars().filter(|letter| letter.is_alphanumeric() || "-_".contains(*letter)).collect::<String>()
+        };
+        let known = linked.lines().filter(|line| line.starts_with('#')).any(|line| anchor(line) == heading);
+        assert!(heading.is_empty() || known, "no heading {target}");
+    }
+    for name in ["array", "workers"] {
+        let path = format!("docs/guide/cluster/{name}.sh");
+        assert!(text.contains(&format!("(cluster/{name}.sh)")), "the guide does not name {name}.sh");
+        // The lines that submit it are those of the guide.
+        let script = read(&path);
+        for line in script.lines().filter_map(|line| line.strip_prefix("#   ")) {
+            assert!(text.contains(line), "{path}: the guide does not say {line:?}");
+        }
+        let check = Command::new("bash").arg("-n").arg(root().join(&path)).output().expect("bash");
+        assert!(check.status.success() && check.stderr.is_empty(), "{path}: {check:?}");
+    }
+    assert!(read("docs/README.md").contains("guide/cluster.md"), "docs/README.md has no link to cluster.md");
+}
+
 mod mistakes {
     //! What the guides say of mistakes, by making them.
 

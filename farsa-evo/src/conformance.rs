@@ -9,6 +9,8 @@ use farsa_num::{Domain, Stream};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
 use crate::record::Record;
 use crate::strategy::{Recorded, Strategy};
 
@@ -18,7 +20,7 @@ use crate::strategy::{Recorded, Strategy};
 /// Asked twice it answers the same. A fresh one that is told the same does the same, through a [`Record`] and through saved
 /// states. It refuses another number of values and is unchanged by that. It counts generations, and names a champion of each
 /// population. Where it says that only the order counts ([`Recorded::Order`]), other values of the same order change nothing.
-/// Failed evaluations, all of them at once too, end nothing.
+/// Failed evaluations, all of them at once too, end nothing. Judgements of another shape than it wants are refused.
 ///
 /// ```
 /// use farsa_evo::{GaConfig, TruncationGa, check_strategy};
@@ -53,22 +55,27 @@ where
         if !count.is_multiple_of(strategy.populations()) {
             return Err(wrong("populations of unequal sizes"));
         }
-        let fitness = values(generation, count);
-        if strategy.tell(&fitness[1..]).is_ok() || strategy.ask().digest() != digest {
-            return Err(wrong("takes too few values, or is changed by them"));
-        }
+        let shape = strategy.judged_by();
+        let judgements = judgements(generation, count, shape);
+        let fitness = judgements.fitness();
+        refuses(&mut strategy, &judgements).map_err(|what| wrong(&what))?;
         let champions = strategy.champions(&strategy.ranked_by(&fitness));
         let size = count / strategy.populations();
         if !champions.iter().copied().map(|best| best / size).eq(0..strategy.populations()) {
             return Err(wrong("names other champions than one of each population"));
         }
-        record.tell(&mut strategy, &fitness).map_err(|error| wrong(&format!("cannot be told: {error}")))?;
         // Another fitness of the same order has to do where only the order counts.
-        let told: Vec<Fitness> = match strategy.recorded() {
+        let other: Vec<Fitness> = match strategy.recorded() {
             Recorded::Order => fitness.iter().map(|fitness| rising(*fitness)).collect(),
-            _ => fitness,
+            _ => fitness.clone(),
         };
-        again.tell(&told).map_err(|error| wrong(&format!("cannot be told by value: {error}")))?;
+        let (told, told_again) = if shape == JudgementShape::FITNESS {
+            (record.tell(&mut strategy, &fitness), again.tell(&other))
+        } else {
+            (record.tell_judgements(&mut strategy, &judgements), again.tell_judgements(&judgements))
+        };
+        told.map_err(|error| wrong(&format!("cannot be told: {error}")))?;
+        told_again.map_err(|error| wrong(&format!("cannot be told by value: {error}")))?;
         saved(&mut strategy, made()?).map_err(|what| wrong(&what))?;
     }
     if strategy.recorded() == Recorded::Genomes {
@@ -98,6 +105,38 @@ fn saved<G: Gene, S: Strategy<G>>(strategy: &mut S, mut other: S) -> Result<(), 
     }
     let same = other.generation() == strategy.generation() && other.ask().digest() == strategy.ask().digest();
     if same { Ok(()) } else { Err("is another after its state was restored".into()) }
+}
+
+/// Whether a strategy refuses too few judgements, those of another shape, and fitness if it wants more, and is unchanged by
+/// that.
+fn refuses<G: Gene, S: Strategy<G>>(strategy: &mut S, judgements: &Judgements) -> Result<(), String> {
+    let (shape, digest) = (judgements.shape(), strategy.ask().digest());
+    let (generation, count) = (strategy.generation(), judgements.len());
+    let other = JudgementShape::new(shape.objectives + 1, shape.descriptors);
+    let few = strategy.tell(&judgements.fitness()[1..]).is_ok()
+        || strategy.tell_judgements(&self::judgements(generation, count - 1, shape)).is_ok();
+    if few || strategy.ask().digest() != digest {
+        return Err("takes too few values, or is changed by them".into());
+    }
+    let others = strategy.tell_judgements(&self::judgements(generation, count, other)).is_ok()
+        || shape != JudgementShape::FITNESS && strategy.tell(&judgements.fitness()).is_ok();
+    if others || strategy.ask().digest() != digest || strategy.generation() != generation {
+        return Err("takes judgements of another shape, or is changed by them".into());
+    }
+    Ok(())
+}
+
+/// Judgements of no meaning: fitness, as below, then more numbers of the same kind.
+fn judgements(generation: u32, count: usize, shape: JudgementShape) -> Judgements {
+    let mut stream = Stream::new(u64::from(generation), Domain::General, 1, 0, 0);
+    let mut row = |fitness: Fitness| {
+        let mut row = Vec::with_capacity(shape.width());
+        row.push(fitness.get());
+        row.extend((1..shape.width()).map(|_| 0.25 * f64::from(stream.below(30)) - 3.0));
+        row
+    };
+    let values: Vec<f64> = values(generation, count).into_iter().flat_map(&mut row).collect();
+    Judgements::nan_as_failed(shape, values).unwrap_or_else(|_| Judgements::from_fitness(&[]))
 }
 
 /// Fitness of no meaning: in every fifth generation all alike, in every seventh all failed, else some failed and some equal.

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::judgement_shape::JudgementShape;
+
 /// The most genes of a population, 2^28 (512 MiB).
 pub(crate) const MAX_GENES: usize = 1 << 28;
 
@@ -101,6 +103,20 @@ pub enum EvoError {
     },
     /// A fitness that is NaN.
     NanFitness,
+    /// Numbers of judgements that are not whole rows.
+    JudgementCount {
+        /// Numbers of each individual.
+        width: usize,
+        /// Numbers told.
+        found: usize,
+    },
+    /// The strategy was told another number of objectives or descriptor values than it takes.
+    Judgement {
+        /// What it takes.
+        expected: JudgementShape,
+        /// What it was told.
+        found: JudgementShape,
+    },
     /// The generation counter has reached its last value, 2^32 - 1.
     LastGeneration,
     /// A generation that has not been reached.
@@ -205,6 +221,10 @@ impl fmt::Display for EvoError {
             }
             Self::FitnessCount { expected, found } => {
                 write!(f, "{found} fitness values for {expected} individuals")
+            }
+            Self::JudgementCount { width, found } => write!(f, "{found} numbers are not {width} of each individual"),
+            Self::Judgement { expected, found } => {
+                write!(f, "{found} of each individual where {expected} are expected")
             }
             Self::NanFitness => f.write_str("a fitness that is not a number"),
             Self::LastGeneration => f.write_str("no generation after number 4294967295"),

@@ -15,14 +15,21 @@ mod error;
 mod fitness;
 mod gene;
 mod gradient;
+mod judgement;
+mod judgement_shape;
+mod map_elites;
 mod mutation;
+mod novelty;
 mod one_plus_one;
+mod pareto;
 mod population;
 mod random_search;
 mod real;
 mod record;
+mod record_shape;
 #[cfg(feature = "serde")]
 mod saved;
+mod side_by_side;
 mod snapshot;
 mod statistics;
 mod strategy;
@@ -45,8 +52,15 @@ pub use gradient::{
     Ars, ArsConfig, ObservationStatistics, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeConfig, PgpeFitness, Snes,
     SnesConfig, Xnes, XnesConfig,
 };
+pub use judgement::Judgements;
+pub use judgement_shape::JudgementShape;
+pub use map_elites::{
+    Addition, Archive, Cells, CvtArchive, CvtCells, Elite, Emitter, GridArchive, GridCells, MapElites, MapElitesConfig,
+};
 pub use mutation::{BitMutation, Mutation, randomize};
+pub use novelty::{ArchiveRule, NoveltyConfig, NoveltySearch};
 pub use one_plus_one::OnePlusOne;
+pub use pareto::{Nsga2, Nsga2Config, crowding_distances, dominates, hypervolume, non_dominated_fronts};
 pub use population::Population;
 pub use random_search::{Found, RandomSearch};
 pub use real::{
@@ -54,6 +68,7 @@ pub use real::{
     Selection, SteadyState, SteadyStateConfig, StepSizes, Survival,
 };
 pub use record::{Record, RecordEntry};
+pub use side_by_side::SideBySide;
 pub use snapshot::Snapshot;
 pub use statistics::Statistics;
 pub use strategy::{Genealogy, Recorded, Strategy};

@@ -7,8 +7,12 @@ use core::cmp::Reverse;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
 use crate::population::Population;
-use crate::strategy::{Recorded, Strategy};
+use crate::record_shape::{Kept, Shape};
+use crate::snapshot::Snapshot;
+use crate::strategy::Strategy;
 
 /// What a strategy was told in every generation, in the form that it depends on.
 ///
@@ -17,7 +21,8 @@ use crate::strategy::{Recorded, Strategy};
 /// some hundred bytes where only their order counts, and eight hundred where values do.
 ///
 /// So that a long search is rebuilt quickly, the record also keeps the state of a strategy that can save it
-/// ([`Snapshot`](crate::Snapshot)), as often as that at most doubles the size of the record.
+/// ([`Snapshot`](crate::Snapshot)), as often as that at most doubles the size of the record, or as the strategy asks for because
+/// it takes long to be told again.
 ///
 /// ```
 /// use farsa_evo::{Fitness, GaConfig, Record, Strategy, TruncationGa};
@@ -59,72 +64,12 @@ pub struct RecordEntry<'r> {
     pub state: Option<&'r [u8]>,
 }
 
-/// The sizes that a record was made for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Shape {
-    recorded: Recorded,
-    populations: usize,
-    /// Of all populations.
-    individuals: usize,
-    genes: usize,
-    /// Of a gene.
-    gene_bytes: usize,
-}
-
 /// The state of a strategy at a generation.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Keyframe {
     generation: u32,
     state: Vec<u8>,
-}
-
-impl Shape {
-    fn from_strategy<G: Gene>(strategy: &(impl Strategy<G> + ?Sized)) -> Self {
-        let (recorded, populations, genomes) = (strategy.recorded(), strategy.populations(), strategy.ask());
-        Self { recorded, populations, individuals: genomes.len(), genes: genomes.genome_len(), gene_bytes: G::BYTES }
-    }
-
-    /// Whether every population has as many individuals, at least one.
-    fn check(self) -> Result<(), EvoError> {
-        let Self { populations, individuals, .. } = self;
-        let even = populations > 0 && individuals.is_multiple_of(populations);
-        if even { Ok(()) } else { Err(EvoError::UnevenPopulations { populations, individuals }) }
-    }
-
-    /// Whether this is the number of an individual of a population.
-    fn has(self, population: usize, individual: usize) -> bool {
-        individual < self.individuals && individual / (self.individuals / self.populations) == population
-    }
-
-    /// Bytes of an individual's index.
-    fn width(self) -> usize {
-        match self.individuals {
-            0..=0x100 => 1,
-            0x101..=0x1_0000 => 2,
-            _ => 4,
-        }
-    }
-
-    /// Bytes of a generation.
-    fn frame(self) -> usize {
-        let each = match self.recorded {
-            Recorded::Order => self.width(),
-            Recorded::Values => 8,
-            Recorded::Genomes => self.gene_bytes * self.genes,
-        };
-        self.populations * self.width() + self.individuals * each
-    }
-
-    fn push_index(self, bytes: &mut Vec<u8>, index: usize) {
-        bytes.extend(index.to_le_bytes().iter().take(self.width()));
-    }
-
-    fn indices(self, bytes: &[u8]) -> impl Iterator<Item = usize> + '_ {
-        let index = |bytes: &[u8]| bytes.iter().rev().fold(0, |sum, byte| sum << 8 | usize::from(*byte));
-        bytes.chunks_exact(self.width()).map(index)
-    }
 }
 
 impl Record {
@@ -139,7 +84,7 @@ impl Record {
         }
         let shape = Shape::from_strategy(strategy);
         shape.check()?;
-        if shape.recorded == Recorded::Genomes && strategy.snapshot().is_none() {
+        if shape.recorded == Kept::Genomes && strategy.snapshot().is_none() {
             return Err(EvoError::NoSnapshot);
         }
         Ok(Self::empty(shape))
@@ -168,6 +113,32 @@ impl Record {
         strategy: &mut (impl Strategy<G> + ?Sized),
         fitness: &[Fitness],
     ) -> Result<(), EvoError> {
+        strategy.judged_by().check(JudgementShape::FITNESS)?;
+        self.keep(strategy, fitness, fitness.iter().map(|fitness| fitness.get()), |strategy| strategy.tell(fitness))
+    }
+
+    /// Tells a strategy the judgements of its generation, and records them.
+    ///
+    /// # Errors
+    /// Those of [`tell`](Self::tell) and [`Strategy::tell_judgements`]. Nothing is recorded then.
+    pub fn tell_judgements<G: Gene>(
+        &mut self,
+        strategy: &mut (impl Strategy<G> + ?Sized),
+        judgements: &Judgements,
+    ) -> Result<(), EvoError> {
+        strategy.judged_by().check(judgements.shape())?;
+        let (fitness, values) = (judgements.fitness(), judgements.values().iter().copied());
+        self.keep(strategy, &fitness, values, |strategy| strategy.tell_judgements(judgements))
+    }
+
+    /// Tells a strategy, and records what it was told.
+    fn keep<G: Gene, S: Strategy<G> + ?Sized>(
+        &mut self,
+        strategy: &mut S,
+        fitness: &[Fitness],
+        values: impl Iterator<Item = f64>,
+        told: impl FnOnce(&mut S) -> Result<(), EvoError>,
+    ) -> Result<(), EvoError> {
         self.check(strategy)?;
         if strategy.generation() != self.generations() {
             return Err(EvoError::OtherRecord { what: "generations", recorded: self.generations() as usize });
@@ -188,14 +159,17 @@ impl Record {
             self.shape.push_index(&mut frame, champion);
         }
         match self.shape.recorded {
-            Recorded::Order => order(fitness).into_iter().for_each(|index| self.shape.push_index(&mut frame, index)),
-            Recorded::Values => frame.extend(fitness.iter().flat_map(|fitness| fitness.get().to_le_bytes())),
-            Recorded::Genomes => strategy.ask().as_slice().iter().for_each(|gene| gene.push_bytes(&mut frame)),
+            Kept::Order => order(fitness).into_iter().for_each(|index| self.shape.push_index(&mut frame, index)),
+            Kept::Values | Kept::Judgements(_) => frame.extend(values.flat_map(f64::to_le_bytes)),
+            Kept::Genomes => strategy.ask().as_slice().iter().for_each(|gene| gene.push_bytes(&mut frame)),
         }
-        tell(strategy, fitness)?;
+        next(strategy, told)?;
         self.frames.extend(frame);
-        let due = self.shape.recorded != Recorded::Genomes && self.frames.len() >= self.next_keyframe;
-        if let Some(strategy) = strategy.snapshot().filter(|_| due) {
+        let since = self.generations() - self.keyframes.last().map_or(0, |keyframe| keyframe.generation);
+        let enough = self.frames.len() >= self.next_keyframe;
+        let due = |strategy: &&mut dyn Snapshot| enough || since >= strategy.generations_between_states();
+        let kept = self.shape.recorded != Kept::Genomes;
+        if let Some(strategy) = strategy.snapshot().filter(|strategy| kept && due(strategy)) {
             let state = strategy.save();
             self.wait(state.len());
             self.keyframes.push(Keyframe { generation: self.generations(), state });
@@ -259,28 +233,26 @@ impl Record {
     /// The individuals of a generation that was told, best first, equals by index; none where genomes are recorded.
     pub fn order(&self, generation: u32) -> Option<Vec<usize>> {
         match self.shape.recorded {
-            Recorded::Order => Some(self.shape.indices(self.frame(generation)?.1).collect()),
-            Recorded::Values => Some(order(&self.told(generation)?)),
-            Recorded::Genomes => None,
+            Kept::Order => Some(self.shape.indices(self.frame(generation)?.1).collect()),
+            Kept::Values | Kept::Judgements(_) => Some(order(&self.told(generation)?.fitness())),
+            Kept::Genomes => None,
         }
     }
 
-    /// What makes a strategy of this kind do what it did: the fitness, or one of the same order.
-    fn told(&self, generation: u32) -> Option<Vec<Fitness>> {
+    /// What makes a strategy of this kind do what it did: the judgements, or a fitness of the same order.
+    fn told(&self, generation: u32) -> Option<Judgements> {
         let (_, bytes) = self.frame(generation)?;
         match self.shape.recorded {
-            Recorded::Order => {
+            Kept::Order => {
                 let mut fitness = vec![Fitness::WORST; self.shape.individuals];
                 for (rank, individual) in self.shape.indices(bytes).enumerate() {
                     *fitness.get_mut(individual)? = Fitness::nan_as_failed(-(rank as f64));
                 }
-                Some(fitness)
+                Some(Judgements::from_fitness(&fitness))
             }
-            Recorded::Values => {
-                let (values, _) = bytes.as_chunks::<8>();
-                Some(values.iter().map(|bytes| Fitness::nan_as_failed(f64::from_le_bytes(*bytes))).collect())
-            }
-            Recorded::Genomes => None,
+            Kept::Values => Judgements::nan_as_failed(JudgementShape::FITNESS, reals(bytes).collect()).ok(),
+            Kept::Judgements(shape) => Judgements::nan_as_failed(shape, reals(bytes).collect()).ok(),
+            Kept::Genomes => None,
         }
     }
 
@@ -314,7 +286,10 @@ impl Record {
         }
         while strategy.generation() < generation {
             let told = self.told(strategy.generation()).ok_or(EvoError::GenomesOnly)?;
-            tell(strategy, &told)?;
+            next(strategy, |strategy| match told.shape() {
+                JudgementShape::FITNESS => strategy.tell(&told.fitness()),
+                _ => strategy.tell_judgements(&told),
+            })?;
         }
         Ok(())
     }
@@ -329,7 +304,7 @@ impl Record {
         strategy: &mut (impl Strategy<G> + ?Sized),
         generation: u32,
     ) -> Result<Population<G>, EvoError> {
-        if self.shape.recorded != Recorded::Genomes {
+        if self.shape.recorded != Kept::Genomes {
             self.rebuild(strategy, generation)?;
             return Ok(strategy.ask().clone());
         }
@@ -381,7 +356,7 @@ impl Record {
             }
         }
         match recorded {
-            Recorded::Order => {
+            Kept::Order => {
                 let mut seen = vec![false; individuals];
                 for individual in self.shape.indices(bytes) {
                     match seen.get_mut(individual) {
@@ -391,13 +366,12 @@ impl Record {
                     }
                 }
             }
-            Recorded::Values => {
-                let (values, _) = bytes.as_chunks::<8>();
-                if values.iter().any(|bytes| f64::from_le_bytes(*bytes).is_nan()) {
+            Kept::Values | Kept::Judgements(_) => {
+                if reals(bytes).any(f64::is_nan) {
                     return Err(EvoError::NanFitness);
                 }
             }
-            Recorded::Genomes => {}
+            Kept::Genomes => {}
         }
         Ok(())
     }
@@ -415,10 +389,18 @@ impl Record {
     }
 }
 
+/// Numbers as they are saved.
+fn reals(bytes: &[u8]) -> impl Iterator<Item = f64> + '_ {
+    bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes))
+}
+
 /// Tells a strategy, which must then be at the next generation: else it could be told for ever.
-fn tell<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized), fitness: &[Fitness]) -> Result<(), EvoError> {
+fn next<G: Gene, S: Strategy<G> + ?Sized>(
+    strategy: &mut S,
+    told: impl FnOnce(&mut S) -> Result<(), EvoError>,
+) -> Result<(), EvoError> {
     let generation = strategy.generation();
-    strategy.tell(fitness)?;
+    told(strategy)?;
     let found = strategy.generation();
     if generation.checked_add(1) == Some(found) { Ok(()) } else { Err(EvoError::Stuck { generation, found }) }
 }
@@ -453,11 +435,7 @@ impl TryFrom<RawRecord> for Record {
 
     fn try_from(raw: RawRecord) -> Result<Self, EvoError> {
         let RawRecord { shape, frames, keyframes } = raw;
-        Population::check(shape.individuals, shape.genes)?;
-        if ![u16::BYTES, f64::BYTES].contains(&shape.gene_bytes) {
-            return Err(EvoError::StateContent { what: "the bytes of a gene", found: shape.gene_bytes as u64 });
-        }
-        shape.check()?;
+        shape.check_read()?;
         let mut record = Self { keyframes, ..Self::empty(shape) };
         let whole = frames.len().is_multiple_of(shape.frame());
         if !whole || u32::try_from(frames.len() / shape.frame()).is_err() {

@@ -1,11 +1,14 @@
 //! What every search strategy over genes offers.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::champion::Champion;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
 use crate::population::Population;
 use crate::snapshot::Snapshot;
 use crate::statistics::Statistics;
@@ -17,7 +20,7 @@ use crate::statistics::Statistics;
 pub enum Recorded {
     /// The order of the individuals, best first, equals by index: for strategies that depend on nothing else.
     Order,
-    /// The values of fitness.
+    /// The values of fitness, or all numbers of the judgements.
     Values,
     /// The genomes themselves: for strategies that take too long to be told again.
     Genomes,
@@ -31,7 +34,9 @@ pub enum Recorded {
 /// numbers only from [`farsa_num::Stream`]s named by seed, individual and generation.
 ///
 /// Three methods are required; the others have defaults that fit a strategy of one population that depends on the values of
-/// fitness.
+/// fitness. A strategy that wants several objectives, or a behaviour descriptor, says so
+/// ([`judged_by`](Strategy::judged_by)) and takes [`Judgements`] in the place of fitness
+/// ([`tell_judgements`](Strategy::tell_judgements)); its fitness, by which it is logged, is the first objective.
 pub trait Strategy<G: Gene = u16> {
     /// The number of the generation that waits for its fitness, from 0.
     fn generation(&self) -> u32;
@@ -42,8 +47,24 @@ pub trait Strategy<G: Gene = u16> {
     /// Takes the fitness \[individuals\] of the current generation and makes the next one.
     ///
     /// # Errors
-    /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`]; the strategy is then unchanged.
+    /// [`EvoError::FitnessCount`] or [`EvoError::LastGeneration`], or [`EvoError::Judgement`] by a strategy that wants more than
+    /// fitness; the strategy is then unchanged.
     fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError>;
+
+    /// How many objectives and descriptor values it is told of each individual: one objective, if nothing else is said.
+    fn judged_by(&self) -> JudgementShape {
+        JudgementShape::FITNESS
+    }
+
+    /// Takes the judgements of the current generation, of the shape that it is [`judged_by`](Strategy::judged_by), and makes the
+    /// next one; what has but one objective is told as fitness.
+    ///
+    /// # Errors
+    /// [`EvoError::Judgement`] for another shape, and those of [`tell`](Strategy::tell); the strategy is then unchanged.
+    fn tell_judgements(&mut self, judgements: &Judgements) -> Result<(), EvoError> {
+        JudgementShape::FITNESS.check(judgements.shape())?;
+        self.tell(&judgements.fitness())
+    }
 
     /// Number of populations, each of as many individuals.
     fn populations(&self) -> usize {
@@ -55,7 +76,8 @@ pub trait Strategy<G: Gene = u16> {
         Recorded::Values
     }
 
-    /// The fitness \[individuals\] that individuals are ranked by if this is what the evaluation gave.
+    /// The fitness \[individuals\] that individuals are ranked by if this is what the evaluation gave; of several objectives the
+    /// first.
     fn ranked_by(&self, fitness: &[Fitness]) -> Vec<Fitness> {
         fitness.to_vec()
     }
@@ -90,6 +112,26 @@ pub trait Strategy<G: Gene = u16> {
     fn tell_values(&mut self, values: &[f64]) -> Result<(), EvoError> {
         let fitness: Vec<Fitness> = values.iter().copied().map(Fitness::nan_as_failed).collect();
         self.tell(&fitness)
+    }
+
+    /// Evaluates so many generations, where `judge` writes the objectives and then the descriptor values of a genome \[genes\] into
+    /// a row [m + d] of zeros, and returns the best individual of them by the first objective; a NaN is a failed evaluation.
+    ///
+    /// # Errors
+    /// [`EvoError::NoBest`] for no generations, [`EvoError::LastGeneration`].
+    fn evolve(&mut self, generations: u32, mut judge: impl FnMut(&[G], &mut [f64])) -> Result<Champion<G>, EvoError>
+    where
+        Self: Sized,
+    {
+        let (mut champion, shape) = (None, self.judged_by());
+        for _ in 0..generations {
+            let mut values = vec![0.0; self.ask().len() * shape.width()];
+            self.ask().iter().zip(values.chunks_exact_mut(shape.width())).for_each(|(genes, row)| judge(genes, row));
+            let judgements = Judgements::nan_as_failed(shape, values)?;
+            Champion::keep(&mut champion, self.generation(), self.ask(), &judgements.fitness())?;
+            self.tell_judgements(&judgements)?;
+        }
+        champion.ok_or(EvoError::NoBest { generation: self.generation() })
     }
 
     /// Evaluates so many generations, where `evaluate` says how good a genome \[genes\] is, and returns the best individual
@@ -134,5 +176,16 @@ pub(crate) fn next_generation(generation: u32, population: usize, fitness: &[Fit
     if fitness.len() != population {
         return Err(EvoError::FitnessCount { expected: population, found: fitness.len() });
     }
+    generation.checked_add(1).ok_or(EvoError::LastGeneration)
+}
+
+/// The number of the next generation, if there are judgements of this shape for each of `population` individuals.
+pub(crate) fn next_judged(
+    generation: u32,
+    population: usize,
+    shape: JudgementShape,
+    judgements: &Judgements,
+) -> Result<u32, EvoError> {
+    judgements.check(shape, population)?;
     generation.checked_add(1).ok_or(EvoError::LastGeneration)
 }

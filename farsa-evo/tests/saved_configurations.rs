@@ -6,8 +6,9 @@
 use core::fmt::Debug;
 
 use farsa_evo::{
-    CosyneConfig, Crossover, EvolutionStrategyConfig, Permutation, RealGaConfig, RealMutation, Selection,
-    SteadyStateConfig, StepSizes, Survival, WordCode, WordGene, WordMap,
+    ArchiveRule, CosyneConfig, Crossover, CvtCells, EvolutionStrategyConfig, GridCells, MapElitesConfig, NoveltyConfig,
+    Nsga2Config, Permutation, RealGaConfig, RealMutation, Selection, SteadyStateConfig, StepSizes, Survival, WordCode,
+    WordGene, WordMap,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -31,6 +32,22 @@ fn configurations_come_back() {
         step_sizes,
         ..EvolutionStrategyConfig::new(vec![1.0, 2.0, 3.0], 0.5)
     });
+}
+
+#[test]
+fn configurations_of_more_than_fitness_come_back_and_impossible_cells_are_refused() {
+    let bounds = vec![[-1.0, 1.0], [0.5, 0.75]];
+    comes_back(&Nsga2Config { crossover_eta: 15.0, ..Nsga2Config::new(bounds.clone(), 3) });
+    comes_back(&MapElitesConfig::new(bounds.clone()));
+    comes_back(&MapElitesConfig::cma_me(bounds.clone(), 3, 12, 0.1));
+    let archive = ArchiveRule::Threshold { first: 0.5, most: 4, patience: 10 };
+    comes_back(&NoveltyConfig { archive, ..NoveltyConfig::new(2) });
+    comes_back(&GridCells::new(bounds.clone(), vec![4, 5]).unwrap());
+    comes_back(&CvtCells::new(20, &bounds, 200, 1).unwrap());
+    let grid = postcard::to_allocvec(&(vec![[1.0, -1.0]], vec![4_usize])).unwrap();
+    assert!(postcard::from_bytes::<GridCells>(&grid).is_err());
+    let cells = postcard::to_allocvec(&(2_usize, vec![1.0, 2.0, 3.0])).unwrap();
+    assert!(postcard::from_bytes::<CvtCells>(&cells).is_err());
 }
 
 #[test]

@@ -32,3 +32,22 @@ pub use walking::body_evolution::BodyEvolution;
 pub use walking::passive_walker;
 pub use walking::passive_walker::PassiveWalker;
 pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
+
+/// The experiments in the order in which `farsa list` shows them.
+pub fn all() -> [&'static dyn farsa_lab::Experiment; 13] {
+    [
+        &ReachGraspLift,
+        &KinestheticGrasp,
+        &Discrimination,
+        &DiscriminationCylinders,
+        &Braitenberg,
+        &MinimalCognition,
+        &DoublePole,
+        &Foraging,
+        &Aggregation,
+        &PredatorPrey,
+        &PushBox,
+        &PassiveWalker,
+        &BodyEvolution,
+    ]
+}

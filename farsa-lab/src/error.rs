@@ -111,6 +111,15 @@ pub enum Error {
         /// Its trial.
         trial: u32,
     },
+    /// What went wrong on another rank of those that run a command together.
+    Rank {
+        /// Its number.
+        rank: usize,
+        /// The exit code of the error there.
+        code: u8,
+        /// Its message.
+        why: String,
+    },
     /// Anything else an experiment has to complain about.
     Other(String),
     /// The user pressed Ctrl-C; all finished generations are kept.
@@ -158,6 +167,7 @@ impl Error {
             | Self::Panicked { .. }
             | Self::TrialPanicked { .. }
             | Self::Other(_) => 1,
+            Self::Rank { code, .. } => *code,
             Self::Interrupted { .. } => 130,
         }
     }
@@ -196,13 +206,17 @@ impl From<farsa_view::Error> for Error {
     }
 }
 
-/// The name that takes the fewest changed, added, dropped or swapped letters; letters of the other case count least. Of a name
+/// The name that takes the fewest changed, added, dropped or swapped letters, of several one that begins like this; letters of
+/// the other case count least. Of a name
 /// longer than any, the beginning is compared.
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name: String = name.chars().take(MOST_SHOWN).collect();
     let lower = name.to_lowercase();
     let distance = strsim::damerau_levenshtein;
-    valid.into_iter().min_by_key(|valid| (distance(&lower, &valid.to_lowercase()), distance(&name, valid)))
+    valid.into_iter().min_by_key(|valid| {
+        let other = valid.to_lowercase();
+        (distance(&lower, &other), !other.starts_with(&lower), distance(&name, valid))
+    })
 }
 
 impl fmt::Display for Error {
@@ -259,6 +273,7 @@ impl fmt::Display for Error {
             Self::TrialPanicked { generation, individual, trial } => {
                 write!(f, "trial {trial} of individual {individual} of generation {generation} panicked")
             }
+            Self::Rank { rank, why, .. } => write!(f, "rank {rank}: {}", OneLine(why)),
             Self::Interrupted { resume } => write!(f, "interrupted; go on with `{}`", OneLine(resume)),
         }
     }

@@ -12,10 +12,13 @@ mod experiment;
 mod export;
 mod figures;
 mod json;
+mod merge;
+mod ranks;
 mod report;
 mod run;
 mod store;
 mod strategy;
+mod sweep;
 
 #[cfg(feature = "command")]
 pub use command::cli;
@@ -26,13 +29,15 @@ pub use experiment::{
     EpisodeId, Evaluation, Evaluator, Experiment, Exports, Failure, Genotype, InLanes, InWorld, Iteration, JudgeExport,
     Lanes, Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Objective, Outcome,
     OwnedNetwork, Parameter, PlanarWorld, PointExport, Rescored, Rollout, SensorExport, SensorReading, ServoExport,
-    Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, WithStrategy,
-    mean_of_trials, network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
+    Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, mean_of_trials,
+    network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
-pub use run::{BestOfRun, ENGINE};
+pub use ranks::{Alone, Ranks};
+pub use run::{BestOfRun, ENGINE, Laboratory};
 pub use store::{VALUES_VERSION, read_text_file};
 pub use strategy::{
-    Diagnostics, DiagnosticsChart, Learning, OnePlusOne, StrategyDefinition, StrategyStart, Truncation,
+    Diagnostics, DiagnosticsChart, Learning, OnePlusOne, Search, SimpleStrategy, StrategyDefinition, StrategyStart,
+    Truncation, strategies,
 };
 
 pub use farsa_view::{Channel, Links, NodeParameters, Recording, SceneObject, Schema, View};

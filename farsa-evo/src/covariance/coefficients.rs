@@ -10,31 +10,31 @@ use crate::fitness::Fitness;
 
 /// Weights and learning rates: functions of the number of genes and individuals.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Coefficients {
+pub(crate) struct Coefficients {
     /// Weights w of the ranks, best first; those of the mean's parents are positive with sum 1, others zero or negative.
-    pub(super) weights: Vec<f64>,
+    pub(crate) weights: Vec<f64>,
     /// Number of parents, mu.
-    pub(super) parents: usize,
+    pub(crate) parents: usize,
     /// Effective number of parents, `mu_eff`.
-    pub(super) effective: f64,
+    pub(crate) effective: f64,
     /// Rate of the path of the step size, `c_sigma`.
-    pub(super) step_path_rate: f64,
+    pub(crate) step_path_rate: f64,
     /// Damping of the step size, `d_sigma`.
-    pub(super) damping: f64,
+    pub(crate) damping: f64,
     /// Rate of the path of the covariance, `c_c`.
-    pub(super) path_rate: f64,
+    pub(crate) path_rate: f64,
     /// Rate of the rank-one update, `c_1`.
-    pub(super) rank_one: f64,
+    pub(crate) rank_one: f64,
     /// Rate of the rank-mu update, `c_mu`.
-    pub(super) rank_mu: f64,
+    pub(crate) rank_mu: f64,
     /// Expected length of a standard normal vector.
-    pub(super) expected: f64,
+    pub(crate) expected: f64,
 }
 
 impl Coefficients {
     /// The defaults of \[Hansen2016\] table 1, where `rates` may change `c_1` and `c_mu`; without negative weights if not
     /// `active`.
-    pub(super) fn new(
+    pub(crate) fn new(
         genes: usize,
         population: usize,
         active: bool,
@@ -72,12 +72,12 @@ impl Coefficients {
     }
 
     /// Number of individuals.
-    pub(super) fn population(&self) -> usize {
+    pub(crate) fn population(&self) -> usize {
         self.weights.len()
     }
 
     /// Whether the path of the covariance stands still because that of the step size is long, `h_sigma` being 0.
-    pub(super) fn stalls(&self, genes: usize, updates: u32, step_path_length: f64) -> bool {
+    pub(crate) fn stalls(&self, genes: usize, updates: u32, step_path_length: f64) -> bool {
         let left = exp(2.0 * f64::from(updates) * ln(1.0 - self.step_path_rate));
         let limit = (1.4 + 2.0 / (genes as f64 + 1.0)) * self.expected;
         step_path_length / Scalar::sqrt(1.0 - left) >= limit
@@ -91,17 +91,17 @@ fn effective(weights: &[f64]) -> f64 {
 }
 
 /// The default number of individuals, 4 + 3 ln n rounded down.
-pub(super) fn default_population(genes: usize) -> usize {
+pub(crate) fn default_population(genes: usize) -> usize {
     4 + (3.0 * ln(genes.max(1) as f64)) as usize
 }
 
 /// Refuses a number that is not within these limits.
-pub(super) fn check(name: &'static str, value: f64, range: [f64; 2], allowed: &'static str) -> Result<(), EvoError> {
+pub(crate) fn check(name: &'static str, value: f64, range: [f64; 2], allowed: &'static str) -> Result<(), EvoError> {
     if (range[0]..=range[1]).contains(&value) { Ok(()) } else { Err(EvoError::Setting { name, value, allowed }) }
 }
 
 /// The individuals, best first, equals by index.
-pub(super) fn ranked(fitness: &[Fitness]) -> Vec<usize> {
+pub(crate) fn ranked(fitness: &[Fitness]) -> Vec<usize> {
     let mut ranked: Vec<usize> = (0..fitness.len()).collect();
     ranked.sort_by_key(|&individual| Reverse(fitness[individual]));
     ranked

@@ -12,16 +12,18 @@ use crate::population::Population;
 use crate::snapshot::{StateReader, push_reals};
 
 /// The limits of a step size.
-pub(super) const STEP_SIZES: [f64; 2] = [1e-100, 1e100];
+pub(crate) const STEP_SIZES: [f64; 2] = [1e-100, 1e100];
 /// The limits of an initial mean's genes.
-pub(super) const MEANS: [f64; 2] = [-1e100, 1e100];
+pub(crate) const MEANS: [f64; 2] = [-1e100, 1e100];
 /// The limits of the largest variance; beyond them the step size takes what is too much or too little.
 const VARIANCES: [f64; 2] = [1e-30, 1e30];
+/// How often a point that is out of bounds is drawn again.
+const TRIES: usize = 100;
 /// The limit of all numbers of a saved state.
 const STATE: f64 = 1e140;
 
 /// A covariance matrix that is adapted.
-pub(super) trait Covariance: Sized {
+pub(crate) trait Covariance: Sized {
     /// The identity of so many genes, which learns at these rates.
     fn identity(genes: usize, coefficients: &Coefficients) -> Self;
 
@@ -52,18 +54,18 @@ pub(super) trait Covariance: Sized {
 
 /// A normal distribution, its evolution paths and the samples that wait for their fitness.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Distribution<C> {
-    pub(super) coefficients: Coefficients,
+pub(crate) struct Distribution<C> {
+    pub(crate) coefficients: Coefficients,
     /// The mean m \[genes\].
-    pub(super) mean: Vec<f64>,
+    pub(crate) mean: Vec<f64>,
     /// The step size sigma.
-    pub(super) sigma: f64,
+    pub(crate) sigma: f64,
     /// The covariance C.
-    pub(super) covariance: C,
+    pub(crate) covariance: C,
     /// The path of the step size `p_sigma` \[genes\].
     step_path: Vec<f64>,
     /// The path of the covariance `p_c` \[genes\].
-    pub(super) path: Vec<f64>,
+    pub(crate) path: Vec<f64>,
     /// Updates so far, g.
     updates: u32,
     /// The standard normal rows z [individuals x genes].
@@ -73,7 +75,7 @@ pub(super) struct Distribution<C> {
 }
 
 impl<C: Covariance> Distribution<C> {
-    pub(super) fn new(mean: Vec<f64>, sigma: f64, coefficients: Coefficients) -> Self {
+    pub(crate) fn new(mean: Vec<f64>, sigma: f64, coefficients: Coefficients) -> Self {
         let n = mean.len();
         let covariance = C::identity(n, &coefficients);
         let (normals, steps) = (vec![0.0; coefficients.population() * n], vec![0.0; coefficients.population() * n]);
@@ -82,12 +84,12 @@ impl<C: Covariance> Distribution<C> {
     }
 
     /// Draws the individuals of a generation, each from a stream of its own.
-    pub(super) fn sample(&mut self, seed: u64, generation: u32, points: &mut Population<f64>) {
+    pub(crate) fn sample(&mut self, seed: u64, generation: u32, points: &mut Population<f64>) {
         self.sample_from(|individual| stream(seed, generation, individual), points);
     }
 
     /// Draws the individuals, each from the stream that belongs to it.
-    pub(super) fn sample_from(&mut self, stream: impl Fn(usize) -> Stream, points: &mut Population<f64>) {
+    pub(crate) fn sample_from(&mut self, stream: impl Fn(usize) -> Stream, points: &mut Population<f64>) {
         let n = self.mean.len();
         for (individual, row) in self.normals.chunks_exact_mut(n).enumerate() {
             stream(individual).fill_normal(row);
@@ -100,8 +102,43 @@ impl<C: Covariance> Distribution<C> {
         }
     }
 
+    /// Draws points [individuals x genes] within bounds, each from the stream that belongs to it: again where it is out of them,
+    /// at last put at them.
+    pub(crate) fn sample_within(&mut self, stream: impl Fn(usize) -> Stream, points: &mut [f64], bounds: &[[f64; 2]]) {
+        let n = self.mean.len();
+        let Self { mean, sigma, covariance, normals, steps, .. } = self;
+        let place = |point: &mut [f64], steps: &[f64]| {
+            let mut within = true;
+            for (((x, y), mean), [low, high]) in point.iter_mut().zip(steps).zip(&*mean).zip(bounds) {
+                *x = mean + *sigma * y;
+                within &= (low..=high).contains(&&*x);
+            }
+            within
+        };
+        let mut streams: Vec<Stream> = (0..points.len() / n).map(stream).collect();
+        for (stream, row) in streams.iter_mut().zip(normals.chunks_exact_mut(n)) {
+            stream.fill_normal(row);
+        }
+        covariance.shape(normals, steps);
+        let rows = normals.chunks_exact_mut(n).zip(steps.chunks_exact_mut(n));
+        for (((normals, steps), point), stream) in rows.zip(points.chunks_exact_mut(n)).zip(&mut streams) {
+            let mut within = place(point, steps);
+            for _ in 0..TRIES {
+                if within {
+                    break;
+                }
+                stream.fill_normal(normals);
+                covariance.shape(normals, steps);
+                within = place(point, steps);
+            }
+            if !within {
+                point.iter_mut().zip(bounds).for_each(|(x, [low, high])| *x = x.clamp(*low, *high));
+            }
+        }
+    }
+
     /// Adapts the distribution to its samples, given their numbers, best first.
-    pub(super) fn update(&mut self, ranked: &[usize]) {
+    pub(crate) fn update(&mut self, ranked: &[usize]) {
         let (n, c) = (self.mean.len(), &self.coefficients);
         let mut weights = vec![0.0; ranked.len()];
         ranked.iter().zip(&c.weights).for_each(|(&individual, weight)| weights[individual] = *weight);
@@ -168,19 +205,24 @@ impl<C: Covariance> Distribution<C> {
         }
     }
 
+    /// The standard deviation along the longest axis, in the unit of the genes.
+    pub(crate) fn longest_axis(&self) -> f64 {
+        self.sigma * Scalar::sqrt(self.covariance.extremes()[1])
+    }
+
     /// The ratio of the longest to the shortest axis of the distribution.
-    pub(super) fn axis_ratio(&self) -> f64 {
+    pub(crate) fn axis_ratio(&self) -> f64 {
         let [smallest, largest] = self.covariance.extremes();
         Scalar::sqrt(largest / smallest)
     }
 
     /// Bytes of a saved state.
-    pub(super) fn state_length(genes: usize) -> usize {
+    pub(crate) fn state_length(genes: usize) -> usize {
         4 + 8 * (1 + 3 * genes) + C::state_length(genes)
     }
 
     /// Appends the state; samples are not part of it.
-    pub(super) fn save(&self, state: &mut Vec<u8>) {
+    pub(crate) fn save(&self, state: &mut Vec<u8>) {
         state.extend(self.updates.to_le_bytes());
         push_reals(state, &[self.sigma]);
         for row in [&self.mean, &self.step_path, &self.path] {
@@ -190,7 +232,7 @@ impl<C: Covariance> Distribution<C> {
     }
 
     /// Takes a state; on error half of it.
-    pub(super) fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError> {
+    pub(crate) fn restore(&mut self, reader: &mut StateReader<'_>) -> Result<(), EvoError> {
         self.updates = reader.u32()?;
         let mut sigma = [0.0];
         bounded(reader, &mut sigma, STEP_SIZES)?;
@@ -203,20 +245,20 @@ impl<C: Covariance> Distribution<C> {
 }
 
 /// The stream of an individual of a generation.
-pub(super) fn stream(seed: u64, generation: u32, individual: usize) -> Stream {
+pub(crate) fn stream(seed: u64, generation: u32, individual: usize) -> Stream {
     let domain = if generation == 0 { Domain::InitialGenome } else { Domain::Mutation };
     Stream::new(seed, domain, 0, individual as u32, generation)
 }
 
 /// Reads a row of numbers within limits.
-pub(super) fn bounded(reader: &mut StateReader<'_>, row: &mut [f64], limits: [f64; 2]) -> Result<(), EvoError> {
+pub(crate) fn bounded(reader: &mut StateReader<'_>, row: &mut [f64], limits: [f64; 2]) -> Result<(), EvoError> {
     reader.reals(row)?;
     let wrong = row.iter().find(|x| !(limits[0]..=limits[1]).contains(*x));
     wrong.map_or(Ok(()), |x| Err(EvoError::StateContent { what: "a number within its limits", found: x.to_bits() }))
 }
 
 /// The weighted sum of rows for each of many sums [sums x n], the rows taken in blocks that stay in the cache.
-pub(super) fn multiply(factors: &[f64], rows: &[f64], n: usize, sums: &mut [f64]) {
+pub(crate) fn multiply(factors: &[f64], rows: &[f64], n: usize, sums: &mut [f64]) {
     const BLOCK: usize = 16;
     sums.fill(0.0);
     for (block, rows) in rows.chunks(BLOCK * n).enumerate() {

@@ -21,7 +21,7 @@ const DEVIATIONS: [f64; 2] = [1e-40, 1e40];
 
 /// A covariance matrix and its eigenvectors, which are computed only now and then.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct FullCovariance {
+pub(crate) struct FullCovariance {
     n: usize,
     /// The matrix C [n x n], of which the lower triangle counts.
     matrix: Vec<f64>,
@@ -37,18 +37,18 @@ pub(super) struct FullCovariance {
 
 impl FullCovariance {
     /// The matrix [n x n].
-    pub(super) fn matrix(&self) -> Vec<f64> {
+    pub(crate) fn matrix(&self) -> Vec<f64> {
         let element = |i: usize, j: usize| self.matrix[i.max(j) * self.n + i.min(j)];
         (0..self.n).flat_map(|i| (0..self.n).map(move |j| element(i, j))).collect()
     }
 
     /// The standard deviations \[n\] of the genes.
-    pub(super) fn gene_deviations(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn gene_deviations(&self) -> impl Iterator<Item = f64> + '_ {
         self.matrix.iter().step_by(self.n + 1).map(|variance| Scalar::sqrt(variance.max(0.0)))
     }
 
     /// An axis \[n\] and the standard deviation along it.
-    pub(super) fn axis(&self, index: usize) -> (&[f64], f64) {
+    pub(crate) fn axis(&self, index: usize) -> (&[f64], f64) {
         let axis = self.axes.chunks_exact(self.n).nth(index).unwrap_or_default();
         (axis, self.deviations.get(index).copied().unwrap_or_default())
     }

@@ -12,11 +12,11 @@
 //! - `linear`: sums over rows of numbers.
 
 mod cma_es;
-mod coefficients;
+pub(crate) mod coefficients;
 mod diagonal;
-mod distribution;
+pub(crate) mod distribution;
 mod eigen;
-mod full;
+pub(crate) mod full;
 mod linear;
 mod restarts;
 mod search;

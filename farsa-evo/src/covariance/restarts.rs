@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream, exp, ln};
 
-use crate::covariance::cma_es::CmaEsConfig;
+use crate::covariance::cma_es::{CmaEsConfig, between_states};
 use crate::covariance::coefficients::{check, ranked};
 use crate::covariance::distribution::{Distribution, STEP_SIZES, stream};
 use crate::covariance::full::FullCovariance;
@@ -282,6 +282,10 @@ impl Strategy<f64> for CmaEsRestarts {
 const FRONT: (usize, usize) = (8, 6);
 
 impl Snapshot for CmaEsRestarts {
+    fn generations_between_states(&self) -> u32 {
+        between_states(self.config.first.mean.len())
+    }
+
     fn save(&self) -> Vec<u8> {
         let (run, progress) = (&self.run, &self.run.progress);
         let mut state = Vec::new();

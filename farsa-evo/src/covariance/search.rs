@@ -1,9 +1,9 @@
 //! What all searches of one normal distribution do, whatever its covariance.
 
 /// Makes a [`Strategy`](crate::Strategy) that saves its state of a type with `config`, `seed`, `generation`, `distribution` and
-/// `population`.
+/// `population`; the last argument says how many generations of so many genes may lie between two states that are kept.
 macro_rules! search {
-    ($search:ident, $covariance:ident) => {
+    ($search:ident, $covariance:ident, $between:expr) => {
         impl Strategy<f64> for $search {
             fn generation(&self) -> u32 {
                 self.generation
@@ -50,6 +50,10 @@ macro_rules! search {
                 (self.generation, self.distribution) = (generation, distribution);
                 self.distribution.sample(self.seed, generation, &mut self.population);
                 Ok(())
+            }
+
+            fn generations_between_states(&self) -> u32 {
+                $between(self.config.mean.len())
             }
         }
     };

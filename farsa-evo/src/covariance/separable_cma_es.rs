@@ -125,4 +125,4 @@ impl SeparableCmaEs {
     }
 }
 
-search!(SeparableCmaEs, DiagonalCovariance);
+search!(SeparableCmaEs, DiagonalCovariance, |_| u32::MAX);

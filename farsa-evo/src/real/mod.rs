@@ -5,16 +5,18 @@
 //! - `selection`: how parents are chosen.
 //! - `crossover`: how the genes of two parents are mixed.
 //! - `mutation`: how genes change from parent to child.
+//! - `polynomial_mutation`: the same, as NSGA-II does it.
 //! - `real_ga_config`, `real_ga`: the generational genetic algorithm.
 //! - `evolution_strategy_config`, `evolution_strategy`: (mu + lambda) and (mu, lambda) with step sizes that adapt
 //!   themselves.
 //! - `steady_state`: parents and one child each, of which the better half stays.
 
 pub(crate) mod bounds;
-mod crossover;
+pub(crate) mod crossover;
 mod evolution_strategy;
 mod evolution_strategy_config;
 mod mutation;
+pub(crate) mod polynomial_mutation;
 pub(crate) mod ranking;
 mod real_ga;
 mod real_ga_config;

@@ -2,15 +2,18 @@
 
 mod attack;
 mod bad_input;
+mod cluster;
 mod export;
 mod files;
 mod genotypes;
 mod look;
 mod manners;
+mod merge;
 mod own;
 mod replications;
 mod report;
 mod robot;
 mod same_bytes;
 mod strangers;
+mod sweep;
 mod tool;

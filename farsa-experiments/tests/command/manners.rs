@@ -5,10 +5,13 @@ use std::path::Path;
 
 use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 14] = [
+const SUBCOMMANDS: [&str; 17] = [
+    "strategies",
     "list",
     "info",
     "run",
+    "sweep",
+    "merge",
     "test",
     "evaluate",
     "import",

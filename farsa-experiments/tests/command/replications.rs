@@ -83,6 +83,14 @@ fn what_is_in_the_way_stops_them_before_they_begin() {
     refused("run --resume runs/cart-rough-1 --replications 2", "--replications");
     refused("run cart --seed 9223372036854775806 --replications 3 --out x", "the largest seed is 9223372036854775807");
     refused("run cart --replications 2 --lanes 8 --out x", "cart has 1 only");
+    refused("run cart --replications 2 --replication 3 --out x", "--replication 3: there are 2");
+    refused("run cart --replications 2 --replication 0 --out x", "0 is not in 1..");
+    refused("run cart --replication 1 --out x", "--replications");
+    // The seeds of all must be there, so that a task of an array is refused as the whole would be.
+    refused(
+        "run cart --seed 9223372036854775806 --replications 3 --replication 1 --out x",
+        "the largest seed is 9223372036854775807",
+    );
     assert!(!here.join("x").exists());
 }
 
@@ -143,4 +151,146 @@ fn killed_interrupted_and_repeated() {
     }
     // Drafts of a process that was killed while it made a directory would lie beside the runs.
     assert_eq!(fs::read_dir(here.join("runs")).expect("a directory").count(), 3);
+}
+
+/// Sessions of a run: one for each process that was at it.
+fn sessions(run: &Path) -> usize {
+    let text = fs::read_to_string(run.join("manifest.json")).expect("the manifest");
+    let manifest: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    manifest["sessions"].as_array().expect("a list").len()
+}
+
+#[test]
+fn the_tasks_of_an_array_make_what_one_process_makes() {
+    let here = scratch("replications-array");
+    let run = "run cart --condition smooth --generations 5 --set trial.steps=100 --seed 7 --replications 3";
+    ok(own(), &here, &format!("{run} --out whole"));
+    // In any order, and one of them twice.
+    for number in [2, 3, 2, 1] {
+        let said = say(own(), &here, &format!("{run} --replication {number} --out tasks"));
+        assert_eq!(said.code, Some(0), "{said:?}");
+        let seed = number + 6;
+        assert!(said.err.contains(&format!("replication {number} of 3: tasks/cart-smooth-{seed}")), "{said:?}");
+        assert_eq!(said.out.lines().filter(|line| line.starts_with("tasks/")).count(), 1, "{said:?}");
+    }
+    for seed in [7, 8, 9] {
+        let [whole, task] = ["whole", "tasks"].map(|name| here.join(name).join(format!("cart-smooth-{seed}")));
+        assert_eq!(results(&whole), results(&task), "seed {seed}");
+        assert_eq!(sessions(&task), 1, "seed {seed}");
+    }
+}
+
+#[test]
+fn processes_on_one_folder_share_the_runs() {
+    let here = scratch("replications-shared");
+    let run = "run cart --generations 40 --set trial.steps=400 --threads 1 --replications 6";
+    ok(own(), &here, &format!("{run} --out one"));
+    for processes in [2, 4] {
+        let root = format!("shared-{processes}");
+        let line = format!("{run} --out {root} --json");
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let begun: Vec<_> =
+            (0..processes).map(|_| command(own(), &here, &arguments).spawn().expect("the program")).collect();
+        let said: Vec<Said> =
+            begun.into_iter().map(|child| child.wait_with_output().expect("its end").into()).collect();
+        let mut made: Vec<u64> = Vec::new();
+        for said in &said {
+            assert_eq!(said.code, Some(0), "{said:?}");
+            let json: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+            let runs = json["replications"].as_array().expect("a list");
+            // What a process does not tell of, another one was at.
+            let elsewhere = json["elsewhere"].as_array().map_or(0, Vec::len);
+            assert_eq!(runs.len() + elsewhere, 6, "{said:?}");
+            assert_eq!(said.err.contains("same command again"), elsewhere > 0, "{said:?}");
+            let mine = runs.iter().filter(|run| run["skipped"] == false);
+            made.extend(mine.map(|run| run["seed"].as_u64().expect("a seed")));
+        }
+        made.sort_unstable();
+        assert_eq!(made, [1, 2, 3, 4, 5, 6], "each once: {said:?}");
+        for seed in 1..=6 {
+            let [one, shared] = ["one", &root].map(|name| here.join(name).join(format!("cart-rough-{seed}")));
+            assert_eq!(results(&one), results(&shared), "seed {seed}");
+            assert_eq!(sessions(&shared), 1, "seed {seed}");
+        }
+        assert_eq!(fs::read_dir(here.join(&root)).expect("a directory").count(), 6, "no draft is left");
+        // Once more, alone: all of them, and nothing to do.
+        let again = ok(own(), &here, &line);
+        let json: serde_json::Value = serde_json::from_str(&again).expect("JSON");
+        assert_eq!(json["replications"].as_array().map(Vec::len), Some(6), "{again}");
+        assert_eq!(json.get("elsewhere"), None, "{again}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_another_process_has_is_left_to_it() {
+    let here = scratch("replications-busy");
+    // As a process holds it: with a lock on its file, here by a shell.
+    ok(own(), &here, "run cart --generations 2 --seed 2 --out runs/cart-rough-2");
+    let holder = "exec 9>>runs/cart-rough-2/.run.lock; flock 9 || exit 77; echo held; exec sleep 600";
+    let mut holder = command(Path::new("sh"), &here, &["-c", holder]).spawn().expect("a shell");
+    let mut line = String::new();
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(holder.stdout.take().expect("its output")), &mut line)
+        .expect("a line");
+    let run = "run cart --generations 4 --replications 3";
+    let said = (line == "held\n").then(|| say(own(), &here, run));
+    let only = (line == "held\n").then(|| say(own(), &here, &format!("{run} --replication 2")));
+    holder.kill().expect("the end of the shell");
+    holder.wait().expect("its end");
+    let (Some(said), Some(only)) = (said, only) else {
+        // A machine without flock(1).
+        return;
+    };
+    assert_eq!((said.code, only.code), (Some(0), Some(0)), "{said:?} {only:?}");
+    let busy = "replication 2 of 3: runs/cart-rough-2: another process is at it";
+    assert!(said.err.contains(busy) && only.err.contains(busy), "{said:?} {only:?}");
+    let others = "another process is at 1 run: the same command again says what came of it";
+    assert!(said.err.contains(others) && only.err.contains(others), "{said:?} {only:?}");
+    assert_eq!([1, 2, 3].map(|seed| generations(&here.join(format!("runs/cart-rough-{seed}")))), [4, 2, 4]);
+    let said = say(own(), &here, run);
+    assert!(said.code == Some(0) && said.err.contains("runs/cart-rough-2: goes on"), "{said:?}");
+    assert_eq!(generations(&here.join("runs/cart-rough-2")), 4);
+}
+
+#[test]
+fn a_wrong_configuration_never_asks_to_be_started_again() {
+    let here = scratch("replications-never-75");
+    fs::write(here.join("wrong.toml"), "experiment = \"cart\"\n[cart]\nfrictoin = 1\n").expect("a file");
+    for line in [
+        "run cart --replications 3 --replication 4",
+        "run cart --set cart.friction=-1 --replications 3",
+        "run --config wrong.toml --replications 2",
+        "run nothing --replications 2",
+        "run --resume nowhere",
+        "run cart --replications",
+        "sweep wrong.toml",
+        "sweep nothing.toml",
+    ] {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        for scheduler in ["SLURM_JOB_ID", "PBS_JOBID"] {
+            let output = command(own(), &here, &arguments).env(scheduler, "42").output().expect("the program");
+            assert!([Some(1), Some(2)].contains(&output.status.code()), "{line}: {output:?}");
+        }
+    }
+    assert_eq!(fs::read_dir(&here).expect("a directory").count(), 1);
+}
+
+#[cfg(unix)]
+#[test]
+fn under_a_scheduler_an_interrupted_study_asks_to_be_started_again() {
+    let here = scratch("replications-75");
+    let line = format!("{SLOW} --replications 2");
+    let arguments: Vec<&str> = line.split(' ').collect();
+    let mut child = command(own(), &here, &arguments);
+    let child = child.env("SLURM_JOB_ID", "42").spawn().expect("the program");
+    let patience = Instant::now() + Duration::from_secs(120);
+    while generations(&here.join("runs/cart-rough-2")) < 20 {
+        assert!(Instant::now() < patience, "no generation 20");
+        sleep(Duration::from_millis(2));
+    }
+    let kill = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill");
+    assert!(kill.success());
+    let said: Said = child.wait_with_output().expect("its end").into();
+    assert_eq!(said.code, Some(75), "{said:?}");
+    assert!(said.err.contains(&format!("interrupted; go on with `own-experiment {line}`")), "{said:?}");
 }

@@ -297,3 +297,80 @@ fn short_of(numbers: &[f64]) -> String {
     let x = *numbers.last().expect("a number");
     if x != 0.0 && x.abs() < 1e-3 { format!("{x:.3e}") } else { short(x) }
 }
+
+#[test]
+fn conditions_are_compared_at_equal_evaluations_and_by_their_successes() {
+    let here = scratch("report-successes");
+    // Generations of 20 and of 8 individuals.
+    let mut runs = Vec::new();
+    for seed in 1..=4 {
+        for (name, arguments) in [("many", ""), ("few", " --population 8 --set evolution.parents=2")] {
+            let run = format!("run cart --generations 6 --set trial.steps=100 --seed {seed}{arguments}");
+            ok(own(), &here, &format!("{run} --out runs/{name}-{seed} -q"));
+            runs.push(format!("runs/{name}-{seed}"));
+        }
+    }
+    let best = |name: &str| [1, 2, 3, 4].map(|seed| log(&here, &format!("{name}-{seed}"), 1));
+    let highest = |name: &str| best(name).map(|log| log.into_iter().fold(f64::NEG_INFINITY, f64::max));
+    let (many, few) = (highest("many"), highest("few"));
+    // A fitness that some of the runs reach: the third of those with many individuals.
+    let mut sorted = many;
+    sorted.sort_by(f64::total_cmp);
+    let threshold = sorted[1];
+    let line = format!("report {} --success-fitness {threshold}", runs.join(" "));
+    ok(own(), &here, &format!("{line} --md page.md --html page.html"));
+    let md = fs::read_to_string(here.join("page.md")).expect("the page");
+
+    // 48 evaluations are six generations of the few and two of the many.
+    assert!(md.contains("after 48 evaluations, the most that all of them have"), "{md}");
+    for (name, label, generation) in [("many", "population=20", 1), ("few", "population=8", 5)] {
+        let mut at = best(name).map(|log| log[generation]);
+        at.sort_by(f64::total_cmp);
+        let median = short(0.5 * at[1] + 0.5 * at[2]);
+        let row = md.lines().find(|line| line.contains(label) && line.contains(" | 4 | ")).expect("a row");
+        assert!(row.contains(&format!("| 4 | {median} (")), "{row}: no {median}");
+    }
+    let picture = fs::read_to_string(here.join("page-fitness-1.svg")).expect("the picture");
+    assert!(picture.contains("evaluations") && !picture.contains("generation<"), "{picture}");
+
+    let reached = |runs: [f64; 4]| runs.iter().filter(|best| **best >= threshold).count();
+    assert_eq!(reached(many), 3);
+    // Three of four by Wilson's score: scipy.stats.binomtest(3, 4).proportion_ci(method="wilson").
+    assert!(md.contains(" | 3 | 4 | 75.0 % | 30.1 % to 95.4 % |"), "{md}");
+    assert!(md.contains(&format!(" | {} | 4 | ", reached(few))), "{md}");
+    let test = md.lines().find(|line| line.contains("| 3 of 4 |") || line.contains(" of 4 | 3 of 4 |")).expect("a row");
+    assert!(test.contains(&format!("{} of 4", reached(few))), "{test}");
+    assert!(md.contains(&format!("--md page.md --success-fitness {threshold}\n")), "the page's own command");
+    // The same again makes the same bytes.
+    ok(own(), &here, &format!("{} --success-fitness {threshold} --md again.md", line.split(" --").next().expect("it")));
+    let again = fs::read_to_string(here.join("again.md")).expect("the page");
+    let again =
+        again.replace("again-fitness", "page-fitness").replace("--md again.md", "--html page.html --md page.md");
+    assert!(again == md, "{again}");
+
+    for (arguments, words) in [
+        ("--success-share 1.5", "not a share from 0 to 1"),
+        ("--success-fitness inf", "not a number"),
+        ("--success-fitness 1 --success-share 1", "cannot be used with"),
+    ] {
+        let said = say(own(), &here, &format!("report runs/many-1 {arguments} --md new.md"));
+        assert!(said.code == Some(2) && said.err.contains(words), "{arguments}: {said:?}");
+    }
+    assert!(!here.join("new.md").exists());
+}
+
+#[test]
+fn tests_of_champions_are_counted_too() {
+    let here = scratch("report-shares");
+    for (condition, seed) in [("rough", 1), ("rough", 2), ("smooth", 1), ("smooth", 2)] {
+        ok(own(), &here, &format!("run cart --condition {condition} --seed {seed} --generations 4 -q"));
+        ok(own(), &here, &format!("test runs/cart-{condition}-{seed} --trials 8 -q"));
+    }
+    ok(own(), &here, &format!("report {FOUR} --md none.md --success-share 0"));
+    let md = fs::read_to_string(here.join("none.md")).expect("the page");
+    for label in ["rough", "smooth"] {
+        assert!(md.contains(&format!("| {label} | 2 | 2 | 100.0 % | 34.2 % to 100.0 % |\n")), "{md}");
+    }
+    assert!(md.contains("| rough | smooth | 2 of 2 | 2 of 2 | 1.0000 |\n"), "{md}");
+    assert!(md.contains("at least 0.0 % of the test's trials"), "{md}");
+}

@@ -3,17 +3,23 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::rc::Rc;
 
 use clap::FromArgMatches as _;
 
 use crate::command::arguments::export::{
     DataFormat, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs, ExportStartsArgs, ExportWhat,
 };
+use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::subcommands::{
-    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, ReportArgs, RunArgs, TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, RunArgs, StrategiesArgs,
+    TestArgs,
 };
-use crate::command::interrupt::{START_AGAIN, stop_on_signals, under_scheduler};
-use crate::command::{info, manual};
+use crate::command::arguments::sweep::SweepArgs;
+use crate::command::interrupt::{INTERRUPTED, START_AGAIN, stop_on_signals, under_scheduler};
+use crate::command::invocation::Invocation;
+use crate::command::on_ranks::{Part, awaits_orders};
+use crate::command::{info, manual, strategies};
 use crate::error::Error;
 use crate::escaped::escaped;
 use crate::evaluation::{draw, evaluate, import, replay, test};
@@ -22,44 +28,77 @@ use crate::experiment::settings::Value;
 use crate::export::files;
 use crate::export::robot_file;
 use crate::json::pretty;
+use crate::ranks::exchange::Exchange;
+use crate::ranks::{Alone, Ranks};
 use crate::report::write;
 use crate::run::begin;
 use crate::run::bench::{self, Bench, Sample};
 use crate::run::config_file::{ConfigFile, Entry};
-use crate::run::plan::{self, Plan};
+use crate::run::laboratory::Laboratory;
+use crate::run::plan::Plan;
+use crate::run::pool::Pool;
 use crate::run::replications::{self, Replications};
 use crate::run::summary::Summary;
 use crate::run::{evolve, world_choice};
 use crate::store::directory::Directory;
 use crate::store::replace::{create_result, create_results};
 use crate::strategy::settings::{GENERATIONS, POPULATION};
+use crate::sweep::SweepFile;
+use crate::sweep::work::{self, Sweep};
 
 /// Runs the command over these experiments with the process's arguments: the whole of a `main`.
 ///
 /// The exit code is 0; 2 for a wrong command line or configuration; 130 after Ctrl-C, SIGTERM or SIGHUP, or 75 when a
 /// scheduler of a cluster has started it; 1 otherwise.
 pub fn main(experiments: &[&dyn Experiment]) -> ExitCode {
+    Laboratory::new(experiments).main()
+}
+
+/// The same on one of several ranks that were given the same command: together they evaluate the trials of `run`, everything else
+/// is rank 0's. Only rank 0 writes files and says what goes wrong, and all end with its exit code.
+pub fn main_on_ranks(experiments: &[&dyn Experiment], ranks: &dyn Ranks) -> ExitCode {
+    Laboratory::new(experiments).main_on_ranks(ranks)
+}
+
+impl Laboratory<'_> {
+    /// Runs the command over this laboratory with the process's arguments, as [`main`] does.
+    pub fn main(&self) -> ExitCode {
+        execute(self, &Alone)
+    }
+
+    /// The same on one of several ranks, as [`main_on_ranks`] does.
+    pub fn main_on_ranks(&self, ranks: &dyn Ranks) -> ExitCode {
+        execute(self, ranks)
+    }
+}
+
+fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
     let program = program();
-    let parsed = manual::command(&program, experiments).try_get_matches();
+    let exchange = Rc::new(Exchange::new(ranks));
+    let sharing = exchange.sharing().unwrap_or(1);
+    let parsed = manual::command(&program, laboratory).try_get_matches();
     let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version are printed this way too, with exit code 0. There is nowhere to complain about a failure.
-            let _ = error.print();
+            let text = error.to_string();
+            let _ = exchange.begin(Err(Error::Usage(text.trim_start_matches("error: ").into())));
+            if !exchange.is_follower() {
+                // Help and version are printed this way too, with exit code 0. There is nowhere to complain about a failure.
+                let _ = error.print();
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    let invocation = Invocation { program: &program, experiments, quiet: cli.quiet };
-    match invocation.execute(cli.command) {
-        Ok(()) => ExitCode::SUCCESS,
-        // The reader has seen enough: `farsa replay ... | head`.
-        Err(error) if replay::reader_left(&error) => ExitCode::SUCCESS,
-        Err(error) => {
-            let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
-            let again = matches!(error, Error::Interrupted { .. }) && under_scheduler();
-            ExitCode::from(if again { START_AGAIN } else { error.exit_code() })
-        }
-    }
+    let invocation = Invocation { program: &program, laboratory, quiet: cli.quiet, exchange, sharing };
+    let followed = awaits_orders(&cli.command);
+    let result = match invocation.take_part(&cli.command) {
+        Ok(Part::Followed(code)) => return ExitCode::from(code),
+        Ok(Part::Leads) => invocation.execute(cli.command),
+        Err(error) => return ExitCode::from(invocation.told(Err(error))),
+    };
+    let code = invocation.told(result);
+    let dismissed = if followed { invocation.dismiss(code) } else { Ok(()) };
+    ExitCode::from(dismissed.map_or_else(|error| invocation.told(Err(error)), |()| code))
 }
 
 /// What the user calls this program.
@@ -70,32 +109,54 @@ fn program() -> String {
     name.map_or_else(|| "farsa".into(), |name| name.trim_end_matches(std::env::consts::EXE_SUFFIX).into())
 }
 
-/// The command as it was called.
-struct Invocation<'e, 'a> {
-    /// What the user calls this program.
-    program: &'a str,
-    experiments: &'a [&'e dyn Experiment],
-    quiet: bool,
-}
-
 impl<'e> Invocation<'e, '_> {
+    /// Says what went wrong, on rank 0, and returns the exit code.
+    fn told(&self, result: Result<(), Error>) -> u8 {
+        match result {
+            Ok(()) => 0,
+            // The reader has seen enough: `farsa replay ... | head`.
+            Err(error) if replay::reader_left(&error) => 0,
+            Err(error) => {
+                if !self.exchange.is_follower() {
+                    let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
+                }
+                let again = error.exit_code() == INTERRUPTED && under_scheduler();
+                if again { START_AGAIN } else { error.exit_code() }
+            }
+        }
+    }
+
     fn execute(&self, command: Command) -> Result<(), Error> {
-        let Self { program, experiments, quiet } = *self;
+        let Self { program, laboratory, quiet, .. } = *self;
         match command {
-            Command::List(ListArgs { json: false }) => tell(&info::list(experiments)),
-            Command::List(ListArgs { json: true }) => say(&info::list_as_json(experiments)?),
-            Command::Info(InfoArgs { experiment, condition, json }) => {
-                let plan = Plan::new(self.find(&experiment)?, condition.as_deref(), "")?;
+            Command::List(ListArgs { json: false }) => tell(&info::list(laboratory.experiments())),
+            Command::List(ListArgs { json: true }) => say(&info::list_as_json(laboratory.experiments())?),
+            Command::Strategies(StrategiesArgs { strategy, json }) => {
+                let one = strategy.map(|name| laboratory.strategy(&name, "")).transpose()?;
+                let all = one.as_ref().map_or_else(|| laboratory.strategies(), std::slice::from_ref);
+                if json { say(&strategies::as_json(all)?) } else { tell(&strategies::as_text(all)) }
+            }
+            Command::Info(InfoArgs { experiment, condition, strategy, json }) => {
+                let strategy = strategy.map(|name| laboratory.strategy(&name, "--strategy")).transpose()?;
+                let plan = Plan::with_strategy(self.find(&experiment)?, condition.as_deref(), "", strategy)?;
                 if json { say(&info::as_json(&plan)?) } else { tell(&info::as_text(&plan)?) }
             }
             Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
-                let found = self.replicate(&args, count)?;
-                self.summary(args.json, &found.text(), &|| pretty(&found))
+                let found = match args.groups {
+                    None => Some(self.replicate(&args, count, args.replication)?),
+                    Some(groups) => self.replicate_in_groups(&args, count, groups)?,
+                };
+                found.map_or(Ok(()), |found| self.summary(args.json, &found.text(), &|| pretty(&found)))
             }
             Command::Run(args) => {
                 let found = self.start_or_resume(&args)?;
                 self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
             }
+            Command::Sweep(args) => {
+                let found = self.sweep(&args)?;
+                self.summary(args.json, &found.text(), &|| pretty(&found))
+            }
+            Command::Merge(args) => self.merge(&args),
             Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
                 let (mut directory, mut plan) = self.existing(&directory)?;
                 let other = world_choice::visit(&mut plan, world.name.as_deref())?;
@@ -125,10 +186,10 @@ impl<'e> Invocation<'e, '_> {
                 let found = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
                 self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
             }
-            Command::Report(ReportArgs { directories, html, md, json }) => {
-                let runs = directories.iter().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
-                let found = write::report(runs, html.as_deref(), md.as_deref(), program)?;
-                self.summary(json, &found.text(), &|| pretty(&found))
+            Command::Report(args) => {
+                let runs = args.directories.iter().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
+                let found = write::report(runs, args.html.as_deref(), args.md.as_deref(), args.success(), program)?;
+                self.summary(args.json, &found.text(), &|| pretty(&found))
             }
             Command::Export(ExportArgs { what }) => {
                 let (content, out) = self.exported(what)?;
@@ -154,10 +215,10 @@ impl<'e> Invocation<'e, '_> {
                 let found = self.bench(&args)?;
                 self.summary(args.json, &found.text(), &|| pretty(&found))
             }
-            Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, experiments)),
-            Command::Man(ManArgs { out: None }) => say(&manual::page(program, experiments)?),
+            Command::Completions(CompletionsArgs { shell }) => say(&manual::completions(shell, program, laboratory)),
+            Command::Man(ManArgs { out: None }) => say(&manual::page(program, laboratory)?),
             Command::Man(ManArgs { out: Some(path) }) => {
-                let pages = manual::pages(&path, program, experiments)?;
+                let pages = manual::pages(&path, program, laboratory)?;
                 self.summary(false, &format!("{}: {pages} pages\n", path.display()), &|| Ok(String::new()))
             }
         }
@@ -223,19 +284,19 @@ impl<'e> Invocation<'e, '_> {
 
     /// The experiment of this name.
     fn find(&self, name: &str) -> Result<&'e dyn Experiment, Error> {
-        plan::find(self.experiments, name, "")
+        self.laboratory.experiment(name, "")
     }
 
     /// A run that exists, with the plan in its configuration.
     fn existing(&self, path: &Path) -> Result<(Directory, Plan<'e>), Error> {
         let directory = Directory::open(path)?;
-        let plan = Plan::from_file(self.experiments, &ConfigFile::read_own(&directory.config())?)?;
+        let plan = Plan::from_file(self.laboratory, &ConfigFile::read_own(&directory.config())?)?;
         Ok((directory, plan))
     }
 
     fn bench(&self, args: &BenchArgs) -> Result<Bench, Error> {
         let run = args.run.as_deref().map(|path| self.existing(path)).transpose()?;
-        let (evolved, plan) = match (run, &args.experiment, self.experiments.first()) {
+        let (evolved, plan) = match (run, &args.experiment, self.laboratory.experiments().first()) {
             (Some((directory, mut plan)), ..) => {
                 let evolved = Sample::from_run(&plan, &directory)?;
                 args.variant.apply(&mut plan)?;
@@ -250,19 +311,45 @@ impl<'e> Invocation<'e, '_> {
         bench::bench(&plan, &sample, pool, args.seconds)
     }
 
-    /// Runs of one plan with one seed after the other; each is begun, gone on with, or finished already.
-    fn replicate(&self, args: &RunArgs, count: u32) -> Result<Replications, Error> {
-        let (_, plan) = self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())?;
+    /// Runs of one plan with one seed after the other, or only that of a number from 1; each is begun, gone on with, or finished
+    /// already.
+    pub(crate) fn replicate(&self, args: &RunArgs, count: u32, only: Option<u32>) -> Result<Replications, Error> {
+        let (_, plan) = self.planned_from_file(args)?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from("runs"));
+        let pool = |plan: &Plan<'e>| self.pool(args, plan);
+        let which = replications::Which { count, only };
+        replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
+    }
+
+    /// Brings runs together; their table goes to the standard output where no other place was named.
+    fn merge(&self, args: &MergeArgs) -> Result<(), Error> {
+        let found = args.merge().make(self.laboratory)?;
+        if !args.prints() {
+            return self.summary(args.json, &found.text(), &|| pretty(&found));
+        }
+        if !self.quiet {
+            let _ = write!(io::stderr(), "{}", escaped(&found.text()));
+        }
+        say(&found.table)
+    }
+
+    /// The runs of all points of a file, or what there is of them.
+    fn sweep(&self, args: &SweepArgs) -> Result<work::Found, Error> {
+        let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
+        let sweep = Sweep::new(&file, self.laboratory, &root)?;
+        let ready = |plan: &Plan<'e>| args.workers.check(plan);
+        if args.list {
+            return sweep.list(which, &ready);
+        }
         let pool = |plan: &Plan<'e>| args.workers.pool(plan);
-        replications::run(plan, count, &root, &pool, stop_on_signals, self.program, self.quiet)
+        sweep.work(which, &ready, &pool, stop_on_signals, (self.program, self.quiet))
     }
 
     fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {
         let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
         let (directory, plan) = self.planned(args, file.as_ref())?;
         // What is refused leaves no directory behind.
-        let pool = args.workers.pool(&plan)?;
+        let pool = self.pool(args, &plan)?;
         let directory = match directory {
             Some(directory) => {
                 same_names(args, file.as_ref(), &plan, &directory)?;
@@ -271,6 +358,16 @@ impl<'e> Invocation<'e, '_> {
             None => begin::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
         };
         evolve::go_on(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
+    }
+
+    /// The threads of this rank.
+    pub(crate) fn pool(&self, args: &RunArgs, plan: &Plan<'e>) -> Result<Pool<'e>, Error> {
+        Ok(args.workers.pool_shared(plan, self.sharing)?.on(self.exchange.clone()))
+    }
+
+    /// What the command line and the file that it names ask for.
+    pub(crate) fn planned_from_file(&self, args: &RunArgs) -> Result<(Option<Directory>, Plan<'e>), Error> {
+        self.planned(args, args.config.as_deref().map(ConfigFile::read).transpose()?.as_ref())
     }
 
     /// What the command line and its file ask for, and the directory that is to be gone on with.
@@ -312,15 +409,20 @@ impl<'e> Invocation<'e, '_> {
                 }
                 experiment
             }
-            (None, Some(entry)) => plan::find(self.experiments, &entry.value, &entry.place)?,
+            (None, Some(entry)) => self.laboratory.experiment(&entry.value, &entry.place)?,
             (None, None) => {
                 return Err(Error::Usage("neither the command line nor the file names an experiment".into()));
             }
         };
+        let strategy = match (&args.strategy, file.and_then(|file| file.strategy.as_ref())) {
+            (Some(name), _) => Some(self.laboratory.strategy(name, "--strategy")?),
+            (None, Some(entry)) => Some(self.laboratory.strategy(&entry.value, &entry.place)?),
+            (None, None) => None,
+        };
         match (&args.variant.condition, file.and_then(|file| file.condition.as_ref())) {
-            (Some(name), _) => Plan::new(experiment, Some(name), ""),
-            (None, Some(entry)) => Plan::new(experiment, Some(&entry.value), &entry.place),
-            (None, None) => Plan::new(experiment, None, ""),
+            (Some(name), _) => Plan::with_strategy(experiment, Some(name), "", strategy),
+            (None, Some(entry)) => Plan::with_strategy(experiment, Some(&entry.value), &entry.place, strategy),
+            (None, None) => Plan::with_strategy(experiment, None, "", strategy),
         }
     }
 }
@@ -341,9 +443,12 @@ fn same_names(args: &RunArgs, file: Option<&ConfigFile>, plan: &Plan<'_>, direct
     let in_file = |entry: Option<&Entry<String>>| entry.map(|entry| entry.value.clone());
     let experiment = args.experiment.clone().or_else(|| in_file(file?.experiment.as_ref()));
     let condition = args.variant.condition.clone().or_else(|| in_file(file?.condition.as_ref()));
-    for (key, run, asked) in
-        [("experiment", plan.experiment.name(), experiment), ("condition", plan.condition.as_str(), condition)]
-    {
+    let strategy = args.strategy.clone().or_else(|| in_file(file?.strategy.as_ref()));
+    for (key, run, asked) in [
+        ("experiment", plan.experiment.name(), experiment),
+        ("condition", plan.condition.as_str(), condition),
+        ("strategy", plan.definition().name(), strategy),
+    ] {
         if let Some(asked) = asked.filter(|asked| asked != run) {
             let directory = directory.path().into();
             return Err(Error::OtherConfiguration { directory, key: key.into(), run: run.into(), asked });

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
 use crate::experiment::outcome::{ChannelGroup, Description};
-use crate::experiment::settings::{Source, Value};
+use crate::experiment::settings::{Setting, Source, Value};
 use crate::json::pretty;
 use crate::run::plan::Plan;
 
@@ -68,8 +68,9 @@ struct Info {
     settings: Vec<SettingInfo>,
 }
 
+/// What there is to know of a setting.
 #[derive(Serialize)]
-struct SettingInfo {
+pub(super) struct SettingInfo {
     key: String,
     default: serde_json::Value,
     unit: String,
@@ -78,19 +79,34 @@ struct SettingInfo {
     doc: String,
 }
 
-impl Info {
-    fn from_plan(plan: &Plan<'_>) -> Result<Self, Error> {
-        let evaluator = plan.evaluator()?;
-        let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.description();
-        let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
-        let settings = plan.settings.table().iter().map(|setting| SettingInfo {
+impl SettingInfo {
+    pub(super) fn new(setting: &Setting) -> Self {
+        Self {
             key: setting.key().into(),
             default: json(setting.default_value()),
             unit: setting.unit_name().into(),
             allowed: setting.allowed(),
             source: setting.source(),
             doc: setting.doc_text().into(),
-        });
+        }
+    }
+
+    /// The same in a line of words and one that says what it is.
+    pub(super) fn text(&self, setting: &Setting) -> String {
+        let Self { key, unit, allowed, source, doc, .. } = self;
+        let value = setting.default_value();
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let doc = if doc.is_empty() { String::new() } else { format!("      {doc}\n") };
+        format!("  {key} = {value}{unit}  [{}; {allowed}]\n{doc}", source.name())
+    }
+}
+
+impl Info {
+    fn from_plan(plan: &Plan<'_>) -> Result<Self, Error> {
+        let evaluator = plan.evaluator()?;
+        let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.description();
+        let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
+        let settings = plan.settings.table().iter().map(SettingInfo::new);
         Ok(Self {
             experiment: plan.experiment.name().into(),
             summary: plan.experiment.summary().into(),
@@ -151,15 +167,8 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
     let _ = writeln!(text, "trials: {}, each of at most {} steps{clock}", info.trials, info.steps);
     let _ = writeln!(text, "fitness: {}", info.fitness_terms.join(", "));
     let _ = writeln!(text, "\nsettings:");
-    for (setting, SettingInfo { key, unit, allowed, source, doc, .. }) in
-        plan.settings.table().iter().zip(&info.settings)
-    {
-        let value = setting.default_value();
-        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-        let _ = writeln!(text, "  {key} = {value}{unit}  [{}; {allowed}]", source.name());
-        if !doc.is_empty() {
-            let _ = writeln!(text, "      {doc}");
-        }
+    for (setting, info) in plan.settings.table().iter().zip(&info.settings) {
+        text.push_str(&info.text(setting));
     }
     Ok(text)
 }

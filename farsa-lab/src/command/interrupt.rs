@@ -13,6 +13,8 @@ use signal_hook::flag;
 
 /// What a process ends with that wants to be started again: `EX_TEMPFAIL` of sysexits.h.
 pub(crate) const START_AGAIN: u8 = 75;
+/// The exit code of [`Error::Interrupted`](crate::Error::Interrupted), which is that of a shell after Ctrl-C.
+pub(crate) const INTERRUPTED: u8 = 130;
 
 /// A flag that becomes true when the user or the system asks the process to stop: SIGINT, SIGTERM and SIGHUP. The second time
 /// the process ends at once.

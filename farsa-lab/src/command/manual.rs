@@ -10,15 +10,25 @@ use farsa_view::Camera;
 
 use crate::command::arguments::subcommands::Cli;
 use crate::error::Error;
-use crate::experiment::definition::Experiment;
+use crate::run::laboratory::Laboratory;
 use crate::store::replace::create_results;
 
-/// Without headings and spare lines, so that a screen of 24 lines has room for the tour, which follows.
-const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n{options}\n";
+/// Without headings and spare lines, and the options in one, so that a screen of 24 lines has room for the tour, which follows.
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\
+    Options: -q, --quiet: no progress and no summary; -h, --help; -V, --version\n";
+
+/// The words of the command line; those for several ranks are shown by programs that go by such a name.
+fn words(program: &str) -> Command {
+    let command = Cli::command();
+    if program.ends_with("-mpi") {
+        return command.mut_subcommand("run", |run| run.mut_arg("groups", |groups| groups.hide(false)));
+    }
+    command
+}
 
 /// The command line under the name of the program, with examples about its own first experiment.
-pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command {
-    let first = experiments.first();
+pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
+    let first = laboratory.experiments().first();
     let experiment = first.map_or("EXPERIMENT", |experiment| experiment.name());
     let conditions = first.map_or(&[][..], |experiment| experiment.conditions());
     let run = match conditions.first() {
@@ -32,19 +42,26 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
     };
     let tour = [
         format!("run {experiment} --generations 20"),
-        format!("test {run}"),
         format!("replay {run} --html trial.html"),
         format!("report {run} --html report.html"),
     ];
     let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
-    let mut command = Cli::command()
+    let mut command = words(program)
         .name(program.to_owned())
         .bin_name(program.to_owned())
         .version(version(program))
         .disable_help_subcommand(true)
         .help_template(format!("{TEMPLATE}{tour}"))
         .after_help(tour);
-    for (name, lines) in [
+    for (name, lines) in examples_of_each(program, experiment, &run, &other) {
+        command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
+    }
+    command
+}
+
+/// Examples for each subcommand: about an experiment, one of its runs and, as an option, another of its conditions.
+fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> Vec<(&'static str, Vec<String>)> {
+    vec![
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),
         (
@@ -55,8 +72,12 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
                 format!("run --resume {run} --generations 2000"),
                 format!("run --config {run}/config.toml --out again"),
                 format!("run {experiment}{other} --replications 20"),
+                format!("run {experiment} --strategy cma-es --seed 3"),
             ],
         ),
+        ("sweep", vec!["sweep friction.toml --list".into(), "sweep friction.toml --point 3".into()]),
+        ("merge", vec!["merge runs > runs.csv".into(), "merge node1/runs node2/runs --out runs --csv runs.csv".into()]),
+        ("strategies", vec!["strategies".into(), "strategies cma-es".into()]),
         ("test", vec![format!("test {run} --trials 1000 --seed 2")]),
         (
             "evaluate",
@@ -92,6 +113,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
             vec![
                 format!("report {run} --html report.html"),
                 "report runs/* --html report.html --md report.md".to_owned(),
+                "report runs/* --html report.html --success-share 0.8".to_owned(),
             ],
         ),
         (
@@ -112,10 +134,7 @@ pub(crate) fn command(program: &str, experiments: &[&dyn Experiment]) -> Command
         ("bench", vec![format!("bench {experiment}"), format!("bench --run {run} --threads 1 --lanes 1 --seconds 60")]),
         ("completions", vec![format!("completions bash > ~/.local/share/bash-completion/completions/{program}")]),
         ("man", vec!["man | man -l -".into(), "man --out ~/.local/share/man/man1".into()]),
-    ] {
-        command = command.mut_subcommand(name, |subcommand| subcommand.after_help(examples(&lines)));
-    }
-    command
+    ]
 }
 
 /// The version of this crate, under whose name a program of somebody else must not give it.
@@ -125,15 +144,15 @@ fn version(program: &str) -> String {
 }
 
 /// A script that lets a shell complete the command, experiments and conditions included.
-pub(crate) fn completions(shell: Shell, program: &str, experiments: &[&dyn Experiment]) -> String {
-    let names: Vec<&'static str> = experiments.iter().map(|experiment| experiment.name()).collect();
+pub(crate) fn completions(shell: Shell, program: &str, laboratory: &Laboratory<'_>) -> String {
+    let names: Vec<&'static str> = laboratory.experiments().iter().map(|experiment| experiment.name()).collect();
     let mut conditions: Vec<&'static str> = Vec::new();
-    for condition in experiments.iter().flat_map(|experiment| experiment.conditions()) {
+    for condition in laboratory.experiments().iter().flat_map(|experiment| experiment.conditions()) {
         if !conditions.contains(condition) {
             conditions.push(condition);
         }
     }
-    let mut command = command(program, experiments);
+    let mut command = command(program, laboratory);
     // The command itself takes any word, and says which name is the nearest.
     let known = |words: &[&'static str]| PossibleValuesParser::new(words.to_vec());
     let taught = |subcommand: Command| {
@@ -148,14 +167,19 @@ pub(crate) fn completions(shell: Shell, program: &str, experiments: &[&dyn Exper
     command = command.mut_subcommand("draw", |subcommand| {
         subcommand.mut_arg("camera", |arg| arg.value_parser(PossibleValuesParser::new(Camera::NAMES)))
     });
+    let strategies: Vec<&'static str> = laboratory.strategies().iter().map(|strategy| strategy.name()).collect();
+    for subcommand in ["info", "run", "strategies"] {
+        let taught = |subcommand: Command| subcommand.mut_arg("strategy", |arg| arg.value_parser(known(&strategies)));
+        command = command.mut_subcommand(subcommand, taught);
+    }
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, program, &mut script);
     String::from_utf8_lossy(&script).into_owned()
 }
 
 /// The first page of the manual.
-pub(crate) fn page(program: &str, experiments: &[&dyn Experiment]) -> Result<String, Error> {
-    let mut command = command(program, experiments);
+pub(crate) fn page(program: &str, laboratory: &Laboratory<'_>) -> Result<String, Error> {
+    let mut command = command(program, laboratory);
     command.build();
     render(command)
 }
@@ -164,8 +188,8 @@ pub(crate) fn page(program: &str, experiments: &[&dyn Experiment]) -> Result<Str
 ///
 /// # Errors
 /// [`Error::Usage`] when one of them is there already, [`Error::Io`].
-pub(crate) fn pages(directory: &Path, program: &str, experiments: &[&dyn Experiment]) -> Result<usize, Error> {
-    let mut command = command(program, experiments);
+pub(crate) fn pages(directory: &Path, program: &str, laboratory: &Laboratory<'_>) -> Result<usize, Error> {
+    let mut command = command(program, laboratory);
     command.build();
     let subcommands = command.get_subcommands().filter(|subcommand| subcommand.get_name() != "help").cloned();
     let mut files = Vec::new();

@@ -4,10 +4,16 @@
 //! - `cli`: the command: `main` for any set of experiments
 //! - `info`: `farsa list` and `farsa info`: what there is and what it is made of
 //! - `interrupt`: signals that ask a run to stop, and the exit code that asks a scheduler to start it again
+//! - `invocation`: the command as it was called
 //! - `manual`: what the command says about itself: help with examples, completions, and pages of the manual
+//! - `on_ranks`: the command on several ranks: what all do before and around what rank 0 does
+//! - `strategies`: `farsa strategies`: what a run can search with
 
 mod arguments;
 pub mod cli;
 mod info;
 mod interrupt;
+mod invocation;
 mod manual;
+mod on_ranks;
+mod strategies;

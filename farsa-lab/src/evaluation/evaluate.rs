@@ -14,7 +14,7 @@ use crate::experiment::outcome::Note;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::progress::Progress;
-use crate::strategy::settings::POPULATION;
+use crate::strategy::search::Genome;
 
 /// The genes that a command line gives.
 pub(crate) struct GivenGenes {
@@ -171,9 +171,9 @@ pub(crate) fn evaluate(
 ) -> Result<Evaluation, Error> {
     let names = pool.evaluator().populations();
     let genes = genes(given, plan.experiment.name(), &names, Shape::from_genotype(pool.genotype()))?;
-    let parameters: Option<Vec<Vec<f32>>> = genes.iter().map(|genes| pool.genotype().decode(genes)).collect();
+    let parameters: Option<Vec<Vec<f32>>> = genes.iter().map(|genes| genes.decode(pool.genotype())).collect();
     let parameters = parameters.unwrap_or_default();
-    let size = if names.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
+    let size = if names.len() > 1 { plan.size()? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);
     let results = test::run_trials(&mut pool, &parameters, size, trials, seed, &progress);
     drop(progress);
@@ -182,7 +182,7 @@ pub(crate) fn evaluate(
 }
 
 /// The genes of each population, from lists and files.
-fn genes(asked: &GivenGenes, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Vec<u16>>, Error> {
+fn genes(asked: &GivenGenes, experiment: &str, names: &[String], shape: Shape) -> Result<Vec<Genome>, Error> {
     const OPTIONS: &str = "--genes, --genes-file";
     let populations = Populations { experiment, names };
     if asked.numbers.len() > asked.files.len() {
@@ -197,12 +197,12 @@ fn genes(asked: &GivenGenes, experiment: &str, names: &[String], shape: Shape) -
     for list in &asked.lists {
         let (population, list) = populations.split("--genes", list)?;
         let of = population.map_or_else(String::new, |population| format!("{}: ", names[population]));
-        let genes = shape.list(list).map_err(|error| Error::Usage(format!("--genes: {of}{error}")))?;
+        let genes = shape.genome(list).map_err(|error| Error::Usage(format!("--genes: {of}{error}")))?;
         given.push((population, genes));
     }
     for (number, path) in asked.files.iter().enumerate() {
         let (population, path) = populations.file("--genes-file", path)?;
-        given.push((population, one(shape.read(&path)?, asked.numbers.get(number).copied(), &path)?));
+        given.push((population, one(shape.read_genomes(&path)?, asked.numbers.get(number).copied(), &path)?));
     }
     let unnamed = given.iter().any(|(population, _)| population.is_none());
     if names.len() > 1 && unnamed && !asked.lists.is_empty() && !asked.files.is_empty() {
@@ -212,7 +212,7 @@ fn genes(asked: &GivenGenes, experiment: &str, names: &[String], shape: Shape) -
         return Err(Error::Usage(format!("{OPTIONS}: {experiment} has several populations: {why}")));
     }
     let all = populations.divide(OPTIONS, given)?;
-    let one = |(name, mut all): (&String, Vec<Vec<u16>>)| match all.len() {
+    let one = |(name, mut all): (&String, Vec<Genome>)| match all.len() {
         1 => Ok(all.swap_remove(0)),
         count => Err(Error::Usage(format!("{OPTIONS}: {count} genotypes for population `{name}`"))),
     };
@@ -220,7 +220,7 @@ fn genes(asked: &GivenGenes, experiment: &str, names: &[String], shape: Shape) -
 }
 
 /// The genotype that was asked for, or the only one.
-fn one(mut genotypes: Vec<Vec<u16>>, wanted: Option<usize>, path: &Path) -> Result<Vec<u16>, Error> {
+fn one(mut genotypes: Vec<Genome>, wanted: Option<usize>, path: &Path) -> Result<Genome, Error> {
     let (path, count) = (path.display(), genotypes.len());
     match wanted {
         None if count == 1 => Ok(genotypes.swap_remove(0)),

@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::escaped::Quoted;
 use crate::experiment::genotype::Genotype;
 use crate::store::bounded;
+use crate::strategy::search::Genome;
 
 /// The most bytes that are read of a file of genotypes.
 const MOST_BYTES: u64 = 256_000_000;
@@ -25,6 +26,8 @@ pub(crate) struct Shape {
 pub(crate) enum GenotypeError {
     /// A word that is no gene of the experiment.
     Gene { line: Option<usize>, position: usize, text: String, largest: u16 },
+    /// A word that is no real gene.
+    Real { position: usize, text: String },
     /// Another number of genes than the experiment has.
     Count { line: Option<usize>, found: usize, expected: usize },
     /// The text ends within a genotype.
@@ -44,6 +47,10 @@ impl fmt::Display for GenotypeError {
                 place(f, line)?;
                 let text = Quoted(text);
                 write!(f, "gene {position} (the first is 0) is {text}, not a whole number from 0 to {largest}")
+            }
+            Self::Real { position, text } => {
+                let text = Quoted(text);
+                write!(f, "gene {position} (the first is 0) is {text}, not a finite number")
             }
             Self::Count { line, found, expected } => {
                 place(f, line)?;
@@ -126,15 +133,53 @@ impl Shape {
     /// # Errors
     /// [`Error::Io`], [`Error::Damaged`] with the line or the position, or for a file that does not end.
     pub(crate) fn read(self, path: &Path) -> Result<Vec<Vec<u16>>, Error> {
+        self.words(path, &bounded::read_text(path, MOST_BYTES)?)
+    }
+
+    /// The same where genes may also be reals, as [`written_reals`] writes them.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(crate) fn read_genomes(self, path: &Path) -> Result<Vec<Genome>, Error> {
         let text = bounded::read_text(path, MOST_BYTES)?;
+        if are_reals(&text) {
+            return Ok(vec![Genome::Reals(self.reals(&text).map_err(|error| Error::damaged(path, error))?)]);
+        }
+        Ok(self.words(path, &text)?.into_iter().map(Genome::Words).collect())
+    }
+
+    /// The genome in a list of genes, words or reals.
+    pub(crate) fn genome(self, text: &str) -> Result<Genome, GenotypeError> {
+        if are_reals(text) { self.reals(text).map(Genome::Reals) } else { self.list(text).map(Genome::Words) }
+    }
+
+    /// Real genes with commas or blanks between them.
+    fn reals(self, text: &str) -> Result<Vec<f64>, GenotypeError> {
+        let words = text.split(',').flat_map(|part| part.split_whitespace());
+        let real = |(position, text): (usize, &str)| {
+            let gene = text.parse().ok().filter(|gene: &f64| gene.is_finite());
+            gene.ok_or_else(|| GenotypeError::Real { position, text: text.into() })
+        };
+        let genes = words.enumerate().map(real).collect::<Result<Vec<f64>, _>>()?;
+        let (found, expected) = (genes.len(), self.genes);
+        if found == expected { Ok(genes) } else { Err(GenotypeError::Count { line: None, found, expected }) }
+    }
+
+    fn words(self, path: &Path, text: &str) -> Result<Vec<Vec<u16>>, Error> {
         let original = text.lines().map(str::trim).find(|line| !line.is_empty()).is_some_and(is_title);
         let read = if original || text.lines().any(|line| line.trim() == "END") {
-            self.original(&text)
+            self.original(text)
         } else {
-            self.list(&text).map(|genes| vec![genes])
+            self.list(text).map(|genes| vec![genes])
         };
         read.map_err(|error| Error::damaged(path, error))
     }
+}
+
+/// Whether a list of genes is one of reals: its first has a point or an exponent.
+fn are_reals(text: &str) -> bool {
+    let first = text.split([',', ' ', '\t', '\n', '\r']).find(|word| !word.is_empty()).unwrap_or_default();
+    first.contains(['.', 'e']) && first.starts_with(|c: char| c == '-' || c.is_ascii_digit())
 }
 
 /// Whether a line before the first gene names the genotype: `**NET : ...`, `DYNAMICAL NN`.
@@ -159,6 +204,12 @@ pub fn read_genotypes(path: &Path, genes: usize, gene_bits: u32) -> Result<Vec<V
 pub(crate) fn written(name: &str, genes: &[u16]) -> String {
     let genes: Vec<String> = genes.iter().map(u16::to_string).collect();
     format!("**NET : {name}\nDYNAMICAL NN\n{}\nEND\n", genes.join("\n"))
+}
+
+/// Real genes as a list, one on each line, which reads back as the same numbers.
+pub(crate) fn written_reals(genes: &[f64]) -> String {
+    let genes: Vec<String> = genes.iter().map(|gene| format!("{gene:?}")).collect();
+    genes.join("\n") + "\n"
 }
 
 #[cfg(test)]
@@ -227,6 +278,17 @@ mod tests {
     }
 
     #[test]
+    fn lists_of_reals_are_told_from_words() {
+        assert_eq!(shape().genome("0.5, -1e-3 2"), Ok(Genome::Reals(vec![0.5, -0.001, 2.0])));
+        assert_eq!(shape().genome("90,93,0"), Ok(Genome::Words(vec![90, 93, 0])));
+        let wrong = |text: &str| shape().genome(text).unwrap_err().to_string();
+        assert_eq!(wrong("0.5,x,1"), "gene 1 (the first is 0) is `x`, not a finite number");
+        assert_eq!(wrong("0.5,inf,1"), "gene 1 (the first is 0) is `inf`, not a finite number");
+        assert_eq!(wrong("0.5,1"), "2 genes where 3 are expected");
+        assert_eq!(wrong("90.,93,0,4"), "4 genes where 3 are expected");
+    }
+
+    #[test]
     fn a_file_is_text_within_limits() {
         let path = std::env::temp_dir().join(format!("farsa genotypes {}", std::process::id()));
         let read = || read_genotypes(&path, 3, 8).map_err(|error| error.to_string());
@@ -261,6 +323,11 @@ mod tests {
         #[test]
         fn no_text_makes_it_panic(text in "[0-9A-Z*,. \n\r-]{0,60}") {
             let _ = (shape().original(&text), shape().list(&text));
+        }
+
+        #[test]
+        fn reals_read_back(genes in prop::array::uniform3(prop::num::f64::NORMAL)) {
+            prop_assert_eq!(shape().genome(&written_reals(&genes)), Ok(Genome::Reals(genes.to_vec())));
         }
 
         #[test]

@@ -15,6 +15,7 @@ use crate::run::records::{Best, Champions, write_imported};
 use crate::store::directory::Directory;
 use crate::store::manifest::Manifest;
 use crate::store::replace::replace;
+use crate::strategy::search::Genome;
 use crate::strategy::settings::POPULATION;
 
 /// What was imported.
@@ -101,7 +102,7 @@ pub(crate) fn import(
         let best = best.into_iter().enumerate().map(|(population, genes)| Best {
             individual: (population * size) as u32,
             fitness: Fitness::WORST,
-            genes,
+            genes: Genome::Words(genes),
         });
         Champions { identity: identity.clone(), generation: 0, best: best.collect() }.write(&directory.champion())?;
         let genomes = of.into_iter().flatten().collect();

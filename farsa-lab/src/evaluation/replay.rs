@@ -20,6 +20,7 @@ use crate::run::told::history;
 use crate::store::directory::Directory;
 use crate::store::replace::create_results;
 use crate::strategy::opponents;
+use crate::strategy::search::Genome;
 
 /// Which trials to replay; individuals are counted through all populations.
 #[derive(Debug, Clone, Copy, Default)]
@@ -73,7 +74,7 @@ impl Replayable {
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
         let others = || Error::damaged(&path, "its genomes are not those of the experiment");
-        let parameters = genes.first().and_then(|genes| genotype.decode(genes)).ok_or_else(others)?;
+        let parameters = genes.first().and_then(|genes| genes.decode(&genotype)).ok_or_else(others)?;
         let trials = 0..evaluator.trials() as u32;
         let trials = match which.trial {
             None => trials,
@@ -83,7 +84,7 @@ impl Replayable {
             }
         };
         let met = opponents::met(&history, generation, individual as usize, trials.clone(), evaluator.trials())?;
-        let decoded = |genes: &Vec<Vec<u16>>| genes.iter().map(|genes| genotype.decode(genes)).collect::<Option<_>>();
+        let decoded = |genes: &Vec<Genome>| genes.iter().map(|genes| genes.decode(&genotype)).collect::<Option<_>>();
         let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
         Ok(Self { evaluator, parameters, opponents, seed: plan.seed, generation, individual, trials })
     }

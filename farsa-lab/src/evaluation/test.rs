@@ -23,7 +23,6 @@ use crate::store::directory::Directory;
 use crate::store::draft;
 use crate::store::lock::Lock;
 use crate::store::replace::replace;
-use crate::strategy::settings::POPULATION;
 
 /// `test.json`: which champion `test.csv` is about, and how to make it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -147,7 +146,7 @@ pub(crate) fn test(
     }
     let Champions { identity, generation, best } = Champions::read(plan, directory)?;
     let mut pool = Pool::new(plan, threads, lanes)?;
-    let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| pool.genotype().decode(&best.genes)).collect();
+    let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| best.genes.decode(pool.genotype())).collect();
     let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
     let Some(parameters) = parameters else {
         return Err(Error::damaged(&path, "its genome is not one of the experiment"));
@@ -155,7 +154,7 @@ pub(crate) fn test(
     // Where nothing can be written, that is said before anything is computed.
     drop(Lock::of_tests(directory.path())?);
     let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
-    let size = if best.len() > 1 { plan.settings.count(POPULATION)? } else { 0 };
+    let size = if best.len() > 1 { plan.size()? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);
     let results = run_trials(&mut pool, &parameters, size, trials, seed, &progress);
     drop(progress);

@@ -6,7 +6,7 @@ use farsa_num::Scalar as _;
 use crate::experiment::evaluator::Parameter;
 
 /// Genes of some bits, one for each parameter: 0 stands for the parameter's first end, the largest gene for the other,
-/// linear between.
+/// linear between. Real genes likewise: -1 stands for the first end, 1 for the other, and what lies beyond is reflected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Genotype {
     ends: Vec<[f64; 2]>,
@@ -61,18 +61,61 @@ impl Genotype {
             if gene >= largest {
                 return other as f32;
             }
-            let value = (first + (other - first) * f64::from(gene) / f64::from(largest)) as f32;
-            // The sum may round one f32 beyond an end.
-            let (low, high) = (first.min(other) as f32, first.max(other) as f32);
-            if value > high {
-                high
-            } else if value < low {
-                low
-            } else {
-                value
-            }
+            within(first + (other - first) * f64::from(gene) / f64::from(largest), [first, other])
         };
         (genes.len() == self.ends.len()).then(|| genes.iter().zip(&self.ends).map(value).collect())
+    }
+
+    /// The parameters \[[`genes`](Self::genes)\] that real genes stand for; `None` for another number of genes, or one that is
+    /// not finite.
+    ///
+    /// Each is computed in f64 and rounded to f32 at the end, `first + (other - first) * (gene + 1) / 2`, of the gene that
+    /// the ends of its range, -1 and 1, reflect it to: never outside the parameter's range, exact at both ends.
+    pub fn decode_reals(&self, genes: &[f64]) -> Option<Vec<f32>> {
+        let value = |(&gene, &[first, other]): (&f64, &[f64; 2])| {
+            if !gene.is_finite() {
+                return None;
+            }
+            let share = share(gene);
+            Some(if share >= 1.0 { other as f32 } else { within(first + (other - first) * share, [first, other]) })
+        };
+        if genes.len() != self.ends.len() {
+            return None;
+        }
+        genes.iter().zip(&self.ends).map(value).collect()
+    }
+
+    /// The real genes of parameters \[[`genes`](Self::genes)\], those at an end for parameters beyond it and 0 where both
+    /// ends are the same; `None` for another number of parameters.
+    pub fn encode_reals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
+        let gene = |(parameter, [first, other]): (&f64, &[f64; 2])| {
+            let share = (parameter - first) / (other - first);
+            if share.is_finite() { (2.0 * share - 1.0).clamp(-1.0, 1.0) } else { 0.0 }
+        };
+        (parameters.len() == self.ends.len()).then(|| parameters.iter().zip(&self.ends).map(gene).collect())
+    }
+}
+
+/// Where between the ends of its range a finite gene lies [0..1], after these have reflected it.
+fn share(gene: f64) -> f64 {
+    if (-1.0..=1.0).contains(&gene) {
+        return 0.5 * (gene + 1.0);
+    }
+    // The remainder is exact; the range there and back is 4 long.
+    let place = (gene % 4.0 + 5.0) % 4.0;
+    0.5 * if place > 2.0 { 4.0 - place } else { place }
+}
+
+/// A value as f32, which may have been rounded beyond an end of its range.
+fn within(value: f64, [first, other]: [f64; 2]) -> f32 {
+    let value = value as f32;
+    let (low, high) = (first.min(other) as f32, first.max(other) as f32);
+    if value > high {
+        high
+    } else if value < low {
+        low
+    } else {
+        value
     }
 }
 
@@ -80,6 +123,7 @@ impl Genotype {
 mod tests {
     use super::*;
     use farsa_evo::{GeneRange, decode};
+    use proptest::prelude::*;
 
     fn genotype(ends: &[[f64; 2]], bits: u32) -> Genotype {
         let parameters: Vec<Parameter> = ends.iter().map(|&ends| Parameter { name: String::new(), ends }).collect();
@@ -118,6 +162,48 @@ mod tests {
             assert_eq!(genotype.encode(&[first + 1.51 * step]), Some(vec![2]));
         }
         assert_eq!(genotype(&[[0.0, 1.0]], 16).encode(&[]), None);
+    }
+
+    #[test]
+    fn reals_have_the_range_from_minus_one_to_one() {
+        let both = genotype(&[[5.0, -5.0], [0.0, 1.0]], 16);
+        for (gene, [first, other]) in [
+            (-1.0, [5.0, 0.0]),
+            (0.0, [0.0, 0.5]),
+            (1.0, [-5.0, 1.0]),
+            (0.5, [-2.5, 0.75]),
+            // Reflected at the ends, as often as it takes.
+            (1.5, [-2.5, 0.75]),
+            (-1.5, [2.5, 0.25]),
+            (3.0, [5.0, 0.0]),
+            (4.5, [-2.5, 0.75]),
+            (-7.0, [-5.0, 1.0]),
+        ] {
+            assert_eq!(both.decode_reals(&[gene, gene]).unwrap(), [first, other], "{gene}");
+        }
+        assert_eq!(both.encode_reals(&[2.5, 0.75]).unwrap(), [-0.5, 0.5]);
+        assert_eq!(both.encode_reals(&[9.0, 9.0]).unwrap(), [-1.0, 1.0]);
+        assert_eq!(genotype(&[[2.0, 2.0]], 16).encode_reals(&[2.0]).unwrap(), [0.0]);
+        assert_eq!((both.decode_reals(&[0.0]), both.encode_reals(&[0.0])), (None, None));
+        assert_eq!(both.decode_reals(&[0.0, f64::NAN]), None);
+        assert_eq!(both.decode_reals(&[f64::INFINITY, 0.0]), None);
+    }
+
+    proptest! {
+        #[test]
+        fn every_real_stands_for_a_value_of_the_range(gene in prop::num::f64::NORMAL, ends in [-1e3..1e3_f64, -1e3..1e3]) {
+            let value = genotype(&[ends], 16).decode_reals(&[gene]).unwrap()[0];
+            let (low, high) = (ends[0].min(ends[1]) as f32, ends[0].max(ends[1]) as f32);
+            prop_assert!(low <= value && value <= high);
+        }
+
+        #[test]
+        fn reals_of_parameters_stand_for_them(share in 0.0..=1.0_f64, ends in [-1e3..1e3_f64, -1e3..1e3]) {
+            let genotype = genotype(&[ends], 16);
+            let parameter = ends[0] + (ends[1] - ends[0]) * share;
+            let back = genotype.decode_reals(&genotype.encode_reals(&[parameter]).unwrap()).unwrap()[0];
+            prop_assert!((f64::from(back) - parameter).abs() <= 1e-6 * (ends[0].abs() + ends[1].abs()));
+        }
     }
 
     #[test]

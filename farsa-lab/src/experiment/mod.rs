@@ -15,7 +15,6 @@
 //! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
 //! - `rescored`: an experiment that there is, under another fitness
 //! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
-//! - `with_strategy`: an experiment with another strategy than its own
 
 mod controlled;
 pub(crate) mod controller_export;
@@ -32,7 +31,6 @@ mod neurocontroller;
 pub(crate) mod outcome;
 mod rescored;
 pub(crate) mod settings;
-pub(crate) mod with_strategy;
 
 pub use controlled::{Controlled, Objective, PlanarWorld, Trials};
 pub use controller_export::{
@@ -51,4 +49,3 @@ pub use neurocontroller::Neurocontroller;
 pub use outcome::{ChannelGroup, Description, Failure, Note, Outcome, mean_of_trials};
 pub use rescored::Rescored;
 pub use settings::{Setting, Settings, Source, Value};
-pub use with_strategy::WithStrategy;

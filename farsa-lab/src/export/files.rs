@@ -13,6 +13,7 @@ use crate::json::pretty;
 use crate::run::plan::Plan;
 use crate::run::records::{Best, Champions};
 use crate::store::directory::Directory;
+use crate::strategy::search::Genome;
 
 /// The formats of model files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +96,7 @@ struct Trials<'a> {
     starts: Vec<StartExport>,
 }
 
-/// The champion's genes as a `.gen` file; of several populations that of the one named.
+/// The champion's genes as a `.gen` file, reals as a list; of several populations that of the one named.
 ///
 /// # Errors
 /// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
@@ -110,7 +111,10 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
     let (seed, condition) = (plan.seed, plan.condition.as_str());
     let variant = if condition.is_empty() { String::new() } else { format!(" {condition}") };
     let name = format!("{experiment}{variant}, seed {seed}, generation {generation}, individual {individual}");
-    Ok(genotypes::written(&name, genes))
+    Ok(match genes {
+        Genome::Words(genes) => genotypes::written(&name, genes),
+        Genome::Reals(genes) => genotypes::written_reals(genes),
+    })
 }
 
 /// The champion's controller of a run, as the content of a file.
@@ -125,7 +129,7 @@ pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: Control
         return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));
     };
     let damaged = || Error::damaged(&directory.champion(), "its genome is not one of the experiment");
-    let parameters = plan.genotype(evaluator.as_ref()).decode(genes).ok_or_else(damaged)?;
+    let parameters = genes.decode(&plan.genotype(evaluator.as_ref())).ok_or_else(damaged)?;
     let exports = evaluator.exports();
     let controller = exports.and_then(|exports| exports.controller(&parameters));
     let ctrnn = exports.and_then(|exports| exports.ctrnn(&parameters));

@@ -45,7 +45,17 @@ pub(crate) struct Chart {
     pub(crate) title: String,
     /// What is upwards.
     pub(crate) axis: &'static str,
+    pub(crate) across: Across,
     pub(crate) curves: Vec<Curve>,
+}
+
+/// What lies along the lower axis.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum Across {
+    #[default]
+    Generations,
+    /// So many from one value of a curve to the next.
+    Evaluations(u64),
 }
 
 /// A value per generation, from generation 0; one that is not finite leaves a gap.
@@ -76,7 +86,8 @@ pub(crate) fn charts(title: &str, lines: &[Line], populations: &[String]) -> Vec
             values: lines.iter().map(|line| row(line)[color]).collect(),
             band: Vec::new(),
         };
-        Chart { title, axis: "fitness", curves: ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect() }
+        let curves = ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect();
+        Chart { title, axis: "fitness", curves, ..Chart::default() }
     };
     if populations.len() < 2 {
         return vec![chart(title.into(), &|line| line.row)];
@@ -144,7 +155,14 @@ impl Chart {
             .build_cartesian_2d(0..generations.saturating_sub(1).max(1), low..high)?;
         chart
             .configure_mesh()
-            .x_desc("generation")
+            .x_desc(match self.across {
+                Across::Generations => "generation",
+                Across::Evaluations(_) => "evaluations",
+            })
+            .x_label_formatter(&|x| match self.across {
+                Across::Generations => x.to_string(),
+                Across::Evaluations(step) => (step * *x as u64).to_string(),
+            })
             .y_desc(self.axis)
             .x_labels(8)
             .y_labels(7)
@@ -383,7 +401,7 @@ mod tests {
             band: vec![[0.5, 1.5], [1.0, 3.0], [f64::NEG_INFINITY; 2]],
             ..Curve::default()
         };
-        let svg = Chart { title: "t".into(), axis: "fitness", curves: vec![curve] }.draw().unwrap();
+        let svg = Chart { title: "t".into(), axis: "fitness", curves: vec![curve], ..Chart::default() }.draw().unwrap();
         assert!(svg.contains("<polygon") && svg.contains("&lt;labels&gt; &amp; co"), "{svg}");
     }
 }

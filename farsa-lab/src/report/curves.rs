@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use crate::error::Error;
-use crate::figures::plot::{self, Chart, Curve};
+use crate::figures::plot::{self, Across, Chart, Curve};
 use crate::figures::statistics::Quartiles;
+use crate::report::moment::{Moment, generation_at, length};
 use crate::report::page::Figure;
-use crate::report::run::{Group, Run};
+use crate::report::run::{Group, Run, whose};
 
 /// The figures of an experiment's runs.
 pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
@@ -27,27 +28,43 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
         return of_each.collect();
     }
     let several = groups.iter().any(|group| group.runs.len() > 1);
+    let across = Moment::common(groups).axis(groups);
+    let reach = match across {
+        Across::Generations => "the generations that all of them have",
+        Across::Evaluations(_) => "as many evaluations as all of them have",
+    };
     let lines = if several {
-        "Thick: median of the runs, over the generations that all of them have; band: quartiles; thin: single runs."
+        format!("Thick: median of the runs, over {reach}; band: quartiles; thin: single runs.")
     } else {
-        "One run each."
+        "One run each.".to_owned()
     };
     let mut figures = Vec::new();
     for (population, name) in Group::populations(groups) {
         for (which, title) in [(0, "Best of the generation"), (1, "Mean of the generation")] {
-            let title = if name.is_empty() { title.to_owned() } else { format!("{title}, {name}") };
-            let chart = Chart { title: title.clone(), axis: "fitness", curves: curves(groups, population, which) };
+            let title = whose(title, &name);
+            let curves = curves(groups, population, which, across);
+            let chart = Chart { title: title.clone(), axis: "fitness", across, curves };
             figures.push(figure(chart.draw(), format!("{title}. {lines}"))?);
         }
     }
     Ok(figures)
 }
 
-fn curves(groups: &[Group<'_>], population: Option<usize>, which: usize) -> Vec<Curve> {
+fn curves(groups: &[Group<'_>], population: Option<usize>, which: usize, across: Across) -> Vec<Curve> {
+    let at = |run: &Run<'_>, place: usize| {
+        generation_at(run, across, place).map_or(f64::NAN, |generation| run.fitness(population, generation, which))
+    };
     let mut curves = Vec::new();
     for (color, group) in groups.iter().enumerate() {
-        let quartiles = (0..=group.common()).filter_map(|at| quartiles(group, population, at, which));
-        let quartiles: Vec<Quartiles> = quartiles.collect();
+        let common = group.runs.iter().map(|run| length(run, across)).min().unwrap_or(0);
+        let quartiles = |place: usize| {
+            let values: Vec<f64> = group.runs.iter().map(|run| at(run, place)).collect();
+            // Before the first generation of one of the runs there is no median.
+            let known = !values.iter().any(|x| x.is_nan());
+            let gap = Quartiles { lower: f64::NAN, median: f64::NAN, upper: f64::NAN };
+            Quartiles::from_values(&values).filter(|_| known).unwrap_or(gap)
+        };
+        let quartiles: Vec<Quartiles> = (0..=common).map(quartiles).collect();
         let several = group.runs.len() > 1;
         let label = &group.label;
         curves.push(Curve {
@@ -57,19 +74,9 @@ fn curves(groups: &[Group<'_>], population: Option<usize>, which: usize) -> Vec<
             band: if several { quartiles.iter().map(|q| [q.lower, q.upper]).collect() } else { Vec::new() },
         });
         if several {
-            let whole = |run: &Run<'_>| (0..run.lines.len()).map(|at| run.fitness(population, at, which)).collect();
+            let whole = |run: &Run<'_>| (0..=length(run, across)).map(|place| at(run, place)).collect();
             curves.extend(group.runs.iter().map(|run| Curve { color, values: whole(run), ..Curve::default() }));
         }
     }
     curves
-}
-
-/// Over the runs of a group that have a generation.
-pub(crate) fn quartiles(
-    group: &Group<'_>,
-    population: Option<usize>,
-    generation: usize,
-    which: usize,
-) -> Option<Quartiles> {
-    Quartiles::from_values(&group.runs.iter().map(|run| run.fitness(population, generation, which)).collect::<Vec<_>>())
 }

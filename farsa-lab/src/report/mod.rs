@@ -1,6 +1,8 @@
 //! A page about one or many runs.
 //!
 //! - `curves`: the curves of a report: one run as it was, many as median and quartiles
+//! - `moment`: when runs are compared: at a generation, or after as many evaluations where their generations differ in size
+//! - `outcome`: what came of groups of runs: medians, how many succeeded, and whether the groups differ
 //! - `page`: a page of headings, texts, tables and pictures, written as HTML or as Markdown
 //! - `run`: a run as a report reads it, and runs that differ in their seeds alone
 //! - `section`: what a report says about the runs of one experiment
@@ -8,6 +10,8 @@
 //! - `write`: `farsa report`: a page about one or many runs
 
 mod curves;
+mod moment;
+pub(crate) mod outcome;
 mod page;
 mod run;
 mod section;

@@ -147,10 +147,20 @@ impl<'r> Group<'r> {
             .filter_map(|group| group.runs.first())
             .filter(|other| other.plan.condition == plan.condition)
             .collect();
-        let own = run.settings().filter(|(key, value)| others.iter().any(|other| other.value(key) != *value));
+        let strategy = |run: &Run<'_>| run.plan.definition().name();
+        // What a strategy is set to distinguishes it from none of another name: both names do.
+        let of_strategy = |key: &str| ["strategy.", "evolution."].iter().any(|section| key.starts_with(section));
+        let differs = |key: &str, value: Option<&Value>| {
+            let comparable = |other: &Run<'_>| strategy(other) == strategy(run) || !of_strategy(key);
+            others.iter().any(|other| comparable(other) && other.value(key) != value)
+        };
+        let mut own: Vec<String> = Vec::new();
+        if others.iter().any(|other| strategy(other) != strategy(run)) {
+            own.push(strategy(run).to_owned());
+        }
         // The last part of a key says enough in a name; the table of differences has the whole.
-        let own: Vec<String> =
-            own.filter_map(|(key, value)| Some(format!("{}={}", key.rsplit('.').next()?, value?))).collect();
+        let settings = run.settings().filter(|(key, value)| differs(key, *value));
+        own.extend(settings.filter_map(|(key, value)| Some(format!("{}={}", key.rsplit('.').next()?, value?))));
         if own.is_empty() { condition.into() } else { format!("{condition}, {}", own.join(", ")) }
     }
 
@@ -164,6 +174,11 @@ impl<'r> Group<'r> {
     pub(crate) fn common(&self) -> usize {
         self.runs.iter().map(|run| run.last()).min().unwrap_or(0)
     }
+}
+
+/// The name of a column about one of several populations.
+pub(crate) fn whose(what: &str, name: &str) -> String {
+    if name.is_empty() { what.into() } else { format!("{what}, {name}") }
 }
 
 /// A number for reading: five digits, or as many as the whole part has.

@@ -1,19 +1,20 @@
-//! what a report says about the runs of one experiment.
+//! What a report says about the runs of one experiment.
 
 use std::time::{Duration, UNIX_EPOCH};
 
 use crate::error::Error;
 use crate::evaluation::draw;
 use crate::evaluation::test_table::Finding;
-use crate::figures::statistics::{Comparison, Quartiles, compare, median};
-use crate::report::curves::{figures, quartiles};
+use crate::figures::statistics::median;
+use crate::report::curves::figures;
+use crate::report::outcome::{Success, outcome};
 use crate::report::page::{Block, Figure, Table};
-use crate::report::run::{Group, Run, duration, percent, short};
+use crate::report::run::{Group, Run, duration, percent, short, whose};
 use crate::report::settings::{command, complete, differences, shell};
 use crate::strategy::settings::POPULATION;
 
 /// The section about an experiment's runs, with a heading unless it is alone on its page; `runs` is not empty.
-pub(crate) fn section(runs: &[&Run<'_>], alone: bool, program: &str) -> Result<Vec<Block>, Error> {
+pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program: &str) -> Result<Vec<Block>, Error> {
     let Some(first) = runs.first() else { return Ok(Vec::new()) };
     let experiment = first.plan.experiment;
     let groups = Group::all(runs);
@@ -32,7 +33,7 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, program: &str) -> Result<V
     blocks.push(Block::Subheading("Fitness".into()));
     blocks.push(Block::Figures(figures(&groups)?));
     if runs.len() > 1 {
-        blocks.extend(outcome(&groups));
+        blocks.extend(outcome(&groups, success));
     }
     blocks.push(Block::Subheading("Champions on fresh starts".into()));
     blocks.extend(tests(&groups, program)?);
@@ -126,82 +127,6 @@ fn asked(groups: &[Group<'_>]) -> Result<Table, Error> {
         }
     }
     Ok(table)
-}
-
-/// The name of a column about one of several populations.
-fn whose(what: &str, name: &str) -> String {
-    if name.is_empty() { what.into() } else { format!("{what}, {name}") }
-}
-
-/// A number of a run at a generation, if it has one.
-type Measure<'m> = Box<dyn Fn(&Run<'_>) -> Option<f64> + 'm>;
-
-/// Medians at the last generation that all runs have, and whether the groups differ.
-fn outcome(groups: &[Group<'_>]) -> Vec<Block> {
-    let last = groups.iter().map(Group::common).min().unwrap_or(0);
-    let spread = |found: Option<Quartiles>, show: fn(f64) -> String| match found {
-        Some(Quartiles { lower, median, upper }) => {
-            format!("{} ({} to {})", show(median), show(lower), show(upper))
-        }
-        None => "–".into(),
-    };
-    let populations = Group::populations(groups);
-    let mut table = Table::new(&["condition", "runs"]);
-    table.head.extend(populations.iter().flat_map(|(_, name)| ["best", "mean"].map(|what| whose(what, name))));
-    table.head.push("success of the champions".into());
-    for group in groups {
-        let tested: Vec<f64> = group.runs.iter().filter_map(|run| run.success()).collect();
-        let of = if tested.is_empty() || tested.len() == group.runs.len() {
-            String::new()
-        } else {
-            format!(", {} tested", tested.len())
-        };
-        let mut row = vec![group.label.clone(), group.runs.len().to_string()];
-        for (population, _) in &populations {
-            row.extend([0, 1].map(|which| spread(quartiles(group, *population, last, which), short)));
-        }
-        row.push(spread(Quartiles::from_values(&tested), percent) + &of);
-        table.rows.push(row);
-    }
-    let mut blocks = vec![
-        Block::Text(format!(
-            "Median and quartiles over the runs, at generation {last}, the last that all of them have; success as \
-             tested below."
-        )),
-        Block::Table(table),
-    ];
-    let mut table = Table::new(&["first", "second", "of", "U", "P(first larger)", "p"]);
-    for (index, first) in groups.iter().enumerate() {
-        for second in &groups[index + 1..] {
-            let mut measures: Vec<(String, Measure<'_>)> = Vec::new();
-            for (population, name) in &populations {
-                for (which, what) in [(0, "best"), (1, "mean")] {
-                    let measure = move |run: &Run<'_>| Some(run.fitness(*population, last, which));
-                    measures.push((whose(what, name), Box::new(measure)));
-                }
-            }
-            measures.push(("success".into(), Box::new(|run: &Run<'_>| run.success())));
-            for (name, measure) in &measures {
-                // A run that lacks the number would make the comparison one of other runs.
-                let of = |group: &Group<'_>| group.runs.iter().map(|run| measure(run)).collect::<Option<Vec<f64>>>();
-                let found = of(first).zip(of(second)).and_then(|(first, second)| compare(&first, &second));
-                if let Some(Comparison { u, larger, p }) = found {
-                    let words = [&first.label, &second.label, name].map(String::clone);
-                    let numbers = [format!("{u:?}"), format!("{larger:.3}"), format!("{p:.4}")];
-                    table.rows.push(words.into_iter().chain(numbers).collect());
-                }
-            }
-        }
-    }
-    if !table.rows.is_empty() {
-        blocks.push(Block::Text(
-            "Do they differ? Mann-Whitney U test, two-sided, exact, not corrected for the number of comparisons; \
-             P(first larger) is the probability that a run of the first is above one of the second, equals as half."
-                .into(),
-        ));
-        blocks.push(Block::Table(table));
-    }
-    blocks
 }
 
 /// What the tests found, or how to make them.

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::escaped::OneLine;
+use crate::report::outcome::Success;
 use crate::report::page::{Block, Page};
 use crate::report::run::Run;
 use crate::report::section::section;
@@ -14,6 +15,9 @@ use crate::report::settings::shell;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 use crate::store::replace::create_results;
+
+/// What a successful run is unless it is said.
+const HALF: Success = Success::Share(0.5);
 
 /// What was written about which runs.
 #[derive(Debug, Serialize)]
@@ -53,6 +57,7 @@ pub(crate) fn report(
     runs: Vec<(Directory, Plan<'_>)>,
     html: Option<&Path>,
     md: Option<&Path>,
+    success: Option<Success>,
     program: &str,
 ) -> Result<Summary, Error> {
     for (index, (directory, _)) in runs.iter().enumerate() {
@@ -62,7 +67,7 @@ pub(crate) fn report(
         }
     }
     let runs = runs.into_iter().map(|(directory, plan)| Run::read(directory, plan)).collect::<Result<Vec<_>, _>>()?;
-    let page = page(&runs, html, md, program)?;
+    let page = page(&runs, html, md, success, program)?;
     let mut files: Vec<(PathBuf, String)> = Vec::new();
     if let Some(path) = html {
         files.push((path.into(), page.html()));
@@ -80,7 +85,13 @@ pub(crate) fn report(
     })
 }
 
-fn page(runs: &[Run<'_>], html: Option<&Path>, md: Option<&Path>, program: &str) -> Result<Page, Error> {
+fn page(
+    runs: &[Run<'_>],
+    html: Option<&Path>,
+    md: Option<&Path>,
+    success: Option<Success>,
+    program: &str,
+) -> Result<Page, Error> {
     let mut experiments: Vec<&str> = Vec::new();
     for run in runs {
         if !experiments.contains(&run.plan.experiment.name()) {
@@ -94,13 +105,18 @@ fn page(runs: &[Run<'_>], html: Option<&Path>, md: Option<&Path>, program: &str)
     let mut blocks = Vec::new();
     for experiment in &experiments {
         let these: Vec<&Run<'_>> = runs.iter().filter(|run| run.plan.experiment.name() == *experiment).collect();
-        blocks.extend(section(&these, experiments.len() == 1, program)?);
+        blocks.extend(section(&these, experiments.len() == 1, success.unwrap_or(HALF), program)?);
     }
     let mut words: Vec<String> = vec![program.into(), "report".into()];
     words.extend(runs.iter().map(Run::name));
     for (option, path) in [("--html", html), ("--md", md)] {
         words.extend(path.into_iter().flat_map(|path| [option.to_owned(), path.display().to_string()]));
     }
+    words.extend(match success {
+        None => Vec::new(),
+        Some(Success::Share(least)) => vec!["--success-share".to_owned(), least.to_string()],
+        Some(Success::Fitness(least)) => vec!["--success-fitness".to_owned(), least.to_string()],
+    });
     blocks.push(Block::Heading("This page".into()));
     let version = env!("CARGO_PKG_VERSION");
     blocks.push(Block::Text(format!("Written by FARSA {version}; the same runs make the same page.")));

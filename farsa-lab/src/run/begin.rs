@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use farsa_evo::{EvoError, Record, Strategy};
+use farsa_evo::{EvoError, Record};
 
 use crate::error::Error;
 use crate::run::plan::Plan;
@@ -14,12 +14,13 @@ use crate::store::lineage::{HEADER, Lineage, rows};
 use crate::store::log;
 use crate::store::manifest::Manifest;
 use crate::store::replace::replace;
+use crate::strategy::search::Search;
 
 /// Makes the directory of a new run, ready for its first generation.
 pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     let mut strategy = plan.strategy()?;
     let refused = |error: EvoError| Error::Other(format!("{}: {error}", plan.definition().name()));
-    Record::new(strategy.as_mut()).map_err(refused)?;
+    strategy.record().map_err(refused)?;
     let (text, identity, populations) = (plan.to_toml()?, plan.identity()?, strategy.populations());
     let state = strategy.snapshot().map(|strategy| strategy.save());
     Directory::create(path, |directory| {
@@ -44,14 +45,14 @@ pub(crate) fn resumed(
     directory: &Directory,
     checkpoint: &Checkpoint,
     record: &Record,
-) -> Result<Box<dyn Strategy>, Error> {
+) -> Result<Search, Error> {
     let path = directory.record();
     let mut strategy = plan.strategy()?;
     match (&checkpoint.state, strategy.snapshot()) {
         (Some(state), Some(strategy)) => {
             strategy.restore(state).map_err(|error| Error::damaged(&directory.checkpoint(), error))?;
         }
-        _ => record.rebuild(strategy.as_mut(), checkpoint.generation).map_err(|error| Error::damaged(&path, error))?,
+        _ => strategy.rebuild(record, checkpoint.generation).map_err(|error| Error::damaged(&path, error))?,
     }
     if strategy.generation() != checkpoint.generation {
         let (found, expected) = (strategy.generation(), checkpoint.generation);
@@ -67,7 +68,7 @@ pub(crate) fn lineage(
     directory: &Directory,
     checkpoint: &Checkpoint,
     record: &Record,
-    strategy: &dyn Strategy,
+    strategy: &Search,
 ) -> Result<Option<Lineage>, Error> {
     if strategy.genealogy().is_none() {
         return Ok(None);
@@ -75,9 +76,9 @@ pub(crate) fn lineage(
     let again = |append: &mut dyn FnMut(&str) -> Result<(), Error>| {
         let mut strategy = plan.strategy()?;
         for generation in 0..=checkpoint.generation {
-            let rebuilt = record.rebuild(strategy.as_mut(), generation);
+            let rebuilt = strategy.rebuild(record, generation);
             rebuilt.map_err(|error| Error::damaged(&directory.record(), error))?;
-            append(&rows(strategy.as_ref()))?;
+            append(&rows(&strategy))?;
         }
         Ok(())
     };

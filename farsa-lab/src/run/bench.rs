@@ -5,7 +5,6 @@ use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use farsa_evo::Population;
 use serde::Serialize;
 
 use crate::error::Error;
@@ -43,7 +42,9 @@ impl Sample {
     /// The first generation of a run of this plan.
     pub(crate) fn random(plan: &Plan<'_>) -> Result<Self, Error> {
         let strategy = plan.strategy()?;
-        Self::new(plan, strategy.ask(), strategy.populations(), &Hall::default(), 0, 0)
+        let populations = strategy.populations();
+        let parameters = strategy.parameters(&plan.genotype(plan.evaluator()?.as_ref()));
+        Self::new(plan, parameters, populations, &Hall::default(), 0, 0)
     }
 
     /// The last generation that a run has finished, or its first one.
@@ -57,14 +58,15 @@ impl Sample {
             return Ok(Self { run, ..Self::random(plan)? });
         };
         let evaluator = plan.evaluator()?;
-        let (genes, genotype) = (evaluator.parameters().len(), plan.genotype(evaluator.as_ref()));
+        let genotype = plan.genotype(evaluator.as_ref());
         let hall = Hall::before(&history, &genotype)?;
         let mut sample = None;
         history.visit([generation], |generation, genomes| {
-            if genomes.genome_len() != genes {
+            let parameters = genomes.decode_all(&genotype);
+            if parameters.is_none() {
                 return Err(Error::damaged(&path, "its genomes are not those of the experiment"));
             }
-            sample = Some(Self::new(plan, genomes, history.populations(), &hall, finished, generation)?);
+            sample = Some(Self::new(plan, parameters, history.populations(), &hall, finished, generation)?);
             Ok(())
         })?;
         let sample = sample.ok_or_else(|| history.missing(generation))?;
@@ -74,7 +76,7 @@ impl Sample {
     /// Several populations are evaluated against the champions that there are, and against each other.
     fn new(
         plan: &Plan<'_>,
-        genomes: &Population,
+        parameters: Option<Vec<Vec<f32>>>,
         populations: usize,
         hall: &Hall,
         finished: u32,
@@ -82,9 +84,8 @@ impl Sample {
     ) -> Result<Self, Error> {
         let lost = |why: &str| Error::Other(format!("the opponents of {}: {why}", plan.name()));
         let evaluator = plan.evaluator()?;
-        let genotype = plan.genotype(evaluator.as_ref());
-        let parameters = genotype.decode_all(genomes).ok_or_else(|| lost("genomes of another length"))?;
-        let (trials, size) = (evaluator.trials(), genomes.len() / populations);
+        let parameters = parameters.ok_or_else(|| lost("genomes of another length"))?;
+        let (trials, size) = (evaluator.trials(), parameters.len() / populations);
         let meeting = Meeting { generation: finished, populations, size, trials };
         let opponents = hall.opponents(meeting, &parameters).ok_or_else(|| lost("one is missing"))?;
         let opponents = opponents.into_iter().map(<[f32]>::to_vec).collect();

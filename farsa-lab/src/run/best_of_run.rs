@@ -7,6 +7,7 @@ use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::settings::Settings;
 use crate::run::config_file::ConfigFile;
+use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::records::Champions;
 use crate::store::directory::Directory;
@@ -17,6 +18,8 @@ pub struct BestOfRun {
     pub experiment: String,
     /// The condition; empty if there are none.
     pub condition: String,
+    /// The name of the strategy.
+    pub strategy: String,
     /// The seed.
     pub seed: u64,
     /// Every setting.
@@ -35,18 +38,27 @@ impl BestOfRun {
     /// # Errors
     /// [`Error`] for a directory without a run, or with one that is damaged, of another experiment or of another version.
     pub fn read(directory: &Path, experiments: &[&dyn Experiment]) -> Result<Self, Error> {
+        Self::read_in(directory, &Laboratory::new(experiments))
+    }
+
+    /// The same of a run by any strategy of a laboratory.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read).
+    pub fn read_in(directory: &Path, laboratory: &Laboratory<'_>) -> Result<Self, Error> {
         let directory = Directory::open(directory)?;
-        let plan = Plan::from_file(experiments, &ConfigFile::read(&directory.config())?)?;
+        let plan = Plan::from_file(laboratory, &ConfigFile::read(&directory.config())?)?;
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
         let Champions { generation, best, .. } = Champions::read_checked(&plan, &directory, evaluator.as_ref())?;
         Ok(Self {
             experiment: plan.experiment.name().into(),
+            strategy: plan.definition().name().into(),
             condition: plan.condition,
             seed: plan.seed,
             settings: plan.settings,
             generation,
-            parameters: best.iter().filter_map(|best| genotype.decode(&best.genes)).collect(),
+            parameters: best.iter().filter_map(|best| best.genes.decode(&genotype)).collect(),
             evaluator,
         })
     }

@@ -10,27 +10,32 @@ use crate::error::Error;
 use crate::escaped::{CUT, MOST_SHOWN, OneLine, Quoted, shortened};
 use crate::experiment::settings::Value;
 use crate::store::bounded;
+use crate::strategy::settings::STRATEGY;
 
 /// The most bytes that are read of a configuration.
-const MOST_BYTES: u64 = 16_000_000;
+pub(crate) const MOST_BYTES: u64 = 16_000_000;
 /// More than any experiment has settings: among as many keys one is unknown.
 const MOST_KEYS: usize = 10_000;
+/// The most values of a list that a [`Found`] gives.
+const MOST_LISTED: usize = 10_000;
 /// The keys that are no settings.
 const RESERVED: [&str; 3] = ["experiment", "condition", "seed"];
 
 /// A value and where in a file it stands.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Entry<T> {
     pub(crate) value: T,
     pub(crate) place: String,
 }
 
 /// What a configuration file says, before an experiment has seen it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct ConfigFile {
     pub(crate) name: String,
     pub(crate) experiment: Option<Entry<String>>,
     pub(crate) condition: Option<Entry<String>>,
+    /// `name` in the section `strategy`.
+    pub(crate) strategy: Option<Entry<String>>,
     pub(crate) seed: Option<Entry<u64>>,
     /// Keys and values in their order; an empty section is a key without a value.
     pub(crate) entries: Vec<(String, Entry<Option<Value>>)>,
@@ -62,6 +67,18 @@ impl ConfigFile {
 
     /// Reads a text; errors name it.
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self, Error> {
+        Self::parse_beside(name, text, &mut |_| Ok(false))
+    }
+
+    /// Reads a text of which some keys are no configuration: those for which `take` answers yes.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read) and of `take`.
+    pub(crate) fn parse_beside(
+        name: &str,
+        text: &str,
+        take: &mut dyn FnMut(&Found<'_>) -> Result<bool, Error>,
+    ) -> Result<Self, Error> {
         let lines = Lines::new(text);
         let place = |offset: usize| format!("{} line {}", OneLine(name), lines.line(offset));
         let table = DeTable::parse(text).map_err(|error| {
@@ -78,44 +95,104 @@ impl ConfigFile {
         keys.collect(table.get_ref(), None);
         // The table has them in the order of the alphabet.
         keys.found.sort_unstable_by_key(|key| key.offset);
-        let (mut entries, mut seen) = (Vec::new(), BTreeSet::new());
+        let mut seen = BTreeSet::new();
         let mut file = Self {
             name: name.into(),
             experiment: None,
             condition: None,
+            strategy: None,
             seed: None,
             entries: Vec::new(),
             beyond: None,
         };
         for found in &keys.found {
             let reserved = found.table.is_none() && found.value.is_some() && RESERVED.contains(&found.name);
-            if entries.len() == MOST_KEYS && !reserved {
+            if file.entries.len() == MOST_KEYS && !reserved {
                 file.beyond.get_or_insert_with(|| place(found.offset));
                 continue;
             }
-            let (key, place) = (keys.path(found), place(found.offset));
-            let wrong = |why: &str| Error::Setting { place: place.clone(), key: key.clone(), why: why.into() };
+            let (key, at) = (keys.path(found), place(found.offset));
+            if take(&Found { key: &key, place: &at, value: found.value, places: &place })? {
+                continue;
+            }
             let Some(value) = found.value else {
-                entries.push((key, Entry { value: None, place }));
+                file.entries.push((key, Entry { value: None, place: at }));
                 continue;
             };
+            let wrong = |why: &str| Error::Setting { place: at.clone(), key: key.clone(), why: why.into() };
             let value = plain(value).map_err(&wrong)?;
             if !key.ends_with(CUT) && !seen.insert(key.clone()) {
                 return Err(wrong("stands twice"));
             }
-            match (key.as_str(), value) {
-                ("experiment", Value::Word(word)) => file.experiment = Some(Entry { value: word, place }),
-                ("condition", Value::Word(word)) => file.condition = Some(Entry { value: word, place }),
-                ("experiment" | "condition", _) => return Err(wrong("is not a name in quotes")),
-                ("seed", Value::Whole(seed)) if seed >= 0 => {
-                    file.seed = Some(Entry { value: seed.unsigned_abs(), place });
-                }
-                ("seed", _) => return Err(wrong("is not a whole number from 0 to 9223372036854775807")),
-                (_, value) => entries.push((key, Entry { value: Some(value), place })),
-            }
+            file.put(&key, value, &at)?;
         }
-        file.entries = entries;
         Ok(file)
+    }
+
+    /// Adds a value of a key that has none yet.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a name or seed of another kind.
+    pub(crate) fn put(&mut self, key: &str, value: Value, place: &str) -> Result<(), Error> {
+        let wrong = |why: &str| Error::Setting { place: place.into(), key: key.into(), why: why.into() };
+        let place = place.to_owned();
+        match (key, value) {
+            ("experiment", Value::Word(word)) => self.experiment = Some(Entry { value: word, place }),
+            ("condition", Value::Word(word)) => self.condition = Some(Entry { value: word, place }),
+            (STRATEGY, Value::Word(word)) => self.strategy = Some(Entry { value: word, place }),
+            ("experiment" | "condition" | STRATEGY, _) => return Err(wrong("is not a name in quotes")),
+            ("seed", Value::Whole(seed)) if seed >= 0 => {
+                self.seed = Some(Entry { value: seed.unsigned_abs(), place });
+            }
+            ("seed", _) => return Err(wrong("is not a whole number from 0 to 9223372036854775807")),
+            (_, value) => self.entries.push((key.into(), Entry { value: Some(value), place })),
+        }
+        Ok(())
+    }
+}
+
+/// A key as it stands in a file, for who knows more of it than a configuration does.
+pub(crate) struct Found<'t> {
+    /// With the names of the tables that it is in.
+    pub(crate) key: &'t str,
+    pub(crate) place: &'t str,
+    /// None for an empty table.
+    pub(crate) value: Option<&'t Spanned<DeValue<'t>>>,
+    /// The place of a byte of the file.
+    places: &'t dyn Fn(usize) -> String,
+}
+
+impl Found<'_> {
+    pub(crate) fn is_list(&self) -> bool {
+        matches!(self.value.map(Spanned::get_ref), Some(DeValue::Array(_)))
+    }
+
+    /// The values of a list, each with its place.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for what is no list, and for what is in it and can be no setting's value.
+    pub(crate) fn list(&self) -> Result<Vec<Entry<Value>>, Error> {
+        let wrong = |place: String, why: &str| Error::Setting { place, key: self.key.into(), why: why.into() };
+        let Some(DeValue::Array(items)) = self.value.map(Spanned::get_ref) else {
+            return Err(wrong(self.place.into(), "is not a list of values"));
+        };
+        if items.len() > MOST_LISTED {
+            return Err(wrong(self.place.into(), &format!("is a list of more than {MOST_LISTED}")));
+        }
+        let values = items.iter().map(|item| {
+            let place = (self.places)(item.span().start);
+            plain(item).map(|value| Entry { value, place: place.clone() }).map_err(|why| wrong(place, why))
+        });
+        values.collect()
+    }
+
+    /// The value alone.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for what can be no setting's value.
+    pub(crate) fn value(&self) -> Result<Value, Error> {
+        let value = self.value.map_or(Err("is an empty table"), plain);
+        value.map_err(|why| Error::Setting { place: self.place.into(), key: self.key.into(), why: why.into() })
     }
 }
 

@@ -2,14 +2,13 @@
 
 use std::fmt::Write as _;
 
-use farsa_evo::Strategy;
-
 use crate::error::Error;
 use crate::figures::plot;
 use crate::figures::plot::{Chart, Curve};
 use crate::store::directory::Directory;
 use crate::store::replace::replace;
 use crate::strategy::definition::Diagnostics;
+use crate::strategy::search::Search;
 
 /// The rows of a run's strategy so far.
 pub(crate) struct DiagnosticsTable {
@@ -24,7 +23,7 @@ impl DiagnosticsTable {
     }
 
     /// Adds what the strategy says of the generation that it has just been told.
-    pub(crate) fn push(&mut self, strategy: &dyn Strategy) {
+    pub(crate) fn push(&mut self, strategy: &Search) {
         if self.diagnostics.is_some() {
             self.rows.push(strategy.diagnostics());
         }
@@ -46,9 +45,10 @@ impl DiagnosticsTable {
             let _ = write!(text, ",{column}");
         }
         text.push('\n');
+        let columns = diagnostics.charts.iter().map(|chart| chart.curves.len()).sum();
         for (generation, row) in self.rows.iter().enumerate() {
             let _ = write!(text, "{generation}");
-            for value in row {
+            for value in row.iter().take(columns) {
                 // The debug form is the shortest that reads back as the same number.
                 let _ = write!(text, ",{value:?}");
             }
@@ -68,7 +68,7 @@ impl DiagnosticsTable {
                 Curve { name: Some((*label).into()), color, values, band: Vec::new() }
             });
             let curves = curves.collect();
-            Chart { title: format!("{title}: {}", chart.title), axis: chart.axis, curves }
+            Chart { title: format!("{title}: {}", chart.title), axis: chart.axis, curves, ..Chart::default() }
         });
         plot::stack(&charts.collect::<Vec<_>>())
     }

@@ -4,19 +4,17 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use farsa_evo::{Record, Statistics, Strategy};
-
 use crate::error::Error;
-use crate::experiment::episode::EpisodeId;
 use crate::figures::plot;
-use crate::run::begin::{lineage, resumed};
+use crate::run::begin::lineage;
 use crate::run::contained::contained;
 use crate::run::diagnostics::DiagnosticsTable;
-use crate::run::fitness::{Opponents, fitness_of_all};
+use crate::run::leading::{facts, lead, meet, order};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
-use crate::run::records::{Best, Champions, Checkpoint, evolved};
+use crate::run::progression::{Evaluated, Progression};
+use crate::run::records::{Champions, Checkpoint, evolved};
 use crate::run::summary::{Summary, Winner};
 use crate::run::told::{Told, ToldFile};
 use crate::store::bounded::read_own_text;
@@ -30,8 +28,6 @@ use crate::store::lock::Lock;
 use crate::store::log::{Line, Log};
 use crate::store::manifest::{Manifest, Session};
 use crate::store::replace::replace;
-use crate::strategy::history::History;
-use crate::strategy::opponents::{Hall, Meeting};
 
 /// How long generations may stay unsaved: short generations would spend their time waiting for the disk.
 const UNSAVED: Duration = Duration::from_secs(1);
@@ -45,14 +41,30 @@ const LARGEST_CONFIG: u64 = 16 << 20;
 pub(crate) fn go_on(
     plan: &Plan<'_>,
     directory: &Directory,
-    mut pool: Pool<'_>,
+    pool: Pool<'_>,
     stop: &AtomicBool,
     program: &str,
     quiet: bool,
 ) -> Result<Summary, Error> {
     evolved(directory)?;
     // The lock comes before anything is read that another process might be writing.
-    let _lock = Lock::of_run(directory.path())?;
+    let lock = Lock::of_run(directory.path())?;
+    go_on_holding(&lock, plan, directory, pool, stop, program, quiet)
+}
+
+/// The same with a run whose lock is held already.
+///
+/// # Errors
+/// As [`go_on`].
+pub(crate) fn go_on_holding(
+    _lock: &Lock,
+    plan: &Plan<'_>,
+    directory: &Directory,
+    mut pool: Pool<'_>,
+    stop: &AtomicBool,
+    program: &str,
+    quiet: bool,
+) -> Result<Summary, Error> {
     let path = directory.checkpoint();
     let checkpoint = Checkpoint::read(plan, directory)?;
     checkpoint.identity.same_values(&plan.identity()?, &path)?;
@@ -60,40 +72,25 @@ pub(crate) fn go_on(
     if last < done {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", directory.path().display())));
     }
+    let (order, facts) = (order(plan, directory, &pool, &checkpoint)?, facts(plan)?);
     let mut run = Run::resume(plan, directory, checkpoint, &pool, program)?;
-    let individuals = |generations: u32| u64::from(generations).saturating_mul(run.strategy.ask().len() as u64);
+    let individuals =
+        |generations: u32| u64::from(generations).saturating_mul(run.progression.search.individuals() as u64);
     let progress = Progress::new(individuals(done), individuals(last), quiet);
     if let Some(kept) = &run.kept {
         let (log, kept) = (directory.log(), kept.display());
         progress
             .note(&format!("{}: had been changed: that is kept as {kept}, and the log written anew", log.display()));
     }
-    let mut saved = Instant::now();
-    let mut ended = Ok(());
-    while run.strategy.generation() < last {
-        let generation = run.strategy.generation();
-        // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
-        let result = contained(|| run.generation(&mut pool, stop, &progress));
-        match result.map_err(|why| Error::Panicked { generation, why })? {
-            Ok(()) => {}
-            Err(Unfinished::Error(error)) => return Err(error),
-            Err(Unfinished::Stopped) => {
-                let resume = format!("{program} run --resume {}", directory.path().display());
-                ended = Err(Error::Interrupted { resume });
-                break;
-            }
+    lead(&mut pool, order, facts, |pool| {
+        let ended = run.evolve(last, pool, stop, &progress);
+        if let Some(total) = run.told_of_failures() {
+            progress.note(&total);
         }
-        if saved.elapsed() >= UNSAVED {
-            run.save()?;
-            saved = Instant::now();
-        }
-    }
-    run.save()?;
-    if let Some(total) = run.told_of_failures() {
-        progress.note(&total);
-    }
+        ended
+    })?;
     drop(progress);
-    ended.map(|()| run.summary())
+    Ok(run.summary())
 }
 
 /// A run in progress.
@@ -105,10 +102,7 @@ struct Run<'d> {
     /// Of the populations.
     names: Vec<String>,
     identity: Identity,
-    strategy: Box<dyn Strategy>,
-    record: Record,
-    /// Whom several populations still have to meet.
-    hall: Hall,
+    progression: Progression,
     told: ToldFile,
     log: Log,
     /// Where the log that somebody had changed is kept.
@@ -135,31 +129,25 @@ impl<'d> Run<'d> {
         program: &'d str,
     ) -> Result<Self, Error> {
         let mut told = Told::read(plan, directory, &checkpoint)?;
-        let strategy = resumed(plan, directory, &checkpoint, &told.record)?;
-        let hall = match told.record.populations() {
-            1 => Hall::default(),
-            _ => Hall::before(&History::new(directory.record(), told.record.clone(), plan.fresh()), pool.genotype())?,
-        };
+        let progression = Progression::resume(plan, directory, &checkpoint, told.record.clone(), pool)?;
         let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
-        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), strategy.generation()));
+        manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), progression.search.generation()));
         let text = plan.to_toml()?;
         draft::sweep(directory.path());
         if read_own_text(&directory.config(), LARGEST_CONFIG).ok().as_ref() != Some(&text) {
             replace(&directory.config(), text.as_bytes())?;
         }
         let file = told.file(directory)?;
-        let lineage = lineage(plan, directory, &checkpoint, &told.record, strategy.as_ref())?;
-        let Told { record, lines, diagnostics, .. } = told;
-        let (log, kept) = Log::resume(&directory.log(), lines, record.populations())?;
+        let lineage = lineage(plan, directory, &checkpoint, &told.record, &progression.search)?;
+        let Told { lines, diagnostics, .. } = told;
+        let (log, kept) = Log::resume(&directory.log(), lines, progression.record.populations())?;
         Ok(Self {
             directory,
             program,
             title: plan.name(),
             names: pool.evaluator().populations(),
             identity: checkpoint.identity,
-            strategy,
-            record,
-            hall,
+            progression,
             told: file,
             log,
             kept,
@@ -173,39 +161,46 @@ impl<'d> Run<'d> {
         })
     }
 
+    /// Evolves up to a generation, and keeps everything from time to time and at the end.
+    fn evolve(&mut self, last: u32, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Error> {
+        let mut saved = Instant::now();
+        let mut ended = Ok(());
+        while self.progression.search.generation() < last {
+            let generation = self.progression.search.generation();
+            // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
+            let result = contained(|| meet(pool, stop).and_then(|()| self.generation(pool, stop, progress)));
+            match result.map_err(|why| Error::Panicked { generation, why })? {
+                Ok(()) => {}
+                Err(Unfinished::Error(error)) => return Err(error),
+                Err(Unfinished::Stopped) => {
+                    let resume = format!("{} run --resume {}", self.program, self.directory.path().display());
+                    ended = Err(Error::Interrupted { resume });
+                    break;
+                }
+            }
+            if saved.elapsed() >= UNSAVED {
+                self.save()?;
+                saved = Instant::now();
+            }
+        }
+        self.save()?;
+        ended
+    }
+
     /// Evaluates all individuals of a generation and makes the next.
     fn generation(&mut self, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Unfinished> {
-        let generation = self.strategy.generation();
-        let genomes = self.strategy.ask();
-        let (seed, populations) = (self.identity.seed, self.strategy.populations());
-        let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
-        let trials = pool.evaluator().trials();
-        let parameters = pool.genotype().decode_all(genomes).ok_or_else(|| lost("genomes of another length"))?;
-        let meeting = Meeting { generation, populations, size: genomes.len() / populations, trials };
-        let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
-        let id = EpisodeId { seed, generation, ..EpisodeId::default() };
-        let opponents = Opponents { parameters: &opponents, each: populations - 1 };
-        let (fitness, failed) = fitness_of_all(pool, &parameters, opponents, id, stop, progress)?;
-        let ranked_by = self.strategy.ranked_by(&fitness);
-        let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
-        let best = self.strategy.champions(&ranked_by).into_iter().map(|best| {
-            let (fitness, genes) = (*ranked_by.get(best)?, genomes.get(best)?.to_vec());
-            Some(Best { individual: best as u32, fitness, genes })
-        });
-        let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
-        let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
-        let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
-        let told = self.record.tell(self.strategy.as_mut(), &fitness);
-        told.map_err(|error| lost(&error.to_string()))?;
+        let generation = self.progression.search.generation();
+        let Evaluated { fitness, failed, statistics, each, best } =
+            self.progression.generation(pool, stop, progress)?;
+        let search = &self.progression.search;
         let line = Line::new(&statistics, fitness.len(), &each);
-        self.told.append(&self.record, &line, self.strategy.as_ref())?;
+        self.told.append(&self.progression.record, &line, search)?;
         self.log.append(line)?;
         self.failures.append(&failed, self.program)?;
-        self.diagnostics.push(self.strategy.as_ref());
+        self.diagnostics.push(search);
         if let Some(lineage) = &mut self.lineage {
-            lineage.append(&rows(self.strategy.as_ref()))?;
+            lineage.append(&rows(search))?;
         }
-        self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.generations += 1;
@@ -244,8 +239,8 @@ impl<'d> Run<'d> {
             champions.write(&directory.champion())?;
         }
         self.diagnostics.write(directory, &self.title)?;
-        let generation = self.strategy.generation();
-        let state = self.strategy.snapshot().map(|strategy| strategy.save());
+        let generation = self.progression.search.generation();
+        let state = self.progression.search.snapshot().map(|strategy| strategy.save());
         Checkpoint { identity: identity.clone(), generation, record, lineage, failures, state }
             .write(&directory.checkpoint())?;
         if let Some(session) = self.manifest.sessions.last_mut() {
@@ -266,7 +261,7 @@ impl<'d> Run<'d> {
             experiment,
             condition,
             seed,
-            generations: self.strategy.generation(),
+            generations: self.progression.search.generation(),
             evaluations: session.map_or(0, |session| session.evaluations),
             seconds: session.map_or(0.0, |session| session.seconds),
             champion: champions.first().cloned(),

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
 use farsa_evo::Fitness;
+use farsa_num::Digest;
 
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
@@ -19,7 +20,20 @@ pub(crate) struct Opponents<'g> {
     pub(crate) each: usize,
 }
 
+/// After so many generations ranks compare again what they evaluate.
+const COMPARED: u32 = 10;
+
 impl<'g> Opponents<'g> {
+    /// A fingerprint of individuals and those that they meet.
+    fn fingerprint(&self, parameters: &[Vec<f32>]) -> u64 {
+        let mut digest = Digest::new();
+        let opponents = self.parameters.iter().copied();
+        for row in parameters.iter().map(Vec::as_slice).chain(opponents) {
+            digest.add_f32s(row);
+        }
+        digest.finish()
+    }
+
     /// Those of the evaluation with a number.
     fn get(&self, number: usize) -> &'g [&'g [f32]] {
         self.parameters.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
@@ -96,6 +110,9 @@ pub(crate) fn evaluate_all(
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Option<Outcome>>, Unfinished> {
     let (count, trials) = (parameters.len(), pool.evaluator().trials());
+    if !pool.exchange().is_alone() {
+        pool.exchange().compare_first_and_every(of.generation, COMPARED, || opponents.fingerprint(parameters));
+    }
     let failed: Vec<AtomicU32> = parameters.iter().map(|_| AtomicU32::new(u32::MAX)).collect();
     let task = |number: usize| {
         let (individual, trial) = (number % count, (number / count) as u32);

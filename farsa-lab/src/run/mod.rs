@@ -8,13 +8,19 @@
 //! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
 //! - `evolve`: evolution from the first or any later generation on, with everything kept that is needed to go on
 //! - `fitness`: the fitness of a generation: all trials of all individuals, and which of them failed
+//! - `laboratory`: the experiments and strategies that a command knows by name, [`Laboratory`]
+//! - `following`: what a rank other than the first does in a run: it holds the same search and writes nothing
+//! - `leading`: what ranks do around the generations of a run
 //! - `plan`: what is to be run: an experiment, a condition, a seed and all settings
 //! - `pool`: trials on several threads, with the same results on any number of them
 //! - `progress`: what a waiting user sees: a bar on a terminal, plain lines elsewhere
+//! - `queue`: runs that any number of processes work at: each takes the next one that nobody has
 //! - `records`: the sealed files of a run: where to go on, what the strategy was told, who is best, and genotypes from elsewhere
 //! - `replications`: `farsa run --replications`: one plan under one seed after the other, each in a directory of its own
+//! - `progression`: a search in progress, the same on every rank of a run
 //! - `summary`: what came of a run, for the command to tell
 //! - `tests`: tests of whole runs with every strategy: what is selected, written, resumed and replayed
+//! - `text_table`: tables for a terminal
 //! - `told`: `record.bin`: what the strategy was told in every generation, and what came of it
 //! - `world_choice`: which world an experiment runs in, where there is a choice
 
@@ -26,16 +32,23 @@ pub(crate) mod contained;
 mod diagnostics;
 pub(crate) mod evolve;
 pub(crate) mod fitness;
+pub(crate) mod following;
+pub(crate) mod laboratory;
+pub(crate) mod leading;
 pub(crate) mod plan;
 pub(crate) mod pool;
 pub(crate) mod progress;
+mod progression;
+pub(crate) mod queue;
 pub(crate) mod records;
 pub(crate) mod replications;
 pub(crate) mod summary;
 #[cfg(test)]
 mod tests;
+pub(crate) mod text_table;
 pub(crate) mod told;
 pub(crate) mod world_choice;
 
 pub use best_of_run::BestOfRun;
+pub use laboratory::Laboratory;
 pub use world_choice::ENGINE;

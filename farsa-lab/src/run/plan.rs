@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use farsa_evo::Strategy;
 use farsa_num::crc32;
 
 use crate::error::Error;
@@ -12,11 +11,13 @@ use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::{Settings, Value};
 use crate::run::config_file::{ConfigFile, Entry};
+use crate::run::laboratory::Laboratory;
 use crate::store::bounded;
 use crate::store::identity::{FILE, Identity, VALUES_VERSION};
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
 use crate::strategy::history::Fresh;
-use crate::strategy::settings::{GENERATIONS, complete};
+use crate::strategy::search::Search;
+use crate::strategy::settings::{GENERATIONS, POPULATION, chosen, complete};
 
 /// The largest seed of a run; bit 63 marks the trials of a test.
 pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
@@ -25,9 +26,12 @@ pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
 const MOST_BYTES: u64 = 1_000_000_000;
 
 /// A run before its first evaluation.
+#[derive(Clone)]
 pub(crate) struct Plan<'e> {
     pub(crate) experiment: &'e dyn Experiment,
     pub(crate) condition: String,
+    /// The strategy that was asked for, where it is not the experiment's own.
+    chosen: Option<&'static dyn StrategyDefinition>,
     pub(crate) seed: u64,
     pub(crate) settings: Settings,
     /// The settings with another world, for trials outside that of the run; none of the identity.
@@ -35,8 +39,18 @@ pub(crate) struct Plan<'e> {
 }
 
 impl<'e> Plan<'e> {
-    /// An experiment with its defaults under a condition, the first if none is named.
+    /// An experiment with its defaults under a condition, the first if none is named, and with its own strategy.
     pub(crate) fn new(experiment: &'e dyn Experiment, condition: Option<&str>, place: &str) -> Result<Self, Error> {
+        Self::with_strategy(experiment, condition, place, None)
+    }
+
+    /// The same with another strategy, if one is named; of a condition that is unknown it is said where it stands, `place`.
+    pub(crate) fn with_strategy(
+        experiment: &'e dyn Experiment,
+        condition: Option<&str>,
+        place: &str,
+        strategy: Option<&'static dyn StrategyDefinition>,
+    ) -> Result<Self, Error> {
         let conditions = experiment.conditions();
         let condition = match condition {
             None => conditions.first().copied().unwrap_or_default(),
@@ -47,9 +61,13 @@ impl<'e> Plan<'e> {
                 .find(|&&known| known == name)
                 .ok_or_else(|| Error::unknown(place, "condition", name, conditions.iter().copied()))?,
         };
-        let strategy = experiment.strategy(condition).settings();
-        let settings = Settings::new(complete(experiment.settings(condition), strategy))?;
-        Ok(Self { experiment, condition: condition.into(), seed: 1, settings, elsewhere: None })
+        let (own, table) = (experiment.strategy(condition), experiment.settings(condition));
+        let other = strategy.filter(|other| other.name() != own.name());
+        let settings = Settings::new(match other {
+            None => complete(table, own.settings()),
+            Some(other) => chosen(table, other.name(), other.settings()),
+        })?;
+        Ok(Self { experiment, condition: condition.into(), chosen: other, seed: 1, settings, elsewhere: None })
     }
 
     /// Takes the seed and the values of a configuration file; experiment and condition are the caller's business.
@@ -70,20 +88,39 @@ impl<'e> Plan<'e> {
     }
 
     /// What a configuration file says, whole.
-    pub(crate) fn from_file(experiments: &[&'e dyn Experiment], file: &ConfigFile) -> Result<Self, Error> {
+    pub(crate) fn from_file(laboratory: &Laboratory<'e>, file: &ConfigFile) -> Result<Self, Error> {
         let Some(name) = &file.experiment else {
             return Err(Error::Usage(format!("{}: names no experiment", file.name)));
         };
-        let experiment = find(experiments, &name.value, &name.place)?;
+        let experiment = laboratory.experiment(&name.value, &name.place)?;
         let place = file.condition.as_ref().map_or("", |entry| &entry.place);
-        let mut plan = Self::new(experiment, file.condition.as_ref().map(|entry| entry.value.as_str()), place)?;
+        let condition = file.condition.as_ref().map(|entry| entry.value.as_str());
+        let strategy =
+            file.strategy.as_ref().map(|entry| laboratory.strategy(&entry.value, &entry.place)).transpose()?;
+        let mut plan = Self::with_strategy(experiment, condition, place, strategy)?;
         plan.apply(file)?;
         Ok(plan)
     }
 
     /// What the run searches with.
     pub(crate) fn definition(&self) -> &'static dyn StrategyDefinition {
-        self.experiment.strategy(&self.condition)
+        self.chosen.unwrap_or_else(|| self.experiment.strategy(&self.condition))
+    }
+
+    /// The name of the strategy, where it is not the experiment's own.
+    pub(crate) fn chosen_strategy(&self) -> Option<&'static str> {
+        self.chosen.map(StrategyDefinition::name)
+    }
+
+    /// Individuals of each population.
+    ///
+    /// # Errors
+    /// Those of [`strategy`](Self::strategy).
+    pub(crate) fn size(&self) -> Result<usize, Error> {
+        match self.settings.count(POPULATION) {
+            Ok(size) if size > 0 => Ok(size),
+            _ => self.strategy().map(|strategy| strategy.individuals() / strategy.populations()),
+        }
     }
 
     /// The strategy at its first generation.
@@ -91,8 +128,8 @@ impl<'e> Plan<'e> {
     /// # Errors
     /// Those of [`StrategyDefinition::start`], and [`Error::Other`] for a strategy of other populations or genes than the
     /// experiment's.
-    pub(crate) fn strategy(&self) -> Result<Box<dyn Strategy>, Error> {
-        let task = self.evaluator()?;
+    pub(crate) fn strategy(&self) -> Result<Search, Error> {
+        let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
         let (populations, genes) = (task.populations().len(), task.parameters().len());
         drop(task);
         let (gene_bits, settings, seed) = (self.experiment.gene_bits(), &self.settings, self.seed);
@@ -103,9 +140,10 @@ impl<'e> Plan<'e> {
         let start = StrategyStart { populations, genes, gene_bits, settings, seed, evaluator };
         let strategy = self.definition().start(&start).map_err(|error| match error {
             Error::Other(why) => Error::Other(format!("{}: {why}", self.experiment.name())),
+            Error::Usage(why) => Error::Usage(format!("{}: {why}", self.definition().name())),
             other => other,
         })?;
-        let found = (strategy.populations(), strategy.ask().genome_len());
+        let found = (strategy.populations(), strategy.genes());
         if found != (populations, genes) {
             let (name, experiment) = (self.definition().name(), self.experiment.name());
             return Err(Error::Other(format!(
@@ -123,7 +161,24 @@ impl<'e> Plan<'e> {
 
     /// The experiment made ready for one thread.
     pub(crate) fn evaluator(&self) -> Result<Box<dyn Evaluator>, Error> {
-        self.experiment.prepare(&self.condition, self.elsewhere.as_ref().unwrap_or(&self.settings))
+        self.experiment.prepare(&self.condition, &self.settings_of_trials()?)
+    }
+
+    /// The settings that trials are evaluated with: those of the plan, or those with another world; a size of populations that is
+    /// left to the strategy is what that chooses, because an experiment of several populations counts by it.
+    pub(crate) fn settings_of_trials(&self) -> Result<Settings, Error> {
+        let chosen_by_strategy = self.settings.count(POPULATION).is_ok_and(|size| size == 0);
+        let size = if chosen_by_strategy { self.size()? } else { 0 };
+        self.settings_with(size)
+    }
+
+    /// The same where a size that is left to the strategy is this one.
+    fn settings_with(&self, size: usize) -> Result<Settings, Error> {
+        let mut settings = self.elsewhere.as_ref().unwrap_or(&self.settings).clone();
+        if settings.count(POPULATION).is_ok_and(|size| size == 0) {
+            settings.set("", POPULATION, Value::Whole(i64::try_from(size).unwrap_or(i64::MAX)))?;
+        }
+        Ok(settings)
     }
 
     /// How genes stand for the parameters that an evaluator of this plan wants.
@@ -138,11 +193,9 @@ impl<'e> Plan<'e> {
 
     /// The name of the run's directory below `runs/`.
     pub(crate) fn name(&self) -> String {
-        let name = self.experiment.name();
-        match self.condition.as_str() {
-            "" => format!("{name}-{}", self.seed),
-            condition => format!("{name}-{condition}-{}", self.seed),
-        }
+        let seed = self.seed.to_string();
+        let parts = [self.experiment.name(), &self.condition, self.chosen_strategy().unwrap_or_default(), &seed];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
     }
 
     /// All that the results depend on, the content of files included.
@@ -216,17 +269,6 @@ impl<'e> Plan<'e> {
     }
 }
 
-/// The experiment of a name.
-pub(crate) fn find<'e>(
-    experiments: &[&'e dyn Experiment],
-    name: &str,
-    place: &str,
-) -> Result<&'e dyn Experiment, Error> {
-    let names = experiments.iter().map(|experiment| experiment.name());
-    let found = experiments.iter().copied().find(|experiment| experiment.name() == name);
-    found.ok_or_else(|| Error::unknown(place, "experiment", name, names))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,7 +316,7 @@ mod tests {
         assert!(text.contains("# Time step. [0.001 to 0.1 s; chosen]\nstep = 0.01\n"), "{text}");
         assert!(text.contains("not the default"), "{text}");
         let file = ConfigFile::parse("config.toml", &text).unwrap();
-        let again = Plan::from_file(&[&Toy], &file).unwrap();
+        let again = Plan::from_file(&Laboratory::new(&[&Toy]), &file).unwrap();
         assert_eq!(again.identity().unwrap(), plan.identity().unwrap());
         assert_eq!(again.settings, plan.settings);
         assert_eq!(again.name(), "toy-without-7");
@@ -283,7 +325,8 @@ mod tests {
     #[test]
     fn mistakes_are_found_with_their_line() {
         let error = |text: &str| {
-            let plan = ConfigFile::parse("my.toml", text).and_then(|file| Plan::from_file(&[&Toy], &file));
+            let plan =
+                ConfigFile::parse("my.toml", text).and_then(|file| Plan::from_file(&Laboratory::new(&[&Toy]), &file));
             plan.map(|_| ()).unwrap_err().to_string()
         };
         let head = "experiment = \"toy\"\n";
@@ -317,8 +360,11 @@ mod tests {
             error("experiment = \"toi\"\n[evolution]\n[robot]\n"),
             "my.toml line 1: unknown experiment `toi`; the nearest is `toy`"
         );
-        Plan::from_file(&[&Toy], &ConfigFile::parse("my.toml", &format!("{head}[evolution]\n[robot]\n")).unwrap())
-            .unwrap();
+        Plan::from_file(
+            &Laboratory::new(&[&Toy]),
+            &ConfigFile::parse("my.toml", &format!("{head}[evolution]\n[robot]\n")).unwrap(),
+        )
+        .unwrap();
         assert_eq!(error("experiment = \"toi\""), "my.toml line 1: unknown experiment `toi`; the nearest is `toy`");
         assert_eq!(error(""), "my.toml: names no experiment");
         assert!(error(&format!("{head}[world\n")).starts_with("my.toml line 2: "));
@@ -334,7 +380,7 @@ mod tests {
         // In the order of the alphabet the first would be k0. Lines counted from the top for each take minutes.
         let keys: Vec<String> = (0..200_000).rev().map(|number| format!("k{number}=1\n")).collect();
         let file = ConfigFile::parse("my.toml", &format!("{}experiment=\"toy\"\n", keys.concat())).unwrap();
-        let error = Plan::from_file(&[&Toy], &file).map(|_| ()).unwrap_err().to_string();
+        let error = Plan::from_file(&Laboratory::new(&[&Toy]), &file).map(|_| ()).unwrap_err().to_string();
         assert_eq!(error, "my.toml line 1: unknown key `k199999`; the nearest is `world.map`");
     }
 
@@ -369,7 +415,7 @@ mod tests {
         let without = plan.identity().unwrap();
         plan.settings.set("", "world.map", Value::Word(path.display().to_string())).unwrap();
         let file = ConfigFile::parse("config.toml", &plan.to_toml().unwrap()).unwrap();
-        assert_eq!(Plan::from_file(&[&Toy], &file).unwrap().settings, plan.settings);
+        assert_eq!(Plan::from_file(&Laboratory::new(&[&Toy]), &file).unwrap().settings, plan.settings);
         let run = plan.identity().unwrap();
         assert_eq!((run.settings.len(), run.files().count()), (without.settings.len() + 1, 1));
         run.same_run(&plan.identity().unwrap(), Path::new("d")).unwrap();

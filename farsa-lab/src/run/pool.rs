@@ -2,7 +2,8 @@
 
 use std::cell::RefCell;
 use std::io;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::rc::Rc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
 use crate::error::Error;
@@ -12,6 +13,9 @@ use crate::experiment::genotype::Genotype;
 use crate::experiment::lanes::{Lanes, Wanted};
 use crate::experiment::outcome::Outcome;
 use crate::experiment::settings::Settings;
+use crate::ranks::dealing::{give, take};
+use crate::ranks::exchange::{Exchange, Numbered, Status};
+use crate::ranks::numbers::{Given, Numbers};
 use crate::run::contained::contained;
 use crate::run::plan::Plan;
 
@@ -21,6 +25,8 @@ pub(crate) struct Pool<'e> {
     evaluators: Vec<Box<dyn Evaluator>>,
     genotype: Genotype,
     maker: Maker<'e>,
+    /// With whom the evaluations are shared.
+    exchange: Rc<Exchange<'e>>,
 }
 
 /// Makes an evaluator like the others: one in which a trial panicked is not used again.
@@ -79,11 +85,21 @@ impl<'e> Pool<'e> {
             return Err(Error::Usage(format!("--lanes {}: {name} has {only} only", asked.count())));
         }
         let genotype = plan.genotype(first.as_ref());
-        let settings = plan.elsewhere.as_ref().unwrap_or(&plan.settings).clone();
+        let settings = plan.settings_of_trials()?;
         let maker = Maker { experiment: plan.experiment, condition: plan.condition.clone(), settings, lanes };
         drop(first);
         let evaluators = (0..threads.max(1)).map(|_| maker.make()).collect::<Result<_, _>>()?;
-        Ok(Self { evaluators, genotype, maker })
+        Ok(Self { evaluators, genotype, maker, exchange: Rc::default() })
+    }
+
+    /// The same pool as one rank's part of several.
+    pub(crate) fn on(self, exchange: Rc<Exchange<'e>>) -> Self {
+        Self { exchange, ..self }
+    }
+
+    /// With whom the evaluations are shared.
+    pub(crate) fn exchange(&self) -> Rc<Exchange<'e>> {
+        self.exchange.clone()
     }
 
     /// Number of threads.
@@ -106,7 +122,8 @@ impl<'e> Pool<'e> {
         self.evaluators[0].as_ref()
     }
 
-    /// Runs `count` evaluations, each on the thread that is free first, and returns the outcomes in their order.
+    /// Runs `count` evaluations, each on the thread that is free first, and returns the outcomes in their order. With several ranks
+    /// each does a part of them, and all return the same.
     ///
     /// `task` makes the evaluation of a number, or says that it is not needed any more; `done` hears of every number. A trial
     /// that panics is a failed one.
@@ -117,31 +134,80 @@ impl<'e> Pool<'e> {
         task: impl Fn(usize) -> Option<Evaluation<'g>> + Sync,
         done: impl Fn(usize, Option<&Outcome>) + Sync,
     ) -> Result<Vec<Option<Outcome>>, Unfinished> {
-        let maker = &self.maker;
-        let work = Work { count, drawn: AtomicUsize::new(0), ended: AtomicBool::new(false), stop, task, done, maker };
-        let (work, all) = (&work, self.evaluators.len());
-        let results = thread::scope(|scope| {
+        let exchange = self.exchange.clone();
+        let mut results = self.evaluate_own(count, stop, task, &done);
+        if !exchange.is_alone() {
+            let own = results.as_ref().map_or(0, Vec::len);
+            let all = exchange.outcomes(results, stop.load(Ordering::Relaxed))?.ok_or(Unfinished::Stopped)?;
+            all.iter().skip(own).for_each(|(number, outcome)| done(*number, outcome.as_ref()));
+            results = Ok(all);
+        }
+        let mut results = results?;
+        if results.len() < count {
+            return Err(Unfinished::Stopped);
+        }
+        results.sort_unstable_by_key(|(number, _)| *number);
+        Ok(results.into_iter().map(|(_, result)| result).collect())
+    }
+
+    /// Runs evaluations until none is left, here or for any rank.
+    fn evaluate_own<'g>(
+        &mut self,
+        count: usize,
+        stop: &AtomicBool,
+        task: impl Fn(usize) -> Option<Evaluation<'g>> + Sync,
+        done: impl Fn(usize, Option<&Outcome>) + Sync,
+    ) -> Result<Vec<Numbered>, Error> {
+        let (maker, exchange, all) = (&self.maker, &self.exchange, self.evaluators.len());
+        let at_once = all * maker.lanes.count();
+        let numbers = if exchange.is_follower() { Numbers::Given(Given::default()) } else { Numbers::counted(count) };
+        let work = &Work { numbers, ended: AtomicBool::new(false), stop, task, done, maker };
+        thread::scope(|scope| {
             let mut threads = Vec::with_capacity(all);
+            let mut begun = Ok(());
             for evaluator in &mut self.evaluators {
                 let name = "trials".to_owned();
                 match thread::Builder::new().name(name).spawn_scoped(scope, move || work.busy(evaluator)) {
                     Ok(thread) => threads.push(thread),
                     Err(source) => {
                         work.ended.store(true, Ordering::Relaxed);
-                        return Err(no_thread(threads.len() + 1, all, &source));
+                        begun = Err(no_thread(threads.len() + 1, all, &source));
+                        break;
                     }
                 }
             }
+            // A thread ends when nothing is left to draw, or by a mistake: then nobody may wait for it.
+            let ended = || {
+                let told = stop.load(Ordering::Relaxed) || work.ended.load(Ordering::Relaxed);
+                told || threads.iter().any(thread::ScopedJoinHandle::is_finished)
+            };
+            let shared = match &work.numbers {
+                Numbers::Given(given) => take(exchange.ranks(), given, at_once, &ended),
+                numbers @ Numbers::Counted { .. } => give(exchange.ranks(), numbers, &ended),
+            };
+            if shared.is_err() {
+                work.numbers.close();
+            }
             let joined: Vec<_> = threads.into_iter().map(thread::ScopedJoinHandle::join).collect();
             let ours = || Error::Other("a thread of trials panicked outside a trial".into());
-            joined.into_iter().map(|result| result.unwrap_or_else(|_| Err(ours()))).collect::<Result<Vec<_>, _>>()
-        });
-        let mut results: Vec<_> = results.map_err(Unfinished::Error)?.into_iter().flatten().collect();
-        if results.len() < count {
-            return Err(Unfinished::Stopped);
+            let joined = joined.into_iter().map(|result| result.unwrap_or_else(|_| Err(ours())));
+            let results = joined.collect::<Result<Vec<_>, _>>().map(|results| results.into_iter().flatten().collect());
+            begun.and(shared).and(results)
+        })
+    }
+
+    /// Takes part in a round in which this rank evaluates nothing because of an error, so that all hear of it.
+    ///
+    /// # Errors
+    /// Those of the ranks' messages.
+    pub(crate) fn withdraw(&self, status: &Status) -> Result<(), Error> {
+        let ranks = self.exchange.ranks();
+        if self.exchange.is_follower() {
+            take(ranks, &Given::default(), 0, &|| true)?;
+        } else {
+            give(ranks, &Numbers::counted(0), &|| true)?;
         }
-        results.sort_unstable_by_key(|(number, _)| *number);
-        Ok(results.into_iter().map(|(_, result)| result).collect())
+        self.exchange.no_outcomes(status)
     }
 }
 
@@ -153,8 +219,7 @@ fn no_thread(number: usize, all: usize, source: &io::Error) -> Error {
 
 /// What the threads of a round share.
 struct Work<'w, T, D> {
-    count: usize,
-    drawn: AtomicUsize,
+    numbers: Numbers,
     /// Whether a thread has found that the round cannot be finished.
     ended: AtomicBool,
     stop: &'w AtomicBool,
@@ -162,9 +227,6 @@ struct Work<'w, T, D> {
     done: D,
     maker: &'w Maker<'w>,
 }
-
-/// A number and what came of it.
-type Numbered = (usize, Option<Outcome>);
 
 impl<'g, T, D> Work<'_, T, D>
 where
@@ -183,10 +245,7 @@ where
         let running: RefCell<Vec<Evaluation<'g>>> = RefCell::new(Vec::new());
         let mut next = || {
             while !self.stop.load(Ordering::Relaxed) && !self.ended.load(Ordering::Relaxed) {
-                let number = self.drawn.fetch_add(1, Ordering::Relaxed);
-                if number >= self.count {
-                    break;
-                }
+                let Some(number) = self.numbers.draw() else { break };
                 match (self.task)(number) {
                     None => put(number, None),
                     Some(evaluation) => {

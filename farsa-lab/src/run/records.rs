@@ -13,6 +13,7 @@ use crate::store::growing::Mark;
 use crate::store::identity::Identity;
 use crate::store::sealed;
 use crate::store::sealed::Sealed;
+use crate::strategy::search::Genome;
 
 /// `checkpoint.bin`: where to go on; it does not grow.
 #[derive(Debug, Serialize, Deserialize)]
@@ -48,12 +49,26 @@ pub(crate) struct Champions {
 }
 
 /// The best individual of a population.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub(crate) struct Best {
     /// Counted through all populations.
     pub(crate) individual: u32,
     pub(crate) fitness: Fitness,
-    pub(crate) genes: Vec<u16>,
+    pub(crate) genes: Genome,
+}
+
+/// The same with genes of one kind.
+#[derive(Serialize, Deserialize)]
+struct BestOf<G> {
+    individual: u32,
+    fitness: Fitness,
+    genes: Vec<G>,
+}
+
+impl<G> BestOf<G> {
+    fn of(self, genome: fn(Vec<G>) -> Genome) -> Best {
+        Best { individual: self.individual, fitness: self.fitness, genes: genome(self.genes) }
+    }
 }
 
 /// `genotypes.bin`: genotypes that no evolution of ours has made.
@@ -84,7 +99,15 @@ struct ChampionOfOne {
 struct ChampionsOfSeveral {
     identity: Identity,
     generation: u32,
-    best: Vec<Best>,
+    best: Vec<BestOf<u16>>,
+}
+
+/// Champions of one population or several, whose genes are reals.
+#[derive(Serialize, Deserialize)]
+struct ChampionsOfReals {
+    identity: Identity,
+    generation: u32,
+    best: Vec<BestOf<f64>>,
 }
 
 /// Gives records their first bytes, their names, their largest sizes and their owner.
@@ -109,6 +132,7 @@ sealed! {
     RecordHead: b"farsatld", "record of what a strategy was told", 1 << 20;
     ChampionOfOne: b"farsachm", "champion", 64 << 20;
     ChampionsOfSeveral: b"farsacmc", "set of champions", 64 << 20;
+    ChampionsOfReals: b"farsacmr", "set of champions with real genes", 256 << 20;
     Imported: b"farsagen", "set of genotypes", 1 << 30;
     ImportedSeveral: b"farsagec", "set of genotypes of several populations", 1 << 30;
 }
@@ -205,11 +229,23 @@ impl Champions {
     pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
         let Self { identity, generation, best } = self;
         let (identity, generation) = (identity.clone(), *generation);
-        if let [Best { individual, fitness, genes }] = best.as_slice() {
-            let (individual, fitness, genes) = (*individual, *fitness, genes.clone());
+        // All of them are of one kind.
+        let (mut words, mut reals) = (Vec::new(), Vec::new());
+        for Best { individual, fitness, genes } in best {
+            let (individual, fitness) = (*individual, *fitness);
+            match genes.clone() {
+                Genome::Words(genes) => words.push(BestOf { individual, fitness, genes }),
+                Genome::Reals(genes) => reals.push(BestOf { individual, fitness, genes }),
+            }
+        }
+        if !reals.is_empty() {
+            return sealed::write(path, &ChampionsOfReals { identity, generation, best: reals });
+        }
+        if words.len() == 1 {
+            let BestOf { individual, fitness, genes } = words.swap_remove(0);
             return sealed::write(path, &ChampionOfOne { identity, generation, individual, fitness, genes });
         }
-        sealed::write(path, &ChampionsOfSeveral { identity, generation, best: best.clone() })
+        sealed::write(path, &ChampionsOfSeveral { identity, generation, best: words })
     }
 
     /// Reads the champions of the run that a plan describes.
@@ -218,12 +254,25 @@ impl Champions {
     /// As [`Checkpoint::read`].
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
         let path = directory.champion();
-        if sealed::magic(&path)? == Some(ChampionsOfSeveral::MAGIC) {
+        let magic = sealed::magic(&path)?;
+        if magic == Some(ChampionsOfReals::MAGIC) {
+            let ChampionsOfReals { identity, generation, best } = read(&path, plan, directory)?;
+            return Ok(Self {
+                identity,
+                generation,
+                best: best.into_iter().map(|best| best.of(Genome::Reals)).collect(),
+            });
+        }
+        if magic == Some(ChampionsOfSeveral::MAGIC) {
             let ChampionsOfSeveral { identity, generation, best } = read(&path, plan, directory)?;
-            return Ok(Self { identity, generation, best });
+            return Ok(Self {
+                identity,
+                generation,
+                best: best.into_iter().map(|best| best.of(Genome::Words)).collect(),
+            });
         }
         let ChampionOfOne { identity, generation, individual, fitness, genes } = read(&path, plan, directory)?;
-        Ok(Self { identity, generation, best: vec![Best { individual, fitness, genes }] })
+        Ok(Self { identity, generation, best: vec![Best { individual, fitness, genes: Genome::Words(genes) }] })
     }
 
     /// The same where a generation is finished, and this program would compute the champions' trials as they were.

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use farsa_evo::{Record, RecordEntry, Strategy};
+use farsa_evo::{Record, RecordEntry};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -17,6 +17,7 @@ use crate::store::identity::Identity;
 use crate::store::log::Line;
 use crate::store::sealed;
 use crate::strategy::history::History;
+use crate::strategy::search::Search;
 
 /// Bytes of the largest record that is read.
 const LARGEST: u64 = 1 << 32;
@@ -56,9 +57,21 @@ impl Told {
     /// As [`Checkpoint::read`], and [`Error::Damaged`] for the record of another strategy than the experiment's.
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, checkpoint: &Checkpoint) -> Result<Self, Error> {
         evolved(directory)?;
+        Self::from_content(plan, directory, checkpoint, Self::content(directory, checkpoint)?)
+    }
+
+    /// The same from what the file holds up to the checkpoint.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(crate) fn from_content(
+        plan: &Plan<'_>,
+        directory: &Directory,
+        checkpoint: &Checkpoint,
+        content: Vec<u8>,
+    ) -> Result<Self, Error> {
         let path = directory.record();
         let damaged = |why: String| Error::damaged(&path, why);
-        let content = growing::read(&path, checkpoint.record, LARGEST)?;
         let (head, mut rest) = sealed::open_first::<RecordHead>(&content).map_err(damaged)?;
         let RecordHead { identity, strategy } = head;
         plan.same_run(&identity, directory.path())?;
@@ -67,7 +80,7 @@ impl Told {
             let why = format!("was made by the strategy `{strategy}`, the experiment has `{asked}`");
             return Err(damaged(why));
         }
-        let mut record = Record::new(plan.strategy()?.as_mut()).map_err(|error| damaged(error.to_string()))?;
+        let mut record = plan.strategy()?.record().map_err(|error| damaged(error.to_string()))?;
         let each = if record.populations() > 1 { record.populations() } else { 0 };
         let (mut lines, mut diagnostics) = (Vec::new(), Vec::new());
         while !rest.is_empty() {
@@ -94,6 +107,14 @@ impl Told {
             return Err(damaged(format!("{found} generations where checkpoint.bin speaks of {expected}")));
         }
         Ok(Self { identity, record, lines, diagnostics, content })
+    }
+
+    /// What the file holds up to a checkpoint.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Damaged`] when it is not what the checkpoint speaks of.
+    pub(crate) fn content(directory: &Directory, checkpoint: &Checkpoint) -> Result<Vec<u8>, Error> {
+        growing::read(&directory.record(), checkpoint.record, LARGEST)
     }
 
     /// Opens the file for a run that goes on, and forgets what came after the checkpoint.
@@ -132,7 +153,7 @@ impl ToldFile {
     }
 
     /// Appends the last generation of a record.
-    pub(crate) fn append(&mut self, record: &Record, line: &Line, strategy: &dyn Strategy) -> Result<(), Error> {
+    pub(crate) fn append(&mut self, record: &Record, line: &Line, strategy: &Search) -> Result<(), Error> {
         let last = record.generations().checked_sub(1).and_then(|last| record.entry(last));
         let Some(RecordEntry { frame, state }) = last else { return Ok(()) };
         let entry = Entry { frame, state, line: line.clone(), diagnostics: strategy.diagnostics() };

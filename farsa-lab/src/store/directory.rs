@@ -17,7 +17,8 @@ pub(crate) struct Directory {
 }
 
 impl Directory {
-    fn at(path: PathBuf) -> Self {
+    /// A directory that need not be here, for messages about its files.
+    pub(crate) fn at(path: PathBuf) -> Self {
         Self { path, tests: String::new() }
     }
 
@@ -46,7 +47,11 @@ impl Directory {
         if fs::remove_dir(path).is_err() {
             vacant(path)?;
         }
-        fs::rename(draft.path(), path).map_err(Error::io("make", path))?;
+        if let Err(source) = fs::rename(draft.path(), path) {
+            // Another process may have been faster.
+            vacant(path)?;
+            return Err(Error::io("make", path)(source));
+        }
         // It has another name now, under which nobody removes it.
         let _ = draft.keep();
         sync_directory(parent)?;

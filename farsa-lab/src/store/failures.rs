@@ -27,6 +27,8 @@ impl FailedEvaluation {
         let Self { generation, individual, trial, .. } = self;
         let which = format!("--generation {generation} --individual {individual}");
         let trial = trial.map_or_else(String::new, |trial| format!(" --trial {trial}"));
+        // A trial is replayed by one process, so the command for several says the same.
+        let program = program.strip_suffix("-mpi").unwrap_or(program);
         format!("{program} replay {directory} {which}{trial}")
     }
 

@@ -3,11 +3,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use farsa_evo::Strategy;
-
 use crate::error::Error;
 use crate::store::bounded::read_own;
 use crate::store::growing::{Growing, Mark};
+use crate::strategy::search::Search;
 
 /// The first line. Individuals are counted through all populations; parents are of the generation before, with blanks
 /// between them.
@@ -19,10 +18,10 @@ const LARGEST: u64 = 1 << 32;
 pub(crate) struct Lineage(Growing);
 
 /// The lines of the generation that waits for its fitness; none for one without parents.
-pub(crate) fn rows(strategy: &dyn Strategy) -> String {
+pub(crate) fn rows(strategy: &Search) -> String {
     let mut text = String::new();
     let Some(genealogy) = strategy.genealogy() else { return text };
-    for individual in 0..strategy.ask().len() {
+    for individual in 0..strategy.individuals() {
         let parents: Vec<String> = genealogy.parents_of(individual).iter().map(usize::to_string).collect();
         if !parents.is_empty() {
             // Writing into a string cannot fail.

@@ -28,14 +28,22 @@ impl Lock {
     /// # Errors
     /// [`Error::Occupied`] when another process has it, [`Error::Io`].
     pub(crate) fn of_run(directory: &Path) -> Result<Self, Error> {
+        Self::of_free_run(directory)?.ok_or_else(|| {
+            let why = "another process is at this run right now".into();
+            Error::Occupied { directory: directory.into(), why }
+        })
+    }
+
+    /// Takes possession of a run, unless another process has it.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub(crate) fn of_free_run(directory: &Path) -> Result<Option<Self>, Error> {
         let path = directory.join(RUN_LOCK);
         let file = open(&path).map_err(Error::io("lock", &path))?;
         match file.try_lock() {
-            Ok(()) => Ok(Self { _file: file }),
-            Err(TryLockError::WouldBlock) => {
-                let why = "another process is at this run right now".into();
-                Err(Error::Occupied { directory: directory.into(), why })
-            }
+            Ok(()) => Ok(Some(Self { _file: file })),
+            Err(TryLockError::WouldBlock) => Ok(None),
             Err(TryLockError::Error(source)) => Err(Error::Io { doing: "lock", path, source }),
         }
     }

@@ -85,7 +85,11 @@ pub(crate) fn open_first<T: Sealed>(bytes: &[u8]) -> Result<(T, &[u8]), String> 
     Ok((open(first)?, rest))
 }
 
-fn open<T: Sealed>(bytes: &[u8]) -> Result<T, String> {
+/// What a sealed file holds.
+///
+/// # Errors
+/// Why it is not what was written.
+pub(crate) fn open<T: Sealed>(bytes: &[u8]) -> Result<T, String> {
     let truncated = |expected: u64| format!("truncated: {} bytes of {expected}", bytes.len());
     let Some((magic, rest)) = bytes.split_first_chunk::<8>() else {
         return Err(truncated((HEAD + CHECKSUM) as u64));

@@ -1,23 +1,24 @@
 //! What the command has to know of a strategy.
 
-use farsa_evo::Strategy;
+use farsa_evo::{EvoError, SideBySide, Snapshot, Strategy};
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::settings::{Setting, Settings};
+use crate::strategy::search::Search;
 
 /// A strategy as the command knows it: a name, a table of settings and a function that makes one.
 ///
 /// The strategy itself is a [`farsa_evo::Strategy`]: three methods. With both traits the command runs it, writes its
 /// checkpoints, goes on after an interruption, and replays any individual of any generation. An experiment names the one it
-/// is run with, [`Experiment::strategy`](crate::Experiment::strategy); [`WithStrategy`](crate::WithStrategy) gives it
-/// another.
+/// is run with, [`Experiment::strategy`](crate::Experiment::strategy); `--strategy NAME` gives it another of those that the
+/// command knows, [`strategies`](crate::strategies) and those of [`Laboratory::with_strategy`](crate::Laboratory::with_strategy).
 ///
 /// ```
 /// use std::process::ExitCode;
 ///
-/// use farsa_evo::{RandomSearch, Strategy};
-/// use farsa_lab::{Error, Experiment, Setting, StrategyDefinition, StrategyStart, WithStrategy, cli};
+/// use farsa_evo::RandomSearch;
+/// use farsa_lab::{Error, Experiment, Laboratory, Search, Setting, StrategyDefinition, StrategyStart};
 ///
 /// /// A generation of guesses after the other.
 /// struct Guessing;
@@ -32,21 +33,25 @@ use crate::experiment::settings::{Setting, Settings};
 ///             Setting::whole("evolution.population", 50, 1..=1000).doc("Guesses of a generation."),
 ///         ]
 ///     }
-///     fn start(&self, start: &StrategyStart<'_>) -> Result<Box<dyn Strategy>, Error> {
+///     fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
 ///         let population = start.settings.count("evolution.population")?;
-///         let search = RandomSearch::new(start.genes, population, start.seed);
-///         Ok(Box::new(search.map_err(|error| Error::Other(error.to_string()))?))
+///         start.words(|seed| RandomSearch::new(start.genes, population, seed))
 ///     }
 /// }
 ///
-/// /// The command over an experiment, with its own strategy and with this one.
-/// fn command(experiment: impl Experiment + Copy) -> ExitCode {
-///     cli::main(&[&experiment, &WithStrategy::new("by-guessing", experiment, &Guessing)])
+/// /// The command over an experiment, which runs it by `--strategy guessing` too.
+/// fn command(experiment: impl Experiment) -> ExitCode {
+///     Laboratory::new(&[&experiment]).with_strategy(&Guessing).main()
 /// }
 /// ```
 pub trait StrategyDefinition: Sync {
     /// The name: lower-case letters, digits and hyphens.
     fn name(&self) -> &'static str;
+
+    /// What it does, in one line with its source; by default nothing is said.
+    fn summary(&self) -> &'static str {
+        ""
+    }
 
     /// Its settings with their defaults, `evolution.generations` among them; an experiment may have other defaults.
     fn settings(&self) -> Vec<Setting>;
@@ -55,7 +60,7 @@ pub trait StrategyDefinition: Sync {
     ///
     /// # Errors
     /// [`Error::setting`] for values that do not go together, [`Error::Other`] for a problem that it cannot search.
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Box<dyn Strategy>, Error>;
+    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error>;
 
     /// How [`Strategy::diagnostics`] are written and drawn, where the strategy has some.
     fn diagnostics(&self) -> Option<Diagnostics> {
@@ -79,6 +84,43 @@ pub struct StrategyStart<'s> {
     pub seed: u64,
     /// Builds an evaluator of the run, for a strategy that evaluates something itself.
     pub evaluator: &'s dyn Fn() -> Result<Box<dyn Evaluator>, Error>,
+}
+
+impl StrategyStart<'_> {
+    /// A search over words of each population by the strategy that `search` makes of a seed.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with what [`EvoError`] says.
+    pub fn words<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Search, Error>
+    where
+        S: Strategy + Snapshot + 'static,
+    {
+        Ok(if self.populations == 1 {
+            Search::from_words(search(self.seed).map_err(refused)?)
+        } else {
+            Search::from_words(SideBySide::new(self.populations, self.seed, search).map_err(refused)?)
+        })
+    }
+
+    /// A search over reals of each population by the strategy that `search` makes of a seed.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with what [`EvoError`] says.
+    pub fn reals<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<Search, Error>
+    where
+        S: Strategy<f64> + Snapshot + 'static,
+    {
+        Ok(if self.populations == 1 {
+            Search::from_reals(search(self.seed).map_err(refused)?)
+        } else {
+            Search::from_reals(SideBySide::new(self.populations, self.seed, search).map_err(refused)?)
+        })
+    }
+}
+
+/// What is wrong with the values of a strategy's settings.
+fn refused(error: EvoError) -> Error {
+    Error::Usage(error.to_string())
 }
 
 /// A table of numbers about each generation that a strategy tells beside the fitness, `FILE.csv`, and its picture, `FILE.svg`.

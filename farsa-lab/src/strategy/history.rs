@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use farsa_evo::{Population, Record, Strategy};
+use farsa_evo::{Population, Record};
 
 use crate::error::Error;
+use crate::strategy::search::{Genome, Genomes, Search};
 
 /// Makes the strategy of a run, at its first generation.
-pub(crate) type Fresh<'h> = Box<dyn Fn() -> Result<Box<dyn Strategy>, Error> + 'h>;
+pub(crate) type Fresh<'h> = Box<dyn Fn() -> Result<Search, Error> + 'h>;
 
 /// The finished generations of a run, and where that stands.
 pub(crate) struct History<'h> {
@@ -76,14 +77,14 @@ impl<'h> History<'h> {
     pub(crate) fn visit(
         &self,
         generations: impl IntoIterator<Item = u32>,
-        mut visit: impl FnMut(u32, &Population) -> Result<(), Error>,
+        mut visit: impl FnMut(u32, &Genomes) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let damaged = |error| Error::damaged(&self.path, error);
         match &self.past {
             Past::Told { record, fresh } => {
                 let mut strategy = fresh()?;
                 for generation in generations {
-                    let population = record.genomes(strategy.as_mut(), generation).map_err(damaged)?;
+                    let population = strategy.genomes(record, generation).map_err(damaged)?;
                     visit(generation, &population)?;
                 }
             }
@@ -96,6 +97,7 @@ impl<'h> History<'h> {
                     }
                     own.copy_from_slice(genome);
                 }
+                let population = Genomes::Words(population);
                 for generation in generations {
                     if generation > 0 {
                         return Err(self.missing(generation));
@@ -111,14 +113,14 @@ impl<'h> History<'h> {
     ///
     /// # Errors
     /// As [`visit`](Self::visit), and for an individual that does not exist.
-    pub(crate) fn genomes(&self, wanted: &[(u32, usize)]) -> Result<Vec<Vec<u16>>, Error> {
+    pub(crate) fn genomes(&self, wanted: &[(u32, usize)]) -> Result<Vec<Genome>, Error> {
         let mut generations: Vec<u32> = wanted.iter().map(|(generation, _)| *generation).collect();
         generations.sort_unstable();
         generations.dedup();
-        let mut found: Vec<Vec<u16>> = vec![Vec::new(); wanted.len()];
+        let mut found: Vec<Genome> = vec![Genome::Words(Vec::new()); wanted.len()];
         self.visit(generations, |generation, population| {
             for (found, (_, individual)) in found.iter_mut().zip(wanted).filter(|(_, (own, _))| *own == generation) {
-                *found = population.get(*individual).ok_or_else(|| self.missing(generation))?.to_vec();
+                *found = population.get(*individual).ok_or_else(|| self.missing(generation))?;
             }
             Ok(())
         })?;

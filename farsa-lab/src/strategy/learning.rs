@@ -7,6 +7,7 @@ use crate::experiment::evaluator::{Evaluator, Iteration};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::settings::Setting;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyDefinition, StrategyStart};
+use crate::strategy::search::Search;
 use crate::strategy::settings::GENERATIONS;
 
 /// Nothing is selected: a generation is one individual, which is trained by an iteration after it was evaluated,
@@ -21,13 +22,17 @@ impl StrategyDefinition for Learning {
         "learning"
     }
 
+    fn summary(&self) -> &'static str {
+        "Nothing is selected: one individual is trained by demonstrations after each generation."
+    }
+
     fn settings(&self) -> Vec<Setting> {
         vec![Setting::whole(GENERATIONS, 300, 1..=i64::from(u32::MAX) - 1).doc(
             "Iterations of training, each after an evaluation of what has been learned; the one thing that a resumed run may change.",
         )]
     }
 
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Box<dyn Strategy>, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
         if start.populations != 1 {
             return Err(Error::Other(format!("{} populations that learn", start.populations)));
         }
@@ -39,7 +44,16 @@ impl StrategyDefinition for Learning {
         let learned = learner.learned(&state);
         let genotype = Genotype::new(&evaluator.parameters(), start.gene_bits);
         let population = individual(&genotype, &learned).map_err(|error| Error::Other(error.to_string()))?;
-        Ok(Box::new(Trainee { evaluator, genotype, seed: start.seed, generation: 0, latest: None, state, population }))
+        let latest = None;
+        Ok(Search::from_words(Trainee {
+            evaluator,
+            genotype,
+            seed: start.seed,
+            generation: 0,
+            latest,
+            state,
+            population,
+        }))
     }
 
     fn diagnostics(&self) -> Option<Diagnostics> {
@@ -192,7 +206,10 @@ mod tests {
         let evaluator = || Ok(Box::new(Forgetful) as Box<dyn Evaluator>);
         let (populations, genes, gene_bits) = (1, 1, 16);
         let start = StrategyStart { populations, genes, gene_bits, settings: &settings, seed, evaluator: &evaluator };
-        Learning.start(&start).unwrap()
+        match Learning.start(&start).unwrap() {
+            Search::Words(strategy) => strategy,
+            other => panic!("{other:?}"),
+        }
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! One parent and one mutant.
 
-use farsa_evo::{EvoError, OnePlusOneConfig, Strategy};
+use farsa_evo::{EvoError, OnePlusOneConfig};
 
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
+use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, MUTATION, mutation};
 
 const FIRST_RATE: &str = "evolution.first_rate";
@@ -22,6 +23,10 @@ pub struct OnePlusOne;
 impl StrategyDefinition for OnePlusOne {
     fn name(&self) -> &'static str {
         "one-plus-one"
+    }
+
+    fn summary(&self) -> &'static str {
+        "One parent and one mutant a generation, with a rate that falls, as in the original FARSA."
     }
 
     fn settings(&self) -> Vec<Setting> {
@@ -42,13 +47,13 @@ impl StrategyDefinition for OnePlusOne {
         ]
     }
 
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Box<dyn Strategy>, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
         if start.populations != 1 {
             return Err(Error::Other(format!("one parent and one mutant of {} populations", start.populations)));
         }
         let config = config(start.settings, start.genes, start.gene_bits)?;
         let search = farsa_evo::OnePlusOne::new(config, start.seed);
-        Ok(Box::new(search.map_err(|error| Error::Other(error.to_string()))?))
+        Ok(Search::from_words(search.map_err(|error| Error::Other(error.to_string()))?))
     }
 }
 

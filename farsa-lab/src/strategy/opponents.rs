@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::error::Error;
 use crate::experiment::genotype::Genotype;
 use crate::strategy::history::History;
+use crate::strategy::search::Genome;
 
 /// An individual of another population.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,7 +65,7 @@ pub(crate) fn met(
     individual: usize,
     wanted: Range<u32>,
     trials: usize,
-) -> Result<Vec<Vec<Vec<u16>>>, Error> {
+) -> Result<Vec<Vec<Genome>>, Error> {
     let meeting = Meeting { generation, populations: history.populations(), size: history.size(), trials };
     let mut places = Vec::new();
     for trial in wanted {
@@ -97,7 +98,7 @@ impl Hall {
             history.visit(0..history.finished(), |generation, genomes| {
                 let all = (0..populations).map(|population| {
                     let best = history.champion(population, generation)?;
-                    genotype.decode(genomes.get(best)?)
+                    genomes.get(best)?.decode(genotype)
                 });
                 hall.add(all.collect::<Option<_>>().ok_or_else(|| history.missing(generation))?);
                 Ok(())
@@ -137,6 +138,7 @@ impl Hall {
 mod tests {
     use super::*;
     use crate::experiment::evaluator::Parameter;
+    use crate::strategy::search::Search;
     use farsa_evo::{Coevolution, Fitness, GaConfig, Record, Strategy};
 
     #[test]
@@ -175,7 +177,7 @@ mod tests {
         let mut record = Record::new(&mut all).unwrap();
         let mut hall = Hall::default();
         let history = |record: &Record| {
-            let fresh = move || Ok(Box::new(Coevolution::new(&[config; 3], 4).unwrap()) as Box<dyn Strategy>);
+            let fresh = move || Ok(Search::from_words(Coevolution::new(&[config; 3], 4).unwrap()));
             History::new("record".into(), record.clone(), Box::new(fresh))
         };
         for generation in 0..7 {
@@ -196,7 +198,7 @@ mod tests {
                 let genes = met(&history, generation, individual, 0..TRIALS as u32, TRIALS).unwrap();
                 for (trial, genes) in genes.iter().enumerate() {
                     let first = 2 * (18 * trial + individual);
-                    let met: Vec<Vec<f32>> = genes.iter().map(|genes| genotype.decode(genes).unwrap()).collect();
+                    let met: Vec<Vec<f32>> = genes.iter().map(|genes| genes.decode(&genotype).unwrap()).collect();
                     assert_eq!(met, opponents[first..first + 2]);
                 }
             }

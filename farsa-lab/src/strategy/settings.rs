@@ -9,6 +9,8 @@ use crate::experiment::settings::{Setting, Settings};
 pub(crate) const GENERATIONS: &str = "evolution.generations";
 /// Individuals of a generation.
 pub(crate) const POPULATION: &str = "evolution.population";
+/// The name of a strategy that is not the experiment's own.
+pub(crate) const STRATEGY: &str = "strategy.name";
 /// What happens to a bit that mutation hits.
 pub(crate) const MUTATION: &str = "evolution.mutation";
 
@@ -21,6 +23,18 @@ pub(crate) fn complete(mut own: Vec<Setting>, mut strategy: Vec<Setting>) -> Vec
     }
     strategy.append(&mut own);
     strategy
+}
+
+/// An experiment's table with the settings of a strategy that is not its own, and that strategy's name.
+///
+/// The strategy has its own defaults; what the experiment says of `evolution` is about another one, but for how long to search.
+pub(crate) fn chosen(own: Vec<Setting>, name: &str, strategy: Vec<Setting>) -> Vec<Setting> {
+    let about_this = |setting: &Setting| !setting.key().starts_with("evolution.") || setting.key() == GENERATIONS;
+    let own = own.into_iter().filter(about_this).collect();
+    let doc = "The strategy, in place of the experiment's own.";
+    let mut table = vec![Setting::word(STRATEGY, name, &[name]).doc(doc)];
+    table.append(&mut complete(own, strategy));
+    table
 }
 
 /// The mutation that [`MUTATION`] names.
@@ -43,5 +57,21 @@ mod tests {
         let own = ["evolution.parents", MUTATION, "evolution.mutation_rate", "world.flat"];
         assert_eq!(keys, [&[GENERATIONS, POPULATION][..], &own].concat());
         assert_eq!(table[1].default_value(), &Value::Whole(30));
+    }
+
+    #[test]
+    fn a_chosen_strategy_has_its_own_defaults() {
+        let own = vec![
+            Setting::whole(GENERATIONS, 7, 1..=100),
+            Setting::whole(POPULATION, 30, 1..=100),
+            Setting::number("evolution.first_rate", 0.5, 0.0..=1.0),
+            Setting::flag("world.flat", true),
+        ];
+        let table = chosen(own, "truncation", Truncation.settings());
+        let keys: Vec<&str> = table.iter().map(Setting::key).collect();
+        let others = [POPULATION, "evolution.parents", MUTATION, "evolution.mutation_rate", "world.flat"];
+        assert_eq!(keys, [&[STRATEGY, GENERATIONS][..], &others].concat());
+        let defaults = [1, 2].map(|index: usize| table[index].default_value().clone());
+        assert_eq!(defaults, [Value::Whole(7), Value::Whole(100)]);
     }
 }

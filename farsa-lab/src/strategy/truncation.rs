@@ -1,10 +1,11 @@
 //! The truncation algorithm, in one population or several.
 
-use farsa_evo::{Coevolution, EvoError, GaConfig, Strategy, TruncationGa};
+use farsa_evo::{Coevolution, EvoError, GaConfig, TruncationGa};
 
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
+use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, MUTATION, POPULATION, mutation};
 
 const PARENTS: &str = "evolution.parents";
@@ -18,6 +19,10 @@ pub struct Truncation;
 impl StrategyDefinition for Truncation {
     fn name(&self) -> &'static str {
         "truncation"
+    }
+
+    fn summary(&self) -> &'static str {
+        "The best of a generation make mutated copies [Ferrauto2010]."
     }
 
     fn settings(&self) -> Vec<Setting> {
@@ -38,13 +43,13 @@ impl StrategyDefinition for Truncation {
         ]
     }
 
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Box<dyn Strategy>, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
         let config = config(start.settings, start.genes, start.gene_bits)?;
         let refused = |error: EvoError| Error::Other(error.to_string());
         Ok(if start.populations == 1 {
-            Box::new(TruncationGa::new(config, start.seed).map_err(refused)?)
+            Search::from_words(TruncationGa::new(config, start.seed).map_err(refused)?)
         } else {
-            Box::new(Coevolution::new(&vec![config; start.populations], start.seed).map_err(refused)?)
+            Search::from_words(Coevolution::new(&vec![config; start.populations], start.seed).map_err(refused)?)
         })
     }
 }

@@ -62,6 +62,23 @@ impl WorkerArgs {
         Pool::new(plan, self.threads(), self.lanes())
     }
 
+    /// Whether a plan can be evaluated so; with one thread, which is made sooner than all.
+    ///
+    /// # Errors
+    /// Those of [`Pool::new`].
+    pub(crate) fn check(&self, plan: &Plan<'_>) -> Result<(), Error> {
+        Pool::new(plan, 1, self.lanes()).map(drop)
+    }
+
+    /// The same where processes share the processors: without a number of threads, each takes its part of them.
+    ///
+    /// # Errors
+    /// Those of [`Pool::new`].
+    pub(crate) fn pool_shared<'e>(&self, plan: &Plan<'e>, sharing: usize) -> Result<Pool<'e>, Error> {
+        let threads = self.threads.threads.map_or_else(|| self.threads() / sharing.max(1), usize::from);
+        Pool::new(plan, threads, self.lanes())
+    }
+
     pub(crate) fn threads(&self) -> usize {
         self.threads.count()
     }

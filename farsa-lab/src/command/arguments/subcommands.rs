@@ -8,9 +8,12 @@ use farsa_view::Camera;
 
 use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
+use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
+use crate::command::arguments::sweep::SweepArgs;
 use crate::evaluation::replay::Which;
+use crate::report::outcome::Success;
 use crate::run::plan::LARGEST_SEED;
 
 /// Evolve robots, test the champions, and replay any trial of a run.
@@ -30,8 +33,14 @@ pub(crate) enum Command {
     List(ListArgs),
     /// Describe an experiment, with every setting and its source
     Info(InfoArgs),
+    /// List the strategies, with every setting and its source
+    Strategies(StrategiesArgs),
     /// Evolve, or go on with a run
     Run(RunArgs),
+    /// Run an experiment at many settings, those of a file
+    Sweep(SweepArgs),
+    /// Bring runs of several places together, as a table or as copies
+    Merge(MergeArgs),
     /// Put a run's champion to the test on fresh starts
     Test(TestArgs),
     /// Evaluate a genotype from any source on random trials
@@ -64,12 +73,24 @@ pub(crate) struct ListArgs {
 }
 
 #[derive(Args)]
+pub(crate) struct StrategiesArgs {
+    /// One of them alone
+    pub(crate) strategy: Option<String>,
+    /// Write JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
 pub(crate) struct InfoArgs {
     /// The experiment
     pub(crate) experiment: String,
     /// One of its conditions [default: its first]
     #[arg(long, value_name = "NAME")]
     pub(crate) condition: Option<String>,
+    /// A strategy in place of the experiment's own
+    #[arg(long, value_name = "NAME")]
+    pub(crate) strategy: Option<String>,
     /// Write JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -83,6 +104,9 @@ pub(crate) struct RunArgs {
     pub(crate) experiment: Option<String>,
     #[command(flatten)]
     pub(crate) variant: VariantArgs,
+    /// What to search with [default: the experiment's own]; `strategies` lists them
+    #[arg(long, value_name = "NAME")]
+    pub(crate) strategy: Option<String>,
     /// Where all random numbers come from [default: 1]
     #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: Option<u64>,
@@ -100,9 +124,15 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR", conflicts_with = "resume", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
     /// So many runs with seeds from --seed on, one after the other; the same command again skips what is finished and
-    /// goes on with what is not
+    /// goes on with what is not, and a second one at the same time takes the next run that nobody has
     #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
     pub(crate) replications: Option<u32>,
+    /// Only the K-th of them, from 1: for one task of an array
+    #[arg(long, value_name = "K", requires = "replications", value_parser = value_parser!(u32).range(1..))]
+    pub(crate) replication: Option<u32>,
+    /// So many of them side by side, each on its part of the ranks
+    #[arg(long, value_name = "G", requires = "replications", conflicts_with = "replication", hide = true, value_parser = value_parser!(u32).range(1..))]
+    pub(crate) groups: Option<u32>,
     /// Take settings from a TOML file; --set goes before it
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
@@ -253,6 +283,7 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 }
 
 #[derive(Args)]
+#[command(allow_negative_numbers = true)]
 pub(crate) struct ReportArgs {
     /// The runs' directories
     #[arg(required = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
@@ -263,9 +294,31 @@ pub(crate) struct ReportArgs {
     /// A new file for the page as Markdown, with its pictures beside it as NAME-*.svg
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) md: Option<PathBuf>,
+    /// A run is a success if at least this share, from 0 to 1, of its champion's test is [default: 0.5]
+    #[arg(long, value_name = "S", value_parser = share)]
+    success_share: Option<f64>,
+    /// A run is a success if the best of a generation reaches this fitness
+    #[arg(long, value_name = "F", conflicts_with = "success_share", value_parser = finite)]
+    success_fitness: Option<f64>,
     /// Write the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl ReportArgs {
+    /// When a run is a success, if that was said.
+    pub(crate) fn success(&self) -> Option<Success> {
+        self.success_fitness.map(Success::Fitness).or(self.success_share.map(Success::Share))
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "not a share from 0 to 1".into())
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "not a number".into())
 }
 
 #[derive(Args)]

@@ -6,6 +6,7 @@ use farsa_body::Recorder;
 use farsa_num::{Domain, Stream};
 use farsa_view::Schema;
 
+use super::ranks::{part, same};
 use super::{pool, scratch};
 use crate::error::Error;
 use crate::evaluation::test;
@@ -15,6 +16,7 @@ use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::settings::{Setting, Settings, Value};
+use crate::ranks::threads::on_ranks;
 use crate::run::begin::create;
 use crate::run::evolve::go_on;
 use crate::run::plan::Plan;
@@ -191,6 +193,24 @@ fn a_thousand_generations_with_a_tenth_of_all_evaluations_failing() {
     }
     assert_eq!(lines.next(), None);
     assert!((1700..2200).contains(&count) && kinds.iter().all(|kind| *kind > 350), "{count}: {kinds:?}");
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
+fn evaluations_that_fail_on_any_rank_are_told_as_in_one_process() {
+    let root = scratch("faults-ranks");
+    let whole = create(&plan(&faulty(), 1), &root.join("whole")).unwrap();
+    run(100, 2, &whole);
+    let place = root.join("ranks");
+    let results = on_ranks(3, |ranks| {
+        let (experiment, stop) = (faulty(), false.into());
+        part(ranks, &plan(&experiment, 100), &place, 1, &stop)
+    });
+    for result in results {
+        result.unwrap();
+    }
+    same(&place, whole.path());
+    assert!(fs::read_to_string(place.join("failures.csv")).unwrap().lines().count() > 100);
     fs::remove_dir_all(root).unwrap();
 }
 

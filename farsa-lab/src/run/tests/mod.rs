@@ -2,14 +2,17 @@
 //!
 //! - `reference`: our strategies, against what is computed by hand
 //! - `pool`: a pool's threads: outcomes in their order, stops, and panics alone and in lanes
+//! - `ranks`: runs on ranks that are threads
 //! - `own_strategy`: a strategy of a user's own
 //! - `files`: what is refused, and what is mended
 //! - `faults`: evaluations that panic, that are no number and that do not end
 
+mod every_strategy;
 mod faults;
 mod files;
 mod own_strategy;
 mod pool;
+mod ranks;
 mod reference;
 
 use std::fs;
@@ -32,9 +35,11 @@ use crate::run::begin::create;
 use crate::run::evolve::go_on;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
+use crate::run::records::Best;
 use crate::store::directory::Directory;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::history::History;
+use crate::strategy::search::Genome;
 use crate::strategy::settings::{GENERATIONS as GENERATIONS_KEY, POPULATION};
 use crate::strategy::{Learning, OnePlusOne, Truncation};
 
@@ -195,7 +200,17 @@ fn twice(numbers: &Numbers, root: &std::path::Path, generations: i64) -> Directo
 
 /// The genes of an individual of a finished generation, rebuilt.
 fn genes_of(history: &History<'_>, generation: u32, individual: usize) -> Vec<u16> {
-    history.genomes(&[(generation, individual)]).unwrap().remove(0)
+    match history.genomes(&[(generation, individual)]).unwrap().remove(0) {
+        Genome::Words(genes) => genes,
+        Genome::Reals(_) => panic!("reals"),
+    }
+}
+
+fn words(best: &Best) -> &Vec<u16> {
+    match &best.genes {
+        Genome::Words(genes) => genes,
+        Genome::Reals(_) => panic!("reals"),
+    }
 }
 
 /// Generation, individual and parents of each line of `lineage.csv`.

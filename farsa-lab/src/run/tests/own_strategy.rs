@@ -8,11 +8,11 @@ use farsa_num::{Domain, Stream};
 use crate::error::Error;
 use crate::evaluation::replay::Which;
 use crate::experiment::settings::{Setting, Value};
-use crate::experiment::with_strategy::WithStrategy;
 use crate::run::begin::create;
 use crate::run::plan::Plan;
 use crate::run::tests::{CHASE, CHASE_ALONE, replayed, rows, run, scratch};
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
+use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS as GENERATIONS_KEY, POPULATION};
 use crate::strategy::{Diagnostics, DiagnosticsChart};
 
@@ -65,12 +65,12 @@ impl StrategyDefinition for Climbing {
             Setting::whole("evolution.guesses", 4, 1..=100).doc("Guesses of a generation."),
         ]
     }
-    fn start(&self, start: &StrategyStart<'_>) -> Result<Box<dyn Strategy>, Error> {
+    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
         let guesses = start.settings.count("evolution.guesses")?;
         let population = Population::new(guesses, start.genes).map_err(|error| Error::Other(error.to_string()))?;
         let mut climber = HillClimber { generation: 0, seed: start.seed, population };
         climber.draw(&vec![128; start.genes]);
-        Ok(Box::new(climber))
+        Ok(Search::from_words(climber))
     }
     fn diagnostics(&self) -> Option<Diagnostics> {
         const COUNT: DiagnosticsChart =
@@ -82,10 +82,9 @@ impl StrategyDefinition for Climbing {
 #[test]
 fn a_strategy_of_other_populations_than_the_experiments_is_refused() {
     let root = scratch("uneven");
-    let numbers = WithStrategy::new("climbing-numbers", CHASE, &Climbing);
-    let plan = Plan::new(&numbers, None, "").unwrap();
+    let plan = Plan::with_strategy(&CHASE, None, "", Some(&Climbing)).unwrap();
     let error = create(&plan, &root).unwrap_err().to_string();
-    let says = "the strategy `hill-climber` has 1 populations of 2 genes where climbing-numbers has 3 of 2";
+    let says = "the strategy `hill-climber` has 1 populations of 2 genes where numbers has 3 of 2";
     assert_eq!((error.as_str(), root.exists()), (says, false));
 }
 
@@ -93,9 +92,8 @@ fn a_strategy_of_other_populations_than_the_experiments_is_refused() {
 fn a_strategy_of_ones_own_runs_resumes_and_replays() {
     const GENERATIONS: i64 = 9;
     let root = scratch("own");
-    let numbers = WithStrategy::new("climbing-numbers", CHASE_ALONE, &Climbing);
     let plan = |generations| {
-        let mut plan = Plan::new(&numbers, None, "").unwrap();
+        let mut plan = Plan::with_strategy(&CHASE_ALONE, None, "", Some(&Climbing)).unwrap();
         plan.settings.set("", GENERATIONS_KEY, Value::Whole(generations)).unwrap();
         plan
     };

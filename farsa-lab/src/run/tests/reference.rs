@@ -14,7 +14,7 @@ use crate::run::bench::{Sample, bench};
 use crate::run::records::Champions;
 use crate::run::tests::{
     CHASE, LEARNER, Numbers, SIZE, STEADY, TRIALS, genes_of, lineage, plain, plan, pool, replayed, rows, run, scratch,
-    twice,
+    twice, words,
 };
 use crate::run::told::history;
 use crate::strategy::settings::POPULATION;
@@ -62,11 +62,11 @@ fn a_steady_state_keeps_the_better_of_two() {
     let Champions { generation, best, .. } = Champions::read(&plan, &directory).unwrap();
     let survivor = history.champion(0, 119).unwrap();
     assert_eq!((generation, best.len(), best[0].individual as usize), (119, 1, survivor));
-    assert_eq!(best[0].genes, genes_of(&history, 119, survivor));
+    assert_eq!(*words(&best[0]), genes_of(&history, 119, survivor));
     assert_eq!(best[0].fitness.get(), rows[119][1]);
     let (csv, summary) = replayed(&plan, &directory, Which::default());
     assert!(summary.starts_with(&format!("individual {survivor} of generation 119, 3 trials")), "{summary}");
-    assert_eq!(csv.lines().nth(1).unwrap(), format!("0,0,0.0,{:?}", f64::from(best[0].genes[0])));
+    assert_eq!(csv.lines().nth(1).unwrap(), format!("0,0,0.0,{:?}", f64::from(words(&best[0])[0])));
     assert!(replay(&plan, &directory, Which { individual: Some(2), ..Which::default() }, &mut Vec::new()).is_err());
     let table = test::test(&plan, &directory, 7, 1, 2, Wanted::ONE, true).unwrap().text();
     assert!(table.contains(&format!("individual {survivor} of generation 119")), "{table}");
@@ -104,7 +104,7 @@ fn a_learner_is_evaluated_and_trained() {
     assert!(history.genomes(&[(12, 0)]).is_err() && history.genomes(&[(3, 1)]).is_err());
     assert!(history.champion(0, 12).is_none());
     let Champions { generation, best, .. } = Champions::read(&plan, &directory).unwrap();
-    assert_eq!((generation, &best[0].genes), (11, &genes_of(&history, 11, 0)));
+    assert_eq!((generation, words(&best[0])), (11, &genes_of(&history, 11, 0)));
     let (csv, _) = replayed(&plan, &directory, Which { generation: Some(0), ..Which::default() });
     assert_eq!(csv.lines().nth(1).unwrap(), "0,0,0.0,0.0");
     let table = test::test(&plan, &directory, 7, 1, 2, Wanted::ONE, true).unwrap().text();
@@ -192,7 +192,7 @@ fn populations_meet_each_others_champions() {
     let text = tested.text();
     assert!(text.contains(" of generation 8 against each other"), "{text}");
     let csv = fs::read_to_string(directory.test()).unwrap();
-    let [a, b, c] = [0, 1, 2].map(|p| f64::from(best[p].genes[0]));
+    let [a, b, c] = [0, 1, 2].map(|p| f64::from(words(&best[p])[0]));
     let head = "index,trial,steps,success,fitness,fitness of population 1,success of population 1,\
                 fitness of population 2,success of population 2";
     let (seeker, first, second) =

@@ -1,0 +1,238 @@
+//! Novelty in the place of fitness.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use farsa_num::{Domain, Stream};
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::gene::Gene;
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
+use crate::novelty::behaviours::novelty;
+use crate::novelty::novelty_config::{ArchiveRule, NoveltyConfig};
+use crate::population::Population;
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::strategy::{Genealogy, Recorded, Strategy, next_judged};
+
+/// The limits of a threshold.
+const THRESHOLDS: [f64; 2] = [1e-100, 1e100];
+
+/// Novelty search: a strategy of any kind is told how new the behaviour of each individual is, in the place of its fitness.
+///
+/// The novelty of a behaviour is the mean distance of its descriptor to the k nearest among the others of the generation and
+/// an archive of earlier ones. It is judged by the fitness, by which alone individuals are logged and champions named, and
+/// the descriptor values. A failed evaluation has no behaviour: the strategy is told that it failed.
+///
+/// After the generation was judged, behaviours enter the archive by index. Where they do so by chance, individual `i` of
+/// generation `g` draws from the stream (seed, [`Domain::General`], trial 1, `i`, `g`). The archive grows without an end.
+///
+/// Source: \[Lehman2011\] eq. 1, and its program for the threshold. Deviations: any strategy, where the source has NEAT; an archive
+/// by chance, which the source has not; all of a generation are compared with the archive before any of them enters it.
+///
+/// ```
+/// use farsa_evo::{GaConfig, NoveltyConfig, NoveltySearch, Strategy, TruncationGa};
+///
+/// let inner = TruncationGa::new(GaConfig { population: 20, parents: 5, ..GaConfig::new(2) }, 1)?;
+/// let mut search = NoveltySearch::new(NoveltyConfig::new(2), inner, 1)?;
+/// // Fitness is not what it searches for, but what is reported.
+/// let champion = search.evolve(10, |genes, row| {
+///     let [x, y] = [0, 1].map(|i| f64::from(genes[i]) / 65_535.0);
+///     row.copy_from_slice(&[x + y, x, y]);
+/// })?;
+/// assert!(champion.fitness.get() > 1.0 && search.novelty().len() == 20);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoveltySearch<S> {
+    config: NoveltyConfig,
+    seed: u64,
+    inner: S,
+    /// The archive [behaviours x d].
+    archive: Vec<f64>,
+    /// The threshold of the archive, of effect only where it has one.
+    threshold: f64,
+    /// Generations since the latest addition, or since the threshold was lowered.
+    idle: u32,
+    /// The novelty of the generation that was told last.
+    novelty: Vec<Fitness>,
+}
+
+impl<S> NoveltySearch<S> {
+    /// A search that drives a strategy, with an empty archive.
+    ///
+    /// # Errors
+    /// Those of [`NoveltyConfig::validate`]; [`EvoError::AlreadyTold`] and [`EvoError::Judgement`] for a strategy that was told
+    /// something, or that wants more than fitness.
+    pub fn new<G: Gene>(config: NoveltyConfig, inner: S, seed: u64) -> Result<Self, EvoError>
+    where
+        S: Strategy<G> + Snapshot,
+    {
+        config.validate()?;
+        if inner.generation() != 0 {
+            return Err(EvoError::AlreadyTold { generation: inner.generation() });
+        }
+        JudgementShape::FITNESS.check(inner.judged_by())?;
+        let threshold = match config.archive {
+            ArchiveRule::Threshold { first, .. } => first,
+            ArchiveRule::Random { .. } => THRESHOLDS[0],
+        };
+        Ok(Self { config, seed, inner, archive: Vec::new(), threshold, idle: 0, novelty: Vec::new() })
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &NoveltyConfig {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The strategy that is driven.
+    pub fn inner(&self) -> &S {
+        &self.inner
+    }
+
+    /// The archive [behaviours x d].
+    pub fn archive(&self) -> &[f64] {
+        &self.archive
+    }
+
+    /// The threshold of novelty of the archive, in the unit of the descriptor, if it has one.
+    pub fn threshold(&self) -> Option<f64> {
+        matches!(self.config.archive, ArchiveRule::Threshold { .. }).then_some(self.threshold)
+    }
+
+    /// The novelty \[individuals\] of the generation that was told last, in the unit of the descriptor; empty before, and after a
+    /// state was restored.
+    pub fn novelty(&self) -> &[Fitness] {
+        &self.novelty
+    }
+
+    /// Adds behaviours of a generation to the archive.
+    fn remember(&mut self, rows: &[Option<&[f64]>], novelty: &[Option<f64>], generation: u32) {
+        let before = self.archive.len();
+        for (individual, (row, novelty)) in rows.iter().zip(novelty).enumerate() {
+            let (Some(row), Some(novelty)) = (row, novelty) else { continue };
+            let enters = match self.config.archive {
+                ArchiveRule::Random { rate } => {
+                    let mut stream = Stream::new(self.seed, Domain::General, 1, individual as u32, generation);
+                    stream.uniform_f64() < rate
+                }
+                ArchiveRule::Threshold { .. } => *novelty > self.threshold,
+            };
+            if enters {
+                self.archive.extend_from_slice(row);
+            }
+        }
+        if let ArchiveRule::Threshold { most, patience, .. } = self.config.archive {
+            let added = (self.archive.len() - before) / self.config.descriptors;
+            self.idle = if added == 0 { self.idle.saturating_add(1) } else { 0 };
+            if added > most {
+                self.threshold = (1.2 * self.threshold).min(THRESHOLDS[1]);
+            } else if self.idle >= patience {
+                (self.threshold, self.idle) = ((0.95 * self.threshold).max(THRESHOLDS[0]), 0);
+            }
+        }
+    }
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
+    fn generation(&self) -> u32 {
+        self.inner.generation()
+    }
+
+    fn ask(&self) -> &Population<G> {
+        self.inner.ask()
+    }
+
+    fn judged_by(&self) -> JudgementShape {
+        JudgementShape::new(1, self.config.descriptors)
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        self.tell_judgements(&Judgements::from_fitness(fitness))
+    }
+
+    fn tell_judgements(&mut self, judgements: &Judgements) -> Result<(), EvoError> {
+        let (count, shape) = (self.inner.ask().len(), JudgementShape::new(1, self.config.descriptors));
+        let generation = self.inner.generation();
+        next_judged(generation, count, shape, judgements)?;
+        let row = |individual| (!judgements.is_failed(individual)).then(|| judgements.descriptor(individual));
+        let rows: Vec<Option<&[f64]>> = (0..count).map(row).collect();
+        let found = novelty(&rows, &self.archive, self.config.descriptors, self.config.neighbours);
+        let told: Vec<Fitness> =
+            found.iter().map(|novelty| novelty.map_or(Fitness::WORST, Fitness::nan_as_failed)).collect();
+        self.inner.tell(&told)?;
+        self.novelty = told;
+        self.remember(&rows, &found, generation);
+        Ok(())
+    }
+
+    fn populations(&self) -> usize {
+        self.inner.populations()
+    }
+
+    fn recorded(&self) -> Recorded {
+        match self.inner.recorded() {
+            Recorded::Genomes => Recorded::Genomes,
+            _ => Recorded::Values,
+        }
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        self.inner.genealogy()
+    }
+
+    /// The behaviours in the archive, the largest novelty of the generation that was told last, and what the strategy that is
+    /// driven says.
+    fn diagnostics(&self) -> Vec<f64> {
+        let largest = self.novelty.iter().max().map_or(0.0, |novelty| novelty.get());
+        let mut all = vec![(self.archive.len() / self.config.descriptors) as f64, largest];
+        all.extend(self.inner.diagnostics());
+        all
+    }
+}
+
+/// The strategy's state, with its length in front, then the threshold and the archive, with the number of its behaviours.
+impl<S: Snapshot> Snapshot for NoveltySearch<S> {
+    fn save(&self) -> Vec<u8> {
+        let inner = self.inner.save();
+        let mut state = Vec::with_capacity(28 + inner.len() + 8 * self.archive.len());
+        state.extend((inner.len() as u64).to_le_bytes());
+        state.extend(inner);
+        state.extend(self.idle.to_le_bytes());
+        push_reals(&mut state, &[self.threshold]);
+        state.extend(((self.archive.len() / self.config.descriptors) as u64).to_le_bytes());
+        push_reals(&mut state, &self.archive);
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let size = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);
+        let length = size(StateReader::new(state, state.len())?.u64()?);
+        let short = EvoError::StateLength { expected: length.saturating_add(28), found: state.len() };
+        let (inner, own) = state.get(8..).and_then(|rest| rest.split_at_checked(length)).ok_or(short)?;
+        let mut header = StateReader::new(own, own.len())?;
+        let (idle, threshold, behaviours) = (header.u32()?, header.real()?, size(header.u64()?));
+        let numbers = behaviours.saturating_mul(self.config.descriptors);
+        let mut reader = StateReader::new(own, numbers.saturating_mul(8).saturating_add(20))?;
+        let _ = (reader.u32()?, reader.real()?, reader.u64()?);
+        if !(THRESHOLDS[0]..=THRESHOLDS[1]).contains(&threshold) {
+            return Err(EvoError::StateContent { what: "a threshold of novelty", found: threshold.to_bits() });
+        }
+        let mut archive = vec![0.0; numbers];
+        reader.reals(&mut archive)?;
+        self.inner.restore(inner)?;
+        (self.idle, self.threshold, self.archive) = (idle, threshold, archive);
+        self.novelty.clear();
+        Ok(())
+    }
+}

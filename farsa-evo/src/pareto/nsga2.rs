@@ -1,0 +1,306 @@
+//! The elitist non-dominated sorting genetic algorithm.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::cmp::Reverse;
+
+use farsa_num::{Domain, Stream};
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
+use crate::pareto::crowding_distances::crowding_distances;
+use crate::pareto::non_dominated_fronts::non_dominated_fronts;
+use crate::pareto::nsga2_config::Nsga2Config;
+use crate::population::Population;
+use crate::real::bounds::{check_within, draw_within};
+use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::strategy::{Genealogy, Strategy, next_judged};
+
+/// NSGA-II over real genes within bounds: of parents and offspring together the better half become the next parents, by
+/// fronts of those that do not dominate each other, within a front by how much room an individual has.
+///
+/// Every generation asks for N offspring; parents keep their objectives and are not evaluated again. The parents of a child
+/// are the better of two, by front, then by crowding distance. Equals rank by index, parents before offspring. A failed
+/// evaluation is dominated by every other.
+///
+/// Child `i` of generation `g` draws from the stream (seed, [`Domain::Mutation`], trial 0, `i`, `g`): the two rivals for its
+/// first parent, whether there is a second, the rivals for that, the crossover, its mutation, gene after gene. Individuals
+/// of generation 0 are uniform within the bounds, from (seed, [`Domain::InitialGenome`], trial 0, `i`, 0).
+///
+/// Source: \[Deb2002\]; simulated binary crossover \[Deb1995\] and polynomial mutation as in K. Deb's program. Deviations:
+/// larger is better; rivals are drawn one by one, with replacement, where the program lets each parent compete twice; of
+/// the two children of a crossover one is made, each gene from either with probability 1/2; there are no constraints.
+///
+/// ```
+/// use farsa_evo::{Nsga2, Nsga2Config, Strategy, hypervolume};
+///
+/// // Near 0 and near 2 at once: the trade-off lies between.
+/// let mut search = Nsga2::new(Nsga2Config { population: 20, ..Nsga2Config::new(vec![[-10.0, 10.0]], 2) }, 1)?;
+/// search.evolve(40, |genes, row| row.copy_from_slice(&[-genes[0] * genes[0], -(genes[0] - 2.0) * (genes[0] - 2.0)]))?;
+/// assert!(search.front().all(|(genes, _)| (-0.1..=2.1).contains(&genes[0])));
+/// let points: Vec<[f64; 2]> = search.front().map(|(_, objectives)| [objectives[0], objectives[1]]).collect();
+/// // The whole trade-off dominates 13.33 of 16.
+/// assert!(hypervolume(&points, [-4.0, -4.0]) > 12.5);
+/// # Ok::<(), farsa_evo::EvoError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nsga2 {
+    config: Nsga2Config,
+    seed: u64,
+    generation: u32,
+    /// None before the first generation is told.
+    parents: Option<Parents>,
+    /// The parents of each individual that waits, as indices of the parents, the same where there is one.
+    chosen: Vec<[u32; 2]>,
+    population: Population<f64>,
+}
+
+/// Those that survived, the first fronts first.
+#[derive(Clone, Debug, PartialEq)]
+struct Parents {
+    genes: Population<f64>,
+    /// [parents x m]
+    objectives: Vec<f64>,
+    /// What each of them is chosen by.
+    standing: Vec<Standing>,
+    /// The index in the latest generation told; none of those that are older.
+    origins: Vec<Option<u32>>,
+}
+
+/// The front of an individual and how much room it has there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Standing {
+    front: u32,
+    distance: f64,
+}
+
+impl Standing {
+    /// The crowded comparison: whether the other is better.
+    fn is_below(self, other: Self) -> bool {
+        other.front < self.front || other.front == self.front && other.distance > self.distance
+    }
+}
+
+impl Nsga2 {
+    /// A search at its random initial generation.
+    ///
+    /// # Errors
+    /// Those of [`Nsga2Config::validate`].
+    pub fn new(config: Nsga2Config, seed: u64) -> Result<Self, EvoError> {
+        config.validate()?;
+        let population = Population::new(config.population, config.bounds.len())?;
+        let mut search = Self { config, seed, generation: 0, parents: None, chosen: Vec::new(), population };
+        search.make();
+        Ok(search)
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &Nsga2Config {
+        &self.config
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The genes \[genes\] and objectives \[m\] of the parents, the first fronts first; none before the first generation is told.
+    pub fn parents(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        let m = self.config.objectives;
+        self.parents.iter().flat_map(move |parents| parents.genes.iter().zip(parents.objectives.chunks_exact(m)))
+    }
+
+    /// The parents that no other parent dominates, as [`parents`](Self::parents).
+    pub fn front(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        self.parents().take(self.front_size())
+    }
+
+    fn front_size(&self) -> usize {
+        let standing = self.parents.iter().flat_map(|parents| &parents.standing);
+        standing.take_while(|standing| standing.front == 0).count()
+    }
+
+    /// The better half of parents and individuals that were told.
+    fn select(&self, judgements: &Judgements) -> Result<Parents, EvoError> {
+        let (size, m) = (self.population.len(), self.config.objectives);
+        let old = self.parents.as_ref();
+        let kept = old.map_or(0, |old| old.genes.len());
+        let mut objectives = old.map_or(Vec::new(), |old| old.objectives.clone());
+        objectives.extend_from_slice(judgements.values());
+        let mut places: Vec<(usize, Standing)> = Vec::with_capacity(size);
+        for (number, front) in non_dominated_fronts(&objectives, m).into_iter().enumerate() {
+            let distances = crowding_distances(&objectives, m, &front);
+            let standing = |distance| Standing { front: number as u32, distance };
+            let mut front: Vec<_> = front.into_iter().zip(distances.into_iter().map(standing)).collect();
+            let room = size - places.len();
+            if front.len() > room {
+                front.sort_by_key(|(_, standing)| Reverse(Fitness::nan_as_failed(standing.distance)));
+            }
+            places.extend(front.into_iter().take(room));
+        }
+        let mut genes = Population::new(size, self.population.genome_len())?;
+        for (row, (place, _)) in genes.iter_mut().zip(&places) {
+            let from = place.checked_sub(kept).map_or_else(|| old?.genes.get(*place), |told| self.population.get(told));
+            row.copy_from_slice(from.unwrap_or_default());
+        }
+        let row = |place: usize| objectives.get(place * m..(place + 1) * m).unwrap_or_default();
+        Ok(Parents {
+            genes,
+            objectives: places.iter().flat_map(|(place, _)| row(*place)).copied().collect(),
+            standing: places.iter().map(|(_, standing)| *standing).collect(),
+            origins: places.iter().map(|(place, _)| place.checked_sub(kept).map(|told| told as u32)).collect(),
+        })
+    }
+
+    /// Makes the individuals of this generation.
+    fn make(&mut self) {
+        let Nsga2Config { bounds, crossover_rate, .. } = &self.config;
+        let (crossover, mutation) = (self.config.crossover(), self.config.mutation());
+        self.chosen.clear();
+        for (individual, genes) in self.population.iter_mut().enumerate() {
+            let stream = |domain, generation| Stream::new(self.seed, domain, 0, individual as u32, generation);
+            let Some(parents) = &self.parents else {
+                draw_within(genes, bounds, &mut stream(Domain::InitialGenome, 0));
+                continue;
+            };
+            let stream = &mut stream(Domain::Mutation, self.generation);
+            let first = parents.tournament(stream);
+            let mut second = first;
+            genes.copy_from_slice(parents.genes.get(first).unwrap_or_default());
+            if stream.uniform_f64() < *crossover_rate {
+                second = parents.tournament(stream);
+                crossover.apply(genes, parents.genes.get(second).unwrap_or_default(), bounds, stream);
+            }
+            mutation.apply(genes, bounds, stream);
+            self.chosen.push([first as u32, second as u32]);
+        }
+    }
+
+    /// Bytes of a state at a generation.
+    fn state_length(&self, generation: u32) -> usize {
+        let parent = 4 + 4 + 8 + 8 * (self.config.objectives + self.config.bounds.len());
+        4 + if generation == 0 { 0 } else { parent * self.population.len() }
+    }
+
+    fn read_parents(&self, reader: &mut StateReader<'_>) -> Result<Parents, EvoError> {
+        let (size, m) = (self.population.len(), self.config.objectives);
+        let mut genes = Population::new(size, self.population.genome_len())?;
+        reader.reals(genes.as_mut_slice())?;
+        check_within(&genes, &self.config.bounds)?;
+        let mut objectives = vec![0.0; size * m];
+        for x in &mut objectives {
+            *x = reader.fitness()?.get();
+        }
+        let (mut standing, mut origins) = (Vec::with_capacity(size), Vec::with_capacity(size));
+        for _ in 0..size {
+            let (front, origin) = (reader.u32()?, reader.u32()?);
+            let distance = reader.fitness()?.get();
+            let last = standing.last().map_or(0, |last: &Standing| last.front);
+            if front < last || front > last + 1 || standing.is_empty() && front > 0 {
+                return Err(EvoError::StateContent { what: "the front of a parent", found: front.into() });
+            }
+            if distance < 0.0 {
+                return Err(EvoError::StateContent { what: "a crowding distance", found: distance.to_bits() });
+            }
+            if origin != u32::MAX && origin as usize >= size {
+                return Err(EvoError::NoSuchIndividual { individual: origin as usize, population: size });
+            }
+            standing.push(Standing { front, distance });
+            origins.push(Some(origin).filter(|origin| *origin != u32::MAX));
+        }
+        Ok(Parents { genes, objectives, standing, origins })
+    }
+}
+
+impl Parents {
+    /// The better of two, the first drawn among equals.
+    fn tournament(&self, stream: &mut Stream) -> usize {
+        let size = self.standing.len() as u32;
+        let [first, second] = [stream.below(size) as usize, stream.below(size) as usize];
+        match (self.standing.get(first), self.standing.get(second)) {
+            (Some(own), Some(other)) if own.is_below(*other) => second,
+            _ => first,
+        }
+    }
+}
+
+impl Strategy<f64> for Nsga2 {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    fn ask(&self) -> &Population<f64> {
+        &self.population
+    }
+
+    fn judged_by(&self) -> JudgementShape {
+        JudgementShape::new(self.config.objectives, 0)
+    }
+
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        self.tell_judgements(&Judgements::from_fitness(fitness))
+    }
+
+    fn tell_judgements(&mut self, judgements: &Judgements) -> Result<(), EvoError> {
+        let generation = next_judged(self.generation, self.population.len(), self.judged_by(), judgements)?;
+        let parents = self.select(judgements)?;
+        (self.generation, self.parents) = (generation, Some(parents));
+        self.make();
+        Ok(())
+    }
+
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+
+    fn genealogy(&self) -> Option<&dyn Genealogy> {
+        Some(self)
+    }
+
+    /// The number of parents that no other parent dominates.
+    fn diagnostics(&self) -> Vec<f64> {
+        vec![self.front_size() as f64]
+    }
+}
+
+/// Parents that survived an earlier generation were not in the one before, and are not named.
+impl Genealogy for Nsga2 {
+    fn parents_of(&self, individual: usize) -> Vec<usize> {
+        let Some((parents, [first, second])) = self.parents.as_ref().zip(self.chosen.get(individual)) else {
+            return Vec::new();
+        };
+        let mut chosen = vec![*first, *second];
+        chosen.dedup();
+        let origin = |parent: u32| parents.origins.get(parent as usize).copied().flatten();
+        chosen.into_iter().filter_map(origin).map(|origin| origin as usize).collect()
+    }
+}
+
+impl Snapshot for Nsga2 {
+    fn save(&self) -> Vec<u8> {
+        let mut state = Vec::with_capacity(self.state_length(self.generation));
+        state.extend(self.generation.to_le_bytes());
+        if let Some(parents) = &self.parents {
+            push_reals(&mut state, parents.genes.as_slice());
+            push_reals(&mut state, &parents.objectives);
+            for (standing, origin) in parents.standing.iter().zip(&parents.origins) {
+                state.extend(standing.front.to_le_bytes());
+                state.extend(origin.unwrap_or(u32::MAX).to_le_bytes());
+                push_reals(&mut state, &[standing.distance]);
+            }
+        }
+        state
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let generation = StateReader::new(state, state.len())?.u32()?;
+        let mut reader = StateReader::new(state, self.state_length(generation))?;
+        reader.u32()?;
+        self.parents = if generation == 0 { None } else { Some(self.read_parents(&mut reader)?) };
+        self.generation = generation;
+        self.make();
+        Ok(())
+    }
+}

@@ -1,0 +1,110 @@
+//! What a record was made for, and how much it keeps of a generation.
+
+use alloc::vec::Vec;
+
+use crate::error::EvoError;
+use crate::gene::Gene;
+use crate::judgement_shape::JudgementShape;
+#[cfg(feature = "serde")]
+use crate::population::Population;
+use crate::strategy::{Recorded, Strategy};
+
+/// The sizes that a record was made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Shape {
+    pub(crate) recorded: Kept,
+    pub(crate) populations: usize,
+    /// Of all populations.
+    pub(crate) individuals: usize,
+    pub(crate) genes: usize,
+    /// Of a gene.
+    pub(crate) gene_bytes: usize,
+}
+
+/// What is kept of a generation: [`Recorded`], and for judgements of more than one number how many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename = "Recorded"))]
+pub(crate) enum Kept {
+    Order,
+    Values,
+    Genomes,
+    Judgements(JudgementShape),
+}
+
+impl Kept {
+    fn from_strategy<G: Gene>(strategy: &(impl Strategy<G> + ?Sized)) -> Self {
+        match (strategy.recorded(), strategy.judged_by()) {
+            (Recorded::Genomes, _) => Self::Genomes,
+            (Recorded::Order, JudgementShape::FITNESS) => Self::Order,
+            (Recorded::Values, JudgementShape::FITNESS) => Self::Values,
+            (Recorded::Order | Recorded::Values, shape) => Self::Judgements(shape),
+        }
+    }
+}
+
+impl Shape {
+    pub(crate) fn from_strategy<G: Gene>(strategy: &(impl Strategy<G> + ?Sized)) -> Self {
+        let (recorded, populations, genomes) = (Kept::from_strategy(strategy), strategy.populations(), strategy.ask());
+        Self { recorded, populations, individuals: genomes.len(), genes: genomes.genome_len(), gene_bytes: G::BYTES }
+    }
+
+    /// Whether every population has as many individuals, at least one.
+    pub(crate) fn check(self) -> Result<(), EvoError> {
+        let Self { populations, individuals, .. } = self;
+        let even = populations > 0 && individuals.is_multiple_of(populations);
+        if even { Ok(()) } else { Err(EvoError::UnevenPopulations { populations, individuals }) }
+    }
+
+    /// Whether this can be the shape of a record that is read.
+    #[cfg(feature = "serde")]
+    pub(crate) fn check_read(self) -> Result<(), EvoError> {
+        Population::check(self.individuals, self.genes)?;
+        if ![u16::BYTES, f64::BYTES].contains(&self.gene_bytes) {
+            return Err(EvoError::StateContent { what: "the bytes of a gene", found: self.gene_bytes as u64 });
+        }
+        if let Kept::Judgements(shape) = self.recorded {
+            if shape.objectives == 0 || shape == JudgementShape::FITNESS {
+                let found = shape.objectives as u64;
+                return Err(EvoError::StateContent { what: "a number of objectives", found });
+            }
+            Population::check(self.individuals, shape.width())?;
+        }
+        self.check()
+    }
+
+    /// Whether this is the number of an individual of a population.
+    pub(crate) fn has(self, population: usize, individual: usize) -> bool {
+        individual < self.individuals && individual / (self.individuals / self.populations) == population
+    }
+
+    /// Bytes of an individual's index.
+    pub(crate) fn width(self) -> usize {
+        match self.individuals {
+            0..=0x100 => 1,
+            0x101..=0x1_0000 => 2,
+            _ => 4,
+        }
+    }
+
+    /// Bytes of a generation.
+    pub(crate) fn frame(self) -> usize {
+        let each = match self.recorded {
+            Kept::Order => self.width(),
+            Kept::Values => 8,
+            Kept::Genomes => self.gene_bytes * self.genes,
+            Kept::Judgements(shape) => 8 * shape.width(),
+        };
+        self.populations * self.width() + self.individuals * each
+    }
+
+    pub(crate) fn push_index(self, bytes: &mut Vec<u8>, index: usize) {
+        bytes.extend(index.to_le_bytes().iter().take(self.width()));
+    }
+
+    pub(crate) fn indices(self, bytes: &[u8]) -> impl Iterator<Item = usize> + '_ {
+        let index = |bytes: &[u8]| bytes.iter().rev().fold(0, |sum, byte| sum << 8 | usize::from(*byte));
+        bytes.chunks_exact(self.width()).map(index)
+    }
+}

@@ -1,0 +1,99 @@
+//! The ranks of an MPI communicator.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use farsa_lab::{Error, Ranks};
+use mpi::Count;
+use mpi::collective::CommunicatorCollectives as _;
+use mpi::datatype::PartitionMut;
+use mpi::point_to_point::{Destination as _, Source as _};
+use mpi::request::Request;
+use mpi::topology::{Color, Communicator as _, SimpleCommunicator};
+
+/// Most bytes that all ranks together give in one call of MPI, which counts them in 32 bits.
+const MOST: usize = 1 << 30;
+/// The shortest and the longest pause between two looks whether the others have come.
+const PAUSES: [Duration; 2] = [Duration::from_micros(20), Duration::from_millis(1)];
+
+/// The ranks of an MPI communicator, for one thread. An error of MPI ends all processes, as MPI does by itself.
+pub struct MpiRanks {
+    communicator: SimpleCommunicator,
+}
+
+impl MpiRanks {
+    /// The ranks of a communicator that nobody else sends messages in.
+    pub fn new(communicator: SimpleCommunicator) -> Self {
+        Self { communicator }
+    }
+
+    /// Waits until all ranks are here. A library of MPI keeps a processor busy while it waits, which threads of trials may need.
+    fn meet(&self) {
+        let since = Instant::now();
+        let mut here: Request<'static, ()> = self.communicator.immediate_barrier();
+        while let Err(waiting) = here.test() {
+            here = waiting;
+            thread::sleep((since.elapsed() / 8).clamp(PAUSES[0], PAUSES[1]));
+        }
+    }
+}
+
+impl Ranks for MpiRanks {
+    fn rank(&self) -> usize {
+        self.communicator.rank() as usize
+    }
+
+    fn size(&self) -> usize {
+        self.communicator.size() as usize
+    }
+
+    fn all_gather(&self, bytes: &[u8]) -> Result<Vec<Vec<u8>>, Error> {
+        let size = self.size();
+        self.meet();
+        let mut lengths = vec![0_u64; size];
+        self.communicator.all_gather_into(&(bytes.len() as u64), &mut lengths[..]);
+        let mut all: Vec<Vec<u8>> = lengths.iter().map(|length| Vec::with_capacity(*length as usize)).collect();
+        let (longest, piece) = (lengths.iter().copied().max().unwrap_or(0) as usize, (MOST / size).max(1));
+        for first in (0..longest).step_by(piece) {
+            let part = |length: usize| first.min(length)..(first + piece).min(length);
+            let counts: Vec<Count> = lengths.iter().map(|length| part(*length as usize).len() as Count).collect();
+            let starts: Vec<Count> = counts
+                .iter()
+                .scan(0, |end, count| {
+                    *end += count;
+                    Some(*end - count)
+                })
+                .collect();
+            let mut received = vec![0_u8; counts.iter().sum::<Count>() as usize];
+            let mut parts = PartitionMut::new(&mut received[..], &counts[..], &starts[..]);
+            self.communicator.all_gather_varcount_into(&bytes[part(bytes.len())], &mut parts);
+            for ((all, start), count) in all.iter_mut().zip(starts).zip(counts) {
+                all.extend_from_slice(&received[start as usize..(start + count) as usize]);
+            }
+        }
+        Ok(all)
+    }
+
+    fn send(&self, to: usize, message: [u64; 2]) -> Result<(), Error> {
+        // So few bytes are on their way at once, whether anybody receives or not.
+        self.communicator.process_at_rank(to as Count).send(&message[..]);
+        Ok(())
+    }
+
+    fn receive(&self) -> Result<Option<(usize, [u64; 2])>, Error> {
+        let Some((message, status)) = self.communicator.any_process().immediate_matched_probe() else {
+            return Ok(None);
+        };
+        let mut found = [0; 2];
+        message.matched_receive_into(&mut found[..]);
+        Ok(Some((status.source_rank() as usize, found)))
+    }
+
+    fn split(&self, group: usize) -> Result<Box<dyn Ranks + '_>, Error> {
+        self.meet();
+        let color = Color::with_value(group as Count);
+        let lost = || Error::Other(format!("MPI gives no communicator to group {group}"));
+        let own = self.communicator.split_by_color(color).ok_or_else(lost)?;
+        Ok(Box::new(Self::new(own)))
+    }
+}

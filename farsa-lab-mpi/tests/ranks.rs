@@ -1,0 +1,236 @@
+//! `farsa-mpi` under `mpirun`: the files of `farsa`, whatever happens to ranks. `./ci mpi` runs it.
+//!
+//! `FARSA_KILLS` is how often a rank is killed; `./ci long` asks for a hundred.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use farsa_num::{Domain, Stream};
+
+/// Experiments with what makes their generations short: a world in lanes, populations that meet, and training.
+const RUNS: [(&str, &str, u32); 4] = [
+    ("discrimination", "--set trial.count=2 --set trial.steps=50", 40),
+    ("predator-prey", "--population 6 --set evolution.parents=2 --set trial.count=2 --set trial.steps=40", 6),
+    ("kinesthetic-grasp", "", 2),
+    ("reach-grasp-lift", "--population 12 --set evolution.parents=2", 2),
+];
+
+/// The command of one process, which `./ci mpi` builds beside the other one.
+fn farsa(here: &Path, arguments: &str) -> Command {
+    let beside = Path::new(env!("CARGO_BIN_EXE_farsa-mpi")).with_file_name("farsa");
+    let program = std::env::var_os("FARSA").map_or(beside, PathBuf::from);
+    assert!(program.is_file(), "{}: build `farsa` first, or name it in FARSA", program.display());
+    let mut command = Command::new(program);
+    command.args(arguments.split_whitespace());
+    in_folder(command, here)
+}
+
+/// So many ranks of `farsa-mpi`; what stands after a colon are more ranks, as `mpirun` has it.
+fn mpirun(here: &Path, ranks: usize, arguments: &str) -> Command {
+    let mut command = Command::new("mpirun");
+    command.args(["--oversubscribe", "--allow-run-as-root", "-n", &ranks.to_string()]);
+    command.arg(env!("CARGO_BIN_EXE_farsa-mpi"));
+    for word in arguments.split_whitespace() {
+        match word {
+            ":" => command.args([":", "-n", "1", env!("CARGO_BIN_EXE_farsa-mpi")]),
+            word => command.arg(word),
+        };
+    }
+    in_folder(command, here)
+}
+
+fn in_folder(mut command: Command, here: &Path) -> Command {
+    command.current_dir(here).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn succeed(mut command: Command) {
+    let output = command.output().expect("a program");
+    assert!(output.status.success(), "{command:?}: {}", said(&output));
+}
+
+fn scratch(name: &str) -> PathBuf {
+    let here = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&here);
+    fs::create_dir_all(&here).expect("a scratch directory");
+    here
+}
+
+/// Refuses another content than that of a run, but for the manifest, which has the times of its sessions.
+fn same(found: &Path, expected: &Path) {
+    let content = |run: &Path| -> BTreeMap<String, Vec<u8>> {
+        let entries = fs::read_dir(run).expect("a run").map(|entry| entry.expect("an entry"));
+        let names = entries.map(|entry| entry.file_name().into_string().expect("a name"));
+        let names = names.filter(|name| name != "manifest.json");
+        names.map(|name| (name.clone(), fs::read(run.join(name)).expect("a file"))).collect()
+    };
+    let (found, expected) = (content(found), content(expected));
+    assert!(found.keys().eq(expected.keys()), "{:?} where {:?} are expected", found.keys(), expected.keys());
+    for (name, bytes) in &expected {
+        assert!(found[name] == *bytes, "{name} differs");
+    }
+    assert!(expected.len() > 5);
+}
+
+#[test]
+fn ranks_make_the_files_of_one_process_also_when_their_number_changes() {
+    let here = scratch("equal");
+    for (name, options, generations) in RUNS {
+        let start =
+            |generations: u32, out: &str| format!("run {name} {options} --generations {generations} --out {out} -q");
+        let whole = format!("{name}-1-thread");
+        succeed(farsa(&here, &format!("{} --threads 1", start(generations, &whole))));
+        let threads = format!("{name}-2-threads");
+        succeed(farsa(&here, &format!("{} --threads 2", start(generations, &threads))));
+        same(&here.join(&threads), &here.join(&whole));
+        for ranks in [1, 2, 4] {
+            let out = format!("{name}-{ranks}");
+            succeed(mpirun(&here, ranks, &format!("{} --threads {}", start(generations, &out), 1 + ranks % 2)));
+            same(&here.join(&out), &here.join(&whole));
+        }
+        let parts = format!("{name}-parts");
+        succeed(mpirun(&here, 1, &start(1, &parts)));
+        for (ranks, generations) in [(4, generations.div_ceil(2)), (2, generations)] {
+            succeed(mpirun(&here, ranks, &format!("run --resume {parts} --generations {generations} -q")));
+        }
+        same(&here.join(&parts), &here.join(&whole));
+    }
+}
+
+#[test]
+fn ranks_may_have_other_instructions_and_lanes() {
+    let here = scratch("mixed");
+    let start = |out: &str| {
+        format!("run reach-grasp-lift --population 12 --set evolution.parents=2 --generations 2 --out {out} -q")
+    };
+    succeed(farsa(&here, &start("whole")));
+    let mixed = format!("{0} --simd auto : {0} --simd baseline --lanes 8 : {0} --lanes 1", start("mixed"));
+    succeed(mpirun(&here, 1, &mixed));
+    same(&here.join("mixed"), &here.join("whole"));
+}
+
+#[test]
+fn replications_go_on_side_by_side() {
+    let here = scratch("groups");
+    let run = "run discrimination --set trial.count=2 --set trial.steps=50 --generations 20 --replications 5 --out";
+    succeed(farsa(&here, &format!("{run} whole -q")));
+    for (ranks, groups) in [(2, 2), (4, 2), (3, 3)] {
+        let out = format!("on-{ranks}");
+        let mut command = mpirun(&here, ranks, &format!("{run} {out} --groups {groups} --threads 1"));
+        let output = command.output().expect("mpirun");
+        assert!(output.status.success(), "{}", said(&output));
+        let table = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!(table.lines().count(), 7, "{table}");
+        for entry in fs::read_dir(here.join("whole")).expect("runs") {
+            let name = entry.expect("an entry").file_name();
+            same(&here.join(&out).join(&name), &here.join("whole").join(&name));
+        }
+    }
+    let output = mpirun(&here, 2, &format!("{run} none --groups 3")).output().expect("mpirun");
+    assert!(said(&output).contains("error: --groups 3: there are too few ranks"), "{}", said(&output));
+    assert_eq!((output.status.code(), here.join("none").exists()), (Some(2), false));
+}
+
+#[test]
+fn what_goes_wrong_is_said_once_and_ends_all() {
+    let here = scratch("wrong");
+    let once = |arguments: &str, code: i32, message: &str| {
+        let begun = Instant::now();
+        let output = mpirun(&here, 2, arguments).output().expect("mpirun");
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(code), "{arguments}: {said}");
+        assert_eq!(said.matches("error: ").count(), 1, "{arguments}: {said}");
+        assert!(said.contains(message), "{arguments}: {said}");
+        assert!(begun.elapsed() < Duration::from_secs(60), "{arguments}");
+    };
+    let run = "run discrimination --generations 3 --out r -q";
+    once(&format!("{run} : {run} --set trial.count=3"), 2, "rank 2: `trial.count` is 3 there and ");
+    once(&format!("{run} : {run} --seed 9"), 2, "rank 2: `seed` is 9 there and 1 on rank 0");
+    once(&format!("{run} : list"), 2, "rank 2: `command` is ");
+    once(&format!("{run} : {run} --sed 9"), 2, "rank 2: unexpected argument '--sed' found");
+    once("run discriminaton", 2, "unknown experiment `discriminaton`; the nearest is `discrimination`");
+    once("run --resume nowhere", 2, "nowhere: there is no such directory");
+    assert!(!here.join("r").exists());
+    // A directory in the place of a file that rank 0 is to replace.
+    succeed(mpirun(&here, 2, run));
+    fs::remove_file(here.join("r/fitness.svg")).expect("a picture");
+    fs::create_dir(here.join("r/fitness.svg")).expect("a directory");
+    once("run --resume r --generations 5 -q", 1, "fitness.svg");
+    // Other verbs are rank 0's.
+    let output = mpirun(&here, 3, "list").output().expect("mpirun");
+    let list = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!((output.status.code(), list.matches("predator-prey").count()), (Some(0), 1), "{list}");
+}
+
+/// The processes that a process has started, by Linux.
+fn children(of: u32) -> Vec<u32> {
+    let entries =
+        fs::read_dir("/proc").expect("/proc").filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok());
+    let parent = |process: &u32| -> Option<u32> {
+        let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+        stat.rsplit_once(") ")?.1.split_whitespace().nth(1)?.parse().ok()
+    };
+    entries.filter(|process| parent(process) == Some(of)).collect()
+}
+
+fn signal(name: &str, process: u32) {
+    let _ = Command::new("kill").args([name, &process.to_string()]).stderr(Stdio::null()).status();
+}
+
+#[test]
+fn a_rank_that_is_told_to_stop_stops_all() {
+    let here = scratch("stop");
+    let run = "discrimination --set trial.count=2 --set trial.steps=50";
+    succeed(farsa(&here, &format!("run {run} --generations 1 --out r -q")));
+    for told in 0..3 {
+        let child = mpirun(&here, 3, "run --resume r --generations 4000000 -q").spawn().expect("mpirun");
+        thread::sleep(Duration::from_millis(1500));
+        let mut ranks = children(child.id());
+        ranks.sort_unstable();
+        assert_eq!(ranks.len(), 3);
+        signal("-TERM", ranks[told]);
+        let output = child.wait_with_output().expect("its end");
+        assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+        assert_eq!(said(&output).matches("error: interrupted; go on with ").count(), 1, "{}", said(&output));
+    }
+}
+
+#[test]
+fn a_run_whose_ranks_are_killed_again_and_again_is_the_run_that_was_not() {
+    let kills = std::env::var("FARSA_KILLS").ok().map_or(10, |kills| kills.parse().expect("FARSA_KILLS is a number"));
+    let here = scratch("kills");
+    let run = "discrimination --set trial.count=2 --set trial.steps=50";
+    let mut stream = Stream::new(20_261_123, Domain::General, 0, 0, 0);
+    for kill in 0..kills {
+        let arguments = if here.join("r").exists() { "run --resume r" } else { "run" };
+        let arguments = match arguments {
+            "run" => format!("run {run} --generations 4000000 --out r -q"),
+            resume => format!("{resume} -q"),
+        };
+        let size = 2 + kill % 3;
+        let child = mpirun(&here, size, &arguments).spawn().expect("mpirun");
+        // Often while ranks begin, and while they save for the first time, which is after a second.
+        let seconds = if stream.uniform_f64() < 0.4 { 0.6 * stream.uniform_f64() } else { 1.0 + stream.uniform_f64() };
+        thread::sleep(Duration::from_secs_f64(seconds));
+        let ranks = children(child.id());
+        let which = (stream.uniform_f64() * ranks.len() as f64) as usize;
+        signal("-KILL", ranks.get(which).copied().unwrap_or(child.id()));
+        let output = child.wait_with_output().expect("its end");
+        assert!(!output.status.success(), "kill {kill}: it ended by itself");
+    }
+    // At least one was killed after its first save.
+    let log = fs::read_to_string(here.join("r/fitness.csv")).expect("the log");
+    let end = log.lines().count() + 20;
+    succeed(mpirun(&here, 3, &format!("run --resume r --generations {end} -q")));
+    succeed(farsa(&here, &format!("run {run} --generations {end} --out whole -q")));
+    same(&here.join("r"), &here.join("whole"));
+    println!("{kills} kills, {end} generations, all files the same");
+}

@@ -1,0 +1,34 @@
+//! The words of `farsa merge`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint};
+
+use crate::merge::Merge;
+
+#[derive(Args)]
+pub(crate) struct MergeArgs {
+    /// Runs, or directories that hold some at any depth, such as those of several machines
+    #[arg(required = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    directories: Vec<PathBuf>,
+    /// Copy the finished runs into this directory, under the names that they have; nothing is overwritten
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) out: Option<PathBuf>,
+    /// A new file for the table of all runs [default without --out: the standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) csv: Option<PathBuf>,
+    /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl MergeArgs {
+    pub(crate) fn merge(&self) -> Merge<'_> {
+        Merge { directories: &self.directories, out: self.out.as_deref(), csv: self.csv.as_deref() }
+    }
+
+    /// Whether the table goes to the standard output.
+    pub(crate) fn prints(&self) -> bool {
+        self.out.is_none() && self.csv.is_none() && !self.json
+    }
+}

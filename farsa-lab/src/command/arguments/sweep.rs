@@ -1,0 +1,44 @@
+//! The words of `farsa sweep`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint, value_parser};
+
+use crate::command::arguments::shared::WorkerArgs;
+use crate::sweep::work::Which;
+
+#[derive(Args)]
+pub(crate) struct SweepArgs {
+    /// A configuration with tables [grid] (every combination) and [list] (side by side) of the settings that vary
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) file: PathBuf,
+    /// Only the K-th point, from 1: for one task of an array
+    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(1..))]
+    point: Option<u32>,
+    /// Only the K-th replication of each point, from 1
+    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(1..))]
+    replication: Option<u32>,
+    /// Check all points and list them with what is finished; nothing is begun
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// The directory of the points' directories [default: runs/FILE without its end]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) workers: WorkerArgs,
+    /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl SweepArgs {
+    pub(crate) fn which(&self) -> Which {
+        let from_0 = |number: Option<u32>| number.map(|number| number as usize - 1);
+        Which { point: from_0(self.point), replication: from_0(self.replication) }
+    }
+
+    pub(crate) fn root(&self) -> PathBuf {
+        let stem = || PathBuf::from("runs").join(self.file.file_stem().unwrap_or_default());
+        self.out.clone().unwrap_or_else(stem)
+    }
+}

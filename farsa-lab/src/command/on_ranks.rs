@@ -1,0 +1,126 @@
+//! The command on several ranks: what all do before and around what rank 0 does.
+
+use std::rc::Rc;
+
+use crate::command::arguments::subcommands::{Command, RunArgs};
+use crate::command::interrupt::stop_on_signals;
+use crate::command::invocation::Invocation;
+use crate::error::Error;
+use crate::ranks::exchange::{Exchange, Order};
+use crate::ranks::facts::Facts;
+use crate::run::following::Following;
+use crate::run::leading;
+use crate::run::plan::Plan;
+use crate::run::replications::Replications;
+
+/// What a rank does after all have agreed to begin.
+pub(crate) enum Part {
+    /// It executes the command, and the others wait for its orders.
+    Leads,
+    /// It has followed to the end, with this exit code.
+    Followed(u8),
+}
+
+/// Whether the other ranks wait for the orders of the one that executes a command.
+pub(crate) fn awaits_orders(command: &Command) -> bool {
+    matches!(command, Command::Run(RunArgs { groups: None, .. }))
+}
+
+impl Invocation<'_, '_> {
+    /// Makes sure that all ranks were given the same command, and follows rank 0 on every other.
+    ///
+    /// # Errors
+    /// [`Error::Rank`] for the first rank that was given something else or cannot begin; the others then end, too.
+    pub(crate) fn take_part(&self, command: &Command) -> Result<Part, Error> {
+        if self.exchange.is_alone() {
+            return Ok(Part::Leads);
+        }
+        self.exchange.begin(self.facts(command))?;
+        match command {
+            _ if !self.exchange.is_follower() => Ok(Part::Leads),
+            // Each group has a rank that leads it.
+            Command::Run(RunArgs { groups: Some(_), .. }) => Ok(Part::Leads),
+            Command::Run(args) => self.follow(args).map(Part::Followed),
+            _ => Ok(Part::Followed(0)),
+        }
+    }
+
+    /// What all ranks must have been given alike; how many threads and lanes is each rank's own business.
+    fn facts(&self, command: &Command) -> Result<Facts, Error> {
+        let Command::Run(args) = command else { return Ok(vec![("command".into(), "another than run".into())]) };
+        let number = |number: Option<u32>| number.map_or_else(|| "none".into(), |number| number.to_string());
+        let mut facts = vec![
+            ("command".into(), "run".into()),
+            ("--replications".into(), number(args.replications)),
+            ("--replication".into(), number(args.replication)),
+            ("--groups".into(), number(args.groups)),
+        ];
+        let (_, plan) = self.planned_from_file(args)?;
+        self.pool(args, &plan)?;
+        facts.extend(leading::facts(&plan)?);
+        Ok(facts)
+    }
+
+    /// Follows rank 0 through its runs, and returns its exit code.
+    fn follow(&self, args: &RunArgs) -> Result<u8, Error> {
+        let following = Following {
+            plan: &|file| Plan::from_file(self.laboratory, file),
+            pool: &|plan| self.pool(args, plan),
+            stop: stop_on_signals(),
+        };
+        following.follow(&self.exchange)
+    }
+
+    /// Tells the other ranks that the command is over.
+    ///
+    /// # Errors
+    /// Those of the ranks' messages.
+    pub(crate) fn dismiss(&self, code: u8) -> Result<(), Error> {
+        if self.exchange.is_alone() { Ok(()) } else { self.exchange.order(Some(&Order::End(code))).map(drop) }
+    }
+
+    /// Replications in groups of ranks side by side: each group makes every so manieth of them. None on the ranks that say nothing
+    /// of it.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for more groups than ranks, and on rank 0 the first error of a group; the other groups go on to their end.
+    pub(crate) fn replicate_in_groups(
+        &self,
+        args: &RunArgs,
+        count: u32,
+        groups: u32,
+    ) -> Result<Option<Replications>, Error> {
+        let ranks = self.exchange.ranks();
+        let (rank, size, groups) = (ranks.rank(), ranks.size(), groups as usize);
+        if groups > size {
+            let ranks = if size == 1 { "is 1 rank" } else { "are too few ranks" };
+            return Err(Error::Usage(format!("--groups {groups}: there {ranks}")));
+        }
+        let group = rank * groups / size;
+        let own = ranks.split(group)?;
+        let part = Invocation {
+            program: self.program,
+            laboratory: self.laboratory,
+            quiet: self.quiet || group > 0,
+            exchange: Rc::new(Exchange::new(&*own)),
+            sharing: self.sharing,
+        };
+        let result = if part.exchange.is_follower() {
+            part.follow(args).map(drop)
+        } else {
+            let result = (group as u32 + 1..=count)
+                .step_by(groups)
+                .try_for_each(|number| part.replicate(args, count, Some(number)).map(drop));
+            let code = result.as_ref().map_or_else(Error::exit_code, |()| 0);
+            let told = part.dismiss(code);
+            result.and(told)
+        };
+        self.exchange.begin(result.map(|()| Facts::new()))?;
+        if rank > 0 {
+            return Ok(None);
+        }
+        // All are finished: this only reads what came of them.
+        let reader = Invocation { quiet: true, exchange: Rc::default(), ..part };
+        reader.replicate(args, count, None).map(Some)
+    }
+}

@@ -1,0 +1,43 @@
+//! `farsa strategies`: what a run can search with.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use crate::command::info::SettingInfo;
+use crate::error::Error;
+use crate::json::pretty;
+use crate::strategy::definition::StrategyDefinition;
+
+/// The strategies with their settings, in words.
+pub(super) fn as_text(strategies: &[&'static dyn StrategyDefinition]) -> String {
+    let mut text = String::new();
+    for strategy in strategies {
+        let blank = if text.is_empty() { "" } else { "\n" };
+        let summary = strategy.summary();
+        let summary = if summary.is_empty() { String::new() } else { format!(": {summary}") };
+        // Writing into a string cannot fail.
+        let _ = writeln!(text, "{blank}{}{summary}", strategy.name());
+        for setting in strategy.settings() {
+            text.push_str(&SettingInfo::new(&setting).text(&setting));
+        }
+    }
+    text
+}
+
+/// The same as JSON.
+pub(super) fn as_json(strategies: &[&'static dyn StrategyDefinition]) -> Result<String, Error> {
+    let entry = |strategy: &&'static dyn StrategyDefinition| Entry {
+        name: strategy.name(),
+        summary: strategy.summary(),
+        settings: strategy.settings().iter().map(SettingInfo::new).collect(),
+    };
+    pretty(&strategies.iter().map(entry).collect::<Vec<_>>())
+}
+
+#[derive(Serialize)]
+struct Entry {
+    name: &'static str,
+    summary: &'static str,
+    settings: Vec<SettingInfo>,
+}

@@ -1,0 +1,93 @@
+//! How far a median would move with other runs.
+
+use farsa_num::Stream;
+
+use crate::figures::statistics::Quartiles;
+
+/// Resamples, as many as leave the ends of the interval to chance by a hundredth of its length or so.
+pub(crate) const RESAMPLES: usize = 10_000;
+/// Where the random numbers come from: always here, so that the same values have the same interval on every page.
+const SEED: u64 = 1979;
+
+/// The ends of the 95 % interval of the median by the percentile method of [Efron1979]; none of less than two values, or where one
+/// is not a number.
+///
+/// Deviation: the quantiles of the resampled medians are interpolated, as quartiles are.
+pub(crate) fn median_interval(values: &[f64]) -> Option<[f64; 2]> {
+    let n = values.len();
+    if n < 2 || values.iter().any(|x| x.is_nan()) {
+        return None;
+    }
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let mut dice = Stream::from_seed(SEED);
+    let mut drawn = vec![0_usize; n];
+    let mut medians: Vec<f64> = Vec::with_capacity(RESAMPLES);
+    for _ in 0..RESAMPLES {
+        drawn.fill(0);
+        for _ in 0..n {
+            drawn[dice.below(n as u32) as usize] += 1;
+        }
+        // The values are in order, so their counts find the two in the middle.
+        let at = |place: usize| {
+            let mut before = 0;
+            let found = drawn.iter().position(|count| {
+                before += count;
+                before > place
+            });
+            sorted[found.unwrap_or(n - 1)]
+        };
+        let [low, high] = [at((n - 1) / 2), at(n / 2)];
+        medians.push(if low == high { low } else { 0.5 * low + 0.5 * high });
+    }
+    Some([0.025, 0.975].map(|share| Quartiles::quantile(&mut medians, share)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The probability that at least half of n draws, one more than half, are among the k smallest of n values: n is odd.
+    fn median_within(n: usize, k: usize) -> f64 {
+        let share = k as f64 / n as f64;
+        let power = |x: f64, times: usize| std::iter::repeat_n(x, times).product::<f64>();
+        let mut ways = 1.0;
+        let mut sum = 0.0;
+        for draws in 0..=n {
+            if draws > n / 2 {
+                sum += ways * power(share, draws) * power(1.0 - share, n - draws);
+            }
+            ways *= (n - draws) as f64 / (draws + 1) as f64;
+        }
+        sum
+    }
+
+    #[test]
+    fn ends_are_those_of_the_exact_distribution() {
+        for n in [5_usize, 11, 21, 31] {
+            let values: Vec<f64> = (0..n).map(|x| x as f64).collect();
+            let [low, high] = median_interval(&values).unwrap();
+            // The value at which the exact distribution of the resampled median passes the share, or the next one where it does so
+            // within the error of the resamples.
+            for (found, share) in [(low, 0.025), (high, 0.975)] {
+                let near = |shift: f64| (0..n).find(|k| median_within(n, k + 1) >= share + shift).unwrap() as f64;
+                let [least, most] = [near(-0.008), near(0.008)];
+                assert!((least..=most).contains(&found), "{n}: {found} is not in {least} to {most}");
+            }
+            assert_eq!(low + high, (n - 1) as f64, "symmetric values have a symmetric interval");
+        }
+    }
+
+    #[test]
+    fn the_same_values_have_the_same_interval() {
+        let values = [3.0, 1.0, 4.0, 1.5, 9.0, 2.0];
+        let mut turned = values;
+        turned.reverse();
+        assert_eq!(median_interval(&values), median_interval(&turned));
+        assert_eq!(median_interval(&[2.0; 5]), Some([2.0; 2]));
+        assert_eq!((median_interval(&[1.0]), median_interval(&[1.0, f64::NAN])), (None, None));
+        // A generation in which all failed is minus infinity, and a value like others.
+        let [low, high] = median_interval(&[f64::NEG_INFINITY, 1.0, 2.0]).unwrap();
+        assert_eq!((low, high), (f64::NEG_INFINITY, 2.0));
+    }
+}

@@ -1,0 +1,262 @@
+//! The runs below directories, each once.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::run::config_file::ConfigFile;
+use crate::run::laboratory::Laboratory;
+use crate::run::plan::Plan;
+use crate::run::records::Checkpoint;
+use crate::run::told::Told;
+use crate::store::directory::Directory;
+use crate::store::identity::Identity;
+use crate::store::log::Line;
+
+/// How deep runs may lie below a directory that is named.
+const DEEPEST: usize = 8;
+
+/// A run that was found.
+pub(crate) struct Gathered<'e> {
+    pub(crate) directory: Directory,
+    /// Its path below the directory that was named.
+    pub(crate) name: PathBuf,
+    pub(crate) plan: Plan<'e>,
+    pub(crate) identity: Identity,
+    /// Of the finished generations.
+    pub(crate) lines: Vec<Line>,
+    /// The generations that its configuration asks for.
+    pub(crate) asked: usize,
+}
+
+/// The runs that there are, each once, in the order in which they were found, and where some are again.
+pub(crate) struct Gathering<'e> {
+    pub(crate) runs: Vec<Gathered<'e>>,
+    /// The directory that is left out, and the one of the same run that has as many generations or more.
+    pub(crate) twins: Vec<[PathBuf; 2]>,
+}
+
+impl<'e> Gathered<'e> {
+    /// Reads a run, also one that is under way: its finished generations up to the last checkpoint.
+    ///
+    /// # Errors
+    /// Those of [`Plan::from_file`], [`Checkpoint::read`] and [`Told::read`].
+    pub(crate) fn read(laboratory: &Laboratory<'e>, directory: Directory, name: PathBuf) -> Result<Self, Error> {
+        let plan = Plan::from_file(laboratory, &ConfigFile::read_own(&directory.config())?)?;
+        let Told { identity, lines, .. } = Told::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
+        let asked = plan.generations()? as usize;
+        Ok(Self { directory, name, plan, identity, lines, asked })
+    }
+
+    pub(crate) fn is_finished(&self) -> bool {
+        self.lines.len() >= self.asked
+    }
+
+    /// The first generation in which two runs of one configuration and seed differ, as they never should.
+    fn differs_from(&self, other: &Self) -> Option<usize> {
+        self.lines.iter().zip(&other.lines).position(|(a, b)| a != b)
+    }
+}
+
+impl<'e> Gathering<'e> {
+    /// Finds and reads the runs in and below some directories.
+    ///
+    /// # Errors
+    /// [`Error::NoRun`] for a directory without a run, [`Error::Other`] for runs of one experiment that were made with other
+    /// versions of the values, and for one run with two results; those of [`Gathered::read`].
+    pub(crate) fn new(laboratory: &Laboratory<'e>, roots: &[PathBuf]) -> Result<Self, Error> {
+        let mut gathering = Self { runs: Vec::new(), twins: Vec::new() };
+        let mut known: BTreeMap<String, usize> = BTreeMap::new();
+        let mut seen: Vec<PathBuf> = Vec::new();
+        for root in roots {
+            let real = fs::canonicalize(root).map_err(Error::io("read", root))?;
+            if seen.contains(&real) {
+                return Err(Error::Usage(format!("{}: is named twice", root.display())));
+            }
+            seen.push(real);
+            let mut found = Vec::new();
+            find(root, Path::new(""), 0, &mut found)?;
+            if found.is_empty() {
+                return Err(Error::NoRun {
+                    directory: root.into(),
+                    why: "holds no run, nor does a folder in it".into(),
+                });
+            }
+            for (directory, name) in found {
+                gathering.add(Gathered::read(laboratory, directory, name)?, &mut known)?;
+            }
+        }
+        for (index, run) in gathering.runs.iter().enumerate() {
+            let same = |other: &&Gathered<'_>| other.identity.experiment == run.identity.experiment;
+            gathering.runs.iter().take(index).find(same).map_or(Ok(()), |first| same_version(first, run))?;
+        }
+        Ok(gathering)
+    }
+
+    /// Adds a run, or leaves out the shorter of two that are the same; `known` are the places of what was added.
+    fn add(&mut self, run: Gathered<'e>, known: &mut BTreeMap<String, usize>) -> Result<(), Error> {
+        // A run is another one by its settings and by the content of files, not by how long it is.
+        let Identity { experiment, condition, seed, settings, .. } = &run.identity;
+        let key = format!("{experiment:?} {condition:?} {seed} {settings:?}");
+        let Some(first) = known.get(&key).and_then(|index| self.runs.get_mut(*index)) else {
+            known.insert(key, self.runs.len());
+            self.runs.push(run);
+            return Ok(());
+        };
+        same_version(first, &run)?;
+        let path = |run: &Gathered<'_>| run.directory.path().to_path_buf();
+        if let Some(generation) = first.differs_from(&run) {
+            let [first, second] = [path(first), path(&run)];
+            return Err(Error::Other(format!(
+                "{} and {} have one configuration and seed, and other results from generation {generation} on: one of \
+                 them was changed",
+                first.display(),
+                second.display()
+            )));
+        }
+        let left = if run.lines.len() > first.lines.len() { std::mem::replace(first, run) } else { run };
+        let kept = path(first);
+        self.twins.push([path(&left), kept]);
+        Ok(())
+    }
+}
+
+/// Refuses runs of one experiment whose numbers mean other trials.
+pub(crate) fn same_version(first: &Gathered<'_>, second: &Gathered<'_>) -> Result<(), Error> {
+    let versions = |run: &Gathered<'_>| [run.identity.values_version, run.identity.experiment_version];
+    let [a, b] = [versions(first), versions(second)];
+    if a == b {
+        return Ok(());
+    }
+    let paths = [first, second].map(|run| run.directory.path().display());
+    let (what, a, b) = if a[0] == b[0] {
+        (format!("the values of {}", first.identity.experiment), a[1], b[1])
+    } else {
+        ("FARSA's values".to_owned(), a[0], b[0])
+    };
+    Err(Error::Other(format!(
+        "{} was made with version {a} of {what}, {} with version {b}: their numbers do not compare",
+        paths[0], paths[1]
+    )))
+}
+
+/// The runs in a directory and below, sorted by name; hidden folders and links are passed over, and what lies in a run.
+fn find(path: &Path, name: &Path, depth: usize, found: &mut Vec<(Directory, PathBuf)>) -> Result<(), Error> {
+    if let Ok(directory) = Directory::open(path) {
+        let own = || path.canonicalize().ok().and_then(|path| path.file_name().map(PathBuf::from)).unwrap_or_default();
+        found.push((directory, if depth == 0 { own() } else { name.into() }));
+        return Ok(());
+    }
+    if depth == DEEPEST {
+        return Ok(());
+    }
+    let read = || fs::read_dir(path)?.collect::<Result<Vec<_>, _>>();
+    let mut folders: Vec<_> = read().map_err(Error::io("read", path))?;
+    folders.retain(|entry| {
+        let visible = !entry.file_name().to_string_lossy().starts_with('.');
+        visible && entry.file_type().is_ok_and(|kind| kind.is_dir())
+    });
+    folders.sort_by_key(fs::DirEntry::file_name);
+    folders.iter().try_for_each(|entry| find(&entry.path(), &name.join(entry.file_name()), depth + 1, found))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::definition::Experiment;
+    use std::sync::atomic::AtomicBool;
+
+    use farsa_body::Recorder;
+    use farsa_view::Schema;
+
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
+    use crate::experiment::lanes::Wanted;
+    use crate::experiment::outcome::{Description, Outcome};
+    use crate::experiment::settings::{Setting, Settings};
+    use crate::run::pool::Pool;
+    use crate::run::{begin, evolve};
+    use crate::strategy::settings::{GENERATIONS, POPULATION};
+
+    /// Earns its gene, and a bonus from a mistake that no version tells of.
+    #[derive(Clone, Copy)]
+    struct Toy {
+        version: u32,
+        bonus: f64,
+    }
+
+    impl Experiment for Toy {
+        fn name(&self) -> &'static str {
+            "toy"
+        }
+        fn summary(&self) -> &'static str {
+            "earns its gene"
+        }
+        fn values_version(&self) -> u32 {
+            self.version
+        }
+        fn settings(&self, _: &str) -> Vec<Setting> {
+            vec![Setting::whole(GENERATIONS, 3, 1..=100), Setting::whole(POPULATION, 20, 1..=100)]
+        }
+        fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+            Ok(Box::new(*self))
+        }
+    }
+
+    impl Task for Toy {
+        fn parameters(&self) -> Vec<Parameter> {
+            vec![Parameter::new("gene", [0.0, 65535.0])]
+        }
+        fn schema(&self) -> Schema {
+            Schema::from_scalars(["gene"])
+        }
+        fn description(&self) -> Description {
+            Description::default()
+        }
+    }
+
+    impl Evaluator for Toy {
+        fn evaluate(&mut self, evaluation: Evaluation<'_>, _: Option<&mut dyn Recorder>) -> Outcome {
+            // Only from the second generation on.
+            let bonus = if evaluation.id.generation > 0 { self.bonus } else { 0.0 };
+            Outcome { terms: vec![f64::from(evaluation.parameters[0]) + bonus], steps: 1, ..Outcome::default() }
+        }
+    }
+
+    fn run(toy: Toy, path: &Path) {
+        let plan = Plan::new(&toy, None, "").unwrap();
+        let directory = begin::create(&plan, path).unwrap();
+        let pool = Pool::new(&plan, 1, Wanted::ONE).unwrap();
+        evolve::go_on(&plan, &directory, pool, &AtomicBool::new(false), "farsa", true).unwrap();
+    }
+
+    #[test]
+    fn other_versions_and_other_results_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let plain = Toy { version: 1, bonus: 0.0 };
+        run(plain, &at("a/toy-1"));
+        run(Toy { version: 2, ..plain }, &at("b/toy-1"));
+        run(Toy { bonus: 0.5, ..plain }, &at("c/toy-1"));
+        run(plain, &at("d/deep/down/toy-1"));
+        let gather = |names: [&str; 2]| {
+            let laboratory = Laboratory::new(&[&plain]);
+            let found = Gathering::new(&laboratory, &names.map(at)).map_err(|error| error.to_string());
+            found.map(|found| (found.runs.len(), found.twins.len()))
+        };
+        let [a, b, c] = ["a", "b", "c"].map(|name| at(name).join("toy-1").display().to_string());
+        assert_eq!(
+            gather(["a", "b"]).unwrap_err(),
+            format!(
+                "{a} was made with version 1 of the values of toy, {b} with version 2: their numbers do not compare"
+            )
+        );
+        assert_eq!(
+            gather(["a", "c"]).unwrap_err(),
+            format!(
+                "{a} and {c} have one configuration and seed, and other results from generation 1 on: one of them was changed"
+            )
+        );
+        assert_eq!(gather(["a", "d"]).unwrap(), (1, 1));
+    }
+}

@@ -1,0 +1,118 @@
+//! A table of runs: what differs, and what came of each.
+
+use std::path::Path;
+
+use crate::error::Error;
+use crate::evaluation::test;
+use crate::experiment::settings::Value;
+use crate::merge::gather::Gathered;
+use crate::store::log::Line;
+use crate::strategy::settings::{GENERATIONS, STRATEGY};
+
+/// A line for each run as CSV, each at the place that is given beside it.
+///
+/// # Errors
+/// Those of reading a test, and [`Error::Damaged`] should the table be refused.
+pub(crate) fn csv(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<u8>, Error> {
+    let keys = differing(runs);
+    let populations = populations(runs)?;
+    let mut head: Vec<String> = ["directory", "experiment", "condition", "strategy", "seed"].map(str::to_owned).into();
+    head.extend(keys.iter().map(|&key| key.to_owned()));
+    head.extend(
+        ["generations", "finished", "evaluations", "failed", "best", "mean", "highest best"].map(str::to_owned),
+    );
+    head.extend(populations.iter().flat_map(|name| [format!("best {name}"), format!("mean {name}")]));
+    head.extend(["test generation", "test trials", "test success", "test fitness"].map(str::to_owned));
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let refused = |error: &dyn std::fmt::Display| Error::damaged(Path::new("the table of the runs"), error);
+    writer.write_record(&head).map_err(|error| refused(&error))?;
+    for (run, place) in runs {
+        writer.write_record(row(run, place, &keys, &populations)?).map_err(|error| refused(&error))?;
+    }
+    writer.into_inner().map_err(|error| refused(&error))
+}
+
+fn row(run: &Gathered<'_>, place: &Path, keys: &[&str], populations: &[String]) -> Result<Vec<String>, Error> {
+    let plan = &run.plan;
+    let mut row = vec![
+        place.display().to_string(),
+        plan.experiment.name().to_owned(),
+        plan.condition.clone(),
+        plan.definition().name().to_owned(),
+        plan.seed.to_string(),
+    ];
+    row.extend(keys.iter().map(|key| plan.settings.get(key).map(plain).unwrap_or_default()));
+    let sum = |what: fn(&Line) -> u64| run.lines.iter().map(what).sum::<u64>().to_string();
+    row.extend([run.lines.len().to_string(), if run.is_finished() { "yes" } else { "no" }.to_owned()]);
+    row.extend([sum(|line| line.evaluations), sum(|line| line.failed)]);
+    let number = |x: Option<f64>| x.map(|x| format!("{x:?}")).unwrap_or_default();
+    let last = run.lines.last();
+    row.extend([0, 1].map(|which| number(last.map(|line| line.row[which]))));
+    row.push(number(run.lines.iter().map(|line| line.row[0]).reduce(f64::max)));
+    let own = names(run)?;
+    for name in populations {
+        let place = own.iter().position(|own| own == name);
+        let each = place.and_then(|place| last?.each.get(place));
+        row.extend([0, 1].map(|which| number(each.map(|row| row[which]))));
+    }
+    let test = match test::read(&run.directory)? {
+        None => Default::default(),
+        Some((table, record)) => {
+            let found = table.findings(&plan.evaluator()?.terms());
+            [
+                record.map(|record| record.generation.to_string()).unwrap_or_default(),
+                found.trials.to_string(),
+                number(Some(found.part(found.successes))),
+                number(Some(found.fitness)),
+            ]
+        }
+    };
+    row.extend(test);
+    Ok(row)
+}
+
+/// The names of a run's populations, if there are several.
+fn names(run: &Gathered<'_>) -> Result<Vec<String>, Error> {
+    let several = run.lines.last().is_some_and(|line| !line.each.is_empty());
+    Ok(if several { run.plan.evaluator()?.populations() } else { Vec::new() })
+}
+
+/// The names of all populations of runs that have several, each once.
+fn populations(runs: &[(&Gathered<'_>, &Path)]) -> Result<Vec<String>, Error> {
+    let mut all: Vec<String> = Vec::new();
+    let mut known: Vec<(&str, &str)> = Vec::new();
+    for (run, _) in runs {
+        let kind = (run.plan.experiment.name(), run.plan.condition.as_str());
+        if !known.contains(&kind) && !run.lines.is_empty() {
+            known.push(kind);
+            all.extend(names(run)?.into_iter().filter(|name| !all.contains(name)).collect::<Vec<_>>());
+        }
+    }
+    Ok(all)
+}
+
+/// The settings in which two runs that have them differ, in the order of their tables.
+fn differing<'r>(runs: &[(&'r Gathered<'_>, &Path)]) -> Vec<&'r str> {
+    let mut keys: Vec<(&str, &Value, bool)> = Vec::new();
+    for (run, _) in runs {
+        let settings = &run.plan.settings;
+        for key in settings.table().iter().map(crate::experiment::settings::Setting::key) {
+            let Some(value) = settings.get(key).ok().filter(|_| ![GENERATIONS, STRATEGY].contains(&key)) else {
+                continue;
+            };
+            match keys.iter_mut().find(|known| known.0 == key) {
+                Some((_, first, differs)) => *differs |= *first != value,
+                None => keys.push((key, value, false)),
+            }
+        }
+    }
+    keys.into_iter().filter(|key| key.2).map(|key| key.0).collect()
+}
+
+/// A value without the quotes of a word.
+fn plain(value: &Value) -> String {
+    match value {
+        Value::Word(word) => word.clone(),
+        other => other.to_string(),
+    }
+}

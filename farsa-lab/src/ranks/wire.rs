@@ -1,0 +1,168 @@
+//! The bytes of what ranks tell each other.
+
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::experiment::outcome::{Failure, Note, Outcome};
+
+/// What is written for others.
+pub(crate) fn to_bytes(content: &impl Serialize) -> Result<Vec<u8>, Error> {
+    postcard::to_stdvec(content).map_err(|error| Error::Other(format!("a message between ranks: {error}")))
+}
+
+/// What another rank wrote.
+pub(crate) fn from_bytes<T: DeserializeOwned>(rank: usize, bytes: &[u8]) -> Result<T, Error> {
+    let why = |error| Error::Rank { rank, code: 1, why: format!("said what this program cannot read: {error}") };
+    postcard::from_bytes(bytes).map_err(why)
+}
+
+/// The outcomes of a rank, each with its number; names of notes stand once.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Outcomes {
+    names: Vec<String>,
+    all: Vec<(u32, Option<WireOutcome>)>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct WireOutcome {
+    terms: Vec<f64>,
+    steps: u32,
+    success: bool,
+    notes: Vec<(u16, WireNote)>,
+    failure: Option<WireFailure>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+enum WireNote {
+    Number(f64),
+    Text(String),
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+enum WireFailure {
+    Panicked(String),
+    Endless(u64),
+}
+
+impl Outcomes {
+    /// Outcomes as they are sent.
+    pub(crate) fn from_numbered(numbered: &[(usize, Option<Outcome>)]) -> Self {
+        let mut names: Vec<&'static str> = Vec::new();
+        let mut place = |name: &'static str| {
+            let found = names.iter().position(|known| *known == name);
+            found.unwrap_or_else(|| {
+                names.push(name);
+                names.len() - 1
+            }) as u16
+        };
+        let mut wired = |outcome: &Outcome| WireOutcome {
+            terms: outcome.terms.clone(),
+            steps: outcome.steps,
+            success: outcome.success,
+            notes: outcome.notes.iter().map(|(name, note)| (place(name), wired_note(note))).collect(),
+            failure: outcome.failure.as_ref().map(|failure| match failure {
+                Failure::Panicked(why) => WireFailure::Panicked(why.clone()),
+                Failure::Endless(steps) => WireFailure::Endless(*steps),
+            }),
+        };
+        let all = numbered.iter().map(|(number, outcome)| (*number as u32, outcome.as_ref().map(&mut wired))).collect();
+        Self { names: names.into_iter().map(str::to_owned).collect(), all }
+    }
+
+    /// The outcomes, bit for bit; none if a note has a name that was not sent.
+    pub(crate) fn into_numbered(self) -> Option<Vec<(usize, Option<Outcome>)>> {
+        let names: Vec<&'static str> = self.names.iter().map(|name| lasting(name)).collect();
+        let outcome = |wired: WireOutcome| {
+            let notes = wired.notes.into_iter().map(|(place, note)| {
+                let note = match note {
+                    WireNote::Number(x) => Note::Number(x),
+                    WireNote::Text(text) => Note::Text(text),
+                };
+                Some((*names.get(usize::from(place))?, note))
+            });
+            Some(Outcome {
+                terms: wired.terms,
+                steps: wired.steps,
+                success: wired.success,
+                notes: notes.collect::<Option<_>>()?,
+                failure: wired.failure.map(|failure| match failure {
+                    WireFailure::Panicked(why) => Failure::Panicked(why),
+                    WireFailure::Endless(steps) => Failure::Endless(steps),
+                }),
+            })
+        };
+        let numbered = self.all.into_iter().map(|(number, wired)| match wired {
+            None => Some((number as usize, None)),
+            Some(wired) => Some((number as usize, Some(outcome(wired)?))),
+        });
+        numbered.collect()
+    }
+}
+
+fn wired_note(note: &Note) -> WireNote {
+    match note {
+        Note::Number(x) => WireNote::Number(*x),
+        Note::Text(text) => WireNote::Text(text.clone()),
+    }
+}
+
+/// A name that lasts as long as the process: an experiment has a few names of notes, and each is kept once.
+fn lasting(name: &str) -> &'static str {
+    static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = names.get(name) {
+        return known;
+    }
+    let kept: &'static str = Box::leak(name.into());
+    names.insert(kept);
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outcomes_arrive_as_they_were() {
+        let strange = f64::from_bits(0x7FF8_0000_0000_1234);
+        let all = vec![
+            (7, Some(Outcome { terms: vec![0.1, -0.0, f64::INFINITY, strange], steps: 9, ..Outcome::default() })),
+            (8, None),
+            (
+                0,
+                Some(Outcome {
+                    success: true,
+                    notes: vec![("phase", "lift".into()), ("height", 0.25.into())],
+                    failure: Some(Failure::Endless(1 << 40)),
+                    ..Outcome::failed()
+                }),
+            ),
+            (1, Some(Outcome { notes: vec![("height", 1.0.into())], ..Outcome::panicked("no reason (x.rs:1)") })),
+        ];
+        let bytes = to_bytes(&Outcomes::from_numbered(&all)).unwrap();
+        let again = from_bytes::<Outcomes>(1, &bytes).unwrap().into_numbered().unwrap();
+        // NaN is no number that equals itself: its bits are compared.
+        assert_eq!(format!("{again:?}"), format!("{all:?}"));
+        let bits = |all: &[(usize, Option<Outcome>)]| -> Vec<u64> {
+            all.iter().flat_map(|(_, outcome)| outcome.iter().flat_map(|o| &o.terms)).map(|x| x.to_bits()).collect()
+        };
+        assert_eq!(bits(&again), bits(&all));
+    }
+
+    #[test]
+    fn what_cannot_be_read_names_its_rank() {
+        let bytes = to_bytes(&Outcomes::from_numbered(&[(3, Some(Outcome::failed()))])).unwrap();
+        for length in 0..bytes.len() {
+            let error = from_bytes::<Outcomes>(2, &bytes[..length]).unwrap_err().to_string();
+            assert!(error.starts_with("rank 2: said what this program cannot read: "), "{error}");
+        }
+        let unknown = Outcome { notes: vec![("phase", 0.0.into())], ..Outcome::default() };
+        let mut broken = Outcomes::from_numbered(&[(3, Some(unknown))]);
+        broken.names.clear();
+        assert_eq!(broken.into_numbered(), None);
+    }
+}

@@ -1,0 +1,94 @@
+//! A search in progress: what proposes individuals, what it was told, and whom they meet. Every rank of a run holds the same.
+
+use std::sync::atomic::AtomicBool;
+
+use farsa_evo::{Fitness, Record, Statistics};
+
+use crate::error::Error;
+use crate::experiment::episode::EpisodeId;
+use crate::run::begin::resumed;
+use crate::run::fitness::{Opponents, fitness_of_all};
+use crate::run::plan::Plan;
+use crate::run::pool::{Pool, Unfinished};
+use crate::run::progress::Progress;
+use crate::run::records::{Best, Checkpoint};
+use crate::store::directory::Directory;
+use crate::store::failures::FailedEvaluation;
+use crate::strategy::history::History;
+use crate::strategy::opponents::{Hall, Meeting};
+use crate::strategy::search::Search;
+
+/// What a run evolves.
+pub(crate) struct Progression {
+    pub(crate) search: Search,
+    pub(crate) record: Record,
+    /// Whom several populations still have to meet.
+    hall: Hall,
+    seed: u64,
+}
+
+/// What came of a generation.
+pub(crate) struct Evaluated {
+    /// Of every individual, as the strategy was told.
+    pub(crate) fitness: Vec<Fitness>,
+    pub(crate) failed: Vec<FailedEvaluation>,
+    /// Of all individuals, and of each population where there are several.
+    pub(crate) statistics: Statistics,
+    pub(crate) each: Vec<Statistics>,
+    /// The best of each population.
+    pub(crate) best: Vec<Best>,
+}
+
+impl Progression {
+    /// A search as it was when its checkpoint was written.
+    ///
+    /// # Errors
+    /// Those of [`resumed`] and of [`Hall::before`].
+    pub(crate) fn resume(
+        plan: &Plan<'_>,
+        directory: &Directory,
+        checkpoint: &Checkpoint,
+        record: Record,
+        pool: &Pool<'_>,
+    ) -> Result<Self, Error> {
+        let search = resumed(plan, directory, checkpoint, &record)?;
+        let hall = match record.populations() {
+            1 => Hall::default(),
+            _ => Hall::before(&History::new(directory.record(), record.clone(), plan.fresh()), pool.genotype())?,
+        };
+        Ok(Self { search, record, hall, seed: checkpoint.identity.seed })
+    }
+
+    /// Evaluates all individuals of a generation and tells the strategy, which makes the next.
+    pub(crate) fn generation(
+        &mut self,
+        pool: &mut Pool<'_>,
+        stop: &AtomicBool,
+        progress: &Progress,
+    ) -> Result<Evaluated, Unfinished> {
+        let generation = self.search.generation();
+        let individuals = self.search.individuals();
+        let (seed, populations) = (self.seed, self.search.populations());
+        let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
+        let trials = pool.evaluator().trials();
+        let parameters = self.search.parameters(pool.genotype()).ok_or_else(|| lost("genomes of another length"))?;
+        let meeting = Meeting { generation, populations, size: individuals / populations, trials };
+        let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
+        let id = EpisodeId { seed, generation, ..EpisodeId::default() };
+        let opponents = Opponents { parameters: &opponents, each: populations - 1 };
+        let (fitness, failed) = fitness_of_all(pool, &parameters, opponents, id, stop, progress)?;
+        let ranked_by = self.search.ranked_by(&fitness);
+        let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
+        let best = self.search.champions(&ranked_by).into_iter().map(|best| {
+            let (fitness, genes) = (*ranked_by.get(best)?, self.search.genome(best)?);
+            Some(Best { individual: best as u32, fitness, genes })
+        });
+        let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
+        let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
+        let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
+        let told = self.search.tell(&mut self.record, &fitness);
+        told.map_err(|error| lost(&error.to_string()))?;
+        self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
+        Ok(Evaluated { fitness, failed, statistics, each, best })
+    }
+}

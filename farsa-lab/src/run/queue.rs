@@ -1,0 +1,231 @@
+//! Runs that any number of processes work at: each takes the next one that nobody has.
+
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::error::Error;
+use crate::escaped::{OneLine, escaped};
+use crate::run::begin;
+use crate::run::evolve;
+use crate::run::plan::Plan;
+use crate::run::pool::Pool;
+use crate::run::records::{Champions, Checkpoint};
+use crate::run::summary::{Summary, Winner};
+use crate::store::directory::{Directory, vacant};
+use crate::store::lock::Lock;
+
+/// One of the runs.
+pub(crate) struct Member<'e> {
+    pub(crate) plan: Plan<'e>,
+    /// Its directory.
+    pub(crate) path: PathBuf,
+    /// What it is called beside the others.
+    pub(crate) name: String,
+}
+
+/// Runs in the order in which they are taken.
+pub(crate) struct Queue<'q, 'e> {
+    pub(crate) count: usize,
+    /// Makes the one of a number below `count`.
+    pub(crate) member: &'q dyn Fn(usize) -> Result<Member<'e>, Error>,
+    pub(crate) pool: &'q dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
+    /// What the user calls this program.
+    pub(crate) program: &'q str,
+    pub(crate) quiet: bool,
+}
+
+/// What came of a run.
+#[derive(Debug)]
+pub(crate) enum State {
+    Finished {
+        summary: Summary,
+        /// Whether all was done before.
+        skipped: bool,
+    },
+    /// Another process is at it.
+    Elsewhere(PathBuf),
+}
+
+impl Queue<'_, '_> {
+    /// Makes sure that every place has the run that belongs there, or none.
+    ///
+    /// # Errors
+    /// Those of [`finished`] and of the member.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        (0..self.count).try_for_each(|number| {
+            let Member { plan, path, .. } = (self.member)(number)?;
+            finished(&plan, &path).map(drop)
+        })
+    }
+
+    /// Begins, goes on with or skips each run, until all are finished or the others are at the rest; in their order.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] after `stop` became true, and what [`evolve::go_on`] says about the run that failed. The runs
+    /// before it are kept, those after it not begun.
+    pub(crate) fn work(&self, stop: &AtomicBool) -> Result<Vec<State>, Error> {
+        let mut states: Vec<State> = Vec::new();
+        for number in 0..self.count {
+            states.push(self.turn(number, stop)?);
+        }
+        // A process that was at one of them may have ended before its time.
+        loop {
+            let mut changed = false;
+            for (number, state) in states.iter_mut().enumerate().filter(|(_, state)| state.is_elsewhere()) {
+                *state = self.turn(number, stop)?;
+                changed |= matches!(state, State::Finished { skipped: false, .. });
+            }
+            if !changed {
+                return Ok(states);
+            }
+        }
+    }
+
+    /// One run: begun, gone on with, skipped or left to another process.
+    fn turn(&self, number: usize, stop: &AtomicBool) -> Result<State, Error> {
+        let Member { plan, path, name } = (self.member)(number)?;
+        let place = OneLine(path.display());
+        let skip = |summary: Summary| {
+            self.tell(&format!("{name}: {place}: all {} generations are finished already", summary.generations));
+            Ok(State::Finished { summary, skipped: true })
+        };
+        if let Some(summary) = finished(&plan, &path)? {
+            return skip(summary);
+        }
+        if stop.load(Ordering::Relaxed) {
+            return Err(Error::Interrupted { resume: again(self.program) });
+        }
+        let (directory, new) = opened(&plan, &path)?;
+        let Some(lock) = Lock::of_free_run(&path)? else {
+            self.tell(&format!("{name}: {place}: another process is at it"));
+            return Ok(State::Elsewhere(path));
+        };
+        // Asked again: another process may have finished it before it gave the lock back.
+        if let Some(summary) = finished(&plan, &path)? {
+            return skip(summary);
+        }
+        self.tell(&format!("{name}: {place}{}", if new { "" } else { ": goes on" }));
+        let pool = (self.pool)(&plan)?;
+        let summary = evolve::go_on_holding(&lock, &plan, &directory, pool, stop, self.program, self.quiet);
+        let summary = summary.map_err(|error| match error {
+            Error::Interrupted { .. } => Error::Interrupted { resume: again(self.program) },
+            error => error,
+        })?;
+        self.tell(&summary.text());
+        Ok(State::Finished { summary, skipped: false })
+    }
+
+    fn tell(&self, line: &str) {
+        if !self.quiet {
+            // A user who closed the error stream does not want to know.
+            let _ = writeln!(io::stderr(), "{}", escaped(line));
+        }
+    }
+
+    /// Says how many runs are left to other processes.
+    pub(crate) fn tell_of_others(&self, states: &[State]) {
+        match states.iter().filter(|state| state.is_elsewhere()).count() {
+            0 => {}
+            1 => self.tell("another process is at 1 run: the same command again says what came of it"),
+            runs => {
+                self.tell(&format!(
+                    "other processes are at {runs} runs: the same command again says what came of them"
+                ));
+            }
+        }
+    }
+}
+
+impl State {
+    pub(crate) fn is_elsewhere(&self) -> bool {
+        matches!(self, Self::Elsewhere(_))
+    }
+
+    /// The fitness of the champion of a run that is finished.
+    pub(crate) fn fitness(&self) -> Option<f64> {
+        match self {
+            Self::Finished { summary, .. } => summary.champion.as_ref().map(|champion| champion.fitness),
+            Self::Elsewhere(_) => None,
+        }
+    }
+}
+
+/// The directory of a run, and whether this process has made it.
+fn opened(plan: &Plan<'_>, path: &Path) -> Result<(Directory, bool), Error> {
+    if let Ok(directory) = Directory::open(path) {
+        return Ok((directory, false));
+    }
+    match begin::create(plan, path) {
+        // Another process has made it at the same time.
+        Err(Error::Occupied { .. }) if path.join("config.toml").is_file() => Ok((Directory::open(path)?, false)),
+        made => Ok((made?, true)),
+    }
+}
+
+/// What came of the run at a place if it has all its generations; none if it is to be begun or gone on with.
+///
+/// # Errors
+/// [`Error::Occupied`] by other files, [`Error::OtherConfiguration`] by another run, [`Error::Usage`] by one that has more
+/// generations already, and whatever keeps the run from being gone on with.
+pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
+    let directory = match Directory::open(path) {
+        Ok(directory) => directory,
+        Err(_) => match vacant(path) {
+            // Another process has made it in between.
+            Err(Error::Occupied { .. }) if path.join("config.toml").is_file() => Directory::open(path)?,
+            vacant => return vacant.map(|()| None),
+        },
+    };
+    let file = directory.checkpoint();
+    let Checkpoint { identity, generation: done, .. } = Checkpoint::read(plan, &directory)?;
+    identity.same_values(&plan.identity()?, &file)?;
+    let asked = plan.generations()?;
+    if done < asked {
+        return Ok(None);
+    }
+    if done > asked {
+        return Err(Error::Usage(format!("{}: has finished {done} generations already", path.display())));
+    }
+    let champions = Winner::from_champions(&Champions::read(plan, &directory)?);
+    Ok(Some(Summary {
+        directory: path.display().to_string(),
+        experiment: identity.experiment,
+        condition: identity.condition,
+        seed: identity.seed,
+        generations: done,
+        evaluations: 0,
+        seconds: 0.0,
+        champion: champions.first().cloned(),
+        champions: if champions.len() > 1 { champions } else { Vec::new() },
+    }))
+}
+
+/// The command line of this process, to be repeated.
+fn again(program: &str) -> String {
+    let arguments = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
+    std::iter::once(quoted(program)).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// A word as a shell takes it, left as it is wherever that will do.
+fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=,:+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.into();
+    }
+    // Only a word with a zero byte cannot be quoted, and no process is started with one.
+    shlex::try_quote(word).map_or_else(|_| word.into(), std::borrow::Cow::into_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_a_shell_would_change_is_quoted() {
+        let words = ["run", "--set", "cart.friction=0.5", "my runs", "it's", "", "a*b"];
+        let line = words.map(quoted).join(" ");
+        assert!(line.starts_with("run --set cart.friction=0.5 "), "{line}");
+        assert_eq!(shlex::split(&line).unwrap(), words);
+    }
+}

@@ -1,0 +1,25 @@
+//! Search without selection, as the null model.
+
+use farsa_evo::RandomSearch;
+
+use crate::experiment::settings::Setting;
+use crate::strategy::settings::{GENERATIONS, POPULATION};
+use crate::strategy::simple::SimpleStrategy;
+
+/// Genomes that are drawn anew in every generation, [`farsa_evo::RandomSearch`].
+pub(super) static RANDOM: SimpleStrategy = SimpleStrategy {
+    name: "random-search",
+    summary: "Every genome is drawn anew: what other strategies find beyond this is owed to selection.",
+    settings: || {
+        vec![
+            Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1)
+                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+            Setting::whole(POPULATION, 100, 1..=1_000_000).doc("Individuals of a generation."),
+        ]
+    },
+    start: |start| {
+        let population = start.settings.count(POPULATION)?;
+        start.words(|seed| RandomSearch::new(start.genes, population, seed))
+    },
+    diagnostics: None,
+};

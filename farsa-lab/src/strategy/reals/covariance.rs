@@ -1,0 +1,77 @@
+//! Covariance matrix adaptation, full and separable.
+
+use farsa_evo::{
+    CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs, SeparableCmaEsConfig,
+};
+
+use super::{SIGMA, count_or, population_of_genes, sigma, sizes};
+use crate::error::Error;
+use crate::experiment::settings::{Setting, Settings};
+use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyStart};
+use crate::strategy::search::Search;
+use crate::strategy::settings::POPULATION;
+use crate::strategy::simple::SimpleStrategy;
+
+const ACTIVE: &str = "strategy.active";
+const RESTARTS: &str = "strategy.restarts";
+
+/// The first columns of both.
+const SHAPE: DiagnosticsChart = DiagnosticsChart {
+    title: "distribution",
+    axis: "sigma, axis ratio",
+    curves: &[("step size", "step size"), ("axis ratio", "longest axis by shortest")],
+};
+
+/// Covariance matrix adaptation, [`farsa_evo::CmaEs`], with or without restarts, [`farsa_evo::CmaEsRestarts`].
+pub(in crate::strategy) static CMA_ES: SimpleStrategy = SimpleStrategy {
+    name: "cma-es",
+    summary: "Covariance matrix adaptation, a normal distribution of every scale and correlation [Hansen2016].",
+    settings: || {
+        let mut table = sizes(population_of_genes());
+        table.extend([
+            sigma(0.5, "a quarter of each range"),
+            Setting::flag(ACTIVE, true).given().doc("Whether the worse half has negative weights."),
+            Setting::word(RESTARTS, "none", &["none", "ipop", "bipop"]).doc(
+                "What follows a run that has come to its end: nothing; one of twice the individuals [Auger2005]; such or one \
+                 of few [Hansen2009].",
+            ),
+        ]);
+        table
+    },
+    start: |start| {
+        let StrategyStart { settings, genes, .. } = *start;
+        let first = config(settings, genes)?;
+        let schedule = match settings.word(RESTARTS)? {
+            "ipop" => RestartSchedule::Ipop,
+            "bipop" => RestartSchedule::Bipop,
+            _ => return start.reals(|seed| CmaEs::new(first.clone(), seed)),
+        };
+        start.reals(|seed| CmaEsRestarts::new(CmaEsRestartsConfig::new(first.clone(), schedule), seed))
+    },
+    diagnostics: Some(Diagnostics { file: "strategy", charts: &[SHAPE] }),
+};
+
+fn config(settings: &Settings, genes: usize) -> Result<CmaEsConfig, Error> {
+    let plain = CmaEsConfig::new(vec![0.0; genes], settings.number(SIGMA)?);
+    let population = count_or(settings, POPULATION, plain.population)?;
+    Ok(CmaEsConfig { population, active: settings.flag(ACTIVE)?, ..plain })
+}
+
+/// The same with a scale for each gene and no correlations, [`farsa_evo::SeparableCmaEs`].
+pub(in crate::strategy) static SEPARABLE_CMA_ES: SimpleStrategy = SimpleStrategy {
+    name: "separable-cma-es",
+    summary: "Covariance matrix adaptation without correlations, for many genes [Ros2008].",
+    settings: || {
+        let mut table = sizes(population_of_genes());
+        table.push(sigma(0.5, "a quarter of each range"));
+        table
+    },
+    start: separable,
+    diagnostics: Some(Diagnostics { file: "strategy", charts: &[SHAPE] }),
+};
+
+fn separable(start: &StrategyStart<'_>) -> Result<Search, Error> {
+    let plain = SeparableCmaEsConfig::new(vec![0.0; start.genes], start.settings.number(SIGMA)?);
+    let population = count_or(start.settings, POPULATION, plain.population)?;
+    start.reals(|seed| SeparableCmaEs::new(SeparableCmaEsConfig { population, ..plain.clone() }, seed))
+}

@@ -1,0 +1,176 @@
+//! A strategy, whatever its genes are.
+
+use std::fmt;
+
+use farsa_evo::{EvoError, Fitness, Genealogy, Population, Record, Snapshot, Strategy};
+
+use crate::experiment::genotype::Genotype;
+
+/// A strategy over words or over reals, as [`StrategyDefinition::start`](crate::StrategyDefinition::start) makes it.
+///
+/// A word stands for a value of its parameter's range as [`Genotype`] says. A real stands for the range from -1 to 1: -1 is
+/// the parameter's first end, 0 the middle, 1 the other end, and what lies beyond is reflected.
+#[non_exhaustive]
+pub enum Search {
+    /// Over 16-bit words.
+    Words(Box<dyn Strategy>),
+    /// Over reals.
+    Reals(Box<dyn Strategy<f64>>),
+}
+
+/// The same of both kinds.
+macro_rules! each {
+    ($search:expr, $strategy:ident => $done:expr) => {
+        match $search {
+            Search::Words($strategy) => $done,
+            Search::Reals($strategy) => $done,
+        }
+    };
+}
+
+impl Search {
+    /// A strategy over words.
+    pub fn from_words(strategy: impl Strategy + 'static) -> Self {
+        Self::Words(Box::new(strategy))
+    }
+
+    /// A strategy over reals.
+    pub fn from_reals(strategy: impl Strategy<f64> + 'static) -> Self {
+        Self::Reals(Box::new(strategy))
+    }
+
+    /// The number of the generation that waits for its fitness, from 0.
+    pub fn generation(&self) -> u32 {
+        each!(self, strategy => strategy.generation())
+    }
+
+    /// Number of populations.
+    pub fn populations(&self) -> usize {
+        each!(self, strategy => strategy.populations())
+    }
+
+    /// Number of individuals of a generation, of all populations together.
+    pub fn individuals(&self) -> usize {
+        each!(self, strategy => strategy.ask().len())
+    }
+
+    /// Number of genes of an individual.
+    pub fn genes(&self) -> usize {
+        each!(self, strategy => strategy.ask().genome_len())
+    }
+
+    /// The parameters that the individuals of the current generation stand for; none if they are no genomes of this kind.
+    pub(crate) fn parameters(&self, genotype: &Genotype) -> Option<Vec<Vec<f32>>> {
+        match self {
+            Self::Words(strategy) => genotype.decode_all(strategy.ask()),
+            Self::Reals(strategy) => strategy.ask().iter().map(|genes| genotype.decode_reals(genes)).collect(),
+        }
+    }
+
+    /// The genome of an individual of the current generation.
+    pub(crate) fn genome(&self, individual: usize) -> Option<Genome> {
+        match self {
+            Self::Words(strategy) => strategy.ask().get(individual).map(|genes| Genome::Words(genes.to_vec())),
+            Self::Reals(strategy) => strategy.ask().get(individual).map(|genes| Genome::Reals(genes.to_vec())),
+        }
+    }
+
+    pub(crate) fn ranked_by(&self, fitness: &[Fitness]) -> Vec<Fitness> {
+        each!(self, strategy => strategy.ranked_by(fitness))
+    }
+
+    pub(crate) fn champions(&self, ranked_by: &[Fitness]) -> Vec<usize> {
+        each!(self, strategy => strategy.champions(ranked_by))
+    }
+
+    pub(crate) fn genealogy(&self) -> Option<&dyn Genealogy> {
+        each!(self, strategy => strategy.genealogy())
+    }
+
+    pub(crate) fn diagnostics(&self) -> Vec<f64> {
+        each!(self, strategy => strategy.diagnostics())
+    }
+
+    pub(crate) fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        each!(self, strategy => strategy.snapshot())
+    }
+
+    /// The record of a strategy that has not been told anything.
+    pub(crate) fn record(&mut self) -> Result<Record, EvoError> {
+        each!(self, strategy => Record::new(strategy.as_mut()))
+    }
+
+    /// Tells the fitness of the current generation and records it.
+    pub(crate) fn tell(&mut self, record: &mut Record, fitness: &[Fitness]) -> Result<(), EvoError> {
+        each!(self, strategy => record.tell(strategy.as_mut(), fitness))
+    }
+
+    /// Brings the strategy to a generation of a record.
+    pub(crate) fn rebuild(&mut self, record: &Record, generation: u32) -> Result<(), EvoError> {
+        each!(self, strategy => record.rebuild(strategy.as_mut(), generation))
+    }
+
+    /// The genomes of a generation of a record.
+    pub(crate) fn genomes(&mut self, record: &Record, generation: u32) -> Result<Genomes, EvoError> {
+        Ok(match self {
+            Self::Words(strategy) => Genomes::Words(record.genomes(strategy.as_mut(), generation)?),
+            Self::Reals(strategy) => Genomes::Reals(record.genomes(strategy.as_mut(), generation)?),
+        })
+    }
+}
+
+impl fmt::Debug for Search {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if matches!(self, Self::Words(_)) { "Words" } else { "Reals" };
+        f.debug_struct(kind).field("generation", &self.generation()).finish_non_exhaustive()
+    }
+}
+
+/// The genes of an individual.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Genome {
+    Words(Vec<u16>),
+    Reals(Vec<f64>),
+}
+
+impl Genome {
+    /// Number of genes.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Words(genes) => genes.len(),
+            Self::Reals(genes) => genes.len(),
+        }
+    }
+
+    /// The parameters that it stands for; none for another number of genes.
+    pub(crate) fn decode(&self, genotype: &Genotype) -> Option<Vec<f32>> {
+        match self {
+            Self::Words(genes) => genotype.decode(genes),
+            Self::Reals(genes) => genotype.decode_reals(genes),
+        }
+    }
+}
+
+/// The genomes of a generation.
+pub(crate) enum Genomes {
+    Words(Population),
+    Reals(Population<f64>),
+}
+
+impl Genomes {
+    /// The genome of an individual.
+    pub(crate) fn get(&self, individual: usize) -> Option<Genome> {
+        match self {
+            Self::Words(all) => all.get(individual).map(|genes| Genome::Words(genes.to_vec())),
+            Self::Reals(all) => all.get(individual).map(|genes| Genome::Reals(genes.to_vec())),
+        }
+    }
+
+    /// The parameters of everyone; none for genomes of another length.
+    pub(crate) fn decode_all(&self, genotype: &Genotype) -> Option<Vec<Vec<f32>>> {
+        match self {
+            Self::Words(all) => genotype.decode_all(all),
+            Self::Reals(all) => all.iter().map(|genes| genotype.decode_reals(genes)).collect(),
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! A strategy that is all said by its name, a line, a table and a function.
+
+use crate::error::Error;
+use crate::experiment::settings::Setting;
+use crate::strategy::definition::{Diagnostics, StrategyDefinition, StrategyStart};
+use crate::strategy::search::Search;
+
+/// A [`StrategyDefinition`] that is all said by its name, a line, a table and a function.
+///
+/// ```
+/// use farsa_evo::{Snes, SnesConfig};
+/// use farsa_lab::{Setting, SimpleStrategy};
+///
+/// static NARROW: SimpleStrategy = SimpleStrategy {
+///     name: "narrow-snes",
+///     summary: "A natural evolution strategy that begins near the middle of all ranges.",
+///     settings: || vec![Setting::whole("evolution.generations", 200, 1..=1_000_000).doc("Generations.")],
+///     start: |start| start.reals(|seed| Snes::new(SnesConfig::new(vec![0.0; start.genes], 0.01), seed)),
+///     diagnostics: None,
+/// };
+/// ```
+#[derive(Clone, Copy)]
+pub struct SimpleStrategy {
+    /// The name on the command line: lower-case letters, digits and hyphens.
+    pub name: &'static str,
+    /// What it does, in one line with its source.
+    pub summary: &'static str,
+    /// Its settings with their defaults.
+    pub settings: fn() -> Vec<Setting>,
+    /// Makes the strategy, at its first generation.
+    pub start: fn(&StrategyStart<'_>) -> Result<Search, Error>,
+    /// How its [`diagnostics`](farsa_evo::Strategy::diagnostics) are written and drawn, where it has some.
+    pub diagnostics: Option<Diagnostics>,
+}
+
+impl StrategyDefinition for SimpleStrategy {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn summary(&self) -> &'static str {
+        self.summary
+    }
+
+    fn settings(&self) -> Vec<Setting> {
+        (self.settings)()
+    }
+
+    fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error> {
+        (self.start)(start)
+    }
+
+    fn diagnostics(&self) -> Option<Diagnostics> {
+        self.diagnostics
+    }
+}

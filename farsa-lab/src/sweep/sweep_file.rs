@@ -1,0 +1,295 @@
+//! What the file of a sweep says.
+
+use std::path::Path;
+
+use crate::error::Error;
+use crate::experiment::settings::Value;
+use crate::run::config_file::{ConfigFile, Entry, Found, MOST_BYTES};
+use crate::run::plan::LARGEST_SEED;
+use crate::store::bounded;
+use crate::strategy::settings::STRATEGY;
+
+/// The most replications of a point; a list is not longer either.
+const MOST_SEEDS: i64 = 10_000;
+/// The most settings that vary.
+const MOST_VARYING: usize = 64;
+
+/// A configuration, in which some settings have many values.
+#[derive(Debug)]
+pub(crate) struct SweepFile {
+    /// What all points share.
+    pub(crate) base: ConfigFile,
+    /// What varies; every row of one goes with every row of the others.
+    pub(crate) axes: Vec<Axis>,
+    /// The seeds of every point, at least one, each once.
+    pub(crate) seeds: Vec<u64>,
+}
+
+/// Keys whose values change together.
+#[derive(Debug)]
+pub(crate) struct Axis {
+    pub(crate) keys: Vec<Entry<String>>,
+    /// A value for each key; at least one row.
+    pub(crate) rows: Vec<Vec<Entry<Value>>>,
+}
+
+/// What a sweep adds to a configuration, as it is read.
+#[derive(Default)]
+struct Added {
+    grid: Vec<Column>,
+    list: Vec<Column>,
+    replications: Option<Entry<u32>>,
+    seeds: Option<Entry<Vec<u64>>>,
+}
+
+type Column = (Entry<String>, Vec<Entry<Value>>);
+
+impl SweepFile {
+    /// Reads a file that the user names.
+    ///
+    /// # Errors
+    /// As [`ConfigFile::read`], with the line.
+    pub(crate) fn read(path: &Path) -> Result<Self, Error> {
+        let text = bounded::read_text(path, MOST_BYTES).map_err(|error| match error {
+            error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
+            other => other,
+        })?;
+        Self::parse(&path.display().to_string(), &text)
+    }
+
+    /// Reads a text; errors name it.
+    pub(crate) fn parse(name: &str, text: &str) -> Result<Self, Error> {
+        let mut added = Added::default();
+        let base = ConfigFile::parse_beside(name, text, &mut |found| added.take(found))?;
+        let Added { grid, list, replications, seeds } = added;
+        let mut axes: Vec<Axis> = Vec::new();
+        for (key, values) in grid {
+            let rows = values.into_iter().map(|value| vec![value]).collect();
+            axes.push(Axis { keys: vec![key], rows });
+        }
+        axes.extend(Axis::side_by_side(list)?);
+        if axes.is_empty() {
+            return Err(Error::Usage(format!("{name}: neither [grid] nor [list] has a setting: nothing varies")));
+        }
+        let keys: Vec<&Entry<String>> = axes.iter().flat_map(|axis| &axis.keys).collect();
+        for (index, key) in keys.iter().enumerate() {
+            let other = keys.iter().take(index).find(|other| other.value == key.value).map(|other| &other.place);
+            let own = base.entries.iter().find(|(other, _)| *other == key.value).map(|(_, entry)| &entry.place);
+            let named = [("condition", &base.condition), (STRATEGY, &base.strategy)];
+            let named = named.into_iter().find(|(name, _)| key.value == *name);
+            let named = named.and_then(|(_, entry)| entry.as_ref()).map(|entry| &entry.place);
+            if let Some(first) = other.or(own).or(named) {
+                let line = first.rsplit(' ').next().unwrap_or_default();
+                return Err(wrong(key, &format!("has a value in line {line} already")));
+            }
+        }
+        let seeds = seeds_of(&base, replications, seeds)?;
+        Ok(Self { base, axes, seeds })
+    }
+}
+
+impl Added {
+    /// Takes what a configuration does not have.
+    fn take(&mut self, found: &Found<'_>) -> Result<bool, Error> {
+        let key = |key: &str| Entry { value: key.to_owned(), place: found.place.to_owned() };
+        match found.key.split_once('.') {
+            None if ["grid", "list"].contains(&found.key) => {
+                // An empty table varies nothing.
+                if found.value.is_some() { Err(wrong(&key(found.key), "is a table of lists")) } else { Ok(true) }
+            }
+            None if found.key == "replications" => {
+                let count = match found.value()? {
+                    Value::Whole(count @ 1..=MOST_SEEDS) => u32::try_from(count).ok(),
+                    _ => None,
+                };
+                let why = format!("is not a whole number from 1 to {MOST_SEEDS}");
+                let value = count.ok_or_else(|| wrong(&key(found.key), &why))?;
+                self.replications = Some(Entry { value, place: found.place.into() });
+                Ok(true)
+            }
+            None if found.key == "seed" && found.is_list() => {
+                self.seeds = Some(Entry { value: listed_seeds(found)?, place: found.place.into() });
+                Ok(true)
+            }
+            Some((table @ ("grid" | "list"), name)) => {
+                let key = key(name);
+                match name {
+                    "seed" | "replications" => {
+                        let why = "stands outside of [grid] and [list]: every point has all seeds";
+                        return Err(wrong(&key, why));
+                    }
+                    "experiment" => return Err(wrong(&key, "stands outside of [grid] and [list]: a sweep has one")),
+                    _ => {}
+                }
+                let values = found.list().map_err(|error| match error {
+                    Error::Setting { place, why, .. } => Error::Setting { place, key: name.into(), why },
+                    other => other,
+                })?;
+                if values.is_empty() {
+                    return Err(wrong(&key, "has no value"));
+                }
+                if self.grid.len() + self.list.len() == MOST_VARYING {
+                    return Err(wrong(&key, &format!("is one setting too many: at most {MOST_VARYING} vary")));
+                }
+                if table == "grid" { &mut self.grid } else { &mut self.list }.push((key, values));
+                Ok(true)
+            }
+            _ => Ok(false),
+        }
+    }
+}
+
+impl Axis {
+    /// Columns as one axis; none of none.
+    fn side_by_side(columns: Vec<Column>) -> Result<Option<Self>, Error> {
+        let Some((first, values)) = columns.first() else { return Ok(None) };
+        let rows = values.len();
+        if let Some((key, values)) = columns.iter().find(|(_, values)| values.len() != rows) {
+            let why = format!(
+                "has {} values where `{}` has {rows}: in [list] they stand side by side",
+                values.len(),
+                first.value
+            );
+            return Err(wrong(key, &why));
+        }
+        let (keys, columns): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
+        let row = |row: usize| columns.iter().filter_map(|column| column.get(row).cloned()).collect();
+        Ok(Some(Self { keys, rows: (0..rows).map(row).collect() }))
+    }
+}
+
+fn wrong(key: &Entry<String>, why: &str) -> Error {
+    Error::Setting { place: key.place.clone(), key: key.value.clone(), why: why.into() }
+}
+
+/// Seeds that are named one by one.
+fn listed_seeds(found: &Found<'_>) -> Result<Vec<u64>, Error> {
+    let mut seeds: Vec<u64> = Vec::new();
+    for Entry { value, place } in found.list()? {
+        let key = Entry { value: "seed".to_owned(), place };
+        let seed = match value {
+            Value::Whole(seed) => u64::try_from(seed).ok(),
+            _ => None,
+        };
+        let seed = seed.ok_or_else(|| wrong(&key, "is not a whole number from 0 to 9223372036854775807"))?;
+        if seeds.contains(&seed) {
+            return Err(wrong(&key, &format!("{seed} stands twice")));
+        }
+        seeds.push(seed);
+    }
+    if seeds.is_empty() {
+        return Err(wrong(&Entry { value: "seed".into(), place: found.place.into() }, "has no value"));
+    }
+    Ok(seeds)
+}
+
+/// The seeds of every point: those that are named, or as many as there are replications.
+fn seeds_of(
+    base: &ConfigFile,
+    replications: Option<Entry<u32>>,
+    seeds: Option<Entry<Vec<u64>>>,
+) -> Result<Vec<u64>, Error> {
+    if let Some(seeds) = seeds {
+        return match replications {
+            Some(Entry { place, .. }) => {
+                let key = Entry { value: "replications".to_owned(), place };
+                Err(wrong(&key, &format!("beside a list of {} seeds", seeds.value.len())))
+            }
+            None => Ok(seeds.value),
+        };
+    }
+    let first = base.seed.as_ref().map_or(1, |seed| seed.value);
+    let (count, place) = replications.map_or((1, String::new()), |entry| (u64::from(entry.value), entry.place));
+    let Some(last) = first.checked_add(count - 1).filter(|last| *last <= LARGEST_SEED) else {
+        let key = Entry { value: "replications".to_owned(), place };
+        return Err(wrong(&key, &format!("{count} from seed {first}: the largest seed is {LARGEST_SEED}")));
+    };
+    Ok((first..=last).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_and_a_list_are_axes() {
+        let text = "experiment = \"cart\"\nseed = 5\nreplications = 2\n[trial]\nsteps = 10\n[grid]\n\
+                    condition = [\"a\", \"b\"]\nw.x = [\n  1,\n  2.5,\n]\n[list]\nw.y = [1, 2, 3]\nw.z = [[1], [2, 3], []]\n";
+        let file = SweepFile::parse("my.toml", text).unwrap();
+        assert_eq!(file.seeds, [5, 6]);
+        assert_eq!(file.base.entries.len(), 1);
+        let shape: Vec<(Vec<&str>, usize)> = file
+            .axes
+            .iter()
+            .map(|axis| (axis.keys.iter().map(|key| key.value.as_str()).collect(), axis.rows.len()))
+            .collect();
+        assert_eq!(shape, [(vec!["condition"], 2), (vec!["w.x"], 2), (vec!["w.y", "w.z"], 3)]);
+        let Entry { value, place } = &file.axes[1].rows[1][0];
+        assert_eq!((value, place.as_str()), (&Value::Number(2.5), "my.toml line 10"));
+        assert_eq!(file.axes[2].rows[1][1].value, Value::Numbers(vec![2.0, 3.0]));
+        let seeds = SweepFile::parse("my.toml", "seed = [9, 2]\n[grid]\na.b = [1]\n").unwrap();
+        assert_eq!(seeds.seeds, [9, 2]);
+    }
+
+    #[test]
+    fn mistakes_are_found_with_their_line() {
+        let grid = "[grid]\na.b = [1]\n";
+        for (text, message) in [
+            ("seed = 1\n".to_owned(), "my.toml: neither [grid] nor [list] has a setting: nothing varies"),
+            ("[grid]\n[list]\n".into(), "my.toml: neither [grid] nor [list] has a setting: nothing varies"),
+            ("grid = 1\n".into(), "my.toml line 1: `grid`: is a table of lists"),
+            ("[grid]\na.b = 1\n".into(), "my.toml line 2: `a.b`: is not a list of values"),
+            ("[grid]\na.b = []\n".into(), "my.toml line 2: `a.b`: has no value"),
+            (
+                "[grid]\na.b = [\n1,\n1979-05-27]\n".into(),
+                "my.toml line 4: `a.b`: is not a flag, number, word or list of numbers",
+            ),
+            ("[grid]\na.b = [1]\n[list]\na.b = [2]\n".into(), "my.toml line 4: `a.b`: has a value in line 2 already"),
+            ("a.b = 1\n[grid]\na.b = [2]\n".into(), "my.toml line 3: `a.b`: has a value in line 1 already"),
+            (
+                "condition = \"x\"\n[grid]\ncondition = [\"y\"]\n".into(),
+                "my.toml line 3: `condition`: has a value in line 1 already",
+            ),
+            (
+                "[grid]\nseed = [1, 2]\n".into(),
+                "my.toml line 2: `seed`: stands outside of [grid] and [list]: every point has all seeds",
+            ),
+            (
+                "[list]\nexperiment = [\"a\"]\n".into(),
+                "my.toml line 2: `experiment`: stands outside of [grid] and [list]: a sweep has one",
+            ),
+            (
+                "[list]\na.b = [1, 2]\na.c = [1]\n".into(),
+                "my.toml line 3: `a.c`: has 1 values where `a.b` has 2: in [list] they stand side by side",
+            ),
+            (
+                format!("replications = 0\n{grid}"),
+                "my.toml line 1: `replications`: is not a whole number from 1 to 10000",
+            ),
+            (
+                format!("replications = 10001\n{grid}"),
+                "my.toml line 1: `replications`: is not a whole number from 1 to 10000",
+            ),
+            (format!("seed = [1, 2, 1]\n{grid}"), "my.toml line 1: `seed`: 1 stands twice"),
+            (format!("seed = []\n{grid}"), "my.toml line 1: `seed`: has no value"),
+            (
+                format!("seed = [1,\n-1]\n{grid}"),
+                "my.toml line 2: `seed`: is not a whole number from 0 to 9223372036854775807",
+            ),
+            (
+                format!("seed = [1, 3]\nreplications = 2\n{grid}"),
+                "my.toml line 2: `replications`: beside a list of 2 seeds",
+            ),
+            (
+                format!("seed = 9223372036854775807\nreplications = 2\n{grid}"),
+                "my.toml line 2: `replications`: 2 from seed 9223372036854775807: the largest seed is 9223372036854775807",
+            ),
+        ] {
+            let error = SweepFile::parse("my.toml", &text).unwrap_err();
+            assert_eq!((error.to_string().as_str(), error.exit_code()), (message, 2), "{text}");
+        }
+        let many = "1,".repeat(10_001);
+        let error = SweepFile::parse("my.toml", &format!("seed = [{many}]\n{grid}")).unwrap_err();
+        assert_eq!(error.to_string(), "my.toml line 1: `seed`: is a list of more than 10000");
+    }
+}

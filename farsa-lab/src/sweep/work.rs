@@ -1,0 +1,205 @@
+//! `farsa sweep`: the runs of all points, by any number of processes.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::figures::statistics::{Quartiles, median};
+use crate::run::laboratory::Laboratory;
+use crate::run::plan::Plan;
+use crate::run::pool::Pool;
+use crate::run::queue::{Member, Queue, State, finished};
+use crate::run::summary::Summary;
+use crate::run::text_table::text_table;
+use crate::sweep::points::Points;
+use crate::sweep::sweep_file::SweepFile;
+
+/// A sweep over laboratory, and where its runs lie.
+pub(crate) struct Sweep<'s, 'e> {
+    points: Points<'s, 'e>,
+    seeds: &'s [u64],
+    root: &'s Path,
+    /// The point that was asked for last: its runs follow each other.
+    latest: RefCell<Option<(usize, Plan<'e>)>>,
+}
+
+/// Which of the runs, counted from 0; all where none is named.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Which {
+    pub(crate) point: Option<usize>,
+    pub(crate) replication: Option<usize>,
+}
+
+/// What came of the points.
+#[derive(Debug, Serialize)]
+pub(crate) struct Found {
+    points: Vec<Point>,
+}
+
+#[derive(Debug, Serialize)]
+struct Point {
+    /// From 1, as `--point` has it.
+    #[serde(rename = "point")]
+    number: usize,
+    directory: String,
+    /// How many runs it has.
+    replications: usize,
+    /// Those that are finished.
+    runs: Vec<Summary>,
+    /// Of the champions' fitness.
+    median: Option<f64>,
+    /// The directories that other processes are at.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    elsewhere: Vec<String>,
+}
+
+impl<'s, 'e> Sweep<'s, 'e> {
+    /// Checks every value of every point.
+    ///
+    /// # Errors
+    /// Those of [`Points::new`].
+    pub(crate) fn new(file: &'s SweepFile, laboratory: &'s Laboratory<'e>, root: &'s Path) -> Result<Self, Error> {
+        let points = Points::new(file, laboratory)?;
+        Ok(Self { points, seeds: &file.seeds, root, latest: RefCell::new(None) })
+    }
+
+    /// The runs that are wanted, point by point: which point and which seed.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a number beyond the last.
+    fn wanted(&self, which: Which) -> Result<Vec<(usize, usize)>, Error> {
+        let range = |option: &str, only: Option<usize>, count: usize| match only {
+            None => Ok(0..count),
+            Some(number) if number < count => Ok(number..number + 1),
+            Some(number) => Err(Error::Usage(format!("{option} {}: there are {count}", number + 1))),
+        };
+        let points = range("--point", which.point, self.points.count())?;
+        let seeds = range("--replication", which.replication, self.seeds.len())?;
+        Ok(points.flat_map(|point| seeds.clone().map(move |seed| (point, seed))).collect())
+    }
+
+    fn directory(&self, point: usize) -> PathBuf {
+        self.root.join(self.points.name(point))
+    }
+
+    fn member(&self, (point, seed): (usize, usize)) -> Result<Member<'e>, Error> {
+        let mut latest = self.latest.borrow_mut();
+        let mut plan = match &*latest {
+            Some((known, plan)) if *known == point => plan.clone(),
+            _ => latest.insert((point, self.points.plan(point)?)).1.clone(),
+        };
+        plan.seed = self.seeds[seed];
+        let path = self.directory(point).join(plan.name());
+        let name = match self.seeds.len() {
+            1 => format!("point {} of {}", point + 1, self.points.count()),
+            seeds => format!("point {} of {}, replication {} of {seeds}", point + 1, self.points.count(), seed + 1),
+        };
+        Ok(Member { plan, path, name })
+    }
+
+    /// Makes sure that every point that is wanted can be begun.
+    fn check(&self, runs: &[(usize, usize)], pool: &dyn Fn(&Plan<'e>) -> Result<(), Error>) -> Result<(), Error> {
+        let mut points: Vec<usize> = runs.iter().map(|(point, _)| *point).collect();
+        points.dedup();
+        points.into_iter().try_for_each(|point| {
+            let plan = self.points.plan(point)?;
+            let ready = pool(&plan).and_then(|()| plan.strategy().map(drop));
+            ready.map_err(|error| self.points.located(point, error))
+        })
+    }
+
+    /// Evolves the runs that are wanted and that nobody else is at, one after the other.
+    ///
+    /// A run that is there and the same is gone on with, and skipped once it is finished; before anything is started it is
+    /// made sure that every point can be begun, and that every place has its run or none.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a number beyond the last, those of a point that cannot be begun, [`Queue::check`] and
+    /// [`Queue::work`].
+    pub(crate) fn work(
+        &self,
+        which: Which,
+        ready: &dyn Fn(&Plan<'e>) -> Result<(), Error>,
+        pool: &dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
+        stop: impl FnOnce() -> &'static AtomicBool,
+        (program, quiet): (&str, bool),
+    ) -> Result<Found, Error> {
+        let runs = self.wanted(which)?;
+        self.check(&runs, ready)?;
+        let member = |index: usize| self.member(runs[index]);
+        let queue = Queue { count: runs.len(), member: &member, pool, program, quiet };
+        queue.check()?;
+        let states = queue.work(stop())?;
+        queue.tell_of_others(&states);
+        Ok(self.found(&runs, states.into_iter().map(Some)))
+    }
+
+    /// What there is of the runs that are wanted; nothing is begun.
+    ///
+    /// # Errors
+    /// Those of [`work`](Self::work) before its first evaluation.
+    pub(crate) fn list(&self, which: Which, ready: &dyn Fn(&Plan<'e>) -> Result<(), Error>) -> Result<Found, Error> {
+        let runs = self.wanted(which)?;
+        self.check(&runs, ready)?;
+        let states = runs.iter().map(|run| {
+            let Member { plan, path, .. } = self.member(*run)?;
+            Ok(finished(&plan, &path)?.map(|summary| State::Finished { summary, skipped: true }))
+        });
+        let states: Vec<Option<State>> = states.collect::<Result<_, Error>>()?;
+        Ok(self.found(&runs, states.into_iter()))
+    }
+
+    fn found(&self, runs: &[(usize, usize)], states: impl Iterator<Item = Option<State>>) -> Found {
+        let mut points: Vec<Point> = Vec::new();
+        for (&(point, _), state) in runs.iter().zip(states) {
+            if points.last().is_none_or(|last| last.number != point + 1) {
+                points.push(Point {
+                    number: point + 1,
+                    directory: self.directory(point).display().to_string(),
+                    replications: 0,
+                    runs: Vec::new(),
+                    median: None,
+                    elsewhere: Vec::new(),
+                });
+            }
+            let Some(last) = points.last_mut() else { continue };
+            last.replications += 1;
+            match state {
+                Some(State::Finished { summary, .. }) => last.runs.push(summary),
+                Some(State::Elsewhere(path)) => last.elsewhere.push(path.display().to_string()),
+                None => {}
+            }
+        }
+        for point in &mut points {
+            point.median = median(&point.fitness());
+        }
+        Found { points }
+    }
+}
+
+impl Point {
+    fn fitness(&self) -> Vec<f64> {
+        self.runs.iter().filter_map(|run| Some(run.champion.as_ref()?.fitness)).collect()
+    }
+}
+
+impl Found {
+    /// A table with a line per point.
+    pub(crate) fn text(&self) -> String {
+        let mut rows = vec![["point", "finished", "median", "quartiles", "directory"].map(str::to_owned).to_vec()];
+        rows.extend(self.points.iter().map(|point| {
+            let [median, quartiles] = match Quartiles::from_values(&point.fitness()) {
+                None => Default::default(),
+                Some(Quartiles { lower, median, upper }) => {
+                    [format!("{median:.4}"), format!("{lower:.4} to {upper:.4}")]
+                }
+            };
+            let finished = format!("{} of {}", point.runs.len(), point.replications);
+            vec![point.number.to_string(), finished, median, quartiles, point.directory.clone()]
+        }));
+        text_table(&rows, 0..3)
+    }
+}
