@@ -38,7 +38,7 @@ mod word_map;
 
 pub use champion::Champion;
 pub use coevolution::Coevolution;
-pub use coevolving::{Cosyne, CosyneConfig, Permutation};
+pub use coevolving::{Cosyne, CosyneConfig, Outcomes, Permutation, Replacement};
 pub use config::{GaConfig, OnePlusOneConfig};
 pub use conformance::check_strategy;
 pub use covariance::{
