@@ -34,6 +34,7 @@ mod snapshot;
 mod statistics;
 mod strategy;
 mod truncation;
+mod vectors;
 mod word_map;
 
 pub use champion::Champion;

@@ -10,6 +10,7 @@ mod exp;
 mod instructions;
 mod lanes;
 mod logarithm;
+mod normal;
 mod philox;
 mod polynomial;
 #[cfg(feature = "rand_core")]

@@ -15,9 +15,6 @@ pub fn ln<R: Real>(x: R) -> R {
 }
 
 fn ln_f64(x: f64) -> f64 {
-    const MANTISSA: u64 = 0x000F_FFFF_FFFF_FFFF;
-    const ONE: u64 = 0x3FF0_0000_0000_0000;
-    const SQRT_HALF: u64 = 0x3FE6_A09E_667F_3BCD;
     if x.is_nan() || x < 0.0 {
         return f64::NAN;
     }
@@ -29,9 +26,24 @@ fn ln_f64(x: f64) -> f64 {
     }
     // A subnormal number has no exponent to read: make it normal by 2^54.
     let (x, shift) = if x < f64::MIN_POSITIVE { (x * 1.801_439_850_948_198_4e16, 1023.0 + 54.0) } else { (x, 1023.0) };
+    of_normal(x, shift)
+}
+
+/// The logarithm of a number in [2^-1000, 1], without the questions that any number asks.
+#[inline(always)]
+pub(crate) fn ln_of_unit(x: f64) -> f64 {
+    of_normal(x, 1023.0)
+}
+
+/// The logarithm of a positive normal number, whose exponent is biased by `shift`.
+#[inline(always)]
+fn of_normal(x: f64, shift: f64) -> f64 {
+    const MANTISSA: u64 = 0x000F_FFFF_FFFF_FFFF;
+    const ONE: u64 = 0x3FF0_0000_0000_0000;
+    const SQRT_HALF: u64 = 0x3FE6_A09E_667F_3BCD;
     // So that m = x / 2^k is in [sqrt(1/2), sqrt(2)).
     let bits = x.to_bits() + (ONE - SQRT_HALF);
-    let k = (bits >> 52) as f64 - shift;
+    let k = f64::from((bits >> 52) as u32) - shift;
     let f = f64::from_bits((bits & MANTISSA) + SQRT_HALF) - 1.0;
 
     let s = f / (2.0 + f);

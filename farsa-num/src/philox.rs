@@ -1,7 +1,13 @@
 //! The one random generator: streams addressed by what they are for, not by the order of draws.
 
+use fearless_simd::Level;
+
 use crate::logarithm::ln;
+use crate::normal::{PAIRS, normal_pairs};
 use crate::sin_cos::sin_cos;
+
+/// The least numbers of a row that are computed many at a time: half of what is then computed.
+const LEAST: usize = PAIRS;
 
 /// What a stream's numbers are for; the number of each is part of every recorded run and never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -228,8 +234,29 @@ impl Stream {
 
     /// Fills a row with independent standard normal numbers, two of [`normal_pair_f64`](Self::normal_pair_f64) at a time; an odd
     /// last one leaves its partner unused.
+    ///
+    /// Long rows are computed many numbers at a time, with the vector instructions of the processor (feature `std`, else of the
+    /// program) and the same bits.
     pub fn fill_normal(&mut self, row: &mut [f64]) {
-        for pair in row.chunks_mut(2) {
+        let mut rest = row;
+        let level = Level::try_detect().unwrap_or(Level::baseline());
+        // A pair is a block where no words of a block are left over.
+        while self.drawn > 3 && rest.len() >= LEAST {
+            let count = PAIRS.min(rest.len() / 2);
+            let (now, later) = rest.split_at_mut(2 * count);
+            let words = if let Some(all) = now.first_chunk_mut() {
+                normal_pairs(level, self.counter, self.key, all)
+            } else {
+                let mut all = [0.0; 2 * PAIRS];
+                let words = normal_pairs(level, self.counter, self.key, &mut all);
+                now.iter_mut().zip(all).for_each(|(x, normal)| *x = normal);
+                words
+            };
+            self.words = words.map(|word| word[count - 1]);
+            self.counter[0] = self.counter[0].wrapping_add(count as u32);
+            rest = later;
+        }
+        for pair in rest.chunks_mut(2) {
             pair.iter_mut().zip(self.normal_pair_f64()).for_each(|(x, normal)| *x = normal);
         }
     }

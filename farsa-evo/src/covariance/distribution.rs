@@ -258,6 +258,7 @@ pub(crate) fn bounded(reader: &mut StateReader<'_>, row: &mut [f64], limits: [f6
 }
 
 /// The weighted sum of rows for each of many sums [sums x n], the rows taken in blocks that stay in the cache.
+#[inline(always)]
 pub(crate) fn multiply(factors: &[f64], rows: &[f64], n: usize, sums: &mut [f64]) {
     const BLOCK: usize = 16;
     sums.fill(0.0);

@@ -3,14 +3,17 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::Scalar;
+use farsa_num::fearless_simd::{Simd, dispatch};
+use farsa_num::{Instructions, Scalar};
 
-use crate::covariance::linear::{add_scaled, dot};
+use crate::covariance::linear::{add_scaled, dot_in_vectors, dots_in_vectors};
 
 /// The most QL iterations of one eigenvalue; two are usual.
 const ITERATIONS: usize = 60;
 /// Columns of eigenvectors that are rotated together, so that they stay in the cache.
 const STRIP: usize = 32;
+/// Rows that reflections are applied to together, so that they stay in the cache.
+const ROWS: usize = 8;
 
 /// A symmetric matrix as the sum of its eigenvalues times the squares of its eigenvectors.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,80 +41,140 @@ impl SymmetricEigen {
     /// Source: \[Smith1976\] procedures TRED2 and IMTQL2. Deviations: the transformation is kept transposed, so that all loops
     /// run along rows; rotations are collected and applied strip by strip; lengths are scaled by the larger component.
     pub(super) fn from_lower(matrix: &[f64], n: usize) -> Option<Self> {
+        dispatch!(Instructions::detect().level(), simd => simd.vectorize(
+            #[inline(always)]
+            || Self::decompose(simd, matrix, n),
+        ))
+    }
+
+    #[inline(always)]
+    fn decompose<V: Simd>(simd: V, matrix: &[f64], n: usize) -> Option<Self> {
         let lower = |(row, elements): (usize, &[f64])| elements.iter().take(row + 1).all(|x| x.is_finite());
         if !matrix.chunks_exact(n.max(1)).enumerate().all(lower) {
             return None;
         }
         let mut reduced = matrix.to_vec();
-        let (mut diagonal, mut off, halves) = tridiagonalize(&mut reduced, n);
-        let mut vectors = accumulate(&reduced, &halves, n);
+        let (mut diagonal, mut off, halves) = tridiagonalize(simd, &mut reduced, n);
+        let vectors = accumulate(simd, &reduced, &halves, n);
         drop(reduced);
-        iterate(&mut diagonal, &mut off, &mut vectors)?;
+        let mut strips = into_strips(&vectors, n);
+        drop(vectors);
+        iterate(&mut diagonal, &mut off, &mut strips)?;
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|&a, &b| diagonal[a].total_cmp(&diagonal[b]));
         let values = order.iter().map(|&index| diagonal[index]).collect();
-        let vectors = order.iter().flat_map(|&index| &vectors[index * n..(index + 1) * n]).copied().collect();
+        let mut vectors = vec![0.0; n * n];
+        for (row, &index) in vectors.chunks_exact_mut(n.max(1)).zip(&order) {
+            for (strip, part) in row.chunks_mut(STRIP).enumerate() {
+                part.copy_from_slice(&strips[strip * n + index][..part.len()]);
+            }
+        }
         Some(Self { values, vectors })
     }
 }
 
 /// The diagonal \[n\], what stands beside it (number i couples i and i + 1) and half the squared lengths of the Householder
 /// vectors; the vectors themselves replace the lower triangle, row i having i elements.
-fn tridiagonalize(matrix: &mut [f64], n: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let (mut off, mut halves, mut product) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+///
+/// The update after a reflection and the product that the next one needs go through the matrix together.
+#[inline(always)]
+fn tridiagonalize<V: Simd>(simd: V, matrix: &mut [f64], n: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let (mut off, mut halves) = (vec![0.0; n], vec![0.0; n]);
+    // The vector u and the product q of the reflection before, whose update is still to be done.
+    let (mut before, mut pending) = ([vec![0.0; n], vec![0.0; n]], false);
+    let mut product = vec![0.0; n];
     for row in (1..n).rev() {
         let (above, below) = matrix.split_at_mut(row * n);
+        let [u, q] = &before;
+        if pending {
+            update(&mut below[..=row], row, u, q);
+        }
         let (vector, product) = (&mut below[..row], &mut product[..row]);
         let last = row - 1;
         // Scaled, so that no square overflows, and none underflows that counts.
         let scale = vector[..last].iter().fold(0.0_f64, |scale, x| scale.max(x.abs()));
         if scale == 0.0 {
             off[last] = vector[last];
+            if pending {
+                for (index, elements) in above.chunks_exact_mut(n).enumerate() {
+                    update(&mut elements[..=index], index, u, q);
+                }
+            }
+            pending = false;
             continue;
         }
         let scale = scale.max(vector[last].abs());
         for x in vector.iter_mut() {
             *x /= scale;
         }
-        let square = dot(vector, vector);
+        let square = dot_in_vectors(simd, vector, vector);
         let length = if vector[last] < 0.0 { Scalar::sqrt(square) } else { -Scalar::sqrt(square) };
         off[last] = scale * length;
         let half = square - vector[last] * length;
         vector[last] -= length;
         halves[row] = half;
         // A u: the lower triangle once along its rows and once along its columns.
-        for (index, elements) in above.chunks_exact(n).enumerate() {
-            product[index] = dot(&elements[..=index], &vector[..=index]);
+        for (index, elements) in above.chunks_exact_mut(n).enumerate() {
+            if pending {
+                update(&mut elements[..=index], index, u, q);
+            }
+            product[index] = dot_in_vectors(simd, &elements[..=index], &vector[..=index]);
             add_scaled(&mut product[..index], vector[index], &elements[..index]);
         }
-        let shift = dot(vector, product) / (half + half) / half;
-        product.iter_mut().zip(&*vector).for_each(|(p, u)| *p = *p / half - shift * u);
-        for (index, elements) in above.chunks_exact_mut(n).enumerate() {
-            let (u, q) = (vector[index], product[index]);
-            for ((x, other_q), other_u) in elements[..=index].iter_mut().zip(&*product).zip(&*vector) {
-                *x -= u * other_q + q * other_u;
-            }
+        let shift = dot_in_vectors(simd, vector, product) / (half + half) / half;
+        let [u, q] = &mut before;
+        for (((q, u), p), x) in q.iter_mut().zip(u).zip(&*product).zip(&*vector) {
+            (*q, *u) = (*p / half - shift * x, *x);
         }
+        pending = true;
+    }
+    if pending {
+        let [u, q] = &before;
+        update(&mut matrix[..1], 0, u, q);
     }
     ((0..n).map(|index| matrix[index * n + index]).collect(), off, halves)
 }
 
+/// Takes what a reflection changes off the first elements of a row.
+#[inline(always)]
+fn update(elements: &mut [f64], row: usize, vector: &[f64], product: &[f64]) {
+    let (u, q) = (vector[row], product[row]);
+    for ((x, other_q), other_u) in elements.iter_mut().zip(product).zip(vector) {
+        *x -= u * other_q + q * other_u;
+    }
+}
+
 /// The product of the Householder reflections, transposed [n x n].
-fn accumulate(reduced: &[f64], halves: &[f64], n: usize) -> Vec<f64> {
+#[inline(always)]
+fn accumulate<V: Simd>(simd: V, reduced: &[f64], halves: &[f64], n: usize) -> Vec<f64> {
     let mut vectors = vec![0.0; n * n];
     (0..n).for_each(|index| vectors[index * n + index] = 1.0);
-    for row in (1..n).filter(|&row| halves[row] > 0.0) {
-        let vector = &reduced[row * n..][..row];
-        for elements in vectors.chunks_exact_mut(n).take(row) {
-            let projection = dot(&elements[..row], vector) / halves[row];
-            add_scaled(elements, -projection, vector);
+    // Rows do not depend on each other: a few at a time stay in the cache while all reflections pass.
+    for (block, rows) in vectors.chunks_mut(ROWS * n.max(1)).enumerate() {
+        let rows_len = rows.len();
+        for row in (block * ROWS + 1..n).filter(|&row| halves[row] > 0.0) {
+            let vector = &reduced[row * n..][..row];
+            let touched = n * ROWS.min(row - block * ROWS);
+            let rows = &mut rows[..touched.min(rows_len)];
+            let mut fours = rows.chunks_exact_mut(4 * n);
+            for four in &mut fours {
+                let products = dots_in_vectors(simd, four, n, vector);
+                for (elements, product) in four.chunks_exact_mut(n).zip(products) {
+                    add_scaled(elements, -(product / halves[row]), vector);
+                }
+            }
+            for elements in fours.into_remainder().chunks_exact_mut(n) {
+                let projection = dot_in_vectors(simd, &elements[..row], vector) / halves[row];
+                add_scaled(elements, -projection, vector);
+            }
         }
     }
     vectors
 }
 
-/// The QL iterations: the diagonal becomes the eigenvalues, the rows of `vectors` the eigenvectors.
-fn iterate(diagonal: &mut [f64], off: &mut [f64], vectors: &mut [f64]) -> Option<()> {
+/// The QL iterations: the diagonal becomes the eigenvalues, the rows in strips the eigenvectors.
+#[inline(always)]
+fn iterate(diagonal: &mut [f64], off: &mut [f64], strips: &mut [[f64; STRIP]]) -> Option<()> {
     let n = diagonal.len();
     let mut rotations: Vec<Rotation> = Vec::new();
     for first in 0..n {
@@ -153,36 +216,46 @@ fn iterate(diagonal: &mut [f64], off: &mut [f64], vectors: &mut [f64]) -> Option
             off[end] = 0.0;
         }
         if rotations.len() >= 8 * n {
-            rotate(vectors, n, &rotations);
+            rotate(strips, n, &rotations);
             rotations.clear();
         }
     }
-    rotate(vectors, n, &rotations);
+    rotate(strips, n, &rotations);
     diagonal.iter().all(|x| x.is_finite()).then_some(())
 }
 
-/// Applies rotations to rows [n x n], in their order.
-fn rotate(rows: &mut [f64], n: usize, rotations: &[Rotation]) {
-    let mut strip = vec![[0.0; STRIP]; n];
-    for start in (0..n).step_by(STRIP) {
-        let end = n.min(start + STRIP);
-        let width = end - start;
-        for (part, row) in strip.iter_mut().zip(rows.chunks_exact(n)) {
-            part[..width].copy_from_slice(&row[start..end]);
+/// The columns of rows [n x n] as strips that lie one after the other [strips x n].
+fn into_strips(rows: &[f64], n: usize) -> Vec<[f64; STRIP]> {
+    let mut strips = vec![[0.0; STRIP]; n * n.div_ceil(STRIP)];
+    for (index, row) in rows.chunks_exact(n.max(1)).enumerate() {
+        for (strip, part) in row.chunks(STRIP).enumerate() {
+            strips[strip * n + index][..part.len()].copy_from_slice(part);
         }
-        for &Rotation { index, cosine, sine } in rotations {
-            let [lower, upper] = &mut strip[index..index + 2] else { continue };
-            for (x, y) in lower.iter_mut().zip(upper) {
-                (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
+    }
+    strips
+}
+
+/// Applies rotations to rows in strips, in their order.
+#[inline(always)]
+fn rotate(strips: &mut [[f64; STRIP]], n: usize, rotations: &[Rotation]) {
+    for strip in strips.chunks_exact_mut(n.max(1)) {
+        // Within a sweep indices fall by one: the row that the next rotation changes as well is kept at hand.
+        for sweep in rotations.chunk_by(|rotation, next| rotation.index == next.index + 1) {
+            let (Some(first), Some(last)) = (sweep.first(), sweep.last()) else { continue };
+            let mut kept = strip[first.index + 1];
+            for &Rotation { index, cosine, sine } in sweep {
+                let [lower, done] = &mut strip[index..index + 2] else { continue };
+                for ((x, y), done) in lower.iter().zip(&mut kept).zip(done) {
+                    (*y, *done) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
+                }
             }
-        }
-        for (part, row) in strip.iter().zip(rows.chunks_exact_mut(n)) {
-            row[start..end].copy_from_slice(&part[..width]);
+            strip[last.index] = kept;
         }
     }
 }
 
 /// The length of a vector, without overflow.
+#[inline(always)]
 fn length(a: f64, b: f64) -> f64 {
     let (large, small) = if a.abs() > b.abs() { (a.abs(), b.abs()) } else { (b.abs(), a.abs()) };
     if large == 0.0 {

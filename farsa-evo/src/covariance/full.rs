@@ -11,6 +11,7 @@ use crate::covariance::eigen::SymmetricEigen;
 use crate::covariance::linear::add_rows;
 use crate::error::EvoError;
 use crate::snapshot::{StateReader, push_reals};
+use crate::vectors::vectorized;
 
 /// The smallest variance along an axis as a fraction of the largest: below it there is nothing but rounding.
 const SMALLEST: f64 = 1e-16;
@@ -65,6 +66,21 @@ impl FullCovariance {
     }
 }
 
+/// Keeps so much of the lower triangle of a matrix [n x n] and adds the squares of rows [factors x n], each times its factor.
+#[inline(always)]
+fn add_squares(matrix: &mut [f64], n: usize, keep: f64, factors: &[f64], rows: &[f64]) {
+    let mut weighted = vec![0.0; factors.len()];
+    for (index, elements) in matrix.chunks_exact_mut(n).enumerate() {
+        let column = rows.iter().skip(index).step_by(n);
+        weighted.iter_mut().zip(factors).zip(column).for_each(|((weighted, factor), y)| *weighted = factor * y);
+        let elements = &mut elements[..=index];
+        for x in elements.iter_mut() {
+            *x *= keep;
+        }
+        add_rows(elements, &weighted, rows, n);
+    }
+}
+
 impl Covariance for FullCovariance {
     fn identity(n: usize, coefficients: &Coefficients) -> Self {
         let mut matrix = vec![0.0; n * n];
@@ -76,27 +92,27 @@ impl Covariance for FullCovariance {
     fn shape(&self, normals: &[f64], steps: &mut [f64]) {
         let scale = |row: &[f64]| row.iter().zip(&self.deviations).map(|(z, d)| d * z).collect::<Vec<f64>>();
         let scaled: Vec<f64> = normals.chunks_exact(self.n).flat_map(scale).collect();
-        multiply(&scaled, &self.axes, self.n, steps);
+        vectorized(
+            #[inline(always)]
+            || multiply(&scaled, &self.axes, self.n, steps),
+        );
     }
 
     fn turn(&self, normals: &[f64]) -> Vec<f64> {
         let mut turned = vec![0.0; self.n];
-        add_rows(&mut turned, normals, &self.axes, self.n);
+        vectorized(
+            #[inline(always)]
+            || add_rows(&mut turned, normals, &self.axes, self.n),
+        );
         turned
     }
 
     fn update(&mut self, keep: f64, factors: &[f64], rows: &[f64]) {
-        let n = self.n;
-        let mut weighted = vec![0.0; factors.len()];
-        for (index, elements) in self.matrix.chunks_exact_mut(n).enumerate() {
-            let column = rows.iter().skip(index).step_by(n);
-            weighted.iter_mut().zip(factors).zip(column).for_each(|((weighted, factor), y)| *weighted = factor * y);
-            let elements = &mut elements[..=index];
-            for x in elements.iter_mut() {
-                *x *= keep;
-            }
-            add_rows(elements, &weighted, rows, n);
-        }
+        let (n, matrix) = (self.n, &mut self.matrix);
+        vectorized(
+            #[inline(always)]
+            || add_squares(matrix, n, keep, factors, rows),
+        );
         self.age = self.age.saturating_add(1);
         if f64::from(self.age) > self.interval {
             self.decompose();

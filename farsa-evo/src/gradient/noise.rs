@@ -3,6 +3,7 @@
 use farsa_num::{Domain, Stream};
 
 use crate::population::Population;
+use crate::vectors::vectorized;
 
 /// Numbers drawn at a time: few enough to stay in the fastest memory, and even, for normal numbers come in pairs.
 const BLOCK: usize = 256;
@@ -39,7 +40,10 @@ impl Noise {
         let mut numbers = [0.0; BLOCK];
         for sum in sum.chunks_mut(BLOCK) {
             stream.fill_normal(numbers.get_mut(..sum.len()).unwrap_or_default());
-            sum.iter_mut().zip(&numbers).for_each(|(sum, number)| *sum += weight * number);
+            vectorized(
+                #[inline(always)]
+                || sum.iter_mut().zip(&numbers).for_each(|(sum, number)| *sum += weight * number),
+            );
         }
     }
 
@@ -49,10 +53,15 @@ impl Noise {
         let mut numbers = [0.0; BLOCK];
         for (first, second) in first.chunks_mut(BLOCK).zip(second.chunks_mut(BLOCK)) {
             stream.fill_normal(numbers.get_mut(..first.len()).unwrap_or_default());
-            for ((first, second), number) in first.iter_mut().zip(second).zip(&numbers) {
-                *first += weights[0] * number;
-                *second += weights[1] * (number * number - 1.0);
-            }
+            vectorized(
+                #[inline(always)]
+                || {
+                    for ((first, second), number) in first.iter_mut().zip(second).zip(&numbers) {
+                        *first += weights[0] * number;
+                        *second += weights[1] * (number * number - 1.0);
+                    }
+                },
+            );
         }
     }
 
@@ -70,16 +79,24 @@ impl Noise {
     /// individual 2k + 1 subtracts it.
     pub(super) fn mirror(self, population: &mut Population<f64>, center: &[f64], spread: Spread<'_>) {
         let len = population.genome_len();
+        let mut numbers = [0.0; BLOCK];
         for (row, pair) in population.as_mut_slice().chunks_exact_mut(2 * len).enumerate() {
+            let mut stream = self.stream(row);
             let (plus, minus) = pair.split_at_mut(len);
-            self.fill(row, plus);
-            match spread {
-                Spread::Same(sigma) => plus.iter_mut().for_each(|x| *x *= sigma),
-                Spread::Each(sigmas) => plus.iter_mut().zip(sigmas).for_each(|(x, sigma)| *x *= sigma),
-            }
-            for ((plus, minus), center) in plus.iter_mut().zip(minus).zip(center) {
-                *minus = center - *plus;
-                *plus += center;
+            let blocks = plus.chunks_mut(BLOCK).zip(minus.chunks_mut(BLOCK)).zip(center.chunks(BLOCK));
+            for (block, ((plus, minus), center)) in blocks.enumerate() {
+                let numbers = numbers.get_mut(..plus.len()).unwrap_or_default();
+                stream.fill_normal(numbers);
+                match spread {
+                    Spread::Same(sigma) => numbers.iter_mut().for_each(|x| *x *= sigma),
+                    Spread::Each(sigmas) => {
+                        numbers.iter_mut().zip(sigmas.iter().skip(block * BLOCK)).for_each(|(x, sigma)| *x *= sigma);
+                    }
+                }
+                for (((plus, minus), center), x) in plus.iter_mut().zip(minus).zip(center).zip(numbers) {
+                    *minus = center - *x;
+                    *plus = *x + center;
+                }
             }
         }
     }
