@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
+use crate::collection::Member;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
@@ -20,7 +21,8 @@ use crate::strategy::{Recorded, Strategy};
 /// Asked twice it answers the same. A fresh one that is told the same does the same, through a [`Record`] and through saved
 /// states. It refuses another number of values and is unchanged by that. It counts generations, and names a champion of each
 /// population. Where it says that only the order counts ([`Recorded::Order`]), other values of the same order change nothing.
-/// Failed evaluations, all of them at once too, end nothing. Judgements of another shape than it wants are refused.
+/// Failed evaluations, all of them at once too, end nothing. Judgements of another shape than it wants are refused. What it keeps,
+/// if it has a [`Collection`](crate::Collection), are individuals that it was told of, with the numbers that it was told.
 ///
 /// ```
 /// use farsa_evo::{GaConfig, TruncationGa, check_strategy};
@@ -41,6 +43,7 @@ where
     let (mut strategy, mut again) = (made()?, made()?);
     let mut record = Record::new(&mut strategy).map_err(|error| format!("no record: {error}"))?;
     let mut asked: Vec<u64> = Vec::new();
+    let mut history: Vec<Judgements> = Vec::new();
     for generation in 0..generations {
         let wrong = |what: &str| format!("generation {generation}: {what}");
         if strategy.generation() != generation {
@@ -77,6 +80,10 @@ where
         told.map_err(|error| wrong(&format!("cannot be told: {error}")))?;
         told_again.map_err(|error| wrong(&format!("cannot be told by value: {error}")))?;
         saved(&mut strategy, made()?).map_err(|what| wrong(&what))?;
+        history.push(judgements);
+        if let Some(collection) = strategy.collection() {
+            kept(&collection.members(), &history).map_err(|what| wrong(&what))?;
+        }
     }
     if strategy.recorded() == Recorded::Genomes {
         return Ok(());
@@ -90,6 +97,22 @@ where
         }
     }
     Ok(())
+}
+
+/// Whether members of a collection are individuals of generations that were told, each with what was told of it, and none twice.
+fn kept(members: &[Member<'_>], history: &[Judgements]) -> Result<(), String> {
+    let mut origins = Vec::with_capacity(members.len());
+    for &Member { objectives, descriptor, generation, individual, .. } in members {
+        let told = history.get(generation as usize);
+        let same = told
+            .is_some_and(|told| (told.objectives(individual), told.descriptor(individual)) == (objectives, descriptor));
+        if !same {
+            return Err(format!("keeps an individual {individual} of generation {generation} that it was not told of"));
+        }
+        origins.push((generation, individual));
+    }
+    origins.sort_unstable();
+    if origins.windows(2).any(|pair| pair[0] == pair[1]) { Err("keeps an individual twice".into()) } else { Ok(()) }
 }
 
 /// Whether a fresh strategy that takes the state of another is that other, and none that takes a part of it is.

@@ -7,6 +7,7 @@ extern crate alloc;
 mod champion;
 mod coevolution;
 mod coevolving;
+mod collection;
 mod config;
 mod conformance;
 mod covariance;
@@ -40,6 +41,7 @@ mod word_map;
 pub use champion::Champion;
 pub use coevolution::Coevolution;
 pub use coevolving::{Cosyne, CosyneConfig, Outcomes, Permutation, Replacement};
+pub use collection::{Collection, Member};
 pub use config::{GaConfig, OnePlusOneConfig};
 pub use conformance::check_strategy;
 pub use covariance::{

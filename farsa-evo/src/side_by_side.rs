@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
+use crate::collection::{Collection, Member};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
@@ -163,9 +164,25 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for SideBySide<S, G> {
         self.members.first()?.genealogy().map(|_| self as &dyn Genealogy)
     }
 
+    fn collection(&self) -> Option<&dyn Collection> {
+        self.members.first()?.collection().map(|_| self as &dyn Collection)
+    }
+
     /// Those of one search after the other.
     fn diagnostics(&self) -> Vec<f64> {
         self.members.iter().flat_map(Strategy::diagnostics).collect()
+    }
+}
+
+impl<G: Gene, S: Strategy<G> + Snapshot> Collection for SideBySide<S, G> {
+    fn members(&self) -> Vec<Member<'_>> {
+        let (size, mut all) = (self.size(), Vec::new());
+        for (number, member) in self.members.iter().enumerate() {
+            let own = member.collection().map(Collection::members).unwrap_or_default();
+            let counted = |member: Member<'_>| member.individual + number * size;
+            all.extend(own.into_iter().map(|member| Member { individual: counted(member), ..member }));
+        }
+        all
     }
 }
 

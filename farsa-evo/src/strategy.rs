@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::champion::Champion;
+use crate::collection::Collection;
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::gene::Gene;
@@ -97,6 +98,11 @@ pub trait Strategy<G: Gene = u16> {
 
     /// Who descends from whom, where individuals have parents.
     fn genealogy(&self) -> Option<&dyn Genealogy> {
+        None
+    }
+
+    /// What is kept beyond a generation, where the result of a search is more than its champion.
+    fn collection(&self) -> Option<&dyn Collection> {
         None
     }
 

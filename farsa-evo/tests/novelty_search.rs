@@ -218,3 +218,24 @@ fn a_damaged_state_is_refused() {
     search.restore(&state).unwrap();
     assert_eq!(search.save(), before);
 }
+
+#[test]
+fn distances_are_taken_in_units() {
+    // The first value a thousand times as large is the same search where its unit is.
+    let plain = NoveltySearch::new(config(THRESHOLD), words().unwrap(), 7).unwrap();
+    let scaled = plain.clone().with_units::<u16>(&[1024.0, 0.5]).unwrap();
+    let (mut plain, mut scaled) = (plain, scaled);
+    for _ in 0..20 {
+        let told = judgements(&plain, |gene: u16| f64::from(gene) / 65_536.0);
+        let larger = |row: &[f64]| [row[0], 1024.0 * row[1], 0.5 * row[2]];
+        let larger = told.values().chunks(3).flat_map(larger).collect();
+        plain.tell_judgements(&told).unwrap();
+        scaled.tell_judgements(&Judgements::nan_as_failed(told.shape(), larger).unwrap()).unwrap();
+        assert_eq!((plain.ask(), plain.novelty(), plain.archive()), (scaled.ask(), scaled.novelty(), scaled.archive()));
+    }
+    let fresh = || NoveltySearch::new(config(THRESHOLD), words().unwrap(), 7).unwrap();
+    for units in [&[1.0][..], &[1.0, 0.0], &[f64::NAN, 1.0], &[1.0, f64::INFINITY]] {
+        assert!(matches!(fresh().with_units::<u16>(units), Err(EvoError::Setting { .. })), "{units:?}");
+    }
+    assert!(matches!(plain.with_units::<u16>(&[1.0, 1.0]), Err(EvoError::AlreadyTold { generation: 20 })));
+}

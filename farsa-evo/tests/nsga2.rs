@@ -267,14 +267,15 @@ fn a_damaged_state_is_refused() {
     (0..3).for_each(|_| search.tell_judgements(&judgements(&search)).unwrap());
     let (before, state) = (search.clone(), search.save());
     let (genes, objectives) = (4 + 4 * 8 * 12, 4 + 6 * 8 * 12);
-    // A gene out of its bounds, an objective that is NaN, a front that leaves one out, an individual that is none, a
-    // distance below zero.
-    let changes: [(usize, Vec<u8>); 5] = [
+    // A gene out of its bounds, an objective that is NaN, a front that leaves one out, a generation that was not told, an
+    // individual that is none, a distance below zero.
+    let changes: [(usize, Vec<u8>); 6] = [
         (4, 7.0_f64.to_le_bytes().into()),
         (genes, vec![0xff; 8]),
         (objectives, 5_u32.to_le_bytes().into()),
-        (objectives + 4, 12_u32.to_le_bytes().into()),
-        (objectives + 8, (-1.0_f64).to_le_bytes().into()),
+        (objectives + 4, 3_u32.to_le_bytes().into()),
+        (objectives + 8, 12_u32.to_le_bytes().into()),
+        (objectives + 12, (-1.0_f64).to_le_bytes().into()),
     ];
     for (at, bytes) in changes {
         let mut damaged = state.clone();

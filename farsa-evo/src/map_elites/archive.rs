@@ -3,6 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use crate::collection::Member;
 use crate::error::EvoError;
 use crate::map_elites::cells::Cells;
 use crate::map_elites::cvt_cells::CvtCells;
@@ -178,6 +179,17 @@ impl<C: Cells> Archive<C> {
             descriptor: self.descriptors.get(slot * d..(slot + 1) * d)?,
             generation,
             individual: individual as usize,
+        })
+    }
+
+    /// All elites as what a strategy keeps.
+    pub(super) fn members(&self) -> impl Iterator<Item = Member<'_>> {
+        self.elites().zip(&self.objectives).map(|(elite, objective)| Member {
+            cell: Some(elite.cell),
+            objectives: core::slice::from_ref(objective),
+            descriptor: elite.descriptor,
+            generation: elite.generation,
+            individual: elite.individual,
         })
     }
 

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_num::{Domain, Stream};
 
+use crate::collection::{Collection, Member};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::judgement::Judgements;
@@ -205,9 +206,20 @@ impl<C: Cells + Clone> Strategy<f64> for MapElites<C> {
         Some(self)
     }
 
+    fn collection(&self) -> Option<&dyn Collection> {
+        Some(self)
+    }
+
     /// The number of elites, and the sum of their objectives.
     fn diagnostics(&self) -> Vec<f64> {
         vec![self.archive.len() as f64, self.archive.sum()]
+    }
+}
+
+/// The elites of the archive, in the order in which their cells were filled.
+impl<C: Cells> Collection for MapElites<C> {
+    fn members(&self) -> Vec<Member<'_>> {
+        self.archive.members().collect()
     }
 }
 

@@ -13,6 +13,7 @@ use crate::judgement_shape::JudgementShape;
 use crate::novelty::behaviours::novelty;
 use crate::novelty::novelty_config::{ArchiveRule, NoveltyConfig};
 use crate::population::Population;
+use crate::real::bounds::check_setting;
 use crate::snapshot::{Snapshot, StateReader, push_reals};
 use crate::strategy::{Genealogy, Recorded, Strategy, next_judged};
 
@@ -49,6 +50,8 @@ pub struct NoveltySearch<S> {
     config: NoveltyConfig,
     seed: u64,
     inner: S,
+    /// What each descriptor value is divided by before distances are taken \[d\].
+    units: Vec<f64>,
     /// The archive [behaviours x d].
     archive: Vec<f64>,
     /// The threshold of the archive, of effect only where it has one.
@@ -78,7 +81,27 @@ impl<S> NoveltySearch<S> {
             ArchiveRule::Threshold { first, .. } => first,
             ArchiveRule::Random { .. } => THRESHOLDS[0],
         };
-        Ok(Self { config, seed, inner, archive: Vec::new(), threshold, idle: 0, novelty: Vec::new() })
+        let units = vec![1.0; config.descriptors];
+        Ok(Self { config, seed, inner, units, archive: Vec::new(), threshold, idle: 0, novelty: Vec::new() })
+    }
+
+    /// The same where each descriptor value is divided by a unit \[d\], such as its range, before distances are taken.
+    ///
+    /// # Errors
+    /// [`EvoError::Setting`] for another number of units, and for one that is not from 1e-100 to 1e100; [`EvoError::AlreadyTold`].
+    pub fn with_units<G: Gene>(self, units: &[f64]) -> Result<Self, EvoError>
+    where
+        S: Strategy<G>,
+    {
+        if self.inner.generation() != 0 {
+            return Err(EvoError::AlreadyTold { generation: self.inner.generation() });
+        }
+        let found = units.len();
+        check_setting(found == self.units.len(), "the number of units", found as f64, "one for each descriptor value")?;
+        for &unit in units {
+            check_setting((1e-100..=1e100).contains(&unit), "the unit of a descriptor value", unit, "1e-100 to 1e100")?;
+        }
+        Ok(Self { units: units.to_vec(), ..self })
     }
 
     /// The configuration.
@@ -96,7 +119,7 @@ impl<S> NoveltySearch<S> {
         &self.inner
     }
 
-    /// The archive [behaviours x d].
+    /// The archive [behaviours x d], in the units of each value.
     pub fn archive(&self) -> &[f64] {
         &self.archive
     }
@@ -161,8 +184,10 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
         let (count, shape) = (self.inner.ask().len(), JudgementShape::new(1, self.config.descriptors));
         let generation = self.inner.generation();
         next_judged(generation, count, shape, judgements)?;
-        let row = |individual| (!judgements.is_failed(individual)).then(|| judgements.descriptor(individual));
-        let rows: Vec<Option<&[f64]>> = (0..count).map(row).collect();
+        let in_units = |descriptor: &[f64]| descriptor.iter().zip(&self.units).map(|(x, unit)| x / unit).collect();
+        let row = |individual| (!judgements.is_failed(individual)).then(|| in_units(judgements.descriptor(individual)));
+        let scaled: Vec<Option<Vec<f64>>> = (0..count).map(row).collect();
+        let rows: Vec<Option<&[f64]>> = scaled.iter().map(Option::as_deref).collect();
         let found = novelty(&rows, &self.archive, self.config.descriptors, self.config.neighbours);
         let told: Vec<Fitness> =
             found.iter().map(|novelty| novelty.map_or(Fitness::WORST, Fitness::nan_as_failed)).collect();

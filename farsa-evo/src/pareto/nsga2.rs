@@ -6,6 +6,7 @@ use core::cmp::Reverse;
 
 use farsa_num::{Domain, Stream};
 
+use crate::collection::{Collection, Member};
 use crate::error::EvoError;
 use crate::fitness::Fitness;
 use crate::judgement::Judgements;
@@ -65,8 +66,8 @@ struct Parents {
     objectives: Vec<f64>,
     /// What each of them is chosen by.
     standing: Vec<Standing>,
-    /// The index in the latest generation told; none of those that are older.
-    origins: Vec<Option<u32>>,
+    /// The generation and the index of each.
+    origins: Vec<[u32; 2]>,
 }
 
 /// The front of an individual and how much room it has there.
@@ -145,12 +146,16 @@ impl Nsga2 {
             let from = place.checked_sub(kept).map_or_else(|| old?.genes.get(*place), |told| self.population.get(told));
             row.copy_from_slice(from.unwrap_or_default());
         }
+        let origin = |place: usize| match place.checked_sub(kept) {
+            Some(told) => [self.generation, told as u32],
+            None => old.and_then(|old| old.origins.get(place)).copied().unwrap_or_default(),
+        };
         let row = |place: usize| objectives.get(place * m..(place + 1) * m).unwrap_or_default();
         Ok(Parents {
             genes,
             objectives: places.iter().flat_map(|(place, _)| row(*place)).copied().collect(),
             standing: places.iter().map(|(_, standing)| *standing).collect(),
-            origins: places.iter().map(|(place, _)| place.checked_sub(kept).map(|told| told as u32)).collect(),
+            origins: places.iter().map(|(place, _)| origin(*place)).collect(),
         })
     }
 
@@ -180,11 +185,12 @@ impl Nsga2 {
 
     /// Bytes of a state at a generation.
     fn state_length(&self, generation: u32) -> usize {
-        let parent = 4 + 4 + 8 + 8 * (self.config.objectives + self.config.bounds.len());
+        let parent = 4 + 8 + 8 + 8 * (self.config.objectives + self.config.bounds.len());
         4 + if generation == 0 { 0 } else { parent * self.population.len() }
     }
 
-    fn read_parents(&self, reader: &mut StateReader<'_>) -> Result<Parents, EvoError> {
+    /// The parents of a generation above 0.
+    fn read_parents(&self, reader: &mut StateReader<'_>, generation: u32) -> Result<Parents, EvoError> {
         let (size, m) = (self.population.len(), self.config.objectives);
         let mut genes = Population::new(size, self.population.genome_len())?;
         reader.reals(genes.as_mut_slice())?;
@@ -195,7 +201,7 @@ impl Nsga2 {
         }
         let (mut standing, mut origins) = (Vec::with_capacity(size), Vec::with_capacity(size));
         for _ in 0..size {
-            let (front, origin) = (reader.u32()?, reader.u32()?);
+            let (front, origin) = (reader.u32()?, [reader.u32()?, reader.u32()?]);
             let distance = reader.fitness()?.get();
             let last = standing.last().map_or(0, |last: &Standing| last.front);
             if front < last || front > last + 1 || standing.is_empty() && front > 0 {
@@ -204,11 +210,15 @@ impl Nsga2 {
             if distance < 0.0 {
                 return Err(EvoError::StateContent { what: "a crowding distance", found: distance.to_bits() });
             }
-            if origin != u32::MAX && origin as usize >= size {
-                return Err(EvoError::NoSuchIndividual { individual: origin as usize, population: size });
+            let [born, individual] = origin;
+            if born >= generation {
+                return Err(EvoError::NoSuchGeneration { generation: born, latest: generation - 1 });
+            }
+            if individual as usize >= size {
+                return Err(EvoError::NoSuchIndividual { individual: individual as usize, population: size });
             }
             standing.push(Standing { front, distance });
-            origins.push(Some(origin).filter(|origin| *origin != u32::MAX));
+            origins.push(origin);
         }
         Ok(Parents { genes, objectives, standing, origins })
     }
@@ -259,9 +269,25 @@ impl Strategy<f64> for Nsga2 {
         Some(self)
     }
 
+    fn collection(&self) -> Option<&dyn Collection> {
+        Some(self)
+    }
+
     /// The number of parents that no other parent dominates.
     fn diagnostics(&self) -> Vec<f64> {
         vec![self.front_size() as f64]
+    }
+}
+
+/// The parents that no other parent dominates.
+impl Collection for Nsga2 {
+    fn members(&self) -> Vec<Member<'_>> {
+        let origins = self.parents.iter().flat_map(|parents| &parents.origins);
+        let member = |((_, objectives), origin): ((_, _), &[u32; 2])| {
+            let [generation, individual] = *origin;
+            Member { cell: None, objectives, descriptor: &[], generation, individual: individual as usize }
+        };
+        self.front().zip(origins).map(member).collect()
     }
 }
 
@@ -273,8 +299,11 @@ impl Genealogy for Nsga2 {
         };
         let mut chosen = vec![*first, *second];
         chosen.dedup();
-        let origin = |parent: u32| parents.origins.get(parent as usize).copied().flatten();
-        chosen.into_iter().filter_map(origin).map(|origin| origin as usize).collect()
+        let latest = |parent: u32| {
+            let [generation, individual] = *parents.origins.get(parent as usize)?;
+            (generation.checked_add(1) == Some(self.generation)).then_some(individual as usize)
+        };
+        chosen.into_iter().filter_map(latest).collect()
     }
 }
 
@@ -287,7 +316,7 @@ impl Snapshot for Nsga2 {
             push_reals(&mut state, &parents.objectives);
             for (standing, origin) in parents.standing.iter().zip(&parents.origins) {
                 state.extend(standing.front.to_le_bytes());
-                state.extend(origin.unwrap_or(u32::MAX).to_le_bytes());
+                origin.iter().for_each(|number| state.extend(number.to_le_bytes()));
                 push_reals(&mut state, &[standing.distance]);
             }
         }
@@ -298,7 +327,7 @@ impl Snapshot for Nsga2 {
         let generation = StateReader::new(state, state.len())?.u32()?;
         let mut reader = StateReader::new(state, self.state_length(generation))?;
         reader.u32()?;
-        self.parents = if generation == 0 { None } else { Some(self.read_parents(&mut reader)?) };
+        self.parents = if generation == 0 { None } else { Some(self.read_parents(&mut reader, generation)?) };
         self.generation = generation;
         self.make();
         Ok(())
