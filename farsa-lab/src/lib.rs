@@ -25,12 +25,13 @@ pub use command::cli;
 pub use error::Error;
 pub use evaluation::read_genotypes;
 pub use experiment::{
-    ActuatorExport, Batch, Bodies, ChannelGroup, Controlled, ControllerExport, CtrnnExport, Description, Episode,
-    EpisodeId, Evaluation, Evaluator, Experiment, Exports, Failure, Genotype, InLanes, InWorld, Iteration, JudgeExport,
-    Lanes, Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note, Objective, Outcome,
-    OwnedNetwork, Parameter, PlanarWorld, PointExport, Rescored, Rollout, SensorExport, SensorReading, ServoExport,
-    Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, mean_of_trials,
-    network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
+    ActuatorExport, Batch, Behaviour, Bodies, ChannelGroup, Controlled, ControllerExport, CtrnnExport, Description,
+    Episode, EpisodeId, Evaluation, Evaluator, Experiment, Exports, Failure, Genotype, InLanes, InWorld, Iteration,
+    JudgeExport, Lanes, Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note,
+    NotedBehaviour, Objective, Outcome, OwnedNetwork, Parameter, PlanarWorld, PointExport, Rescored, Rollout,
+    SensorExport, SensorReading, ServoExport, Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport,
+    Task, Trials, Value, mean_of_note, mean_of_trials, network_parameters, record_row, resting_network, run_episode,
+    run_in_lanes, seconds,
 };
 pub use ranks::{Alone, Ranks};
 pub use run::{BestOfRun, ENGINE, Laboratory};

@@ -12,7 +12,7 @@ use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::nest::{COLORS, on_nest};
 use crate::team::robots::{OUTPUTS, Team, distance};
 use crate::team::task::{eye_groups, eye_names};
-use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
+use farsa_lab::{Behaviour, ChannelGroup, EpisodeId, Error, Note, NotedBehaviour, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// Robots that aggregate, with a controller each.
@@ -73,6 +73,12 @@ impl AggregationScenario {
         &self.config
     }
 }
+
+/// What an individual did, for strategies that want more than its fitness.
+static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+    objectives: &[("dispersion", -1.0)],
+    descriptors: &[("share on the fullest nest", [0.0, 1.0]), ("share in the largest cluster", [0.0, 1.0])],
+};
 
 impl Scenario for AggregationScenario {
     fn robots(&self) -> &TeamConfig {
@@ -170,6 +176,10 @@ impl Scenario for AggregationScenario {
             ],
             ..Outcome::default()
         }
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(&BEHAVIOUR)
     }
 
     fn input_names(&self) -> Vec<String> {

@@ -11,8 +11,9 @@ use crate::discrimination::episode::CylinderEpisode;
 use crate::infrared::settings::InfraredModel;
 use crate::worlds::PlanarEngine;
 use farsa_lab::{
-    ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note, OnePlusOne, Outcome,
-    Parameter, Rollout, Setting, Settings, StrategyDefinition, Task, mean_of_trials,
+    Behaviour, ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note,
+    NotedBehaviour, OnePlusOne, Outcome, Parameter, Rollout, Setting, Settings, StrategyDefinition, Task,
+    mean_of_trials,
 };
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
@@ -127,6 +128,16 @@ fn in_order_of_layer(parameters: &[f32], inputs: usize) -> Vec<f32> {
     weights.chain([parameters[0], parameters[1]]).collect()
 }
 
+/// What an individual did, for strategies that want more than its fitness: with one cylinder in a trial, and with two.
+static NEAR_ONE: NotedBehaviour = NotedBehaviour {
+    objectives: &[("collisions", -1.0)],
+    descriptors: &[("steps near", [0.0, 600.0]), ("collisions", [0.0, 1.0])],
+};
+static NEAR_TWO: NotedBehaviour = NotedBehaviour {
+    objectives: &[("share of time near the other", -1.0)],
+    descriptors: &[("share of time near the first", [0.0, 1.0]), ("share of time near the other", [0.0, 1.0])],
+};
+
 impl Task for CylinderEpisode<Layer> {
     /// As the original wrote them, w = range - gene/255 * 2 range.
     fn parameters(&self) -> Vec<Parameter> {
@@ -205,6 +216,10 @@ impl Task for CylinderEpisode<Layer> {
             steps: config.steps as usize,
             step_seconds: config.time_step,
         }
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(if self.config().radii.len() == 1 { &NEAR_ONE } else { &NEAR_TWO })
     }
 
     /// The mean over the trials.

@@ -12,7 +12,7 @@ use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::nest::{COLORS, on_nest};
 use crate::team::robots::{OUTPUTS, Team};
 use crate::team::task::{eye_groups, eye_names};
-use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
+use farsa_lab::{Behaviour, ChannelGroup, EpisodeId, Error, Note, NotedBehaviour, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// Robots that forage, with a controller each, and the record of their food and energy.
@@ -57,6 +57,12 @@ impl ForagingScenario {
         &self.field
     }
 }
+
+/// What an individual did, for strategies that want more than its fitness.
+static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+    objectives: &[("energy at the end", 1.0)],
+    descriptors: &[("energy at the end", [0.0, 1.0]), ("deaths", [0.0, 4.0])],
+};
 
 impl Scenario for ForagingScenario {
     fn robots(&self) -> &TeamConfig {
@@ -138,6 +144,10 @@ impl Scenario for ForagingScenario {
             ],
             ..Outcome::default()
         }
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(&BEHAVIOUR)
     }
 
     fn input_names(&self) -> Vec<String> {

@@ -13,7 +13,7 @@ use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::eyes::{BLUE, RED};
 use crate::team::robots::{Team, distance};
 use crate::team::task::{eye_groups, eye_names};
-use farsa_lab::{ChannelGroup, EpisodeId, Error, Note, Outcome, PlanarWorld};
+use farsa_lab::{Behaviour, ChannelGroup, EpisodeId, Error, Note, NotedBehaviour, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// The predator is robot 0, the prey robot 1.
@@ -67,6 +67,12 @@ impl PredatorPreyScenario {
         &self.config
     }
 }
+
+/// What an individual did, for strategies that want more than its fitness.
+static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+    objectives: &[("gap at the end [m]", -1.0)],
+    descriptors: &[("time [s]", [0.0, 100.0]), ("gap at the end [m]", [0.0, 1.0])],
+};
 
 impl Scenario for PredatorPreyScenario {
     fn robots(&self) -> &TeamConfig {
@@ -151,6 +157,10 @@ impl Scenario for PredatorPreyScenario {
             ],
             ..Outcome::default()
         }
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(&BEHAVIOUR)
     }
 
     fn input_names(&self) -> Vec<String> {

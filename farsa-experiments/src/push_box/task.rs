@@ -5,7 +5,8 @@ use farsa_nn::Perceptron;
 
 use crate::push_box::episode::{OUTPUTS, PushEpisode};
 use farsa_lab::{
-    ChannelGroup, Description, Error, Evaluation, Note, Outcome, Parameter, Rollout, Task, mean_of_trials,
+    Behaviour, ChannelGroup, Description, Error, Evaluation, Note, NotedBehaviour, Outcome, Parameter, Rollout, Task,
+    mean_of_trials,
 };
 use farsa_view::{Channel, Geometry, Links, NodeParameters, Role, SceneObject, Schema, screen_color};
 
@@ -16,6 +17,12 @@ pub(crate) type Layer = Perceptron<Vec<f32>>;
 pub(crate) fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error> {
     Perceptron::new(inputs, OUTPUTS, 1.0, parameters).map_err(|error| Error::Other(format!("push-box: {error}")))
 }
+
+/// What an individual did, for strategies that want more than its fitness.
+static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+    objectives: &[("way of the box [m]", -1.0)],
+    descriptors: &[("way of the box [m]", [0.0, 2.0]), ("share of time touching", [0.0, 1.0])],
+};
 
 impl Task for PushEpisode<Layer> {
     /// In the layer's order, from +range to -range.
@@ -85,6 +92,10 @@ impl Task for PushEpisode<Layer> {
             steps: config.steps as usize,
             step_seconds: config.time_step,
         }
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(&BEHAVIOUR)
     }
 
     /// The mean over the trials.

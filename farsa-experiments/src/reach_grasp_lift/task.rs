@@ -13,8 +13,8 @@ use crate::reach_grasp_lift::parameters::Ranges;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::schema::{EpisodeRecorder, NetworkEpisode};
 use farsa_lab::{
-    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, NetworkExport, Note,
-    Outcome, Parameter, Rollout, StartExport, Task,
+    Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
+    NetworkExport, Note, NotedBehaviour, Outcome, Parameter, Rollout, StartExport, Task,
 };
 use farsa_view::Schema;
 
@@ -107,6 +107,12 @@ impl Rollout for ReachTask {
     }
 }
 
+/// What an individual did, for strategies that want more than its fitness.
+static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+    objectives: &[("held [s]", 1.0), ("highest [cm]", 1.0)],
+    descriptors: &[("held [s]", [0.0, 6.0]), ("highest [cm]", [0.0, 60.0])],
+};
+
 impl Task for ReachTask {
     fn parameters(&self) -> Vec<Parameter> {
         self.ranges.parameters()
@@ -118,6 +124,10 @@ impl Task for ReachTask {
 
     fn terms(&self) -> Vec<String> {
         ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec()
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(&BEHAVIOUR)
     }
 
     fn schema(&self) -> Schema {

@@ -6,7 +6,7 @@ use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::team::config::TeamConfig;
 use crate::team::robots::Team;
-use farsa_lab::{ChannelGroup, Episode, EpisodeId, Error, Outcome, PlanarWorld};
+use farsa_lab::{Behaviour, ChannelGroup, Episode, EpisodeId, Error, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// Where the robots of a team are, and since when.
@@ -72,6 +72,11 @@ pub trait Scenario: Send {
 
     /// Names of the terms of the fitness.
     fn terms(&self) -> Vec<String>;
+
+    /// What there is to say of an individual beside its fitness.
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        None
+    }
 
     /// The outcome of the trial for population `own`.
     fn outcome(&self, own: usize, moment: Moment<'_>) -> Outcome;

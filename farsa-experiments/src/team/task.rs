@@ -8,8 +8,8 @@ use crate::team::config::{EYES, TeamConfig};
 use crate::team::episode::{Scenario, TeamEpisode};
 use crate::team::robots::OUTPUTS;
 use farsa_lab::{
-    ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, InWorld, Outcome, OwnedNetwork, Parameter,
-    PlanarWorld, Rollout, Task, mean_of_trials, network_parameters, resting_network, seconds,
+    Behaviour, ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, InWorld, Outcome, OwnedNetwork,
+    Parameter, PlanarWorld, Rollout, Task, mean_of_trials, network_parameters, resting_network, seconds,
 };
 use farsa_view::Schema;
 
@@ -135,6 +135,10 @@ impl<M: Scenario> Task for TeamTask<M> {
 
     fn terms(&self) -> Vec<String> {
         self.episode.scenario().terms()
+    }
+
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        self.episode.scenario().behaviour()
     }
 
     /// Sensors, neurons and outputs are those of the first robot, or of the individual's where populations meet.

@@ -15,8 +15,9 @@ use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk}
 use crate::walking::walker::{Legs, Walker};
 use crate::worlds::Engine;
 use farsa_lab::{
-    Bodies, ChannelGroup, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
-    Genotype, Note, Outcome, Parameter, Setting, Settings, Task, mean_of_trials, network_parameters, run_episode,
+    Behaviour, Bodies, ChannelGroup, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
+    Exports, Genotype, Note, Outcome, Parameter, Setting, Settings, Task, mean_of_note, mean_of_trials,
+    network_parameters, run_episode,
 };
 use farsa_view::Schema;
 
@@ -251,6 +252,11 @@ impl Experiment for BodyEvolution {
     }
 }
 
+/// Notes that a behaviour is told by.
+const WORK: &str = "work of the motor [J]";
+const LEGS: &str = "outer legs [m]";
+const SOLES: &str = "soles [m]";
+
 /// Evaluates walkers, each in a world of its own body.
 pub struct Walkers {
     config: Config,
@@ -331,12 +337,32 @@ impl Task for Walkers {
         mean_of_trials(trials)
     }
 
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(self)
+    }
+
     fn exports(&self) -> Option<&dyn Exports> {
         Some(self)
     }
 
     fn bodies(&self) -> Option<&dyn Bodies> {
         Some(self)
+    }
+}
+
+/// How much work a walk takes, and what body walks: its legs and its soles.
+impl Behaviour for Walkers {
+    fn objectives(&self) -> Vec<String> {
+        vec![format!("minus {WORK}")]
+    }
+
+    fn descriptors(&self) -> Vec<Parameter> {
+        let [legs, _, _, _, _, soles, ..] = self.config.ranges;
+        vec![Parameter::new(LEGS, legs), Parameter::new(SOLES, soles)]
+    }
+
+    fn describe(&self, trials: &[Outcome]) -> Vec<f64> {
+        vec![-mean_of_note(trials, WORK), mean_of_note(trials, LEGS), mean_of_note(trials, SOLES)]
     }
 }
 
@@ -388,16 +414,16 @@ where
     let mut outcome = outcome(&episode);
     let gait = episode.gait();
     let walker = gait.walker();
-    outcome.notes.push(("work of the motor [J]", Note::from(gait.energies()[0])));
+    outcome.notes.push((WORK, Note::from(gait.energies()[0])));
     outcome.notes.push(("energy gained [J]", Note::from(gait.energies()[1])));
     let [outer, inner] = walker.legs;
     outcome.notes.extend([
-        ("outer legs [m]", Note::from(outer.length)),
+        (LEGS, Note::from(outer.length)),
         ("inner legs [m]", Note::from(inner.length)),
         ("hip [kg]", Note::from(walker.hip_mass)),
         ("shanks [kg]", Note::from(outer.mass)),
         ("feet [kg]", Note::from(outer.foot_mass)),
-        ("soles [m]", Note::from(outer.foot_radius)),
+        (SOLES, Note::from(outer.foot_radius)),
         ("hip spacing [m]", Note::from(walker.hip_spacing)),
     ]);
     outcome

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
+use crate::experiment::evaluator::Parameter;
 use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::settings::{Setting, Source, Value};
 use crate::json::pretty;
@@ -65,7 +66,18 @@ struct Info {
     steps: usize,
     step_seconds: f64,
     fitness_terms: Vec<String>,
+    /// For strategies of several objectives, the fitness first.
+    objectives: Vec<String>,
+    /// What behaviour is described by.
+    descriptors: Vec<DescriptorInfo>,
     settings: Vec<SettingInfo>,
+}
+
+/// A value that describes a behaviour, and its range.
+#[derive(Serialize)]
+struct DescriptorInfo {
+    name: String,
+    range: [f64; 2],
 }
 
 /// What there is to know of a setting.
@@ -107,6 +119,10 @@ impl Info {
         let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.description();
         let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
         let settings = plan.settings.table().iter().map(SettingInfo::new);
+        let behaviour = evaluator.behaviour();
+        let others = behaviour.map(|behaviour| behaviour.objectives()).unwrap_or_default();
+        let descriptors = behaviour.map(|behaviour| behaviour.descriptors()).unwrap_or_default();
+        let descriptor = |Parameter { name, ends }| DescriptorInfo { name, range: ends };
         Ok(Self {
             experiment: plan.experiment.name().into(),
             summary: plan.experiment.summary().into(),
@@ -124,6 +140,8 @@ impl Info {
             steps,
             step_seconds,
             fitness_terms: evaluator.terms(),
+            objectives: ["fitness".into()].into_iter().chain(others).collect(),
+            descriptors: descriptors.into_iter().map(descriptor).collect(),
             settings: settings.collect(),
         })
     }
@@ -166,6 +184,16 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
     let clock = if seconds > 0.0 { format!(" ({seconds:?} s)") } else { String::new() };
     let _ = writeln!(text, "trials: {}, each of at most {} steps{clock}", info.trials, info.steps);
     let _ = writeln!(text, "fitness: {}", info.fitness_terms.join(", "));
+    if info.objectives.len() > 1 {
+        let _ = writeln!(text, "objectives: {}", info.objectives.join(", "));
+    }
+    if !info.descriptors.is_empty() {
+        let named = info
+            .descriptors
+            .iter()
+            .map(|DescriptorInfo { name, range: [low, high] }| format!("{name} {low:?} to {high:?}"));
+        let _ = writeln!(text, "behaviour: {}", named.collect::<Vec<_>>().join(", "));
+    }
     let _ = writeln!(text, "\nsettings:");
     for (setting, info) in plan.settings.table().iter().zip(&info.settings) {
         text.push_str(&info.text(setting));

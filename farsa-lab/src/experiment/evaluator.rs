@@ -5,6 +5,7 @@ use farsa_models::MjcfOptions;
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::behaviour::Behaviour;
 use crate::experiment::controller_export::{ControllerExport, CtrnnExport, StartExport};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::lanes::Lanes;
@@ -76,6 +77,11 @@ pub trait Task: Send {
     /// has `evolution.population` individuals and all parameters.
     fn populations(&self) -> Vec<String> {
         vec!["0".into()]
+    }
+
+    /// More objectives than the fitness, and what an individual did, where the experiment says so.
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        None
     }
 
     /// What can be exported, if anything can.

@@ -4,6 +4,7 @@ use farsa_body::{Recorder, World};
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::behaviour::Behaviour;
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Parameter, Task};
 use crate::experiment::in_lanes::{Batch, run_in_lanes};
@@ -162,6 +163,9 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
     }
     fn populations(&self) -> Vec<String> {
         self.rollout.populations()
+    }
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        self.rollout.behaviour()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.rollout.exports()

@@ -2,6 +2,7 @@
 //!
 //! - `definition`: what an experiment is to the command: a name, a table of settings, and what evaluates it
 //! - `evaluator`: parameters go in, outcomes come out; what only some experiments can do
+//! - `behaviour`: what an experiment says of an individual beside its fitness
 //! - `outcome`: what comes of a trial, and what is told of a robot and its controller
 //! - `episode`: one trial in a world, and the loop that runs it
 //! - `in_lanes`: the loop that runs many episodes side by side, one in each lane of a batch of worlds
@@ -16,6 +17,7 @@
 //! - `rescored`: an experiment that there is, under another fitness
 //! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
 
+pub(crate) mod behaviour;
 mod controlled;
 pub(crate) mod controller_export;
 pub(crate) mod definition;
@@ -32,6 +34,7 @@ pub(crate) mod outcome;
 mod rescored;
 pub(crate) mod settings;
 
+pub use behaviour::{Behaviour, NotedBehaviour, mean_of_note};
 pub use controlled::{Controlled, Objective, PlanarWorld, Trials};
 pub use controller_export::{
     ActuatorExport, ControllerExport, CtrnnExport, JudgeExport, MotorDrive, MotorExport, NetworkExport, PointExport,

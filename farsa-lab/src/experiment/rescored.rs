@@ -4,6 +4,7 @@ use farsa_body::Recorder;
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::behaviour::Behaviour;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Parameter, Task};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Description, Outcome, mean_of_trials};
@@ -60,6 +61,9 @@ impl Task for Rescored {
     }
     fn populations(&self) -> Vec<String> {
         self.inner.populations()
+    }
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        self.inner.behaviour()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.inner.exports()

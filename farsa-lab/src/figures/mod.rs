@@ -6,6 +6,7 @@
 //! - `normal`: the standard normal distribution
 //! - `plot`: Curves over generations as SVG: `fitness.svg` of a run and the figures of a report
 //! - `proportion`: shares of successes: their intervals, and whether two of them differ
+//! - `scatter`: points in two dimensions as SVG, darker where a third value is larger
 //! - `statistics`: Order statistics over a few runs
 
 pub(crate) mod bootstrap;
@@ -15,4 +16,5 @@ pub(crate) mod mann_whitney;
 mod normal;
 pub(crate) mod plot;
 pub(crate) mod proportion;
+pub(crate) mod scatter;
 pub(crate) mod statistics;

@@ -7,19 +7,19 @@ use crate::store::log::{Line, Row};
 
 /// Small, so that its letters can be read on a telephone too.
 const WIDTH: i32 = 640;
-const SIZE: (u32, u32) = (WIDTH as u32, 350);
+pub(crate) const SIZE: (u32, u32) = (WIDTH as u32, 350);
 /// Heights of the title and of a line of names below it.
 const TITLE: i32 = 36;
 const NAMES: i32 = 26;
-const MARGIN: i32 = 18;
-const FONT: (&str, u32) = ("sans-serif", 18);
+pub(crate) const MARGIN: i32 = 18;
+pub(crate) const FONT: (&str, u32) = ("sans-serif", 18);
 
 /// Three colours that a page may exchange for its own: background, letters with axes, and grid.
 pub(crate) const PAPER: &str = "#FFFFFF";
 pub(crate) const INK: &str = "#222222";
 pub(crate) const GRID: &str = "#E4E4E4";
-const INK_COLOR: RGBColor = RGBColor(0x22, 0x22, 0x22);
-const GRID_COLOR: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
+pub(crate) const INK_COLOR: RGBColor = RGBColor(0x22, 0x22, 0x22);
+pub(crate) const GRID_COLOR: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
 
 /// Colours that the colour-blind tell apart, by Okabe and Ito, the most different first; the yellow is too pale.
 const COLORS: [RGBColor; 6] = [
@@ -228,8 +228,22 @@ impl Chart {
 
     fn limits(&self) -> Limits {
         let values = self.curves.iter().flat_map(|curve| curve.values.iter().chain(curve.band.iter().flatten()));
-        let finite = || values.clone().copied().filter(|x| x.is_finite());
-        let (mut low, mut high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        Limits::of(values.copied())
+    }
+}
+
+/// The ends of an axis, in a part of the values.
+pub(crate) struct Limits {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) part: f64,
+}
+
+impl Limits {
+    /// Of an axis that has room for all finite values.
+    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Self {
+        let ends = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
+        let (mut low, mut high) = values.filter(|x| x.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), ends);
         if low > high {
             (low, high) = (0.0, 1.0);
         }
@@ -239,19 +253,12 @@ impl Chart {
         let margin = (0.05 * (high - low)).max(1e-9 * high.abs()).max(f64::MIN_POSITIVE.sqrt());
         // A label beyond could not be written.
         let most = f64::MAX * part;
-        Limits { low: (low - margin).max(-most), high: (high + margin).min(most), part }
+        Self { low: (low - margin).max(-most), high: (high + margin).min(most), part }
     }
 }
 
-/// The ends of the upward axis, in a part of the values.
-struct Limits {
-    low: f64,
-    high: f64,
-    part: f64,
-}
-
 /// A value at the axis: six digits after the point, and no more digits than a value has.
-fn label(y: f64) -> String {
+pub(crate) fn label(y: f64) -> String {
     if y.abs() < 1e15 { ((y * 1e6).round() / 1e6 + 0.0).to_string() } else { format!("{y:e}") }
 }
 

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use crate::error::Error;
 use crate::figures::plot;
 use crate::run::begin::lineage;
+use crate::run::collection::CollectionTable;
 use crate::run::contained::contained;
 use crate::run::diagnostics::DiagnosticsTable;
 use crate::run::leading::{facts, lead, meet, order};
@@ -113,6 +114,8 @@ struct Run<'d> {
     /// Evaluations that failed in this process, and the first of them.
     failed: (u64, Option<FailedEvaluation>),
     diagnostics: DiagnosticsTable,
+    /// None for a strategy that keeps nothing beyond a generation.
+    collection: Option<CollectionTable>,
     manifest: Manifest,
     /// The best of the last generation, once one is finished in this process.
     champions: Option<Champions>,
@@ -138,6 +141,7 @@ impl<'d> Run<'d> {
             replace(&directory.config(), text.as_bytes())?;
         }
         let file = told.file(directory)?;
+        let collection = CollectionTable::new(&progression.search, pool.evaluator());
         let lineage = lineage(plan, directory, &checkpoint, &told.record, &progression.search)?;
         let Told { lines, diagnostics, .. } = told;
         let (log, kept) = Log::resume(&directory.log(), lines, progression.record.populations())?;
@@ -155,6 +159,7 @@ impl<'d> Run<'d> {
             failures: Failures::resume(&directory.failures(), checkpoint.failures)?,
             failed: (0, None),
             diagnostics: DiagnosticsTable::new(plan.definition().diagnostics(), diagnostics),
+            collection,
             manifest,
             champions: None,
             started: Instant::now(),
@@ -239,6 +244,9 @@ impl<'d> Run<'d> {
             champions.write(&directory.champion())?;
         }
         self.diagnostics.write(directory, &self.title)?;
+        if let Some(collection) = &self.collection {
+            collection.write(&self.progression.search, directory, &self.title)?;
+        }
         let generation = self.progression.search.generation();
         let state = self.progression.search.snapshot().map(|strategy| strategy.save());
         Checkpoint { identity: identity.clone(), generation, record, lineage, failures, state }

@@ -1,12 +1,13 @@
-//! The fitness of a generation: all trials of all individuals, and which of them failed.
+//! What a generation comes to: all trials of all individuals, their fitness and behaviour, and which of them failed.
 
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
-use farsa_evo::Fitness;
+use farsa_evo::{JudgementShape, Judgements};
 use farsa_num::Digest;
 
+use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
-use crate::experiment::evaluator::Evaluation;
+use crate::experiment::evaluator::{Evaluation, Evaluator};
 use crate::experiment::outcome::Outcome;
 use crate::run::contained::contained;
 use crate::run::pool::{Pool, Unfinished};
@@ -40,17 +41,18 @@ impl<'g> Opponents<'g> {
     }
 }
 
-/// Evaluates all trials of all individuals and says what fitness each comes to, and which failed.
+/// Evaluates all trials of all individuals and says what each comes to, as many numbers as are asked for, and which failed.
 ///
 /// A trial that failed makes its individual the worst, whatever comes of the others.
-pub(crate) fn fitness_of_all(
+pub(crate) fn judgements_of_all(
     pool: &mut Pool<'_>,
     parameters: &[Vec<f32>],
     opponents: Opponents<'_>,
     of: EpisodeId,
+    shape: JudgementShape,
     stop: &AtomicBool,
     progress: &Progress,
-) -> Result<(Vec<Fitness>, Vec<FailedEvaluation>), Unfinished> {
+) -> Result<(Judgements, Vec<FailedEvaluation>), Unfinished> {
     let (count, trials) = (parameters.len(), pool.evaluator().trials());
     let ended = AtomicUsize::new(0);
     let done = |_: Option<&Outcome>| {
@@ -61,25 +63,55 @@ pub(crate) fn fitness_of_all(
     let mut outcomes = evaluate_all(pool, parameters, opponents, of, stop, done)?;
     let evaluator = pool.evaluator();
     let names = evaluator.terms();
-    let (mut all, mut failed) = (Vec::with_capacity(count), Vec::new());
+    let (mut all, mut failed) = (Vec::with_capacity(count * shape.width()), Vec::new());
     for individual in 0..count {
         let own = outcomes.iter_mut().skip(individual).step_by(count).map(Option::take);
-        let found = fitness_of(own, &names, &|outcomes| evaluator.fitness(outcomes));
-        all.push(found.as_ref().map_or(Fitness::WORST, |fitness| *fitness));
-        if let Err((trial, why)) = found {
-            let (generation, individual) = (of.generation, individual as u32);
-            failed.push(FailedEvaluation { generation, individual, trial, why });
+        match judged(own, &names, &|outcomes| row(evaluator, shape, outcomes)) {
+            Ok(mut row) => all.append(&mut row),
+            Err((trial, why)) => {
+                all.extend((0..shape.width()).map(|_| f64::NAN));
+                let (generation, individual) = (of.generation, individual as u32);
+                failed.push(FailedEvaluation { generation, individual, trial, why });
+            }
         }
     }
-    Ok((all, failed))
+    let judgements = Judgements::nan_as_failed(shape, all);
+    Ok((judgements.map_err(|error| Error::Other(error.to_string()))?, failed))
 }
 
-/// The fitness of an individual from its trials, or its first trial that failed and why.
-fn fitness_of(
+/// The objectives, the fitness first, and then the descriptor values of an individual, or what is wrong with them.
+fn row(evaluator: &dyn Evaluator, shape: JudgementShape, trials: &[Outcome]) -> Result<Vec<f64>, String> {
+    let fitness = evaluator.fitness(trials);
+    if !fitness.is_finite() {
+        return Err(format!("the fitness of its trials is {fitness}"));
+    }
+    let mut row = vec![fitness];
+    if let Some(behaviour) = evaluator.behaviour().filter(|_| shape != JudgementShape::FITNESS) {
+        let names: Vec<String> =
+            behaviour.objectives().into_iter().chain(behaviour.descriptors().into_iter().map(|one| one.name)).collect();
+        let described = behaviour.describe(trials);
+        let (expected, found) = (names.len(), described.len());
+        if expected != found {
+            return Err(format!("its behaviour is described by {found} numbers where {expected} are named"));
+        }
+        if let Some((name, x)) = names.iter().zip(&described).find(|(_, x)| !x.is_finite()) {
+            return Err(format!("`{name}` of its behaviour is {x}"));
+        }
+        // A strategy may want fewer objectives than there are, and wants all descriptor values or none.
+        let objectives = behaviour.objectives().len();
+        row.extend(described.iter().take(objectives.min(shape.objectives.saturating_sub(1))));
+        row.extend(described.iter().skip(objectives).take(shape.descriptors));
+    }
+    let (expected, found) = (shape.width(), row.len());
+    if expected == found { Ok(row) } else { Err(format!("{found} numbers where the strategy wants {expected}")) }
+}
+
+/// What an individual comes to by its trials, or its first trial that failed and why.
+fn judged(
     trials: impl Iterator<Item = Option<Outcome>>,
     names: &[String],
-    fitness: &dyn Fn(&[Outcome]) -> f64,
-) -> Result<Fitness, (Option<u32>, String)> {
+    row: &dyn Fn(&[Outcome]) -> Result<Vec<f64>, String>,
+) -> Result<Vec<f64>, (Option<u32>, String)> {
     let mut outcomes = Vec::new();
     for (trial, outcome) in (0..).zip(trials) {
         // Only what comes after a trial that failed is left out.
@@ -89,9 +121,8 @@ fn fitness_of(
         }
         outcomes.push(outcome);
     }
-    match contained(|| fitness(&outcomes)) {
-        Ok(fitness) if fitness.is_finite() => Ok(Fitness::nan_as_failed(fitness)),
-        Ok(fitness) => Err((None, format!("the fitness of its trials is {fitness}"))),
+    match contained(|| row(&outcomes)) {
+        Ok(row) => row.map_err(|why| (None, why)),
         Err(why) => Err((None, format!("its fitness panicked: {why}"))),
     }
 }

@@ -3,6 +3,7 @@
 //! - `begin`: how a run begins, and how it is taken up where its checkpoint left it
 //! - `bench`: `farsa bench`: how fast trials run here, and how long a whole study would take
 //! - `best_of_run`: the best of a run, for comparisons that the command does not make
+//! - `collection`: what a strategy keeps beyond a generation, as a table and a picture
 //! - `config_file`: a configuration file, and the settings of a command line
 //! - `contained`: code of an experiment that panics, caught
 //! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
@@ -27,6 +28,7 @@
 pub(crate) mod begin;
 pub(crate) mod bench;
 mod best_of_run;
+mod collection;
 pub(crate) mod config_file;
 pub(crate) mod contained;
 mod diagnostics;

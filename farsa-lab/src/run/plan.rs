@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use farsa_evo::JudgementShape;
 use farsa_num::crc32;
 
 use crate::error::Error;
@@ -131,13 +132,18 @@ impl<'e> Plan<'e> {
     pub(crate) fn strategy(&self) -> Result<Search, Error> {
         let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
         let (populations, genes) = (task.populations().len(), task.parameters().len());
+        let (objectives, ranges) = task.behaviour().map_or((1, Vec::new()), |behaviour| {
+            let ranges: Vec<[f64; 2]> = behaviour.descriptors().iter().map(|value| value.ends).collect();
+            (1 + behaviour.objectives().len(), ranges)
+        });
         drop(task);
         let (gene_bits, settings, seed) = (self.experiment.gene_bits(), &self.settings, self.seed);
         let evaluator: &dyn Fn() -> Result<Box<dyn Evaluator>, Error> = &|| self.evaluator();
         if populations == 0 {
             return Err(Error::Other(format!("{}: no population", self.experiment.name())));
         }
-        let start = StrategyStart { populations, genes, gene_bits, settings, seed, evaluator };
+        let descriptors = ranges.as_slice();
+        let start = StrategyStart { populations, genes, gene_bits, objectives, descriptors, settings, seed, evaluator };
         let strategy = self.definition().start(&start).map_err(|error| match error {
             Error::Other(why) => Error::Other(format!("{}: {why}", self.experiment.name())),
             Error::Usage(why) => Error::Usage(format!("{}: {why}", self.definition().name())),
@@ -150,6 +156,12 @@ impl<'e> Plan<'e> {
                 "the strategy `{name}` has {} populations of {} genes where {experiment} has {populations} of {genes}",
                 found.0, found.1
             )));
+        }
+        let wanted = strategy.judged_by();
+        if wanted.objectives > objectives || ![0, descriptors.len()].contains(&wanted.descriptors) {
+            let (name, experiment) = (self.definition().name(), self.experiment.name());
+            let found = JudgementShape::new(objectives, descriptors.len());
+            return Err(Error::Other(format!("the strategy `{name}` wants {wanted} where {experiment} has {found}")));
         }
         Ok(strategy)
     }

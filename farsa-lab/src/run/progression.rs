@@ -7,7 +7,7 @@ use farsa_evo::{Fitness, Record, Statistics};
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::run::begin::resumed;
-use crate::run::fitness::{Opponents, fitness_of_all};
+use crate::run::fitness::{Opponents, judgements_of_all};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
@@ -76,7 +76,9 @@ impl Progression {
         let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
         let id = EpisodeId { seed, generation, ..EpisodeId::default() };
         let opponents = Opponents { parameters: &opponents, each: populations - 1 };
-        let (fitness, failed) = fitness_of_all(pool, &parameters, opponents, id, stop, progress)?;
+        let shape = self.search.judged_by();
+        let (judgements, failed) = judgements_of_all(pool, &parameters, opponents, id, shape, stop, progress)?;
+        let fitness = judgements.fitness();
         let ranked_by = self.search.ranked_by(&fitness);
         let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
         let best = self.search.champions(&ranked_by).into_iter().map(|best| {
@@ -86,7 +88,7 @@ impl Progression {
         let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
         let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
         let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
-        let told = self.search.tell(&mut self.record, &fitness);
+        let told = self.search.tell(&mut self.record, &judgements);
         told.map_err(|error| lost(&error.to_string()))?;
         self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         Ok(Evaluated { fitness, failed, statistics, each, best })

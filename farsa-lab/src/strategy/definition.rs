@@ -78,6 +78,10 @@ pub struct StrategyStart<'s> {
     pub genes: usize,
     /// Bits of a gene, 1 to 16.
     pub gene_bits: u32,
+    /// Objectives that the experiment names, the fitness among them.
+    pub objectives: usize,
+    /// The range, low to high, of each value that the experiment describes a behaviour by.
+    pub descriptors: &'s [[f64; 2]],
     /// The settings of the run.
     pub settings: &'s Settings,
     /// The seed of the run.
@@ -87,6 +91,28 @@ pub struct StrategyStart<'s> {
 }
 
 impl StrategyStart<'_> {
+    /// The ranges of the values that describe a behaviour, for a strategy of this name.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for an experiment that describes none.
+    pub fn wanted_descriptors(&self, strategy: &str) -> Result<&[[f64; 2]], Error> {
+        match self.descriptors {
+            [] => Err(Error::Other(format!("says nothing of behaviour, which `{strategy}` wants"))),
+            ranges => Ok(ranges),
+        }
+    }
+
+    /// The number of objectives, more than one, for a strategy of this name.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for an experiment with its fitness alone.
+    pub fn wanted_objectives(&self, strategy: &str) -> Result<usize, Error> {
+        match self.objectives {
+            0 | 1 => Err(Error::Other(format!("has its fitness alone, where `{strategy}` wants several objectives"))),
+            several => Ok(several),
+        }
+    }
+
     /// A search over words of each population by the strategy that `search` makes of a seed.
     ///
     /// # Errors

@@ -3,13 +3,14 @@
 use crate::error::Error;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::learning::Learning;
+use crate::strategy::novelty::NOVELTY_SEARCH;
 use crate::strategy::one_plus_one::OnePlusOne;
 use crate::strategy::random::RANDOM;
 use crate::strategy::reals;
 use crate::strategy::truncation::Truncation;
 
 /// Ours.
-static KNOWN: [&dyn StrategyDefinition; 15] = [
+static KNOWN: [&dyn StrategyDefinition; 19] = [
     &Truncation,
     &OnePlusOne,
     &RANDOM,
@@ -25,6 +26,10 @@ static KNOWN: [&dyn StrategyDefinition; 15] = [
     &reals::OPEN_AI_ES,
     &reals::PGPE,
     &reals::ARS,
+    &reals::NSGA2,
+    &reals::MAP_ELITES,
+    &reals::CMA_ME,
+    &NOVELTY_SEARCH,
 ];
 
 /// The strategies of this crate, in the order in which they are listed.
@@ -71,8 +76,16 @@ mod tests {
         for strategy in KNOWN.iter().filter(|strategy| strategy.name() != "learning") {
             let settings = Settings::new(strategy.settings()).unwrap();
             for populations in [1, 2] {
-                let start =
-                    StrategyStart { populations, genes: 5, gene_bits: 16, settings: &settings, seed: 3, evaluator };
+                let start = StrategyStart {
+                    populations,
+                    genes: 5,
+                    gene_bits: 16,
+                    objectives: 2,
+                    descriptors: &[[0.0, 1.0], [-3.0, 5.0]],
+                    settings: &settings,
+                    seed: 3,
+                    evaluator,
+                };
                 let made = strategy.start(&start);
                 if (strategy.name(), populations) == ("one-plus-one", 2) {
                     assert!(made.is_err());

@@ -205,7 +205,16 @@ mod tests {
         let settings = Settings::new(Learning.settings()).unwrap();
         let evaluator = || Ok(Box::new(Forgetful) as Box<dyn Evaluator>);
         let (populations, genes, gene_bits) = (1, 1, 16);
-        let start = StrategyStart { populations, genes, gene_bits, settings: &settings, seed, evaluator: &evaluator };
+        let start = StrategyStart {
+            populations,
+            genes,
+            gene_bits,
+            objectives: 1,
+            descriptors: &[],
+            settings: &settings,
+            seed,
+            evaluator: &evaluator,
+        };
         match Learning.start(&start).unwrap() {
             Search::Words(strategy) => strategy,
             other => panic!("{other:?}"),

@@ -8,6 +8,7 @@
 //! - `truncation`: the truncation algorithm, in one population or several
 //! - `one_plus_one`: one parent and one mutant
 //! - `random`: search without selection
+//! - `novelty`: novelty search over the truncation algorithm
 //! - `reals`: strategies over real genes
 //! - `learning`: one individual, which is trained by an iteration after each generation
 //! - `history`: the genomes and champions of past generations
@@ -17,6 +18,7 @@ pub(crate) mod definition;
 pub(crate) mod history;
 pub(crate) mod known;
 mod learning;
+mod novelty;
 mod one_plus_one;
 pub(crate) mod opponents;
 mod random;

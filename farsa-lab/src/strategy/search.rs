@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use farsa_evo::{EvoError, Fitness, Genealogy, Population, Record, Snapshot, Strategy};
+use farsa_evo::{
+    Collection, EvoError, Fitness, Genealogy, JudgementShape, Judgements, Population, Record, Snapshot, Strategy,
+};
 
 use crate::experiment::genotype::Genotype;
 
@@ -100,9 +102,22 @@ impl Search {
         each!(self, strategy => Record::new(strategy.as_mut()))
     }
 
-    /// Tells the fitness of the current generation and records it.
-    pub(crate) fn tell(&mut self, record: &mut Record, fitness: &[Fitness]) -> Result<(), EvoError> {
-        each!(self, strategy => record.tell(strategy.as_mut(), fitness))
+    /// How many objectives and descriptor values it is told of each individual.
+    pub fn judged_by(&self) -> JudgementShape {
+        each!(self, strategy => strategy.judged_by())
+    }
+
+    /// What it keeps beyond a generation, where it does.
+    pub(crate) fn collection(&self) -> Option<&dyn Collection> {
+        each!(self, strategy => strategy.collection())
+    }
+
+    /// Tells the judgements of the current generation and records them.
+    pub(crate) fn tell(&mut self, record: &mut Record, judgements: &Judgements) -> Result<(), EvoError> {
+        each!(self, strategy => match judgements.shape() {
+            JudgementShape::FITNESS => record.tell(strategy.as_mut(), &judgements.fitness()),
+            _ => record.tell_judgements(strategy.as_mut(), judgements),
+        })
     }
 
     /// Brings the strategy to a generation of a record.

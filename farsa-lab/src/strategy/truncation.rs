@@ -58,7 +58,7 @@ impl StrategyDefinition for Truncation {
 ///
 /// # Errors
 /// [`Error::Setting`] when the values do not go together.
-fn config(settings: &Settings, genes: usize, gene_bits: u32) -> Result<GaConfig, Error> {
+pub(super) fn config(settings: &Settings, genes: usize, gene_bits: u32) -> Result<GaConfig, Error> {
     let config = GaConfig {
         genes,
         gene_bits,

@@ -2,17 +2,26 @@
 
 use std::fs;
 
+use farsa_body::Recorder;
+use farsa_view::Schema;
+
 use super::{Numbers, pool, rows, run, scratch};
+use crate::error::Error;
 use crate::evaluation::replay::{Which, replay};
 use crate::evaluation::test;
+use crate::experiment::behaviour::Behaviour;
+use crate::experiment::definition::Experiment;
+use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
 use crate::experiment::lanes::Wanted;
-use crate::experiment::settings::Value;
+use crate::experiment::outcome::Outcome;
+use crate::experiment::settings::{Setting, Settings, Value};
 use crate::run::begin::create;
 use crate::run::config_file::ConfigFile;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::records::Champions;
 use crate::run::told::history;
+use crate::store::directory::Directory;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::settings::{GENERATIONS as GENERATIONS_KEY, POPULATION};
 use crate::strategy::{Truncation, strategies};
@@ -27,11 +36,14 @@ fn plan<'n>(numbers: &'n Numbers, strategy: &'static dyn StrategyDefinition, gen
         // What the experiment counts by.
         let size = i64::try_from(super::SIZE).unwrap();
         plan.settings.set("", POPULATION, Value::Whole(size)).unwrap();
-        if strategy.name() == "truncation" {
+        if ["truncation", "novelty-search"].contains(&strategy.name()) {
             plan.settings.set("", "evolution.parents", Value::Whole(2)).unwrap();
         }
         if strategy.name() == "evolution-strategy" {
             plan.settings.set("", "strategy.parents", Value::Whole(2)).unwrap();
+        }
+        if strategy.name() == "cma-me" {
+            plan.settings.set("", "strategy.emitters", Value::Whole(2)).unwrap();
         }
     }
     plan
@@ -112,6 +124,148 @@ fn reals_search_what_words_search() {
         assert!((found[0] - 100.0).abs() < 30.0 && (found[1] - 7.0).abs() < 60.0, "{name}: {found:?}");
         fs::remove_dir_all(root).unwrap();
     }
+}
+
+/// The lines of a run's archive.
+fn archive(directory: &Directory) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(directory.path().join("archive.csv")).unwrap();
+    text.lines().map(|line| line.split(',').map(String::from).collect()).collect()
+}
+
+#[test]
+fn an_archive_names_individuals_that_the_record_finds() {
+    let alone = Numbers { strategy: &Truncation, populations: 1 };
+    for (name, cells) in [("map-elites", "grid"), ("map-elites", "cvt"), ("cma-me", "grid"), ("nsga2", "")] {
+        let root = scratch(&format!("archive-{name}-{cells}"));
+        let strategy = *strategies().iter().find(|strategy| strategy.name() == name).unwrap();
+        let mut plan = plan(&alone, strategy, 20);
+        if name != "nsga2" {
+            plan.settings.set("", "strategy.cells", Value::Whole(100)).unwrap();
+            plan.settings.set("", "strategy.division", Value::Word(cells.into())).unwrap();
+        }
+        let directory = create(&plan, &root).unwrap();
+        run(&plan, &directory, 2);
+        let lines = archive(&directory);
+        let head = if name == "nsga2" { vec!["fitness", "minus to 200"] } else { vec!["fitness", "first", "second"] };
+        assert_eq!(lines[0], [vec!["cell", "generation", "individual"], head].concat());
+        assert!(lines.len() > if name == "nsga2" { 5 } else { 60 }, "{name} {cells}: {} lines", lines.len());
+        let (_, history, _) = history(&plan, &directory).unwrap();
+        let evaluator = plan.evaluator().unwrap();
+        let genotype = plan.genotype(evaluator.as_ref());
+        for line in &lines[1..] {
+            let number = |column: usize| line[column].parse::<f64>().unwrap();
+            let genome = history.genomes(&[(number(1) as u32, number(2) as usize)]).unwrap().remove(0);
+            let found = genome.decode(&genotype).unwrap().into_iter().map(f64::from).collect::<Vec<_>>();
+            if name == "nsga2" {
+                assert!((number(4) + (found[1] - 200.0).abs()).abs() < 1e-4, "{line:?}: {found:?}");
+            } else {
+                assert!((number(4) - found[0]).abs() < 1e-9 && (number(5) - found[1]).abs() < 1e-9, "{line:?}");
+            }
+        }
+        // It is written anew when it was lost.
+        let before = fs::read(root.join("archive.csv")).unwrap();
+        fs::remove_file(root.join("archive.csv")).unwrap();
+        run(&plan, &directory, 1);
+        assert_eq!(fs::read(root.join("archive.csv")).unwrap(), before);
+        fs::remove_dir_all(root).unwrap();
+    }
+}
+
+/// An experiment whose description is another than it should be.
+#[derive(Clone, Copy)]
+struct Described(&'static [f64]);
+
+impl Behaviour for Described {
+    fn objectives(&self) -> Vec<String> {
+        vec!["speed".into()]
+    }
+    fn descriptors(&self) -> Vec<Parameter> {
+        vec![Parameter::new("place", [0.0, 1.0])]
+    }
+    fn describe(&self, _: &[Outcome]) -> Vec<f64> {
+        self.0.to_vec()
+    }
+}
+
+impl Task for Described {
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("gene", [0.0, 1.0])]
+    }
+    fn schema(&self) -> Schema {
+        Schema::from_scalars(["gene"])
+    }
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        if self.0.is_empty() { None } else { Some(self) }
+    }
+}
+
+impl Evaluator for Described {
+    fn evaluate(&mut self, _: Evaluation<'_>, _: Option<&mut dyn Recorder>) -> Outcome {
+        Outcome { terms: vec![1.0], steps: 1, ..Outcome::default() }
+    }
+}
+
+impl Experiment for Described {
+    fn name(&self) -> &'static str {
+        "described"
+    }
+    fn summary(&self) -> &'static str {
+        "describes behaviours in numbers of its own"
+    }
+    fn settings(&self, _: &str) -> Vec<Setting> {
+        Vec::new()
+    }
+    fn prepare(&self, _: &str, _: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        Ok(Box::new(*self))
+    }
+}
+
+#[test]
+fn a_behaviour_that_is_none_is_a_failed_evaluation() {
+    let by = |name: &str| *strategies().iter().find(|strategy| strategy.name() == name).unwrap();
+    let cases: [(&str, &'static [f64], &str); 5] = [
+        ("nsga2", &[f64::NAN, 0.5], "`speed` of its behaviour is NaN"),
+        ("map-elites", &[1.0, f64::INFINITY], "`place` of its behaviour is inf"),
+        ("novelty-search", &[1.0], "its behaviour is described by 1 numbers where 2 are named"),
+        ("map-elites", &[1.0, 0.5, 0.5], "its behaviour is described by 3 numbers where 2 are named"),
+        ("truncation", &[f64::NAN], ""),
+    ];
+    for (number, (name, numbers, why)) in cases.into_iter().enumerate() {
+        let (root, described) = (scratch(&format!("described-{number}")), Described(numbers));
+        let mut plan = Plan::with_strategy(&described, None, "", Some(by(name))).unwrap();
+        plan.settings.set("", GENERATIONS_KEY, Value::Whole(2)).unwrap();
+        let directory = create(&plan, &root).unwrap();
+        run(&plan, &directory, 2);
+        let failures = fs::read_to_string(directory.failures()).unwrap_or_default();
+        if why.is_empty() {
+            assert_eq!(failures, "", "{name}");
+        } else {
+            assert!(failures.lines().count() == 201 && failures.contains(why), "{name}: {failures}");
+        }
+        fs::remove_dir_all(root).unwrap();
+    }
+}
+
+#[test]
+fn what_an_experiment_does_not_say_is_asked_for_by_name() {
+    let by = |name: &str| *strategies().iter().find(|strategy| strategy.name() == name).unwrap();
+    let silent = Described(&[]);
+    let wants = |name: &str| {
+        let plan = Plan::with_strategy(&silent, None, "", Some(by(name))).unwrap();
+        plan.strategy().map(|_| ()).unwrap_err().to_string()
+    };
+    for name in ["map-elites", "cma-me", "novelty-search"] {
+        assert_eq!(
+            wants(name),
+            "described: says nothing of behaviour, which `map-elites` wants".replace("map-elites", name)
+        );
+    }
+    assert_eq!(wants("nsga2"), "described: has its fitness alone, where `nsga2` wants several objectives");
+    let told = Described(&[0.0, 0.0]);
+    let mut plan = Plan::with_strategy(&told, None, "", Some(by("cma-me"))).unwrap();
+    plan.settings.set("", "strategy.emitters", Value::Whole(7)).unwrap();
+    let error = plan.strategy().map(|_| ()).unwrap_err().to_string();
+    assert_eq!(error, "`evolution.population`: 555 individuals are not as many of each of 7 emitters");
 }
 
 #[test]

@@ -25,6 +25,7 @@ use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::evaluation::replay::{Which, replay};
+use crate::experiment::behaviour::{Behaviour, NotedBehaviour};
 use crate::experiment::definition::Experiment;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Evaluation, Evaluator, Iteration, Learner, Parameter, Task};
@@ -121,7 +122,16 @@ impl Task for Numbers {
     fn description(&self) -> Description {
         Description::default()
     }
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        Some(&BEHAVIOUR)
+    }
 }
+
+/// The second gene is to match another number too; an individual is what its genes are.
+static BEHAVIOUR: NotedBehaviour = NotedBehaviour {
+    objectives: &[("to 200", -1.0)],
+    descriptors: &[("first", [0.0, 255.0]), ("second", [0.0, 255.0])],
+};
 
 /// Words half way from where they are to 100 and 7, and a little beside it.
 impl Learner for Numbers {
@@ -148,11 +158,16 @@ impl Evaluator for Numbers {
             recorder.scalars(&[f64::from(opponents.first().unwrap_or(&parameters)[0])]);
             recorder.tick(0.0);
         }
+        let notes = vec![
+            ("to 200", f64::from((parameters[1] - 200.0).abs()).into()),
+            ("first", f64::from(parameters[0]).into()),
+            ("second", f64::from(parameters[1]).into()),
+        ];
         if self.populations == 1 {
-            return Outcome { terms: vec![Self::alone(parameters, id)], steps: 1, ..Outcome::default() };
+            return Outcome { terms: vec![Self::alone(parameters, id)], steps: 1, notes, ..Outcome::default() };
         }
         let fitness = Self::against(parameters, opponents, id.population(SIZE));
-        Outcome { terms: vec![fitness], steps: 1, success: fitness >= 0.0, ..Outcome::default() }
+        Outcome { terms: vec![fitness], steps: 1, success: fitness >= 0.0, notes, ..Outcome::default() }
     }
     fn learner(&mut self) -> Option<&mut dyn Learner> {
         Some(self)

@@ -193,12 +193,15 @@ fn populations_meet_each_others_champions() {
     assert!(text.contains(" of generation 8 against each other"), "{text}");
     let csv = fs::read_to_string(directory.test()).unwrap();
     let [a, b, c] = [0, 1, 2].map(|p| f64::from(words(&best[p])[0]));
-    let head = "index,trial,steps,success,fitness,fitness of population 1,success of population 1,\
+    let head = "index,trial,steps,success,fitness,to 200,first,second,fitness of population 1,success of population 1,\
                 fitness of population 2,success of population 2";
     let (seeker, first, second) =
         (-(a - b).abs() - (a - c).abs(), (b - a).abs() + (b - c).abs(), (c - a).abs() + (c - b).abs());
     assert_eq!(csv.lines().next(), Some(head));
-    assert_eq!(csv.lines().nth(2).unwrap(), format!("1,1,1,{},{seeker:?},{first:?},1,{second:?},1", seeker >= 0.0));
+    let own = words(&best[0]).iter().map(|gene| f64::from(*gene)).collect::<Vec<_>>();
+    let notes = format!("{:?},{:?},{:?}", (own[1] - 200.0).abs(), own[0], own[1]);
+    let line = format!("1,1,1,{},{seeker:?},{notes},{first:?},1,{second:?},1", seeker >= 0.0);
+    assert_eq!(csv.lines().nth(2).unwrap(), line);
     assert_eq!(csv.lines().count(), 5);
     assert_eq!(text, test::test(&plan, &directory, 4, 1, 1, Wanted::ONE, true).unwrap().text());
     fs::remove_dir_all(root).unwrap();

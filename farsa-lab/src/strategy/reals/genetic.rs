@@ -5,7 +5,7 @@ use farsa_evo::{
     Selection, SteadyState, SteadyStateConfig, StepSizes, Survival,
 };
 
-use super::{SIGMA, number_or, sigma, sizes};
+use super::{SIGMA, bounds, number_or, sigma, sizes};
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart};
@@ -25,11 +25,6 @@ const NOISE: &str = "strategy.noise";
 const SURVIVAL: &str = "strategy.survival";
 const RECOMBINATION: &str = "strategy.recombination";
 const STEP_SIZES: &str = "strategy.step_sizes";
-
-/// The ranges of all genes.
-fn bounds(genes: usize) -> Vec<[f64; 2]> {
-    vec![[-1.0, 1.0]; genes]
-}
 
 /// A mutation's size as a share of the range.
 fn share(default: f64) -> Setting {

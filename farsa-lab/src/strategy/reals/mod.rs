@@ -8,12 +8,16 @@
 //! - `covariance`: covariance matrix adaptation, full and separable
 //! - `natural`: natural evolution strategies
 //! - `gradient`: estimated gradients
+//! - `pareto`: several objectives
+//! - `map_elites`: archives of individuals that behave differently
 
 mod cosyne;
 mod covariance;
 mod genetic;
 mod gradient;
+mod map_elites;
 mod natural;
+mod pareto;
 
 use crate::error::Error;
 use crate::experiment::settings::{Setting, Settings};
@@ -24,9 +28,16 @@ pub(super) use cosyne::COSYNE;
 pub(super) use covariance::{CMA_ES, SEPARABLE_CMA_ES};
 pub(super) use genetic::{EVOLUTION_STRATEGY, REAL_GA, STEADY_STATE};
 pub(super) use gradient::{ARS, OPEN_AI_ES, PGPE};
+pub(super) use map_elites::{CMA_ME, MAP_ELITES};
 pub(super) use natural::{SNES, XNES};
+pub(super) use pareto::NSGA2;
 
 const SIGMA: &str = "strategy.sigma";
+
+/// The ranges of all genes.
+fn bounds(genes: usize) -> Vec<[f64; 2]> {
+    vec![[-1.0, 1.0]; genes]
+}
 
 /// How many generations, and individuals of each.
 fn sizes(population: Setting) -> Vec<Setting> {

@@ -1,0 +1,89 @@
+//! What an experiment says of an individual beside its fitness: more objectives, and what it did.
+
+use crate::experiment::evaluator::Parameter;
+use crate::experiment::outcome::{Note, Outcome};
+
+/// What an experiment says of an individual beside its fitness, [`Task::behaviour`](crate::Task::behaviour): for strategies that
+/// search for several objectives, such as NSGA-II, or for individuals that behave differently, such as MAP-Elites.
+///
+/// The fitness is the first objective of every strategy; those here come after it. [`NotedBehaviour`] is one that is all said by a
+/// table of [`Outcome::notes`].
+pub trait Behaviour {
+    /// The objectives beside the fitness, in their order; more of each is better. By default none.
+    fn objectives(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The values that describe a behaviour, each with the range, low to high, that an archive divides; a value beyond it counts
+    /// as the nearest end. By default none.
+    fn descriptors(&self) -> Vec<Parameter> {
+        Vec::new()
+    }
+
+    /// The objectives and then the descriptor values of an individual, from its trials in their order; with a number that is not
+    /// finite it counts as failed.
+    fn describe(&self, trials: &[Outcome]) -> Vec<f64>;
+}
+
+/// A [`Behaviour`] of means over the trials of [notes](Outcome::notes) that are numbers.
+///
+/// ```
+/// use farsa_lab::{Behaviour, NotedBehaviour, Outcome};
+///
+/// static WALK: NotedBehaviour = NotedBehaviour {
+///     objectives: &[("work [J]", -1.0)],
+///     descriptors: &[("left foot on the ground", [0.0, 1.0])],
+/// };
+/// let trial = |work: f64, share: f64| Outcome {
+///     notes: vec![("work [J]", work.into()), ("left foot on the ground", share.into())],
+///     ..Outcome::default()
+/// };
+/// assert_eq!(WALK.describe(&[trial(3.0, 0.5), trial(4.0, 1.0)]), [-3.5, 0.75]);
+/// assert_eq!(WALK.objectives(), ["minus work [J]"]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NotedBehaviour {
+    /// The notes that are objectives, with 1 where more is better and -1 where less is.
+    pub objectives: &'static [(&'static str, f64)],
+    /// The notes that describe a behaviour, with their ranges, low to high.
+    pub descriptors: &'static [(&'static str, [f64; 2])],
+}
+
+impl Behaviour for NotedBehaviour {
+    fn objectives(&self) -> Vec<String> {
+        let named = |(note, sign): &(&str, f64)| if *sign < 0.0 { format!("minus {note}") } else { (*note).into() };
+        self.objectives.iter().map(named).collect()
+    }
+
+    fn descriptors(&self) -> Vec<Parameter> {
+        self.descriptors.iter().map(|(note, ends)| Parameter::new(*note, *ends)).collect()
+    }
+
+    fn describe(&self, trials: &[Outcome]) -> Vec<f64> {
+        let objectives = self.objectives.iter().map(|(note, sign)| sign * mean_of_note(trials, note));
+        objectives.chain(self.descriptors.iter().map(|(note, _)| mean_of_note(trials, note))).collect()
+    }
+}
+
+/// The mean over the trials of a note that is a number; NaN where a trial has none of the name.
+pub fn mean_of_note(trials: &[Outcome], name: &str) -> f64 {
+    let number = |outcome: &Outcome| match outcome.notes.iter().find(|(own, _)| *own == name) {
+        Some((_, Note::Number(x))) => *x,
+        _ => f64::NAN,
+    };
+    trials.iter().map(number).sum::<f64>() / trials.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_noted_is_no_number() {
+        let trial = |x: Note| Outcome { notes: vec![("way", x)], ..Outcome::default() };
+        assert_eq!(mean_of_note(&[trial(1.0.into()), trial(2.0.into())], "way"), 1.5);
+        for trials in [vec![], vec![trial("far".into())], vec![trial(1.0.into()), Outcome::default()]] {
+            assert!(mean_of_note(&trials, "way").is_nan(), "{trials:?}");
+        }
+    }
+}

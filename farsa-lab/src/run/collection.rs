@@ -1,0 +1,83 @@
+//! `archive.csv` and its picture: what a strategy keeps beyond a generation, the elites of an archive or a front.
+
+use farsa_evo::{JudgementShape, Member};
+
+use crate::error::Error;
+use crate::experiment::evaluator::{Evaluator, Parameter};
+use crate::figures::scatter::Scatter;
+use crate::store::directory::Directory;
+use crate::store::replace::replace;
+use crate::strategy::search::Search;
+
+/// What the numbers of a judgement are called.
+pub(crate) struct CollectionTable {
+    /// The fitness first.
+    objectives: Vec<String>,
+    descriptors: Vec<Parameter>,
+}
+
+impl CollectionTable {
+    /// The table of a strategy that keeps something; none of another.
+    pub(crate) fn new(search: &Search, evaluator: &dyn Evaluator) -> Option<Self> {
+        search.collection()?;
+        let JudgementShape { objectives, descriptors, .. } = search.judged_by();
+        let behaviour = evaluator.behaviour();
+        let others = behaviour.map(|behaviour| behaviour.objectives()).unwrap_or_default();
+        let values = behaviour.map(|behaviour| behaviour.descriptors()).unwrap_or_default();
+        Some(Self {
+            objectives: ["fitness".into()].into_iter().chain(others).take(objectives).collect(),
+            descriptors: values.into_iter().take(descriptors).collect(),
+        })
+    }
+
+    /// Writes both files.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub(crate) fn write(&self, search: &Search, directory: &Directory, title: &str) -> Result<(), Error> {
+        let Some(collection) = search.collection() else { return Ok(()) };
+        let mut members = collection.members();
+        members.sort_by(|a, b| {
+            let best = |member: &Member<'_>| member.objectives.first().copied().unwrap_or(f64::NAN);
+            let by_objective = || best(b).total_cmp(&best(a));
+            let by_origin = || (a.generation, a.individual).cmp(&(b.generation, b.individual));
+            a.cell.cmp(&b.cell).then_with(by_objective).then_with(by_origin)
+        });
+        let [csv, svg] = directory.diagnostics("archive");
+        replace(&csv, &self.csv(&members).map_err(|why| Error::damaged(&csv, why))?)?;
+        let picture = self.picture(&members, title).map_err(|why| Error::damaged(&svg, why))?;
+        replace(&svg, picture.as_bytes())
+    }
+
+    /// A line for each, with the numbers that `farsa replay` wants.
+    fn csv(&self, members: &[Member<'_>]) -> Result<Vec<u8>, csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let names = self.objectives.iter().chain(self.descriptors.iter().map(|value| &value.name));
+        writer.write_record(["cell", "generation", "individual"].into_iter().chain(names.map(String::as_str)))?;
+        for member in members {
+            let cell = member.cell.map_or_else(String::new, |cell| cell.to_string());
+            let origin = [cell, member.generation.to_string(), member.individual.to_string()];
+            // The debug form is the shortest that reads back as the same number.
+            let numbers = member.objectives.iter().chain(member.descriptor).map(|x| format!("{x:?}"));
+            writer.write_record(origin.into_iter().chain(numbers))?;
+        }
+        writer.into_inner().map_err(|error| csv::Error::from(std::io::Error::other(error.to_string())))
+    }
+
+    /// The first two descriptor values, or one and the fitness, or the first two objectives.
+    fn picture(&self, members: &[Member<'_>], title: &str) -> Result<String, String> {
+        let mut axes: Vec<(&str, Option<[f64; 2]>)> =
+            self.descriptors.iter().map(|value| (value.name.as_str(), Some(value.ends))).collect();
+        axes.extend(self.objectives.iter().map(|name| (name.as_str(), None)));
+        let place = |member: &Member<'_>| {
+            let mut numbers = member.descriptor.iter().chain(member.objectives).copied();
+            [numbers.next().unwrap_or(0.0), numbers.next().unwrap_or(0.0)]
+        };
+        let best = |member: &Member<'_>| member.objectives.first().copied().unwrap_or(f64::NAN);
+        let points: Vec<([f64; 2], f64)> = members.iter().map(|member| (place(member), best(member))).collect();
+        let axis = |number: usize| axes.get(number).copied().unwrap_or(("", None));
+        let title = format!("{title}: {} kept", members.len());
+        let (names, ranges) = ([axis(0).0, axis(1).0], [axis(0).1, axis(1).1]);
+        Scatter { title: &title, axes: names, ranges, shade: "fitness", points: &points }.draw()
+    }
+}

@@ -1,0 +1,46 @@
+//! Novelty search over the truncation algorithm.
+
+use farsa_evo::{ArchiveRule, NoveltyConfig, NoveltySearch, TruncationGa};
+
+use crate::experiment::settings::Setting;
+use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyDefinition as _};
+use crate::strategy::simple::SimpleStrategy;
+use crate::strategy::truncation::{Truncation, config};
+
+const NEIGHBOURS: &str = "strategy.neighbours";
+const RATE: &str = "strategy.archive_rate";
+
+/// Novelty search, [`farsa_evo::NoveltySearch`].
+pub(super) static NOVELTY_SEARCH: SimpleStrategy = SimpleStrategy {
+    name: "novelty-search",
+    summary: "The truncation algorithm for new behaviours in the place of fitness; wants a behaviour descriptor [Lehman2011].",
+    settings: || {
+        let mut table = Truncation.settings();
+        table.extend([
+            Setting::whole(NEIGHBOURS, 15, 1..=1_000_000)
+                .given()
+                .doc("Nearest behaviours (k), whose mean distance is the novelty; each value in shares of its range."),
+            Setting::number(RATE, 0.02, 0.0..=1.0).doc("Probability that a behaviour enters the archive."),
+        ]);
+        table
+    },
+    start: |start| {
+        let ranges = start.wanted_descriptors("novelty-search")?;
+        let units: Vec<f64> = ranges.iter().map(|[low, high]| high - low).collect();
+        let novelty = NoveltyConfig {
+            neighbours: start.settings.count(NEIGHBOURS)?,
+            archive: ArchiveRule::Random { rate: start.settings.number(RATE)? },
+            ..NoveltyConfig::new(ranges.len())
+        };
+        let own = config(start.settings, start.genes, start.gene_bits)?;
+        let search = |seed| NoveltySearch::new(novelty, TruncationGa::new(own, seed)?, seed)?.with_units::<u16>(&units);
+        start.words(search)
+    },
+    diagnostics: Some(Diagnostics {
+        file: "strategy",
+        charts: &[
+            DiagnosticsChart { title: "archive", axis: "behaviours", curves: &[("archive", "in the archive")] },
+            DiagnosticsChart { title: "novelty", axis: "distance", curves: &[("novelty", "the largest")] },
+        ],
+    }),
+};
