@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use farsa_num::Scalar;
 
 use super::clip_up::norm;
-use super::noise::{Noise, Spread};
+use super::noise::{Directions, Noise};
 use super::rewards::{rewards, scaled};
 use super::settings::{at_least, bounded, point, positive, read_length, read_point};
 use crate::error::EvoError;
@@ -89,6 +89,8 @@ pub struct Ars {
     mean: Vec<f64>,
     /// Length of the latest step.
     step: f64,
+    /// Those of this generation.
+    directions: Directions,
     population: Population<f64>,
 }
 
@@ -101,7 +103,8 @@ impl Ars {
         config.validate()?;
         let population = Population::new(2 * config.directions, config.mean.len())?;
         let mean = config.mean.clone();
-        let mut strategy = Self { config, seed, generation: 0, mean, step: 0.0, population };
+        let directions = Directions::new(config.directions, mean.len());
+        let mut strategy = Self { config, seed, generation: 0, mean, step: 0.0, directions, population };
         strategy.sample();
         Ok(strategy)
     }
@@ -126,7 +129,8 @@ impl Ars {
     }
 
     fn sample(&mut self) {
-        self.noise().mirror(&mut self.population, &self.mean, Spread::Same(self.config.noise));
+        let noise = self.noise();
+        self.directions.mirror(noise, &mut self.population, &self.mean, self.config.noise);
     }
 
     /// The top directions by the fitness of the better of their two individuals, equals by index; in order of index.
@@ -148,7 +152,7 @@ impl Ars {
         if deviation > 0.0 {
             let mut step = vec![0.0; self.mean.len()];
             for (row, pair) in top.iter().zip(rewards.chunks_exact(2)) {
-                self.noise().add(*row, (pair[0] - pair[1]) / deviation, &mut step);
+                self.directions.add(*row, (pair[0] - pair[1]) / deviation, &mut step);
             }
             let scale = self.config.step_size / top.len() as f64;
             for (mean, step) in self.mean.iter_mut().zip(&mut step) {

@@ -1,5 +1,8 @@
 //! The random numbers of a generation, drawn anew wherever they are needed, and genomes made of them.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use farsa_num::{Domain, Stream};
 
 use crate::population::Population;
@@ -15,11 +18,50 @@ pub(super) struct Noise {
     pub(super) generation: u32,
 }
 
-/// The standard deviations of the genes: one for all, or one for each.
-#[derive(Clone, Copy)]
-pub(super) enum Spread<'s> {
-    Same(f64),
-    Each(&'s [f64]),
+/// The noise of a generation whose individuals mirror each other, kept from when they are made until they are judged: a row of
+/// numbers is read in a fourth of the time in which it is drawn again.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Directions {
+    genes: usize,
+    /// [rows x genes]
+    numbers: Vec<f64>,
+}
+
+impl Directions {
+    /// Room for so many rows.
+    pub(super) fn new(rows: usize, genes: usize) -> Self {
+        Self { genes, numbers: vec![0.0; rows * genes] }
+    }
+
+    /// Draws all rows and makes two genomes of each, which mirror each other at the center: individual 2k adds row k, times sigma,
+    /// individual 2k + 1 subtracts it.
+    pub(super) fn mirror(&mut self, noise: Noise, population: &mut Population<f64>, center: &[f64], sigma: f64) {
+        let genes = self.genes.max(1);
+        let rows = self.numbers.chunks_exact_mut(genes);
+        for (row, (numbers, pair)) in rows.zip(population.as_mut_slice().chunks_exact_mut(2 * genes)).enumerate() {
+            let mut stream = noise.stream(row);
+            let (plus, minus) = pair.split_at_mut(genes);
+            let blocks = plus.chunks_mut(BLOCK).zip(minus.chunks_mut(BLOCK)).zip(center.chunks(BLOCK));
+            for (((plus, minus), center), numbers) in blocks.zip(numbers.chunks_mut(BLOCK)) {
+                stream.fill_normal(numbers);
+                for (((plus, minus), center), number) in plus.iter_mut().zip(minus).zip(center).zip(numbers) {
+                    let x = *number * sigma;
+                    *minus = center - x;
+                    *plus = x + center;
+                }
+            }
+        }
+    }
+
+    /// Adds a row, weighted, to a sum \[genes\].
+    pub(super) fn add(&self, row: usize, weight: f64, sum: &mut [f64]) {
+        let start = row.saturating_mul(self.genes);
+        let numbers = self.numbers.get(start..start.saturating_add(self.genes)).unwrap_or_default();
+        vectorized(
+            #[inline(always)]
+            || sum.iter_mut().zip(numbers).for_each(|(sum, number)| *sum += weight * number),
+        );
+    }
 }
 
 impl Noise {
@@ -32,19 +74,6 @@ impl Noise {
     /// Draws a whole row.
     pub(super) fn fill(self, row: usize, numbers: &mut [f64]) {
         self.stream(row).fill_normal(numbers);
-    }
-
-    /// Adds a row, weighted, to a sum \[genes\].
-    pub(super) fn add(self, row: usize, weight: f64, sum: &mut [f64]) {
-        let mut stream = self.stream(row);
-        let mut numbers = [0.0; BLOCK];
-        for sum in sum.chunks_mut(BLOCK) {
-            stream.fill_normal(numbers.get_mut(..sum.len()).unwrap_or_default());
-            vectorized(
-                #[inline(always)]
-                || sum.iter_mut().zip(&numbers).for_each(|(sum, number)| *sum += weight * number),
-            );
-        }
     }
 
     /// Adds a row, weighted, to a sum \[genes\], and its squares less 1, weighted, to another.
@@ -75,24 +104,19 @@ impl Noise {
         }
     }
 
-    /// Makes two genomes of each row, which mirror each other at the center: individual 2k adds the noise of row k,
-    /// individual 2k + 1 subtracts it.
-    pub(super) fn mirror(self, population: &mut Population<f64>, center: &[f64], spread: Spread<'_>) {
+    /// Makes two genomes of each row, which mirror each other at the center: individual 2k adds the noise of row k, times the sigma
+    /// of each gene, individual 2k + 1 subtracts it.
+    pub(super) fn mirror(self, population: &mut Population<f64>, center: &[f64], sigmas: &[f64]) {
         let len = population.genome_len();
         let mut numbers = [0.0; BLOCK];
         for (row, pair) in population.as_mut_slice().chunks_exact_mut(2 * len).enumerate() {
             let mut stream = self.stream(row);
             let (plus, minus) = pair.split_at_mut(len);
             let blocks = plus.chunks_mut(BLOCK).zip(minus.chunks_mut(BLOCK)).zip(center.chunks(BLOCK));
-            for (block, ((plus, minus), center)) in blocks.enumerate() {
+            for (((plus, minus), center), sigmas) in blocks.zip(sigmas.chunks(BLOCK)) {
                 let numbers = numbers.get_mut(..plus.len()).unwrap_or_default();
                 stream.fill_normal(numbers);
-                match spread {
-                    Spread::Same(sigma) => numbers.iter_mut().for_each(|x| *x *= sigma),
-                    Spread::Each(sigmas) => {
-                        numbers.iter_mut().zip(sigmas.iter().skip(block * BLOCK)).for_each(|(x, sigma)| *x *= sigma);
-                    }
-                }
+                numbers.iter_mut().zip(sigmas).for_each(|(x, sigma)| *x *= sigma);
                 for (((plus, minus), center), x) in plus.iter_mut().zip(minus).zip(center).zip(numbers) {
                     *minus = center - *x;
                     *plus = *x + center;

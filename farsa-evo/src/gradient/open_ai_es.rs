@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::centred_ranks::centred_ranks;
 use super::clip_up::norm;
-use super::noise::{Noise, Spread};
+use super::noise::{Directions, Noise};
 use super::optimizer::{Memory, Optimizer};
 use super::settings::{bounded, point, positive, read_length, read_point, within};
 use crate::error::EvoError;
@@ -89,6 +89,8 @@ pub struct OpenAiEs {
     memory: Memory,
     /// Length of the latest step.
     step: f64,
+    /// Those of this generation.
+    directions: Directions,
     population: Population<f64>,
 }
 
@@ -101,7 +103,8 @@ impl OpenAiEs {
         config.validate()?;
         let population = Population::new(2 * config.pairs, config.mean.len())?;
         let (mean, memory) = (config.mean.clone(), Memory::new(config.optimizer, config.mean.len()));
-        let mut strategy = Self { config, seed, generation: 0, mean, memory, step: 0.0, population };
+        let directions = Directions::new(config.pairs, mean.len());
+        let mut strategy = Self { config, seed, generation: 0, mean, memory, step: 0.0, directions, population };
         strategy.sample();
         Ok(strategy)
     }
@@ -126,7 +129,8 @@ impl OpenAiEs {
     }
 
     fn sample(&mut self) {
-        self.noise().mirror(&mut self.population, &self.mean, Spread::Same(self.config.sigma));
+        let noise = self.noise();
+        self.directions.mirror(noise, &mut self.population, &self.mean, self.config.sigma);
     }
 }
 
@@ -144,7 +148,7 @@ impl Strategy<f64> for OpenAiEs {
         let OpenAiEsConfig { sigma, learning_rate, weight_decay, optimizer, .. } = self.config;
         let mut gradient = vec![0.0; self.mean.len()];
         for (row, pair) in centred_ranks(fitness).chunks_exact(2).enumerate() {
-            self.noise().add(row, pair[0] - pair[1], &mut gradient);
+            self.directions.add(row, pair[0] - pair[1], &mut gradient);
         }
         let scale = 1.0 / (fitness.len() as f64 * sigma);
         for (g, mean) in gradient.iter_mut().zip(&self.mean) {

@@ -7,7 +7,7 @@ use farsa_num::Scalar;
 
 use super::centred_ranks::centred_ranks;
 use super::clip_up::ClipUp;
-use super::noise::{Noise, Spread};
+use super::noise::Noise;
 use super::rewards::rewards;
 use super::settings::{bounded, bounded_size, decay, learning_rate, point, positive, read_point, read_sizes};
 use crate::error::EvoError;
@@ -163,7 +163,7 @@ impl Pgpe {
     }
 
     fn sample(&mut self) {
-        self.noise().mirror(&mut self.population, &self.mean, Spread::Each(&self.sigmas));
+        self.noise().mirror(&mut self.population, &self.mean, &self.sigmas);
     }
 
     /// Moves the center and the standard deviations by the rewards \[individuals\].
