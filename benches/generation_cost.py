@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parent.parent
 def peer(name, generations):
     import numpy as np
 
-    if name in ("cma-es", "separable-cma-es"):
+    if "cma-es" in name:
         import cma
 
         options = {"verbose": -9, "seed": 1, "CMA_diagonal": name.startswith("separable")}
@@ -65,7 +65,7 @@ def main():
     program = target / "release" / "examples" / "generation_cost"
     print("| strategy | genes | individuals | farsa-evo [ms] | peer [ms] | ratio |")
     print("|---|---|---|---|---|---|")
-    for name in ("ga", "cma-es", "separable-cma-es", "open-ai-es", "ars", "pgpe"):
+    for name in ("ga", "cma-es", "cholesky-cma-es", "separable-cma-es", "open-ai-es", "ars", "pgpe"):
         ours, theirs = [], []
         for _ in range(rounds):
             words = subprocess.check_output([program, generations, name], text=True).split()

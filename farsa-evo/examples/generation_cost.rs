@@ -7,8 +7,8 @@
 use std::time::Instant;
 
 use farsa_evo::{
-    Ars, ArsConfig, CmaEs, CmaEsConfig, EvoError, GaConfig, Gene, OpenAiEs, OpenAiEsConfig, Pgpe, PgpeConfig,
-    SeparableCmaEs, SeparableCmaEsConfig, Strategy, TruncationGa,
+    Ars, ArsConfig, CholeskyCmaEs, CmaEs, CmaEsConfig, EvoError, GaConfig, Gene, OpenAiEs, OpenAiEsConfig, Pgpe,
+    PgpeConfig, SeparableCmaEs, SeparableCmaEsConfig, Strategy, TruncationGa,
 };
 
 /// Times so many generations of a strategy that is told numbers of no meaning, after two that are not timed.
@@ -41,6 +41,10 @@ fn main() -> Result<(), EvoError> {
     if wanted("cma-es") {
         let config = CmaEsConfig::new(vec![0.0; covariance], 0.5);
         time::<f64>("cma-es", generations, &mut CmaEs::new(config, 1)?)?;
+    }
+    if wanted("cholesky-cma-es") {
+        let config = CmaEsConfig::new(vec![0.0; covariance], 0.5);
+        time::<f64>("cholesky-cma-es", generations, &mut CholeskyCmaEs::new(config, 1)?)?;
     }
     if wanted("separable-cma-es") {
         let config = SeparableCmaEsConfig::new(vec![0.0; covariance], 0.5);

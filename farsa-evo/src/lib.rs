@@ -45,7 +45,8 @@ pub use collection::{Collection, Member};
 pub use config::{GaConfig, OnePlusOneConfig};
 pub use conformance::check_strategy;
 pub use covariance::{
-    CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs, SeparableCmaEsConfig,
+    CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs,
+    SeparableCmaEsConfig,
 };
 pub use decode::{GeneRange, decode};
 pub use error::EvoError;

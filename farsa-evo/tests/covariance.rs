@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use farsa_evo::{
-    CmaEs, CmaEsConfig, EvoError, Fitness, Recorded, SeparableCmaEs, SeparableCmaEsConfig, Snapshot, Strategy,
-    check_strategy,
+    CholeskyCmaEs, CmaEs, CmaEsConfig, EvoError, Fitness, Recorded, SeparableCmaEs, SeparableCmaEsConfig, Snapshot,
+    Strategy, check_strategy,
 };
 use farsa_num::Digest;
 use proptest::prelude::*;
@@ -52,17 +52,25 @@ fn test_functions_are_solved_within_the_usual_evaluations() {
         let one = |seed| evaluations(&mut CmaEs::new(config.clone(), seed).unwrap(), 50_000, function);
         (0..5).map(one).sum::<usize>() / 5
     };
-    let found = [
-        mean(&cma(1.0, 5, 0.5), sphere),
-        mean(&cma(1.0, 10, 0.5), sphere),
-        mean(&cma(1.0, 5, 0.5), ellipsoid),
-        mean(&cma(1.0, 10, 0.5), ellipsoid),
-        mean(&cma(0.0, 5, 0.5), rosenbrock),
-        mean(&cma(0.0, 10, 0.5), rosenbrock),
+    let triangular = |config: &CmaEsConfig, function: fn(&[f64]) -> f64| {
+        let one = |seed| evaluations(&mut CholeskyCmaEs::new(config.clone(), seed).unwrap(), 50_000, function);
+        (0..5).map(one).sum::<usize>() / 5
+    };
+    type Function = fn(&[f64]) -> f64;
+    // The means of pycma 4.5.0.
+    let all: [(CmaEsConfig, Function, usize); 6] = [
+        (cma(1.0, 5, 0.5), sphere, 622),
+        (cma(1.0, 10, 0.5), sphere, 1370),
+        (cma(1.0, 5, 0.5), ellipsoid, 1443),
+        (cma(1.0, 10, 0.5), ellipsoid, 3986),
+        (cma(0.0, 5, 0.5), rosenbrock, 1720),
+        (cma(0.0, 10, 0.5), rosenbrock, 4860),
     ];
-    // The same means of pycma 4.5.0.
-    let usual = [622, 1370, 1443, 3986, 1720, 4860];
-    assert!(found.iter().zip(usual).all(|(found, usual)| 10 * found <= 11 * usual), "{found:?}, usual {usual:?}");
+    for (config, function, usual) in &all {
+        for found in [mean(config, *function), triangular(config, *function)] {
+            assert!(10 * found <= 11 * usual, "{found} evaluations, usual {usual}");
+        }
+    }
 }
 
 #[test]
@@ -88,9 +96,13 @@ fn strategies_keep_to_the_contract() {
         let config = SeparableCmaEsConfig { population, ..SeparableCmaEsConfig::new(vec![-1.0; genes], 2.0) };
         check_strategy(|| SeparableCmaEs::new(config.clone(), 3), 22).unwrap();
     }
+    for (genes, population) in [(1, 2), (3, 7), (10, 11)] {
+        check_strategy(|| CholeskyCmaEs::new(CmaEsConfig { population, ..cma(0.3, genes, 0.7) }, 3), 22).unwrap();
+    }
     // The axes are computed anew in few generations only: c_1 + c_mu is small.
     let config = CmaEsConfig { rank_one_rate: Some(0.003), rank_mu_rate: Some(0.002), ..cma(0.0, 6, 1.0) };
     check_strategy(|| CmaEs::new(config.clone(), 4), 40).unwrap();
+    check_strategy(|| CholeskyCmaEs::new(config.clone(), 4), 40).unwrap();
     let search = CmaEs::new(config, 4).unwrap();
     assert_eq!(search.recorded(), Recorded::Values);
 }
@@ -121,6 +133,21 @@ fn inverse_root(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..n).map(|i| (0..n).map(|j| element(i, j)).collect()).collect()
 }
 
+/// The inverse of the lower triangular factor of a symmetric matrix.
+fn inverse_factor(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let n = matrix.len();
+    let (mut a, mut inverse) = (vec![vec![0.0; n]; n], vec![vec![0.0; n]; n]);
+    for (j, i) in (0..n).flat_map(|j| (j..n).map(move |i| (j, i))) {
+        let rest = matrix[i][j] - (0..j).map(|k| a[i][k] * a[j][k]).sum::<f64>();
+        a[i][j] = if i == j { rest.sqrt() } else { rest / a[j][j] };
+    }
+    for (j, i) in (0..n).flat_map(|j| (j..n).map(move |i| (j, i))) {
+        let unit = f64::from(u8::from(i == j));
+        inverse[i][j] = (unit - (j..i).map(|k| a[i][k] * inverse[k][j]).sum::<f64>()) / a[i][i];
+    }
+    inverse
+}
+
 /// [Hansen2016] appendix A, equation by equation, for the individuals that a strategy asks about.
 struct Oracle {
     m: Vec<f64>,
@@ -131,13 +158,15 @@ struct Oracle {
     g: i32,
     /// Whether all but the diagonal is left out, and the rates of the covariance are larger.
     diagonal: bool,
+    /// Whether steps are turned by the inverse of the triangular factor, [Krause2016].
+    triangular: bool,
 }
 
 impl Oracle {
     fn new(m: Vec<f64>, sigma: f64, diagonal: bool) -> Self {
         let n = m.len();
         let c = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
-        Self { sigma, c, p_sigma: vec![0.0; n], p_c: vec![0.0; n], g: 0, diagonal, m }
+        Self { sigma, c, p_sigma: vec![0.0; n], p_c: vec![0.0; n], g: 0, diagonal, triangular: false, m }
     }
 
     #[allow(clippy::disallowed_methods, clippy::manual_midpoint)]
@@ -167,7 +196,7 @@ impl Oracle {
         let y: Vec<Vec<f64>> =
             best_first.iter().map(|x| x.iter().zip(&self.m).map(|(x, m)| (x - m) / self.sigma).collect()).collect();
         let y_w: Vec<f64> = (0..n).map(|j| (0..mu).map(|i| w[i] * y[i][j]).sum()).collect();
-        let root = inverse_root(&self.c);
+        let root = if self.triangular { inverse_factor(&self.c) } else { inverse_root(&self.c) };
         let times =
             |v: &[f64]| -> Vec<f64> { root.iter().map(|r| r.iter().zip(v).map(|(r, v)| r * v).sum()).collect() };
         let white = times(&y_w);
@@ -221,6 +250,11 @@ fn updates_are_those_of_the_equations() {
         let config = CmaEsConfig { population, ..cma(0.2, genes, 0.3) };
         let mut search = CmaEs::new(config, 5).unwrap();
         Oracle::new(vec![0.2; genes], 0.3, false).follow(&mut search, |search| {
+            (search.mean().to_vec(), search.sigma(), search.covariance().chunks(genes).map(<[f64]>::to_vec).collect())
+        });
+        let mut search = CholeskyCmaEs::new(CmaEsConfig { population, ..cma(0.2, genes, 0.3) }, 5).unwrap();
+        let triangular = Oracle { triangular: true, ..Oracle::new(vec![0.2; genes], 0.3, false) };
+        { triangular }.follow(&mut search, |search| {
             (search.mean().to_vec(), search.sigma(), search.covariance().chunks(genes).map(<[f64]>::to_vec).collect())
         });
         let config = SeparableCmaEsConfig { population, ..SeparableCmaEsConfig::new(vec![0.2; genes], 0.3) };
@@ -309,6 +343,20 @@ fn states_that_cannot_be_change_nothing() {
     }
     search.restore(&state).unwrap();
     assert_eq!(search, before);
+
+    let mut search = CholeskyCmaEs::new(cma(0.0, 2, 1.0), 1).unwrap();
+    search.tell_values(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
+    let (before, state) = (search.clone(), search.save());
+    // Generation, updates, sigma, mean, paths, age, half of C, half of A.
+    assert_eq!(state.len(), 4 + 4 + 8 * (1 + 2 + 2 + 2) + 4 + 8 * (3 + 3));
+    for (place, wrong) in [(8, 0.0), (68, f64::NAN), (92, 0.0), (92, -1.0), (100, 1e120), (108, 0.0)] {
+        let mut state = state.clone();
+        state[place..place + 8].copy_from_slice(&wrong.to_le_bytes());
+        assert!(matches!(search.restore(&state), Err(EvoError::StateContent { .. })), "{place}");
+        assert_eq!(search, before);
+    }
+    search.restore(&state).unwrap();
+    assert_eq!(search, before);
 }
 
 /// Fifty generations of Rosenbrock's function, where some evaluations fail.
@@ -328,8 +376,9 @@ fn the_bits_stay_as_they_are() {
     let full = digest(CmaEs::new(cma(0.1, 11, 0.4), 2016).unwrap());
     let separable = SeparableCmaEsConfig::new(vec![0.1; 11], 0.4);
     let separable = digest(SeparableCmaEs::new(separable, 2008).unwrap());
-    let got = [full, separable];
-    assert_eq!(got, [0x5025_a614_01ca_8e67, 0x7b63_61cc_b9e9_3acb], "{got:#018x?}");
+    let triangular = digest(CholeskyCmaEs::new(cma(0.1, 11, 0.4), 2016).unwrap());
+    let got = [full, separable, triangular];
+    assert_eq!(got, [0x5025_a614_01ca_8e67, 0x7b63_61cc_b9e9_3acb, 0x5b5c_9f65_0a10_07be], "{got:#018x?}");
 }
 
 /// Any fitness: common, failed, equal, huge.

@@ -58,7 +58,7 @@ impl CmaEsConfig {
         check("damping", self.damping.unwrap_or(1.0), [0.001, 1000.0], "0.001 to 1000")
     }
 
-    fn coefficients(&self) -> Coefficients {
+    pub(super) fn coefficients(&self) -> Coefficients {
         self.coefficients_of(self.population)
     }
 

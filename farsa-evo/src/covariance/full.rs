@@ -68,7 +68,7 @@ impl FullCovariance {
 
 /// Keeps so much of the lower triangle of a matrix [n x n] and adds the squares of rows [factors x n], each times its factor.
 #[inline(always)]
-fn add_squares(matrix: &mut [f64], n: usize, keep: f64, factors: &[f64], rows: &[f64]) {
+pub(super) fn add_squares(matrix: &mut [f64], n: usize, keep: f64, factors: &[f64], rows: &[f64]) {
     let mut weighted = vec![0.0; factors.len()];
     for (index, elements) in matrix.chunks_exact_mut(n).enumerate() {
         let column = rows.iter().skip(index).step_by(n);

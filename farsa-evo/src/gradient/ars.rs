@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use farsa_num::Scalar;
 
 use super::clip_up::norm;
-use super::noise::{Directions, Noise};
+use super::noise::{Directions, Noise, Spread};
 use super::rewards::{rewards, scaled};
 use super::settings::{at_least, bounded, point, positive, read_length, read_point};
 use crate::error::EvoError;
@@ -130,7 +130,7 @@ impl Ars {
 
     fn sample(&mut self) {
         let noise = self.noise();
-        self.directions.mirror(noise, &mut self.population, &self.mean, self.config.noise);
+        self.directions.mirror(noise, &mut self.population, &self.mean, Spread::Same(self.config.noise));
     }
 
     /// The top directions by the fitness of the better of their two individuals, equals by index; in order of index.

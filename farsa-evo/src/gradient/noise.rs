@@ -18,6 +18,13 @@ pub(super) struct Noise {
     pub(super) generation: u32,
 }
 
+/// The standard deviations of the genes: one for all, or one for each.
+#[derive(Clone, Copy)]
+pub(super) enum Spread<'s> {
+    Same(f64),
+    Each(&'s [f64]),
+}
+
 /// The noise of a generation whose individuals mirror each other, kept from when they are made until they are judged: a row of
 /// numbers is read in a fourth of the time in which it is drawn again.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,35 +40,73 @@ impl Directions {
         Self { genes, numbers: vec![0.0; rows * genes] }
     }
 
-    /// Draws all rows and makes two genomes of each, which mirror each other at the center: individual 2k adds row k, times sigma,
+    /// Draws all rows and makes two genomes of each, which mirror each other at the center: individual 2k adds row k, scaled,
     /// individual 2k + 1 subtracts it.
-    pub(super) fn mirror(&mut self, noise: Noise, population: &mut Population<f64>, center: &[f64], sigma: f64) {
+    pub(super) fn mirror(
+        &mut self,
+        noise: Noise,
+        population: &mut Population<f64>,
+        center: &[f64],
+        spread: Spread<'_>,
+    ) {
+        let mut scaled = [0.0; BLOCK];
         let genes = self.genes.max(1);
         let rows = self.numbers.chunks_exact_mut(genes);
         for (row, (numbers, pair)) in rows.zip(population.as_mut_slice().chunks_exact_mut(2 * genes)).enumerate() {
             let mut stream = noise.stream(row);
             let (plus, minus) = pair.split_at_mut(genes);
             let blocks = plus.chunks_mut(BLOCK).zip(minus.chunks_mut(BLOCK)).zip(center.chunks(BLOCK));
-            for (((plus, minus), center), numbers) in blocks.zip(numbers.chunks_mut(BLOCK)) {
+            for (block, (((plus, minus), center), numbers)) in blocks.zip(numbers.chunks_mut(BLOCK)).enumerate() {
                 stream.fill_normal(numbers);
-                for (((plus, minus), center), number) in plus.iter_mut().zip(minus).zip(center).zip(numbers) {
-                    let x = *number * sigma;
-                    *minus = center - x;
-                    *plus = x + center;
+                match spread {
+                    Spread::Same(sigma) => {
+                        scaled.iter_mut().zip(&*numbers).for_each(|(x, number)| *x = *number * sigma);
+                    }
+                    Spread::Each(sigmas) => {
+                        let sigmas = sigmas.iter().skip(block * BLOCK);
+                        let each = scaled.iter_mut().zip(&*numbers).zip(sigmas);
+                        each.for_each(|((x, number), sigma)| *x = *number * sigma);
+                    }
+                }
+                for (((plus, minus), center), x) in plus.iter_mut().zip(minus).zip(center).zip(&scaled) {
+                    *minus = center - *x;
+                    *plus = *x + center;
                 }
             }
         }
     }
 
+    fn row(&self, row: usize) -> &[f64] {
+        let start = row.saturating_mul(self.genes);
+        self.numbers.get(start..start.saturating_add(self.genes)).unwrap_or_default()
+    }
+
     /// Adds a row, weighted, to a sum \[genes\].
     pub(super) fn add(&self, row: usize, weight: f64, sum: &mut [f64]) {
-        let start = row.saturating_mul(self.genes);
-        let numbers = self.numbers.get(start..start.saturating_add(self.genes)).unwrap_or_default();
+        let numbers = self.row(row);
         vectorized(
             #[inline(always)]
             || sum.iter_mut().zip(numbers).for_each(|(sum, number)| *sum += weight * number),
         );
     }
+
+    /// Adds a row, weighted, to a sum \[genes\], and its squares less 1, weighted, to another.
+    pub(super) fn add_moments(&self, row: usize, weights: [f64; 2], first: &mut [f64], second: &mut [f64]) {
+        add_moments(self.row(row), weights, first, second);
+    }
+}
+
+/// Adds numbers, weighted, to a sum, and their squares less 1, weighted, to another.
+fn add_moments(numbers: &[f64], weights: [f64; 2], first: &mut [f64], second: &mut [f64]) {
+    vectorized(
+        #[inline(always)]
+        || {
+            for ((first, second), number) in first.iter_mut().zip(second).zip(numbers) {
+                *first += weights[0] * number;
+                *second += weights[1] * (number * number - 1.0);
+            }
+        },
+    );
 }
 
 impl Noise {
@@ -82,15 +127,7 @@ impl Noise {
         let mut numbers = [0.0; BLOCK];
         for (first, second) in first.chunks_mut(BLOCK).zip(second.chunks_mut(BLOCK)) {
             stream.fill_normal(numbers.get_mut(..first.len()).unwrap_or_default());
-            vectorized(
-                #[inline(always)]
-                || {
-                    for ((first, second), number) in first.iter_mut().zip(second).zip(&numbers) {
-                        *first += weights[0] * number;
-                        *second += weights[1] * (number * number - 1.0);
-                    }
-                },
-            );
+            add_moments(&numbers, weights, first, second);
         }
     }
 
@@ -100,27 +137,6 @@ impl Noise {
             self.fill(row, genes);
             for ((gene, center), sigma) in genes.iter_mut().zip(center).zip(sigmas) {
                 *gene = center + sigma * *gene;
-            }
-        }
-    }
-
-    /// Makes two genomes of each row, which mirror each other at the center: individual 2k adds the noise of row k, times the sigma
-    /// of each gene, individual 2k + 1 subtracts it.
-    pub(super) fn mirror(self, population: &mut Population<f64>, center: &[f64], sigmas: &[f64]) {
-        let len = population.genome_len();
-        let mut numbers = [0.0; BLOCK];
-        for (row, pair) in population.as_mut_slice().chunks_exact_mut(2 * len).enumerate() {
-            let mut stream = self.stream(row);
-            let (plus, minus) = pair.split_at_mut(len);
-            let blocks = plus.chunks_mut(BLOCK).zip(minus.chunks_mut(BLOCK)).zip(center.chunks(BLOCK));
-            for (((plus, minus), center), sigmas) in blocks.zip(sigmas.chunks(BLOCK)) {
-                let numbers = numbers.get_mut(..plus.len()).unwrap_or_default();
-                stream.fill_normal(numbers);
-                numbers.iter_mut().zip(sigmas).for_each(|(x, sigma)| *x *= sigma);
-                for (((plus, minus), center), x) in plus.iter_mut().zip(minus).zip(center).zip(numbers) {
-                    *minus = center - *x;
-                    *plus = *x + center;
-                }
             }
         }
     }

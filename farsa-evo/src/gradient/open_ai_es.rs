@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::centred_ranks::centred_ranks;
 use super::clip_up::norm;
-use super::noise::{Directions, Noise};
+use super::noise::{Directions, Noise, Spread};
 use super::optimizer::{Memory, Optimizer};
 use super::settings::{bounded, point, positive, read_length, read_point, within};
 use crate::error::EvoError;
@@ -130,7 +130,7 @@ impl OpenAiEs {
 
     fn sample(&mut self) {
         let noise = self.noise();
-        self.directions.mirror(noise, &mut self.population, &self.mean, self.config.sigma);
+        self.directions.mirror(noise, &mut self.population, &self.mean, Spread::Same(self.config.sigma));
     }
 }
 

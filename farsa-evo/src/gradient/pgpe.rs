@@ -7,7 +7,7 @@ use farsa_num::Scalar;
 
 use super::centred_ranks::centred_ranks;
 use super::clip_up::ClipUp;
-use super::noise::Noise;
+use super::noise::{Directions, Noise, Spread};
 use super::rewards::rewards;
 use super::settings::{bounded, bounded_size, decay, learning_rate, point, positive, read_point, read_sizes};
 use crate::error::EvoError;
@@ -120,6 +120,8 @@ pub struct Pgpe {
     mean: Vec<f64>,
     sigmas: Vec<f64>,
     clip_up: ClipUp,
+    /// Those of this generation.
+    directions: Directions,
     population: Population<f64>,
 }
 
@@ -133,7 +135,9 @@ impl Pgpe {
         let genes = config.mean.len();
         let population = Population::new(2 * config.pairs, genes)?;
         let (mean, sigmas) = (config.mean.clone(), vec![config.sigma; genes]);
-        let mut strategy = Self { config, seed, generation: 0, mean, sigmas, clip_up: ClipUp::new(genes), population };
+        let directions = Directions::new(config.pairs, genes);
+        let clip_up = ClipUp::new(genes);
+        let mut strategy = Self { config, seed, generation: 0, mean, sigmas, clip_up, directions, population };
         strategy.sample();
         Ok(strategy)
     }
@@ -163,7 +167,8 @@ impl Pgpe {
     }
 
     fn sample(&mut self) {
-        self.noise().mirror(&mut self.population, &self.mean, &self.sigmas);
+        let noise = self.noise();
+        self.directions.mirror(noise, &mut self.population, &self.mean, Spread::Each(&self.sigmas));
     }
 
     /// Moves the center and the standard deviations by the rewards \[individuals\].
@@ -174,7 +179,7 @@ impl Pgpe {
         let (mut first, mut second) = (vec![0.0; genes], vec![0.0; genes]);
         for (row, pair) in rewards.chunks_exact(2).enumerate() {
             let weights = [0.5 * (pair[0] - pair[1]), 0.5 * (pair[0] + pair[1]) - baseline];
-            self.noise().add_moments(row, weights, &mut first, &mut second);
+            self.directions.add_moments(row, weights, &mut first, &mut second);
         }
         first.iter_mut().zip(&self.sigmas).for_each(|(g, sigma)| *g *= sigma / pairs);
         let PgpeConfig { step_size, max_speed, momentum, sigma_learning_rate, sigma_max_change, .. } = self.config;

@@ -316,7 +316,7 @@ impl Snapshot for Nsga2 {
             push_reals(&mut state, &parents.objectives);
             for (standing, origin) in parents.standing.iter().zip(&parents.origins) {
                 state.extend(standing.front.to_le_bytes());
-                origin.iter().for_each(|number| state.extend(number.to_le_bytes()));
+                state.extend(origin.iter().flat_map(|number| number.to_le_bytes()));
                 push_reals(&mut state, &[standing.distance]);
             }
         }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::experiment::behaviour::Behaviour;
 use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Parameter;
 use crate::experiment::outcome::{ChannelGroup, Description};
@@ -120,8 +121,8 @@ impl Info {
         let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
         let settings = plan.settings.table().iter().map(SettingInfo::new);
         let behaviour = evaluator.behaviour();
-        let others = behaviour.map(|behaviour| behaviour.objectives()).unwrap_or_default();
-        let descriptors = behaviour.map(|behaviour| behaviour.descriptors()).unwrap_or_default();
+        let others = behaviour.map(Behaviour::objectives).unwrap_or_default();
+        let descriptors = behaviour.map(Behaviour::descriptors).unwrap_or_default();
         let descriptor = |Parameter { name, ends }| DescriptorInfo { name, range: ends };
         Ok(Self {
             experiment: plan.experiment.name().into(),

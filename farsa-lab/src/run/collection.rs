@@ -3,6 +3,7 @@
 use farsa_evo::{JudgementShape, Member};
 
 use crate::error::Error;
+use crate::experiment::behaviour::Behaviour;
 use crate::experiment::evaluator::{Evaluator, Parameter};
 use crate::figures::scatter::Scatter;
 use crate::store::directory::Directory;
@@ -22,8 +23,8 @@ impl CollectionTable {
         search.collection()?;
         let JudgementShape { objectives, descriptors, .. } = search.judged_by();
         let behaviour = evaluator.behaviour();
-        let others = behaviour.map(|behaviour| behaviour.objectives()).unwrap_or_default();
-        let values = behaviour.map(|behaviour| behaviour.descriptors()).unwrap_or_default();
+        let others = behaviour.map(Behaviour::objectives).unwrap_or_default();
+        let values = behaviour.map(Behaviour::descriptors).unwrap_or_default();
         Some(Self {
             objectives: ["fitness".into()].into_iter().chain(others).take(objectives).collect(),
             descriptors: values.into_iter().take(descriptors).collect(),

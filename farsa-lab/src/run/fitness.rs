@@ -106,11 +106,14 @@ fn row(evaluator: &dyn Evaluator, shape: JudgementShape, trials: &[Outcome]) -> 
     if expected == found { Ok(row) } else { Err(format!("{found} numbers where the strategy wants {expected}")) }
 }
 
+/// The numbers that an individual comes to by its trials, or what is wrong with them.
+type Row<'r> = dyn Fn(&[Outcome]) -> Result<Vec<f64>, String> + 'r;
+
 /// What an individual comes to by its trials, or its first trial that failed and why.
 fn judged(
     trials: impl Iterator<Item = Option<Outcome>>,
     names: &[String],
-    row: &dyn Fn(&[Outcome]) -> Result<Vec<f64>, String>,
+    row: &Row<'_>,
 ) -> Result<Vec<f64>, (Option<u32>, String)> {
     let mut outcomes = Vec::new();
     for (trial, outcome) in (0..).zip(trials) {

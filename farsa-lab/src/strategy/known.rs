@@ -10,7 +10,7 @@ use crate::strategy::reals;
 use crate::strategy::truncation::Truncation;
 
 /// Ours.
-static KNOWN: [&dyn StrategyDefinition; 19] = [
+static KNOWN: [&dyn StrategyDefinition; 20] = [
     &Truncation,
     &OnePlusOne,
     &RANDOM,
@@ -20,6 +20,7 @@ static KNOWN: [&dyn StrategyDefinition; 19] = [
     &reals::EVOLUTION_STRATEGY,
     &reals::COSYNE,
     &reals::CMA_ES,
+    &reals::CHOLESKY_CMA_ES,
     &reals::SEPARABLE_CMA_ES,
     &reals::XNES,
     &reals::SNES,

@@ -1,7 +1,8 @@
 //! Covariance matrix adaptation, full and separable.
 
 use farsa_evo::{
-    CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs, SeparableCmaEsConfig,
+    CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule, SeparableCmaEs,
+    SeparableCmaEsConfig,
 };
 
 use super::{SIGMA, count_or, population_of_genes, sigma, sizes};
@@ -56,6 +57,32 @@ fn config(settings: &Settings, genes: usize) -> Result<CmaEsConfig, Error> {
     let population = count_or(settings, POPULATION, plain.population)?;
     Ok(CmaEsConfig { population, active: settings.flag(ACTIVE)?, ..plain })
 }
+
+/// The same by a triangular factor in the place of axes, [`farsa_evo::CholeskyCmaEs`].
+pub(in crate::strategy) static CHOLESKY_CMA_ES: SimpleStrategy = SimpleStrategy {
+    name: "cholesky-cma-es",
+    summary: "Covariance matrix adaptation by a Cholesky factor, for some hundreds of genes [Krause2016].",
+    settings: || {
+        let mut table = sizes(population_of_genes());
+        table.extend([
+            sigma(0.5, "a quarter of each range"),
+            Setting::flag(ACTIVE, true).given().doc("Whether the worse half has negative weights."),
+        ]);
+        table
+    },
+    start: |start| {
+        let config = config(start.settings, start.genes)?;
+        start.reals(|seed| CholeskyCmaEs::new(config.clone(), seed))
+    },
+    diagnostics: Some(Diagnostics {
+        file: "strategy",
+        charts: &[DiagnosticsChart {
+            title: "distribution",
+            axis: "sigma, ratio",
+            curves: &[("step size", "step size"), ("diagonal ratio", "of the factor's diagonal")],
+        }],
+    }),
+};
 
 /// The same with a scale for each gene and no correlations, [`farsa_evo::SeparableCmaEs`].
 pub(in crate::strategy) static SEPARABLE_CMA_ES: SimpleStrategy = SimpleStrategy {

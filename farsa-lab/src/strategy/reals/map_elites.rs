@@ -64,7 +64,7 @@ pub(in crate::strategy) static MAP_ELITES: SimpleStrategy = SimpleStrategy {
         } else {
             Emitter::IsoLine { batch, iso_sigma: sigma, line_sigma: settings.number(LINE)? }
         };
-        search(start, "map-elites", MapElitesConfig { bounds: bounds(start.genes), emitters: vec![emitter] })
+        search(start, "map-elites", &MapElitesConfig { bounds: bounds(start.genes), emitters: vec![emitter] })
     },
     diagnostics: Some(ARCHIVE),
 };
@@ -88,13 +88,13 @@ pub(in crate::strategy) static CMA_ME: SimpleStrategy = SimpleStrategy {
             return Err(Error::setting(POPULATION, why));
         }
         let sigma = start.settings.number(SIGMA)?;
-        search(start, "cma-me", MapElitesConfig::cma_me(bounds(start.genes), emitters, population / emitters, sigma))
+        search(start, "cma-me", &MapElitesConfig::cma_me(bounds(start.genes), emitters, population / emitters, sigma))
     },
     diagnostics: Some(ARCHIVE),
 };
 
 /// A search over the cells that the settings divide the experiment's descriptor into.
-fn search(start: &StrategyStart<'_>, name: &str, config: MapElitesConfig) -> Result<Search, Error> {
+fn search(start: &StrategyStart<'_>, name: &str, config: &MapElitesConfig) -> Result<Search, Error> {
     let (ranges, cells) = (start.wanted_descriptors(name)?, start.settings.count(CELLS)?);
     let refused = |error: farsa_evo::EvoError| Error::setting(CELLS, error);
     if start.settings.word(DIVISION)? == "cvt" {
@@ -107,7 +107,7 @@ fn search(start: &StrategyStart<'_>, name: &str, config: MapElitesConfig) -> Res
 
 fn over<C: Cells + Clone + 'static>(
     start: &StrategyStart<'_>,
-    config: MapElitesConfig,
+    config: &MapElitesConfig,
     cells: &C,
 ) -> Result<Search, Error> {
     start.reals(|seed| MapElites::new(config.clone(), cells.clone(), seed))

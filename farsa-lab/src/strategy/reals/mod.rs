@@ -25,7 +25,7 @@ use crate::strategy::definition::{Diagnostics, DiagnosticsChart};
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 
 pub(super) use cosyne::COSYNE;
-pub(super) use covariance::{CMA_ES, SEPARABLE_CMA_ES};
+pub(super) use covariance::{CHOLESKY_CMA_ES, CMA_ES, SEPARABLE_CMA_ES};
 pub(super) use genetic::{EVOLUTION_STRATEGY, REAL_GA, STEADY_STATE};
 pub(super) use gradient::{ARS, OPEN_AI_ES, PGPE};
 pub(super) use map_elites::{CMA_ME, MAP_ELITES};
