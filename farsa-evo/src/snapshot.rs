@@ -24,6 +24,13 @@ pub trait Snapshot {
     }
 }
 
+/// How many generations of so many genes a strategy is told again in a second or so, where each gene of each individual costs random
+/// numbers and functions, 50 ns.
+pub(crate) fn between_states(population: &Population<f64>) -> u32 {
+    let genes = (population.as_slice().len() as u64).max(1);
+    u32::try_from(20_000_000 / genes).unwrap_or(u32::MAX).max(1)
+}
+
 /// Reads a state from its front, little-endian.
 pub(crate) struct StateReader<'s> {
     rest: &'s [u8],

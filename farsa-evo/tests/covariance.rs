@@ -9,6 +9,8 @@ use farsa_evo::{
 use farsa_num::Digest;
 use proptest::prelude::*;
 
+type Function = fn(&[f64]) -> f64;
+
 fn sphere(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum()
 }
@@ -56,7 +58,6 @@ fn test_functions_are_solved_within_the_usual_evaluations() {
         let one = |seed| evaluations(&mut CholeskyCmaEs::new(config.clone(), seed).unwrap(), 50_000, function);
         (0..5).map(one).sum::<usize>() / 5
     };
-    type Function = fn(&[f64]) -> f64;
     // The means of pycma 4.5.0.
     let all: [(CmaEsConfig, Function, usize); 6] = [
         (cma(1.0, 5, 0.5), sphere, 622),

@@ -236,6 +236,17 @@ impl<C: Cells + Clone> Genealogy for MapElites<C> {
 }
 
 impl<C: Cells + Clone> Snapshot for MapElites<C> {
+    /// An improvement emitter may draw an individual that is out of bounds a hundred times, each time in n^2 operations; its state is
+    /// n^2 numbers too, and is not kept more often than every n generations.
+    fn generations_between_states(&self) -> u32 {
+        let improvements = self.config.emitters.iter().filter(|emitter| matches!(emitter, Emitter::Improvement { .. }));
+        let individuals: usize = improvements.map(Emitter::batch).sum();
+        let genes = self.config.bounds.len();
+        let operations = (individuals as u64).saturating_mul((genes as u64).saturating_pow(2));
+        let told = 200_000_000_u64.checked_div(operations).unwrap_or(u64::MAX).max(genes as u64);
+        u32::try_from(told).unwrap_or(u32::MAX)
+    }
+
     fn save(&self) -> Vec<u8> {
         let mut state = Vec::with_capacity(4 + self.archive.state_length(self.archive.len()));
         state.extend(self.generation.to_le_bytes());

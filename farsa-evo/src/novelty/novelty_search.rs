@@ -228,6 +228,10 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
 
 /// The strategy's state, with its length in front, then the threshold and the archive, with the number of its behaviours.
 impl<S: Snapshot> Snapshot for NoveltySearch<S> {
+    fn generations_between_states(&self) -> u32 {
+        self.inner.generations_between_states()
+    }
+
     fn save(&self) -> Vec<u8> {
         let inner = self.inner.save();
         let mut state = Vec::with_capacity(28 + inner.len() + 8 * self.archive.len());

@@ -16,7 +16,7 @@ use crate::pareto::non_dominated_fronts::non_dominated_fronts;
 use crate::pareto::nsga2_config::Nsga2Config;
 use crate::population::Population;
 use crate::real::bounds::{check_within, draw_within};
-use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Genealogy, Strategy, next_judged};
 
 /// NSGA-II over real genes within bounds: of parents and offspring together the better half become the next parents, by
@@ -308,6 +308,10 @@ impl Genealogy for Nsga2 {
 }
 
 impl Snapshot for Nsga2 {
+    fn generations_between_states(&self) -> u32 {
+        between_states(&self.population)
+    }
+
     fn save(&self) -> Vec<u8> {
         let mut state = Vec::with_capacity(self.state_length(self.generation));
         state.extend(self.generation.to_le_bytes());

@@ -10,7 +10,7 @@ use crate::fitness::Fitness;
 use crate::population::Population;
 use crate::real::evolution_strategy_config::{EvolutionStrategyConfig, LARGEST, Recombination, StepSizes, Survival};
 use crate::real::ranking::ranking;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
 
 /// The largest size that a gene can have: some 2^32 steps of the largest kind.
@@ -265,6 +265,10 @@ impl Genealogy for EvolutionStrategy {
 }
 
 impl Snapshot for EvolutionStrategy {
+    fn generations_between_states(&self) -> u32 {
+        between_states(&self.population)
+    }
+
     fn save(&self) -> Vec<u8> {
         let mut state = Vec::with_capacity(self.state_length(self.generation));
         state.extend(self.generation.to_le_bytes());

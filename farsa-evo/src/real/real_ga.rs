@@ -13,7 +13,7 @@ use crate::real::crossover::Crossover;
 use crate::real::ranking::ranking;
 use crate::real::real_ga_config::RealGaConfig;
 use crate::real::selection::Selector;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
 
 /// A generational genetic algorithm over real genes within bounds: selection, crossover, mutation, elites.
@@ -172,6 +172,10 @@ impl Genealogy for RealGa {
 }
 
 impl Snapshot for RealGa {
+    fn generations_between_states(&self) -> u32 {
+        between_states(&self.population)
+    }
+
     fn save(&self) -> Vec<u8> {
         let mut state = Vec::with_capacity(self.state_length(self.generation));
         state.extend(self.generation.to_le_bytes());

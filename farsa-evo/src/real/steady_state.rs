@@ -10,7 +10,7 @@ use crate::population::Population;
 use crate::real::bounds::{check_bounds, check_rate, check_setting, check_within, draw_within};
 use crate::real::mutation::RealMutation;
 use crate::real::ranking::ranking;
-use crate::snapshot::{Snapshot, StateReader, push_reals};
+use crate::snapshot::{Snapshot, StateReader, between_states, push_reals};
 use crate::strategy::{Genealogy, Recorded, Strategy, next_generation};
 
 /// What a [`SteadyState`] needs to know; a plain value that is checked where it is used.
@@ -180,6 +180,10 @@ impl Genealogy for SteadyState {
 }
 
 impl Snapshot for SteadyState {
+    fn generations_between_states(&self) -> u32 {
+        between_states(&self.population)
+    }
+
     fn save(&self) -> Vec<u8> {
         let mut state = Vec::with_capacity(self.state_length(self.generation));
         state.extend(self.generation.to_le_bytes());
