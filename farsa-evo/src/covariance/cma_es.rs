@@ -165,11 +165,11 @@ impl CmaEs {
     }
 }
 
-/// How many generations are told again in some seconds: a generation takes time in proportion to the cube of its genes, 0.05 s
+/// How many generations are told again in some seconds: a generation takes time in proportion to the cube of its genes, 0.1 s
 /// for 792.
 pub(super) fn between_states(genes: usize) -> u32 {
     let cube = (genes as u64).saturating_pow(3).max(1);
-    u32::try_from(50_000_000_000 / cube).unwrap_or(u32::MAX).max(1)
+    u32::try_from(20_000_000_000 / cube).unwrap_or(u32::MAX).max(1)
 }
 
 search!(CmaEs, FullCovariance, between_states);
