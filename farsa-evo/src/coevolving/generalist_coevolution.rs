@@ -346,10 +346,10 @@ impl Strategy for GeneralistCoevolution {
         Some(self)
     }
 
-    /// For each population how many members the latest encounters replaced, and the mean of what members then earned against
-    /// members; zeros before them.
+    /// How many members of each population the latest encounters replaced, and the mean that members of each earned in them
+    /// against members; zeros before.
     fn diagnostics(&self) -> Vec<f64> {
-        self.sides.iter().flat_map(|side| side.selected.map(Fitness::get)).collect()
+        (0..2).flat_map(|number| self.sides.iter().map(move |side| side.selected[number].get())).collect()
     }
 }
 
