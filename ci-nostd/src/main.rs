@@ -129,8 +129,8 @@ extern "C" fn main() -> i32 {
         return what;
     }
     #[cfg(feature = "alloc")]
-    if whole::runs().is_err() {
-        return 10;
+    if let Err(what) = whole::runs() {
+        return what;
     }
     0
 }

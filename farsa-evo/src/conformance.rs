@@ -22,7 +22,8 @@ use crate::strategy::{Recorded, Strategy};
 /// states. It refuses another number of values and is unchanged by that. It counts generations, and names a champion of each
 /// population. Where it says that only the order counts ([`Recorded::Order`]), other values of the same order change nothing.
 /// Failed evaluations, all of them at once too, end nothing. Judgements of another shape than it wants are refused. What it keeps,
-/// if it has a [`Collection`](crate::Collection), are individuals that it was told of, with the numbers that it was told.
+/// if it has a [`Collection`](crate::Collection), are individuals that it was told of, with the numbers that it was told. Where it says
+/// whom individuals meet ([`Meetings`](crate::Meetings)), everyone meets as many, one of each other population.
 ///
 /// ```
 /// use farsa_evo::{GaConfig, TruncationGa, check_strategy};
@@ -59,6 +60,7 @@ where
             return Err(wrong("populations of unequal sizes"));
         }
         let shape = strategy.judged_by();
+        meetings(&strategy).map_err(|what| wrong(&what))?;
         let judgements = judgements(generation, count, shape);
         let fitness = judgements.fitness();
         refuses(&mut strategy, &judgements).map_err(|what| wrong(&what))?;
@@ -97,6 +99,24 @@ where
         }
     }
     Ok(())
+}
+
+/// Whether everyone meets one of each other population as each opponent, nobody else does, and an objective is told of each.
+fn meetings<G: Gene, S: Strategy<G>>(strategy: &S) -> Result<(), String> {
+    let Some(meetings) = strategy.meetings() else { return Ok(()) };
+    let (count, all) = (meetings.count(), strategy.ask().len());
+    if count == 0 || strategy.judged_by() != JudgementShape::new(1 + count, 0) {
+        return Err(format!("says whom {count} opponents are, and is judged by {}", strategy.judged_by()));
+    }
+    let genes = strategy.ask().genome_len();
+    let others = |individual, opponent| {
+        let met = meetings.met(individual, opponent);
+        met.iter().all(|genome| genome.len() == genes).then_some(met.len())
+    };
+    let wanted = Some(strategy.populations() - 1);
+    let everyone = (0..all).all(|individual| (0..count).all(|opponent| others(individual, opponent) == wanted));
+    let nobody = others(all, 0) == Some(0) && others(0, count) == Some(0);
+    if everyone && nobody { Ok(()) } else { Err("names opponents other than one of each other population".into()) }
 }
 
 /// Whether members of a collection are individuals of generations that were told, each with what was told of it, and none twice.

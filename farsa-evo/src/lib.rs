@@ -19,6 +19,7 @@ mod gradient;
 mod judgement;
 mod judgement_shape;
 mod map_elites;
+mod meetings;
 mod mutation;
 mod novelty;
 mod one_plus_one;
@@ -40,7 +41,9 @@ mod word_map;
 
 pub use champion::Champion;
 pub use coevolution::Coevolution;
-pub use coevolving::{Cosyne, CosyneConfig, Outcomes, Permutation, Replacement};
+pub use coevolving::{
+    Cosyne, CosyneConfig, GeneralistCoevolution, GeneralistConfig, Outcomes, Permutation, Replacement,
+};
 pub use collection::{Collection, Member};
 pub use config::{GaConfig, OnePlusOneConfig};
 pub use conformance::check_strategy;
@@ -61,6 +64,7 @@ pub use judgement_shape::JudgementShape;
 pub use map_elites::{
     Addition, Archive, Cells, CvtArchive, CvtCells, Elite, Emitter, GridArchive, GridCells, MapElites, MapElitesConfig,
 };
+pub use meetings::Meetings;
 pub use mutation::{BitMutation, Mutation, randomize};
 pub use novelty::{ArchiveRule, NoveltyConfig, NoveltySearch};
 pub use one_plus_one::OnePlusOne;

@@ -10,6 +10,7 @@ use crate::fitness::Fitness;
 use crate::gene::Gene;
 use crate::judgement::Judgements;
 use crate::judgement_shape::JudgementShape;
+use crate::meetings::Meetings;
 use crate::population::Population;
 use crate::snapshot::Snapshot;
 use crate::statistics::Statistics;
@@ -98,6 +99,11 @@ pub trait Strategy<G: Gene = u16> {
 
     /// Who descends from whom, where individuals have parents.
     fn genealogy(&self) -> Option<&dyn Genealogy> {
+        None
+    }
+
+    /// Whom each individual meets, where the strategy says so; else that is the caller's choice.
+    fn meetings(&self) -> Option<&dyn Meetings<G>> {
         None
     }
 

@@ -6,9 +6,9 @@
 use core::fmt::Debug;
 
 use farsa_evo::{
-    ArchiveRule, CosyneConfig, Crossover, CvtCells, EvolutionStrategyConfig, GridCells, MapElitesConfig, NoveltyConfig,
-    Nsga2Config, Permutation, RealGaConfig, RealMutation, Selection, SteadyStateConfig, StepSizes, Survival, WordCode,
-    WordGene, WordMap,
+    ArchiveRule, CosyneConfig, Crossover, CvtCells, EvolutionStrategyConfig, GeneralistConfig, GridCells,
+    MapElitesConfig, NoveltyConfig, Nsga2Config, Permutation, RealGaConfig, RealMutation, Selection, SteadyStateConfig,
+    StepSizes, Survival, WordCode, WordGene, WordMap,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -24,6 +24,7 @@ fn configurations_come_back() {
     let mutation = RealMutation::SelfAdaptive { rate: 0.5, initial: 0.1, tau: 0.7, smallest: 1e-6 };
     let (selection, crossover) = (Selection::Rank { pressure: 1.5 }, Crossover::Blend { alpha: 0.5 });
     comes_back(&RealGaConfig { mutation, selection, crossover, ..RealGaConfig::new(bounds.clone()) });
+    comes_back(&GeneralistConfig { gene_bits: 8, ..GeneralistConfig::new(7) });
     comes_back(&SteadyStateConfig { noise: 0.25, ..SteadyStateConfig::new(bounds) });
     comes_back(&CosyneConfig { segments: vec![2, 3], permutation: Permutation::ByFitness, ..CosyneConfig::new(5) });
     let (survival, step_sizes) = (Survival::PlusEvaluatedAgain, StepSizes::one(3));

@@ -150,7 +150,7 @@ struct Prediction {
 pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f64) -> Result<Bench, Error> {
     let Sample { parameters, seed, generation, run, .. } = sample;
     let opponents: Vec<&[f32]> = sample.opponents.iter().map(Vec::as_slice).collect();
-    let opponents = Opponents { parameters: &opponents, each: sample.populations - 1 };
+    let opponents = Opponents { parameters: &opponents, each: sample.populations - 1, told_apart: None };
     let limit = Duration::from_secs_f64(seconds);
     let (trials, steps, stop) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
     let (started, used) = (Instant::now(), processor_seconds());

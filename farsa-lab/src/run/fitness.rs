@@ -19,6 +19,8 @@ use crate::store::failures::FailedEvaluation;
 pub(crate) struct Opponents<'g> {
     pub(crate) parameters: &'g [&'g [f32]],
     pub(crate) each: usize,
+    /// How many opponents are met in turn, where the strategy is told what was earned against each.
+    pub(crate) told_apart: Option<usize>,
 }
 
 /// After so many generations ranks compare again what they evaluate.
@@ -66,7 +68,7 @@ pub(crate) fn judgements_of_all(
     let (mut all, mut failed) = (Vec::with_capacity(count * shape.width()), Vec::new());
     for individual in 0..count {
         let own = outcomes.iter_mut().skip(individual).step_by(count).map(Option::take);
-        match judged(own, &names, &|outcomes| row(evaluator, shape, outcomes)) {
+        match judged(own, &names, &|outcomes| row(evaluator, shape, opponents.told_apart, outcomes)) {
             Ok(mut row) => all.append(&mut row),
             Err((trial, why)) => {
                 all.extend((0..shape.width()).map(|_| f64::NAN));
@@ -79,14 +81,29 @@ pub(crate) fn judgements_of_all(
     Ok((judgements.map_err(|error| Error::Other(error.to_string()))?, failed))
 }
 
-/// The objectives, the fitness first, and then the descriptor values of an individual, or what is wrong with them.
-fn row(evaluator: &dyn Evaluator, shape: JudgementShape, trials: &[Outcome]) -> Result<Vec<f64>, String> {
+/// The objectives, the fitness first, and then the descriptor values of an individual, or what is wrong with them. Where
+/// opponents are told apart, the objectives behind the fitness are that of the trials against each.
+fn row(
+    evaluator: &dyn Evaluator,
+    shape: JudgementShape,
+    told_apart: Option<usize>,
+    trials: &[Outcome],
+) -> Result<Vec<f64>, String> {
     let fitness = evaluator.fitness(trials);
     if !fitness.is_finite() {
         return Err(format!("the fitness of its trials is {fitness}"));
     }
     let mut row = vec![fitness];
-    if let Some(behaviour) = evaluator.behaviour().filter(|_| shape != JudgementShape::FITNESS) {
+    if let Some(count) = told_apart {
+        for opponent in 0..count {
+            let own: Vec<Outcome> = trials.iter().skip(opponent).step_by(count).cloned().collect();
+            let fitness = evaluator.fitness(&own);
+            if !fitness.is_finite() {
+                return Err(format!("the fitness of its trials against opponent {opponent} is {fitness}"));
+            }
+            row.push(fitness);
+        }
+    } else if let Some(behaviour) = evaluator.behaviour().filter(|_| shape != JudgementShape::FITNESS) {
         let names: Vec<String> =
             behaviour.objectives().into_iter().chain(behaviour.descriptors().into_iter().map(|one| one.name)).collect();
         let described = behaviour.describe(trials);

@@ -131,7 +131,7 @@ impl<'e> Plan<'e> {
     /// experiment's.
     pub(crate) fn strategy(&self) -> Result<Search, Error> {
         let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
-        let (populations, genes) = (task.populations().len(), task.parameters().len());
+        let (populations, genes, trials) = (task.populations().len(), task.parameters().len(), task.trials());
         let (objectives, ranges) = task.behaviour().map_or((1, Vec::new()), |behaviour| {
             let ranges: Vec<[f64; 2]> = behaviour.descriptors().iter().map(|value| value.ends).collect();
             (1 + behaviour.objectives().len(), ranges)
@@ -143,7 +143,8 @@ impl<'e> Plan<'e> {
             return Err(Error::Other(format!("{}: no population", self.experiment.name())));
         }
         let descriptors = ranges.as_slice();
-        let start = StrategyStart { populations, genes, gene_bits, objectives, descriptors, settings, seed, evaluator };
+        let start =
+            StrategyStart { populations, trials, genes, gene_bits, objectives, descriptors, settings, seed, evaluator };
         let strategy = self.definition().start(&start).map_err(|error| match error {
             Error::Other(why) => Error::Other(format!("{}: {why}", self.experiment.name())),
             Error::Usage(why) => Error::Usage(format!("{}: {why}", self.definition().name())),
@@ -158,6 +159,15 @@ impl<'e> Plan<'e> {
             )));
         }
         let wanted = strategy.judged_by();
+        if let Some(opponents) = strategy.opponents() {
+            let (name, experiment) = (self.definition().name(), self.experiment.name());
+            if wanted != JudgementShape::new(1 + opponents, 0) || !(1..=trials).contains(&opponents) {
+                return Err(Error::Other(format!(
+                    "the strategy `{name}` wants {wanted} of {opponents} opponents where {experiment} has {trials} trials"
+                )));
+            }
+            return Ok(strategy);
+        }
         if wanted.objectives > objectives || ![0, descriptors.len()].contains(&wanted.descriptors) {
             let (name, experiment) = (self.definition().name(), self.experiment.name());
             let found = JudgementShape::new(objectives, descriptors.len());

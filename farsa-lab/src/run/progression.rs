@@ -15,7 +15,7 @@ use crate::run::records::{Best, Checkpoint};
 use crate::store::directory::Directory;
 use crate::store::failures::FailedEvaluation;
 use crate::strategy::history::History;
-use crate::strategy::opponents::{Hall, Meeting};
+use crate::strategy::opponents::{Hall, Meeting, chosen};
 use crate::strategy::search::Search;
 
 /// What a run evolves.
@@ -54,6 +54,7 @@ impl Progression {
         let search = resumed(plan, directory, checkpoint, &record)?;
         let hall = match record.populations() {
             1 => Hall::default(),
+            _ if search.opponents().is_some() => Hall::default(),
             _ => Hall::before(&History::new(directory.record(), record.clone(), plan.fresh()), pool.genotype())?,
         };
         Ok(Self { search, record, hall, seed: checkpoint.identity.seed })
@@ -73,9 +74,15 @@ impl Progression {
         let trials = pool.evaluator().trials();
         let parameters = self.search.parameters(pool.genotype()).ok_or_else(|| lost("genomes of another length"))?;
         let meeting = Meeting { generation, populations, size: individuals / populations, trials };
-        let opponents = self.hall.opponents(meeting, &parameters).ok_or_else(|| lost("an opponent is missing"))?;
+        let told_apart = self.search.opponents();
+        let chosen = told_apart.and_then(|_| chosen(&self.search, pool.genotype(), trials));
+        let opponents = match (told_apart, &chosen) {
+            (None, _) => self.hall.opponents(meeting, &parameters),
+            (Some(_), chosen) => chosen.as_ref().map(|all| all.iter().map(Vec::as_slice).collect()),
+        };
+        let opponents = opponents.ok_or_else(|| lost("an opponent is missing"))?;
         let id = EpisodeId { seed, generation, ..EpisodeId::default() };
-        let opponents = Opponents { parameters: &opponents, each: populations - 1 };
+        let opponents = Opponents { parameters: &opponents, each: populations - 1, told_apart };
         let shape = self.search.judged_by();
         let (judgements, failed) = judgements_of_all(pool, &parameters, opponents, id, shape, stop, progress)?;
         let fitness = judgements.fitness();
@@ -90,7 +97,9 @@ impl Progression {
         let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
         let told = self.search.tell(&mut self.record, &judgements);
         told.map_err(|error| lost(&error.to_string()))?;
-        self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
+        if told_apart.is_none() {
+            self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
+        }
         Ok(Evaluated { fitness, failed, statistics, each, best })
     }
 }

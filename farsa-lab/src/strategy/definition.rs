@@ -74,6 +74,8 @@ pub trait StrategyDefinition: Sync {
 pub struct StrategyStart<'s> {
     /// Number of populations.
     pub populations: usize,
+    /// Trials of an evaluation.
+    pub trials: usize,
     /// Genes of an individual, one for each parameter of the experiment.
     pub genes: usize,
     /// Bits of a gene, 1 to 16.

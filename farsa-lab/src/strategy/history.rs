@@ -1,5 +1,6 @@
 //! The genomes and champions of past generations.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use farsa_evo::{Population, Record};
@@ -125,6 +126,25 @@ impl<'h> History<'h> {
             Ok(())
         })?;
         Ok(found)
+    }
+
+    /// The genomes that an individual of a finished generation met in each of some trials, where the strategy chose them.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit).
+    pub(crate) fn met(
+        &self,
+        generation: u32,
+        individual: usize,
+        trials: Range<u32>,
+    ) -> Result<Option<Vec<Vec<Genome>>>, Error> {
+        let Past::Told { record, fresh } = &self.past else { return Ok(None) };
+        let mut search = fresh()?;
+        if search.opponents().is_none() {
+            return Ok(None);
+        }
+        search.rebuild(record, generation).map_err(|error| Error::damaged(&self.path, error))?;
+        Ok(trials.map(|trial| search.met(individual, trial)).collect())
     }
 
     /// What is said of a generation, or an individual of it, that is not there.

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::strategy::definition::StrategyDefinition;
+use crate::strategy::generalist::GENERALIST;
 use crate::strategy::learning::Learning;
 use crate::strategy::novelty::NOVELTY_SEARCH;
 use crate::strategy::one_plus_one::OnePlusOne;
@@ -10,7 +11,7 @@ use crate::strategy::reals;
 use crate::strategy::truncation::Truncation;
 
 /// Ours.
-static KNOWN: [&dyn StrategyDefinition; 20] = [
+static KNOWN: [&dyn StrategyDefinition; 21] = [
     &Truncation,
     &OnePlusOne,
     &RANDOM,
@@ -31,6 +32,7 @@ static KNOWN: [&dyn StrategyDefinition; 20] = [
     &reals::MAP_ELITES,
     &reals::CMA_ME,
     &NOVELTY_SEARCH,
+    &GENERALIST,
 ];
 
 /// The strategies of this crate, in the order in which they are listed.
@@ -79,6 +81,7 @@ mod tests {
             for populations in [1, 2] {
                 let start = StrategyStart {
                     populations,
+                    trials: 3,
                     genes: 5,
                     gene_bits: 16,
                     objectives: 2,
@@ -88,7 +91,7 @@ mod tests {
                     evaluator,
                 };
                 let made = strategy.start(&start);
-                if (strategy.name(), populations) == ("one-plus-one", 2) {
+                if [("one-plus-one", 2), ("generalist", 1)].contains(&(strategy.name(), populations)) {
                     assert!(made.is_err());
                     continue;
                 }

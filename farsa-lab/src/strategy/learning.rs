@@ -207,6 +207,7 @@ mod tests {
         let (populations, genes, gene_bits) = (1, 1, 16);
         let start = StrategyStart {
             populations,
+            trials: 1,
             genes,
             gene_bits,
             objectives: 1,

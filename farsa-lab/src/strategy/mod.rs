@@ -9,12 +9,14 @@
 //! - `one_plus_one`: one parent and one mutant
 //! - `random`: search without selection
 //! - `novelty`: novelty search over the truncation algorithm
+//! - `generalist`: competitive co-evolution of two populations with generalist selection
 //! - `reals`: strategies over real genes
 //! - `learning`: one individual, which is trained by an iteration after each generation
 //! - `history`: the genomes and champions of past generations
 //! - `opponents`: whom an individual of one of several populations meets, in a run and when a trial is replayed
 
 pub(crate) mod definition;
+mod generalist;
 pub(crate) mod history;
 pub(crate) mod known;
 mod learning;

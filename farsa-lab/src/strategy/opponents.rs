@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::error::Error;
 use crate::experiment::genotype::Genotype;
 use crate::strategy::history::History;
-use crate::strategy::search::Genome;
+use crate::strategy::search::{Genome, Search};
 
 /// An individual of another population.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,6 +66,9 @@ pub(crate) fn met(
     wanted: Range<u32>,
     trials: usize,
 ) -> Result<Vec<Vec<Genome>>, Error> {
+    if let Some(met) = history.met(generation, individual, wanted.clone())? {
+        return Ok(met);
+    }
     let meeting = Meeting { generation, populations: history.populations(), size: history.size(), trials };
     let mut places = Vec::new();
     for trial in wanted {
@@ -80,6 +83,20 @@ pub(crate) fn met(
     }
     let each = (meeting.populations - 1).max(1);
     Ok(history.genomes(&places)?.chunks(each).map(<[_]>::to_vec).collect())
+}
+
+/// The parameters of the opponents that a strategy chooses for everyone, trial after trial, individual after individual; none if
+/// it chooses nobody, or other genomes than the experiment's.
+pub(crate) fn chosen(search: &Search, genotype: &Genotype, trials: usize) -> Option<Vec<Vec<f32>>> {
+    let mut all = Vec::new();
+    for trial in 0..u32::try_from(trials).ok()? {
+        for individual in 0..search.individuals() {
+            for genome in search.met(individual, trial)? {
+                all.push(genome.decode(genotype)?);
+            }
+        }
+    }
+    Some(all)
 }
 
 /// The champions of every generation; of a single population nobody is kept.
@@ -138,7 +155,6 @@ impl Hall {
 mod tests {
     use super::*;
     use crate::experiment::evaluator::Parameter;
-    use crate::strategy::search::Search;
     use farsa_evo::{Coevolution, Fitness, GaConfig, Record, Strategy};
 
     #[test]

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use farsa_evo::{
-    Collection, EvoError, Fitness, Genealogy, JudgementShape, Judgements, Population, Record, Snapshot, Strategy,
+    Collection, EvoError, Fitness, Genealogy, JudgementShape, Judgements, Meetings, Population, Record, Snapshot,
+    Strategy,
 };
 
 use crate::experiment::genotype::Genotype;
@@ -105,6 +106,28 @@ impl Search {
     /// How many objectives and descriptor values it is told of each individual.
     pub fn judged_by(&self) -> JudgementShape {
         each!(self, strategy => strategy.judged_by())
+    }
+
+    /// How many opponents each individual meets by the strategy's own choice, where it makes one.
+    pub(crate) fn opponents(&self) -> Option<usize> {
+        each!(self, strategy => strategy.meetings().map(Meetings::count))
+    }
+
+    /// The genomes that an individual meets in a trial by the strategy's own choice, one of each other population.
+    pub(crate) fn met(&self, individual: usize, trial: u32) -> Option<Vec<Genome>> {
+        let number = |count: usize| trial as usize % count.max(1);
+        Some(match self {
+            Self::Words(strategy) => {
+                let meetings = strategy.meetings()?;
+                let met = meetings.met(individual, number(meetings.count()));
+                met.into_iter().map(|genes| Genome::Words(genes.to_vec())).collect()
+            }
+            Self::Reals(strategy) => {
+                let meetings = strategy.meetings()?;
+                let met = meetings.met(individual, number(meetings.count()));
+                met.into_iter().map(|genes| Genome::Reals(genes.to_vec())).collect()
+            }
+        })
     }
 
     /// What it keeps beyond a generation, where it does.

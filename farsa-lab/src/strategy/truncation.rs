@@ -9,7 +9,7 @@ use crate::strategy::search::Search;
 use crate::strategy::settings::{GENERATIONS, MUTATION, POPULATION, mutation};
 
 const PARENTS: &str = "evolution.parents";
-const RATE: &str = "evolution.mutation_rate";
+pub(super) const RATE: &str = "evolution.mutation_rate";
 
 /// The best of a generation make mutated copies, [`farsa_evo::TruncationGa`]; with several populations within each of them,
 /// [`farsa_evo::Coevolution`]. Defaults of \[Ferrauto2010\].

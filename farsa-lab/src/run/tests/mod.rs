@@ -4,12 +4,14 @@
 //! - `pool`: a pool's threads: outcomes in their order, stops, and panics alone and in lanes
 //! - `ranks`: runs on ranks that are threads
 //! - `own_strategy`: a strategy of a user's own
+//! - `generalist`: whom everyone meets, where the strategy says so
 //! - `files`: what is refused, and what is mended
 //! - `faults`: evaluations that panic, that are no number and that do not end
 
 mod every_strategy;
 mod faults;
 mod files;
+mod generalist;
 mod own_strategy;
 mod pool;
 mod ranks;
@@ -70,10 +72,14 @@ impl Experiment for Numbers {
         self.strategy
     }
     fn settings(&self, _: &str) -> Vec<Setting> {
-        if self.strategy.name() != "truncation" {
+        if !["truncation", "generalist"].contains(&self.strategy.name()) {
             return vec![Setting::text("numbers.file", "")];
         }
         let size = i64::try_from(SIZE).unwrap();
+        if self.strategy.name() == "generalist" {
+            let small = [(POPULATION, size), ("strategy.newcomers", 5), ("strategy.iterations", 3)];
+            return small.map(|(key, value)| Setting::whole(key, value, 1..=100)).into();
+        }
         vec![Setting::whole(POPULATION, size, 1..=100), Setting::whole("evolution.parents", 2, 1..=100)]
     }
     fn files(&self, _: &str, settings: &Settings) -> Result<Vec<PathBuf>, Error> {

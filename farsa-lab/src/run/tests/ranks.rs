@@ -79,7 +79,9 @@ pub(super) fn same(found: &Path, expected: &Path) {
 #[test]
 fn any_number_of_ranks_makes_the_files_of_one_process() {
     let root = scratch("ranks");
-    for (name, numbers) in [("steady", STEADY), ("learner", LEARNER), ("alone", CHASE_ALONE), ("chase", CHASE)] {
+    let generalist = Numbers { strategy: super::generalist::generalist(), populations: 2 };
+    let all = [("steady", STEADY), ("learner", LEARNER), ("alone", CHASE_ALONE), ("chase", CHASE)];
+    for (name, numbers) in all.into_iter().chain([("generalist", generalist)]) {
         let place = |end: &str| root.join(format!("{name}-{end}"));
         let whole = create(&plan(&numbers, GENERATIONS), &place("whole")).unwrap();
         super::run(&plan(&numbers, GENERATIONS), &whole, 2);
