@@ -1,7 +1,7 @@
 //! What an experiment says of an individual beside its fitness: more objectives, and what it did.
 
-use crate::experiment::evaluator::Parameter;
 use crate::experiment::outcome::{Note, Outcome};
+use crate::experiment::parameter::Parameter;
 
 /// What an experiment says of an individual beside its fitness, [`Task::behaviour`](crate::Task::behaviour): for strategies that
 /// search for several objectives, such as NSGA-II, or for individuals that behave differently, such as MAP-Elites.

@@ -13,11 +13,12 @@ use crate::experiment::controller_export::{
     ControllerExport, MotorDrive, MotorExport, NetworkExport, SensorExport, SensorReading,
 };
 use crate::experiment::episode::{Episode, EpisodeId, seconds};
-use crate::experiment::evaluator::{Evaluation, Exports, Parameter, Task};
+use crate::experiment::evaluator::{Evaluation, Exports, Task};
 use crate::experiment::in_world::{InWorld, Rollout};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::neurocontroller::Neurocontroller;
 use crate::experiment::outcome::{Description, Note, Outcome};
+use crate::experiment::parameter::Parameter;
 
 /// A world of wheeled robots: an arena alone, a lane of many, or one in rapier.
 pub trait PlanarWorld:

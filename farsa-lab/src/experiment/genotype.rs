@@ -3,7 +3,7 @@
 use farsa_evo::Population;
 use farsa_num::Scalar as _;
 
-use crate::experiment::evaluator::Parameter;
+use crate::experiment::parameter::Parameter;
 
 /// Genes of some bits, one for each parameter: 0 stands for the parameter's first end, the largest gene for the other,
 /// linear between. Real genes likewise: -1 stands for the first end, 1 for the other, and what lies beyond is reflected.

@@ -6,11 +6,12 @@ use farsa_view::Schema;
 use crate::error::Error;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
-use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Parameter, Task};
+use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Task};
 use crate::experiment::in_lanes::{Batch, run_in_lanes};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::limited::Limited;
 use crate::experiment::outcome::{Description, Outcome};
+use crate::experiment::parameter::Parameter;
 
 /// A task's episode as it is evaluated: it takes parameters before it starts and tells its outcome after its end.
 pub trait Rollout: Task {

@@ -4,6 +4,7 @@
 //! - `evaluator`: parameters go in, outcomes come out; what only some experiments can do
 //! - `behaviour`: what an experiment says of an individual beside its fitness
 //! - `outcome`: what comes of a trial, and what is told of a robot and its controller
+//! - `parameter`: a number that evolution finds, with its range
 //! - `episode`: one trial in a world, and the loop that runs it
 //! - `in_lanes`: the loop that runs many episodes side by side, one in each lane of a batch of worlds
 //! - `in_world`: an evaluator made of a world and an episode
@@ -31,6 +32,7 @@ mod limited;
 mod network_parameters;
 mod neurocontroller;
 pub(crate) mod outcome;
+pub(crate) mod parameter;
 mod rescored;
 pub(crate) mod settings;
 
@@ -42,7 +44,7 @@ pub use controller_export::{
 };
 pub use definition::{Experiment, SimpleExperiment};
 pub use episode::{Episode, EpisodeId, NoWorld, record_row, run_episode, seconds};
-pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, Learner, Parameter, Task};
+pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, Learner, Task};
 pub use genotype::Genotype;
 pub use in_lanes::{Batch, run_in_lanes};
 pub use in_world::{InWorld, Rollout};
@@ -50,5 +52,6 @@ pub use lanes::Lanes;
 pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
 pub use neurocontroller::Neurocontroller;
 pub use outcome::{ChannelGroup, Description, Failure, Note, Outcome, mean_of_trials};
+pub use parameter::Parameter;
 pub use rescored::Rescored;
 pub use settings::{Setting, Settings, Source, Value};

@@ -3,7 +3,7 @@
 use farsa_nn::{Leak, LeakyLayout, LeakyNetwork, LeakyParameter};
 
 use crate::error::Error;
-use crate::experiment::evaluator::Parameter;
+use crate::experiment::parameter::Parameter;
 
 /// A network over memory of its own.
 pub type OwnedNetwork = LeakyNetwork<Vec<f32>, Vec<f32>>;

@@ -5,9 +5,9 @@ use farsa_nn::{Controller as _, LeakyLayout};
 use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::experiment::evaluator::Parameter;
 use crate::experiment::network_parameters::{OwnedNetwork, network_parameters, resting_network};
 use crate::experiment::outcome::{ChannelGroup, Description};
+use crate::experiment::parameter::Parameter;
 
 /// Sensors, a recurrent network, and motors: what an episode needs beside its world and its reward.
 ///

@@ -5,9 +5,10 @@ use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::behaviour::Behaviour;
-use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Parameter, Task};
+use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Task};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Description, Outcome, mean_of_trials};
+use crate::experiment::parameter::Parameter;
 
 /// Evaluates as another evaluator does, and puts terms of its own in the place of the outcomes'.
 ///

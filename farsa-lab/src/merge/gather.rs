@@ -170,9 +170,10 @@ mod tests {
     use farsa_body::Recorder;
     use farsa_view::Schema;
 
-    use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
     use crate::experiment::lanes::Wanted;
     use crate::experiment::outcome::{Description, Outcome};
+    use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings};
     use crate::run::pool::Pool;
     use crate::run::{begin, evolve};

@@ -324,9 +324,10 @@ fn ticks(stat: &str) -> Option<u64> {
 mod tests {
     use super::*;
     use crate::experiment::definition::Experiment;
-    use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
     use crate::experiment::lanes::Wanted;
     use crate::experiment::outcome::Description;
+    use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings, Value};
     use crate::strategy::settings::{GENERATIONS, POPULATION};
     use farsa_body::Recorder;

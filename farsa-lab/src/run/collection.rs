@@ -4,7 +4,8 @@ use farsa_evo::{JudgementShape, Member};
 
 use crate::error::Error;
 use crate::experiment::behaviour::Behaviour;
-use crate::experiment::evaluator::{Evaluator, Parameter};
+use crate::experiment::evaluator::Evaluator;
+use crate::experiment::parameter::Parameter;
 use crate::figures::scatter::Scatter;
 use crate::store::directory::Directory;
 use crate::store::replace::replace;

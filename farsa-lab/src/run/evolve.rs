@@ -284,9 +284,10 @@ mod tests {
     use crate::evaluation::replay::{Which, replay};
     use crate::evaluation::test;
     use crate::experiment::definition::Experiment;
-    use crate::experiment::evaluator::{Evaluation, Evaluator, Parameter, Task};
+    use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
     use crate::experiment::lanes::Wanted;
     use crate::experiment::outcome::{Description, Outcome};
+    use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::{Setting, Settings, Value};
     use crate::run::begin::create;
     use crate::store::directory::Directory;

@@ -157,8 +157,9 @@ impl Snapshot for Trainee {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::evaluator::{Evaluation, Learner, Parameter, Task};
+    use crate::experiment::evaluator::{Evaluation, Learner, Task};
     use crate::experiment::outcome::{Description, Outcome};
+    use crate::experiment::parameter::Parameter;
     use crate::experiment::settings::Settings;
     use farsa_body::Recorder;
     use farsa_view::Schema;

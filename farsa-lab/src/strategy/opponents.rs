@@ -154,7 +154,7 @@ impl Hall {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::evaluator::Parameter;
+    use crate::experiment::parameter::Parameter;
     use farsa_evo::{Coevolution, Fitness, GaConfig, Record, Strategy};
 
     #[test]
