@@ -185,6 +185,21 @@ fn signal(name: &str, process: u32) {
     let _ = Command::new("kill").args([name, &process.to_string()]).stderr(Stdio::null()).status();
 }
 
+/// The ranks below an `mpirun`, once they go on with a run: its log grows, however busy the machine is.
+fn running(mpirun: u32, count: usize, run: &Path) -> Vec<u32> {
+    let length = || fs::metadata(run.join("fitness.csv")).expect("the log").len();
+    let (before, started) = (length(), Instant::now());
+    loop {
+        let mut ranks = children(mpirun);
+        if ranks.len() == count && length() > before {
+            ranks.sort_unstable();
+            return ranks;
+        }
+        assert!(started.elapsed() < Duration::from_secs(120), "{} of {count} ranks after two minutes", ranks.len());
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
 #[test]
 fn a_rank_that_is_told_to_stop_stops_all() {
     let here = scratch("stop");
@@ -192,10 +207,7 @@ fn a_rank_that_is_told_to_stop_stops_all() {
     succeed(farsa(&here, &format!("run {run} --generations 1 --out r -q")));
     for told in 0..3 {
         let child = mpirun(&here, 3, "run --resume r --generations 4000000 -q").spawn().expect("mpirun");
-        thread::sleep(Duration::from_millis(1500));
-        let mut ranks = children(child.id());
-        ranks.sort_unstable();
-        assert_eq!(ranks.len(), 3);
+        let ranks = running(child.id(), 3, &here.join("r"));
         signal("-TERM", ranks[told]);
         let output = child.wait_with_output().expect("its end");
         assert_eq!(output.status.code(), Some(130), "{}", said(&output));

@@ -61,7 +61,7 @@ const CHOICE: u32 = SIDES as u32;
 /// let ones = |genes: &[u16]| f64::from(genes[0].count_ones());
 /// let config = GeneralistConfig { members: 6, newcomers: 2, opponents: 4, iterations: 3, ..GeneralistConfig::new(1) };
 /// let mut search = GeneralistCoevolution::new(config, 1)?;
-/// for _ in 0..20 * config.round() {
+/// for _ in 0..60 * config.round() {
 ///     let meetings = search.meetings().expect("it says whom each meets");
 ///     let mut rows = Vec::new();
 ///     for (individual, genes) in search.ask().iter().enumerate() {
