@@ -45,6 +45,8 @@ pub(crate) fn same(all: &[Facts]) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::settings::Value;
+    use crate::store::identity::FILE;
 
     fn facts(all: &[(&str, &str)]) -> Facts {
         all.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
@@ -66,5 +68,46 @@ mod tests {
             let error = same(&[own.clone(), own.clone(), other, facts(&[])]).unwrap_err();
             assert_eq!((error.to_string(), error.exit_code()), (format!("rank 2: {message}"), 2));
         }
+    }
+    #[test]
+    fn another_program_or_run_is_named_with_both_values() {
+        let own = Identity {
+            experiment: "push-box".into(),
+            condition: "plain".into(),
+            seed: 3,
+            values_version: 3,
+            experiment_version: 2,
+            settings: vec![("world.step".into(), Value::Whole(10)), (format!("{FILE}start.csv"), Value::Whole(77))],
+        };
+        let facts = |identity: &Identity| of_run(identity, "truncation", 100);
+        let refused = |other: Facts, message: &str| {
+            let error = same(&[facts(&own), facts(&own), facts(&own), other]).unwrap_err();
+            assert_eq!((error.to_string(), error.exit_code()), (format!("rank 3: {message} on rank 0"), 2));
+        };
+        same(&[facts(&own), facts(&own.clone())]).unwrap();
+        let with = |settings: [(&str, i64); 2]| Identity {
+            settings: settings.map(|(name, value)| (name.to_owned(), Value::Whole(value))).into(),
+            ..own.clone()
+        };
+        for (other, message) in [
+            (Identity { values_version: 4, ..own.clone() }, "`the version of FARSA's values` is 4 there and 3"),
+            (
+                Identity { experiment_version: 1, ..own.clone() },
+                "`the version of the experiment's values` is 1 there and 2",
+            ),
+            (Identity { experiment: "swarm".into(), ..own.clone() }, "`experiment` is swarm there and push-box"),
+            (Identity { condition: "rapier".into(), ..own.clone() }, "`condition` is rapier there and plain"),
+            (Identity { seed: 4, ..own.clone() }, "`seed` is 4 there and 3"),
+            (with([("world.step", 20), ("CRC-32 of start.csv", 77)]), "`world.step` is 20 there and 10"),
+            (with([("world.step", 10), ("CRC-32 of start.csv", 78)]), "`CRC-32 of start.csv` is 78 there and 77"),
+        ] {
+            refused(facts(&other), message);
+        }
+        refused(of_run(&own, "xnes", 100), "`strategy` is xnes there and truncation");
+        refused(of_run(&own, "truncation", 99), "`evolution.generations` is 99 there and 100");
+        let mut older = facts(&own);
+        older[0].1 = "0.0.9".into();
+        let version = env!("CARGO_PKG_VERSION");
+        refused(older, &format!("`the version of farsa-lab` is 0.0.9 there and {version}"));
     }
 }

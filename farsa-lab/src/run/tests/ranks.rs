@@ -185,9 +185,11 @@ fn a_rank_that_is_told_to_stop_stops_all_after_a_checkpoint() {
 }
 
 #[test]
-fn an_error_of_rank_0_ends_all() {
+fn an_error_of_rank_0_ends_all_and_loses_nothing() {
     let root = scratch("ranks-full");
     let place = root.join("run");
+    let whole = create(&plan(&CHASE_ALONE, 5), &root.join("whole")).unwrap();
+    super::run(&plan(&CHASE_ALONE, 5), &whole, 1);
     all_well(on(2, &CHASE_ALONE, 2, &place));
     // A directory where a file is to be replaced: no checkpoint can be written.
     fs::remove_file(place.join("fitness.svg")).unwrap();
@@ -196,5 +198,8 @@ fn an_error_of_rank_0_ends_all() {
     let first = first.unwrap_err();
     assert!(matches!(first, Error::Io { .. }), "{first}");
     assert_eq!((first.exit_code(), second.unwrap(), third.unwrap()), (1, "1".into(), "1".into()));
+    fs::remove_dir(place.join("fitness.svg")).unwrap();
+    all_well(on(2, &CHASE_ALONE, 5, &place));
+    same(&place, whole.path());
     fs::remove_dir_all(root).unwrap();
 }
