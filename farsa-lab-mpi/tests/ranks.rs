@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -185,19 +185,19 @@ fn signal(name: &str, process: u32) {
     let _ = Command::new("kill").args([name, &process.to_string()]).stderr(Stdio::null()).status();
 }
 
-/// The ranks below an `mpirun`, once they go on with a run: its log grows, however busy the machine is.
-fn running(mpirun: u32, count: usize, run: &Path) -> Vec<u32> {
-    let length = || fs::metadata(run.join("fitness.csv")).expect("the log").len();
-    let (before, started) = (length(), Instant::now());
-    loop {
-        let mut ranks = children(mpirun);
-        if ranks.len() == count && length() > before {
-            ranks.sort_unstable();
-            return ranks;
-        }
-        assert!(started.elapsed() < Duration::from_secs(120), "{} of {count} ranks after two minutes", ranks.len());
-        thread::sleep(Duration::from_millis(50));
+/// Three ranks that go on with the run `r`, in the order of their numbers, once they have finished generations together.
+fn go_on(here: &Path) -> (Child, Vec<u32>) {
+    let saved = || fs::metadata(here.join("r/fitness.csv")).expect("the log").len();
+    let (before, begun) = (saved(), Instant::now());
+    let child = mpirun(here, 3, "run --resume r --generations 4000000 -q").spawn().expect("mpirun");
+    while saved() == before {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no generation in a minute");
+        thread::sleep(Duration::from_millis(20));
     }
+    let mut ranks = children(child.id());
+    ranks.sort_unstable();
+    assert_eq!(ranks.len(), 3);
+    (child, ranks)
 }
 
 #[test]
@@ -206,13 +206,81 @@ fn a_rank_that_is_told_to_stop_stops_all() {
     let run = "discrimination --set trial.count=2 --set trial.steps=50";
     succeed(farsa(&here, &format!("run {run} --generations 1 --out r -q")));
     for told in 0..3 {
-        let child = mpirun(&here, 3, "run --resume r --generations 4000000 -q").spawn().expect("mpirun");
-        let ranks = running(child.id(), 3, &here.join("r"));
+        let (child, ranks) = go_on(&here);
         signal("-TERM", ranks[told]);
         let output = child.wait_with_output().expect("its end");
         assert_eq!(output.status.code(), Some(130), "{}", said(&output));
         assert_eq!(said(&output).matches("error: interrupted; go on with ").count(), 1, "{}", said(&output));
     }
+}
+
+#[test]
+fn a_lost_rank_ends_all_and_is_named() {
+    let here = scratch("lost");
+    let run = "run discrimination --set trial.count=2 --set trial.steps=50";
+    succeed(farsa(&here, &format!("{run} --generations 1 --out r -q")));
+    for lost in 0..3 {
+        let (child, ranks) = go_on(&here);
+        signal("-KILL", ranks[lost]);
+        let output = child.wait_with_output().expect("its end");
+        let said = said(&output).split_whitespace().collect::<Vec<_>>().join(" ");
+        // With the number of its process, or with 0.
+        assert!(said.contains(&format!("process rank {lost} with PID ")), "{said}");
+        assert!(said.contains("exited on signal 9"), "{said}");
+        assert_eq!(output.status.code(), Some(128 + 9), "{said}");
+    }
+    // What was saved is whole.
+    let end = fs::read_to_string(here.join("r/fitness.csv")).expect("the log").lines().count() + 5;
+    succeed(mpirun(&here, 2, &format!("run --resume r --generations {end} -q")));
+    succeed(farsa(&here, &format!("{run} --generations {end} --out whole -q")));
+    same(&here.join("r"), &here.join("whole"));
+}
+
+/// One rank on a full disk and more that have room: no file of the former grows beyond some blocks of 512 bytes. Messages go
+/// through sockets, because shared memory is a file, too.
+fn with_a_full_disk(here: &Path, full: usize, blocks: u32, arguments: &str) -> Command {
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" {arguments}");
+    let mut command = Command::new("mpirun");
+    command.args(["--oversubscribe", "--allow-run-as-root", "--mca", "btl", "self,tcp"]);
+    for rank in 0..3 {
+        command.args(if rank == 0 { &["-n", "1"][..] } else { &[":", "-n", "1"] });
+        if rank == full {
+            command.args(["sh", "-c", &script]);
+        }
+        command.arg(env!("CARGO_BIN_EXE_farsa-mpi"));
+        if rank != full {
+            command.args(arguments.split_whitespace());
+        }
+    }
+    in_folder(command, here)
+}
+
+#[test]
+fn a_full_disk_of_one_rank_loses_nothing() {
+    let here = scratch("full");
+    let run = "run discrimination --set trial.count=2 --set trial.steps=50";
+    let resume = "run --resume r --generations 400 -q";
+    succeed(farsa(&here, &format!("{run} --generations 400 --out whole -q")));
+    succeed(mpirun(&here, 2, &format!("{run} --generations 4 --out r -q")));
+    let file = |name: &str| fs::read(here.join("r").join(name)).expect("a file");
+    let before = ["champion.bin", "checkpoint.bin", "record.bin", "fitness.csv"].map(|name| (name, file(name)));
+    // Not even the configuration can be written; then some generations can be.
+    for (blocks, cannot) in [(0, "r/config.toml: File too large (os error 27)"), (8, "r/")] {
+        let output = with_a_full_disk(&here, 0, blocks, resume).output().expect("mpirun");
+        let said = said(&output);
+        assert_eq!((output.status.code(), said.matches("error: ").count()), (Some(1), 1), "{said}");
+        assert!(said.contains(&format!("error: cannot write {cannot}")), "{said}");
+        assert!(said.contains(": File too large (os error 27)"), "{said}");
+        for (name, content) in &before {
+            let (found, grows) = (file(name), ["record.bin", "fitness.csv"].contains(name));
+            // A slow machine saves once before the disk is full.
+            assert!(if grows { found.starts_with(content) } else { blocks > 0 || found == *content }, "{name}");
+        }
+        assert_eq!(file("record.bin").len() > before[2].1.len(), blocks > 0, "it should come some way");
+    }
+    // Others than rank 0 need no room, and with room for rank 0 the run goes on as if nothing had been.
+    succeed(with_a_full_disk(&here, 1, 0, resume));
+    same(&here.join("r"), &here.join("whole"));
 }
 
 #[test]
