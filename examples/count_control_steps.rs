@@ -58,8 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let genotype = Genotype::new(&evaluator.parameters(), 16);
             let genes: Vec<u16> = (0..genotype.genes() as u32).map(|i| (i * 40503) as u16).collect();
             let parameters = genotype.decode(&genes).ok_or("other genes")?;
-            let evaluation =
-                Evaluation { number: 0, parameters: &parameters, opponents: &[], id: EpisodeId::default() };
+            let evaluation = Evaluation::new(&parameters, EpisodeId::default());
             let mut recording = Recording::new(evaluator.schema());
             let recorded = case == "recorded";
             // One episode of as many steps as the other cases have repetitions.

@@ -73,8 +73,7 @@ fn row(who: &str, outcomes: &[Outcome], evolved: &[Outcome]) -> String {
 fn team(best: &mut BestOfRun) -> Result<(), Error> {
     let BestOfRun { condition, settings, parameters, evaluator, .. } = best;
     let genotype = genotype(evaluator.as_ref());
-    let mut evaluate =
-        |parameters: &[f32], id| evaluator.evaluate(Evaluation { number: 0, parameters, opponents: &[], id }, None);
+    let mut evaluate = |parameters: &[f32], id| evaluator.evaluate(Evaluation::new(parameters, id), None);
     let evolved: Vec<Outcome> = ids().map(|id| evaluate(&parameters[0], id)).collect();
     let random: Vec<Outcome> = ids().map(|id| evaluate(&random(&genotype, id, 0), id)).collect();
     let by_hand: Vec<Outcome> = if best.experiment == "foraging" {

@@ -36,7 +36,7 @@ fn distances_change_as_the_names_say() {
         let mut evaluator = Braitenberg.prepare(vehicle.name(), &settings).unwrap();
         let mut evaluate = |trial| {
             let id = EpisodeId { seed: 1, trial, ..EpisodeId::default() };
-            evaluator.evaluate(Evaluation { number: 0, parameters: &[0.0], opponents: &[], id }, None)
+            evaluator.evaluate(Evaluation::new(&[0.0], id), None)
         };
         let mut outcomes: Vec<Outcome> = (0..400).map(&mut evaluate).collect();
         if vehicle == Vehicle::Love {

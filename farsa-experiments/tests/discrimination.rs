@@ -77,7 +77,7 @@ fn parameters(experiment: &dyn Experiment, evaluator: &dyn Evaluator, gene: impl
 }
 
 fn alone(parameters: &[f32], id: EpisodeId) -> Evaluation<'_> {
-    Evaluation { number: 0, parameters, opponents: &[], id }
+    Evaluation::new(parameters, id)
 }
 
 /// A controller of the layer with all weights 0: the robot drives straight on or stands.

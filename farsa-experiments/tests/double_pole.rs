@@ -200,7 +200,7 @@ fn a_pole_that_is_left_alone_falls() {
 const BALANCES: [f32; 7] = [-0.297, -3.755, 2.153, -2.036, -6.874, 1.465, 2.093];
 
 fn outcome(evaluator: &mut dyn Evaluator, parameters: &[f32]) -> farsa_lab::Outcome {
-    evaluator.evaluate(Evaluation { number: 0, parameters, opponents: &[], id: EpisodeId::default() }, None)
+    evaluator.evaluate(Evaluation::new(parameters, EpisodeId::default()), None)
 }
 
 #[test]
@@ -283,7 +283,7 @@ fn a_recorded_trial_is_the_same_and_has_what_the_stage_names() {
         let plain = outcome(evaluator.as_mut(), &parameters);
         let schema = evaluator.schema();
         let mut recording = Recording::new(schema.clone());
-        let evaluation = Evaluation { number: 0, parameters: &parameters, opponents: &[], id: EpisodeId::default() };
+        let evaluation = Evaluation::new(&parameters, EpisodeId::default());
         assert_eq!(evaluator.evaluate(evaluation, Some(&mut recording)), plain);
         // The step in which a pole falls is recorded, too.
         let ticks = recording.times().len();

@@ -61,7 +61,7 @@ fn an_iteration_depends_on_words_seed_and_generation_alone() {
     learner(&mut other).iterate(&mut again.clone(), 9, 5).unwrap();
     let parameters = genotype(&other).decode(&genes(&mut other, &again)).unwrap();
     let id = EpisodeId { seed: SEED, trial: 2, ..EpisodeId::default() };
-    other.evaluate(Evaluation { number: 0, parameters: &parameters, opponents: &[], id }, None);
+    other.evaluate(Evaluation::new(&parameters, id), None);
     assert_eq!(learner(&mut other).iterate(&mut again, SEED, 1).unwrap(), iterations[1]);
     assert_eq!(again, state);
     assert!(learner(&mut other).iterate(&mut again[1..], SEED, 1).is_none());

@@ -129,7 +129,7 @@ fn trials_of_networks_in_lanes_are_those_alone() {
     let evaluation = |number: usize| {
         let (individual, trial) = (number / TRIALS, number % TRIALS);
         let id = EpisodeId { seed: 3, generation: 1, individual: individual as u32, trial: trial as u32 };
-        Evaluation { number, parameters: &parameters[individual], opponents: &[], id }
+        Evaluation { number, ..Evaluation::new(&parameters[individual], id) }
     };
     // 39, which is no multiple of the lanes.
     let evaluations: Vec<Evaluation> = (0..10 * TRIALS - 1).map(evaluation).collect();
@@ -156,7 +156,7 @@ fn wheels(experiment: &dyn Experiment, condition: &str, values: &[(&str, Value)]
         let individual = (number + population * size) as u32;
         let id = EpisodeId { seed: 3, generation: 1, individual, trial: number as u32 };
         let opponents: &[&[f32]] = if populations > 1 { &others[number] } else { &[] };
-        Evaluation { number, parameters: &parameters[number], opponents, id }
+        Evaluation { number, opponents, ..Evaluation::new(&parameters[number], id) }
     };
     let evaluations: Vec<Evaluation> = (0..21).map(evaluation).collect();
     let alone = in_lanes_as_alone(evaluator.as_mut(), arena::Batch::instructions(), &evaluations);

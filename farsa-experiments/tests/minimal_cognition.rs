@@ -172,7 +172,7 @@ fn trials() -> impl Iterator<Item = EpisodeId> {
 fn the_evolved_agent_tells_circles_from_diamonds() {
     let mut evaluator = evaluator();
     let parameters = of_genes(evaluator.as_ref(), &champion());
-    let evaluation = |id| Evaluation { number: 0, parameters: &parameters, opponents: &[], id };
+    let evaluation = |id| Evaluation::new(&parameters, id);
     let outcomes: Vec<_> = trials().map(|id| evaluator.evaluate(evaluation(id), None)).collect();
     let (circles, diamonds): (Vec<_>, Vec<_>) = outcomes.iter().partition(|outcome| {
         outcome.notes.iter().any(|(name, note)| *name == "object" && *note == Note::from("circle"))
@@ -201,7 +201,7 @@ fn a_recorded_episode_is_the_same_and_has_what_the_stage_names() {
     let mut evaluator = evaluator();
     let parameters = of_genes(evaluator.as_ref(), &genes(2));
     let id = EpisodeId { seed: 5, trial: 3, ..EpisodeId::default() };
-    let evaluation = Evaluation { number: 0, parameters: &parameters, opponents: &[], id };
+    let evaluation = Evaluation::new(&parameters, id);
     let plain = evaluator.evaluate(evaluation, None);
     let schema = evaluator.schema();
     let mut recording = Recording::new(schema.clone());

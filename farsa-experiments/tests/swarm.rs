@@ -48,7 +48,7 @@ fn parameters(evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
 
 /// A trial against other ones.
 fn against<'p>(parameters: &'p [f32], opponents: &'p [&'p [f32]], id: EpisodeId) -> Evaluation<'p> {
-    Evaluation { number: 0, parameters, opponents, id }
+    Evaluation { opponents, ..Evaluation::new(parameters, id) }
 }
 
 fn note(outcome: &Outcome, name: &str) -> f64 {

@@ -270,7 +270,7 @@ fn trials(condition: &str, genes: &[u16]) -> Vec<Outcome> {
     let mut evaluator = prepared(&BodyEvolution, condition, &[]).unwrap();
     let parameters = Genotype::new(&evaluator.parameters(), BodyEvolution.gene_bits()).decode(genes).unwrap();
     let id = |trial| EpisodeId { seed: 1 << 63, trial, ..EpisodeId::default() };
-    let evaluation = |trial| Evaluation { number: 0, parameters: &parameters, opponents: &[], id: id(trial) };
+    let evaluation = |trial| Evaluation::new(&parameters, id(trial));
     (0..3).map(|trial| evaluator.evaluate(evaluation(trial), None)).collect()
 }
 

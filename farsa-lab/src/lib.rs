@@ -27,11 +27,11 @@ pub use evaluation::read_genotypes;
 pub use experiment::{
     ActuatorExport, Batch, Behaviour, Bodies, ChannelGroup, Controlled, ControllerExport, CtrnnExport, Description,
     Episode, EpisodeId, Evaluation, Evaluator, Experiment, Exports, Failure, Genotype, InLanes, InWorld, Iteration,
-    JudgeExport, Lanes, Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld, Note,
-    NotedBehaviour, Objective, Outcome, OwnedNetwork, Parameter, PlanarWorld, PointExport, Rescored, Rollout,
-    SensorExport, SensorReading, ServoExport, Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport,
-    Task, Trials, Value, mean_of_note, mean_of_trials, network_parameters, record_row, resting_network, run_episode,
-    run_in_lanes, seconds,
+    JudgeExport, Lanes, Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld,
+    NormalisedController, Note, NotedBehaviour, Objective, Outcome, OwnedNetwork, Parameter, PlanarWorld, PointExport,
+    Rescored, Rollout, SensorExport, SensorReading, ServoExport, Setting, Settings, SimpleExperiment, Source,
+    StartExport, SurfaceExport, Task, Trials, Value, mean_of_note, mean_of_trials, network_parameters, record_row,
+    resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use ranks::{Alone, Ranks};
 pub use run::{BestOfRun, ENGINE, Laboratory};

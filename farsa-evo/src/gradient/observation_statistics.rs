@@ -59,6 +59,18 @@ impl ObservationStatistics {
         Ok(Self { count: 0, mean: vec![0.0; channels], squares: vec![0.0; channels] })
     }
 
+    /// The statistics whose state was [saved](Snapshot::save), of as many channels as that has.
+    ///
+    /// # Errors
+    /// [`EvoError::StateLength`] and [`EvoError::StateContent`] for bytes that are no such state.
+    pub fn from_saved(state: &[u8]) -> Result<Self, EvoError> {
+        let channels = state.len().saturating_sub(8) / 16;
+        let mut statistics =
+            Self::new(channels).map_err(|_| EvoError::StateLength { expected: 24, found: state.len() })?;
+        statistics.restore(state)?;
+        Ok(statistics)
+    }
+
     /// Number of channels.
     pub fn channels(&self) -> usize {
         self.mean.len()

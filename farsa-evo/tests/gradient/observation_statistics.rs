@@ -114,4 +114,10 @@ fn the_largest_batches_stay_finite() {
     let mut other = ObservationStatistics::new(1).unwrap();
     other.restore(&statistics.save()).unwrap();
     assert_eq!(other, statistics);
+    assert_eq!(ObservationStatistics::from_saved(&statistics.save()), Ok(statistics.clone()));
+    let state = statistics.save();
+    for length in (0..24).chain([25, 39]) {
+        let state: Vec<u8> = state.iter().copied().cycle().take(length).collect();
+        assert!(matches!(ObservationStatistics::from_saved(&state), Err(EvoError::StateLength { .. })), "{length}");
+    }
 }

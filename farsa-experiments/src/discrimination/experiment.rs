@@ -11,9 +11,9 @@ use crate::discrimination::episode::CylinderEpisode;
 use crate::infrared::settings::InfraredModel;
 use crate::worlds::PlanarEngine;
 use farsa_lab::{
-    Behaviour, ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, Note,
-    NotedBehaviour, OnePlusOne, Outcome, Parameter, Rollout, Setting, Settings, StrategyDefinition, Task,
-    mean_of_trials,
+    Behaviour, ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld,
+    NormalisedController, Note, NotedBehaviour, OnePlusOne, Outcome, Parameter, Rollout, Setting, Settings,
+    StrategyDefinition, Task, mean_of_trials,
 };
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
@@ -75,7 +75,7 @@ pub(crate) fn in_its_world(config: Config) -> Result<Box<dyn Evaluator>, Error> 
 pub(crate) const GENE_BITS: u32 = 8;
 
 /// The layer of two logistic units that parameters are for.
-pub type Layer = Perceptron<Vec<f32>>;
+pub type Layer = NormalisedController<Perceptron<Vec<f32>>>;
 
 /// Evaluates under a configuration, in the kinematic arena.
 ///
@@ -107,7 +107,7 @@ where
 {
     let inputs = config.inputs();
     let layer = layer(inputs, vec![0.0; Perceptron::parameter_count(inputs, 2)])?;
-    let mut episode = CylinderEpisode::new(config, layer)?;
+    let mut episode = CylinderEpisode::new(config, NormalisedController::new(layer))?;
     // Seeds of this kind are neither a run's nor a test's.
     for trial in 0..8 {
         let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
@@ -117,7 +117,7 @@ where
 }
 
 /// Two logistic units over these parameters.
-fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error> {
+fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Perceptron<Vec<f32>>, Error> {
     Perceptron::new(inputs, 2, 1.0, parameters).map_err(|error| Error::Other(format!("discrimination: {error}")))
 }
 
@@ -218,6 +218,10 @@ impl Task for CylinderEpisode<Layer> {
         }
     }
 
+    fn observations(&self) -> usize {
+        self.config().inputs()
+    }
+
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         Some(if self.config().radii.len() == 1 { &NEAR_ONE } else { &NEAR_TWO })
     }
@@ -235,12 +239,14 @@ impl Rollout for CylinderEpisode<Layer> {
             return false;
         }
         let Ok(layer) = layer(inputs, in_order_of_layer(evaluation.parameters, inputs)) else { return false };
+        let mut layer = NormalisedController::new(layer);
+        let loaded = layer.load(evaluation.normalisation);
         self.set_controller(layer);
-        true
+        loaded
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(self.controller().parameters());
+        recorder.parameters(self.controller().controller().parameters());
     }
 
     fn outcome(&self) -> Outcome {
@@ -269,6 +275,7 @@ impl Rollout for CylinderEpisode<Layer> {
             steps: trial.steps,
             success: !trial.collided && trial.distance[0] < config.near,
             notes,
+            observed: self.controller().observed().cloned(),
             ..Outcome::default()
         }
     }

@@ -1,6 +1,7 @@
 //! An episode of `double-pole`: a network pushes the cart until a pole falls.
 
-use farsa_lab::Error;
+use farsa_evo::ObservationStatistics;
+use farsa_lab::{Error, NormalisedController};
 use farsa_nn::{BlockNetwork, Controller as _, Leak};
 
 use crate::double_pole::cart::CartState;
@@ -16,7 +17,7 @@ const LAST: u32 = 100;
 #[derive(Clone, Debug)]
 pub struct CartEpisode {
     config: Config,
-    network: BlockNetwork<'static, Vec<f32>, Vec<f32>>,
+    network: NormalisedController<BlockNetwork<'static, Vec<f32>, Vec<f32>>>,
     state: CartState,
     steps: u32,
     fallen: bool,
@@ -36,6 +37,7 @@ impl CartEpisode {
         let layout = layout(config.velocities, config.hidden);
         let network = BlockNetwork::new(layout, Leak::Filter, parameters, vec![0.0; layout.state_len()])
             .map_err(|error| Error::Other(format!("double-pole: {error}")))?;
+        let network = NormalisedController::new(network);
         let (unrest, x) = ([0.0; LAST as usize], vec![0.0; config.inputs()]);
         let state = CartState::default();
         let mut episode = Self { config, network, state, steps: 0, fallen: false, unrest, x, y: [0.0], force: 0.0 };
@@ -48,7 +50,7 @@ impl CartEpisode {
     /// # Errors
     /// [`Error::Other`] for parameters that make no network.
     pub fn set_parameters(&mut self, parameters: &[f32]) -> Result<(), Error> {
-        let copied = self.network.copy_parameters(parameters);
+        let copied = self.network.controller_mut().copy_parameters(parameters);
         copied.map_err(|error| Error::Other(format!("double-pole: {error}")))
     }
 
@@ -129,7 +131,17 @@ impl CartEpisode {
 
     /// The network.
     pub fn network(&self) -> &BlockNetwork<'static, Vec<f32>, Vec<f32>> {
-        &self.network
+        self.network.controller()
+    }
+
+    /// Normalises observations by what was observed before, or does not; false for statistics of other channels.
+    pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
+        self.network.load(before)
+    }
+
+    /// What was observed since [`normalise`](Self::normalise), where it is normalised.
+    pub fn observed(&self) -> Option<&ObservationStatistics> {
+        self.network.observed()
     }
 
     /// Where cart and poles are.

@@ -109,6 +109,10 @@ impl Task for Balancing {
         (0..neurons * (inputs + neurons)).map(weight).collect()
     }
 
+    fn observations(&self) -> usize {
+        self.episode.sensed().len()
+    }
+
     fn terms(&self) -> Vec<String> {
         if self.episode.config().damping { vec!["balance".into(), "rest".into()] } else { vec!["steps".into()] }
     }
@@ -218,7 +222,7 @@ impl Episode<NoWorld> for Balancing {
 
 impl Rollout for Balancing {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        self.episode.set_parameters(evaluation.parameters).is_ok()
+        self.episode.normalise(evaluation.normalisation) && self.episode.set_parameters(evaluation.parameters).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
@@ -230,6 +234,7 @@ impl Rollout for Balancing {
         let steps = self.episode.steps();
         let terms = if self.episode.config().damping { self.episode.damping().into() } else { vec![f64::from(steps)] };
         let notes = vec![("steps in balance", Note::from(f64::from(steps)))];
-        Outcome { terms, steps, success: self.episode.succeeded(), notes, ..Outcome::default() }
+        let observed = self.episode.observed().cloned();
+        Outcome { terms, steps, success: self.episode.succeeded(), notes, observed, ..Outcome::default() }
     }
 }

@@ -1,6 +1,7 @@
 //! An episode of `minimal-cognition`: one object falls, and the agent moves under it.
 
-use farsa_lab::{EpisodeId, Error};
+use farsa_evo::ObservationStatistics;
+use farsa_lab::{EpisodeId, Error, NormalisedController};
 use farsa_nn::{Controller as _, Ctrnn};
 use farsa_num::{Domain, Stream, sin_cos};
 
@@ -14,7 +15,7 @@ pub struct AgentEpisode {
     config: Config,
     /// Sine and cosine of each ray's angle, clockwise from straight up.
     rays: [[f64; 2]; RAYS],
-    network: Ctrnn<Vec<f32>, Vec<f32>>,
+    network: NormalisedController<Ctrnn<Vec<f32>, Vec<f32>>>,
     object: Object,
     /// Where the object and the agent are on the line.
     places: [f64; 2],
@@ -32,6 +33,7 @@ impl AgentEpisode {
         let state = vec![0.0; LAYOUT.state_len()];
         let network = Ctrnn::new(LAYOUT, config.time_step as f32, parameters, state)
             .map_err(|error| Error::Other(format!("minimal-cognition: {error}")))?;
+        let network = NormalisedController::new(network);
         // Whole numbers to the last product: the fan is the same to the bit on both sides.
         let angle = |ray: usize| config.fan * (2.0 * ray as f64 - (RAYS - 1) as f64) / (2 * (RAYS - 1)) as f64;
         let rays = core::array::from_fn(|ray| {
@@ -47,7 +49,7 @@ impl AgentEpisode {
     /// # Errors
     /// [`Error::Other`] for parameters that make no network.
     pub fn set_parameters(&mut self, parameters: &[f32]) -> Result<(), Error> {
-        let copied = self.network.copy_parameters(parameters);
+        let copied = self.network.controller_mut().copy_parameters(parameters);
         copied.map_err(|error| Error::Other(format!("minimal-cognition: {error}")))
     }
 
@@ -130,12 +132,22 @@ impl AgentEpisode {
 
     /// The parameters of the network, in the order of [`LAYOUT`].
     pub fn parameters(&self) -> &[f32] {
-        self.network.parameters()
+        self.network.controller().parameters()
     }
 
     /// The network.
     pub fn network(&self) -> &Ctrnn<Vec<f32>, Vec<f32>> {
-        &self.network
+        self.network.controller()
+    }
+
+    /// Normalises observations by what was observed before, or does not; false for statistics of other channels.
+    pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
+        self.network.load(before)
+    }
+
+    /// What was observed since [`normalise`](Self::normalise), where it is normalised.
+    pub fn observed(&self) -> Option<&ObservationStatistics> {
+        self.network.observed()
     }
 
     /// What falls.

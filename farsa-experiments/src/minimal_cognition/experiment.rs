@@ -148,6 +148,10 @@ impl Task for Agent {
         self.episode.config().trials as usize
     }
 
+    fn observations(&self) -> usize {
+        RAYS
+    }
+
     fn terms(&self) -> Vec<String> {
         vec!["score".into()]
     }
@@ -261,7 +265,7 @@ impl Exports for Agent {
 impl Rollout for Agent {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let Some(parameters) = self.wiring.expand(evaluation.parameters) else { return false };
-        self.episode.set_parameters(&parameters).is_ok()
+        self.episode.normalise(evaluation.normalisation) && self.episode.set_parameters(&parameters).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
@@ -275,6 +279,7 @@ impl Rollout for Agent {
             ("object", Note::from(self.episode.object().name())),
             ("distance at the end", Note::from(self.episode.distance())),
         ];
-        Outcome { terms: vec![score], steps, success: score > 0.5, notes, ..Outcome::default() }
+        let observed = self.episode.observed().cloned();
+        Outcome { terms: vec![score], steps, success: score > 0.5, notes, observed, ..Outcome::default() }
     }
 }

@@ -5,17 +5,18 @@ use farsa_nn::Perceptron;
 
 use crate::push_box::episode::{OUTPUTS, PushEpisode};
 use farsa_lab::{
-    Behaviour, ChannelGroup, Description, Error, Evaluation, Note, NotedBehaviour, Outcome, Parameter, Rollout, Task,
-    mean_of_trials,
+    Behaviour, ChannelGroup, Description, Error, Evaluation, NormalisedController, Note, NotedBehaviour, Outcome,
+    Parameter, Rollout, Task, mean_of_trials,
 };
 use farsa_view::{Channel, Geometry, Links, NodeParameters, Role, SceneObject, Schema, screen_color};
 
 /// The layer of two logistic units that parameters are for.
-pub(crate) type Layer = Perceptron<Vec<f32>>;
+pub(crate) type Layer = NormalisedController<Perceptron<Vec<f32>>>;
 
 /// Two logistic units over these parameters.
 pub(crate) fn layer(inputs: usize, parameters: Vec<f32>) -> Result<Layer, Error> {
-    Perceptron::new(inputs, OUTPUTS, 1.0, parameters).map_err(|error| Error::Other(format!("push-box: {error}")))
+    let layer = Perceptron::new(inputs, OUTPUTS, 1.0, parameters);
+    layer.map(NormalisedController::new).map_err(|error| Error::Other(format!("push-box: {error}")))
 }
 
 /// What an individual did, for strategies that want more than its fitness.
@@ -94,6 +95,10 @@ impl Task for PushEpisode<Layer> {
         }
     }
 
+    fn observations(&self) -> usize {
+        self.config().inputs()
+    }
+
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         Some(&BEHAVIOUR)
     }
@@ -110,13 +115,14 @@ impl Rollout for PushEpisode<Layer> {
         if evaluation.parameters.len() != Perceptron::parameter_count(inputs, OUTPUTS) {
             return false;
         }
-        let Ok(layer) = layer(inputs, evaluation.parameters.to_vec()) else { return false };
+        let Ok(mut layer) = layer(inputs, evaluation.parameters.to_vec()) else { return false };
+        let loaded = layer.load(evaluation.normalisation);
         self.set_controller(layer);
-        true
+        loaded
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(self.controller().parameters());
+        recorder.parameters(self.controller().controller().parameters());
     }
 
     fn outcome(&self) -> Outcome {
@@ -133,6 +139,7 @@ impl Rollout for PushEpisode<Layer> {
                 ("share of time touching", Note::from(f64::from(trial.touched) / f64::from(config.steps))),
                 ("fastest of the box [m/s]", Note::from(trial.fastest)),
             ],
+            observed: self.controller().observed().cloned(),
             ..Outcome::default()
         }
     }
@@ -165,7 +172,7 @@ mod tests {
         let genes: Vec<u16> = (0..18_u32).map(|i| (i * 40503) as u16).collect();
         let parameters = Genotype::new(&evaluator.parameters(), 16).decode(&genes).unwrap();
         let id = EpisodeId { seed: 3, generation: 2, individual: 7, trial: 1 };
-        let of = |id| Evaluation { number: 0, parameters: &parameters, opponents: &[], id };
+        let of = |id| Evaluation::new(&parameters, id);
         let plain = evaluator.evaluate(of(id), None);
         evaluator.evaluate(of(EpisodeId { trial: 3, ..id }), None);
         let mut recording = Recording::new(evaluator.schema());

@@ -91,7 +91,7 @@ mod tests {
     use crate::reach_grasp_lift::schema::SCALARS;
 
     fn evaluation(parameters: &[f32], id: EpisodeId) -> Evaluation<'_> {
-        Evaluation { number: 0, parameters, opponents: &[], id }
+        Evaluation::new(parameters, id)
     }
 
     #[test]

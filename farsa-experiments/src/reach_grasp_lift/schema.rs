@@ -4,7 +4,7 @@ use farsa_body::{
     ArmAndHand, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Law, MusclePair, PairId, Recorder, Tabletop,
     Twist,
 };
-use farsa_nn::LeakyNetwork;
+use farsa_lab::{NormalisedController, OwnedNetwork};
 use farsa_view::{Channel, Schema};
 
 use crate::reach_grasp_lift::episode::ReachEpisode;
@@ -13,7 +13,7 @@ use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::scene::Scene;
 
 /// The controller's episode in a trial.
-pub(crate) type NetworkEpisode = ReachEpisode<LeakyNetwork<Vec<f32>, Vec<f32>>>;
+pub(crate) type NetworkEpisode = ReachEpisode<NormalisedController<OwnedNetwork>>;
 
 /// Scalars of a tick: phase, 4 rewards, 6 of the judge's, 3 + 7 of palm and sphere, 27 joints, 21 of muscles, 17 forces, 27 + 6
 /// speeds of joints and sphere.
@@ -105,7 +105,7 @@ impl EpisodeRecorder {
         let (judge, scene) = (episode.judge(), episode.judge().scene());
         let (trial, seen, earned) = (judge.trial(), judge.seen(), judge.earned());
         recorder.sensors(episode.sensed());
-        recorder.neurons(episode.controller().hidden());
+        recorder.neurons(episode.controller().controller().hidden());
         recorder.outputs(episode.done());
         let (sphere, palm) = (world.pose(Tabletop::SPHERE), world.pose(ArmAndHand::PALM));
         recorder.pose(Tabletop::SPHERE, sphere);

@@ -14,7 +14,7 @@ use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::schema::{EpisodeRecorder, NetworkEpisode};
 use farsa_lab::{
     Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
-    NetworkExport, Note, NotedBehaviour, Outcome, Parameter, Rollout, StartExport, Task,
+    NetworkExport, NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Rollout, StartExport, Task,
 };
 use farsa_view::Schema;
 
@@ -38,7 +38,11 @@ impl ReachTask {
         let network = LeakyNetwork::new(layout, config.leak, zeros, state);
         let network = network.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
         let episode_recorder = Arc::new(EpisodeRecorder::new(&scene));
-        Ok(Self { episode: ReachEpisode::new(Arc::new(scene), network)?, ranges, episode_recorder })
+        Ok(Self {
+            episode: ReachEpisode::new(Arc::new(scene), NormalisedController::new(network))?,
+            ranges,
+            episode_recorder,
+        })
     }
 
     fn scene(&self) -> &Scene {
@@ -75,11 +79,12 @@ where
 impl Rollout for ReachTask {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let parameters = self.ranges.to_network(evaluation.parameters);
-        self.episode.controller_mut().copy_parameters(&parameters).is_ok()
+        let network = self.episode.controller_mut();
+        network.load(evaluation.normalisation) && network.controller_mut().copy_parameters(&parameters).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(self.episode.controller().parameters());
+        recorder.parameters(self.episode.controller().controller().parameters());
     }
 
     fn outcome(&self) -> Outcome {
@@ -102,6 +107,7 @@ impl Rollout for ReachTask {
                 ("height [cm]", Note::from(judge.seen().height)),
                 ("highest [cm]", Note::from(trial.highest)),
             ],
+            observed: self.episode.controller().observed().cloned(),
             ..Outcome::default()
         }
     }
@@ -124,6 +130,10 @@ impl Task for ReachTask {
 
     fn terms(&self) -> Vec<String> {
         ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec()
+    }
+
+    fn observations(&self) -> usize {
+        self.episode.sensed().len()
     }
 
     fn behaviour(&self) -> Option<&dyn Behaviour> {

@@ -1,6 +1,7 @@
 //! The task of a team: what is known of a scenario, and its episodes over parameters.
 
 use farsa_body::{BodyId, Recorder};
+use farsa_evo::ObservationStatistics;
 use farsa_nn::LeakyLayout;
 use farsa_physics::arena::{Arena, World};
 
@@ -8,15 +9,16 @@ use crate::team::config::{EYES, TeamConfig};
 use crate::team::episode::{Scenario, TeamEpisode};
 use crate::team::robots::OUTPUTS;
 use farsa_lab::{
-    Behaviour, ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, InWorld, Outcome, OwnedNetwork,
-    Parameter, PlanarWorld, Rollout, Task, mean_of_trials, network_parameters, resting_network, seconds,
+    Behaviour, ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, InWorld, NormalisedController,
+    Outcome, OwnedNetwork, Parameter, PlanarWorld, Rollout, Task, mean_of_trials, network_parameters, resting_network,
+    seconds,
 };
 use farsa_view::Schema;
 
 /// A team in a scenario, whose networks have the parameters that are evaluated.
 #[derive(Clone)]
 pub(crate) struct TeamTask<M> {
-    episode: TeamEpisode<M, OwnedNetwork>,
+    episode: TeamEpisode<M, NormalisedController<OwnedNetwork>>,
     layout: LeakyLayout,
     /// The population whose outcome is asked for.
     own: usize,
@@ -43,7 +45,8 @@ pub(crate) fn evaluator<M: Scenario + Clone + 'static>(scenario: M) -> Result<In
     let layout = config.layout(inputs, outputs);
     // An error if the range is empty.
     network_parameters(&layout, config.weight_range, [0.0, 1.0], "net.weight_range")?;
-    let networks = (0..config.robots).map(|_| resting_network(&layout)).collect::<Result<_, _>>()?;
+    let networks = (0..config.robots).map(|_| resting_network(&layout).map(NormalisedController::new));
+    let networks = networks.collect::<Result<_, _>>()?;
     let bodies = (arena.robots.len() + arena.areas.len()) as u16;
     let mut world = world(arena.clone())?;
     let mut episode = TeamEpisode::from_scenario(scenario, networks)?;
@@ -53,6 +56,15 @@ pub(crate) fn evaluator<M: Scenario + Clone + 'static>(scenario: M) -> Result<In
         episode.arrange(&mut world, id).map_err(|error| Error::setting(episode.scenario().crowded(), error))?;
     }
     InWorld::in_arena(&parked(arena), TeamTask { episode, layout, own: 0, bodies })
+}
+
+impl<M: Scenario> TeamTask<M> {
+    /// What the robots observed, one after the other, where observations are normalised.
+    fn observed(&self) -> Option<ObservationStatistics> {
+        let mut robots = self.episode.team().controllers().iter().map(NormalisedController::observed);
+        let first = robots.next()??.clone();
+        robots.flatten().try_fold(first, |mut all, own| all.merge(own).ok().map(|()| all))
+    }
 }
 
 impl<M: Scenario, W: PlanarWorld> Episode<W> for TeamTask<M> {
@@ -81,7 +93,7 @@ impl<M: Scenario, W: PlanarWorld> Episode<W> for TeamTask<M> {
         let Self { episode, own, bodies, .. } = self;
         let team = episode.team();
         recorder.sensors(team.sensed(*own));
-        recorder.neurons(team.controllers()[*own].hidden());
+        recorder.neurons(team.controllers()[*own].controller().hidden());
         recorder.outputs(team.done(*own));
         (0..*bodies).map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
         recorder.scalars(&episode.scenario().scalars(episode.moment()));
@@ -93,14 +105,18 @@ impl<M: Scenario> Rollout for TeamTask<M> {
     /// Gives all robots their networks; of several populations robot p that of population p. Without opponents each
     /// robot meets copies of its own network.
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let Evaluation { parameters, opponents, id, .. } = *evaluation;
+        let Evaluation { parameters, opponents, normalisation, id, .. } = *evaluation;
         let scenario = self.episode.scenario();
         let count = scenario.population_names().len();
         let own = id.population(scenario.population_size()).min(count - 1);
         self.own = own;
         let networks = self.episode.team_mut().controllers_mut();
+        if !networks.iter_mut().all(|network| network.load(normalisation)) {
+            return false;
+        }
+        let mut networks = networks.iter_mut().map(NormalisedController::controller_mut);
         if count == 1 {
-            return networks.iter_mut().all(|network| network.copy_parameters(parameters).is_ok());
+            return networks.all(|network| network.copy_parameters(parameters).is_ok());
         }
         let mut others = opponents.iter();
         (0..count).zip(networks).all(|(population, network)| {
@@ -111,11 +127,11 @@ impl<M: Scenario> Rollout for TeamTask<M> {
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(self.episode.team().controllers()[self.own].parameters());
+        recorder.parameters(self.episode.team().controllers()[self.own].controller().parameters());
     }
 
     fn outcome(&self) -> Outcome {
-        self.episode.outcome(self.own)
+        Outcome { observed: self.observed(), ..self.episode.outcome(self.own) }
     }
 }
 
@@ -135,6 +151,10 @@ impl<M: Scenario> Task for TeamTask<M> {
 
     fn terms(&self) -> Vec<String> {
         self.episode.scenario().terms()
+    }
+
+    fn observations(&self) -> usize {
+        self.layout.sensors()
     }
 
     fn behaviour(&self) -> Option<&dyn Behaviour> {

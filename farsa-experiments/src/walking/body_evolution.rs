@@ -126,12 +126,16 @@ impl Config {
     }
 
     /// A walker with these parameters, and its episode.
-    fn episode(&self, parameters: &[f32]) -> Option<(Robot, WalkerEpisode)> {
+    fn episode(&self, evaluation: &Evaluation<'_>) -> Option<(Robot, WalkerEpisode)> {
+        let parameters = evaluation.parameters;
         let (walker, launch) = self.body(parameters)?;
         let (robot, parts) = walker.robot();
         let brain = match self.layout() {
             Some(layout) => {
-                Some(Brain::new(&walker, &parts, layout, parameters.get(BODY_PARAMETERS..)?.to_vec()).ok()?)
+                let mut brain =
+                    Brain::new(&walker, &parts, layout, parameters.get(BODY_PARAMETERS..)?.to_vec()).ok()?;
+                brain.normalise(evaluation.normalisation).then_some(())?;
+                Some(brain)
             }
             None => None,
         };
@@ -298,6 +302,10 @@ impl Task for Walkers {
         self.config.trials as usize
     }
 
+    fn observations(&self) -> usize {
+        if self.config.powered() { SENSES } else { 0 }
+    }
+
     fn terms(&self) -> Vec<String> {
         vec!["distance [m]".into()]
     }
@@ -381,7 +389,7 @@ impl Bodies for Walkers {
 impl Evaluator for Walkers {
     /// Success is ten strides, twenty steps, without a fall.
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
-        let Some((robot, episode)) = self.config.episode(evaluation.parameters) else { return Outcome::failed() };
+        let Some((robot, episode)) = self.config.episode(&evaluation) else { return Outcome::failed() };
         match self.config.engine {
             Engine::Articulated => walk_in(self.config.world(&robot), episode, evaluation.id, recorder),
             #[cfg(feature = "rapier")]
@@ -412,6 +420,7 @@ where
     }
     run_episode(&mut episode, &mut world, id, recorder);
     let mut outcome = outcome(&episode);
+    outcome.observed = episode.brain().and_then(Brain::observed).cloned();
     let gait = episode.gait();
     let walker = gait.walker();
     outcome.notes.push((WORK, Note::from(gait.energies()[0])));

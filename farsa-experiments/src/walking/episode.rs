@@ -5,7 +5,8 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, ChannelError, Contacts, Handles, JointId, JointPosition, JointSpeed, Joints,
     Kinematics, Motor as _, PairId, Recorder, Scaled, Sensor as _, TorqueMotor, Touch,
 };
-use farsa_lab::{Episode, EpisodeId, Error, seconds};
+use farsa_evo::ObservationStatistics;
+use farsa_lab::{Episode, EpisodeId, Error, NormalisedController, OwnedNetwork, seconds};
 use farsa_nn::{Controller, Leak, LeakyLayout, LeakyNetwork};
 use farsa_num::{Domain, Scalar, Stream};
 
@@ -70,7 +71,7 @@ type Sole = Touch<[PairId; 1]>;
 /// touch.
 #[derive(Clone, Debug)]
 pub struct Brain {
-    network: LeakyNetwork<Vec<f32>, Vec<f32>>,
+    network: NormalisedController<OwnedNetwork>,
     senses: ((Angle, Angle), (Speed, Speed), (Sole, Sole)),
     motor: TorqueMotor,
     hinge: JointId,
@@ -100,7 +101,7 @@ impl Brain {
         let touch = |pair| Touch::new([pair], 1.0).map_err(wrong);
         let [outer, inner] = parts.hinges;
         Ok(Self {
-            network: network.map_err(|error| Error::Other(format!("walker: {error}")))?,
+            network: NormalisedController::new(network.map_err(|error| Error::Other(format!("walker: {error}")))?),
             senses: (
                 (angle(outer)?, angle(inner)?),
                 (speed(outer)?, speed(inner)?),
@@ -145,7 +146,7 @@ impl Brain {
 
     /// The hidden neurons' activations.
     pub fn hidden(&self) -> &[f32] {
-        self.network.hidden()
+        self.network.controller().hidden()
     }
 
     /// What was answered last \[1\].
@@ -155,7 +156,17 @@ impl Brain {
 
     /// The network's parameters.
     pub fn parameters(&self) -> &[f32] {
-        self.network.parameters()
+        self.network.controller().parameters()
+    }
+
+    /// Normalises observations by what was observed before, or does not; false for statistics of other channels.
+    pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
+        self.network.load(before)
+    }
+
+    /// What was observed since [`normalise`](Self::normalise), where it is normalised.
+    pub fn observed(&self) -> Option<&ObservationStatistics> {
+        self.network.observed()
     }
 
     /// The torque that was commanded last \[N m\].

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::evaluation::genotypes::Shape;
 use crate::evaluation::populations::Populations;
-use crate::evaluation::test;
+use crate::evaluation::test::{self, Tested};
 use crate::evaluation::test_table::TrialResult;
 use crate::experiment::outcome::Note;
 use crate::run::plan::Plan;
@@ -175,7 +175,8 @@ pub(crate) fn evaluate(
     let parameters = parameters.unwrap_or_default();
     let size = if names.len() > 1 { plan.size()? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);
-    let results = test::run_trials(&mut pool, &parameters, size, trials, seed, &progress);
+    let given = Tested { parameters: &parameters, size, normalisation: None };
+    let results = test::run_trials(&mut pool, given, trials, seed, &progress);
     drop(progress);
     let results = results?;
     Ok(Evaluation::new(plan, seed, &names, &results))

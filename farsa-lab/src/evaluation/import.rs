@@ -104,7 +104,8 @@ pub(crate) fn import(
             fitness: Fitness::WORST,
             genes: Genome::Words(genes),
         });
-        Champions { identity: identity.clone(), generation: 0, best: best.collect() }.write(&directory.champion())?;
+        Champions { identity: identity.clone(), generation: 0, best: best.collect(), normalisation: None }
+            .write(&directory.champion())?;
         let genomes = of.into_iter().flatten().collect();
         write_imported(&directory.genotypes(), identity, genomes, populations)
     })?;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use farsa_body::Recorder;
-use farsa_evo::Fitness;
+use farsa_evo::{Fitness, ObservationStatistics};
 use farsa_view::{Page, Recording, Schema, Table, readable};
 use serde::Serialize;
 
@@ -39,6 +39,7 @@ pub(crate) struct Replayable {
     parameters: Vec<f32>,
     /// For every trial that was asked for.
     opponents: Vec<Vec<Vec<f32>>>,
+    normalisation: Option<ObservationStatistics>,
     seed: u64,
     pub(crate) generation: u32,
     pub(crate) individual: u32,
@@ -86,7 +87,9 @@ impl Replayable {
         let met = opponents::met(&history, generation, individual as usize, trials.clone(), evaluator.trials())?;
         let decoded = |genes: &Vec<Genome>| genes.iter().map(|genes| genes.decode(&genotype)).collect::<Option<_>>();
         let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
-        Ok(Self { evaluator, parameters, opponents, seed: plan.seed, generation, individual, trials })
+        let normalisation = history.normalisation(generation).cloned();
+        let seed = plan.seed;
+        Ok(Self { evaluator, parameters, opponents, normalisation, seed, generation, individual, trials })
     }
 
     /// The schema of its recordings.
@@ -103,7 +106,8 @@ impl Replayable {
         let id = EpisodeId { seed: self.seed, generation: self.generation, individual: self.individual, trial };
         let opponents = self.opponents.get((trial - self.trials.start) as usize).map_or(&[][..], Vec::as_slice);
         let opponents: Vec<&[f32]> = opponents.iter().map(Vec::as_slice).collect();
-        let evaluation = Evaluation { number: 0, parameters: &self.parameters, opponents: &opponents, id };
+        let normalisation = self.normalisation.as_ref();
+        let evaluation = Evaluation { opponents: &opponents, normalisation, ..Evaluation::new(&self.parameters, id) };
         let (generation, individual) = (self.generation, self.individual);
         let panicked = |()| Error::TrialPanicked { generation, individual, trial };
         caught(|| self.evaluator.evaluate(evaluation, Some(recorder))).map_err(panicked)

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::thread;
 use std::time::Duration;
 
+use farsa_evo::ObservationStatistics;
 use farsa_num::crc32;
 use serde::{Deserialize, Serialize};
 
@@ -144,7 +145,7 @@ pub(crate) fn test(
     if !path.is_file() && directory.checkpoint().is_file() {
         return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
     }
-    let Champions { identity, generation, best } = Champions::read(plan, directory)?;
+    let Champions { identity, generation, best, normalisation } = Champions::read(plan, directory)?;
     let mut pool = Pool::new(plan, threads, lanes)?;
     let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| best.genes.decode(pool.genotype())).collect();
     let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
@@ -156,7 +157,8 @@ pub(crate) fn test(
     let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
     let size = if best.len() > 1 { plan.size()? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);
-    let results = run_trials(&mut pool, &parameters, size, trials, seed, &progress);
+    let champions = Tested { parameters: &parameters, size, normalisation: normalisation.as_ref() };
+    let results = run_trials(&mut pool, champions, trials, seed, &progress);
     drop(progress);
     let results = results?;
     let Some(&Best { individual, .. }) = best.first() else {
@@ -182,15 +184,25 @@ pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
     EpisodeId { seed: seed | !LARGEST_SEED, generation, individual: 0, trial }
 }
 
-/// Evaluates fresh trials of some parameters, of one individual or one of each population of `size` individuals.
+/// An individual that is tested, or one of each population.
+#[derive(Clone, Copy)]
+pub(crate) struct Tested<'t> {
+    pub(crate) parameters: &'t [Vec<f32>],
+    /// Individuals of each of several populations.
+    pub(crate) size: usize,
+    /// By what observations are normalised, where they are.
+    pub(crate) normalisation: Option<&'t ObservationStatistics>,
+}
+
+/// Evaluates fresh trials of some parameters.
 pub(crate) fn run_trials(
     pool: &mut Pool<'_>,
-    champions: &[Vec<f32>],
-    size: usize,
+    tested: Tested<'_>,
     trials: usize,
     seed: u64,
     progress: &Progress,
 ) -> Result<Vec<TrialResult>, Unfinished> {
+    let Tested { parameters: champions, size, normalisation } = tested;
     let (count, kinds) = (champions.len().max(1), pool.evaluator().trials().max(1));
     let others_of = |own: usize| champions.iter().enumerate().filter(move |(other, _)| *other != own);
     let others: Vec<Vec<&[f32]>> =
@@ -198,7 +210,8 @@ pub(crate) fn run_trials(
     let task = |number: usize| {
         let (population, trial) = (number % count, number / count);
         let id = EpisodeId { individual: (population * size) as u32, ..episode(trial, kinds, seed) };
-        Some(Evaluation { number, parameters: champions.get(population)?, opponents: others.get(population)?, id })
+        let (parameters, opponents) = (champions.get(population)?, others.get(population)?);
+        Some(Evaluation { number, parameters, opponents, normalisation, id })
     };
     let done = |number: usize, _: Option<&Outcome>| {
         if number.is_multiple_of(count) {

@@ -152,6 +152,10 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S
         self.trials.count
     }
 
+    fn observations(&self) -> usize {
+        self.control.sensed().len()
+    }
+
     fn exports(&self) -> Option<&dyn Exports> {
         Some(self)
     }
@@ -159,7 +163,7 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S
 
 impl<S: Channels + Send, M: Channels + Send, O: Objective> Rollout for Controlled<S, M, O> {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        self.control.load(evaluation.parameters)
+        self.control.load_evaluation(evaluation)
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
@@ -169,7 +173,14 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Rollout for Controlle
     fn outcome(&self) -> Outcome {
         let Self { objective, steps, sum, .. } = self;
         let notes = objective.values().into_iter().map(|(name, value)| (name, Note::from(value))).collect();
-        Outcome { terms: vec![*sum], steps: *steps, success: objective.success(), notes, ..Outcome::default() }
+        Outcome {
+            terms: vec![*sum],
+            steps: *steps,
+            success: objective.success(),
+            notes,
+            observed: self.control.observed().cloned(),
+            ..Outcome::default()
+        }
     }
 }
 

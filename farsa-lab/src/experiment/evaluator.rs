@@ -1,6 +1,7 @@
 //! What an experiment is evaluated by: parameters go in, outcomes come out.
 
 use farsa_body::Recorder;
+use farsa_evo::ObservationStatistics;
 use farsa_models::MjcfOptions;
 use farsa_view::Schema;
 
@@ -64,6 +65,14 @@ pub trait Task: Send {
         vec!["0".into()]
     }
 
+    /// How many channels a controller observes, where observations can be normalised: a [`NormalisedController`] does
+    /// that, and the [`Outcome`] says what was observed. By default 0: they cannot be.
+    ///
+    /// [`NormalisedController`]: crate::NormalisedController
+    fn observations(&self) -> usize {
+        0
+    }
+
     /// More objectives than the fitness, and what an individual did, where the experiment says so.
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         None
@@ -124,8 +133,17 @@ pub struct Evaluation<'p> {
     ///
     /// Which population the parameters are of follows from the episode, [`EpisodeId::population`].
     pub opponents: &'p [&'p [f32]],
+    /// What was observed in all generations before, where observations are to be normalised \[[`Task::observations`]\].
+    pub normalisation: Option<&'p ObservationStatistics>,
     /// Which episode.
     pub id: EpisodeId,
+}
+
+impl<'p> Evaluation<'p> {
+    /// A trial of these parameters, number 0, without opponents or normalised observations.
+    pub fn new(parameters: &'p [f32], id: EpisodeId) -> Self {
+        Self { number: 0, parameters, opponents: &[], normalisation: None, id }
+    }
 }
 
 /// Evaluates trials of an experiment in one thread: its robot, world and scratch memory.

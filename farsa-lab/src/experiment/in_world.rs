@@ -165,6 +165,9 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
     fn populations(&self) -> Vec<String> {
         self.rollout.populations()
     }
+    fn observations(&self) -> usize {
+        self.rollout.observations()
+    }
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.rollout.behaviour()
     }

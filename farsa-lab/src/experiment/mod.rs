@@ -13,6 +13,7 @@
 //! - `genotype`: from genes to the parameters that they stand for
 //! - `network_parameters`: the parameters of a network with a bias and a leak for every neuron
 //! - `neurocontroller`: sensors, a network and motors, for episodes of one's own
+//! - `normalised_controller`: a controller whose observations are normalised
 //! - `controlled`: an episode of one robot that a network controls, with an objective of one's own
 //! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
 //! - `rescored`: an experiment that there is, under another fitness
@@ -31,6 +32,7 @@ pub(crate) mod lanes;
 mod limited;
 mod network_parameters;
 mod neurocontroller;
+mod normalised_controller;
 pub(crate) mod outcome;
 pub(crate) mod parameter;
 mod rescored;
@@ -51,6 +53,7 @@ pub use in_world::{InWorld, Rollout};
 pub use lanes::Lanes;
 pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};
 pub use neurocontroller::Neurocontroller;
+pub use normalised_controller::NormalisedController;
 pub use outcome::{ChannelGroup, Description, Failure, Note, Outcome, mean_of_trials};
 pub use parameter::Parameter;
 pub use rescored::Rescored;

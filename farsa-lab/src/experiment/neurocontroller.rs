@@ -1,11 +1,14 @@
 //! What genes control a robot by: its sensors, a network, and its motors.
 
 use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Recorder, Sensor, record_world};
+use farsa_evo::ObservationStatistics;
 use farsa_nn::{Controller as _, LeakyLayout};
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::evaluator::Evaluation;
 use crate::experiment::network_parameters::{OwnedNetwork, network_parameters, resting_network};
+use crate::experiment::normalised_controller::NormalisedController;
 use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
 
@@ -40,7 +43,7 @@ pub struct Neurocontroller<S, M> {
     motors: M,
     layout: LeakyLayout,
     range: f64,
-    network: OwnedNetwork,
+    network: NormalisedController<OwnedNetwork>,
     x: Vec<f32>,
     y: Vec<f32>,
     schema: Schema,
@@ -61,7 +64,7 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
             return Err(Error::Other(format!("weights within {range}")));
         }
         let layout = LeakyLayout::new(inputs, hidden, outputs);
-        let network = resting_network(&layout)?;
+        let network = NormalisedController::new(resting_network(&layout)?);
         let (x, y) = (vec![0.0; inputs], vec![0.0; outputs]);
         Ok(Self { sensors, motors, layout, range, network, x, y, schema: Schema::default() }
             .with_schema(Schema::default()))
@@ -80,11 +83,23 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     /// Gives the network its parameters and forgets what an earlier episode left in sensors, network and motors; false for
     /// another number of parameters, which changes nothing.
     pub fn load(&mut self, parameters: &[f32]) -> bool {
-        if self.network.copy_parameters(parameters).is_err() {
+        if self.network.controller_mut().copy_parameters(parameters).is_err() {
             return false;
         }
         self.reset();
         true
+    }
+
+    /// The same with the parameters of an evaluation, and with observations normalised where it says so; false for what is
+    /// none of this network.
+    pub fn load_evaluation(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        self.network.load(evaluation.normalisation) && self.load(evaluation.parameters)
+    }
+
+    /// What was sensed since [`load_evaluation`](Self::load_evaluation), where it is normalised: for
+    /// [`Outcome::observed`](crate::Outcome::observed).
+    pub fn observed(&self) -> Option<&ObservationStatistics> {
+        self.network.observed()
     }
 
     /// Forgets what an earlier episode left in sensors, network and motors.
@@ -114,13 +129,13 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     {
         record_world(world, self.schema.shown(), recorder);
         recorder.sensors(&self.x);
-        recorder.neurons(self.network.hidden());
+        recorder.neurons(self.network.controller().hidden());
         recorder.outputs(&self.y);
     }
 
     /// Records the network's parameters, once before the first tick.
     pub fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(self.network.parameters());
+        recorder.parameters(self.network.controller().parameters());
     }
 
     /// The same with this schema, to which the network is added; sensors and outputs that it does not name are numbered

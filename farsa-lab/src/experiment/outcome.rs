@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use farsa_evo::ObservationStatistics;
+
 /// What came of one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outcome {
@@ -13,6 +15,9 @@ pub struct Outcome {
     pub success: bool,
     /// What else `farsa test` tells about the trial, by name: `("phase", "lift".into())`; the same names in every trial.
     pub notes: Vec<(&'static str, Note)>,
+    /// What the controller observed, where the [`Evaluation`](crate::Evaluation) normalises observations: what
+    /// [`NormalisedController::observed`](crate::NormalisedController::observed) says.
+    pub observed: Option<ObservationStatistics>,
     /// Why the trial failed, where that is known; a trial with a failure counts as failed whatever its terms are.
     pub failure: Option<Failure>,
 }

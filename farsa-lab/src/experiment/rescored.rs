@@ -63,6 +63,9 @@ impl Task for Rescored {
     fn populations(&self) -> Vec<String> {
         self.inner.populations()
     }
+    fn observations(&self) -> usize {
+        self.inner.observations()
+    }
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.inner.behaviour()
     }

@@ -1,5 +1,6 @@
 //! `farsa export`: robots, controllers, genotypes and starts as files for other programs.
 
+use farsa_evo::ObservationStatistics;
 use farsa_models::{MjcfOptions, mjcf, urdf};
 use serde::Serialize;
 
@@ -14,6 +15,7 @@ use crate::run::plan::Plan;
 use crate::run::records::{Best, Champions};
 use crate::store::directory::Directory;
 use crate::strategy::search::Genome;
+use crate::strategy::settings::NORMALISE;
 
 /// The formats of model files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,13 +98,27 @@ struct Trials<'a> {
     starts: Vec<StartExport>,
 }
 
+/// Refuses champions that are nothing without what their observations are normalised by.
+fn as_they_are(normalisation: Option<&ObservationStatistics>, directory: &Directory) -> Result<(), Error> {
+    match normalisation {
+        None => Ok(()),
+        Some(_) => Err(Error::Usage(format!(
+            "{}: its champion's observations are normalised (`{NORMALISE}`), which no exported file can say: test and \
+             replay it here",
+            directory.path().display()
+        ))),
+    }
+}
+
 /// The champion's genes as a `.gen` file, reals as a list; of several populations that of the one named.
 ///
 /// # Errors
 /// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
-    let Champions { generation, best, .. } = Champions::read_checked(plan, directory, evaluator.as_ref())?;
+    let Champions { generation, best, normalisation, .. } =
+        Champions::read_checked(plan, directory, evaluator.as_ref())?;
+    as_they_are(normalisation.as_ref(), directory)?;
     let (experiment, names) = (plan.experiment.name(), evaluator.populations());
     let population = Populations { experiment, names: &names }.one("--population", population)?;
     let Some(Best { individual, genes, .. }) = best.get(population) else {
@@ -123,7 +139,9 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
 /// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
     let evaluator = plan.evaluator()?;
-    let Champions { generation, best, .. } = Champions::read_checked(plan, directory, evaluator.as_ref())?;
+    let Champions { generation, best, normalisation, .. } =
+        Champions::read_checked(plan, directory, evaluator.as_ref())?;
+    as_they_are(normalisation.as_ref(), directory)?;
     let name = plan.experiment.name();
     let [Best { individual, genes, .. }] = best.as_slice() else {
         return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));

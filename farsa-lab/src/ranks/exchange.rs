@@ -221,7 +221,7 @@ impl<'r> Exchange<'r> {
         }
         let mut numbered = own;
         for (rank, report) in all.into_iter().enumerate().filter(|(rank, _)| *rank != own_rank) {
-            let why = "said what this program cannot read: a note without a name".into();
+            let why = "said what this program cannot read: a note without a name, or observations that are none".into();
             numbered.extend(report.outcomes.into_numbered().ok_or(Error::Rank { rank, code: 1, why })?);
         }
         Ok(Some(numbered))

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
+use farsa_evo::{ObservationStatistics, Snapshot as _};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +34,8 @@ struct WireOutcome {
     steps: u32,
     success: bool,
     notes: Vec<(u16, WireNote)>,
+    /// The state of what was observed.
+    observed: Option<Vec<u8>>,
     failure: Option<WireFailure>,
 }
 
@@ -64,6 +67,7 @@ impl Outcomes {
             steps: outcome.steps,
             success: outcome.success,
             notes: outcome.notes.iter().map(|(name, note)| (place(name), wired_note(note))).collect(),
+            observed: outcome.observed.as_ref().map(ObservationStatistics::save),
             failure: outcome.failure.as_ref().map(|failure| match failure {
                 Failure::Panicked(why) => WireFailure::Panicked(why.clone()),
                 Failure::Endless(steps) => WireFailure::Endless(*steps),
@@ -73,7 +77,7 @@ impl Outcomes {
         Self { names: names.into_iter().map(str::to_owned).collect(), all }
     }
 
-    /// The outcomes, bit for bit; none if a note has a name that was not sent.
+    /// The outcomes, bit for bit; none if a note has a name that was not sent, or observations are none.
     pub(crate) fn into_numbered(self) -> Option<Vec<(usize, Option<Outcome>)>> {
         let names: Vec<&'static str> = self.names.iter().map(|name| lasting(name)).collect();
         let outcome = |wired: WireOutcome| {
@@ -89,6 +93,10 @@ impl Outcomes {
                 steps: wired.steps,
                 success: wired.success,
                 notes: notes.collect::<Option<_>>()?,
+                observed: match wired.observed {
+                    None => None,
+                    Some(state) => Some(ObservationStatistics::from_saved(&state).ok()?),
+                },
                 failure: wired.failure.map(|failure| match failure {
                     WireFailure::Panicked(why) => Failure::Panicked(why),
                     WireFailure::Endless(steps) => Failure::Endless(steps),
@@ -129,9 +137,12 @@ mod tests {
     #[test]
     fn outcomes_arrive_as_they_were() {
         let strange = f64::from_bits(0x7FF8_0000_0000_1234);
+        let mut observed = ObservationStatistics::new(2).unwrap();
+        assert!(observed.push(&[0.1, -7.0]) && observed.push(&[0.3, 1e30]));
         let all = vec![
             (7, Some(Outcome { terms: vec![0.1, -0.0, f64::INFINITY, strange], steps: 9, ..Outcome::default() })),
             (8, None),
+            (9, Some(Outcome { observed: Some(observed), ..Outcome::default() })),
             (
                 0,
                 Some(Outcome {
@@ -164,5 +175,11 @@ mod tests {
         let mut broken = Outcomes::from_numbered(&[(3, Some(unknown))]);
         broken.names.clear();
         assert_eq!(broken.into_numbered(), None);
+        let mut broken = Outcomes::from_numbered(&[(3, Some(Outcome::default()))]);
+        for state in [vec![], vec![1; 23], vec![1; 25]] {
+            broken.all[0].1.as_mut().unwrap().observed = Some(state);
+            assert_eq!(Outcomes { names: Vec::new(), all: std::mem::take(&mut broken.all) }.into_numbered(), None);
+            broken = Outcomes::from_numbered(&[(3, Some(Outcome::default()))]);
+        }
     }
 }

@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::lanes::LanesInfo;
 use crate::experiment::outcome::Outcome;
-use crate::run::fitness::{Opponents, evaluate_all};
+use crate::run::fitness::{Generation, Opponents, evaluate_all};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::told::history;
@@ -166,7 +166,7 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
                 stop.store(true, Ordering::Relaxed);
             }
         };
-        match evaluate_all(&mut pool, parameters, opponents, id, &stop, done) {
+        match evaluate_all(&mut pool, Generation { parameters, opponents, normalisation: None, id }, &stop, done) {
             Ok(_) => rounds += 1,
             Err(Unfinished::Stopped) => break,
             Err(Unfinished::Error(error)) => return Err(error),

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use farsa_evo::ObservationStatistics;
+
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
@@ -28,6 +30,8 @@ pub struct BestOfRun {
     pub generation: u32,
     /// The parameters of the best of each population.
     pub parameters: Vec<Vec<f32>>,
+    /// By what observations are normalised, where they are: [`Evaluation::normalisation`](crate::Evaluation::normalisation).
+    pub normalisation: Option<ObservationStatistics>,
     /// The experiment, ready to be evaluated.
     pub evaluator: Box<dyn Evaluator>,
 }
@@ -50,7 +54,8 @@ impl BestOfRun {
         let plan = Plan::from_file(laboratory, &ConfigFile::read(&directory.config())?)?;
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
-        let Champions { generation, best, .. } = Champions::read_checked(&plan, &directory, evaluator.as_ref())?;
+        let Champions { generation, best, normalisation, .. } =
+            Champions::read_checked(&plan, &directory, evaluator.as_ref())?;
         Ok(Self {
             experiment: plan.experiment.name().into(),
             strategy: plan.definition().name().into(),
@@ -59,6 +64,7 @@ impl BestOfRun {
             settings: plan.settings,
             generation,
             parameters: best.iter().filter_map(|best| best.genes.decode(&genotype)).collect(),
+            normalisation,
             evaluator,
         })
     }

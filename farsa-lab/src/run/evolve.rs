@@ -132,7 +132,7 @@ impl<'d> Run<'d> {
         program: &'d str,
     ) -> Result<Self, Error> {
         let mut told = Told::read(plan, directory, &checkpoint)?;
-        let progression = Progression::resume(plan, directory, &checkpoint, told.record.clone(), pool)?;
+        let progression = Progression::resume(plan, directory, &checkpoint, &told, pool)?;
         let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
         manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), progression.search.generation()));
         let text = plan.to_toml()?;
@@ -195,18 +195,18 @@ impl<'d> Run<'d> {
     /// Evaluates all individuals of a generation and makes the next.
     fn generation(&mut self, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Unfinished> {
         let generation = self.progression.search.generation();
-        let Evaluated { fitness, failed, statistics, each, best } =
+        let Evaluated { fitness, failed, statistics, each, best, normalisation } =
             self.progression.generation(pool, stop, progress)?;
         let search = &self.progression.search;
         let line = Line::new(&statistics, fitness.len(), &each);
-        self.told.append(&self.progression.record, &line, search)?;
+        self.told.append(&self.progression, &line)?;
         self.log.append(line)?;
         self.failures.append(&failed, self.program)?;
         self.diagnostics.push(search);
         if let Some(lineage) = &mut self.lineage {
             lineage.append(&rows(search))?;
         }
-        self.champions = Some(Champions { identity: self.identity.clone(), generation, best });
+        self.champions = Some(Champions { identity: self.identity.clone(), generation, best, normalisation });
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.generations += 1;
             session.evaluations += fitness.len() as u64;

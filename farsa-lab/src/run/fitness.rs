@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
-use farsa_evo::{JudgementShape, Judgements};
+use farsa_evo::{EvoError, JudgementShape, Judgements, ObservationStatistics};
 use farsa_num::Digest;
 
 use crate::error::Error;
@@ -23,20 +23,48 @@ pub(crate) struct Opponents<'g> {
     pub(crate) told_apart: Option<usize>,
 }
 
+/// A generation that is evaluated.
+#[derive(Clone, Copy)]
+pub(crate) struct Generation<'g> {
+    /// Those of every individual.
+    pub(crate) parameters: &'g [Vec<f32>],
+    pub(crate) opponents: Opponents<'g>,
+    /// What was observed in the generations before, where observations are normalised.
+    pub(crate) normalisation: Option<&'g ObservationStatistics>,
+    /// Seed and generation; individual and trial are set for each evaluation.
+    pub(crate) id: EpisodeId,
+}
+
+/// What a generation comes to.
+pub(crate) struct Judged {
+    pub(crate) judgements: Judgements,
+    pub(crate) failed: Vec<FailedEvaluation>,
+    /// What was observed in it, individual after individual and trial after trial, where observations are normalised; those of
+    /// individuals that failed are left out.
+    pub(crate) observed: Option<ObservationStatistics>,
+}
+
 /// After so many generations ranks compare again what they evaluate.
 const COMPARED: u32 = 10;
 
-impl<'g> Opponents<'g> {
-    /// A fingerprint of individuals and those that they meet.
-    fn fingerprint(&self, parameters: &[Vec<f32>]) -> u64 {
+impl Generation<'_> {
+    /// A fingerprint of individuals, those that they meet, and what their observations are normalised by.
+    fn fingerprint(&self) -> u64 {
         let mut digest = Digest::new();
-        let opponents = self.parameters.iter().copied();
-        for row in parameters.iter().map(Vec::as_slice).chain(opponents) {
+        let opponents = self.opponents.parameters.iter().copied();
+        for row in self.parameters.iter().map(Vec::as_slice).chain(opponents) {
             digest.add_f32s(row);
+        }
+        if let Some(statistics) = self.normalisation {
+            digest.add_u64(statistics.count());
+            digest.add_f64s(statistics.mean());
+            digest.add_f64s(statistics.squares());
         }
         digest.finish()
     }
+}
 
+impl<'g> Opponents<'g> {
     /// Those of the evaluation with a number.
     fn get(&self, number: usize) -> &'g [&'g [f32]] {
         self.parameters.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
@@ -48,37 +76,62 @@ impl<'g> Opponents<'g> {
 /// A trial that failed makes its individual the worst, whatever comes of the others.
 pub(crate) fn judgements_of_all(
     pool: &mut Pool<'_>,
-    parameters: &[Vec<f32>],
-    opponents: Opponents<'_>,
-    of: EpisodeId,
+    of: Generation<'_>,
     shape: JudgementShape,
     stop: &AtomicBool,
     progress: &Progress,
-) -> Result<(Judgements, Vec<FailedEvaluation>), Unfinished> {
-    let (count, trials) = (parameters.len(), pool.evaluator().trials());
+) -> Result<Judged, Unfinished> {
+    let (count, trials) = (of.parameters.len(), pool.evaluator().trials());
     let ended = AtomicUsize::new(0);
     let done = |_: Option<&Outcome>| {
         if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
             progress.advance();
         }
     };
-    let mut outcomes = evaluate_all(pool, parameters, opponents, of, stop, done)?;
+    let mut outcomes = evaluate_all(pool, of, stop, done)?;
     let evaluator = pool.evaluator();
     let names = evaluator.terms();
     let (mut all, mut failed) = (Vec::with_capacity(count * shape.width()), Vec::new());
+    let empty = |before: &ObservationStatistics| ObservationStatistics::new(before.channels()).map_err(other);
+    let mut observed = of.normalisation.map(empty).transpose()?;
     for individual in 0..count {
         let own = outcomes.iter_mut().skip(individual).step_by(count).map(Option::take);
-        match judged(own, &names, &|outcomes| row(evaluator, shape, opponents.told_apart, outcomes)) {
-            Ok(mut row) => all.append(&mut row),
+        match judged(own, &names, &|outcomes| row(evaluator, shape, of.opponents.told_apart, outcomes)) {
+            Ok((mut row, outcomes)) => {
+                all.append(&mut row);
+                if let Some(observed) = &mut observed {
+                    add_observed(observed, &outcomes)?;
+                }
+            }
             Err((trial, why)) => {
                 all.extend((0..shape.width()).map(|_| f64::NAN));
-                let (generation, individual) = (of.generation, individual as u32);
+                let (generation, individual) = (of.id.generation, individual as u32);
                 failed.push(FailedEvaluation { generation, individual, trial, why });
             }
         }
     }
-    let judgements = Judgements::nan_as_failed(shape, all);
-    Ok((judgements.map_err(|error| Error::Other(error.to_string()))?, failed))
+    let judgements = Judgements::nan_as_failed(shape, all).map_err(other)?;
+    Ok(Judged { judgements, failed, observed })
+}
+
+/// An error of farsa-evo.
+fn other(error: EvoError) -> Error {
+    Error::Other(error.to_string())
+}
+
+/// Adds what was observed in the trials of an individual.
+///
+/// # Errors
+/// [`Error::Other`] for an outcome that does not say it, or of other channels.
+fn add_observed(all: &mut ObservationStatistics, trials: &[Outcome]) -> Result<(), Error> {
+    for outcome in trials {
+        let Some(own) = &outcome.observed else {
+            let why = "observations are to be normalised, and an outcome does not say what was observed";
+            return Err(Error::Other(why.into()));
+        };
+        all.merge(own).map_err(|error| Error::Other(format!("what was observed: {error}")))?;
+    }
+    Ok(())
 }
 
 /// The objectives, the fitness first, and then the descriptor values of an individual, or what is wrong with them. Where
@@ -126,12 +179,15 @@ fn row(
 /// The numbers that an individual comes to by its trials, or what is wrong with them.
 type Row<'r> = dyn Fn(&[Outcome]) -> Result<Vec<f64>, String> + 'r;
 
-/// What an individual comes to by its trials, or its first trial that failed and why.
+/// The numbers that an individual comes to, and its trials.
+type Individual = (Vec<f64>, Vec<Outcome>);
+
+/// What an individual comes to, or its first trial that failed and why.
 fn judged(
     trials: impl Iterator<Item = Option<Outcome>>,
     names: &[String],
     row: &Row<'_>,
-) -> Result<Vec<f64>, (Option<u32>, String)> {
+) -> Result<Individual, (Option<u32>, String)> {
     let mut outcomes = Vec::new();
     for (trial, outcome) in (0..).zip(trials) {
         // Only what comes after a trial that failed is left out.
@@ -142,36 +198,35 @@ fn judged(
         outcomes.push(outcome);
     }
     match contained(|| row(&outcomes)) {
-        Ok(row) => row.map_err(|why| (None, why)),
+        Ok(row) => row.map(|row| (row, outcomes)).map_err(|why| (None, why)),
         Err(why) => Err((None, format!("its fitness panicked: {why}"))),
     }
 }
 
 /// Evaluates all trials of all individuals, the first of all before the second of any: trial t of individual i has number
-/// t x individuals + i. `of.trial` and `of.individual` are set for each; `done` hears of every one that ends.
+/// t x individuals + i. `done` hears of every one that ends.
 ///
 /// Episodes side by side cost least when they are alike. What an individual has left after the first of its trials that failed is
 /// left out; those before it never are, so that it is the first on any number of threads.
 pub(crate) fn evaluate_all(
     pool: &mut Pool<'_>,
-    parameters: &[Vec<f32>],
-    opponents: Opponents<'_>,
-    of: EpisodeId,
+    of: Generation<'_>,
     stop: &AtomicBool,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Option<Outcome>>, Unfinished> {
+    let Generation { parameters, opponents, normalisation, id } = of;
     let (count, trials) = (parameters.len(), pool.evaluator().trials());
     if !pool.exchange().is_alone() {
-        pool.exchange().compare_first_and_every(of.generation, COMPARED, || opponents.fingerprint(parameters));
+        pool.exchange().compare_first_and_every(id.generation, COMPARED, || of.fingerprint());
     }
     let failed: Vec<AtomicU32> = parameters.iter().map(|_| AtomicU32::new(u32::MAX)).collect();
     let task = |number: usize| {
         let (individual, trial) = (number % count, (number / count) as u32);
-        let id = EpisodeId { individual: individual as u32, trial, ..of };
+        let id = EpisodeId { individual: individual as u32, trial, ..id };
         let alive = trial < failed[individual].load(Ordering::Relaxed);
         let opponents = opponents.get(number);
         let own = parameters.get(individual).filter(|_| alive);
-        own.map(|parameters| Evaluation { number, parameters, opponents, id })
+        own.map(|parameters| Evaluation { number, parameters, opponents, normalisation, id })
     };
     let heard = |number: usize, outcome: Option<&Outcome>| {
         if outcome.is_some_and(|outcome| !outcome.is_finite()) {

@@ -63,8 +63,8 @@ impl Following<'_, '_> {
         let pool = (self.pool)(&plan)?;
         let checkpoint: Checkpoint =
             sealed::open(checkpoint).map_err(|why| Error::damaged(&directory.checkpoint(), why))?;
-        let Told { record, .. } = Told::from_content(&plan, &directory, &checkpoint, record)?;
-        let progression = Progression::resume(&plan, &directory, &checkpoint, record, &pool)?;
+        let told = Told::from_content(&plan, &directory, &checkpoint, record)?;
+        let progression = Progression::resume(&plan, &directory, &checkpoint, &told, &pool)?;
         Ok((plan, pool, progression))
     }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use farsa_evo::JudgementShape;
+use farsa_evo::{JudgementShape, ObservationStatistics};
 use farsa_num::crc32;
 
 use crate::error::Error;
@@ -18,7 +18,7 @@ use crate::store::identity::{FILE, Identity, VALUES_VERSION};
 use crate::strategy::definition::{StrategyDefinition, StrategyStart};
 use crate::strategy::history::Fresh;
 use crate::strategy::search::Search;
-use crate::strategy::settings::{GENERATIONS, POPULATION, chosen, complete};
+use crate::strategy::settings::{GENERATIONS, NORMALISE, POPULATION, chosen, complete};
 
 /// The largest seed of a run; bit 63 marks the trials of a test.
 pub(crate) const LARGEST_SEED: u64 = i64::MAX as u64;
@@ -124,12 +124,32 @@ impl<'e> Plan<'e> {
         }
     }
 
+    /// Statistics of the channels that are observed, without an observation; none where observations are not normalised.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for an experiment whose observations cannot be.
+    pub(crate) fn no_observations(&self) -> Result<Option<ObservationStatistics>, Error> {
+        if !self.definition().normalises_observations(&self.settings) {
+            return Ok(None);
+        }
+        let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
+        let (name, populations) = (self.experiment.name(), task.populations().len());
+        match (populations, task.observations()) {
+            (1, 0) => Err(Error::setting(NORMALISE, format!("{name} does not say what its controllers observe"))),
+            (1, channels) => {
+                ObservationStatistics::new(channels).map(Some).map_err(|error| Error::setting(NORMALISE, error))
+            }
+            _ => Err(Error::setting(NORMALISE, format!("{name} has {populations} populations; it is for one"))),
+        }
+    }
+
     /// The strategy at its first generation.
     ///
     /// # Errors
     /// Those of [`StrategyDefinition::start`], and [`Error::Other`] for a strategy of other populations or genes than the
     /// experiment's.
     pub(crate) fn strategy(&self) -> Result<Search, Error> {
+        self.no_observations()?;
         let task = self.experiment.prepare(&self.condition, &self.settings_with(2)?)?;
         let (populations, genes, trials) = (task.populations().len(), task.parameters().len(), task.trials());
         let (objectives, ranges) = task.behaviour().map_or((1, Vec::new()), |behaviour| {

@@ -2,16 +2,17 @@
 
 use std::sync::atomic::AtomicBool;
 
-use farsa_evo::{Fitness, Record, Statistics};
+use farsa_evo::{Fitness, ObservationStatistics, Record, Statistics};
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::run::begin::resumed;
-use crate::run::fitness::{Opponents, judgements_of_all};
+use crate::run::fitness::{Generation, Judged, Opponents, judgements_of_all};
 use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
 use crate::run::records::{Best, Checkpoint};
+use crate::run::told::Told;
 use crate::store::directory::Directory;
 use crate::store::failures::FailedEvaluation;
 use crate::strategy::history::History;
@@ -24,6 +25,8 @@ pub(crate) struct Progression {
     pub(crate) record: Record,
     /// Whom several populations still have to meet.
     hall: Hall,
+    /// What was observed in all generations so far, where observations are normalised.
+    pub(crate) observed: Option<ObservationStatistics>,
     seed: u64,
 }
 
@@ -37,6 +40,8 @@ pub(crate) struct Evaluated {
     pub(crate) each: Vec<Statistics>,
     /// The best of each population.
     pub(crate) best: Vec<Best>,
+    /// By what its observations were normalised, where they were.
+    pub(crate) normalisation: Option<ObservationStatistics>,
 }
 
 impl Progression {
@@ -48,16 +53,18 @@ impl Progression {
         plan: &Plan<'_>,
         directory: &Directory,
         checkpoint: &Checkpoint,
-        record: Record,
+        told: &Told,
         pool: &Pool<'_>,
     ) -> Result<Self, Error> {
+        let record = told.record.clone();
         let search = resumed(plan, directory, checkpoint, &record)?;
         let hall = match record.populations() {
             1 => Hall::default(),
             _ if search.opponents().is_some() => Hall::default(),
             _ => Hall::before(&History::new(directory.record(), record.clone(), plan.fresh()), pool.genotype())?,
         };
-        Ok(Self { search, record, hall, seed: checkpoint.identity.seed })
+        let observed = told.observed.last().cloned().or(plan.no_observations()?);
+        Ok(Self { search, record, hall, observed, seed: checkpoint.identity.seed })
     }
 
     /// Evaluates all individuals of a generation and tells the strategy, which makes the next.
@@ -84,7 +91,9 @@ impl Progression {
         let id = EpisodeId { seed, generation, ..EpisodeId::default() };
         let opponents = Opponents { parameters: &opponents, each: populations - 1, told_apart };
         let shape = self.search.judged_by();
-        let (judgements, failed) = judgements_of_all(pool, &parameters, opponents, id, shape, stop, progress)?;
+        let normalisation = self.observed.clone();
+        let of = Generation { parameters: &parameters, opponents, normalisation: normalisation.as_ref(), id };
+        let Judged { judgements, failed, observed } = judgements_of_all(pool, of, shape, stop, progress)?;
         let fitness = judgements.fitness();
         let ranked_by = self.search.ranked_by(&fitness);
         let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
@@ -97,9 +106,12 @@ impl Progression {
         let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
         let told = self.search.tell(&mut self.record, &judgements);
         told.map_err(|error| lost(&error.to_string()))?;
+        if let (Some(all), Some(own)) = (&mut self.observed, &observed) {
+            all.merge(own).map_err(|error| lost(&error.to_string()))?;
+        }
         if told_apart.is_none() {
             self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         }
-        Ok(Evaluated { fitness, failed, statistics, each, best })
+        Ok(Evaluated { fitness, failed, statistics, each, best, normalisation })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use farsa_evo::Fitness;
+use farsa_evo::{Fitness, ObservationStatistics, Snapshot as _};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -46,6 +46,8 @@ pub(crate) struct Champions {
     pub(crate) generation: u32,
     /// At least one.
     pub(crate) best: Vec<Best>,
+    /// By what observations were normalised in the generation, where they were.
+    pub(crate) normalisation: Option<ObservationStatistics>,
 }
 
 /// The best individual of a population.
@@ -110,6 +112,17 @@ struct ChampionsOfReals {
     best: Vec<BestOf<f64>>,
 }
 
+/// Champions whose observations were normalised, all with words or all with reals as genes.
+#[derive(Serialize, Deserialize)]
+struct ChampionsNormalised {
+    identity: Identity,
+    generation: u32,
+    words: Vec<BestOf<u16>>,
+    reals: Vec<BestOf<f64>>,
+    /// The state of [`ObservationStatistics`].
+    normalisation: Vec<u8>,
+}
+
 /// Gives records their first bytes, their names, their largest sizes and their owner.
 macro_rules! sealed {
     ($($record:ty: $magic:literal, $kind:literal, $largest:expr;)*) => {$(
@@ -133,6 +146,7 @@ sealed! {
     ChampionOfOne: b"farsachm", "champion", 64 << 20;
     ChampionsOfSeveral: b"farsacmc", "set of champions", 64 << 20;
     ChampionsOfReals: b"farsacmr", "set of champions with real genes", 256 << 20;
+    ChampionsNormalised: b"farsacmn", "set of champions with normalised observations", 256 << 20;
     Imported: b"farsagen", "set of genotypes", 1 << 30;
     ImportedSeveral: b"farsagec", "set of genotypes of several populations", 1 << 30;
 }
@@ -227,7 +241,7 @@ pub(crate) fn write_imported(
 impl Champions {
     /// Writes the file.
     pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
-        let Self { identity, generation, best } = self;
+        let Self { identity, generation, best, normalisation } = self;
         let (identity, generation) = (identity.clone(), *generation);
         // All of them are of one kind.
         let (mut words, mut reals) = (Vec::new(), Vec::new());
@@ -237,6 +251,10 @@ impl Champions {
                 Genome::Words(genes) => words.push(BestOf { individual, fitness, genes }),
                 Genome::Reals(genes) => reals.push(BestOf { individual, fitness, genes }),
             }
+        }
+        if let Some(statistics) = normalisation {
+            let normalisation = statistics.save();
+            return sealed::write(path, &ChampionsNormalised { identity, generation, words, reals, normalisation });
         }
         if !reals.is_empty() {
             return sealed::write(path, &ChampionsOfReals { identity, generation, best: reals });
@@ -255,12 +273,23 @@ impl Champions {
     pub(crate) fn read(plan: &Plan<'_>, directory: &Directory) -> Result<Self, Error> {
         let path = directory.champion();
         let magic = sealed::magic(&path)?;
+        if magic == Some(ChampionsNormalised::MAGIC) {
+            let ChampionsNormalised { identity, generation, words, reals, normalisation } =
+                read(&path, plan, directory)?;
+            let words = words.into_iter().map(|best| best.of(Genome::Words));
+            let best = words.chain(reals.into_iter().map(|best| best.of(Genome::Reals))).collect();
+            let normalisation = ObservationStatistics::from_saved(&normalisation);
+            let normalisation = Some(normalisation.map_err(|error| Error::damaged(&path, error))?);
+            return Ok(Self { identity, generation, best, normalisation });
+        }
+        let normalisation = None;
         if magic == Some(ChampionsOfReals::MAGIC) {
             let ChampionsOfReals { identity, generation, best } = read(&path, plan, directory)?;
             return Ok(Self {
                 identity,
                 generation,
                 best: best.into_iter().map(|best| best.of(Genome::Reals)).collect(),
+                normalisation,
             });
         }
         if magic == Some(ChampionsOfSeveral::MAGIC) {
@@ -269,10 +298,12 @@ impl Champions {
                 identity,
                 generation,
                 best: best.into_iter().map(|best| best.of(Genome::Words)).collect(),
+                normalisation,
             });
         }
         let ChampionOfOne { identity, generation, individual, fitness, genes } = read(&path, plan, directory)?;
-        Ok(Self { identity, generation, best: vec![Best { individual, fitness, genes: Genome::Words(genes) }] })
+        let best = vec![Best { individual, fitness, genes: Genome::Words(genes) }];
+        Ok(Self { identity, generation, best, normalisation })
     }
 
     /// The same where a generation is finished, and this program would compute the champions' trials as they were.
@@ -295,6 +326,10 @@ impl Champions {
         if found.best.len() != evaluator.populations().len() || found.best.iter().any(|best| best.genes.len() != genes)
         {
             return Err(Error::damaged(&path, "its genome is not one of the experiment"));
+        }
+        let channels = |statistics: &ObservationStatistics| statistics.channels() != evaluator.observations();
+        if found.normalisation.as_ref().is_some_and(channels) {
+            return Err(Error::damaged(&path, "its observations are not those of the experiment"));
         }
         Ok(found)
     }

@@ -1,15 +1,17 @@
 //! `record.bin`: what the strategy was told in every generation, and what came of it. The file only grows.
 //!
-//! After a sealed head, which says whose it is, stands an entry for each generation. How much of the file counts, and its checksum,
+//! After a sealed head, which says whose it is, stands an entry for each generation, and behind each entry of a run that
+//! normalises observations what was observed by then. How much of the file counts, and its checksum,
 //! stands in the checkpoint, which is written after it.
 
 use std::path::{Path, PathBuf};
 
-use farsa_evo::{Record, RecordEntry};
+use farsa_evo::{ObservationStatistics, Record, RecordEntry, Snapshot as _};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::run::plan::Plan;
+use crate::run::progression::Progression;
 use crate::run::records::{Checkpoint, RecordHead, evolved, imported};
 use crate::store::directory::Directory;
 use crate::store::growing::{self, Growing, Mark};
@@ -17,7 +19,6 @@ use crate::store::identity::Identity;
 use crate::store::log::Line;
 use crate::store::sealed;
 use crate::strategy::history::History;
-use crate::strategy::search::Search;
 
 /// Bytes of the largest record that is read.
 const LARGEST: u64 = 1 << 32;
@@ -43,6 +44,8 @@ pub(crate) struct Told {
     pub(crate) record: Record,
     /// Their lines in the log.
     pub(crate) lines: Vec<Line>,
+    /// What was observed until the end of each, where observations are normalised.
+    pub(crate) observed: Vec<ObservationStatistics>,
     /// What the strategy said of each, where it says something.
     pub(crate) diagnostics: Vec<Vec<f64>>,
     /// The part of the file that this was read from.
@@ -82,7 +85,8 @@ impl Told {
         }
         let mut record = plan.strategy()?.record().map_err(|error| damaged(error.to_string()))?;
         let each = if record.populations() > 1 { record.populations() } else { 0 };
-        let (mut lines, mut diagnostics) = (Vec::new(), Vec::new());
+        let (mut lines, mut diagnostics, mut observed) = (Vec::new(), Vec::new(), Vec::new());
+        let none = plan.no_observations()?;
         while !rest.is_empty() {
             let generation = record.generations();
             let (entry, more) = postcard::take_from_bytes::<Entry<'_>>(rest)
@@ -101,12 +105,21 @@ impl Told {
                 diagnostics.push(said);
             }
             rest = more;
+            if let Some(none) = &none {
+                let (state, more) = postcard::take_from_bytes::<&[u8]>(rest)
+                    .map_err(|error| damaged(format!("generation {generation}: what was observed: {error}")))?;
+                let mut statistics = none.clone();
+                let restored = statistics.restore(state);
+                restored.map_err(|error| damaged(format!("generation {generation}: what was observed: {error}")))?;
+                observed.push(statistics);
+                rest = more;
+            }
         }
         let (found, expected) = (record.generations(), checkpoint.generation);
         if found != expected {
             return Err(damaged(format!("{found} generations where checkpoint.bin speaks of {expected}")));
         }
-        Ok(Self { identity, record, lines, diagnostics, content })
+        Ok(Self { identity, record, lines, observed, diagnostics, content })
     }
 
     /// What the file holds up to a checkpoint.
@@ -138,8 +151,9 @@ pub(crate) fn history<'p>(
         return Ok((identity, History::from_imported(path.clone(), genomes, populations), path));
     }
     let path = directory.record();
-    let Told { identity, record, .. } = Told::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
-    Ok((identity, History::new(path.clone(), record, plan.fresh()), path))
+    let Told { identity, record, observed, .. } = Told::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
+    let history = History::new(path.clone(), record, plan.fresh());
+    Ok((identity, history.with_observations(plan.no_observations()?.into_iter().chain(observed).collect()), path))
 }
 
 /// The record of a run in progress.
@@ -152,12 +166,17 @@ impl ToldFile {
         Growing::new(path, &sealed::to_bytes(path, &head)?)?.sync()
     }
 
-    /// Appends the last generation of a record.
-    pub(crate) fn append(&mut self, record: &Record, line: &Line, strategy: &Search) -> Result<(), Error> {
+    /// Appends the last generation of a run.
+    pub(crate) fn append(&mut self, progression: &Progression, line: &Line) -> Result<(), Error> {
+        let Progression { search, record, observed, .. } = progression;
         let last = record.generations().checked_sub(1).and_then(|last| record.entry(last));
         let Some(RecordEntry { frame, state }) = last else { return Ok(()) };
-        let entry = Entry { frame, state, line: line.clone(), diagnostics: strategy.diagnostics() };
-        let bytes = postcard::to_stdvec(&entry).map_err(|error| Error::Other(format!("record.bin: {error}")))?;
+        let entry = Entry { frame, state, line: line.clone(), diagnostics: search.diagnostics() };
+        let failed = |error| Error::Other(format!("record.bin: {error}"));
+        let mut bytes = postcard::to_stdvec(&entry).map_err(failed)?;
+        if let Some(statistics) = observed {
+            bytes = postcard::to_extend(statistics.save().as_slice(), bytes).map_err(failed)?;
+        }
         self.0.append(&bytes)
     }
 

@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::settings::{Setting, Settings};
 use crate::strategy::search::Search;
+use crate::strategy::settings::NORMALISE;
 
 /// A strategy as the command knows it: a name, a table of settings and a function that makes one.
 ///
@@ -61,6 +62,13 @@ pub trait StrategyDefinition: Sync {
     /// # Errors
     /// [`Error::setting`] for values that do not go together, [`Error::Other`] for a problem that it cannot search.
     fn start(&self, start: &StrategyStart<'_>) -> Result<Search, Error>;
+
+    /// Whether observations are normalised by what was observed in all generations before, where the experiment can
+    /// ([`Task::observations`](crate::Task::observations)); by default what a setting `strategy.normalise_observations`
+    /// says, if there is one.
+    fn normalises_observations(&self, settings: &Settings) -> bool {
+        settings.flag(NORMALISE).unwrap_or(false)
+    }
 
     /// How [`Strategy::diagnostics`] are written and drawn, where the strategy has some.
     fn diagnostics(&self) -> Option<Diagnostics> {

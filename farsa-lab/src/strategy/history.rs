@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use farsa_evo::{Population, Record};
+use farsa_evo::{ObservationStatistics, Population, Record};
 
 use crate::error::Error;
 use crate::strategy::search::{Genome, Genomes, Search};
@@ -15,6 +15,8 @@ pub(crate) type Fresh<'h> = Box<dyn Fn() -> Result<Search, Error> + 'h>;
 pub(crate) struct History<'h> {
     path: PathBuf,
     past: Past<'h>,
+    /// What was observed before each generation, where observations are normalised.
+    observations: Vec<ObservationStatistics>,
 }
 
 /// What genomes are rebuilt from.
@@ -28,12 +30,23 @@ enum Past<'h> {
 impl<'h> History<'h> {
     /// The generations that a strategy was told of.
     pub(crate) fn new(path: PathBuf, record: Record, fresh: Fresh<'h>) -> Self {
-        Self { path, past: Past::Told { record, fresh } }
+        Self { path, past: Past::Told { record, fresh }, observations: Vec::new() }
+    }
+
+    /// The same with what was observed before each generation.
+    pub(crate) fn with_observations(self, observations: Vec<ObservationStatistics>) -> Self {
+        Self { observations, ..self }
+    }
+
+    /// By what observations were normalised in a generation, where they were.
+    pub(crate) fn normalisation(&self, generation: u32) -> Option<&ObservationStatistics> {
+        self.observations.get(generation as usize)
     }
 
     /// Imported genomes, those of one population after the other.
     pub(crate) fn from_imported(path: PathBuf, genomes: Vec<Vec<u16>>, populations: usize) -> Self {
-        Self { path, past: Past::Imported { genomes, populations: populations.max(1) } }
+        let past = Past::Imported { genomes, populations: populations.max(1) };
+        Self { path, past, observations: Vec::new() }
     }
 
     /// Number of finished generations.

@@ -9,6 +9,8 @@ use crate::experiment::settings::{Setting, Settings};
 pub(crate) const GENERATIONS: &str = "evolution.generations";
 /// Individuals of a generation.
 pub(crate) const POPULATION: &str = "evolution.population";
+/// Whether observations are normalised.
+pub(crate) const NORMALISE: &str = "strategy.normalise_observations";
 /// The name of a strategy that is not the experiment's own.
 pub(crate) const STRATEGY: &str = "strategy.name";
 /// What happens to a bit that mutation hits.

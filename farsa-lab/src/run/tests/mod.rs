@@ -5,6 +5,7 @@
 //! - `ranks`: runs on ranks that are threads
 //! - `own_strategy`: a strategy of a user's own
 //! - `generalist`: whom everyone meets, where the strategy says so
+//! - `normalised`: normalised observations
 //! - `files`: what is refused, and what is mended
 //! - `faults`: evaluations that panic, that are no number and that do not end
 
@@ -12,6 +13,7 @@ mod every_strategy;
 mod faults;
 mod files;
 mod generalist;
+mod normalised;
 mod own_strategy;
 mod pool;
 mod ranks;

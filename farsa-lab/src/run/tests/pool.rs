@@ -59,7 +59,7 @@ fn pool(threads: usize) -> Pool<'static> {
 
 fn task(number: usize, parameters: &[f32]) -> Evaluation<'_> {
     let id = EpisodeId { individual: number as u32, ..EpisodeId::default() };
-    Evaluation { number, parameters, opponents: &[], id }
+    Evaluation { number, ..Evaluation::new(parameters, id) }
 }
 
 #[test]

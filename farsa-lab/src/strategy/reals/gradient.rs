@@ -4,6 +4,7 @@ use farsa_evo::{Ars, ArsConfig, OpenAiEs, OpenAiEsConfig, Optimizer, Pgpe, PgpeC
 
 use super::{SIGMA, STEPS, count_or, number_or, pairs, population_of_pairs, sigma, sizes};
 use crate::experiment::settings::Setting;
+use crate::strategy::settings::NORMALISE;
 use crate::strategy::simple::SimpleStrategy;
 
 const LEARNING_RATE: &str = "strategy.learning_rate";
@@ -14,6 +15,13 @@ const MAX_SPEED: &str = "strategy.max_speed";
 const SIGMA_RATE: &str = "strategy.sigma_learning_rate";
 const SIGMA_CHANGE: &str = "strategy.sigma_max_change";
 const FITNESS: &str = "strategy.fitness";
+
+/// Whether observations are normalised.
+fn normalise() -> Setting {
+    Setting::flag(NORMALISE, false).doc(
+        "Whether each channel of the observations is normalised by its mean and standard deviation in all generations before.",
+    )
+}
 
 /// The evolution strategy of `OpenAI`, [`farsa_evo::OpenAiEs`].
 pub(in crate::strategy) static OPEN_AI_ES: SimpleStrategy = SimpleStrategy {
@@ -28,6 +36,7 @@ pub(in crate::strategy) static OPEN_AI_ES: SimpleStrategy = SimpleStrategy {
                 .derived()
                 .doc("What is subtracted from the gradient for each unit of a gene: 0.005 / sigma of the source."),
             Setting::word(OPTIMIZER, "adam", &["adam", "momentum"]).given().doc("How the gradient becomes a step."),
+            normalise(),
         ]);
         table
     },
@@ -61,6 +70,7 @@ pub(in crate::strategy) static PGPE: SimpleStrategy = SimpleStrategy {
                 .given()
                 .doc("The most that a standard deviation changes in a generation, as a share of itself."),
             Setting::word(FITNESS, "ranks", &["ranks", "raw"]).given().doc("What stands for the reward."),
+            normalise(),
         ]);
         table
     },
@@ -94,6 +104,7 @@ pub(in crate::strategy) static ARS: SimpleStrategy = SimpleStrategy {
             Setting::whole(TOP, 0, 0..=500_000)
                 .given()
                 .doc("Directions that the step is made of (b), the best ones; 0 for all of them."),
+            normalise(),
         ]);
         table
     },
