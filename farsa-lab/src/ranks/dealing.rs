@@ -1,4 +1,4 @@
-//! Blocks of evaluations between rank 0 and the others: asked for when the last of a block is drawn, given at once.
+//! Blocks of evaluations between rank 0 and the others: asked for when none is in reserve, given at once.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -14,9 +14,9 @@ const WANTED: u64 = 1;
 const ENOUGH: u64 = 2;
 
 /// The shortest and the longest pause between two looks for messages.
-const PAUSES: [Duration; 2] = [Duration::from_micros(20), Duration::from_micros(200)];
-/// How often a rank that has a block looks whether its round cannot be finished.
-const LOOK: Duration = Duration::from_millis(1);
+const PAUSES: [Duration; 2] = [Duration::from_micros(20), Duration::from_millis(4)];
+/// How often a rank that has blocks looks whether its round cannot be finished.
+const LOOK: Duration = Duration::from_millis(10);
 
 /// A pause that grows with the time that was waited already: quick answers come soon, long waits cost nothing.
 pub(crate) fn pause(since: Instant) -> Duration {
@@ -55,7 +55,7 @@ pub(crate) fn give(ranks: &dyn Ranks, numbers: &Numbers, ended: &dyn Fn() -> boo
 /// finished.
 pub(crate) fn take(ranks: &dyn Ranks, given: &Given, most: usize, ended: &dyn Fn() -> bool) -> Result<(), Error> {
     while !ended() {
-        if !given.drained(LOOK) {
+        if !given.wants(LOOK) {
             continue;
         }
         ranks.send(0, [WANTED, most as u64])?;

@@ -13,19 +13,21 @@ pub(crate) enum Numbers {
     Given(Given),
 }
 
-/// A block, and who waits for it.
+/// Two blocks, and who waits for them.
 #[derive(Default)]
 pub(crate) struct Given {
-    block: Mutex<Block>,
+    blocks: Mutex<Blocks>,
     /// A block has come, or none will.
     filled: Condvar,
-    /// The last number of a block is drawn.
-    drained: Condvar,
+    /// There is room for a block.
+    wanted: Condvar,
 }
 
+/// The block that is drawn from, and one in reserve: while an answer is awaited nobody has to wait for it.
 #[derive(Default)]
-struct Block {
+struct Blocks {
     left: Range<usize>,
+    reserve: Range<usize>,
     /// Whether no other will come.
     last: bool,
 }
@@ -51,7 +53,7 @@ impl Numbers {
     pub(crate) fn block(&self, wanted: usize, ranks: usize) -> Range<usize> {
         let Self::Counted { count, drawn } = self else { return 0..0 };
         let left = count.saturating_sub(drawn.load(Ordering::Relaxed));
-        let size = (left / (2 * ranks.max(1))).clamp(1, wanted.max(1));
+        let size = (left / (4 * ranks.max(1))).clamp(1, wanted.max(1));
         let first = drawn.fetch_add(size, Ordering::Relaxed).min(*count);
         first..(first + size).min(*count)
     }
@@ -61,9 +63,9 @@ impl Numbers {
         match self {
             Self::Counted { count, drawn } => drawn.store(*count, Ordering::Relaxed),
             Self::Given(given) => {
-                let mut block = given.lock();
-                *block = Block { left: 0..0, last: true };
-                drop(block);
+                let mut blocks = given.lock();
+                *blocks = Blocks { last: true, ..Blocks::default() };
+                drop(blocks);
                 given.filled.notify_all();
             }
         }
@@ -71,43 +73,48 @@ impl Numbers {
 }
 
 impl Given {
-    fn lock(&self) -> MutexGuard<'_, Block> {
-        // A block is whole at any time.
-        self.block.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self) -> MutexGuard<'_, Blocks> {
+        // Blocks are whole at any time.
+        self.blocks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn draw(&self) -> Option<usize> {
-        let mut block = self.lock();
+        let mut blocks = self.lock();
         loop {
-            if let Some(number) = block.left.next() {
-                if block.left.is_empty() {
-                    self.drained.notify_all();
-                }
-                return Some(number);
+            let found = blocks.left.next();
+            if blocks.left.is_empty() && !blocks.reserve.is_empty() {
+                blocks.left = std::mem::take(&mut blocks.reserve);
+                self.wanted.notify_all();
             }
-            if block.last {
-                return None;
+            if found.is_some() || blocks.last && blocks.left.is_empty() {
+                return found;
             }
-            block = self.filled.wait(block).unwrap_or_else(PoisonError::into_inner);
+            if blocks.left.is_empty() {
+                blocks = self.filled.wait(blocks).unwrap_or_else(PoisonError::into_inner);
+            }
         }
     }
 
-    /// Waits until the block is drawn, for a time at most, and says whether it is.
-    pub(crate) fn drained(&self, longest: Duration) -> bool {
-        let block = self.lock();
-        if block.left.is_empty() {
+    /// Waits until there is room for a block, for a time at most, and says whether there is.
+    pub(crate) fn wants(&self, longest: Duration) -> bool {
+        let blocks = self.lock();
+        if blocks.reserve.is_empty() {
             return true;
         }
-        let waited = self.drained.wait_timeout(block, longest).unwrap_or_else(PoisonError::into_inner);
-        waited.0.left.is_empty()
+        let waited = self.wanted.wait_timeout(blocks, longest).unwrap_or_else(PoisonError::into_inner);
+        waited.0.reserve.is_empty()
     }
 
-    /// Puts the next block in the place of one that is drawn; an empty one is the last.
+    /// Takes a block for which there is room; an empty one is the last.
     pub(crate) fn fill(&self, next: Range<usize>) {
-        let mut block = self.lock();
-        block.last |= next.is_empty();
-        block.left = next;
-        drop(block);
+        let mut blocks = self.lock();
+        blocks.last |= next.is_empty();
+        if blocks.left.is_empty() {
+            blocks.left = next;
+        } else {
+            blocks.reserve = next;
+        }
+        drop(blocks);
         self.filled.notify_all();
     }
 }
@@ -143,7 +150,10 @@ mod tests {
         let numbers = Numbers::counted(100);
         let sizes: Vec<usize> =
             std::iter::from_fn(|| Some(numbers.block(16, 2).len()).filter(|size| *size > 0)).collect();
-        assert_eq!(sizes, [16, 16, 16, 13, 9, 7, 5, 4, 3, 2, 2, 1, 1, 1, 1, 1, 1, 1]);
+        assert_eq!(
+            sizes,
+            [12, 11, 9, 8, 7, 6, 5, 5, 4, 4, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
+        );
         assert_eq!(sizes.iter().sum::<usize>(), 100);
         assert_eq!(Numbers::counted(0).block(16, 2), 0..0);
     }
@@ -151,20 +161,23 @@ mod tests {
     #[test]
     fn what_is_given_is_drawn_and_then_asked_for() {
         let given = Given::default();
-        assert!(given.drained(Duration::ZERO));
+        assert!(given.wants(Duration::ZERO));
         given.fill(4..7);
-        assert!(!given.drained(Duration::ZERO));
+        // Another one in reserve.
+        assert!(given.wants(Duration::ZERO));
+        given.fill(8..9);
+        assert!(!given.wants(Duration::ZERO));
         let numbers = Numbers::Given(given);
         let drawn = thread::scope(|scope| {
             let thread = scope.spawn(|| std::iter::from_fn(|| numbers.draw()).collect::<Vec<_>>());
             let Numbers::Given(given) = &numbers else { unreachable!() };
-            while !given.drained(Duration::from_millis(1)) {}
+            while !given.wants(Duration::from_millis(1)) {}
             given.fill(9..10);
-            while !given.drained(Duration::from_millis(1)) {}
+            while !given.wants(Duration::from_millis(1)) {}
             given.fill(0..0);
             thread.join().unwrap()
         });
-        assert_eq!(drawn, [4, 5, 6, 9]);
+        assert_eq!(drawn, [4, 5, 6, 8, 9]);
         let closed = Numbers::Given(Given::default());
         closed.close();
         assert_eq!(closed.draw(), None);

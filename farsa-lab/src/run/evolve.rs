@@ -199,7 +199,7 @@ impl<'d> Run<'d> {
             self.progression.generation(pool, stop, progress)?;
         let search = &self.progression.search;
         let line = Line::new(&statistics, fitness.len(), &each);
-        self.told.append(&self.progression, &line)?;
+        self.told.append(&self.progression.record, &line, search, self.progression.observed.as_ref())?;
         self.log.append(line)?;
         self.failures.append(&failed, self.program)?;
         self.diagnostics.push(search);

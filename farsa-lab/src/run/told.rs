@@ -11,7 +11,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::run::plan::Plan;
-use crate::run::progression::Progression;
 use crate::run::records::{Checkpoint, RecordHead, evolved, imported};
 use crate::store::directory::Directory;
 use crate::store::growing::{self, Growing, Mark};
@@ -19,6 +18,7 @@ use crate::store::identity::Identity;
 use crate::store::log::Line;
 use crate::store::sealed;
 use crate::strategy::history::History;
+use crate::strategy::search::Search;
 
 /// Bytes of the largest record that is read.
 const LARGEST: u64 = 1 << 32;
@@ -167,8 +167,13 @@ impl ToldFile {
     }
 
     /// Appends the last generation of a run.
-    pub(crate) fn append(&mut self, progression: &Progression, line: &Line) -> Result<(), Error> {
-        let Progression { search, record, observed, .. } = progression;
+    pub(crate) fn append(
+        &mut self,
+        record: &Record,
+        line: &Line,
+        search: &Search,
+        observed: Option<&ObservationStatistics>,
+    ) -> Result<(), Error> {
         let last = record.generations().checked_sub(1).and_then(|last| record.entry(last));
         let Some(RecordEntry { frame, state }) = last else { return Ok(()) };
         let entry = Entry { frame, state, line: line.clone(), diagnostics: search.diagnostics() };
