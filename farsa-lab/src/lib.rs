@@ -34,7 +34,7 @@ pub use experiment::{
     resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use ranks::{Alone, Ranks};
-pub use run::{BestOfRun, ENGINE, Laboratory};
+pub use run::{BestOfRun, ENGINE, ExperimentFiles, Laboratory, ReadExperiment, Template};
 pub use store::{VALUES_VERSION, read_text_file};
 pub use strategy::{
     Diagnostics, DiagnosticsChart, Learning, OnePlusOne, Search, SimpleStrategy, StrategyDefinition, StrategyStart,

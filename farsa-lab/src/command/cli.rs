@@ -141,6 +141,9 @@ impl<'e> Invocation<'e, '_> {
                 let plan = Plan::with_strategy(self.find(&experiment)?, condition.as_deref(), "", strategy)?;
                 if json { say(&info::as_json(&plan)?) } else { tell(&info::as_text(&plan)?) }
             }
+            Command::New(args) => self.new_file(&args),
+            Command::Check(args) => self.check(&args),
+            Command::Schema => say(&(laboratory.files()?.schema)()),
             Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
                 let found = match args.groups {
                     None => Some(self.replicate(&args, count, args.replication)?),
@@ -352,12 +355,46 @@ impl<'e> Invocation<'e, '_> {
         let pool = self.pool(args, &plan)?;
         let directory = match directory {
             Some(directory) => {
-                same_names(args, file.as_ref(), &plan, &directory)?;
+                self.same_names(args, file.as_ref(), &plan, &directory)?;
                 directory
             }
             None => begin::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
         };
         evolve::go_on(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
+    }
+
+    /// Refuses a resumed run under another name; its settings and seed are compared with the checkpoint later.
+    fn same_names(
+        &self,
+        args: &RunArgs,
+        file: Option<&ConfigFile>,
+        plan: &Plan<'_>,
+        directory: &Directory,
+    ) -> Result<(), Error> {
+        let in_file = |entry: Option<&Entry<String>>| entry.map(|entry| entry.value.clone());
+        let named = args.experiment.as_ref().map(|name| self.find(name)).transpose()?;
+        let other = |found: &&dyn Experiment| {
+            found.name() == plan.experiment.name() && found.definition() != plan.experiment.definition()
+        };
+        if named.as_ref().is_some_and(other) {
+            let (directory, asked) = (directory.path().into(), args.experiment.clone().unwrap_or_default());
+            let run = plan.experiment.name().into();
+            return Err(Error::OtherConfiguration { directory, key: "definition".into(), run, asked });
+        }
+        let experiment = named.map(|found| found.name().to_owned()).or_else(|| in_file(file?.experiment.as_ref()));
+        let condition = args.variant.condition.clone().or_else(|| in_file(file?.condition.as_ref()));
+        let strategy = args.strategy.clone().or_else(|| in_file(file?.strategy.as_ref()));
+        for (key, run, asked) in [
+            ("experiment", plan.experiment.name(), experiment),
+            ("condition", plan.condition.as_str(), condition),
+            ("strategy", plan.definition().name(), strategy),
+        ] {
+            if let Some(asked) = asked.filter(|asked| asked != run) {
+                let directory = directory.path().into();
+                return Err(Error::OtherConfiguration { directory, key: key.into(), run: run.into(), asked });
+            }
+        }
+        Ok(())
     }
 
     /// The threads of this rank.
@@ -399,17 +436,18 @@ impl<'e> Invocation<'e, '_> {
 
     /// The defaults of the experiment and condition that are named on the command line or else in the file.
     fn fresh(&self, args: &RunArgs, file: Option<&ConfigFile>) -> Result<Plan<'e>, Error> {
-        let named = file.and_then(|file| file.experiment.as_ref());
+        let named = file.filter(|file| file.experiment.is_some());
         let experiment = match (&args.experiment, named) {
             (Some(name), named) => {
                 let experiment = self.find(name)?;
-                if let Some(other) = named.filter(|entry| entry.value != *name) {
+                let other = named.and_then(|file| file.experiment.as_ref());
+                if let Some(other) = other.filter(|entry| entry.value != experiment.name()) {
                     let why = format!("is {:?} here and `{name}` on the command line", other.value);
                     return Err(Error::Setting { place: other.place.clone(), key: "experiment".into(), why });
                 }
                 experiment
             }
-            (None, Some(entry)) => self.laboratory.experiment(&entry.value, &entry.place)?,
+            (None, Some(file)) => self.laboratory.of_configuration(file)?,
             (None, None) => {
                 return Err(Error::Usage("neither the command line nor the file names an experiment".into()));
             }
@@ -428,31 +466,12 @@ impl<'e> Invocation<'e, '_> {
 }
 
 /// Prints what a person reads; names from elsewhere in it do not reach the terminal as they are.
-fn tell(text: &str) -> Result<(), Error> {
+pub(super) fn tell(text: &str) -> Result<(), Error> {
     say(&*escaped(text))
 }
 
 /// Prints data, as they are.
-fn say(text: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), Error> {
+pub(super) fn say(text: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_ref()).and_then(|()| out.flush()).map_err(Error::io("write", "the output".as_ref()))
-}
-
-/// Refuses a resumed run under another name; its settings and seed are compared with the checkpoint later.
-fn same_names(args: &RunArgs, file: Option<&ConfigFile>, plan: &Plan<'_>, directory: &Directory) -> Result<(), Error> {
-    let in_file = |entry: Option<&Entry<String>>| entry.map(|entry| entry.value.clone());
-    let experiment = args.experiment.clone().or_else(|| in_file(file?.experiment.as_ref()));
-    let condition = args.variant.condition.clone().or_else(|| in_file(file?.condition.as_ref()));
-    let strategy = args.strategy.clone().or_else(|| in_file(file?.strategy.as_ref()));
-    for (key, run, asked) in [
-        ("experiment", plan.experiment.name(), experiment),
-        ("condition", plan.condition.as_str(), condition),
-        ("strategy", plan.definition().name(), strategy),
-    ] {
-        if let Some(asked) = asked.filter(|asked| asked != run) {
-            let directory = directory.path().into();
-            return Err(Error::OtherConfiguration { directory, key: key.into(), run: run.into(), asked });
-        }
-    }
-    Ok(())
 }

@@ -2,6 +2,8 @@
 //!
 //! - `arguments`: the words of the command line
 //! - `cli`: the command: `main` for any set of experiments
+//! - `connections`: what is connected to what: sensors with inputs, outputs with motors, terms with the fitness
+//! - `files`: `farsa new` and `farsa check`: files that describe experiments
 //! - `info`: `farsa list` and `farsa info`: what there is and what it is made of
 //! - `interrupt`: signals that ask a run to stop, and the exit code that asks a scheduler to start it again
 //! - `invocation`: the command as it was called
@@ -11,6 +13,8 @@
 
 mod arguments;
 pub mod cli;
+mod connections;
+mod files;
 mod info;
 mod interrupt;
 mod invocation;

@@ -55,6 +55,11 @@ pub trait Experiment: Sync {
         Ok(Vec::new())
     }
 
+    /// The text of the file that describes it, where one does: a run keeps it with its configuration.
+    fn definition(&self) -> Option<&str> {
+        None
+    }
+
     /// Bits of the genes that parameters are encoded in by strategies of bits, 1 to 16.
     fn gene_bits(&self) -> u32 {
         16

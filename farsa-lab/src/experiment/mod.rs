@@ -18,6 +18,7 @@
 //! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
 //! - `rescored`: an experiment that there is, under another fitness
 //! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
+//! - `value`: values of settings
 
 pub(crate) mod behaviour;
 mod controlled;
@@ -37,6 +38,7 @@ pub(crate) mod outcome;
 pub(crate) mod parameter;
 mod rescored;
 pub(crate) mod settings;
+mod value;
 
 pub use behaviour::{Behaviour, NotedBehaviour, mean_of_note};
 pub use controlled::{Controlled, Objective, PlanarWorld, Trials};

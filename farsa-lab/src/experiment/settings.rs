@@ -4,55 +4,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::error::Error;
 use crate::escaped::shortened;
 
-/// A value of a setting.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Value {
-    /// Yes or no.
-    Flag(bool),
-    /// A whole number.
-    Whole(i64),
-    /// A number.
-    Number(f64),
-    /// One of a few words, or any text.
-    Word(String),
-    /// A list of numbers.
-    Numbers(Vec<f64>),
-}
-
-impl fmt::Display for Value {
-    /// The value as TOML writes it.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flag(flag) => write!(f, "{flag}"),
-            Self::Whole(n) => write!(f, "{n}"),
-            // The debug form is the shortest that reads back as the same number, and always looks like a float.
-            Self::Number(x) => write!(f, "{x:?}"),
-            Self::Word(word) => write_string(f, word),
-            Self::Numbers(list) => write!(f, "{list:?}"),
-        }
-    }
-}
-
-/// Writes a text as a basic string of TOML.
-fn write_string(f: &mut fmt::Formatter<'_>, text: &str) -> fmt::Result {
-    f.write_str("\"")?;
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => write!(f, "\\{c}")?,
-            '\n' => f.write_str("\\n")?,
-            '\t' => f.write_str("\\t")?,
-            '\r' => f.write_str("\\r")?,
-            c if c.is_ascii_control() => write!(f, "\\u{:04X}", u32::from(c))?,
-            c => write!(f, "{c}")?,
-        }
-    }
-    f.write_str("\"")
-}
+pub(crate) use crate::experiment::value::Paragraph;
+pub use crate::experiment::value::Value;
 
 /// Where a default comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -159,6 +117,14 @@ impl Setting {
     pub fn doc(mut self, doc: &str) -> Self {
         self.doc = doc.into();
         self
+    }
+
+    /// The same with another default, for an experiment that gives a strategy's setting one of its own.
+    ///
+    /// # Errors
+    /// What is wrong with a value that it cannot have.
+    pub fn with_default(&self, value: Value) -> Result<Self, String> {
+        Ok(Self { default: self.check(value)?, ..self.clone() })
     }
 
     /// The key.

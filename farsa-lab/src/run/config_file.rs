@@ -19,7 +19,7 @@ const MOST_KEYS: usize = 10_000;
 /// The most values of a list that a [`Found`] gives.
 const MOST_LISTED: usize = 10_000;
 /// The keys that are no settings.
-const RESERVED: [&str; 3] = ["experiment", "condition", "seed"];
+const RESERVED: [&str; 4] = ["experiment", "definition", "condition", "seed"];
 
 /// A value and where in a file it stands.
 #[derive(Debug, Clone)]
@@ -33,6 +33,8 @@ pub(crate) struct Entry<T> {
 pub(crate) struct ConfigFile {
     pub(crate) name: String,
     pub(crate) experiment: Option<Entry<String>>,
+    /// The text that describes the experiment, where a file does.
+    pub(crate) definition: Option<Entry<String>>,
     pub(crate) condition: Option<Entry<String>>,
     /// `name` in the section `strategy`.
     pub(crate) strategy: Option<Entry<String>>,
@@ -99,6 +101,7 @@ impl ConfigFile {
         let mut file = Self {
             name: name.into(),
             experiment: None,
+            definition: None,
             condition: None,
             strategy: None,
             seed: None,
@@ -138,9 +141,10 @@ impl ConfigFile {
         let place = place.to_owned();
         match (key, value) {
             ("experiment", Value::Word(word)) => self.experiment = Some(Entry { value: word, place }),
+            ("definition", Value::Word(word)) => self.definition = Some(Entry { value: word, place }),
             ("condition", Value::Word(word)) => self.condition = Some(Entry { value: word, place }),
             (STRATEGY, Value::Word(word)) => self.strategy = Some(Entry { value: word, place }),
-            ("experiment" | "condition" | STRATEGY, _) => return Err(wrong("is not a name in quotes")),
+            ("experiment" | "definition" | "condition" | STRATEGY, _) => return Err(wrong("is not a name in quotes")),
             ("seed", Value::Whole(seed)) if seed >= 0 => {
                 self.seed = Some(Entry { value: seed.unsigned_abs(), place });
             }

@@ -1,7 +1,11 @@
 //! The experiments and strategies that a command knows by name.
 
+use std::path::Path;
+
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
+use crate::run::config_file::ConfigFile;
+use crate::store::bounded;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::known;
 
@@ -20,12 +24,47 @@ use crate::strategy::known;
 pub struct Laboratory<'e> {
     experiments: Vec<&'e dyn Experiment>,
     strategies: Vec<&'static dyn StrategyDefinition>,
+    files: Option<ExperimentFiles>,
 }
+
+/// Makes an experiment of a text, which is the content of a file of a name; it may name these strategies.
+///
+/// # Errors
+/// What is wrong with the text, with file, line and key.
+pub type ReadExperiment =
+    fn(name: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Box<dyn Experiment>, Error>;
+
+/// How experiments are described by files.
+#[derive(Clone, Copy)]
+pub struct ExperimentFiles {
+    /// Makes an experiment of a text.
+    pub read: ReadExperiment,
+    /// The schema of the files, as JSON.
+    pub schema: fn() -> String,
+    /// What a new file may begin as, the default one first.
+    pub templates: &'static [Template],
+}
+
+/// What a new file may begin as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Template {
+    /// Its name.
+    pub name: &'static str,
+    /// What it describes, in one line.
+    pub summary: &'static str,
+    /// The file.
+    pub text: &'static str,
+}
+
+/// What names of files end with that describe an experiment.
+pub(crate) const FILE: &str = ".toml";
+/// The most bytes of such a file.
+const MOST_BYTES: u64 = 1_000_000;
 
 impl<'e> Laboratory<'e> {
     /// These experiments, in the order in which they are listed, with the strategies of this crate.
     pub fn new(experiments: &[&'e dyn Experiment]) -> Self {
-        Self { experiments: experiments.to_vec(), strategies: known::strategies().to_vec() }
+        Self { experiments: experiments.to_vec(), strategies: known::strategies().to_vec(), files: None }
     }
 
     /// Adds a strategy for `--strategy NAME`; one of the same name goes.
@@ -34,6 +73,12 @@ impl<'e> Laboratory<'e> {
         self.strategies.retain(|other| other.name() != strategy.name());
         self.strategies.push(strategy);
         self
+    }
+
+    /// Takes files for experiments, too: `farsa run NAME.toml`.
+    #[must_use]
+    pub fn with_files(self, files: ExperimentFiles) -> Self {
+        Self { files: Some(files), ..self }
     }
 
     /// The experiments.
@@ -46,11 +91,45 @@ impl<'e> Laboratory<'e> {
         &self.strategies
     }
 
-    /// The experiment of a name, which stands at `place`.
+    /// How experiments are described by files.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest name.
+    /// [`Error::Usage`] for a program that takes none.
+    pub(crate) fn files(&self) -> Result<&ExperimentFiles, Error> {
+        self.files.as_ref().ok_or_else(|| Error::Usage("this program takes no files for experiments".into()))
+    }
+
+    /// The experiment of a text.
+    ///
+    /// It lasts as long as the process, like those that are built in; a process reads few.
+    fn described(&self, name: &str, text: &str) -> Result<&'e dyn Experiment, Error> {
+        Ok(Box::leak((self.files()?.read)(name, text, &self.strategies)?))
+    }
+
+    /// The experiment that a configuration names or describes.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where it does neither, and those of [`experiment`](Self::experiment).
+    pub(crate) fn of_configuration(&self, file: &ConfigFile) -> Result<&'e dyn Experiment, Error> {
+        match (&file.experiment, &file.definition) {
+            (Some(name), Some(text)) => self.described(&format!("{}{FILE}", name.value), &text.value),
+            (Some(name), None) => self.experiment(&name.value, &name.place),
+            (None, _) => Err(Error::Usage(format!("{}: names no experiment", file.name))),
+        }
+    }
+
+    /// The experiment of a name, which stands at `place`, or of a file.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest name, [`Error::Io`] and what is wrong with a file.
     pub(crate) fn experiment(&self, name: &str, place: &str) -> Result<&'e dyn Experiment, Error> {
+        if name.ends_with(FILE) {
+            let text = bounded::read_text(Path::new(name), MOST_BYTES).map_err(|error| match error {
+                error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
+                other => other,
+            })?;
+            return self.described(name, &text);
+        }
         let names = self.experiments.iter().map(|experiment| experiment.name());
         let found = self.experiments.iter().copied().find(|experiment| experiment.name() == name);
         found.ok_or_else(|| Error::unknown(place, "experiment", name, names))

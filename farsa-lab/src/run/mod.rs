@@ -52,5 +52,5 @@ pub(crate) mod told;
 pub(crate) mod world_choice;
 
 pub use best_of_run::BestOfRun;
-pub use laboratory::Laboratory;
+pub use laboratory::{ExperimentFiles, Laboratory, ReadExperiment, Template};
 pub use world_choice::ENGINE;

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::experiment::definition::Experiment;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
-use crate::experiment::settings::{Settings, Value};
+use crate::experiment::settings::{Paragraph, Settings, Value};
 use crate::run::config_file::{ConfigFile, Entry};
 use crate::run::laboratory::Laboratory;
 use crate::store::bounded;
@@ -90,10 +90,7 @@ impl<'e> Plan<'e> {
 
     /// What a configuration file says, whole.
     pub(crate) fn from_file(laboratory: &Laboratory<'e>, file: &ConfigFile) -> Result<Self, Error> {
-        let Some(name) = &file.experiment else {
-            return Err(Error::Usage(format!("{}: names no experiment", file.name)));
-        };
-        let experiment = laboratory.experiment(&name.value, &name.place)?;
+        let experiment = laboratory.of_configuration(file)?;
         let place = file.condition.as_ref().map_or("", |entry| &entry.place);
         let condition = file.condition.as_ref().map(|entry| entry.value.as_str());
         let strategy =
@@ -253,6 +250,9 @@ impl<'e> Plan<'e> {
             let bytes = bounded::read_own(&path, MOST_BYTES)?;
             settings.push((format!("{FILE}{}", path.display()), Value::Word(format!("{:08x}", crc32(&bytes)))));
         }
+        if let Some(text) = self.experiment.definition() {
+            settings.push(("definition".into(), Value::Word(format!("{:08x}", crc32(text.as_bytes())))));
+        }
         Ok(Identity {
             experiment: self.experiment.name().into(),
             condition: self.condition.clone(),
@@ -282,6 +282,9 @@ impl<'e> Plan<'e> {
             String::from("# The complete configuration of a run; `run --config` with this file repeats it.\n");
         // Writing into a string cannot fail.
         let _ = writeln!(text, "experiment = {:?}", self.experiment.name());
+        if let Some(definition) = self.experiment.definition() {
+            let _ = writeln!(text, "# The file that describes it.\ndefinition = {}", Paragraph(definition));
+        }
         if !self.condition.is_empty() {
             let _ = writeln!(text, "condition = {:?}", self.condition);
         }

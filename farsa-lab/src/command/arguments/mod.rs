@@ -1,6 +1,7 @@
 //! The words of the command line.
 //!
 //! - `export`: those of `farsa export`, and the formats of files
+//! - `files`: those of the commands about files that describe experiments
 //! - `genotypes`: those of the commands about genotypes from elsewhere, `farsa evaluate` and `farsa import`
 //! - `merge`: those of `farsa merge`
 //! - `robot`: those of `farsa robot`
@@ -9,6 +10,7 @@
 //! - `sweep`: those of `farsa sweep`
 
 pub(crate) mod export;
+pub(crate) mod files;
 pub(crate) mod genotypes;
 pub(crate) mod merge;
 pub(crate) mod robot;

@@ -7,6 +7,7 @@ use clap_complete::Shell;
 use farsa_view::Camera;
 
 use crate::command::arguments::export::ExportArgs;
+use crate::command::arguments::files::{CheckArgs, NewArgs};
 use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
 use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
@@ -35,6 +36,13 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// List the strategies, with every setting and its source
     Strategies(StrategiesArgs),
+    /// Begin a file that describes an experiment
+    New(NewArgs),
+    /// Check such a file, and tell or draw what is connected to what
+    Check(CheckArgs),
+    /// Write the schema of such files, for editors
+    #[command(hide = true)]
+    Schema,
     /// Evolve, or go on with a run
     Run(RunArgs),
     /// Run an experiment at many settings, those of a file
@@ -60,8 +68,10 @@ pub(crate) enum Command {
     /// Measure how fast trials run here, and estimate a whole study
     Bench(BenchArgs),
     /// Write a shell's completions to the standard output
+    #[command(hide = true)]
     Completions(CompletionsArgs),
     /// Write the manual's pages
+    #[command(hide = true)]
     Man(ManArgs),
 }
 

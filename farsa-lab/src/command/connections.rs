@@ -1,0 +1,220 @@
+//! What is connected to what: sensors with inputs, outputs with motors, terms with the fitness.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::experiment::outcome::{ChannelGroup, Description};
+use crate::run::plan::Plan;
+
+/// The parts of an experiment and their channels; the JSON form has these names.
+#[derive(Serialize)]
+pub(crate) struct Connections {
+    experiment: String,
+    summary: String,
+    condition: String,
+    sensors: Vec<Group>,
+    network: String,
+    parameters: usize,
+    motors: Vec<Group>,
+    terms: Vec<String>,
+    trials: usize,
+    steps: usize,
+    step_seconds: f64,
+}
+
+/// Channels that belong together, with their names.
+#[derive(Serialize)]
+struct Group {
+    name: String,
+    meaning: String,
+    /// The first channel and the one after the last.
+    channels: [usize; 2],
+    names: Vec<String>,
+}
+
+/// Groups one after the other, with the names of their channels.
+fn groups(groups: &[ChannelGroup], names: &[String]) -> Vec<Group> {
+    let mut first = 0;
+    let group = |group: &ChannelGroup| {
+        let channels = [first, first + group.count];
+        first += group.count;
+        let names = (channels[0]..channels[1]).filter_map(|channel| names.get(channel).cloned()).collect();
+        Group { name: group.name.clone(), meaning: group.meaning.clone(), channels, names }
+    };
+    groups.iter().map(group).collect()
+}
+
+impl Connections {
+    /// Those of a plan, whose experiment is made for it.
+    ///
+    /// # Errors
+    /// What keeps the experiment from being made.
+    pub(crate) fn new(plan: &Plan<'_>) -> Result<Self, Error> {
+        let task = plan.evaluator()?;
+        let (schema, Description { sensors, motors, network, steps, step_seconds, .. }) =
+            (task.schema(), task.description());
+        let names =
+            |channels: &[farsa_view::Channel]| channels.iter().map(farsa_view::Channel::title).collect::<Vec<_>>();
+        Ok(Self {
+            experiment: plan.experiment.name().into(),
+            summary: plan.experiment.summary().into(),
+            condition: plan.condition.clone(),
+            sensors: groups(&sensors, &names(&schema.sensors)),
+            network,
+            parameters: task.parameters().len(),
+            motors: groups(&motors, &names(&schema.outputs)),
+            terms: task.terms(),
+            trials: task.trials(),
+            steps,
+            step_seconds,
+        })
+    }
+
+    /// In words.
+    pub(crate) fn text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.experiment, self.summary);
+        let width = self.sensors.iter().chain(&self.motors).map(|group| group.name.chars().count()).max().unwrap_or(0);
+        // Writing into a string cannot fail.
+        for (what, groups) in [("inputs", &self.sensors), ("outputs", &self.motors)] {
+            let _ = writeln!(text, "\n{what} of the network:");
+            for Group { name, meaning, channels: [first, end], .. } in groups {
+                let _ = writeln!(text, "  {:>9}  {name:width$}  {meaning}", span(*first, *end));
+            }
+        }
+        let seconds = self.steps as f64 * self.step_seconds;
+        let _ = writeln!(text, "\nnetwork: {}; {} parameters", self.network, self.parameters);
+        let _ = writeln!(text, "trials: {}, each of at most {} steps ({seconds:?} s)", self.trials, self.steps);
+        let _ = writeln!(text, "fitness: {}", self.terms.join(", "));
+        text
+    }
+
+    /// As a drawing: sensors on the left, the network, motors on the right, and the terms below.
+    pub(crate) fn svg(&self) -> String {
+        let rows = self.sensors.len().max(self.motors.len()).max(1);
+        let terms = self.terms.len().max(1);
+        let height = TOP + ROW * rows as f64 + GAP + ROW * terms as f64 + 20.0;
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height}\" \
+             viewBox=\"0 0 {WIDTH} {height}\" font-family=\"sans-serif\" font-size=\"13\">\n\
+             <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"white\"/>\n"
+        );
+        let middle = TOP + 0.5 * ROW * rows as f64;
+        text_at(&mut svg, [20.0, 26.0], "start", 16, &format!("{} {}", self.experiment, self.condition));
+        let network = [NETWORK, middle - 40.0, BOX, 80.0];
+        let column = |groups: &[Group], x: f64, svg: &mut String| {
+            let first = middle - 0.5 * ROW * groups.len() as f64;
+            for (row, group) in groups.iter().enumerate() {
+                let y = first + ROW * row as f64;
+                let [from, to] = group.channels;
+                let count = format!("{} {}", to - from, if to - from == 1 { "channel" } else { "channels" });
+                let unit = group.names.first().and_then(|name| name.rsplit_once(" [")).map_or("", |(_, unit)| unit);
+                let count = if unit.is_empty() { count } else { format!("{count} [{unit}") };
+                boxed(svg, [x, y, BOX, ROW - 12.0], [&group.name, &count], "#dbe9f6");
+                let (side, end) = if x < NETWORK { (x + BOX, network[0]) } else { (x, network[0] + network[2]) };
+                let (y, at) = (y + 0.5 * (ROW - 12.0), middle);
+                let (from_to, label) = if x < NETWORK {
+                    ([side, y, end, at], format!("in {}", span(from, to)))
+                } else {
+                    ([end, at, side, y], format!("out {}", span(from, to)))
+                };
+                arrow(svg, from_to);
+                let near = [0.5 * (side + end), 0.75 * y + 0.25 * at - 4.0];
+                // What stands on a line stays legible.
+                let [width, high] = [6.6 * label.len() as f64, 14.0];
+                let [x, y] = [near[0] - 0.5 * width, near[1] - 11.0];
+                let _ = writeln!(
+                    svg,
+                    "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{high}\" fill=\"white\"/>"
+                );
+                text_at(svg, near, "middle", 11, &label);
+            }
+        };
+        column(&self.sensors, SENSORS, &mut svg);
+        column(&self.motors, MOTORS, &mut svg);
+        let parameters = format!("{} parameters", self.parameters);
+        boxed(&mut svg, network, [&self.network, &parameters], "#fdebd0");
+        let first = TOP + ROW * rows as f64 + GAP;
+        let target = first + 0.5 * ROW * terms as f64;
+        for (row, term) in self.terms.iter().enumerate() {
+            let y = first + ROW * row as f64;
+            boxed(&mut svg, [SENSORS, y, BOX, ROW - 12.0], [term, "term"], "#e2f0d9");
+            arrow(&mut svg, [SENSORS + BOX, y + 0.5 * (ROW - 12.0), NETWORK, target]);
+        }
+        let trials = format!("{} trials of at most {} steps", self.trials, self.steps);
+        boxed(&mut svg, [NETWORK, target - 25.0, BOX, 50.0], ["fitness", &trials], "#e2f0d9");
+        svg.push_str("</svg>\n");
+        svg
+    }
+}
+
+/// The drawing's width, its rows, and where its columns begin.
+const WIDTH: f64 = 900.0;
+const TOP: f64 = 50.0;
+const ROW: f64 = 56.0;
+const GAP: f64 = 50.0;
+const BOX: f64 = 210.0;
+const SENSORS: f64 = 20.0;
+const NETWORK: f64 = 345.0;
+const MOTORS: f64 = 670.0;
+
+/// Channels counted from 1: `3` or `3-8`.
+fn span(first: usize, end: usize) -> String {
+    if end == first + 1 { end.to_string() } else { format!("{}-{end}", first + 1) }
+}
+
+fn boxed(svg: &mut String, [x, y, width, height]: [f64; 4], lines: [&str; 2], color: &str) {
+    let _ = writeln!(
+        svg,
+        "<rect x=\"{x}\" y=\"{y:.1}\" width=\"{width}\" height=\"{height}\" rx=\"5\" fill=\"{color}\" stroke=\"#555\"/>"
+    );
+    let middle = x + 0.5 * width;
+    // A long line goes on in a second one.
+    let words = wrapped(lines[0], 32);
+    let count = words.len() as f64 + 1.0;
+    let first = y + 0.5 * height - 8.0 * (count - 1.0) + 4.0;
+    for (row, line) in words.iter().enumerate() {
+        text_at(svg, [middle, first + 16.0 * row as f64], "middle", 13, line);
+    }
+    text_at(svg, [middle, first + 16.0 * (count - 1.0)], "middle", 11, lines[1]);
+}
+
+/// A text in lines of so many letters at most, broken between words, of which three are shown.
+fn wrapped(text: &str, most: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let word: String = word.chars().take(most).collect();
+        let last = lines.last().map_or(0, |line| line.chars().count());
+        match lines.last_mut() {
+            Some(line) if last == 0 => line.push_str(&word),
+            Some(line) if last + 1 + word.chars().count() <= most => {
+                line.push(' ');
+                line.push_str(&word);
+            }
+            _ => lines.push(word),
+        }
+    }
+    if lines.len() > 3 {
+        lines.truncate(3);
+        lines[2].push_str(" ...");
+    }
+    lines
+}
+
+fn arrow(svg: &mut String, [x, y, u, v]: [f64; 4]) {
+    let _ = writeln!(
+        svg,
+        "<path d=\"M{x} {y:.1} C{a} {y:.1} {b} {v:.1} {end} {v:.1}\" fill=\"none\" stroke=\"#555\"/>\
+         <path d=\"M{u} {v:.1} l-8 -4 v8 z\" fill=\"#555\"/>",
+        a = 0.5 * (x + u),
+        b = 0.5 * (x + u),
+        end = u - 8.0,
+    );
+}
+
+fn text_at(svg: &mut String, [x, y]: [f64; 2], anchor: &str, size: u32, text: &str) {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let _ =
+        writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\">{text}</text>");
+}

@@ -1,0 +1,56 @@
+//! `farsa new` and `farsa check`: files that describe experiments.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use crate::command::arguments::files::{CheckArgs, NewArgs};
+use crate::command::cli::{say, tell};
+use crate::command::connections::Connections;
+use crate::command::invocation::Invocation;
+use crate::error::Error;
+use crate::json::pretty;
+use crate::run::laboratory::{FILE, Template};
+use crate::store::replace::create_results;
+
+impl Invocation<'_, '_> {
+    /// Writes a file that an experiment can be made of.
+    pub(super) fn new_file(&self, args: &NewArgs) -> Result<(), Error> {
+        let templates = self.laboratory.files()?.templates;
+        let names = || templates.iter().map(|template| template.name);
+        let found = match &args.from {
+            None => templates.first(),
+            Some(name) => templates.iter().find(|template| template.name == name),
+        };
+        let Some(Template { name, text, .. }) = found else {
+            let asked = args.from.as_deref().unwrap_or_default();
+            let mut list = Error::unknown("--from", "template", asked, names()).to_string();
+            for Template { name, summary, .. } in templates {
+                // Writing into a string cannot fail.
+                let _ = write!(list, "\n  {name}: {summary}");
+            }
+            return Err(Error::Usage(list));
+        };
+        let path = PathBuf::from(format!("{}{FILE}", args.name.strip_suffix(FILE).unwrap_or(&args.name)));
+        // Refused before it is written: the name becomes that of the experiment.
+        (self.laboratory.files()?.read)(&path.display().to_string(), text, self.laboratory.strategies())?;
+        create_results(&[(path.clone(), text)])?;
+        let (program, path) = (self.program, path.display());
+        let next = format!("{path}: from `{name}`\n{program} check {path}\n{program} run {path} --generations 20\n");
+        if self.quiet { Ok(()) } else { tell(&next) }
+    }
+
+    /// Checks an experiment, and tells or draws what is connected to what.
+    pub(super) fn check(&self, args: &CheckArgs) -> Result<(), Error> {
+        let plan = args.variant.plan(self.laboratory.experiment(&args.experiment, "")?)?;
+        plan.strategy()?;
+        let found = Connections::new(&plan)?;
+        if let Some(path) = &args.graph {
+            create_results(&[(path.clone(), found.svg())])?;
+        }
+        match (args.json, self.quiet) {
+            (true, _) => say(&pretty(&found)?),
+            (false, true) => Ok(()),
+            (false, false) => tell(&found.text()),
+        }
+    }
+}
