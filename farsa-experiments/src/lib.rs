@@ -33,6 +33,11 @@ pub use walking::passive_walker;
 pub use walking::passive_walker::PassiveWalker;
 pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
+/// What the command `farsa` is over: the experiments, all strategies, and files that describe experiments.
+pub fn laboratory() -> farsa_lab::Laboratory<'static> {
+    farsa_lab::Laboratory::new(&all()).with_files(farsa_compose::FILES)
+}
+
 /// The experiments in the order in which `farsa list` shows them.
 pub fn all() -> [&'static dyn farsa_lab::Experiment; 13] {
     [

@@ -1,9 +1,7 @@
-//! The `farsa` command over the reference experiments.
+//! The `farsa` command over the reference experiments and files.
 
 use std::process::ExitCode;
 
-use farsa_lab::cli;
-
 fn main() -> ExitCode {
-    cli::main(&farsa_experiments::all())
+    farsa_experiments::laboratory().main()
 }

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    farsa_lab_mpi::main(&farsa_experiments::all())
+    farsa_lab_mpi::main(&farsa_experiments::laboratory())
 }

@@ -1,0 +1,11 @@
+//! A text against the schema of the format.
+//!
+//! - `places`: where in the text each value stands
+//! - `schema`: what a schema says of one value
+//! - `walk`: a text, checked value by value
+//! - `settings`: the numbers and words of a document as settings
+
+pub(crate) mod places;
+pub(crate) mod schema;
+pub(crate) mod settings;
+pub(crate) mod walk;

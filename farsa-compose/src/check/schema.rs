@@ -1,0 +1,223 @@
+//! What a schema says of one value.
+
+use serde_json::{Map, Value};
+
+use crate::document::Document;
+
+/// The schema of the format, as JSON.
+pub fn schema() -> Value {
+    let settings = schemars::generate::SchemaSettings::draft2020_12();
+    let mut schema = settings.into_generator().into_root_schema_for::<Document>().to_value();
+    close(&mut schema);
+    schema
+}
+
+/// Says of every table that it has no other keys than those that are named.
+fn close(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            map.values_mut().for_each(close);
+            let table = map.contains_key("properties") && map.get("type").is_some_and(|kind| kind == "object");
+            if table && !map.contains_key("additionalProperties") {
+                map.insert("unevaluatedProperties".into(), false.into());
+            }
+            // The branches of a table are closed by the table.
+            for branches in ["oneOf", "anyOf", "allOf"] {
+                let branches = map.get_mut(branches).and_then(Value::as_array_mut).into_iter().flatten();
+                branches.filter_map(Value::as_object_mut).for_each(|branch| {
+                    branch.remove("unevaluatedProperties");
+                });
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(close),
+        _ => {}
+    }
+}
+
+/// A part of a schema, with the whole of it for references.
+#[derive(Clone, Copy)]
+pub(crate) struct Part<'s> {
+    root: &'s Value,
+    own: &'s Map<String, Value>,
+}
+
+/// What a value has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Table,
+    List,
+    Number,
+    Whole,
+    Flag,
+    Text,
+    /// A flag, number, text or list of numbers.
+    Any,
+}
+
+impl<'s> Part<'s> {
+    /// All of a schema.
+    pub(crate) fn root(root: &'s Value) -> Option<Self> {
+        Some(Self { root, own: root.as_object()? })
+    }
+
+    fn at(self, value: &'s Value) -> Option<Self> {
+        Some(Self { root: self.root, own: value.as_object()? })
+    }
+
+    /// What it refers to, if it does.
+    fn referred(self) -> Option<Self> {
+        let name = self.own.get("$ref")?.as_str()?.strip_prefix('#')?;
+        self.at(self.root.pointer(name)?)
+    }
+
+    /// A word of it, or of what it refers to.
+    fn word(self, name: &str) -> Option<&'s Value> {
+        self.own.get(name).or_else(|| self.referred()?.word(name))
+    }
+
+    fn branches(self, name: &str) -> impl Iterator<Item = Self> + use<'s> {
+        let found = self.word(name).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        found.iter().filter_map(move |value| self.at(value))
+    }
+
+    /// The same without the choice of leaving it away.
+    fn given(self) -> Self {
+        let null = |part: &Self| part.own.get("type").is_some_and(|kind| kind == "null");
+        self.branches("anyOf").find(|part| !null(part)).unwrap_or(self)
+    }
+
+    /// What a value has to be.
+    pub(crate) fn kind(self) -> Kind {
+        let part = self.given();
+        let words: Vec<&str> = match part.word("type") {
+            Some(Value::String(word)) => vec![word],
+            Some(Value::Array(words)) => words.iter().filter_map(Value::as_str).collect(),
+            _ => Vec::new(),
+        };
+        let is = |word| words.contains(&word);
+        match () {
+            () if is("object") || part.word("properties").is_some() => Kind::Table,
+            () if part.branches("oneOf").any(|branch| branch.tag().is_some()) => Kind::Table,
+            () if is("array") => Kind::List,
+            () if is("integer") => Kind::Whole,
+            () if is("number") => Kind::Number,
+            () if is("boolean") => Kind::Flag,
+            () if is("string") || !part.choices().is_empty() => Kind::Text,
+            () => Kind::Any,
+        }
+    }
+
+    /// The words that a text may be; none if it may be any.
+    pub(crate) fn choices(self) -> Vec<&'s str> {
+        let part = self.given();
+        let own = |part: Self| {
+            let one = part.word("const").into_iter();
+            let several = part.word("enum").and_then(Value::as_array).into_iter().flatten();
+            one.chain(several).filter_map(Value::as_str).collect::<Vec<_>>()
+        };
+        part.branches("oneOf").chain([part]).flat_map(own).collect()
+    }
+
+    /// The least and the most that a number may be.
+    pub(crate) fn range(self) -> [Option<f64>; 2] {
+        let part = self.given();
+        ["minimum", "maximum"].map(|name| part.word(name).and_then(Value::as_f64))
+    }
+
+    /// How many values a list may have.
+    pub(crate) fn lengths(self) -> [Option<u64>; 2] {
+        let part = self.given();
+        ["minItems", "maxItems"].map(|name| part.word(name).and_then(Value::as_u64))
+    }
+
+    /// What a text has to look like, if it says.
+    pub(crate) fn pattern(self) -> Option<&'s str> {
+        self.given().word("pattern")?.as_str()
+    }
+
+    /// The first paragraph of what it is.
+    pub(crate) fn description(self) -> &'s str {
+        let text = self.word("description").and_then(Value::as_str).unwrap_or_default();
+        text.split("\n\n").next().unwrap_or_default()
+    }
+
+    /// What the values of a list are.
+    pub(crate) fn items(self) -> Option<Self> {
+        let part = self.given();
+        part.at(part.word("items")?)
+    }
+
+    /// The values of a table that may have any keys.
+    pub(crate) fn any_key(self) -> Option<Self> {
+        let part = self.given();
+        match part.word("additionalProperties")? {
+            Value::Bool(true) => Some(Self { root: self.root, own: empty() }),
+            other => part.at(other),
+        }
+    }
+
+    /// The keys of a table with what stands there, of the branch that `tag` chooses: the value of a key.
+    pub(crate) fn keys(self, tag: &dyn Fn(&str) -> Option<&'s str>) -> Keys<'s> {
+        let mut keys = Keys::default();
+        self.given().collect(tag, &mut keys);
+        keys
+    }
+
+    fn collect(self, tag: &dyn Fn(&str) -> Option<&'s str>, keys: &mut Keys<'s>) {
+        if let Some(part) = self.referred() {
+            part.collect(tag, keys);
+        }
+        if let Some(found) = self.own.get("properties").and_then(Value::as_object) {
+            for (name, value) in found {
+                keys.named.extend(self.at(value).map(|part| (name.as_str(), part)));
+            }
+        }
+        let required = self.own.get("required").and_then(Value::as_array).into_iter().flatten();
+        keys.required.extend(required.filter_map(Value::as_str));
+        let parts = self.own.get("allOf").and_then(Value::as_array).into_iter().flatten();
+        parts.filter_map(|value| self.at(value)).for_each(|part| part.collect(tag, keys));
+        let branches = self.own.get("oneOf").and_then(Value::as_array).into_iter().flatten();
+        let branches: Vec<Self> = branches.filter_map(|value| self.at(value)).collect();
+        let Some((name, _)) = branches.first().and_then(|branch| branch.tag()) else { return };
+        let wanted = tag(name);
+        keys.tag = Some((name, branches.iter().filter_map(|branch| Some(branch.tag()?.1)).collect()));
+        if let Some(branch) = branches.iter().find(|branch| branch.tag().is_some_and(|(_, word)| Some(word) == wanted))
+        {
+            branch.collect(tag, keys);
+        }
+    }
+
+    /// What the parts of a list are: the first paragraph of the branch that a word chooses, and the name of the list.
+    pub(crate) fn about(self, list: &str, word: &str) -> &'s str {
+        let keys = self.keys(&|_| None);
+        let items = keys.named.iter().find(|(name, _)| *name == list).and_then(|(_, part)| part.items());
+        let Some(items) = items else { return "" };
+        let found = items.branches("oneOf").find(|branch| branch.tag().is_some_and(|(_, own)| own == word));
+        found.map_or("", |branch| {
+            branch.own.get("description").map_or_else(
+                || branch.description(),
+                |text| text.as_str().and_then(|text| text.split("\n\n").next()).unwrap_or_default(),
+            )
+        })
+    }
+
+    /// The key and the word by which a branch is chosen.
+    fn tag(self) -> Option<(&'s str, &'s str)> {
+        let found = self.word("properties")?.as_object()?;
+        found.iter().find_map(|(name, value)| Some((name.as_str(), value.get("const")?.as_str()?)))
+    }
+}
+
+/// The keys that a table may have.
+#[derive(Default)]
+pub(crate) struct Keys<'s> {
+    pub(crate) named: Vec<(&'s str, Part<'s>)>,
+    pub(crate) required: Vec<&'s str>,
+    /// The key by whose word other keys are chosen, and its words.
+    pub(crate) tag: Option<(&'s str, Vec<&'s str>)>,
+}
+
+fn empty() -> &'static Map<String, Value> {
+    static EMPTY: std::sync::OnceLock<Map<String, Value>> = std::sync::OnceLock::new();
+    EMPTY.get_or_init(Map::new)
+}

@@ -1,0 +1,131 @@
+//! The numbers and words of a document as settings, so that `--set`, sweeps and conditions can change them.
+
+use farsa_lab::{Error, Setting, Settings, Value as Given};
+use serde_json::{Map, Value};
+
+use crate::check::schema::{Kind, Part};
+
+/// The tables of a document that are no settings by themselves.
+const ELSEWHERE: [&str; 5] = ["conditions", "evolution", "genome", "strategy", "summary"];
+
+/// A setting and the path of its value in the document.
+#[derive(Clone, Debug)]
+pub(crate) struct Entry {
+    pub(crate) setting: Setting,
+    pub(crate) path: String,
+    /// Whether its numbers are whole ones.
+    whole: bool,
+}
+
+/// The settings of a document that fits the schema, in its order.
+pub(crate) fn entries(document: &Value, schema: &Value) -> Vec<Entry> {
+    let mut found = Vec::new();
+    if let (Some(part), Some(table)) = (Part::root(schema), document.as_object()) {
+        collect(part, table, ["", ""], &mut found);
+    }
+    found
+}
+
+fn collect(part: Part<'_>, table: &Map<String, Value>, [key, path]: [&str; 2], found: &mut Vec<Entry>) {
+    let all = part.keys(&|_| None);
+    let word = all.tag.as_ref().and_then(|(name, words)| {
+        let own = table.get(*name)?.as_str()?;
+        words.iter().copied().find(|word| *word == own)
+    });
+    let keys = part.keys(&|_| word);
+    for (name, value) in table {
+        let (top, tag) = (key.is_empty(), keys.tag.as_ref().is_some_and(|(tag, _)| tag == name));
+        if tag || top && ELSEWHERE.contains(&name.as_str()) {
+            continue;
+        }
+        let Some((_, part)) = keys.named.iter().find(|(known, _)| known == name) else { continue };
+        let key = if top { name.clone() } else { format!("{key}.{name}") };
+        one(*part, value, [&key, &format!("{path}/{name}")], found);
+    }
+}
+
+fn one(part: Part<'_>, value: &Value, [key, path]: [&str; 2], found: &mut Vec<Entry>) {
+    let [least, most] = part.range();
+    let mut put = |setting: Setting, whole: bool| {
+        let (text, unit) = unit(part.description());
+        found.push(Entry { setting: setting.unit(unit).doc(text), path: path.into(), whole });
+    };
+    let numbers = least.unwrap_or(f64::MIN)..=most.unwrap_or(f64::MAX);
+    match (part.kind(), value) {
+        (Kind::Table, Value::Object(table)) => collect(part, table, [key, path], found),
+        (Kind::Flag, Value::Bool(flag)) => put(Setting::flag(key, *flag), false),
+        (Kind::Number, Value::Number(number)) => {
+            put(Setting::number(key, number.as_f64().unwrap_or(0.0), numbers), false);
+        }
+        (Kind::Whole, Value::Number(number)) => {
+            let range = *numbers.start() as i64..=*numbers.end() as i64;
+            put(Setting::whole(key, number.as_i64().unwrap_or(0), range), true);
+        }
+        (Kind::Text, Value::String(word)) if !part.choices().is_empty() => {
+            put(Setting::word(key, word, &part.choices()), false);
+        }
+        (Kind::List, Value::Array(items)) => list(part, items, [key, path], found),
+        _ => {}
+    }
+}
+
+fn list(part: Part<'_>, items: &[Value], [key, path]: [&str; 2], found: &mut Vec<Entry>) {
+    let Some(item) = part.items() else { return };
+    if let Kind::Number | Kind::Whole = item.kind() {
+        let numbers: Vec<f64> = items.iter().filter_map(Value::as_f64).collect();
+        let [least, most] = item.range();
+        let range = least.unwrap_or(f64::MIN)..=most.unwrap_or(f64::MAX);
+        let (text, unit) = unit(part.description());
+        let setting = Setting::numbers(key, &numbers, range).unit(unit).doc(text);
+        found.push(Entry { setting, path: path.into(), whole: item.kind() == Kind::Whole });
+        return;
+    }
+    for (index, (value, name)) in items.iter().zip(names(items)).enumerate() {
+        one(item, value, [&format!("{key}.{name}"), &format!("{path}/{index}")], found);
+    }
+}
+
+/// What the parts of a list are called: by their name or else their kind, with a number where several have the same.
+pub(crate) fn names(items: &[Value]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for (index, item) in items.iter().enumerate() {
+        let own = ["name", "kind", "place", "term"].iter().find_map(|key| item.get(key)?.as_str());
+        let own = own.map_or_else(|| (index + 1).to_string(), str::to_owned);
+        let mut name = own.clone();
+        let mut number = 2;
+        while names.contains(&name) {
+            name = format!("{own}-{number}");
+            number += 1;
+        }
+        names.push(name);
+    }
+    names
+}
+
+/// A description without the unit that it ends with, and the unit.
+fn unit(text: &str) -> (&str, &str) {
+    let cut = text.trim_end_matches('.').strip_suffix(']').and_then(|text| text.rsplit_once(" ["));
+    cut.unwrap_or((text, ""))
+}
+
+/// The document with the values of settings.
+///
+/// # Errors
+/// [`Error::Unknown`] and [`Error::Setting`] for a table that is not the document's.
+pub(crate) fn apply(document: &Value, entries: &[Entry], settings: &Settings) -> Result<Value, Error> {
+    let mut document = document.clone();
+    for Entry { setting, path, whole } in entries {
+        let value = match settings.get(setting.key())? {
+            Given::Flag(flag) => Value::from(*flag),
+            Given::Whole(number) => Value::from(*number),
+            Given::Number(number) => Value::from(*number),
+            Given::Word(word) => Value::from(word.as_str()),
+            Given::Numbers(numbers) if *whole => numbers.iter().map(|number| *number as i64).collect(),
+            Given::Numbers(numbers) => numbers.iter().copied().collect(),
+        };
+        if let Some(place) = document.pointer_mut(path) {
+            *place = value;
+        }
+    }
+    Ok(document)
+}

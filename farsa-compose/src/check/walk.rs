@@ -1,0 +1,169 @@
+//! A text, checked value by value.
+
+use farsa_lab::Error;
+use serde_json::{Map, Value};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::check::places::{Lines, Places, key};
+use crate::check::schema::{Kind, Part};
+use crate::name::{NAME, is_name};
+
+/// The most parts of a list.
+const MOST_PARTS: usize = 1000;
+
+/// The values of a text that fits a schema, and where they stand.
+///
+/// # Errors
+/// [`Error::Usage`] for a text that is no TOML, [`Error::Unknown`] with the nearest key or word, [`Error::Setting`] with
+/// what is wrong with a value; all with file, line and key.
+pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Places), Error> {
+    let lines = Lines::new(text);
+    let mut places = Places::new(file);
+    let table = DeTable::parse(text).map_err(|error| {
+        let place = error.span().map_or_else(|| file.to_owned(), |span| places.of_line(lines.of(span.start)));
+        Error::Usage(format!("{place}: {}", error.message()))
+    })?;
+    let part = Part::root(schema).ok_or_else(|| Error::Other("the schema is no table".into()))?;
+    let mut walk = Walk { lines: &lines, places: &mut places };
+    let value = walk.table(part, table.get_ref(), "", table.span().start)?;
+    Ok((value, places))
+}
+
+struct Walk<'w> {
+    lines: &'w Lines,
+    places: &'w mut Places,
+}
+
+impl Walk<'_> {
+    fn value(&mut self, part: Part<'_>, value: &Spanned<DeValue<'_>>, path: &str) -> Result<Value, Error> {
+        let offset = value.span().start;
+        self.places.put(path, self.lines.of(offset));
+        let wrong = |why: String| self.places.wrong(path, why);
+        match (part.kind(), value.get_ref()) {
+            (Kind::Table, DeValue::Table(table)) => self.table(part, table, path, offset),
+            (Kind::List, DeValue::Array(items)) => self.list(part, items, path),
+            (Kind::Flag | Kind::Any, DeValue::Boolean(flag)) => Ok(Value::Bool(*flag)),
+            (Kind::Text | Kind::Any, DeValue::String(text)) => self.text(part, text, path),
+            (Kind::Whole | Kind::Number | Kind::Any, DeValue::Integer(number)) => {
+                let number = i64::from_str_radix(number.as_str(), number.radix());
+                let number = number.map_err(|_| wrong("is too large a number".into()))?;
+                within(part, number as f64).map_err(wrong)?;
+                Ok(Value::from(number))
+            }
+            (Kind::Number | Kind::Any, DeValue::Float(number)) => {
+                let number: f64 = number.as_str().parse().map_err(|_| wrong("is not a number".into()))?;
+                within(part, number).map_err(wrong)?;
+                Ok(Value::from(number))
+            }
+            (Kind::Any, DeValue::Array(items)) => {
+                let items = items.iter().enumerate();
+                items.map(|(index, item)| self.value(part, item, &format!("{path}/{index}"))).collect()
+            }
+            (wanted, _) => Err(wrong(format!("is not {}", words(wanted)))),
+        }
+    }
+
+    fn table(&mut self, part: Part<'_>, table: &DeTable<'_>, path: &str, offset: usize) -> Result<Value, Error> {
+        self.places.put(path, self.lines.of(offset));
+        if table.len() > MOST_PARTS {
+            return Err(self.places.wrong(path, format!("has {} keys; at most {MOST_PARTS}", table.len())));
+        }
+        let tag = |name: &str| {
+            let (_, value) = table.iter().find(|(key, _)| key.get_ref() == name)?;
+            value.get_ref().as_str()
+        };
+        // The words of a tag are those of the schema, so that one lifetime is enough.
+        let chosen = |keys: &[&str], name: &str| tag(name).and_then(|word| keys.iter().position(|key| *key == word));
+        let all = part.keys(&|_| None);
+        let word = all.tag.as_ref().and_then(|(name, words)| Some(words[chosen(words, name)?]));
+        let keys = part.keys(&|_| word);
+        if let Some((tag, words)) = keys.tag.as_ref().filter(|(name, _)| tag(name).is_none() && !has(table, name)) {
+            return Err(self.places.wrong(path, format!("lacks the key `{tag}`: one of {}", words.join(", "))));
+        }
+        let mut found = Map::new();
+        for (name, value) in table {
+            let (line, name) = (self.lines.of(name.span().start), name.get_ref().as_ref());
+            let path = format!("{path}/{}", name.chars().take(60).collect::<String>());
+            let known = keys.named.iter().find(|(key, _)| *key == name).map(|(_, part)| *part);
+            if let Some((tag, words)) = keys.tag.as_ref().filter(|(tag, _)| *tag == name && word.is_none()) {
+                let text = value.get_ref().as_str();
+                let text = text.ok_or_else(|| Error::Setting {
+                    place: self.places.of_line(line),
+                    key: key(&path),
+                    why: "is not a text".into(),
+                })?;
+                let what = if *tag == "at" { "way to place something" } else { "kind" };
+                return Err(Error::unknown(&self.places.of_line(line), what, text, words.iter().copied()));
+            }
+            let Some(part) = known.or_else(|| part.any_key()) else {
+                let valid = keys.named.iter().map(|(name, _)| *name).chain(keys.tag.as_ref().map(|(tag, _)| *tag));
+                return Err(Error::unknown(&self.places.of_line(line), "key", name, valid));
+            };
+            let value = self.value(part, value, &path)?;
+            self.places.put(&path, line);
+            found.insert(name.into(), value);
+        }
+        if let Some(missing) = keys.required.iter().find(|name| !found.contains_key(**name)) {
+            return Err(self.places.wrong(path, format!("lacks the key `{missing}`")));
+        }
+        Ok(Value::Object(found))
+    }
+
+    fn list(&mut self, part: Part<'_>, items: &[Spanned<DeValue<'_>>], path: &str) -> Result<Value, Error> {
+        let count = items.len();
+        let [least, most] = part.lengths().map(|length| length.and_then(|length| usize::try_from(length).ok()));
+        let (least, most) = (least.unwrap_or(0), most.unwrap_or(MOST_PARTS));
+        if !(least..=most).contains(&count) {
+            let wanted = if least == most { format!("{least}") } else { format!("{least} to {most}") };
+            return Err(self.places.wrong(path, format!("has {count} values where {wanted} are wanted")));
+        }
+        let of_items = part.items();
+        let item = |(index, item): (usize, &Spanned<DeValue<'_>>)| {
+            self.value(of_items.unwrap_or(part), item, &format!("{path}/{index}"))
+        };
+        items.iter().enumerate().map(item).collect()
+    }
+
+    fn text(&self, part: Part<'_>, text: &str, path: &str) -> Result<Value, Error> {
+        let choices = part.choices();
+        if !choices.is_empty() && !choices.contains(&text) {
+            return Err(Error::unknown(&self.places.of(path), "choice", text, choices));
+        }
+        if part.pattern() == Some(NAME) && !is_name(text) {
+            let why = "is not a name: 1 to 40 lower-case letters, digits, - and _, the first a letter or digit";
+            return Err(self.places.wrong(path, why));
+        }
+        if text.chars().count() > 1000 || text.chars().any(char::is_control) {
+            return Err(self.places.wrong(path, "is longer than 1000 characters or has control characters"));
+        }
+        Ok(Value::from(text))
+    }
+}
+
+/// Whether a table has a key.
+fn has(table: &DeTable<'_>, name: &str) -> bool {
+    table.iter().any(|(key, _)| key.get_ref() == name)
+}
+
+/// Whether a number is within its range.
+fn within(part: Part<'_>, number: f64) -> Result<(), String> {
+    let [least, most] = part.range();
+    let (least, most) = (least.unwrap_or(f64::MIN), most.unwrap_or(f64::MAX));
+    if number.is_nan() {
+        return Err("NaN is not a number".into());
+    }
+    if (least..=most).contains(&number) { Ok(()) } else { Err(format!("{number} is outside {least} to {most}")) }
+}
+
+fn words(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Table => "a table",
+        Kind::List => "a list",
+        Kind::Number => "a number",
+        Kind::Whole => "a whole number",
+        Kind::Flag => "true or false",
+        Kind::Text => "a text in quotes",
+        Kind::Any => "a flag, number, text or list of these",
+    }
+}

@@ -1,0 +1,113 @@
+//! What a file says, as data: the schema of the format is made of these types.
+//!
+//! - `world`: the arena and what stands in it
+//! - `robot`: the robots
+//! - `sensor`: what they sense
+//! - `motor`: what they do
+//! - `wrapper`: what changes values on their way from a sensor or to a motor
+//! - `network`: what connects sensors with motors
+//! - `episode`: how a trial starts, goes on and ends
+//! - `reward`: what a trial earns, and when it has succeeded
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::name::NAME;
+
+mod episode;
+mod motor;
+mod network;
+mod reward;
+mod robot;
+mod sensor;
+mod world;
+mod wrapper;
+
+pub use episode::{Ending, Episode, Placing, Start};
+pub use motor::{Led, Motor, MotorKind};
+pub use network::{Network, NetworkKind, WeightOrder};
+pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
+pub use robot::{Robot, RobotKind};
+pub use sensor::{AxesName, Camera, ColorRange, InfraredModel, Sensor, SensorKind};
+pub use world::{Engine, Object, ObjectKind, World};
+pub use wrapper::Wrapper;
+
+/// An experiment: robots in a world, what they sense, do and compute with, how a trial goes and what it earns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Document {
+    /// What is asked, in one line.
+    #[serde(default)]
+    pub summary: String,
+    /// The arena.
+    #[serde(default)]
+    pub world: World,
+    /// What stands in the arena beside robots, each by a name of its own.
+    #[serde(default)]
+    pub objects: Vec<Object>,
+    /// The robot, or the robots of a team: all alike, with one genome.
+    pub robot: Robot,
+    /// What each robot senses, in the order of the network's inputs.
+    pub sensors: Vec<Sensor>,
+    /// What each robot does, in the order of the network's outputs.
+    pub motors: Vec<Motor>,
+    /// What turns the sensors' values into the motors'.
+    pub network: Network,
+    /// Steps and trials.
+    #[serde(default)]
+    pub episode: Episode,
+    /// Where a trial puts things, in this order; what is not named stays where its `at` says.
+    #[serde(default)]
+    pub start: Vec<Start>,
+    /// What a trial earns: the terms of the fitness.
+    pub reward: Vec<Reward>,
+    /// How the terms become one number.
+    #[serde(default)]
+    pub fitness: Fitness,
+    /// When a trial has succeeded: if all of these hold at its end; by default it never does.
+    #[serde(default)]
+    pub success: Vec<Condition>,
+    /// Conditions that are compared, the default one first.
+    #[serde(default)]
+    pub conditions: Vec<ConditionOfRuns>,
+    /// The strategy by its `name`, and its settings of the section `strategy`.
+    #[serde(default)]
+    pub strategy: BTreeMap<String, serde_json::Value>,
+    /// The settings of the section `evolution`: generations, population and what else the strategy has.
+    #[serde(default)]
+    pub evolution: BTreeMap<String, serde_json::Value>,
+    /// Genes of strategies that search with bits.
+    #[serde(default)]
+    pub genome: Genome,
+}
+
+/// A condition of runs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ConditionOfRuns {
+    /// What it is called.
+    #[schemars(regex(pattern = NAME))]
+    pub name: String,
+    /// The settings that differ from what the file says, by their full keys in quotes.
+    #[serde(default)]
+    pub settings: BTreeMap<String, serde_json::Value>,
+}
+
+/// How parameters are encoded by strategies that search with bits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Genome {
+    /// Bits of a gene.
+    #[schemars(range(min = 1, max = 16))]
+    pub bits: u32,
+}
+
+impl Default for Genome {
+    fn default() -> Self {
+        Self { bits: 16 }
+    }
+}
+
+/// The default of what is there unless it is switched off.
+fn yes() -> bool {
+    true
+}

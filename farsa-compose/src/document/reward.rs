@@ -1,0 +1,146 @@
+//! What a trial earns, and when it has succeeded.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::name::NAME;
+
+/// A term of the fitness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Reward {
+    /// What logs, tests and other terms call it; by default its kind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(regex(pattern = NAME))]
+    pub name: Option<String>,
+    /// What it is multiplied by; below 0 it is a cost.
+    #[serde(default = "one")]
+    #[schemars(range(min = -1e9, max = 1e9))]
+    pub weight: f64,
+    /// What of a trial's steps counts.
+    #[serde(default)]
+    pub over: Over,
+    /// The name of another term: only steps count in which that is more than 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub during: Option<String>,
+    /// Two ends between which the value of a step is cut.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e9, max = 1e9)))]
+    pub clip: Option<[f64; 2]>,
+    /// What it is.
+    #[serde(flatten)]
+    pub kind: RewardKind,
+}
+
+/// The kinds of terms; what is measured of several robots is their mean.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum RewardKind {
+    /// 1 while the surfaces of robot and thing are less than this apart.
+    Near {
+        /// Which thing.
+        object: String,
+        /// How far at most [m].
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        within: f64,
+    },
+    /// How far the robot's middle is from that of a thing [m].
+    Distance {
+        /// Which thing.
+        object: String,
+    },
+    /// How much nearer to a thing the robot is than at the start [m].
+    Approach {
+        /// Which thing.
+        object: String,
+    },
+    /// How far off its heading the robot sees a thing [rad].
+    Angle {
+        /// Which thing.
+        object: String,
+    },
+    /// 1 while the robot touches something.
+    Touch {},
+    /// How far the robot is from where it started [m].
+    Displacement {},
+    /// How fast the robot moves [m/s].
+    Speed {},
+    /// How far the robot came in this step along its heading [m].
+    Forward {},
+    /// How fast the wheels turn in the mean, as a share of the greatest speed: 0 to 1.
+    WheelSpeed {},
+    /// How much the wheels turn alike: 1 both alike .. 0 against each other.
+    StraightOn {},
+    /// The largest value of a sensor's channels.
+    Sensor {
+        /// Which sensor.
+        sensor: String,
+    },
+    /// 1 while the robot's middle is in an area.
+    InArea {
+        /// Which disc or rectangle.
+        area: String,
+    },
+    /// 1 while the robot's attachment device holds something.
+    Held {},
+    /// The squares of the motors' values, of 0 to 1, in the mean.
+    Effort {},
+    /// 1 in every step.
+    Steps {},
+}
+
+/// What of a trial's steps counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Over {
+    /// The sum over the steps, divided by the most steps that a trial has.
+    #[default]
+    Mean,
+    /// The sum over the steps.
+    Sum,
+    /// The value after the last step.
+    End,
+    /// The largest value of a step.
+    Most,
+}
+
+/// How the terms become one number.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Fitness {
+    /// Whether the terms of a trial are multiplied instead of added.
+    pub product: bool,
+    /// How trials become one number.
+    pub trials: Trials,
+}
+
+/// How trials become one number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Trials {
+    /// By their mean.
+    #[default]
+    Mean,
+    /// By their sum.
+    Sum,
+    /// By the worst of them.
+    Worst,
+}
+
+/// A condition of success, on the last step's value of a term before its weight.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Condition {
+    /// The name of a term.
+    pub term: String,
+    /// It has to be more than this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e9, max = 1e9))]
+    pub above: Option<f64>,
+    /// It has to be less than this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e9, max = 1e9))]
+    pub below: Option<f64>,
+}
+
+fn one() -> f64 {
+    1.0
+}

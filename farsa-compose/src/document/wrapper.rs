@@ -1,0 +1,67 @@
+//! What changes values on their way.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What changes values on their way from a sensor or to a motor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Wrapper {
+    /// Adds to each value a number drawn uniformly between minus and plus this.
+    UniformNoise {
+        /// The most that is added.
+        #[schemars(range(min = 0.0, max = 1e6))]
+        amplitude: f64,
+    },
+    /// Adds to each value a number drawn from a normal distribution.
+    NormalNoise {
+        /// Its standard deviation.
+        #[schemars(range(min = 0.0, max = 1e6))]
+        deviation: f64,
+    },
+    /// Passes values on so many steps later.
+    Delay {
+        /// Steps.
+        #[schemars(range(min = 0, max = 10000))]
+        steps: u32,
+    },
+    /// Multiplies by a number and adds another.
+    Scale {
+        /// The factor.
+        #[schemars(range(min = -1e6, max = 1e6))]
+        gain: f64,
+        /// What is added then.
+        #[serde(default)]
+        #[schemars(range(min = -1e6, max = 1e6))]
+        offset: f64,
+    },
+    /// Cuts values at two ends.
+    Saturate {
+        /// The lower end.
+        #[schemars(range(min = -1e6, max = 1e6))]
+        low: f64,
+        /// The upper end.
+        #[schemars(range(min = -1e6, max = 1e6))]
+        high: f64,
+    },
+    /// Passes on 0 for some channels.
+    Lesion {
+        /// The first and the last of them, from 0.
+        #[schemars(inner(range(min = 0, max = 65535)))]
+        channels: [u32; 2],
+    },
+    /// Keeps some channels where they are after some steps.
+    Stuck {
+        /// The first and the last of them, from 0.
+        #[schemars(inner(range(min = 0, max = 65535)))]
+        channels: [u32; 2],
+        /// The value that they have then; by default the last one before.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = -1e6, max = 1e6))]
+        value: Option<f64>,
+        /// Steps after which.
+        #[serde(default)]
+        #[schemars(range(min = 0, max = 4_294_967_295_u32))]
+        after: u32,
+    },
+}

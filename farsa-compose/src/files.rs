@@ -1,0 +1,43 @@
+//! Files of this format for the command.
+
+use farsa_lab::{Error, Experiment, ExperimentFiles, StrategyDefinition, Template};
+
+use crate::check::schema::schema;
+use crate::experiment::ComposedExperiment;
+
+/// What the command needs to take files of this format for experiments.
+///
+/// ```no_run
+/// use farsa_lab::Laboratory;
+///
+/// fn main() -> std::process::ExitCode {
+///     Laboratory::new(&[]).with_files(farsa_compose::FILES).main()
+/// }
+/// ```
+pub const FILES: ExperimentFiles = ExperimentFiles { read, schema: as_text, templates: &TEMPLATES };
+
+const TEMPLATES: [Template; 3] = [
+    Template {
+        name: "light",
+        summary: "a robot finds a lamp and stays near it",
+        text: include_str!("../templates/light.toml"),
+    },
+    Template {
+        name: "wander",
+        summary: "a robot drives about and turns away from what is in its way",
+        text: include_str!("../templates/wander.toml"),
+    },
+    Template {
+        name: "team",
+        summary: "robots of a team gather on a nest, with and without lights",
+        text: include_str!("../templates/team.toml"),
+    },
+];
+
+fn read(file: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Box<dyn Experiment>, Error> {
+    Ok(Box::new(ComposedExperiment::from_text(file, text, strategies)?))
+}
+
+fn as_text() -> String {
+    format!("{:#}\n", schema())
+}

@@ -1,0 +1,229 @@
+//! Any sensor, with what is wrapped around it.
+
+use farsa_body::{
+    AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ChannelError, Channels, ColorBand, ContactForce, GroundColor,
+    Height, InfraredAnalytic, InfraredRays, JointPosition, JointSpeed, LaserDistance, LightSensors, LinearCamera,
+    MobileParts, MobileRobot, PairId, Point, Sensor, Signal, SignalSensor, TargetPosition, Touch, Traction, WheelSpeed,
+};
+use farsa_lab::{Error, PlanarWorld};
+
+use crate::check::places::Places;
+use crate::document::{self, AxesName, InfraredModel, SensorKind};
+use crate::parts::scene::Scene;
+use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
+
+/// A sensor of a robot in a plane.
+#[derive(Clone, Debug)]
+pub(crate) enum Sensing {
+    Analytic(InfraredAnalytic<Vec<[f32; 2]>>),
+    Rays(InfraredRays<Vec<Beam>>),
+    Light(LightSensors<Vec<Beam>>),
+    Ground(GroundColor<Vec<[f32; 2]>>),
+    Laser(LaserDistance<Vec<Beam>>),
+    Camera(LinearCamera<Vec<Beam>, Vec<ColorBand>>),
+    WheelSpeed(WheelSpeed),
+    Traction(Traction),
+    SignalAround(SignalSensor<1>),
+    SignalHalves(SignalSensor<2>),
+    SignalQuarters(SignalSensor<4>),
+    SignalEighths(SignalSensor<8>),
+    Attachment(AttachmentSensor),
+    Touch(Touch<[PairId; 1]>),
+    ContactForce(ContactForce<[PairId; 1]>),
+    Target(TargetPosition),
+    Pose(BodyPose),
+    Velocity(BodyVelocity),
+    Height(Height),
+    JointPosition(JointPosition),
+    JointSpeed(JointSpeed),
+    Constant(Signal<1>),
+    Wrapped(Wrapped<Self>),
+}
+
+/// Calls a method of whatever sensor it is.
+macro_rules! sensor {
+    ($sensing:expr, $sensor:ident => $call:expr) => {
+        match $sensing {
+            Sensing::Analytic($sensor) => $call,
+            Sensing::Rays($sensor) => $call,
+            Sensing::Light($sensor) => $call,
+            Sensing::Ground($sensor) => $call,
+            Sensing::Laser($sensor) => $call,
+            Sensing::Camera($sensor) => $call,
+            Sensing::WheelSpeed($sensor) => $call,
+            Sensing::Traction($sensor) => $call,
+            Sensing::SignalAround($sensor) => $call,
+            Sensing::SignalHalves($sensor) => $call,
+            Sensing::SignalQuarters($sensor) => $call,
+            Sensing::SignalEighths($sensor) => $call,
+            Sensing::Attachment($sensor) => $call,
+            Sensing::Touch($sensor) => $call,
+            Sensing::ContactForce($sensor) => $call,
+            Sensing::Target($sensor) => $call,
+            Sensing::Pose($sensor) => $call,
+            Sensing::Velocity($sensor) => $call,
+            Sensing::Height($sensor) => $call,
+            Sensing::JointPosition($sensor) => $call,
+            Sensing::JointSpeed($sensor) => $call,
+            Sensing::Constant($sensor) => $call,
+            Sensing::Wrapped(wrapped) => around!(wrapped, $sensor => $call),
+        }
+    };
+}
+
+impl Channels for Sensing {
+    fn channels(&self) -> usize {
+        sensor!(self, sensor => sensor.channels())
+    }
+
+    fn reset(&mut self) {
+        sensor!(self, sensor => sensor.reset());
+    }
+}
+
+impl<W: PlanarWorld> Sensor<W> for Sensing {
+    #[inline]
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        sensor!(self, sensor => sensor.read(world, out));
+    }
+}
+
+impl Reseed for Sensing {
+    fn reseed(&mut self, streams: &mut NoiseStreams) {
+        if let Self::Wrapped(wrapped) = self {
+            wrapped.reseed(streams);
+        }
+    }
+}
+
+/// A sensor of robot number `robot`, which stands at a path of the document, with its wrappers.
+///
+/// # Errors
+/// [`Error::Setting`] for what cannot be sensed or wrapped so, [`Error::Unknown`] for a thing that there is not.
+pub(crate) fn sensor(
+    sensor: &document::Sensor,
+    scene: &Scene,
+    robot: usize,
+    path: &str,
+    places: &Places,
+) -> Result<Sensing, Error> {
+    let target = match &sensor.kind {
+        SensorKind::TargetPosition { target, .. } => Some(scene.body(target, &format!("{path}/target"), places)?),
+        _ => None,
+    };
+    let made = bare(&sensor.kind, &scene.robot, &scene.parts(robot), target);
+    let mut made = made.map_err(|error| places.wrong(path, error))?;
+    for (index, wrapper) in sensor.wrappers.iter().enumerate() {
+        let wrapped = Wrapped::new(made, wrapper);
+        made = Sensing::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
+    }
+    Ok(made)
+}
+
+/// The first of a list, or all of it for 0.
+fn first<T: Clone>(list: &[T], count: u32) -> Result<Vec<T>, ChannelError> {
+    let end = if count == 0 { list.len() } else { count as usize };
+    let found = list.get(..end).filter(|found| !found.is_empty());
+    found.map(<[T]>::to_vec).ok_or(ChannelError::Selection { start: 0, end, channels: list.len() })
+}
+
+/// A sensor without wrappers; `target` is the body that it is for, if any.
+fn bare(
+    kind: &SensorKind,
+    robot: &MobileRobot,
+    parts: &MobileParts,
+    target: Option<farsa_body::BodyId>,
+) -> Result<Sensing, ChannelError> {
+    let body = parts.body;
+    Ok(match kind {
+        SensorKind::Infrared { model, first: count } => {
+            let mut robot = robot.clone();
+            robot.infrared.angles = first(&robot.infrared.angles, *count)?;
+            match model {
+                InfraredModel::Analytic => Sensing::Analytic(InfraredAnalytic::for_robot(&robot, body)?),
+                InfraredModel::Rays => Sensing::Rays(InfraredRays::for_robot(&robot, body)?),
+            }
+        }
+        SensorKind::Light { reference } => Sensing::Light(LightSensors::for_robot(robot, body, *reference as f32)?),
+        SensorKind::GroundColor { rgb, first: count } => {
+            let sensor = GroundColor::new(
+                body,
+                first(&robot.ground, *count)?.into_iter().map(|at| at.map(|x| x as f32)).collect::<Vec<_>>(),
+            )?;
+            Sensing::Ground(if *rgb { sensor.rgb() } else { sensor })
+        }
+        SensorKind::LaserDistance { beams, field_of_view, range, height } => {
+            let beams = fan(robot.radius, field_of_view.to_radians(), *beams as usize);
+            Sensing::Laser(LaserDistance::new(body, beams, *height as f32, *range as f32)?)
+        }
+        SensorKind::Camera(camera) => {
+            let bands = camera
+                .colors
+                .iter()
+                .map(|color| ColorBand { low: color.low.map(|x| x as f32), high: color.high.map(|x| x as f32) });
+            let (view, [sectors, rays]) = (camera.field_of_view.to_radians(), [camera.sectors, camera.rays]);
+            let bands: Vec<ColorBand> = bands.collect();
+            let (sectors, rays, range) = (sectors as usize, rays as usize, camera.range as f32);
+            Sensing::Camera(LinearCamera::for_view(body, view, sectors, rays, bands, range)?)
+        }
+        SensorKind::WheelSpeed { signed } => {
+            let sensor = WheelSpeed::new(parts.wheels, robot.max_wheel_speed as f32)?;
+            Sensing::WheelSpeed(if *signed { sensor.signed() } else { sensor })
+        }
+        SensorKind::Traction { largest } => {
+            Sensing::Traction(Traction::new(body, parts.wheels, robot.wheel_radius as f32, *largest as f32)?)
+        }
+        SensorKind::Signal { range, sectors, mean } => signal(body, *range as f32, *sectors, *mean)?,
+        SensorKind::Attachment {} => Sensing::Attachment(AttachmentSensor::new(body)),
+        SensorKind::Touch {} => Sensing::Touch(Touch::new([PairId(body.0)], 1.0)?),
+        SensorKind::ContactForce {} => Sensing::ContactForce(ContactForce::new([PairId(body.0)])),
+        SensorKind::TargetPosition { axes, scale, .. } => {
+            let [target, from] = [target.unwrap_or(body), body].map(Point::origin);
+            Sensing::Target(TargetPosition::new(target, from, own_axes(*axes), *scale as f32)?)
+        }
+        SensorKind::BodyPose {} => Sensing::Pose(BodyPose::new(body)),
+        SensorKind::BodyVelocity { axes } => Sensing::Velocity(BodyVelocity::new(body, own_axes(*axes))),
+        SensorKind::Height {} => Sensing::Height(Height::new(Point::origin(body))),
+        SensorKind::JointPosition { joint, from, to } => {
+            let wheel = parts.wheels[*joint as usize % 2];
+            Sensing::JointPosition(JointPosition::new(wheel, *from as f32, *to as f32)?)
+        }
+        SensorKind::JointSpeed { joint } => Sensing::JointSpeed(JointSpeed::new(parts.wheels[*joint as usize % 2])),
+        SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
+    })
+}
+
+fn signal(body: farsa_body::BodyId, range: f32, sectors: u32, mean: bool) -> Result<Sensing, ChannelError> {
+    macro_rules! sensor {
+        ($kind:ident) => {{
+            let sensor = SignalSensor::new(body, range)?;
+            Sensing::$kind(if mean { sensor.mean() } else { sensor })
+        }};
+    }
+    Ok(match sectors {
+        1 => sensor!(SignalAround),
+        2 => sensor!(SignalHalves),
+        4 => sensor!(SignalQuarters),
+        8 => sensor!(SignalEighths),
+        other => {
+            return Err(ChannelError::Groups { field: "sectors, of 1, 2, 4 or 8", count: other as usize, size: 1 });
+        }
+    })
+}
+
+/// Beams from left to right over an angle [rad], each from the hull along its direction.
+fn fan(radius: f64, angle: f64, beams: usize) -> Vec<Beam> {
+    (0..beams)
+        .map(|beam| {
+            let share = if beams > 1 { 0.5 - beam as f64 / (beams - 1) as f64 } else { 0.0 };
+            Beam::in_cone(radius, share * angle, 0.0, 0, 1)
+        })
+        .collect()
+}
+
+fn own_axes(axes: AxesName) -> Axes {
+    match axes {
+        AxesName::Body => Axes::Body,
+        AxesName::World => Axes::World,
+    }
+}

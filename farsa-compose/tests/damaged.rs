@@ -1,0 +1,184 @@
+//! What is wrong with a file is refused with its line and key, and with the nearest word that there is.
+
+use farsa_compose::ComposedExperiment;
+use farsa_lab::{Experiment as _, Settings};
+
+/// A file that is right, a line each key.
+const RIGHT: &str = r#"summary = "an e-puck looks for a lamp"
+[world]
+size = [1.0, 1.0]
+[[objects]]
+name = "lamp"
+kind = "cylinder"
+radius = 0.02
+lamp = 1.0
+[robot]
+kind = "e-puck"
+[[sensors]]
+kind = "light"
+wrappers = [{ kind = "uniform-noise", amplitude = 0.05 }]
+[[motors]]
+kind = "wheels"
+[network]
+kind = "leaky"
+hidden = 2
+[episode]
+steps = 50
+trials = 2
+[[start]]
+place = "lamp"
+at = "anywhere"
+walls = 0.1
+[[reward]]
+kind = "approach"
+object = "lamp"
+over = "end"
+[[success]]
+term = "approach"
+above = 0.1
+[evolution]
+generations = 3
+population = 4
+parents = 2
+"#;
+
+fn error(text: &str) -> String {
+    match ComposedExperiment::from_text("look.toml", text, farsa_lab::strategies()) {
+        Ok(made) => {
+            let made = Settings::new(made.settings("")).and_then(|settings| made.prepare("", &settings).map(drop));
+            made.err().map_or_else(|| "nothing is wrong".into(), |error| error.to_string())
+        }
+        Err(error) => {
+            assert_eq!(error.exit_code(), 2, "{error}");
+            error.to_string()
+        }
+    }
+}
+
+#[test]
+fn the_file_is_right() {
+    assert_eq!(error(RIGHT), "nothing is wrong");
+}
+
+#[test]
+fn what_is_wrong_is_named_with_file_line_and_key() {
+    for (line, wrong, message) in [
+        ("hidden = 2", "hiden = 2", "look.toml line 18: unknown key `hiden`; the nearest is `hidden`"),
+        ("kind = \"light\"", "kind = \"ligth\"", "look.toml line 12: unknown kind `ligth`; the nearest is `light`"),
+        ("kind = \"e-puck\"", "kind = \"epuck\"", "look.toml line 10: unknown choice `epuck`; the nearest is `e-puck`"),
+        ("object = \"lamp\"", "object = \"lamb\"", "look.toml line 28: unknown object `lamb`; the nearest is `lamp`"),
+        (
+            "term = \"approach\"",
+            "term = \"aproach\"",
+            "look.toml line 31: unknown term `aproach`; the nearest is `approach`",
+        ),
+        ("hidden = 2", "hidden = 2.5", "look.toml line 18: network.hidden: is not a whole number"),
+        ("hidden = 2", "hidden = 0", "look.toml line 18: network.hidden: 0 is outside 1 to 10000"),
+        ("radius = 0.02", "radius = nan", "look.toml line 7: objects.1.radius: NaN is not a number"),
+        ("radius = 0.02", "radius = -1", "look.toml line 7: objects.1.radius: -1 is outside 0.0001 to 100"),
+        ("radius = 0.02", "", "look.toml line 4: objects.1: lacks the key `radius`"),
+        ("size = [1.0, 1.0]", "size = [1.0]", "look.toml line 3: world.size: has 1 values where 2 are wanted"),
+        ("size = [1.0, 1.0]", "size = 1.0", "look.toml line 3: world.size: is not a list"),
+        ("steps = 50", "steps = 99999999999999999999", "look.toml line 20: episode.steps: is too large a number"),
+        ("name = \"lamp\"", "name = \"Lamp\"", "look.toml line 5: objects.1.name: is not a name: 1 to 40"),
+        (
+            "name = \"lamp\"",
+            "name = \"robot\"",
+            "look.toml line 5: objects.1.name: `robot` names something else already",
+        ),
+        ("above = 0.1", "", "look.toml line 30: success.1: lacks `above` and `below`"),
+        ("at = \"anywhere\"", "", "look.toml line 22: start.1: lacks the key `at`: one of anywhere, around, fixed"),
+        ("walls = 0.1", "wals = 0.1", "look.toml line 25: unknown key `wals`; the nearest is `walls`"),
+        (
+            "amplitude = 0.05",
+            "amplitude = -0.05",
+            "look.toml line 13: sensors.1.wrappers.1.amplitude: -0.05 is outside 0",
+        ),
+        (
+            "parents = 2",
+            "parent = 2",
+            "look.toml line 36: unknown key `evolution.parent`; the nearest is `evolution.parents`",
+        ),
+        ("parents = 2", "parents = -2", "look.toml line 36: evolution.parents: -2 is outside"),
+        ("[robot]", "[robots]", "look.toml line 9: unknown key `robots`; the nearest is `robot`"),
+        ("summary = \"an e-puck looks for a lamp\"", "summary = \"a\nb\"", "look.toml line 2"),
+        (
+            "kind = \"wheels\"",
+            "kind = \"attachment\"",
+            "look.toml line 14: motors.1: needs an attachment device; the e-puck has none",
+        ),
+    ] {
+        assert_eq!(RIGHT.matches(line).count(), 1, "{line}");
+        let found = error(&RIGHT.replace(line, wrong));
+        assert!(plain(&found).starts_with(&plain(message)), "{wrong}\n  found:  {found}\n  wanted: {message}");
+    }
+}
+
+#[test]
+fn parts_that_do_not_go_together_are_refused() {
+    for (added, message) in [
+        (
+            "[[start]]\nplace = \"lamp\"\nat = \"anywhere\"\n",
+            "look.toml line 38: start.2.place: `lamp` is placed twice",
+        ),
+        (
+            "[[objects]]\nname = \"wall\"\nkind = \"wall\"\nsize = [1, 1]\n",
+            "look.toml line 37: objects.2: lacks the key `at`",
+        ),
+        (
+            "[[objects]]\nname = \"box\"\nkind = \"disc\"\nradius = 1\ncolor = [0, 0, 0]\n",
+            "look.toml line 37: objects.2: lacks the key `at`, and no",
+        ),
+        (
+            "[[reward]]\nkind = \"in-area\"\narea = \"lamp\"\n",
+            "look.toml line 39: reward.2.area: `lamp` is no disc or rectangle",
+        ),
+        (
+            "[[reward]]\nkind = \"touch\"\nduring = \"touch\"\n",
+            "look.toml line 39: reward.2.during: `touch` has to stand before",
+        ),
+        ("[[reward]]\nkind = \"touch\"\nclip = [1, 0]\n", "look.toml line 39: reward.2.clip: runs backwards"),
+        ("[[sensors]]\nkind = \"infrared\"\nfirst = 9\n", "look.toml line 37: sensors.2: channels 0..9 of 8"),
+        ("[[sensors]]\nkind = \"signal\"\nrange = 1\nsectors = 3\n", "look.toml line 37: sensors.2: "),
+        (
+            "[[sensors]]\nkind = \"laser-distance\"\nbeams = 10000\nfield_of_view = 90\nrange = 1\nwrappers = [{ kind = \"delay\", steps = 10000 }]\n",
+            "look.toml line 42: sensors.2.wrappers.1: ",
+        ),
+        ("[strategy]\nname = \"cmaes\"\n", "look.toml line 38: unknown strategy `cmaes`; the nearest is `cma-es`"),
+        (
+            "[[conditions]]\nname = \"a\"\nsettings = { \"network.hiden\" = 3 }\n",
+            "look.toml line 39: unknown key `network.hiden`; the nearest is `network.hidden`",
+        ),
+        (
+            "[[conditions]]\nname = \"a\"\n[[conditions]]\nname = \"a\"\n",
+            "look.toml line 40: conditions.2.name: stands twice",
+        ),
+    ] {
+        let found = error(&format!("{RIGHT}{added}"));
+        assert!(plain(&found).starts_with(&plain(message)), "{added}\n  found:  {found}\n  wanted: {message}");
+    }
+}
+
+/// Every file with a byte changed, a line left out or cut off is a file or is refused; none panics.
+#[test]
+fn no_damage_panics() {
+    let mut refused = 0;
+    let lines: Vec<&str> = RIGHT.lines().collect();
+    for left_out in 0..lines.len() {
+        let kept = lines.iter().enumerate().filter(|(line, _)| *line != left_out).map(|(_, line)| *line);
+        refused += usize::from(error(&kept.collect::<Vec<_>>().join("\n")) != "nothing is wrong");
+        refused += usize::from(error(&lines[..left_out].join("\n")) != "nothing is wrong");
+    }
+    for (place, _) in RIGHT.char_indices().step_by(3) {
+        for other in ["", "[", "\"", "=", "9", "-", "\u{7f}", "\n"] {
+            let text = format!("{}{other}{}", &RIGHT[..place], &RIGHT[place + 1..]);
+            refused += usize::from(error(&text) != "nothing is wrong");
+        }
+    }
+    assert!(refused > 500, "{refused} were refused");
+}
+
+/// Without the quotes of names.
+fn plain(text: &str) -> String {
+    text.replace('`', "")
+}

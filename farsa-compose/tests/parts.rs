@@ -1,0 +1,133 @@
+//! Every sensor, motor, wrapper and network of the libraries has a name in a file, or a reason why it has none.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+/// What a public name of a library is called in a file: the list and the word. Without a word: why it has none.
+const NAMED: [(&str, &str, &str); 56] = [
+    // Sensors.
+    ("InfraredAnalytic", "sensors", "infrared"),
+    ("InfraredRays", "sensors", "infrared"),
+    ("SampledInfrared", "", "measured tables cannot be named yet"),
+    ("InfraredTables", "", "part of SampledInfrared"),
+    ("InfraredTable", "", "part of SampledInfrared"),
+    ("InfraredTableError", "", "an error"),
+    ("AnalyticInfrared", "", "what an arena computes InfraredAnalytic with"),
+    ("LightSensors", "sensors", "light"),
+    ("GroundColor", "sensors", "ground-color"),
+    ("LaserDistance", "sensors", "laser-distance"),
+    ("LinearCamera", "sensors", "camera"),
+    ("ColorBand", "", "part of LinearCamera"),
+    ("WheelSpeed", "sensors", "wheel-speed"),
+    ("Traction", "sensors", "traction"),
+    ("SignalSensor", "sensors", "signal"),
+    ("AttachmentSensor", "sensors", "attachment"),
+    ("Touch", "sensors", "touch"),
+    ("ContactForce", "sensors", "contact-force"),
+    ("TargetPosition", "sensors", "target-position"),
+    ("Axes", "", "part of TargetPosition and BodyVelocity"),
+    ("Point", "", "part of TargetPosition and Height"),
+    ("BodyPose", "sensors", "body-pose"),
+    ("BodyVelocity", "sensors", "body-velocity"),
+    ("Height", "sensors", "height"),
+    ("JointPosition", "sensors", "joint-position"),
+    ("JointSpeed", "sensors", "joint-speed"),
+    ("Signal", "sensors", "constant"),
+    ("Beam", "", "part of several sensors"),
+    // Motors.
+    ("WheelVelocity", "motors", "wheels"),
+    ("SpeedAndTurn", "motors", "speed-and-turn"),
+    ("Leds", "motors", "leds"),
+    ("SignalMotor", "motors", "signal"),
+    ("AttachmentMotor", "motors", "attachment"),
+    ("Muscles", "", "articulated worlds cannot be named yet"),
+    ("ServoGroup", "", "articulated worlds cannot be named yet"),
+    ("ServoRange", "", "part of ServoGroup"),
+    ("TorqueMotor", "", "articulated worlds cannot be named yet"),
+    // Wrappers.
+    ("Noisy", "wrappers", "uniform-noise"),
+    ("Noise", "wrappers", "normal-noise"),
+    ("Delayed", "wrappers", "delay"),
+    ("Scaled", "wrappers", "scale"),
+    ("Saturated", "wrappers", "saturate"),
+    ("Lesioned", "wrappers", "lesion"),
+    ("Stuck", "wrappers", "stuck"),
+    ("StuckAt", "", "part of Stuck"),
+    ("Recorded", "", "changes nothing; for programs that look at the last values"),
+    // Networks.
+    ("Perceptron", "network", "perceptron"),
+    ("LeakyNetwork", "network", "leaky"),
+    ("Ctrnn", "network", "ctrnn"),
+    ("BlockNetwork", "network", "elman"),
+    ("Architecture", "network", "jordan"),
+    ("Evonet", "", "networks from Evonet files cannot be named yet"),
+    ("PerceptronLanes", "", "perceptrons side by side"),
+    ("QuantizedNetwork", "", "a network for boards, made of an evolved one"),
+    ("LeakyNetworkBytes", "", "a format of LeakyNetwork"),
+    ("CtrnnBytes", "", "a format of Ctrnn"),
+];
+
+/// The public names that a source re-exports and that begin with a capital letter.
+fn exported(path: &str) -> Vec<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let uses = text.split("pub use ").skip(1).map(|rest| rest.split(';').next().unwrap_or_default());
+    let words = uses.flat_map(|list| list.split(|c: char| !c.is_alphanumeric() && c != '_'));
+    words.filter(|word| word.starts_with(|c: char| c.is_ascii_uppercase())).map(str::to_owned).collect()
+}
+
+/// The words that may stand as the kind of a part, of a list of the schema or of a definition.
+fn kinds(schema: &Value, list: &str) -> Vec<String> {
+    let name = match list {
+        "sensors" => "Sensor",
+        "motors" => "Motor",
+        "wrappers" => "Wrapper",
+        _ => "Network",
+    };
+    let branches = schema.pointer(&format!("/$defs/{name}/oneOf")).and_then(Value::as_array).expect("its kinds");
+    let word = |branch: &Value| branch.pointer("/properties/kind/const").and_then(Value::as_str).map(str::to_owned);
+    branches.iter().filter_map(word).collect()
+}
+
+#[test]
+fn every_part_of_the_libraries_has_a_name_or_a_reason() {
+    let schema = farsa_compose::schema();
+    let mut count = 0;
+    for source in ["farsa-body/src/sensors/mod.rs", "farsa-body/src/motors/mod.rs", "farsa-body/src/wrappers/mod.rs"] {
+        for name in exported(source) {
+            assert!(NAMED.iter().any(|(known, ..)| *known == name), "{source}: `{name}` has no name in a file");
+            count += 1;
+        }
+    }
+    assert!(count > 40, "{count} names were found");
+    let networks = exported("farsa-nn/src/lib.rs").into_iter().filter(|name| {
+        ["Network", "Ctrnn", "Perceptron", "Evonet", "Architecture"].iter().any(|part| name.contains(part))
+    });
+    let parts = ["Layout", "Parameter", "Parts", "Symmetry", "Ranges", "Bytes"];
+    for name in networks.filter(|name| !parts.iter().any(|part| name.ends_with(part))) {
+        assert!(NAMED.iter().any(|(known, ..)| *known == name), "`{name}` has no name in a file");
+    }
+    for (name, list, word) in NAMED {
+        assert!(list.is_empty() || kinds(&schema, list).iter().any(|kind| kind == word), "{name}: no `{word}`");
+    }
+}
+
+/// What the guide lists is what there is.
+#[test]
+fn the_guide_lists_every_kind() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/guide/experiment-file.md");
+    let guide = std::fs::read_to_string(path).expect("the guide");
+    let schema = farsa_compose::schema();
+    let definitions = schema["$defs"].as_object().expect("definitions");
+    for (name, definition) in definitions {
+        let branches = definition["oneOf"].as_array().into_iter().flatten();
+        let word = |branch: &Value| {
+            let tag = ["kind", "at"].iter().find_map(|tag| branch.pointer(&format!("/properties/{tag}/const")));
+            tag.and_then(Value::as_str).map(str::to_owned)
+        };
+        for word in branches.filter_map(word) {
+            assert!(guide.contains(&format!("`{word}`")), "{name}: `{word}` is not listed");
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The reference experiments as files: the same bits as those that are built in.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use farsa_compose::ComposedExperiment;
+use farsa_experiments::{Discrimination, DiscriminationCylinders};
+use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Outcome, Settings};
+use farsa_num::{Domain, Stream};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../experiments")
+}
+
+fn from_file(name: &str) -> ComposedExperiment {
+    ComposedExperiment::from_file(&folder().join(name), farsa_lab::strategies())
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn evaluator(experiment: &dyn Experiment, condition: &str) -> Box<dyn Evaluator> {
+    let settings = Settings::new(experiment.settings(condition)).expect("its settings");
+    experiment.prepare(condition, &settings).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What both are to agree on.
+fn compared(outcome: &Outcome, terms: usize) -> (Vec<u64>, u32, bool) {
+    (outcome.terms[..terms].iter().map(|term| term.to_bits()).collect(), outcome.steps, outcome.success)
+}
+
+/// The same outcomes and fitness for individuals drawn at random, and the same defaults of what they are searched with.
+fn same_bits(file: &str, built_in: &dyn Experiment, condition: &str, individuals: u32, trials: u32) {
+    let composed = from_file(file);
+    assert_eq!(composed.gene_bits(), built_in.gene_bits());
+    assert_eq!(composed.strategy(condition).name(), built_in.strategy(condition).name());
+    let (mut ours, mut theirs) = (evaluator(&composed, condition), evaluator(built_in, condition));
+    let terms = theirs.terms().len();
+    assert_eq!(ours.parameters().len(), theirs.parameters().len());
+    assert_eq!(ours.trials(), theirs.trials());
+    for (ours, theirs) in ours.parameters().iter().zip(theirs.parameters()) {
+        assert_eq!(ours.ends, theirs.ends, "{} and {}", ours.name, theirs.name);
+    }
+    let genotype = Genotype::new(&theirs.parameters(), built_in.gene_bits());
+    let mut earned = 0;
+    for individual in 0..individuals {
+        let mut draw = Stream::new(1, Domain::InitialGenome, 0, individual, 0);
+        let genes: Vec<u16> =
+            theirs.parameters().iter().map(|_| draw.below(1 << built_in.gene_bits()) as u16).collect();
+        let parameters = genotype.decode(&genes).expect("as many genes as parameters");
+        let (mut own, mut other) = (Vec::new(), Vec::new());
+        for trial in 0..trials {
+            let id = EpisodeId { seed: 7, generation: 3, individual, trial };
+            own.push(ours.evaluate(Evaluation::new(&parameters, id), None));
+            other.push(theirs.evaluate(Evaluation::new(&parameters, id), None));
+            let (own, other) = (compared(&own[trial as usize], terms), compared(&other[trial as usize], terms));
+            assert_eq!(own, other, "{file}, individual {individual}, trial {trial}");
+        }
+        assert_eq!(ours.fitness(&own).to_bits(), theirs.fitness(&other).to_bits());
+        earned += usize::from(theirs.fitness(&other) != 0.0);
+    }
+    assert!(earned > 0, "none of {individuals} individuals earned anything: nothing was compared");
+}
+
+#[test]
+fn discrimination_is_the_same() {
+    same_bits("discrimination.toml", &Discrimination, "khepera", 60, 5);
+}
+
+#[test]
+fn discrimination_cylinders_is_the_same() {
+    for condition in ["wheels", "no-wheels"] {
+        same_bits("discrimination-cylinders.toml", &DiscriminationCylinders, condition, 60, 5);
+    }
+}
+
+/// The command, in a folder of its own.
+struct Bench(PathBuf);
+
+impl Bench {
+    /// An empty one.
+    fn new(name: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("composed").join(name);
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).expect("a folder");
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// What it says, and its exit code.
+    fn say(&self, arguments: &str) -> (String, i32) {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_farsa"));
+        let output = command.current_dir(&self.0).args(arguments.split(' ')).output().expect("the command");
+        let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+        (said, output.status.code().unwrap_or(-1))
+    }
+
+    fn succeed(&self, arguments: &str) -> String {
+        let (said, code) = self.say(arguments);
+        assert_eq!(code, 0, "{arguments}: {said}");
+        said
+    }
+
+    fn refused(&self, arguments: &str) -> String {
+        let (said, code) = self.say(arguments);
+        assert_eq!(code, 2, "{arguments}: {said}");
+        said
+    }
+}
+
+/// From a template to a page, without the file from the moment the run has begun.
+#[test]
+fn a_template_is_run_resumed_tested_and_replayed() {
+    let bench = Bench::new("templates");
+    for template in ["light", "wander", "team"] {
+        let name = format!("my-{template}");
+        bench.succeed(&format!("new {name} --from {template}"));
+        let said = bench.succeed(&format!("check {name}.toml --graph {name}.svg"));
+        assert!(said.starts_with(&format!("{name}: ")) && said.contains("infrared"), "{said}");
+        assert!(bench.read(&format!("{name}.svg")).contains("infrared"));
+        let small = "--population 8 --set evolution.parents=4 --set episode.trials=2 --set episode.steps=50";
+        bench.succeed(&format!("run {name}.toml {small} --generations 4 --threads 1 --lanes 1 --out whole-{name} -q"));
+        bench.succeed(&format!("run {name}.toml {small} --generations 2 --threads 2 --out {name} -q"));
+        std::fs::remove_file(bench.path(&format!("{name}.toml"))).expect("the file goes");
+        bench.succeed(&format!("run --resume {name} --generations 4 -q"));
+        for file in ["fitness.csv", "champion.bin", "lineage.csv"] {
+            let [own, whole] = [name.clone(), format!("whole-{name}")]
+                .map(|run| std::fs::read(bench.path(&run).join(file)).expect(file));
+            assert!(own == whole, "{template}: {file}");
+        }
+        bench.succeed(&format!("test {name} --trials 3 -q"));
+        bench.succeed(&format!("replay {name} --generation 1 --individual 3 --html {name}.html -q"));
+        bench.succeed(&format!("run --config {name}/config.toml --out again-{name} --generations 4 -q"));
+        assert_eq!(bench.read(&format!("{name}/fitness.csv")), bench.read(&format!("again-{name}/fitness.csv")));
+    }
+    bench.succeed("report my-light my-wander --html report.html");
+}
+
+#[test]
+fn what_is_wrong_with_a_file_is_said_before_anything_is_made() {
+    let bench = Bench::new("wrong");
+    let said = bench.refused("new follow --from lihgt");
+    assert!(said.contains("unknown template `lihgt`; the nearest is `light`") && said.contains("  wander: "), "{said}");
+    assert!(bench.refused("new Follow").contains("lower-case"));
+    bench.succeed("new follow");
+    assert!(bench.refused("new follow").contains("there is one already"));
+    let text = bench.read("follow.toml");
+    let damaged = text.replace("kind = \"light\"", "kind = \"ligth\"");
+    std::fs::write(bench.path("damaged.toml"), &damaged).expect("a file");
+    let line = 1 + damaged.lines().position(|line| line.contains("ligth")).expect("the line");
+    let message = format!("error: damaged.toml line {line}: unknown kind `ligth`; the nearest is `light`");
+    for command in ["check", "info", "run", "bench"] {
+        let said = bench.refused(&format!("{command} damaged.toml"));
+        assert!(said.starts_with(&message), "{command}: {said}");
+    }
+    assert!(!bench.path("runs").exists());
+    bench.succeed("run follow.toml --generations 1 --population 8 --set evolution.parents=4 -q");
+    // Another text is another experiment.
+    std::fs::write(bench.path("follow.toml"), text.replace("hidden = 4", "hidden = 5")).expect("a file");
+    let said = bench.refused("run follow.toml --resume runs/follow-1 --generations 2");
+    assert!(said.contains("definition"), "{said}");
+    let (said, code) = bench.say("info no.toml");
+    assert!(code == 1 && said.contains("cannot read no.toml"), "{said}");
+    let schema: serde_json::Value = serde_json::from_str(&bench.succeed("schema")).expect("JSON");
+    assert!(schema.pointer("/properties/sensors").is_some());
+}
+
+/// Each channel of every built-in experiment has its place in the drawing.
+#[test]
+fn built_in_experiments_are_drawn_too() {
+    let bench = Bench::new("drawn");
+    for experiment in farsa_experiments::all() {
+        let name = experiment.name();
+        let said = bench.succeed(&format!("check {name} --graph {name}.svg --json"));
+        let found: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+        let svg = bench.read(&format!("{name}.svg"));
+        for group in ["sensors", "motors"] {
+            let list = found[group].as_array().expect("a list");
+            let mut next = 0;
+            for group in list {
+                assert_eq!(group["channels"][0], next, "{name}");
+                next = group["channels"][1].as_u64().expect("a number");
+                let title = group["name"].as_str().expect("a name").split(' ').next().unwrap_or_default();
+                assert!(svg.contains(title), "{name}: {title}");
+            }
+        }
+    }
+}
+
+/// The guide shows the template that the command writes, and its pictures are there.
+#[test]
+fn the_guide_shows_what_the_command_writes() {
+    let bench = Bench::new("guide");
+    bench.succeed("new follow --from light");
+    let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/guide");
+    let text = std::fs::read_to_string(guide.join("experiment-file.md")).expect("the guide");
+    let file = bench.read("follow.toml");
+    assert!(text.contains(&format!("```toml\n{file}```")), "the guide shows another file");
+    assert!(file.lines().count() <= 30);
+    bench.succeed("check follow.toml --graph follow.svg -q");
+    let shown = std::fs::read_to_string(guide.join("../pictures/follow-graph.svg")).expect("the drawing");
+    assert!(shown == bench.read("follow.svg"), "docs/pictures/follow-graph.svg is another drawing");
+    let [line, error] = ["{ kind = \"infrared\" }", "unknown kind `infrard`; the nearest is `infrared`"];
+    std::fs::write(bench.path("follow.toml"), file.replace(line, "{ kind = \"infrard\" }")).expect("a file");
+    assert_eq!(bench.refused("check follow.toml"), format!("error: follow.toml line 7: {error}\n"));
+    std::fs::write(bench.path("follow.toml"), file.replace("hidden = 4", "hidden = 0")).expect("a file");
+    assert!(text.contains(&bench.refused("check follow.toml")), "the guide shows another error");
+}
