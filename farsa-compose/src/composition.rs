@@ -32,6 +32,8 @@ pub(crate) struct Composition {
     pub(crate) inputs: Vec<String>,
     pub(crate) outputs: Vec<String>,
     pub(crate) network: AnyNetwork,
+    /// Whether things can be carried away during a trial.
+    pub(crate) moving: bool,
     pub(crate) starting: Starting,
     pub(crate) terms: Vec<Term>,
     pub(crate) success: Vec<Wanted>,
@@ -95,6 +97,7 @@ impl Composition {
         }
         let wanted = |(index, condition)| Wanted::new(condition, &format!("/success/{index}"), &rewards, places);
         let success = document.success.iter().enumerate().map(wanted).collect::<Result<Vec<_>, _>>()?;
+        let moving = document.motors.iter().any(|motor| motor.enabled && motor.kind == MotorKind::Attachment {});
         let starting = Starting::new(&document, &scene, places)?;
         let named = |spans: &[(String, [usize; 2])]| spans.iter().flat_map(channel_names).collect::<Vec<_>>();
         let (inputs, outputs) = (named(&sensors), output_names(&document, &motors));
@@ -108,6 +111,7 @@ impl Composition {
             inputs,
             outputs,
             network,
+            moving,
             starting,
             terms,
             success,

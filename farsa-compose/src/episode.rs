@@ -26,6 +26,8 @@ pub(crate) struct ComposedEpisode {
     /// Where each robot started and where it was a step before [m].
     started: Vec<[f64; 2]>,
     before: Vec<[f64; 2]>,
+    /// What each term measured of all robots.
+    sums: Vec<f64>,
     numbers: Numbers,
     steps: u32,
     failed: bool,
@@ -48,6 +50,7 @@ impl ComposedEpisode {
             y: vec![0.0; robots * composition.outputs.len()],
             started: vec![[0.0; 2]; robots],
             before: vec![[0.0; 2]; robots],
+            sums: vec![0.0; composition.terms.len()],
             networks,
             numbers,
             steps: 0,
@@ -78,29 +81,35 @@ impl ComposedEpisode {
     }
 
     fn measure<W: PlanarWorld>(&mut self, world: &W) {
-        let Self { composition, x, y, started, before, numbers, .. } = self;
-        let Composition { members, terms, inputs, outputs, .. } = composition;
+        let Self { composition, x, y, started, before, sums, numbers, .. } = self;
+        let Composition { members, terms, inputs, outputs, moving, .. } = composition;
         let (inputs, outputs) = (inputs.len(), outputs.len());
-        for number in 0..terms.len() {
-            let (others, term) = terms.split_at_mut(number);
-            let mut sum = 0.0;
-            for (robot, member) in members.iter().enumerate() {
-                let seen = Seen {
-                    parts: &member.parts,
-                    x: &x[robot * inputs..(robot + 1) * inputs],
-                    y: &y[robot * outputs..(robot + 1) * outputs],
-                    start: started[robot],
-                    before: before[robot],
-                };
-                sum += term[0].value(world, &seen, *numbers);
+        if *moving {
+            for term in terms.iter_mut() {
+                term.locate(world);
             }
-            let value = sum / members.len() as f64;
+        }
+        sums.fill(0.0);
+        for (robot, member) in members.iter().enumerate() {
+            let pose = world.pose(member.parts.body);
+            let seen = Seen {
+                parts: &member.parts,
+                pose,
+                x: &x[robot * inputs..(robot + 1) * inputs],
+                y: &y[robot * outputs..(robot + 1) * outputs],
+                start: started[robot],
+                before: before[robot],
+            };
+            for (sum, term) in sums.iter_mut().zip(terms.iter()) {
+                *sum += term.share(robot, term.value(world, &seen, *numbers));
+            }
+            before[robot] = [0, 1].map(|k| f64::from(pose.position[k]));
+        }
+        for (number, sum) in sums.iter().enumerate() {
+            let (others, term) = terms.split_at_mut(number);
+            let value = sum / term[0].robots(members.len());
             self.failed |= !value.is_finite();
             term[0].count(value, others);
-        }
-        for (before, member) in before.iter_mut().zip(members) {
-            let [x, y, _] = world.pose(member.parts.body).position;
-            *before = [x, y].map(f64::from);
         }
     }
 }
@@ -120,7 +129,10 @@ impl<W: PlanarWorld> Episode<W> for ComposedEpisode {
             self.started[robot] = [x, y].map(f64::from);
             self.before[robot] = self.started[robot];
         }
-        terms.iter_mut().for_each(crate::parts::term::Term::reset);
+        for term in terms {
+            term.reset();
+            term.locate(world);
+        }
     }
 
     fn has_started(&self) -> bool {

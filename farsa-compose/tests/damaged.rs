@@ -182,3 +182,16 @@ fn no_damage_panics() {
 fn plain(text: &str) -> String {
     text.replace('`', "")
 }
+
+/// A robot alone has a number, which there has to be.
+#[test]
+fn robots_are_named_alone() {
+    for (added, message) in [
+        ("[[start]]\nplace = \"robot-2\"\nat = \"anywhere\"\n", "look.toml line 38: start.2.place: is robot 2 of 1"),
+        ("[[start]]\nplace = \"robot-1\"\nat = \"anywhere\"\n", "nothing is wrong"),
+        ("[[reward]]\nkind = \"touch\"\nrobot = 2\n", "look.toml line 39: reward.2.robot: is robot 2 of 1"),
+    ] {
+        let found = error(&format!("{RIGHT}{added}"));
+        assert!(plain(&found).starts_with(message), "{added}\n  found:  {found}\n  wanted: {message}");
+    }
+}

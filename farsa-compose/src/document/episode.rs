@@ -36,7 +36,7 @@ pub enum Ending {
 /// Where a trial puts something.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Start {
-    /// A thing by its name, or `robot` for all robots one after the other.
+    /// A thing by its name, `robot` for all robots one after the other, or `robot-1`, `robot-2` for one of them.
     pub place: String,
     /// How.
     #[serde(flatten)]

@@ -19,6 +19,10 @@ pub struct Reward {
     /// What of a trial's steps counts.
     #[serde(default)]
     pub over: Over,
+    /// The robot that it is about, from 1; by default all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub robot: Option<u32>,
     /// The name of another term: only steps count in which that is more than 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub during: Option<String>,
@@ -31,7 +35,7 @@ pub struct Reward {
     pub kind: RewardKind,
 }
 
-/// The kinds of terms; what is measured of several robots is their mean.
+/// The kinds of terms; what is measured of all robots is their mean.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum RewardKind {

@@ -76,7 +76,7 @@ impl Scene {
         let mut built = Vec::new();
         for (index, object) in document.objects.iter().enumerate() {
             let path = format!("/objects/{index}/name");
-            if object.name == ROBOT || built.iter().any(|(name, _)| *name == object.name) {
+            if object.name.starts_with(ROBOT) || built.iter().any(|(name, _)| *name == object.name) {
                 return Err(places.wrong(&path, format!("`{}` names something else already", object.name)));
             }
             let reach = match &object.kind {

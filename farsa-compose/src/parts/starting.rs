@@ -49,7 +49,7 @@ impl Starting {
         let mut rules: Vec<Rule> = Vec::new();
         let robots: Vec<BodyId> = (0..scene.robots).map(|robot| scene.parts(robot).body).collect();
         let of_robots =
-            |how| Rule { bodies: robots.clone(), radius: scene.robot.radius, solid: true, robots: true, how };
+            |bodies: Vec<BodyId>, how| Rule { bodies, radius: scene.robot.radius, solid: true, robots: true, how };
         for (index, start) in document.start.iter().enumerate() {
             let path = format!("/start/{index}");
             let how = match &start.how {
@@ -67,14 +67,18 @@ impl Starting {
                 if let (How::Fixed { .. }, true) = (&how, scene.robots > 1) {
                     return Err(places.wrong(&path, format!("puts {} robots on one point", scene.robots)));
                 }
-                of_robots(how)
+                of_robots(robots.clone(), how)
+            } else if let Some(robot) = numbered(&start.place) {
+                let found = robot.checked_sub(1).and_then(|robot| robots.get(robot));
+                let why = || places.wrong(&format!("{path}/place"), format!("is robot {robot} of {}", robots.len()));
+                of_robots(vec![*found.ok_or_else(why)?], how)
             } else {
                 let path = format!("{path}/place");
                 let thing = scene.thing(&start.place, &path, places)?;
                 let body = scene.body(&start.place, &path, places)?;
                 Rule { bodies: vec![body], radius: thing.reach(), solid: thing.solid().is_some(), robots: false, how }
             };
-            if rules.iter().any(|other| other.bodies == rule.bodies) {
+            if rules.iter().any(|other| other.bodies.iter().any(|body| rule.bodies.contains(body))) {
                 return Err(places.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
             }
             rules.push(rule);
@@ -86,8 +90,10 @@ impl Starting {
                 return Err(places.wrong(&path, "lacks the key `at`, and no `[[start]]` places it"));
             }
         }
-        if !rules.iter().any(|rule| rule.robots) {
-            rules.push(of_robots(How::Anywhere { walls: 0.0, apart: 0.0 }));
+        let placed = |body: &BodyId| rules.iter().any(|rule| rule.bodies.contains(body));
+        let others: Vec<BodyId> = robots.iter().copied().filter(|body| !placed(body)).collect();
+        if !others.is_empty() {
+            rules.push(of_robots(others, How::Anywhere { walls: 0.0, apart: 0.0 }));
         }
         let moved = |body: &BodyId| rules.iter().any(|rule| rule.bodies.contains(body));
         let standing: Vec<BodyId> =
@@ -126,6 +132,11 @@ impl Starting {
         }
         Ok(())
     }
+}
+
+/// The number of a robot that is named alone: `robot-2`.
+fn numbered(name: &str) -> Option<usize> {
+    name.strip_prefix(ROBOT)?.strip_prefix('-')?.parse().ok()
 }
 
 /// A place for one body of a rule.

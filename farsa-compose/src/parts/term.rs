@@ -1,6 +1,6 @@
 //! A term of the fitness.
 
-use farsa_body::{BodyId, MobileParts, PairId};
+use farsa_body::{BodyId, MobileParts, PairId, Pose};
 use farsa_lab::{Error, PlanarWorld};
 use farsa_num::{Scalar, atan2};
 
@@ -12,13 +12,12 @@ use crate::parts::scene::{Scene, Thing};
 #[derive(Clone, Debug)]
 enum Measure {
     Near {
-        thing: BodyId,
         radius: f64,
         within: f64,
     },
-    Distance(BodyId),
-    Approach(BodyId),
-    Angle(BodyId),
+    Distance,
+    Approach,
+    Angle,
     Touch,
     Displacement,
     Speed,
@@ -28,7 +27,6 @@ enum Measure {
     /// Channels of the network's inputs.
     Sensor([usize; 2]),
     InArea {
-        area: BodyId,
         half: [f64; 2],
         disc: bool,
     },
@@ -44,8 +42,13 @@ pub(crate) struct Term {
     weight: f64,
     over: Over,
     during: Option<usize>,
+    /// The robot that it is about, if not all.
+    robot: Option<usize>,
     clip: Option<[f64; 2]>,
     measure: Measure,
+    /// The thing that it is about, and where that is.
+    thing: Option<BodyId>,
+    place: Pose,
     /// The sum of all steps that counted, and the largest and the last value of one.
     sum: f64,
     most: f64,
@@ -55,6 +58,7 @@ pub(crate) struct Term {
 /// A robot as terms see it.
 pub(crate) struct Seen<'r> {
     pub(crate) parts: &'r MobileParts,
+    pub(crate) pose: Pose,
     /// What it sensed and did last.
     pub(crate) x: &'r [f32],
     pub(crate) y: &'r [f32],
@@ -87,17 +91,28 @@ impl Term {
     ) -> Result<Self, Error> {
         let path = format!("/reward/{number}");
         let body = |name: &str| scene.body(name, &format!("{path}/object"), places);
+        let mut about = None;
         let measure = match &reward.kind {
             RewardKind::Near { object, within } => {
                 let path = format!("{path}/object");
                 let Some((thing, radius)) = scene.thing(object, &path, places)?.solid() else {
                     return Err(places.wrong(&path, format!("`{object}` is no cylinder")));
                 };
-                Measure::Near { thing, radius, within: *within }
+                about = Some(thing);
+                Measure::Near { radius, within: *within }
             }
-            RewardKind::Distance { object } => Measure::Distance(body(object)?),
-            RewardKind::Approach { object } => Measure::Approach(body(object)?),
-            RewardKind::Angle { object } => Measure::Angle(body(object)?),
+            RewardKind::Distance { object } => {
+                about = Some(body(object)?);
+                Measure::Distance
+            }
+            RewardKind::Approach { object } => {
+                about = Some(body(object)?);
+                Measure::Approach
+            }
+            RewardKind::Angle { object } => {
+                about = Some(body(object)?);
+                Measure::Angle
+            }
             RewardKind::Touch {} => Measure::Touch,
             RewardKind::Displacement {} => Measure::Displacement,
             RewardKind::Speed {} => Measure::Speed,
@@ -113,7 +128,10 @@ impl Term {
             RewardKind::InArea { area } => {
                 let path = format!("{path}/area");
                 match scene.thing(area, &path, places)? {
-                    Thing::Area { body, half, disc } => Measure::InArea { area: body, half, disc },
+                    Thing::Area { body, half, disc } => {
+                        about = Some(body);
+                        Measure::InArea { half, disc }
+                    }
                     _ => return Err(places.wrong(&path, format!("`{area}` is no disc or rectangle"))),
                 }
             }
@@ -121,6 +139,11 @@ impl Term {
             RewardKind::Effort {} => Measure::Effort,
             RewardKind::Steps {} => Measure::Steps,
         };
+        let robot = reward.robot.map(|robot| robot as usize - 1);
+        if robot.is_some_and(|robot| robot >= scene.robots) {
+            let why = format!("is robot {} of {}", robot.unwrap_or(0) + 1, scene.robots);
+            return Err(places.wrong(&format!("{path}/robot"), why));
+        }
         if reward.clip.is_some_and(|[low, high]| low > high) {
             return Err(places.wrong(&format!("{path}/clip"), "runs backwards"));
         }
@@ -140,8 +163,11 @@ impl Term {
             weight: reward.weight,
             over: reward.over,
             during: during.transpose()?,
+            robot,
             clip: reward.clip,
             measure,
+            thing: about,
+            place: Pose::planar([0.0; 2], 0.0),
             sum: 0.0,
             most: f64::NEG_INFINITY,
             last: 0.0,
@@ -153,31 +179,46 @@ impl Term {
         (self.sum, self.most, self.last) = (0.0, f64::NEG_INFINITY, 0.0);
     }
 
-    /// Whether it is measured from where robots started.
+    /// Looks where its thing is, if it has one.
+    pub(crate) fn locate<W: PlanarWorld>(&mut self, world: &W) {
+        if let Some(thing) = self.thing {
+            self.place = world.pose(thing);
+        }
+    }
+
+    /// The share that a robot, of so many, has in it.
+    #[inline]
+    pub(crate) fn share(&self, robot: usize, value: f64) -> f64 {
+        if self.robot.is_none_or(|own| own == robot) { value } else { 0.0 }
+    }
+
+    /// Of how many robots it is the mean, where there are so many.
+    pub(crate) fn robots(&self, all: usize) -> f64 {
+        if self.robot.is_some() { 1.0 } else { all as f64 }
+    }
+
+    /// What it measures of a robot after a step.
+    #[inline]
     pub(crate) fn value<W: PlanarWorld>(&self, world: &W, seen: &Seen<'_>, numbers: Numbers) -> f64 {
-        let body = seen.parts.body;
-        let pose = world.pose(body);
+        let (body, pose) = (seen.parts.body, seen.pose);
         let [x, y] = [pose.position[0], pose.position[1]];
         let yes = |flag: bool| if flag { 1.0 } else { 0.0 };
-        let way = |thing: BodyId| {
-            let [u, v, _] = world.pose(thing).position;
-            [u - x, v - y].map(f64::from)
-        };
+        let way = || [self.place.position[0] - x, self.place.position[1] - y].map(f64::from);
         let from = |[u, v]: [f64; 2]| length([f64::from(x) - u, f64::from(y) - v]);
         let wheels = || seen.parts.wheels.map(|wheel| f64::from(world.speed(wheel)) / numbers.wheel_speed);
         match self.measure {
-            Measure::Near { thing, radius, within } => {
-                let distance = length(way(thing)) - numbers.radius - radius;
+            Measure::Near { radius, within } => {
+                let distance = length(way()) - numbers.radius - radius;
                 if distance.is_finite() { yes(distance < within) } else { f64::NAN }
             }
-            Measure::Distance(thing) => length(way(thing)),
-            Measure::Approach(thing) => {
-                let [u, v, _] = world.pose(thing).position.map(f64::from);
-                length([u - seen.start[0], v - seen.start[1]]) - length(way(thing))
+            Measure::Distance => length(way()),
+            Measure::Approach => {
+                let [u, v, _] = self.place.position.map(f64::from);
+                length([u - seen.start[0], v - seen.start[1]]) - length(way())
             }
-            Measure::Angle(thing) => {
-                let [u, v] = way(thing);
-                let [ahead, left, _] = pose.cast::<f64>().rotate_back([u, v, 0.0]);
+            Measure::Angle => {
+                let [u, v] = way();
+                let [ahead, left] = turned(&pose, [u, v]);
                 atan2(left, ahead).abs()
             }
             Measure::Touch => yes(world.touches(PairId(body.0))),
@@ -185,7 +226,7 @@ impl Term {
             Measure::Speed => from(seen.before) / numbers.time_step,
             Measure::Forward => {
                 let [u, v] = [f64::from(x) - seen.before[0], f64::from(y) - seen.before[1]];
-                let [ahead, ..] = pose.cast::<f64>().rotate_back([u, v, 0.0]);
+                let [ahead, _] = turned(&pose, [u, v]);
                 ahead
             }
             Measure::WheelSpeed => {
@@ -200,9 +241,9 @@ impl Term {
                 let channels = seen.x.get(first..end).unwrap_or_default();
                 channels.iter().fold(0.0, |most, x| Scalar::max(most, f64::from(*x)))
             }
-            Measure::InArea { area, half, disc } => {
-                let [u, v] = way(area);
-                let [u, v, _] = world.pose(area).cast::<f64>().rotate_back([-u, -v, 0.0]);
+            Measure::InArea { half, disc } => {
+                let [u, v] = way();
+                let [u, v] = turned(&self.place, [-u, -v]);
                 yes(if disc { length([u, v]) <= half[0] } else { u.abs() <= half[0] && v.abs() <= half[1] })
             }
             Measure::Held => yes(world.attached(body).is_some()),
@@ -235,6 +276,13 @@ impl Term {
                 Over::Most => counts(self.most, 0.0),
             }
     }
+}
+
+/// A way in the axes of a pose. Not inlined, because the compiler would compute it for every measure.
+#[inline(never)]
+fn turned(pose: &Pose, [u, v]: [f64; 2]) -> [f64; 2] {
+    let [ahead, left, _] = pose.cast::<f64>().rotate_back([u, v, 0.0]);
+    [ahead, left]
 }
 
 fn length([x, y]: [f64; 2]) -> f64 {
