@@ -21,9 +21,12 @@ const SUBCOMMANDS: [&str; 17] = [
     "export",
     "robot",
     "bench",
-    "completions",
-    "man",
+    "new",
+    "check",
 ];
+
+/// Those that the screen has no room for.
+const UNLISTED: [&str; 3] = ["completions", "man", "schema"];
 
 #[test]
 fn the_help_is_a_tour_on_one_screen() {
@@ -32,8 +35,9 @@ fn the_help_is_a_tour_on_one_screen() {
         let help = ok(program, &here, "--help");
         assert!(help.lines().count() <= 24, "{} lines: {help}", help.lines().count());
         assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
-        for subcommand in SUBCOMMANDS {
-            assert!(help.contains(&format!("\n  {subcommand} ")), "no {subcommand} in {help}");
+        for subcommand in SUBCOMMANDS.into_iter().chain(UNLISTED) {
+            let listed = help.contains(&format!("\n  {subcommand} "));
+            assert_eq!(listed, !UNLISTED.contains(&subcommand), "{subcommand} in {help}");
             let own_help = ok(program, &here, &format!("{subcommand} --help"));
             assert!(
                 own_help.contains("Example") && own_help.contains(&format!("\n  {name} {subcommand}")),

@@ -34,7 +34,7 @@ use crate::report::write;
 use crate::run::begin;
 use crate::run::bench::{self, Bench, Sample};
 use crate::run::config_file::{ConfigFile, Entry};
-use crate::run::laboratory::Laboratory;
+use crate::run::laboratory::{FILE, Laboratory};
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::replications::{self, Replications};
@@ -372,7 +372,8 @@ impl<'e> Invocation<'e, '_> {
         directory: &Directory,
     ) -> Result<(), Error> {
         let in_file = |entry: Option<&Entry<String>>| entry.map(|entry| entry.value.clone());
-        let named = args.experiment.as_ref().map(|name| self.find(name)).transpose()?;
+        let file_name = args.experiment.as_ref().filter(|name| name.ends_with(FILE));
+        let named = file_name.map(|name| self.find(name)).transpose()?;
         let other = |found: &&dyn Experiment| {
             found.name() == plan.experiment.name() && found.definition() != plan.experiment.definition()
         };
@@ -381,7 +382,8 @@ impl<'e> Invocation<'e, '_> {
             let run = plan.experiment.name().into();
             return Err(Error::OtherConfiguration { directory, key: "definition".into(), run, asked });
         }
-        let experiment = named.map(|found| found.name().to_owned()).or_else(|| in_file(file?.experiment.as_ref()));
+        let experiment = named.map(|found| found.name().to_owned()).or_else(|| args.experiment.clone());
+        let experiment = experiment.or_else(|| in_file(file?.experiment.as_ref()));
         let condition = args.variant.condition.clone().or_else(|| in_file(file?.condition.as_ref()));
         let strategy = args.strategy.clone().or_else(|| in_file(file?.strategy.as_ref()));
         for (key, run, asked) in [

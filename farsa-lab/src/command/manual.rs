@@ -64,6 +64,9 @@ fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> 
     vec![
         ("list", vec!["list".into(), "list --json".into()]),
         ("info", vec![format!("info {experiment}"), format!("info {experiment}{other} --json")]),
+        ("new", vec!["new follow".into(), "new follow --from light".into()]),
+        ("check", vec!["check follow.toml --graph follow.svg".into(), format!("check {experiment}{other} --json")]),
+        ("schema", vec!["schema > farsa.schema.json".into()]),
         (
             "run",
             vec![
