@@ -31,7 +31,10 @@ pub use architecture::{Architecture, BlockPlan};
 #[cfg(feature = "alloc")]
 pub use block::BlockLayoutBuf;
 pub use block::{Block, BlockLayout, BlockNetwork, BlockParameter, Group, Span};
-pub use bytes::{Aligned, BytesError, CtrnnBytes, LeakyNetworkBytes, QuantizedNetworkBytes, channel_hash};
+pub use bytes::{
+    Aligned, BlockNetworkBytes, BytesError, CtrnnBytes, LeakyNetworkBytes, PerceptronBytes, QuantizedNetworkBytes,
+    channel_hash,
+};
 pub use controller::Controller;
 pub use ctrnn::{Ctrnn, CtrnnLayout, CtrnnParameter, CtrnnParts, CtrnnSymmetry, Integrator};
 pub use error::Error;

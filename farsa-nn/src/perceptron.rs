@@ -52,17 +52,8 @@ impl<P: AsRef<[f32]>> Perceptron<P> {
     /// # Errors
     /// [`Error::Slope`], [`Error::ParameterCount`] or [`Error::NotFinite`]: the first that applies.
     pub fn new(inputs: usize, outputs: usize, slope: f32, parameters: P) -> Result<Self, Error> {
-        if !slope.is_finite() {
-            return Err(Error::Slope { value: slope });
-        }
-        let (expected, found) = (Perceptron::parameter_count(inputs, outputs), parameters.as_ref().len());
-        if expected != found {
-            return Err(Error::ParameterCount { expected, found });
-        }
-        match parameters.as_ref().iter().position(|p| !p.is_finite()) {
-            Some(index) => Err(Error::NotFinite { index }),
-            None => Ok(Self { inputs, outputs, slope, parameters, level: level() }),
-        }
+        check(inputs, outputs, slope, parameters.as_ref().iter().copied())?;
+        Ok(Self { inputs, outputs, slope, parameters, level: level() })
     }
 
     /// The parameters.
@@ -72,6 +63,11 @@ impl<P: AsRef<[f32]>> Perceptron<P> {
 }
 
 impl<P> Perceptron<P> {
+    /// The slope of the logistic function.
+    pub const fn slope(&self) -> f32 {
+        self.slope
+    }
+
     /// The same layer over these instructions, as
     /// [`LeakyNetwork::with_instructions`](crate::LeakyNetwork::with_instructions).
     pub fn with_instructions(self, instructions: Instructions) -> Self {
@@ -98,5 +94,25 @@ impl<P: AsRef<[f32]>> Controller for Perceptron<P> {
         let (weights, biases) = parameters.split_at((self.inputs * self.outputs).min(parameters.len()));
         let sources = [(x, weights), (&[][..], &[][..])];
         Layer { targets: self.outputs, slope: self.slope, biases, sources }.forward(self.level, y);
+    }
+}
+
+/// Whether these are the numbers of such a layer.
+pub(crate) fn check(
+    inputs: usize,
+    outputs: usize,
+    slope: f32,
+    mut parameters: impl ExactSizeIterator<Item = f32>,
+) -> Result<(), Error> {
+    if !slope.is_finite() {
+        return Err(Error::Slope { value: slope });
+    }
+    let (expected, found) = (Perceptron::parameter_count(inputs, outputs), parameters.len());
+    if expected != found {
+        return Err(Error::ParameterCount { expected, found });
+    }
+    match parameters.position(|p| !p.is_finite()) {
+        Some(index) => Err(Error::NotFinite { index }),
+        None => Ok(()),
     }
 }

@@ -217,21 +217,31 @@ impl<'a> BlockLayout<'a> {
 
     /// Whether everything that it names is there.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        let neurons = self.neurons();
-        if let Some(group) = self.groups.iter().find(|group| !group.slope.is_finite()) {
-            return Err(Error::Slope { value: group.slope });
-        }
-        let ends = self.inputs.saturating_add(self.outputs);
-        if ends > neurons {
-            return Err(Error::Neurons { first: 0, count: ends, neurons });
-        }
-        for (index, block) in self.blocks.iter().enumerate() {
-            if let Some(span) = block.spans().into_iter().find(|span| span.end() > neurons) {
-                return Err(Error::Block { index, first: span.first, count: span.count, neurons });
-            }
-        }
-        Ok(())
+        check_description(self.inputs, self.outputs, self.groups.iter().copied(), self.blocks.iter().copied())
     }
+}
+
+/// Whether everything that a description names is there, wherever it lies.
+pub(crate) fn check_description(
+    inputs: usize,
+    outputs: usize,
+    mut groups: impl Iterator<Item = Group> + Clone,
+    blocks: impl Iterator<Item = Block>,
+) -> Result<(), Error> {
+    let neurons = groups.clone().fold(0_usize, |sum, group| sum.saturating_add(group.neurons));
+    if let Some(group) = groups.find(|group| !group.slope.is_finite()) {
+        return Err(Error::Slope { value: group.slope });
+    }
+    let ends = inputs.saturating_add(outputs);
+    if ends > neurons {
+        return Err(Error::Neurons { first: 0, count: ends, neurons });
+    }
+    for (index, block) in blocks.enumerate() {
+        if let Some(span) = block.spans().into_iter().find(|span| span.end() > neurons) {
+            return Err(Error::Block { index, first: span.first, count: span.count, neurons });
+        }
+    }
+    Ok(())
 }
 
 /// Whether the neurons of a group have a parameter of this kind.

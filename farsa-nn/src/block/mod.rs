@@ -10,7 +10,7 @@ pub(crate) mod layout;
 #[cfg(feature = "alloc")]
 pub(crate) mod layout_buf;
 /// The network: parameters, state, steps.
-mod network;
+pub(crate) mod network;
 
 pub use description::{Block, Group, Span};
 pub use layout::{BlockLayout, BlockParameter};

@@ -1,5 +1,7 @@
 //! The network of blocks.
 
+use core::ops::Range;
+
 use farsa_num::Instructions;
 use farsa_num::fearless_simd::Level;
 
@@ -187,17 +189,23 @@ impl<P: AsRef<[f32]>, S: AsMut<[f32]>> BlockNetwork<'_, P, S> {
 }
 
 fn check(layout: &BlockLayout<'_>, parameters: &[f32]) -> Result<(), Error> {
-    let (expected, found) = (layout.parameter_count(), parameters.len());
+    check_values(layout.range(BlockParameter::Leak), parameters.iter().copied())
+}
+
+/// Whether these are the parameters of a layout whose last ones are these leaks.
+pub(crate) fn check_values(
+    leaks: Range<usize>,
+    parameters: impl ExactSizeIterator<Item = f32> + Clone,
+) -> Result<(), Error> {
+    let (expected, found) = (leaks.end, parameters.len());
     if expected != found {
         return Err(Error::ParameterCount { expected, found });
     }
-    if let Some(index) = parameters.iter().position(|p| !p.is_finite()) {
+    if let Some(index) = parameters.clone().position(|p| !p.is_finite()) {
         return Err(Error::NotFinite { index });
     }
-    let leaks = layout.range(BlockParameter::Leak);
-    let leaks = leaks.clone().zip(parameters.get(leaks).unwrap_or(&[]));
-    match leaks.into_iter().find(|(_, leak)| !(0.0..=1.0).contains(*leak)) {
-        Some((index, &value)) => Err(Error::LeakRange { index, value }),
+    match leaks.clone().zip(parameters.skip(leaks.start)).find(|(_, leak)| !(0.0..=1.0).contains(leak)) {
+        Some((index, value)) => Err(Error::LeakRange { index, value }),
         None => Ok(()),
     }
 }

@@ -48,6 +48,13 @@ pub enum BytesError {
         /// Its value.
         found: u32,
     },
+    /// A number of the description of groups and blocks has a value that no such controller has.
+    Description {
+        /// Its place among the numbers of the description.
+        word: usize,
+        /// Its value.
+        found: u32,
+    },
     /// The layout hash is not that of kind and shape.
     LayoutHash {
         /// Hash of kind and shape.
@@ -105,6 +112,9 @@ impl fmt::Display for BytesError {
             Self::Kind { expected, found } => write!(f, "a controller of kind {found} where {expected} is asked for"),
             Self::Shape { word, found } => {
                 write!(f, "number {word} of the shape is {found}, which no such controller has")
+            }
+            Self::Description { word, found } => {
+                write!(f, "number {word} of the description is {found}, which no such controller has")
             }
             Self::LayoutHash { expected, found } => {
                 write!(f, "layout hash {found:016x} where the shape has {expected:016x}")

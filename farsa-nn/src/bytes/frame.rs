@@ -38,6 +38,8 @@ pub(crate) enum Kind {
     LeakyNetwork = 1,
     QuantizedNetwork = 2,
     Ctrnn = 3,
+    Perceptron = 4,
+    BlockNetwork = 5,
 }
 
 /// A controller's bytes taken apart, whole and undamaged; what shape and parameters mean is the kind's business.
@@ -181,7 +183,19 @@ impl<'a> Frame<'a> {
         parameters: impl ExactSizeIterator<Item = [u8; N]>,
         out: &mut [u8],
     ) -> Result<(), BytesError> {
-        let parameters_len = N * parameters.len();
+        Self::write_counted(kind, shape, channels, parameters.len(), parameters, out)
+    }
+
+    /// The same with so many parameters, for iterators that do not know their length.
+    pub(crate) fn write_counted<const N: usize>(
+        kind: Kind,
+        shape: &[u32; SHAPE],
+        channels: u64,
+        count: usize,
+        parameters: impl Iterator<Item = [u8; N]>,
+        out: &mut [u8],
+    ) -> Result<(), BytesError> {
+        let parameters_len = count.saturating_mul(N);
         let (expected, found) = (frame_len(parameters_len), out.len());
         // More than the head can say is more than any buffer of it.
         let Some(len) = u32::try_from(expected).ok().filter(|_| expected == found) else {

@@ -1,10 +1,14 @@
 //! Controllers as bytes: what is written is read, nothing else is.
 
+mod block;
 mod ctrnn;
 mod leaky;
+mod perceptron;
 mod quantized;
 
-use farsa_nn::{Aligned, BytesError, CtrnnBytes, LeakyNetworkBytes, QuantizedNetworkBytes};
+use farsa_nn::{
+    Aligned, BlockNetworkBytes, BytesError, CtrnnBytes, LeakyNetworkBytes, PerceptronBytes, QuantizedNetworkBytes,
+};
 use farsa_num::{Digest, crc32};
 
 /// Where the parameters begin.
@@ -76,15 +80,23 @@ fn after_a_head(head: &[u8], rest: &[u8], seal: bool) -> Vec<u8> {
     whole
 }
 
+/// Bytes of each kind, in the order of their numbers.
+fn kinds() -> [Vec<u8>; 5] {
+    let [leaky, quantized] = [leaky::champion().0.to_vec(), quantized::champion().0.to_vec()];
+    [leaky, quantized, ctrnn::agent().0.to_vec(), perceptron::reflex().0.to_vec(), block::modulated().0.to_vec()]
+}
+
 #[test]
 fn each_kind_is_read_as_itself_alone() {
-    let kinds: [&[u8]; 3] = [&leaky::champion().0, &quantized::champion().0, &ctrnn::agent().0];
-    for (at, bytes) in kinds.into_iter().enumerate() {
+    let kinds = kinds();
+    for (at, bytes) in kinds.iter().enumerate() {
         let found = at as u32 + 1;
         let errors = [
             LeakyNetworkBytes::read(bytes).err(),
             QuantizedNetworkBytes::read(bytes).err(),
             CtrnnBytes::read(bytes).err(),
+            PerceptronBytes::read(bytes).err(),
+            BlockNetworkBytes::read(bytes).err(),
         ];
         for (expected, error) in (1..).zip(errors) {
             assert_eq!(error, (expected != found).then_some(BytesError::Kind { expected, found }));
@@ -95,10 +107,10 @@ fn each_kind_is_read_as_itself_alone() {
 /// What was written once is written so for good, on every machine: there are boards that hold it.
 #[test]
 fn the_bytes_of_each_kind_do_not_change() {
-    let kinds: [&[u8]; 3] = [&leaky::champion().0, &quantized::champion().0, &ctrnn::agent().0];
+    let kinds = kinds();
     assert_eq!(
-        kinds.map(digest).map(|hash| format!("{hash:016x}")),
-        ["7a917e2c3a070d00", "9f6fbfbd8ded40f7", "7211fd8b188cb3d5"]
+        kinds.map(|bytes| digest(&bytes)).map(|hash| format!("{hash:016x}")),
+        ["7a917e2c3a070d00", "9f6fbfbd8ded40f7", "7211fd8b188cb3d5", "4f3aa8da9cbc62a3", "d674ffcabacd078a"]
     );
 }
 
