@@ -32,22 +32,24 @@ pub mod sensors;
 pub mod testing;
 pub mod wrappers;
 
-pub use actuators::{Effort, Held, Law, MusclePair, MuscleVariant, Servo, Tension, Torque};
+pub use actuators::{Effort, Held, Law, MusclePair, MuscleVariant, Servo, Tension, Torque, Velocity};
 pub use channel::ChannelError;
 #[cfg(feature = "alloc")]
 pub use kinematics::{Goal, InverseKinematics, InverseKinematicsError, KinematicTree, Orientation, Solution};
 pub use motors::{
-    AttachmentMotor, Leds, Muscles, ServoGroup, ServoRange, SignalMotor, SpeedAndTurn, TorqueMotor, WheelVelocity,
+    AttachmentMotor, Leds, Muscles, ServoGroup, ServoRange, SignalMotor, SpeedAndTurn, TorqueMotor, VelocityMotor,
+    WheelVelocity,
 };
 pub use ports::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, Motor,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Rays, Sensor, Snapshot, World,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Rays, Sensor, Sight, Snapshot, World,
 };
 pub use pose::{Pose, Twist};
 pub use recorder::{Recorder, record_world};
 #[cfg(feature = "alloc")]
 pub use robot::{
-    Actuator, Collider, Joint, JointKind, MassProperties, Offsets, Pair, Robot, RobotError, Segment, Shape, Surface,
+    Actuator, Collider, Ground, Joint, JointKind, MassProperties, Offsets, Pair, Robot, RobotError, Segment, Shape,
+    Surface,
 };
 #[cfg(feature = "alloc")]
 pub use robots::{ArmAndHand, Finger, InfraredRing, MobileParts, MobileRobot, Tabletop};
@@ -57,5 +59,7 @@ pub use sensors::{
     Point, Signal, SignalSensor, TargetPosition, Touch, Traction, WheelSpeed,
 };
 #[cfg(feature = "alloc")]
-pub use sensors::{InfraredTable, InfraredTableError, InfraredTables, SampledInfrared};
-pub use wrappers::{Delayed, Lesioned, Noise, Noisy, Recorded, Saturated, Scaled, Stuck, StuckAt};
+pub use sensors::{
+    InfraredDrawing, InfraredGroups, InfraredTable, InfraredTableError, InfraredTables, SampledInfrared,
+};
+pub use wrappers::{Delayed, Lesioned, Noise, Noisy, Recorded, Saturated, Scaled, Stuck, StuckAt, Thresholded};

@@ -81,8 +81,9 @@ pub trait Joints: Handles {
 pub trait Actuated: Handles {
     /// Sets an actuator's command, which holds until the next one.
     ///
-    /// A muscle pair takes [agonist, antagonist] activations [0..1]; a servo the desired position [rad or m] and a
-    /// torque motor its torque [N m or N] in the first place, and neither reads the second. A wheel takes its speed [rad/s], an
+    /// A muscle pair takes [agonist, antagonist] activations [0..1]; a servo the desired position [rad or m], a
+    /// torque motor its torque [N m or N] and a velocity motor its speed [rad/s or m/s] in the first place, and none of these
+    /// reads the second. A wheel takes its speed [rad/s], an
     /// LED its brightness, a signal its value and an attachment device whether it holds (above 0.5) [0..1].
     fn command(&mut self, actuator: Self::Actuator, value: [f32; 2]);
 }
@@ -146,9 +147,9 @@ pub struct NearbySurface<B> {
     pub body: Option<B>,
     /// The nearest point [m].
     pub point: [f32; 2],
-    /// Distance to that point [m]; negative within a round body.
+    /// Distance to that point [m]; negative within a round body, 0 within another one.
     pub distance: f32,
-    /// Radius of a round body [m]; 0 for a wall.
+    /// Radius of a round body [m]; 0 for a wall and for a body of another form.
     pub radius: f32,
     /// What colour it shows, red, green and blue [0..1]; of a robot that of its LEDs.
     pub color: [f32; 3],
@@ -180,9 +181,9 @@ pub struct Lamp<B> {
     pub intensity: f32,
 }
 
-/// What there is to see and to stand on in a world of the plane, for sensors of mobile robots.
-#[diagnostic::on_unimplemented(message = "`{Self}` does not show its surfaces, colours and lamps (port `Planar`)")]
-pub trait Planar: Handles {
+/// What is to be seen in a plane: that of a planar world, or of the eyes in another one.
+#[diagnostic::on_unimplemented(message = "`{Self}` does not show its surfaces and their colours (port `Sight`)")]
+pub trait Sight: Handles {
     /// Reports every surface that has a point within `range` [m] of `from` [m], in the order of walls and bodies.
     ///
     /// The robot that asks is reported, too.
@@ -196,6 +197,11 @@ pub trait Planar: Handles {
         range: f32,
         but: Option<Self::Body>,
     ) -> Option<PlanarHit<Self::Body>>;
+}
+
+/// What there is to see and to stand on in a world of the plane, for sensors of mobile robots.
+#[diagnostic::on_unimplemented(message = "`{Self}` does not show its ground and lamps (port `Planar`)")]
+pub trait Planar: Sight {
     /// The colour of the ground at a place [m]: red, green and blue [0..1].
     fn ground(&self, at: [f32; 2]) -> [f32; 3];
     /// Reports every lamp.

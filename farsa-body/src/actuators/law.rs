@@ -25,6 +25,16 @@ pub struct Torque<R> {
     pub limit: R,
 }
 
+/// A motor that holds a commanded speed: a torque in proportion to what is lacking of it, capped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Velocity<R> {
+    /// Torque for each unit of speed that is lacking [N m s/rad or N s/m].
+    pub gain: R,
+    /// Largest effort [N m or N].
+    pub limit: R,
+}
+
 /// A user's own law, evaluated once per control step: the commanded torque with constant stiffness and damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -45,6 +55,8 @@ pub enum Law<R> {
     Servo(Servo<R>),
     /// A torque motor.
     Torque(Torque<R>),
+    /// A motor that holds a speed.
+    Velocity(Velocity<R>),
     /// A law of the user's, held over the control step.
     Held(Held<R>),
 }
@@ -69,6 +81,23 @@ impl<R: Real> Servo<R> {
     }
 }
 
+impl<R: Real> Velocity<R> {
+    /// The motor's effort at speed `qdot`, with the wanted speed in `command[0]`.
+    ///
+    /// The damping of a saturated motor is limit / |lack|, that of the chord from what it exerts to nothing at its speed: so a
+    /// strong motor of a light joint takes a step to its speed and not past it, and never exerts more than the limit.
+    #[inline(always)]
+    pub fn effort<S: Scalar<Real = R>>(&self, qdot: S, command: [S; 2]) -> Effort<S> {
+        let (limit, gain) = (qdot.like(self.limit), qdot.like(self.gain));
+        let lack = command[0] - qdot;
+        let wanted = gain * lack;
+        let (zero, one) = (qdot.constant(0.0), qdot.constant(1.0));
+        let saturated = wanted.abs().gt(limit);
+        let damping = S::select(saturated, limit / S::select(saturated, lack.abs(), one), gain);
+        Effort { torque: wanted.clamp(-limit, limit), stiffness: zero, damping }
+    }
+}
+
 impl<R: Real> Law<R> {
     /// The effort at position `q` and speed `qdot` under `command`, as [`crate::Actuated::command`] describes it.
     #[inline(always)]
@@ -81,6 +110,7 @@ impl<R: Real> Law<R> {
                 let limit = q.like(law.limit);
                 Effort { torque: command[0].clamp(-limit, limit), stiffness: zero, damping: zero }
             }
+            Self::Velocity(law) => law.effort(qdot, command),
             Self::Held(law) => {
                 let (stiffness, damping) = (q.like(law.stiffness), q.like(law.damping));
                 Effort { torque: command[0] - stiffness * (q - command[1]) - damping * qdot, stiffness, damping }
@@ -106,6 +136,7 @@ impl<R: Real> Law<R> {
             }),
             Self::Servo(s) => Law::Servo(Servo { stiffness: c(s.stiffness), damping: c(s.damping), limit: c(s.limit) }),
             Self::Torque(t) => Law::Torque(Torque { limit: c(t.limit) }),
+            Self::Velocity(v) => Law::Velocity(Velocity { gain: c(v.gain), limit: c(v.limit) }),
             Self::Held(h) => Law::Held(Held { stiffness: c(h.stiffness), damping: c(h.damping) }),
         }
     }
@@ -152,12 +183,26 @@ mod tests {
     }
 
     #[test]
+    fn velocity_motors_lack_no_speed_at_theirs() {
+        let motor = Law::Velocity(Velocity { gain: 4.0, limit: 1.5 });
+        let effort = |qdot: f64, wanted: f64| motor.effort(0.3, qdot, [wanted, 9.0]);
+        assert_eq!(effort(0.5, 0.5), Effort { torque: 0.0, stiffness: 0.0, damping: 4.0 });
+        assert_eq!(effort(0.5, 0.75), Effort { torque: 1.0, stiffness: 0.0, damping: 4.0 });
+        assert_eq!(effort(0.5, 2.0), Effort { torque: 1.5, stiffness: 0.0, damping: 1.0 }, "saturated");
+        assert_eq!(effort(3.0, 0.0), Effort { torque: -1.5, stiffness: 0.0, damping: 0.5 });
+        let endless = Law::Velocity(Velocity { gain: 4.0, limit: f64::INFINITY });
+        let held = Law::Held(Held { stiffness: 0.0, damping: 4.0 });
+        assert_eq!(endless.effort(0.1, 0.25, [1.0, 0.0]), held.effort(0.1, 0.25, [4.0, 0.0]));
+    }
+
+    #[test]
     fn casting_rounds_each_number_once() {
-        let laws: [Law<f64>; 4] = [
+        let laws: [Law<f64>; 5] = [
             Law::MusclePair(MusclePair::thesis(300.1, 0.0103, [-2.1, 0.7])),
             Law::Servo(Servo { stiffness: 0.1, damping: 0.2, limit: 0.3 }),
             Law::Torque(Torque { limit: 0.7 }),
             Law::Held(Held { stiffness: 0.9, damping: 1.1 }),
+            Law::Velocity(Velocity { gain: 0.7, limit: 0.9 }),
         ];
         for law in laws {
             let narrow = law.cast::<f32>();

@@ -5,6 +5,7 @@
 //! | two antagonist muscles, as in an animal's joint | [`MusclePair`] | activations of agonist and antagonist in [0, 1] |
 //! | a joint that goes to a position | [`Servo`] | desired position [rad or m], unused |
 //! | a joint that pushes as hard as commanded | [`Torque`] | effort [N m or N], unused |
+//! | a motor that holds a speed | [`Velocity`] | wanted speed [rad/s or m/s] |
 //! | a law of your own, computed once per control step | [`Held`] | effort, and the position at which it holds |
 //!
 //! A [`Law`] is one of these, in a [`Robot`](crate::Robot)'s description or alone. Laws run on plain floats and on SIMD
@@ -18,5 +19,5 @@ pub(crate) mod law;
 pub(crate) mod muscle;
 
 pub use effort::Effort;
-pub use law::{Held, Law, Servo, Torque};
+pub use law::{Held, Law, Servo, Torque, Velocity};
 pub use muscle::{MusclePair, MuscleVariant, Tension};

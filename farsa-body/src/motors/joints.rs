@@ -120,3 +120,40 @@ impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for TorqueMotor<A> {
         }
     }
 }
+
+/// Drives one joint at a speed, one channel: the speed is (2 y - 1) times the largest.
+///
+/// The actuator's law is a [`Held`](crate::Held) without stiffness whose damping is the gain: its torque is gain times what is
+/// lacking of the speed, solved implicitly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VelocityMotor<A = ActuatorId> {
+    motor: A,
+    largest: f32,
+    gain: f32,
+}
+
+impl<A> VelocityMotor<A> {
+    /// A motor that turns the values 0, 1/2 and 1 into the speeds -`largest`, 0 and `largest` [rad/s or m/s], of an actuator
+    /// of this `gain` [N m s/rad or N s/m].
+    ///
+    /// # Errors
+    /// [`ChannelError::Value`] if a number is not finite.
+    pub fn new(motor: A, largest: f32, gain: f32) -> Result<Self, ChannelError> {
+        Ok(Self { motor, largest: finite("largest", largest)?, gain: finite("gain", gain)? })
+    }
+}
+
+impl<A> Channels for VelocityMotor<A> {
+    fn channels(&self) -> usize {
+        1
+    }
+}
+
+impl<A: Copy, W: Actuated<Actuator = A> + ?Sized> Motor<W> for VelocityMotor<A> {
+    fn drive(&mut self, y: &[f32], world: &mut W) {
+        if let Some(&y) = y.first() {
+            let y = unit(y);
+            world.command(self.motor, [(y + y - 1.0) * self.largest * self.gain, 0.0]);
+        }
+    }
+}

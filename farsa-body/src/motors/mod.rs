@@ -5,6 +5,7 @@
 //! | a pair of muscles | [`Muscles`] | 2 |
 //! | one or several servos together | [`ServoGroup`] of [`ServoRange`]s | 1 |
 //! | a torque motor | [`TorqueMotor`] | 1 |
+//! | a joint at a speed | [`VelocityMotor`] | 1 |
 //! | two wheels, each by itself | [`WheelVelocity`] | 2 |
 //! | two wheels, by speed and turn | [`SpeedAndTurn`] | 2 |
 //! | LEDs | [`Leds`] | 1 each |
@@ -17,7 +18,7 @@
 
 /// Devices that hold on to things: the motor that switches one and the sensor that reads whether it holds.
 pub(crate) mod attachment;
-/// Motors of joints: muscles, servos, torques.
+/// Motors of joints: muscles, servos, torques, speeds.
 pub(crate) mod joints;
 /// LEDs and signals.
 pub(crate) mod leds;
@@ -25,6 +26,6 @@ pub(crate) mod leds;
 pub(crate) mod wheels;
 
 pub use attachment::AttachmentMotor;
-pub use joints::{Muscles, ServoGroup, ServoRange, TorqueMotor};
+pub use joints::{Muscles, ServoGroup, ServoRange, TorqueMotor, VelocityMotor};
 pub use leds::{Leds, SignalMotor};
 pub use wheels::{SpeedAndTurn, WheelVelocity};

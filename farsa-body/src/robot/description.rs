@@ -74,6 +74,9 @@ pub struct Collider {
     pub shape: Shape,
     /// Its frame in the segment's frame.
     pub placement: Pose<f64>,
+    /// What colour it shows to cameras, red, green and blue [0..1]; they see through a collider without one.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub color: Option<[f64; 3]>,
 }
 
 /// How two surfaces act on each other.
@@ -112,6 +115,20 @@ pub struct Actuator {
     pub law: Law<f64>,
 }
 
+/// The ground below a body that slides in a plane, and rubs on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Ground {
+    /// The body, as [`Robot::add_sliding_body`] makes it.
+    pub body: BodyId,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// The force that presses the body on the ground, such as its weight [N].
+    pub load: f64,
+    /// At which radius the ground acts on a body that turns: two thirds of that of a disc with even pressure [m].
+    pub radius: f64,
+}
+
 /// A robot, or a scene of robots and things, as data; every world is built from one.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -126,6 +143,9 @@ pub struct Robot {
     pub pairs: Vec<Pair>,
     /// The actuators.
     pub actuators: Vec<Actuator>,
+    /// The ground below bodies that slide.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub grounds: Vec<Ground>,
 }
 
 /// Where the parts of a merged robot begin in the lists of the one that took them in, from [`Robot::merge`].
@@ -232,7 +252,13 @@ impl Segment {
 impl Collider {
     /// A shape on `body` (`None` for the world) at `placement` in its frame.
     pub fn new(name: &str, body: Option<BodyId>, shape: Shape, placement: Pose<f64>) -> Self {
-        Self { name: name.into(), body, shape, placement }
+        Self { name: name.into(), body, shape, placement, color: None }
+    }
+
+    /// The same collider with a colour that cameras see, red, green and blue [0..1].
+    #[must_use]
+    pub fn with_color(self, color: [f64; 3]) -> Self {
+        Self { color: Some(color), ..self }
     }
 
     /// A capsule whose axis runs from point `a` to point `b` of the body's frame [m], of `radius` [m]; a ball where
@@ -313,6 +339,7 @@ impl Robot {
             actuator.joint = offsets.joint(actuator.joint);
             actuator
         }));
+        self.grounds.extend(other.grounds.iter().map(|ground| Ground { body: offsets.body(ground.body), ..*ground }));
         offsets
     }
 

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | the size and mass of a solid part | [`MassProperties`]: `sphere`, `capsule`, `cylinder`, `cuboid`; `placed` and `with` move and join them |
 //! | two points and a radius | [`Collider::capsule_between`] |
+//! | a thing that is pushed over a table | [`Robot::add_sliding_body`], and [`Ground`] below it |
 //! | two robots for one world | [`Robot::prefixed`], then [`Robot::merge`], whose [`Offsets`] say where the parts went |
 //! | a file | the crate `farsa-models`, which reads and writes URDF and MJCF |
 
@@ -14,12 +15,16 @@
 pub(crate) mod description;
 /// Mass, centre of mass and inertia of solid bodies: computed, moved, joined.
 pub(crate) mod mass_properties;
+/// Pairs of colliders that may touch.
+mod pairs;
 /// The forms of colliders.
 pub(crate) mod shape;
+/// Bodies that slide in a plane, and the ground below them.
+mod sliding;
 /// What can be wrong with a description, and the search for it.
 pub(crate) mod validation;
 
-pub use description::{Actuator, Collider, Joint, JointKind, Offsets, Pair, Robot, Segment, Surface};
+pub use description::{Actuator, Collider, Ground, Joint, JointKind, Offsets, Pair, Robot, Segment, Surface};
 pub use mass_properties::MassProperties;
 pub use shape::Shape;
 pub use validation::RobotError;

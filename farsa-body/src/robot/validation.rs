@@ -97,6 +97,12 @@ pub enum RobotError {
         /// The two colliders' names.
         colliders: [String; 2],
     },
+    /// Ground under a body that does not slide in a plane: on two crosswise sliding joints in the world, and a turn on
+    /// them at most.
+    Ground {
+        /// The body's name.
+        segment: String,
+    },
     /// A pair that is listed twice.
     Twice {
         /// The two colliders' names.
@@ -125,6 +131,9 @@ impl fmt::Display for RobotError {
             }
             Self::Shapes { colliders: [a, b] } => write!(f, "colliders {a} and {b}: no contact between such shapes"),
             Self::SameBody { colliders: [a, b] } => write!(f, "colliders {a} and {b} are on one body"),
+            Self::Ground { segment } => {
+                write!(f, "segment {segment}: no body that slides in a plane has ground below it")
+            }
             Self::Twice { colliders: [a, b] } => write!(f, "colliders {a} and {b} are paired twice"),
         }
     }
@@ -133,7 +142,7 @@ impl fmt::Display for RobotError {
 impl core::error::Error for RobotError {}
 
 /// Demands of a number of the named part: NaN never passes.
-struct Part<'a>(&'a str);
+pub(super) struct Part<'a>(pub(super) &'a str);
 
 impl Part<'_> {
     fn demand(&self, ok: bool, field: &'static str, value: f64) -> Result<(), RobotError> {
@@ -148,7 +157,7 @@ impl Part<'_> {
         self.demand(value.is_finite() && value > 0.0, field, value)
     }
 
-    fn not_negative(&self, field: &'static str, value: f64) -> Result<(), RobotError> {
+    pub(super) fn not_negative(&self, field: &'static str, value: f64) -> Result<(), RobotError> {
         self.demand(value.is_finite() && value >= 0.0, field, value)
     }
 
@@ -175,7 +184,7 @@ impl Part<'_> {
         }
     }
 
-    fn surface(&self, surface: &Surface) -> Result<(), RobotError> {
+    pub(super) fn surface(&self, surface: &Surface) -> Result<(), RobotError> {
         self.not_negative("friction", surface.friction)?;
         self.not_negative("rolling friction", surface.rolling_friction)?;
         self.positive("contact stiffness", surface.stiffness)?;
@@ -203,6 +212,10 @@ impl Part<'_> {
                 self.demand(s.limit >= 0.0, "limit", s.limit)
             }
             Law::Torque(t) => self.demand(t.limit >= 0.0, "limit", t.limit),
+            Law::Velocity(v) => {
+                self.not_negative("gain", v.gain)?;
+                self.demand(v.limit >= 0.0, "limit", v.limit)
+            }
             Law::Held(h) => {
                 self.not_negative("stiffness", h.stiffness)?;
                 self.not_negative("damping", h.damping)
@@ -225,7 +238,7 @@ fn named<'a>(part: &'static str, mut names: impl Iterator<Item = &'a String>) ->
     names.position(String::is_empty).map_or(Ok(()), |index| Err(RobotError::Unnamed { part, index }))
 }
 
-fn index(part: &str, field: &'static str, index: usize, count: usize) -> Result<(), RobotError> {
+pub(super) fn index(part: &str, field: &'static str, index: usize, count: usize) -> Result<(), RobotError> {
     if index < count { Ok(()) } else { Err(RobotError::Index { part: part.into(), field, index, count }) }
 }
 
@@ -303,6 +316,9 @@ impl Robot {
             }
             Part(&collider.name).shape(&collider.shape)?;
             Part(&collider.name).placement(&collider.placement)?;
+            for shade in collider.color.into_iter().flatten() {
+                Part(&collider.name).demand((0.0..=1.0).contains(&shade), "colour", shade)?;
+            }
         }
         for actuator in &self.actuators {
             index(&actuator.name, "joint", actuator.joint.index(), self.segments.len())?;
@@ -312,35 +328,15 @@ impl Robot {
             }
             Part(&actuator.name).law(&actuator.law)?;
         }
-        self.validate_pairs()
-    }
-
-    fn validate_pairs(&self) -> Result<(), RobotError> {
-        let mut seen = BTreeSet::new();
-        for pair in &self.pairs {
-            let [a, b] = pair.colliders;
-            index("a pair", "collider", a, self.colliders.len())?;
-            index("a pair", "collider", b, self.colliders.len())?;
-            let colliders = || [self.colliders[a].name.clone(), self.colliders[b].name.clone()];
-            if self.colliders[a].body == self.colliders[b].body {
-                return Err(RobotError::SameBody { colliders: colliders() });
-            }
-            if !seen.insert([a.min(b), a.max(b)]) {
-                return Err(RobotError::Twice { colliders: colliders() });
-            }
-            if self.colliders[a].shape == Shape::Plane && self.colliders[b].shape == Shape::Plane {
-                return Err(RobotError::Shapes { colliders: colliders() });
-            }
-            Part(&self.colliders[a].name).surface(&pair.surface)?;
-        }
-        Ok(())
+        self.validate_pairs()?;
+        self.validate_grounds()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::actuators::law::{Held, Servo, Torque};
+    use crate::actuators::law::{Held, Servo, Torque, Velocity};
     use crate::actuators::muscle::MusclePair;
     use crate::ports::{BodyId, JointId};
     use crate::robot::description::{Collider, Joint};
@@ -377,6 +373,7 @@ mod tests {
         r.add_actuator("muscles", JointId(0), Law::MusclePair(MusclePair::thesis(300.0, 0.01, [-1.0, 1.0])));
         r.add_actuator("servo", JointId(1), Law::Servo(Servo { stiffness: 1.0, damping: 0.1, limit: f64::INFINITY }));
         r.add_actuator("torque", JointId(0), Law::Torque(Torque { limit: 1.0 }));
+        r.add_actuator("velocity", JointId(0), Law::Velocity(Velocity { gain: 1.0, limit: f64::INFINITY }));
         r.add_actuator("held", JointId(0), Law::Held(Held { stiffness: 1.0, damping: 0.0 }));
         r
     }
@@ -435,7 +432,7 @@ mod tests {
     #[test]
     fn faults_of_numbers() {
         type Change = fn(&mut Robot);
-        let values: [(&str, Change); 28] = [
+        let values: [(&str, Change); 30] = [
             ("rotation", |r| r.segments[0].joint.placement.rotation[3] = 1.1),
             ("rotation", |r| r.colliders[0].placement.rotation[0] = f64::NAN),
             ("position", |r| r.colliders[0].placement.position[0] = f64::INFINITY),
@@ -464,6 +461,8 @@ mod tests {
             ("viscosity", |r| muscles(r).viscosity = -0.9),
             ("limit", |r| r.actuators[2].law = Law::Torque(Torque { limit: f64::NAN })),
             ("damping", |r| r.actuators[3].law = Law::Held(Held { stiffness: 1.0, damping: -1.0 })),
+            ("colour", |r| r.colliders[0].color = Some([0.0, 1.5, 0.0])),
+            ("gain", |r| r.actuators[3].law = Law::Velocity(Velocity { gain: -1.0, limit: 1.0 })),
         ];
         for (expected, change) in values {
             let error = fault(change);

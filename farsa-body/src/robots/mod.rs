@@ -14,6 +14,8 @@ pub(crate) mod arm_and_hand;
 pub(crate) mod mobile;
 /// The table and the sphere of `reach-grasp-lift`.
 pub(crate) mod tabletop;
+/// Wheeled robots as bodies with joints.
+mod vehicle;
 
 pub use arm_and_hand::{ArmAndHand, Finger};
 pub use mobile::{InfraredRing, MobileParts, MobileRobot};

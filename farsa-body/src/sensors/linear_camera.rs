@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use crate::channel::{ChannelError, finite_range, groups, positive};
-use crate::ports::{BodyId, Channels, Kinematics, Planar, Sensor};
+use crate::ports::{BodyId, Channels, Kinematics, Sensor, Sight};
 use crate::sensors::beam::Beam;
 use crate::sensors::stance::Stance;
 
@@ -137,7 +137,7 @@ where
     R: AsRef<[Beam]>,
     C: AsRef<[ColorBand]>,
     B: Copy,
-    W: Planar<Body = B> + Kinematics + ?Sized,
+    W: Sight<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let (stance, bands) = (Stance::from_world(world, self.body), self.bands.as_ref());
@@ -178,7 +178,7 @@ const MOST_SHOWN: usize = 16;
 
 impl Shown {
     #[inline]
-    fn from_world<W: Planar + ?Sized>(
+    fn from_world<W: Sight + ?Sized>(
         world: &W,
         stance: &Stance,
         rays: &[Beam],
@@ -193,7 +193,8 @@ impl Shown {
                 return;
             }
             // The middle lies a radius behind the nearest point, which cannot be known from close by.
-            let told = near.body.is_some() && near.distance > 0.5 * near.radius;
+            let round = near.body.is_some() && near.radius > 0.0;
+            let told = round && near.distance > 0.5 * near.radius;
             let Some(room) = shown.rounds.get_mut(shown.count).filter(|_| told) else {
                 shown.anywhere = true;
                 return;

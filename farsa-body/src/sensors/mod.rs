@@ -9,12 +9,12 @@
 //! | a body's height, pose, velocity | [`Height`], [`BodyPose`], [`BodyVelocity`] | 1, 7, 6 | `Kinematics` |
 //! | how fast the wheels turn | [`WheelSpeed`] | 1 a wheel | `Joints` |
 //! | what pushes or pulls a robot on wheels | [`Traction`] | 2 | `Kinematics`, `Joints` |
-//! | what is near a wheeled robot | one of the [infrared rings](infrared) | 1 a sensor | `Rays` or `Planar` |
+//! | what is near a wheeled robot | one of the [infrared rings](infrared) | 1 a sensor | `Rays` or `Sight` |
 //! | how far away things are, in a fan of beams | [`LaserDistance`] | 1 a beam | `Rays` |
-//! | colours around, in sectors | [`LinearCamera`] | sectors x colours | `Planar` |
+//! | colours around, in sectors | [`LinearCamera`] | sectors x colours | `Sight` |
 //! | lamps | [`LightSensors`] | 1 a sensor | `Planar` |
 //! | the ground's colour | [`GroundColor`] | 1 or 3 a place | `Planar` |
-//! | what other robots signal | [`SignalSensor`] | sectors | `Planar` |
+//! | what other robots signal | [`SignalSensor`] | sectors | `Sight` |
 //! | whether the attachment device holds something | [`AttachmentSensor`] | 1 | `Planar` |
 //! | a label, an instruction, a bias that the experiment sets | [`Signal`] | any | none |
 //!
@@ -52,7 +52,9 @@ pub use beam::Beam;
 pub use ground_color::GroundColor;
 pub use infrared::{AnalyticInfrared, InfraredAnalytic, InfraredRays};
 #[cfg(feature = "alloc")]
-pub use infrared::{InfraredTable, InfraredTableError, InfraredTables, SampledInfrared};
+pub use infrared::{
+    InfraredDrawing, InfraredGroups, InfraredTable, InfraredTableError, InfraredTables, SampledInfrared,
+};
 pub use laser_distance::LaserDistance;
 pub use light_sensors::LightSensors;
 pub use linear_camera::{ColorBand, LinearCamera};

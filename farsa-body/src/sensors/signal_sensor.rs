@@ -3,7 +3,7 @@
 use farsa_num::{Scalar, atan2};
 
 use crate::channel::{ChannelError, groups, positive, unit};
-use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Planar, Sensor};
+use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Sensor, Sight};
 use crate::sensors::stance::Stance;
 
 /// Reads what other robots signal, in `SECTORS` equal sectors around a robot, one channel each in [0, 1]: the strongest
@@ -57,7 +57,7 @@ fn sector([x, y]: [f32; 2], sectors: usize) -> usize {
 impl<const SECTORS: usize, B, W> Sensor<W> for SignalSensor<SECTORS, B>
 where
     B: Copy + PartialEq,
-    W: Planar<Body = B> + Kinematics + ?Sized,
+    W: Sight<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let stance = Stance::from_world(world, self.body);

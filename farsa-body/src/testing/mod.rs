@@ -5,6 +5,7 @@
 //! | a world that steps | [`check_world`] |
 //! | one that can be set up anew | [`check_arrange`] |
 //! | one that casts rays | [`check_rays`] |
+//! | one in which is seen | [`check_sight`] |
 //! | a world of the plane | [`check_planar`] |
 //! | a sensor or a motor | [`check_sensor`], [`check_motor`], in a [`PointWorld`] or a [`PlaneWorld`] |
 //!
@@ -28,7 +29,7 @@ mod promise;
 /// What a world did, as bits, and how two runs compare.
 mod trace;
 
-pub use checks::{check_arrange, check_motor, check_planar, check_rays, check_sensor, check_world};
+pub use checks::{check_arrange, check_motor, check_planar, check_rays, check_sensor, check_sight, check_world};
 pub use plane_world::PlaneWorld;
 pub use point_world::PointWorld;
 pub use probe::Probe;

@@ -6,7 +6,7 @@ use farsa_num::{Scalar, sin_cos};
 
 use crate::ports::{
     Actuated, ActuatorId, BodyId, Handles, Hit, JointId, Joints, Kinematics, Lamp, NearbySurface, Planar, PlanarHit,
-    Rays, Snapshot, World,
+    Rays, Sight, Snapshot, World,
 };
 use crate::pose::{Pose, Twist};
 use crate::robots::mobile::{MobileParts, MobileRobot};
@@ -327,7 +327,7 @@ impl Rays for PlaneWorld {
     }
 }
 
-impl Planar for PlaneWorld {
+impl Sight for PlaneWorld {
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
         for wall in &self.walls {
             let [a, b] = wall.ends;
@@ -362,6 +362,9 @@ impl Planar for PlaneWorld {
         let met = self.meet(from, direction, range, but)?;
         Some(PlanarHit { distance: met.distance, body: met.body, color: met.color })
     }
+}
+
+impl Planar for PlaneWorld {
     fn ground(&self, at: [f32; 2]) -> [f32; 3] {
         let painted = |area: &&Painted| length(sub(at, area.centre)) <= area.radius;
         self.areas.iter().rev().find(painted).map_or([0.0; 3], |area| area.color)

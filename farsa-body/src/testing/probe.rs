@@ -42,7 +42,7 @@ impl Probe {
             Law::MusclePair(_) => [[0.0; 2], [1.0; 2]],
             Law::Servo(_) => range(actuator.joint).map(|x| [x, 0.0]),
             Law::Torque(torque) => finite([-torque.limit, torque.limit]).map(|x| [x, 0.0]),
-            Law::Held(_) => [[-1.0, 0.0], [1.0, 0.0]],
+            Law::Held(_) | Law::Velocity(_) => [[-1.0, 0.0], [1.0, 0.0]],
         };
         let kinds = || robot.segments.iter().map(|s| s.joint.kind).enumerate();
         Self {

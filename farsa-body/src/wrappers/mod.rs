@@ -5,6 +5,7 @@
 //! | add noise | [`Noisy`] with a [`Noise`] |
 //! | pass values on some ticks later | [`Delayed`] |
 //! | convert units, or keep to a range | [`Scaled`], [`Saturated`] |
+//! | tell only whether a value is large | [`Thresholded`] |
 //! | switch channels off | [`Lesioned`] |
 //! | let channels get stuck | [`Stuck`] at a [`StuckAt`] |
 //! | look at the last values without disturbing the sensor | [`Recorded`] |
@@ -18,7 +19,7 @@ pub(crate) mod delayed;
 pub(crate) mod faulty;
 /// Random numbers added to every value.
 pub(crate) mod noisy;
-/// Gain and offset, saturation, and nothing but a record.
+/// Gain and offset, saturation, a threshold, and nothing but a record.
 pub(crate) mod scaled;
 /// What the wrappers share.
 pub(crate) mod wrap;
@@ -26,4 +27,4 @@ pub(crate) mod wrap;
 pub use delayed::Delayed;
 pub use faulty::{Lesioned, Stuck, StuckAt};
 pub use noisy::{Noise, Noisy};
-pub use scaled::{Recorded, Saturated, Scaled};
+pub use scaled::{Recorded, Saturated, Scaled, Thresholded};

@@ -1,4 +1,4 @@
-//! Wrappers that change every value in the same way: gain and offset, saturation, nothing at all.
+//! Wrappers that change every value in the same way: gain and offset, saturation, a threshold, nothing at all.
 
 #[cfg(feature = "alloc")]
 use alloc::{vec, vec::Vec};
@@ -96,6 +96,45 @@ impl<T: Channels, M: AsMut<[f32]>> Saturated<T, M> {
             return Err(ChannelError::Range { from: low, to: high });
         }
         Wrapped::new(inner, Saturation { low, high }, memory).map(Self)
+    }
+}
+
+/// Passes on 1 for every value above a threshold that a sensor reads or a motor is given, and 0 for the others and NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thresholded<T, M>(Wrapped<T, Threshold, M>);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Threshold(f32);
+
+impl Filter for Threshold {
+    fn pass(&mut self, values: &[f32], passed: &mut [f32]) {
+        for (p, &x) in passed.iter_mut().zip(values) {
+            *p = f32::from(u8::from(x > self.0));
+        }
+    }
+}
+
+wrapper!(Thresholded);
+
+#[cfg(feature = "alloc")]
+impl<T: Channels> Thresholded<T, Vec<f32>> {
+    /// Wraps a sensor or motor.
+    ///
+    /// # Errors
+    /// [`ChannelError::Value`] if the threshold is not finite.
+    pub fn new(inner: T, threshold: f32) -> Result<Self, ChannelError> {
+        let memory = vec![0.0; inner.channels()];
+        Self::new_in(inner, threshold, memory)
+    }
+}
+
+impl<T: Channels, M: AsMut<[f32]>> Thresholded<T, M> {
+    /// Wraps a sensor or motor, over the caller's `memory` [channels].
+    ///
+    /// # Errors
+    /// [`ChannelError::Value`] if the threshold is not finite, [`ChannelError::Memory`] if the memory is too short.
+    pub fn new_in(inner: T, threshold: f32, memory: M) -> Result<Self, ChannelError> {
+        Wrapped::new(inner, Threshold(finite("threshold", threshold)?), memory).map(Self)
     }
 }
 

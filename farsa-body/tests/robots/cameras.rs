@@ -3,7 +3,7 @@
 use core::f32::consts::PI;
 
 use farsa_body::testing::PlaneWorld;
-use farsa_body::{Beam, BodyId, Channels, ColorBand, LightSensors, LinearCamera, MobileRobot, Planar, Sensor};
+use farsa_body::{Beam, BodyId, Channels, ColorBand, LightSensors, LinearCamera, MobileRobot, Sensor, Sight};
 use proptest::prelude::*;
 
 const RED: [f32; 3] = [1.0, 0.0, 0.0];

@@ -1,7 +1,9 @@
 //! The kit passes a world of the plane that is right and names what is wrong.
 
 use farsa_body::testing::{ConformanceError, PlaneWorld, Promise, check_planar, check_rays};
-use farsa_body::{Actuated, ActuatorId, BodyId, Handles, JointId, Lamp, MobileRobot, NearbySurface, Planar, PlanarHit};
+use farsa_body::{
+    Actuated, ActuatorId, BodyId, Handles, JointId, Lamp, MobileRobot, NearbySurface, Planar, PlanarHit, Sight,
+};
 
 const PLACES: [[f32; 2]; 4] = [[0.0, 0.0], [0.3, -0.4], [-0.5, 0.5], [-0.6, 0.6]];
 const RANGE: f32 = 0.7;
@@ -56,7 +58,7 @@ impl Handles for Broken {
     type Actuator = ActuatorId;
 }
 
-impl Planar for Broken {
+impl Sight for Broken {
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
         let range = if self.1 == Fault::ToldTooFar { 1.5 * range } else { range };
         if self.1 == Fault::Empty {
@@ -94,6 +96,9 @@ impl Planar for Broken {
             _ => look(range, but),
         }
     }
+}
+
+impl Planar for Broken {
     fn ground(&self, at: [f32; 2]) -> [f32; 3] {
         if self.1 == Fault::GroundBeyond { [-0.1; 3] } else { self.0.ground(at) }
     }

@@ -8,7 +8,7 @@ use farsa_body::{
     Actuated, ActuatorId, AttachmentMotor, AttachmentSensor, Beam, BodyId, ChannelError, Channels, ColorBand,
     GroundColor, Handles, InfraredAnalytic, InfraredTable, InfraredTables, JointId, Kinematics, Lamp, Leds,
     LightSensors, LinearCamera, MobileParts, MobileRobot, Motor, NearbySurface, Planar, PlanarHit, Pose,
-    SampledInfrared, Sensor, SignalMotor, SignalSensor, Twist,
+    SampledInfrared, Sensor, Sight, SignalMotor, SignalSensor, Twist,
 };
 use proptest::prelude::*;
 
@@ -342,7 +342,7 @@ impl Kinematics for Odd {
         Twist::default()
     }
 }
-impl Planar for Odd {
+impl Sight for Odd {
     fn query_near(&self, _: [f32; 2], _: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
         let [a, b, c, d, e, f, g, h] = self.0;
         tell(NearbySurface { body: None, point: [a, b], distance: c, radius: d, color: [e; 3], signal: Some(f) });
@@ -359,6 +359,9 @@ impl Planar for Odd {
         let [a, b, c, d, ..] = self.0;
         (d < 1.0).then_some(PlanarHit { distance: d, body: None, color: [a, b, c] })
     }
+}
+
+impl Planar for Odd {
     fn ground(&self, _: [f32; 2]) -> [f32; 3] {
         let [a, b, c, ..] = self.0;
         [a, b, c]

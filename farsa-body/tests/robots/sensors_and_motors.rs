@@ -7,7 +7,7 @@ use farsa_body::{
     Actuated, ActuatorId, Arrange, Axes, BodyId, BodyPose, BodyVelocity, ChannelError, Channels, ContactForce,
     Contacts, Delayed, Handles, Height, JointId, JointPosition, JointSpeed, Joints, Kinematics, Lesioned, Motor,
     Muscles, Noise, Noisy, PairContact, PairId, Point, Pose, Recorded, Saturated, Scaled, Sensor, ServoGroup,
-    ServoRange, Signal, Stuck, StuckAt, TargetPosition, TorqueMotor, Touch, Twist, World,
+    ServoRange, Signal, Stuck, StuckAt, TargetPosition, TorqueMotor, Touch, Twist, VelocityMotor, World,
 };
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
@@ -276,6 +276,20 @@ fn muscles_and_torques_are_commanded_within_their_limits() {
     motors.drive(&[1.0], &mut world);
     assert_eq!((world.commanded(ActuatorId(0)), world.commanded(ActuatorId(1))), ([1.0, 0.0], [-4.0, 0.0]));
     assert!(TorqueMotor::new(ActuatorId(0), f32::NAN).is_err());
+}
+
+#[test]
+fn speeds_are_commanded_as_torques_of_a_gain() {
+    let mut world = PointWorld::new(1);
+    let mut motor = VelocityMotor::new(ActuatorId(0), 2.0, 5.0).unwrap();
+    assert_eq!(Channels::channels(&motor), 1);
+    for (y, torque) in [(0.5, 0.0), (0.75, 5.0), (0.25, -5.0), (2.0, 10.0), (f32::NAN, -10.0)] {
+        motor.drive(&[y], &mut world);
+        assert_eq!(world.commanded(ActuatorId(0)), [torque, 0.0], "{y}");
+    }
+    for [largest, gain] in [[f32::NAN, 1.0], [1.0, f32::INFINITY]] {
+        assert!(VelocityMotor::new(ActuatorId(0), largest, gain).is_err());
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use farsa_body::{
     ChannelError, Channels, Delayed, Lesioned, Motor, Noise, Noisy, Recorded, Saturated, Scaled, Sensor, Signal, Stuck,
-    StuckAt,
+    StuckAt, Thresholded,
 };
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
@@ -81,6 +81,10 @@ proptest! {
         prop_assert_eq!(&sensed!(Saturated::new(signal(), low, high).unwrap(), &ticks), &expected);
         prop_assert_eq!(&driven(Saturated::new(Log, low, high).unwrap(), &ticks), &expected);
         prop_assert_eq!(driven(Saturated::new(Log, low, high).unwrap(), &[[f32::NAN; N]]), [[low; N]]);
+        let expected: Vec<[f32; N]> = ticks.iter().map(|tick| tick.map(|x| if x > low { 1.0 } else { 0.0 })).collect();
+        prop_assert_eq!(&sensed!(Thresholded::new(signal(), low).unwrap(), &ticks), &expected);
+        prop_assert_eq!(&driven(Thresholded::new(Log, low).unwrap(), &ticks), &expected);
+        prop_assert_eq!(driven(Thresholded::new(Log, low).unwrap(), &[[f32::NAN; N]]), [[0.0; N]]);
     }
 
     #[test]
@@ -207,6 +211,7 @@ fn what_cannot_be_built_is_told_in_numbers() {
     assert_eq!(Lesioned::new(Log, 2..5).err(), Some(ChannelError::Selection { start: 2, end: 5, channels: 3 }));
     let error = Lesioned::new(Log, ..=usize::MAX).err().map(|e| e.to_string());
     assert_eq!(error, Some(format!("channels 0..{} of 3", usize::MAX)));
+    assert!(matches!(Thresholded::new(Log, f32::NAN), Err(ChannelError::Value { field: "threshold", .. })));
     assert_eq!(Saturated::new(Log, 1.0, 0.0).err(), Some(ChannelError::Range { from: 1.0, to: 0.0 }));
     assert_eq!(
         Noisy::new(Log, Noise::Normal(-1.0), stream(0)).err(),

@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use crate::channel::{ChannelError, direction, groups, positive};
-use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Planar, Sensor};
+use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Sensor, Sight};
 #[cfg(feature = "alloc")]
 use crate::robots::mobile::MobileRobot;
 #[cfg(feature = "alloc")]
@@ -64,7 +64,7 @@ impl<L, B, W> Sensor<W> for InfraredAnalytic<L, B>
 where
     L: AsRef<[[f32; 2]]>,
     B: Copy + PartialEq,
-    W: Planar<Body = B> + Kinematics + ?Sized,
+    W: Sight<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let (stance, axes) = (Stance::from_world(world, self.body), self.axes.as_ref());

@@ -3,14 +3,21 @@
 //! | sensor | what a reading is | hidden things | needs |
 //! |---|---|---|---|
 //! | [`InfraredRays`] | how near the nearest hit of a few rays is | are not seen | `Rays`: any world |
-//! | [`InfraredAnalytic`] | a formula of distance, bearing and radius, [`AnalyticInfrared`] | are felt, too | `Planar` |
-//! | [`SampledInfrared`] | what a real robot's sensors read, from [`InfraredTables`] | are felt, too | `Planar`, measured tables |
+//! | [`InfraredGroups`] | the largest of such readings in a group of neighbours | are not seen | `Rays`, `Sight` |
+//! | [`InfraredAnalytic`] | a formula of distance, bearing and radius, [`AnalyticInfrared`] | are felt, too | `Sight` |
+//! | [`SampledInfrared`] | what a real robot's sensors read, from [`InfraredTables`] | are felt, too | `Sight`, measured tables |
 //!
 //! Take rays for a world of your own or walls that hide each other, the formula for speed, tables to come nearest to a
 //! robot that was measured.
 
 /// The ring that answers by the formula.
 pub(crate) mod analytic;
+/// Channels as rays to be drawn.
+#[cfg(feature = "alloc")]
+pub(crate) mod drawn;
+/// The ring that casts rays, in groups.
+#[cfg(feature = "alloc")]
+pub(crate) mod groups;
 /// The formula: how strongly a sensor answers one surface.
 pub(crate) mod model;
 /// The ring that casts rays.
@@ -23,6 +30,10 @@ pub(crate) mod sampled;
 pub(crate) mod table;
 
 pub use analytic::InfraredAnalytic;
+#[cfg(feature = "alloc")]
+pub use drawn::InfraredDrawing;
+#[cfg(feature = "alloc")]
+pub use groups::InfraredGroups;
 pub use model::AnalyticInfrared;
 pub use rays::InfraredRays;
 #[cfg(feature = "alloc")]

@@ -59,6 +59,11 @@ fn between([a, b]: [f64; 2], part: f64) -> f64 {
 }
 
 impl AnalyticInfrared {
+    /// Where a wall straight before a sensor reads 0 and where it reads 1, by its distance from the hull [m].
+    ///
+    /// Both ends of a table of channels: between them a reading falls in proportion to the distance, and with the angle.
+    pub const WALL_ENDS: [f64; 2] = [WALL[1], WALL[0]];
+
     /// The model of a surface with this radius [m]; 0, negative and NaN are a wall's.
     pub fn for_radius(radius: f32) -> Self {
         let curvature = if radius > 0.0 { 1.0 / f64::from(radius) } else { 0.0 };
@@ -134,6 +139,16 @@ mod tests {
         }
         assert_eq!(AnalyticInfrared::for_radius(0.001), AnalyticInfrared::for_radius(0.0125));
         assert_eq!(AnalyticInfrared::for_radius(f32::NAN), AnalyticInfrared::for_radius(0.0));
+    }
+
+    #[test]
+    fn a_wall_reads_0_and_1_at_its_ends() {
+        let wall = AnalyticInfrared::for_radius(0.0);
+        let [zero, one] = AnalyticInfrared::WALL_ENDS.map(|distance| wall.response(distance as f32, 1.0));
+        assert!(zero.abs() < 1e-6 && (one - 1.0).abs() < 1e-6, "{zero} {one}");
+        let between = AnalyticInfrared::WALL_ENDS.map(|end| 0.999 * end + 0.001 * 0.023);
+        let within = between.map(|distance| wall.response(distance as f32, 1.0));
+        assert!(within[0] > 0.0 && within[1] < 1.0, "{within:?}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use core::borrow::Borrow;
 use farsa_num::atan2;
 
 use crate::channel::{ChannelError, groups, positive};
-use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Planar, Sensor};
+use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Sensor, Sight};
 use crate::sensors::infrared::table::InfraredTable;
 use crate::sensors::stance::Stance;
 
@@ -131,7 +131,7 @@ impl<T, B, W> Sensor<W> for SampledInfrared<T, B>
 where
     T: Borrow<InfraredTables>,
     B: Copy + PartialEq,
-    W: Planar<Body = B> + Kinematics + ?Sized,
+    W: Sight<Body = B> + Kinematics + ?Sized,
 {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let (stance, tables) = (Stance::from_world(world, self.body), self.tables.borrow());

@@ -13,6 +13,6 @@ mod world;
 
 pub use arrange::check_arrange;
 pub use channels::{check_motor, check_sensor};
-pub use planar::check_planar;
+pub use planar::{check_planar, check_sight};
 pub use rays::check_rays;
 pub use world::check_world;

@@ -4,7 +4,7 @@ use alloc::{format, string::String, vec::Vec};
 
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
 
-use crate::ports::{Lamp, NearbySurface, Planar};
+use crate::ports::{Lamp, NearbySurface, Planar, Sight};
 use crate::testing::promise::{ConformanceError, Promise, ensure};
 
 /// Number of directions looked in from every place.
@@ -13,27 +13,24 @@ const LOOKS: usize = 256;
 /// How far two ways to the same point may differ [m].
 const CLOSE: f32 = 1e-4;
 
-/// Checks what every world of the plane promises about what is near, in sight, underfoot and shining, at these places [m]
-/// and as far as `range` [m].
+/// Checks what every world promises about what is near and in sight, at these places [m] and as far as `range` [m].
 ///
 /// What is near is reported within its range, with the distance of its point, and again within twice the range; what is
-/// seen
-/// in a random direction is the nearest object there, reported as near and not seen without its body; a round body that
-/// is near is in sight or behind something nearer. Colours and signals are in [0, 1].
+/// seen in a random direction is the nearest object there, reported as near and not seen without its body; a round body
+/// that is near is in sight or behind something nearer. Colours and signals are in [0, 1].
 ///
 /// `bodies` are all bodies of the world; no place lies within a wall. Something must be near and something in sight.
 ///
 /// # Errors
 /// [`Promise::Near`], [`Promise::Look`] or [`Promise::Shown`] with what was wrong.
-pub fn check_planar<W>(world: &W, bodies: &[W::Body], places: &[[f32; 2]], range: f32) -> Result<(), ConformanceError>
+pub fn check_sight<W>(world: &W, bodies: &[W::Body], places: &[[f32; 2]], range: f32) -> Result<(), ConformanceError>
 where
-    W: Planar,
+    W: Sight,
     W::Body: PartialEq,
 {
     let mut stream = Stream::new(0, Domain::Sensor, 0, 0, 0);
     let (mut met, mut seen) = (0, 0);
     for &from in places {
-        shown(&world.ground(from), || format!("the ground at {from:?}"))?;
         let near = told(world, from, range);
         met += near.len();
         check_near(world, bodies, from, range, &near)?;
@@ -43,7 +40,22 @@ where
         }
     }
     ensure(met > 0, Promise::Near, || format!("nothing within {range} m of any of {} places", places.len()))?;
-    ensure(seen > 0, Promise::Look, || format!("nothing in sight from any of {} places", places.len()))?;
+    ensure(seen > 0, Promise::Look, || format!("nothing in sight from any of {} places", places.len()))
+}
+
+/// Checks what every world of the plane promises: all of [`check_sight`], and what is underfoot and shining.
+///
+/// # Errors
+/// As [`check_sight`].
+pub fn check_planar<W>(world: &W, bodies: &[W::Body], places: &[[f32; 2]], range: f32) -> Result<(), ConformanceError>
+where
+    W: Planar,
+    W::Body: PartialEq,
+{
+    for &from in places {
+        shown(&world.ground(from), || format!("the ground at {from:?}"))?;
+    }
+    check_sight(world, bodies, places, range)?;
     let mut lamps: Vec<Lamp<W::Body>> = Vec::new();
     world.lamps(&mut |lamp| lamps.push(lamp));
     for (index, lamp) in lamps.iter().enumerate() {
@@ -58,7 +70,7 @@ where
     Ok(())
 }
 
-fn told<W: Planar>(world: &W, from: [f32; 2], range: f32) -> Vec<NearbySurface<W::Body>> {
+fn told<W: Sight>(world: &W, from: [f32; 2], range: f32) -> Vec<NearbySurface<W::Body>> {
     let mut all = Vec::new();
     world.query_near(from, range, &mut |near| all.push(near));
     all
@@ -77,7 +89,7 @@ fn check_near<W>(
     all: &[NearbySurface<W::Body>],
 ) -> Result<(), ConformanceError>
 where
-    W: Planar,
+    W: Sight,
     W::Body: PartialEq,
 {
     let farther = told(world, from, 2.0 * range);
@@ -123,7 +135,7 @@ fn check_look<W>(
     near: &[NearbySurface<W::Body>],
 ) -> Result<bool, ConformanceError>
 where
-    W: Planar,
+    W: Sight,
     W::Body: PartialEq,
 {
     let look = |range| world.cast_planar(from, direction, range, None);
