@@ -8,7 +8,7 @@ use farsa_num::Instructions;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileParts,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Snapshot, Twist, World as _,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist, World as _,
 };
 
 use crate::arena::description::Arena;

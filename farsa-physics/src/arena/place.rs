@@ -32,6 +32,8 @@ pub struct FreePlace<'a> {
     pub radius: f32,
     /// How far it keeps from every wall [m].
     pub walls: f32,
+    /// The middle and the radius of the circle in which its centre lies, if there is one [m].
+    pub within: Option<([f32; 2], f32)>,
     /// From which bodies it keeps how far [m]; others are not looked at.
     pub bodies: &'a [(BodyId, f32)],
     /// Places that are tried at most.
@@ -41,7 +43,7 @@ pub struct FreePlace<'a> {
 impl<'a> FreePlace<'a> {
     /// A disc within a region that overlaps no wall; a thousand tries.
     pub fn new(region: [[f32; 2]; 2], radius: f32) -> Self {
-        Self { region, radius, walls: 0.0, bodies: &[], tries: 1000 }
+        Self { region, radius, walls: 0.0, within: None, bodies: &[], tries: 1000 }
     }
 
     /// The same disc, which also keeps from these bodies.
@@ -69,11 +71,17 @@ impl<'a> FreePlace<'a> {
                     lacks = lacks.max(self.radius + clearance - near.distance);
                 }
             });
-            if lacks <= 0.0 {
+            if lacks > 0.0 {
+                short = short.min(lacks);
+            } else if self.within.is_none_or(|(centre, far)| distance(at, centre) <= far) {
                 return Ok(at);
             }
-            short = short.min(lacks);
         }
         Err(ArenaError::NoFreePlace { tries: self.tries, radius: self.radius, short })
     }
+}
+
+fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
+    let [x, y] = [a[0] - b[0], a[1] - b[1]];
+    farsa_num::Scalar::sqrt(x * x + y * y)
 }

@@ -148,7 +148,7 @@ fn signal(world: &impl View, body: usize) -> Option<f32> {
     (body < model.robots.len() && model.kind(body).robot.signal).then(|| robot_word(world, body, SHOWN + 3))
 }
 
-/// See [`farsa_body::Planar::near`].
+/// See [`farsa_body::Sight::query_near`].
 pub(crate) fn query_near(world: &impl View, from: [f32; 2], range: f32, mut tell: impl FnMut(NearbySurface<BodyId>)) {
     let model = world.model();
     for slab in &model.slabs {
@@ -231,7 +231,7 @@ fn along(
     }
 }
 
-/// See [`farsa_body::Planar::look`].
+/// See [`farsa_body::Sight::cast_planar`].
 pub(crate) fn cast_planar(
     world: &impl View,
     from: [f32; 2],

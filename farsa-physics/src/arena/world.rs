@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileParts,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Snapshot, Twist,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
 };
 
 use crate::arena::crowd::Crowd;
@@ -175,7 +175,7 @@ macro_rules! ports {
             }
         }
 
-        impl Planar for $world {
+        impl Sight for $world {
             fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
                 view::query_near(self, from, range, tell);
             }
@@ -188,6 +188,9 @@ macro_rules! ports {
             ) -> Option<PlanarHit<BodyId>> {
                 view::cast_planar(self, from, direction, range, but)
             }
+        }
+
+        impl Planar for $world {
             fn ground(&self, at: [f32; 2]) -> [f32; 3] {
                 view::ground(self, at)
             }

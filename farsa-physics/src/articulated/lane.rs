@@ -3,12 +3,13 @@
 use alloc::vec::Vec;
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
-    Pose, Rays, Snapshot, Twist,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, NearbySurface,
+    PairContact, PairId, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
 };
 
 use crate::articulated::model::Model;
 use crate::articulated::ray;
+use crate::articulated::sight;
 use crate::articulated::spatial::{Matrix, Spatial, Vector};
 use crate::articulated::step::{Precision, Scratch};
 use crate::articulated::tree::LinkData;
@@ -156,6 +157,21 @@ impl Contacts for Lane<'_> {
 impl Rays for Lane<'_> {
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
         ray::cast(self, origin, direction, range)
+    }
+}
+
+impl Sight for Lane<'_> {
+    fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
+        sight::query_near(self, from, range, tell);
+    }
+    fn cast_planar(
+        &self,
+        from: [f32; 2],
+        direction: [f32; 2],
+        range: f32,
+        but: Option<BodyId>,
+    ) -> Option<PlanarHit<BodyId>> {
+        sight::cast_planar(self, from, direction, range, but)
     }
 }
 

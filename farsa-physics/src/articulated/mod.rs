@@ -17,6 +17,8 @@
 //! - `ray`: ray casts
 //! - `world`: one world behind the ports
 //! - `lockstep`: the compiled steps of batches
+//! - `sight`: what cameras see in a horizontal plane
+//! - `ground`: friction below bodies that slide in a plane
 //! - `batch`: many worlds in SIMD lanes
 //! - `lane`: one world of a batch behind the ports
 
@@ -26,6 +28,8 @@ mod batch;
 mod collision;
 #[cfg(feature = "alloc")]
 mod contact;
+#[cfg(feature = "alloc")]
+mod ground;
 #[cfg(all(feature = "lanes", not(test)))]
 mod lane;
 #[cfg(feature = "alloc")]
@@ -40,6 +44,8 @@ mod model_builder;
 pub(crate) mod ray;
 #[cfg(feature = "alloc")]
 mod rows;
+#[cfg(feature = "alloc")]
+mod sight;
 #[cfg(feature = "alloc")]
 mod solver;
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "contacts need models, which own vectors"))]

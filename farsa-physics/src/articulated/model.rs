@@ -30,6 +30,8 @@ pub struct Options {
     pub limit_damping: f64,
     /// Contacts are watched from this distance on [m].
     pub margin: f64,
+    /// The height of the horizontal plane that cameras see [m].
+    pub sight_height: f64,
 }
 
 impl Default for Options {
@@ -43,6 +45,7 @@ impl Default for Options {
             limit_frequency: 1000.0,
             limit_damping: 1.0,
             margin: 5e-4,
+            sight_height: 0.0,
         }
     }
 }
@@ -146,6 +149,17 @@ pub(crate) struct StopPath {
     pub(crate) row: usize,
 }
 
+/// The ground below a body that slides: the links that it slides and turns by.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ground<R> {
+    /// The sliding links, the one on the world first.
+    pub(crate) sliders: [u16; 2],
+    pub(crate) turn: Option<u16>,
+    /// Largest impulse of a dynamics step [N s], and its largest moment [N m s].
+    pub(crate) limit: R,
+    pub(crate) turning_limit: R,
+}
+
 #[derive(Clone, Debug)]
 pub(crate) struct Pair<R> {
     /// Colliders in the order ball, capsule, block, plane.
@@ -167,6 +181,8 @@ pub(crate) struct Pair<R> {
     pub(crate) damping: R,
     /// Whether the pair can push a joint that has a stop.
     pub(crate) at_stops: bool,
+    /// The grounds below its two shapes.
+    pub(crate) grounds: [Option<u16>; 2],
     pub(crate) reach: Reach,
 }
 
@@ -186,8 +202,12 @@ pub struct Model<R> {
     pub(crate) joints: Vec<JointKind>,
     pub(crate) collider_bodies: Vec<Option<BodyId>>,
     pub(crate) colliders: Vec<Collider<R>>,
+    /// The colliders that cameras see, and their colours.
+    pub(crate) shown: Vec<(u16, [f32; 3])>,
+    pub(crate) sight_height: R,
     pub(crate) pairs: Vec<Pair<R>>,
     pub(crate) actuators: Vec<Actuator<R>>,
+    pub(crate) grounds: Vec<Ground<R>>,
     /// The state after [`farsa_body::Arrange::clear`].
     pub(crate) initial: Vec<R>,
     pub(crate) positions: usize,

@@ -8,7 +8,7 @@ use farsa_num::{Real, Scalar};
 
 use crate::articulated::links::{IDENTITY, cast_mount, choose_references, compose, frame, links_of, set_limits, unit};
 use crate::articulated::model::{
-    Actuator, Collider, Geometry, Model, ModelError, Mount, Options, Pair, Reach, StopPath,
+    Actuator, Collider, Geometry, Ground, Model, ModelError, Mount, Options, Pair, Reach, StopPath,
 };
 use crate::articulated::tree::{Link, Motion, WORLD};
 
@@ -22,6 +22,7 @@ fn check(options: &Options) -> Result<(), ModelError> {
         ("limit_frequency", options.limit_frequency, 1.0, 1e6),
         ("limit_damping", options.limit_damping, 0.0, 1e3),
         ("margin", options.margin, 0.0, 0.1),
+        ("sight_height", options.sight_height, -1e6, 1e6),
         ("gravity x", options.gravity[0], -1e4, 1e4),
         ("gravity y", options.gravity[1], -1e4, 1e4),
         ("gravity z", options.gravity[2], -1e4, 1e4),
@@ -156,6 +157,7 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
             rolling_friction: R::from_f64(p.surface.rolling_friction),
             stiffness: R::from_f64(p.surface.stiffness),
             damping: R::from_f64(p.surface.damping),
+            grounds: [None; 2],
             at_stops: reach.first.iter().chain(&reach.second).any(|l| has_stop(&links[usize::from(*l)])),
             reach,
         });
@@ -198,6 +200,36 @@ fn stop_paths_of(links: &[Link<f64>]) -> Vec<StopPath> {
     paths.collect()
 }
 
+/// The grounds below bodies that slide, which pairs learn that have a shape above them.
+fn grounds_of<R: Real>(
+    robot: &Robot,
+    mounts: &[Mount<f64>],
+    colliders: &[Fitted],
+    pairs: &mut [Pair<R>],
+    h: f64,
+) -> Vec<Ground<R>> {
+    let link = |joint: farsa_body::JointId| mounts[joint.index()].link;
+    let found = robot.grounds.iter().filter_map(|ground| {
+        let (sliders, turn) = robot.sliders(ground.body)?;
+        let limit = ground.friction * ground.load * h;
+        Some(Ground {
+            sliders: sliders.map(link),
+            turn: turn.map(link),
+            limit: R::from_f64(limit),
+            turning_limit: R::from_f64(limit * ground.radius),
+        })
+    });
+    let grounds: Vec<Ground<R>> = found.collect();
+    let above = |collider: usize| {
+        let link = colliders[collider].0.link;
+        grounds.iter().position(|ground| ground.turn.unwrap_or(ground.sliders[1]) == link).map(|number| number as u16)
+    };
+    for pair in pairs {
+        pair.grounds = pair.colliders.map(above);
+    }
+    grounds
+}
+
 impl<R: Real> Model<R> {
     /// Builds the constant part of a world from a robot's (or a whole scene's) description.
     ///
@@ -219,7 +251,10 @@ impl<R: Real> Model<R> {
         let (mut links, mounts) = links_of(robot);
         choose_references(&mut links);
         let colliders = colliders_of(robot, &mounts);
-        let Pairs { list: pairs, points, rolling, row_entries, rolling_entries } = pairs_of(robot, &links, &colliders)?;
+        let Pairs { list: mut pairs, points, rolling, row_entries, rolling_entries } =
+            pairs_of(robot, &links, &colliders)?;
+        let h = options.time_step / f64::from(options.substeps);
+        let grounds = grounds_of(robot, &mounts, &colliders, &mut pairs, h);
         let positions = links.iter().map(|l| if l.motion == Motion::Floating { 7 } else { 1 }).sum();
         let dofs = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
         let initial = start_of(robot, &links, &mounts, positions + dofs);
@@ -228,6 +263,8 @@ impl<R: Real> Model<R> {
         let actuators =
             robot.actuators.iter().map(|a| Actuator { link: mounts[a.joint.index()].link, law: a.law.cast() });
         let bodies_of = |pair: &farsa_body::Pair| pair.colliders.map(|c| robot.colliders[c].body);
+        let colors = robot.colliders.iter().enumerate();
+        let shown = colors.filter_map(|(i, c)| Some((i as u16, c.color?.map(|shade| shade as f32))));
         let mut model = Self {
             links: links.iter().map(Link::cast).collect(),
             mounts: mounts.iter().map(cast_mount).collect(),
@@ -235,8 +272,11 @@ impl<R: Real> Model<R> {
             joints: robot.segments.iter().map(|s| s.joint.kind).collect(),
             collider_bodies: robot.colliders.iter().map(|c| c.body).collect(),
             colliders: colliders.iter().map(cast_collider).collect(),
+            shown: shown.collect(),
+            sight_height: R::from_f64(options.sight_height),
             pairs,
             actuators: actuators.collect(),
+            grounds,
             initial: Vec::new(),
             positions,
             dofs,
@@ -250,7 +290,7 @@ impl<R: Real> Model<R> {
             roots: links.iter().filter(|l| l.motion == Motion::Floating).count(),
             gravity: options.gravity.map(R::from_f64),
             time_step: R::from_f64(options.time_step),
-            h: R::from_f64(options.time_step / f64::from(options.substeps)),
+            h: R::from_f64(h),
             substeps: options.substeps,
             sweeps: options.sweeps,
             friction_compliance: R::from_f64(options.friction_compliance),

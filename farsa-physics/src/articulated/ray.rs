@@ -9,9 +9,9 @@ use crate::articulated::tree::WORLD;
 use crate::articulated::view::View;
 
 /// Where a ray enters a shape, in the shape's frame: distance and outward normal. Rays that begin inside meet nothing.
-type Entry<R> = Option<(R, Vector<R>)>;
+pub(crate) type Entry<R> = Option<(R, Vector<R>)>;
 
-fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vector<R>, radius: R) -> Entry<R> {
+pub(crate) fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vector<R>, radius: R) -> Entry<R> {
     let zero = R::from_f64(0.0);
     // |from + t d|^2 = r^2 with |d| = 1 is t^2 + 2 b t + c = 0, whose smaller root is the entry [Ericson2005] section
     // 5.3.2.
@@ -27,7 +27,7 @@ fn ball<R: Real>(origin: Vector<R>, direction: Vector<R>, centre: Vector<R>, rad
     Some((t, scale(add(from, scale(direction, t)), R::from_f64(1.0) / radius)))
 }
 
-fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R) -> Entry<R> {
+pub(crate) fn capsule<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R) -> Entry<R> {
     let zero = R::from_f64(0.0);
     // The cylinder's side first, then the two caps; a hit on the side is nearer than any on a cap behind it.
     // Across the axis: a t^2 + 2 b t + c = 0. Along the axis a is 0, and only the caps are in the way.
@@ -93,7 +93,7 @@ pub(crate) fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vect
     (t >= zero && leave.is_none_or(|far| t <= far)).then_some((t, normal))
 }
 
-fn plane<R: Real>(origin: Vector<R>, direction: Vector<R>) -> Entry<R> {
+pub(crate) fn plane<R: Real>(origin: Vector<R>, direction: Vector<R>) -> Entry<R> {
     let zero = R::from_f64(0.0);
     if origin[2] < zero || direction[2] >= zero {
         return None;
@@ -102,7 +102,7 @@ fn plane<R: Real>(origin: Vector<R>, direction: Vector<R>) -> Entry<R> {
 }
 
 /// The frame of a collider in the world.
-fn collider_frame<R: Real>(world: &impl View<R>, index: usize) -> (Matrix<R>, Vector<R>) {
+pub(crate) fn collider_frame<R: Real>(world: &impl View<R>, index: usize) -> (Matrix<R>, Vector<R>) {
     let mount = &world.model().colliders[index].mount;
     if mount.link == WORLD {
         return (mount.rotation, mount.position);

@@ -10,6 +10,7 @@ use farsa_num::{Mask, Real, Scalar};
 
 use crate::articulated::collision::{PlacedShape, Point};
 use crate::articulated::contact::{clearance, edge_distance, find};
+use crate::articulated::ground::{Rubbing, relax_ground};
 use crate::articulated::model::{Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
 use crate::articulated::spatial::{Vector, add, dot, scale, select, sub};
@@ -90,6 +91,9 @@ pub(crate) struct Solver<'a, S: Scalar> {
     pub(crate) active: &'a mut [(u16, u16)],
     pub(crate) stops: &'a mut [Stop<S>],
     pub(crate) stop_rows: &'a [S],
+    /// In which lanes something touches the body on each ground.
+    pub(crate) on_grounds: &'a mut [S::Mask],
+    pub(crate) rubbing: &'a mut [Rubbing<S>],
 }
 
 /// Distance between a pair's bounds, and the distance within which its surfaces are looked at [m].
@@ -148,6 +152,9 @@ impl<S: Scalar> Solver<'_, S> {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
         let mut count = 0;
         let mut touched = [zero.lt(zero); 2];
+        for mask in self.on_grounds.iter_mut() {
+            *mask = zero.lt(zero);
+        }
         for (p, pair) in model.pairs.iter().enumerate() {
             // Broad phase: most pairs are far apart, and cost one distance. Every way out of here writes the words of all
             // points, or an impulse of an earlier step would start a later contact.
@@ -184,6 +191,10 @@ impl<S: Scalar> Solver<'_, S> {
                 touched[0] = touched[0] | candidate.mask;
                 if pair.at_stops {
                     touched[1] = touched[1] | candidate.mask;
+                }
+                for ground in pair.grounds.into_iter().flatten() {
+                    let mask = &mut self.on_grounds[usize::from(ground)];
+                    *mask = *mask | candidate.mask;
                 }
                 self.active[count] = (p as u16, index as u16);
                 count += 1;
@@ -341,6 +352,9 @@ impl<S: Scalar> Solver<'_, S> {
             }
             for stop in &mut self.stops[..stops] {
                 relax_stop(simd, model, stop, self.stop_rows, self.response);
+            }
+            for (ground, rubbing) in model.grounds.iter().zip(&mut *self.rubbing) {
+                relax_ground(simd, model, ground, rubbing, self.response);
             }
         }
     }

@@ -3,10 +3,11 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_num::{Real, Scalar};
+use farsa_num::{Mask as _, Real, Scalar};
 
 use crate::articulated::collision::PlacedShape;
 use crate::articulated::contact::place_colliders;
+use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::solver::{Block, Solver};
 use crate::articulated::spatial::{Spatial, Vector, add, matrix_of, rotate, scale, splat, sub};
@@ -31,6 +32,8 @@ pub struct Scratch<S: Scalar> {
     active: Vec<(u16, u16)>,
     stops: Vec<Stop<S>>,
     stop_rows: Vec<S>,
+    on_grounds: Vec<S::Mask>,
+    rubbing: Vec<Rubbing<S>>,
 }
 
 impl<S: Scalar> Scratch<S> {
@@ -53,6 +56,8 @@ impl<S: Scalar> Scratch<S> {
             active: vec![(0, 0); model.points],
             stops: vec![Stop::new(simd); model.links.len()],
             stop_rows: vec![zero; model.stop_entries],
+            on_grounds: vec![zero.lt(zero); model.grounds.len()],
+            rubbing: vec![Rubbing::new(simd); model.grounds.len()],
         }
     }
 
@@ -149,7 +154,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
     }
     // Contacts see the predicted velocities at the old places. Their rows are in the factor's coordinates: M^-1 = B B^T with
     // B from the articulated bodies, so a joint's column of B begins with D^-1/2, D its articulated inertia.
-    if model.points > 0 {
+    if model.points > 0 || !model.grounds.is_empty() {
         predict(simd, model, state.v, &mut s.links);
         place_colliders(simd, model, &s.links, &mut s.placed);
         for (link, w) in model.links.iter().zip(&s.links) {
@@ -173,9 +178,13 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             active: &mut s.active,
             stops: &mut s.stops,
             stop_rows: &[],
+            on_grounds: &mut s.on_grounds,
+            rubbing: &mut s.rubbing,
         };
         let (count, [touched, pushed]) = solver.set_up(simd, model, state.points, state.rolling_impulses);
-        if count > 0 {
+        let isq = solver.inverse_sqrt_inertia;
+        let moved = set_up_grounds(simd, model, state.v, solver.work, isq, solver.on_grounds, solver.rubbing);
+        if count > 0 || moved.any() {
             let stops = set_up_stops(
                 simd,
                 model,
@@ -191,7 +200,9 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             solver.stop_rows = &s.stop_rows;
             solver.sweep(simd, model, count, stops);
             solver.store(simd, model, count, state.points, state.rolling_impulses);
-            respond(simd, model, &s.response, &s.inverse_sqrt_inertia, touched, &mut s.links, &s.roots, state.v);
+            let changed = touched | moved;
+            respond(simd, model, &s.response, &s.inverse_sqrt_inertia, changed, &mut s.links, &s.roots, state.v);
+            hold(simd, model, &s.rubbing, state.v);
         }
     }
     // Semi-implicit Euler: positions move by the new velocities.

@@ -4,13 +4,14 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
-    Pose, Rays, Snapshot, Twist,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, NearbySurface,
+    PairContact, PairId, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
 };
 use farsa_num::Real;
 
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::ray;
+use crate::articulated::sight;
 use crate::articulated::solver::near_pairs;
 use crate::articulated::spatial::{Matrix, Spatial, Vector, sub};
 use crate::articulated::step::{Precision, Scratch};
@@ -200,6 +201,21 @@ impl<R: Precision> Contacts for World<R> {
 impl<R: Precision> Rays for World<R> {
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
         ray::cast(self, origin, direction, range)
+    }
+}
+
+impl<R: Precision> Sight for World<R> {
+    fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
+        sight::query_near(self, from, range, tell);
+    }
+    fn cast_planar(
+        &self,
+        from: [f32; 2],
+        direction: [f32; 2],
+        range: f32,
+        but: Option<BodyId>,
+    ) -> Option<PlanarHit<BodyId>> {
+        sight::cast_planar(self, from, direction, range, but)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, NearbySurface,
-    PairContact, PairId, Planar, PlanarHit, Pose, Rays, Snapshot, Twist,
+    PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
 };
 use farsa_num::Scalar;
 use rapier3d::geometry::Ray;
@@ -92,7 +92,7 @@ impl Rays for ArenaWorld {
     }
 }
 
-impl Planar for ArenaWorld {
+impl Sight for ArenaWorld {
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
         view::query_near(self, from, range, &mut *tell);
         for (block, slab) in self.slabs.iter().enumerate().filter(|(_, slab)| slab.within_reach(from, range)) {
@@ -110,7 +110,6 @@ impl Planar for ArenaWorld {
             }
         }
     }
-
     fn cast_planar(
         &self,
         from: [f32; 2],
@@ -130,11 +129,12 @@ impl Planar for ArenaWorld {
         }
         sight
     }
+}
 
+impl Planar for ArenaWorld {
     fn ground(&self, at: [f32; 2]) -> [f32; 3] {
         view::ground(self, at)
     }
-
     fn lamps(&self, tell: &mut dyn FnMut(Lamp<BodyId>)) {
         view::lamps(self, tell);
     }

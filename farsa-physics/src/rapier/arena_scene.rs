@@ -26,8 +26,8 @@ pub struct Chassis {
 }
 
 impl Chassis {
-    /// Density of a robot, spread over its hull [kg/m3]: an e-puck of 150 g has 780, a Khepera of 80 g has 690 \[chosen\].
-    pub const DENSITY: f64 = 750.0;
+    /// [`MobileRobot::DENSITY`] [kg/m3].
+    pub const DENSITY: f64 = MobileRobot::DENSITY;
 
     /// The chassis of a robot of which only the size is known.
     ///
@@ -35,12 +35,11 @@ impl Chassis {
     /// the robot's weight and, geared as they are, resist acceleration as a fifth of its mass more would; rubber wheels (0.8)
     /// and a smooth hull (0.3).
     pub fn for_robot(robot: &MobileRobot) -> Self {
-        let volume = core::f64::consts::PI * robot.radius * robot.radius * robot.height;
-        let mass = Self::DENSITY * volume;
+        let mass = robot.mass();
         let wheel = robot.wheel_radius;
         Self {
             mass,
-            wheel_share: 0.1,
+            wheel_share: MobileRobot::WHEEL_SHARE,
             torque: 0.25 * 9.81 * mass * wheel,
             rotor_inertia: 0.1 * mass * wheel * wheel,
             grip: 0.8,

@@ -28,6 +28,11 @@ pub enum RapierError {
         /// The collider's name.
         collider: String,
     },
+    /// Ground below a body that slides; rapier has no friction in a joint.
+    Ground {
+        /// The body's name.
+        body: String,
+    },
     /// A number of an object is NaN, infinite or out of its range.
     SceneObject {
         /// The object's name.
@@ -133,6 +138,7 @@ impl fmt::Display for RapierError {
                 let nearest = if *value > *high { high } else { low };
                 write!(f, "option {name} is {value}, not from {low} to {high}; the nearest is {nearest}")
             }
+            Self::Ground { body } => write!(f, "body {body}: nothing rubs on the ground that it slides on here"),
             Self::MovingPlane { collider } => write!(f, "collider {collider}: a plane does not move"),
             Self::SceneObject { name, field, value } => write!(f, "object {name}: {field} is {value}"),
             Self::Immovable { name, geometry } => {

@@ -126,6 +126,9 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
     }
     let (mut links, mut mounts) = links_of(robot);
     check_masses(robot, &mounts, &links)?;
+    if let Some(ground) = robot.grounds.first() {
+        return Err(RapierError::Ground { body: robot.segments[ground.body.index()].name.clone() });
+    }
     let shifts = centre_roots(&mut links, &mut mounts);
     let mut physics = options.world();
     let mut carriers = add_links(&mut physics, &links, &shifts);

@@ -1,6 +1,8 @@
 //! Robots that run into things and into each other, and hold each other.
 
-use farsa_body::{Actuated, BodyId, Contacts, Kinematics, MobileRobot, PairId, Planar, Rays, Snapshot, World as _};
+use farsa_body::{
+    Actuated, BodyId, Contacts, Kinematics, MobileRobot, PairId, Planar, Rays, Sight, Snapshot, World as _,
+};
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, CollisionRule, Cylinder, Search, Wall, World};
 

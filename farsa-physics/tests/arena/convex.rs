@@ -2,8 +2,8 @@
 
 use farsa_body::testing::{Probe, check_arrange, check_planar, check_rays, check_world};
 use farsa_body::{
-    Actuated, Arrange, BodyId, Contacts, Hit, JointId, Kinematics, MobileRobot, NearbySurface, PairId, Planar,
-    PlanarHit, Pose, Rays, Twist, World as _,
+    Actuated, Arrange, BodyId, Contacts, Hit, JointId, Kinematics, MobileRobot, NearbySurface, PairId, PlanarHit, Pose,
+    Rays, Sight, Twist, World as _,
 };
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, CollisionRule, Convex, Cylinder, FreePlace, Search, Wall, World};

@@ -5,7 +5,7 @@ use crate::channels::{every_motor, every_sensor};
 use farsa_body::testing::{Probe, check_arrange, check_motor, check_planar, check_rays, check_sensor, check_world};
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, MobileRobot,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Snapshot, Twist, World as _,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist, World as _,
 };
 use farsa_num::{Digest, Domain, Instructions, Stream};
 use farsa_physics::arena::{
@@ -306,7 +306,7 @@ impl Rays for InLane {
         self.with(|lane| lane.cast(origin, direction, range))
     }
 }
-impl Planar for InLane {
+impl Sight for InLane {
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
         // The callback may ask the lane again.
         let mut told = Vec::new();
@@ -322,6 +322,9 @@ impl Planar for InLane {
     ) -> Option<PlanarHit<BodyId>> {
         self.with(|lane| lane.cast_planar(from, direction, range, but))
     }
+}
+
+impl Planar for InLane {
     fn ground(&self, at: [f32; 2]) -> [f32; 3] {
         self.with(|lane| lane.ground(at))
     }

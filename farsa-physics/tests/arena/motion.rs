@@ -1,7 +1,7 @@
 //! How wheels move a robot of the planar world.
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, Joints, Kinematics, MobileRobot, PairId, Planar, Pose,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, JointId, Joints, Kinematics, MobileRobot, PairId, Pose, Sight,
     Snapshot, Twist, World as _,
 };
 use farsa_num::{Domain, Stream};

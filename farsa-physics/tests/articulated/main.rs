@@ -9,7 +9,12 @@ mod common;
 mod conformance;
 mod energy;
 mod floating;
+mod ground;
 mod honest;
 mod oracle;
+mod sight;
 mod snapshot;
 mod sphere;
+#[path = "../wheeled/mod.rs"]
+mod vehicles;
+mod wheeled;

@@ -44,11 +44,13 @@ fn ball_on(shape: Shape, placement: Pose<f64>, surface: Surface) -> Robot {
                 body: Some(BodyId(0)),
                 shape: Shape::Sphere { radius: RADIUS },
                 placement: Pose::identity(),
+                color: None,
             },
-            Collider { name: "ground".into(), body: None, shape, placement },
+            Collider::new("ground", None, shape, placement),
         ],
         pairs: vec![Pair { colliders: [0, 1], surface }],
         actuators: vec![],
+        ..Robot::default()
     }
 }
 

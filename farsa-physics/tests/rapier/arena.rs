@@ -4,7 +4,7 @@
 use farsa_body::testing::{Probe, check_arrange, check_motor, check_planar, check_rays, check_sensor, check_world};
 use farsa_body::{
     Actuated, Arrange, BodyId, GroundColor, InfraredAnalytic, InfraredRays, JointId, Joints, Kinematics, LightSensors,
-    MobileRobot, Planar, Pose, Sensor, Snapshot, Traction, Twist, WheelSpeed, WheelVelocity, World as _,
+    MobileRobot, Pose, Sensor, Sight, Snapshot, Traction, Twist, WheelSpeed, WheelVelocity, World as _,
 };
 use farsa_physics::arena::{self, Area, Arena, ArenaError, Convex, Cylinder, Part, Wall};
 use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld, Block, RapierError};

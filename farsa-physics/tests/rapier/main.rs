@@ -12,3 +12,6 @@ mod conformance;
 mod motion;
 mod robust;
 mod scene;
+#[path = "../wheeled/mod.rs"]
+mod vehicles;
+mod wheeled;

@@ -3,8 +3,8 @@
 use crate::common;
 use crate::common::{Babble, POSES, SPHERES, commands, drive, scene, stream};
 use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Contacts, JointId, Joints, Kinematics, PairId, Pose,
-    RobotError, Shape, Snapshot, Tabletop, Twist, World as _,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Contacts, JointId, Joints, Kinematics, MassProperties,
+    PairId, Pose, Robot, RobotError, Shape, Snapshot, Tabletop, Twist, World as _,
 };
 use farsa_physics::articulated::ModelError;
 use farsa_physics::rapier::{Options, RapierError, World};
@@ -107,6 +107,10 @@ fn what_cannot_be_built_is_refused() {
     let mut plane = robot.clone();
     plane.add_collider(Collider::new("flat", Some(Tabletop::SPHERE), Shape::Plane, Pose::identity()));
     assert_eq!(refused(&plane, Options::default()), RapierError::MovingPlane { collider: "flat".into() });
+    let mut sliding = Robot::new("sliding");
+    let body = sliding.add_sliding_body("puck", Pose::identity(), MassProperties::sphere(1.0, 0.1), false);
+    sliding.add_ground(farsa_body::Ground { body, friction: 0.5, load: 1.0, radius: 0.0 });
+    assert_eq!(refused(&sliding, Options::default()), RapierError::Ground { body: "puck".into() });
     let mut heavy = robot;
     heavy.segments[0].mass = -1.0;
     let error = refused(&heavy, Options::default());
