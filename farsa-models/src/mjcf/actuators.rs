@@ -1,6 +1,6 @@
 //! The actuators of an MJCF file.
 
-use farsa_body::{Held, Law, Robot, Servo, Torque};
+use farsa_body::{Held, Law, Robot, Servo, Torque, Velocity};
 
 use crate::context::Context;
 use crate::error::ReadError;
@@ -170,6 +170,10 @@ fn law(classed: &Classed<'_, '_>, compiler: &Compiler, warnings: &mut Warnings) 
         return Ok(Some(Law::Torque(Torque { limit })));
     }
     if stiffness == 0.0 {
+        // The command is the joint's speed where the gain of the command is that of the speed.
+        if limit.is_finite() && gear == 1.0 && (gains.gain - damping).abs() <= 1e-9 * damping {
+            return Ok(Some(Law::Velocity(Velocity { gain: damping, limit })));
+        }
         if limit.is_finite() {
             warnings.add(
                 element.place(),

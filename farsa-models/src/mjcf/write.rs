@@ -193,6 +193,9 @@ fn actuator_line(robot: &Robot, actuator: &Actuator) -> String {
             limited("force", servo.limit)
         ),
         Law::Torque(motor) => format!("<motor {head}{}/>", limited("ctrl", motor.limit)),
+        Law::Velocity(motor) => {
+            format!("<velocity {head} kv=\"{:?}\"{}/>", motor.gain, limited("force", motor.limit))
+        }
         Law::MusclePair(_) | Law::Held(_) => format!("<motor {head}/>"),
     }
 }

@@ -117,6 +117,7 @@ fn efforts(robot: &Robot) -> Vec<f64> {
             Law::MusclePair(pair) => pair.moment_arm * pair.tension,
             Law::Servo(servo) => servo.limit,
             Law::Torque(motor) => motor.limit,
+            Law::Velocity(motor) => motor.limit,
             Law::Held(_) => ENDLESS,
         };
     }

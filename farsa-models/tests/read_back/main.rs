@@ -11,6 +11,8 @@ mod hostile;
 mod large;
 /// Whatever is read is written and read back.
 mod round_trip;
+/// Wheeled robots that were written are read as they were.
+mod wheeled;
 /// Robots that were written are read as they were.
 mod written;
 

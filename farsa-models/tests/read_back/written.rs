@@ -112,6 +112,7 @@ fn urdf_is_read_as_it_was_written() {
                 Law::MusclePair(pair) => pair.moment_arm * pair.tension,
                 Law::Servo(servo) => servo.limit,
                 Law::Torque(torque) => torque.limit,
+                Law::Velocity(motor) => motor.limit,
                 Law::Held(_) => f64::INFINITY,
             };
             let name = &robot.segments[actuator.joint.index()].joint.name;
