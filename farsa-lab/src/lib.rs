@@ -25,16 +25,18 @@ pub use command::cli;
 pub use error::Error;
 pub use evaluation::read_genotypes;
 pub use experiment::{
-    ActuatorExport, Batch, Behaviour, Bodies, ChannelGroup, Controlled, ControllerExport, CtrnnExport, Description,
-    Episode, EpisodeId, Evaluation, Evaluator, Experiment, Exports, Failure, Genotype, InLanes, InWorld, Iteration,
-    JudgeExport, Lanes, Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller, NoWorld,
-    NormalisedController, Note, NotedBehaviour, Objective, Outcome, OwnedNetwork, Parameter, PlanarWorld, PointExport,
-    Rescored, Rollout, SensorExport, SensorReading, ServoExport, Setting, Settings, SimpleExperiment, Source,
-    StartExport, SurfaceExport, Task, Trials, Value, mean_of_note, mean_of_trials, network_parameters, record_row,
-    resting_network, run_episode, run_in_lanes, seconds,
+    ActuatorExport, Batch, Behaviour, Bodies, Case, CaseId, ChannelGroup, Controlled, ControllerExport, Description,
+    Episode, EpisodeId, Evaluation, Evaluator, Experiment, Exports, Failure, Genotype, InLanes, InWorld, Intervention,
+    Interventions, Iteration, JudgeExport, Lanes, Learner, MotorDrive, MotorExport, NetworkExport, Neurocontroller,
+    NoWorld, NormalisedController, Note, NotedBehaviour, Objective, Outcome, OwnedNetwork, Parameter, PlanarWorld,
+    PointExport, Protocol, Rescored, Rollout, SensorExport, SensorReading, ServoExport, Setting, Settings,
+    SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, input_ranges, mean_of_note,
+    mean_of_trials, network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use ranks::{Alone, Ranks};
-pub use run::{BestOfRun, ENGINE, ExperimentFiles, Laboratory, ReadExperiment, Template};
+pub use run::{
+    BestOfRun, ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, Laboratory, LeftOut, ReadExperiment, Template,
+};
 pub use store::{VALUES_VERSION, read_text_file};
 pub use strategy::{
     Diagnostics, DiagnosticsChart, Learning, OnePlusOne, Search, SimpleStrategy, StrategyDefinition, StrategyStart,

@@ -7,9 +7,7 @@ use std::rc::Rc;
 
 use clap::FromArgMatches as _;
 
-use crate::command::arguments::export::{
-    DataFormat, ExportArgs, ExportControllerArgs, ExportGenotypeArgs, ExportRobotArgs, ExportStartsArgs, ExportWhat,
-};
+use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::subcommands::{
     BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, RunArgs, StrategiesArgs,
@@ -22,10 +20,9 @@ use crate::command::on_ranks::{Part, awaits_orders};
 use crate::command::{info, manual, strategies};
 use crate::error::Error;
 use crate::escaped::escaped;
-use crate::evaluation::{draw, evaluate, import, replay, test};
+use crate::evaluation::{draw, evaluate, lines, protocols, replay, test};
 use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
-use crate::export::files;
 use crate::export::robot_file;
 use crate::json::pretty;
 use crate::ranks::exchange::Exchange;
@@ -160,28 +157,19 @@ impl<'e> Invocation<'e, '_> {
                 self.summary(args.json, &found.text(), &|| pretty(&found))
             }
             Command::Merge(args) => self.merge(&args),
-            Command::Test(TestArgs { directory, trials, seed, workers, world, json }) => {
-                let (mut directory, mut plan) = self.existing(&directory)?;
-                let other = world_choice::visit(&mut plan, world.name.as_deref())?;
-                if let Some(other) = world.name.filter(|_| other) {
-                    directory.tests_in(&other);
-                }
-                let found =
-                    test::test(&plan, &directory, trials as usize, seed, workers.threads(), workers.lanes(), quiet)?;
-                self.summary(json, &found.text(), &|| pretty(&found))
-            }
+            Command::Test(args) => self.test(args),
             Command::Evaluate(args) => {
-                let plan = args.variant.plan(self.find(&args.experiment)?)?;
+                let mut plan = args.variant.plan(self.find(&args.experiment)?)?;
+                if args.stdin {
+                    plan.seed = args.seed;
+                    let pool = args.workers.pool(&plan)?;
+                    return lines::serve(&plan, pool, &mut io::stdin().lock(), &mut io::stdout().lock());
+                }
                 let (pool, trials) = (args.workers.pool(&plan)?, args.trials as usize);
                 let found = evaluate::evaluate(&plan, pool, &args.genes(), trials, args.seed, quiet)?;
                 if args.json { say(&pretty(&found)?) } else { tell(&found.text()) }
             }
-            Command::Import(args) => {
-                let mut plan = args.variant.plan(self.find(&args.experiment)?)?;
-                plan.seed = args.seed;
-                let found = import::import(plan, &args.files, args.variant.set(POPULATION), &args.out)?;
-                self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
-            }
+            Command::Import(args) => self.import(&args),
             Command::Replay(args) => self.replay(&args),
             Command::Draw(args) => {
                 let (directory, plan) = self.existing(&args.directory)?;
@@ -227,34 +215,30 @@ impl<'e> Invocation<'e, '_> {
         }
     }
 
+    fn test(&self, args: TestArgs) -> Result<(), Error> {
+        let (TestArgs { directory, trials, protocol, seed, workers, world, json }, quiet) = (args, self.quiet);
+        let (mut directory, mut plan) = self.existing(&directory)?;
+        let other = world_choice::visit(&mut plan, world.name.as_deref())?;
+        if let Some(other) = world.name.filter(|_| other) {
+            directory.tests_in(&other);
+        }
+        let (threads, lanes) = (workers.threads(), workers.lanes());
+        if let Some(name) = protocol {
+            let trials = trials.map(|trials| trials as usize);
+            let found = protocols::test::test(&plan, &directory, &name, trials, seed, threads, lanes, quiet)?;
+            return self.summary(json, &found.text(), &|| pretty(&found));
+        }
+        let trials = trials.map_or(test::TRIALS, |trials| trials as usize);
+        let found = test::test(&plan, &directory, trials, seed, threads, lanes, quiet)?;
+        self.summary(json, &found.text(), &|| pretty(&found))
+    }
+
     /// Says what came of the command; JSON that was asked for is no summary that quiet leaves out.
-    fn summary(&self, json: bool, text: &str, all: &dyn Fn() -> Result<String, Error>) -> Result<(), Error> {
+    pub(super) fn summary(&self, json: bool, text: &str, all: &dyn Fn() -> Result<String, Error>) -> Result<(), Error> {
         match (json, self.quiet) {
             (true, _) => say(&all()?),
             (false, true) => Ok(()),
             (false, false) => tell(text),
-        }
-    }
-
-    /// What is to be exported, and where to.
-    fn exported(&self, what: ExportWhat) -> Result<(Vec<u8>, Option<PathBuf>), Error> {
-        match what {
-            ExportWhat::Robot(ExportRobotArgs { experiment, variant, format, out }) => {
-                let plan = variant.plan(self.find(&experiment)?)?;
-                Ok((files::robot(&plan, format)?.into_bytes(), out))
-            }
-            ExportWhat::Controller(ExportControllerArgs { directory, format, out }) => {
-                let (directory, plan) = self.existing(&directory)?;
-                Ok((files::controller(&plan, &directory, format)?, out))
-            }
-            ExportWhat::Genotype(ExportGenotypeArgs { directory, population, out }) => {
-                let (directory, plan) = self.existing(&directory)?;
-                Ok((files::genotype(&plan, &directory, population.as_deref())?.into_bytes(), out))
-            }
-            ExportWhat::Starts(ExportStartsArgs { directory, trials, seed, format: DataFormat::Json, out }) => {
-                let (_, plan) = self.existing(&directory)?;
-                Ok((files::starts(&plan, trials as usize, seed)?.into_bytes(), out))
-            }
         }
     }
 
@@ -286,12 +270,12 @@ impl<'e> Invocation<'e, '_> {
     }
 
     /// The experiment of this name.
-    fn find(&self, name: &str) -> Result<&'e dyn Experiment, Error> {
+    pub(super) fn find(&self, name: &str) -> Result<&'e dyn Experiment, Error> {
         self.laboratory.experiment(name, "")
     }
 
     /// A run that exists, with the plan in its configuration.
-    fn existing(&self, path: &Path) -> Result<(Directory, Plan<'e>), Error> {
+    pub(super) fn existing(&self, path: &Path) -> Result<(Directory, Plan<'e>), Error> {
         let directory = Directory::open(path)?;
         let plan = Plan::from_file(self.laboratory, &ConfigFile::read_own(&directory.config())?)?;
         Ok((directory, plan))
@@ -353,14 +337,28 @@ impl<'e> Invocation<'e, '_> {
         let (directory, plan) = self.planned(args, file.as_ref())?;
         // What is refused leaves no directory behind.
         let pool = self.pool(args, &plan)?;
-        let directory = match directory {
-            Some(directory) => {
-                self.same_names(args, file.as_ref(), &plan, &directory)?;
-                directory
-            }
-            None => begin::create(&plan, &args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name())))?,
+        let directory = if let Some(directory) = directory {
+            self.same_names(args, file.as_ref(), &plan, &directory)?;
+            directory
+        } else {
+            let path = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name()));
+            self.make_room(args.force, &plan, &path)?;
+            begin::create(&plan, &path)?
         };
         evolve::go_on(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
+    }
+
+    /// Moves a run aside that is where another is to be, if that was asked for and the other can begin.
+    fn make_room(&self, force: bool, plan: &Plan<'_>, path: &Path) -> Result<(), Error> {
+        if !force {
+            return Ok(());
+        }
+        plan.strategy()?;
+        if let Some(kept) = Directory::move_aside(path)?.filter(|_| !self.quiet) {
+            let text = format!("{}: the run that was there is kept as {}", path.display(), kept.display());
+            let _ = writeln!(io::stderr(), "{}", escaped(&text));
+        }
+        Ok(())
     }
 
     /// Refuses a resumed run under another name; its settings and seed are compared with the checkpoint later.

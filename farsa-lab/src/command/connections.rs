@@ -5,7 +5,10 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::experiment::controller_export::{MotorDrive, SensorReading};
+use crate::experiment::evaluator::Task;
 use crate::experiment::outcome::{ChannelGroup, Description};
+use crate::experiment::parameter::Parameter;
 use crate::run::plan::Plan;
 
 /// The parts of an experiment and their channels; the JSON form has these names.
@@ -16,12 +19,19 @@ pub(crate) struct Connections {
     condition: String,
     sensors: Vec<Group>,
     network: String,
-    parameters: usize,
+    parameters: Vec<Searched>,
     motors: Vec<Group>,
     terms: Vec<String>,
     trials: usize,
     steps: usize,
     step_seconds: f64,
+}
+
+/// A parameter that is searched for, from what the smallest gene stands for to what the largest does.
+#[derive(Serialize)]
+struct Searched {
+    name: String,
+    ends: [f64; 2],
 }
 
 /// Channels that belong together, with their names.
@@ -32,16 +42,52 @@ struct Group {
     /// The first channel and the one after the last.
     channels: [usize; 2],
     names: Vec<String>,
+    /// The unit of what each channel stands for, where that is known and has one.
+    units: Vec<String>,
 }
 
-/// Groups one after the other, with the names of their channels.
-fn groups(groups: &[ChannelGroup], names: &[String]) -> Vec<Group> {
+impl Group {
+    /// How many channels there are, and of what unit if it is one.
+    fn count(&self) -> String {
+        let [from, to] = self.channels;
+        let count = format!("{} {}", to - from, if to - from == 1 { "channel" } else { "channels" });
+        match self.units.first().filter(|unit| !unit.is_empty() && self.units.iter().all(|other| other == *unit)) {
+            Some(unit) => format!("{count}, in {unit}"),
+            None => count,
+        }
+    }
+}
+
+/// The units of what the channels of sensors and motors stand for, of an experiment whose controllers say so.
+fn units(task: &dyn Task) -> [Vec<String>; 2] {
+    let middle: Vec<f32> = task.parameters().iter().map(|it| (0.5 * (it.ends[0] + it.ends[1])) as f32).collect();
+    let Some(controller) = task.exports().and_then(|exports| exports.controller(&middle)) else {
+        return [Vec::new(), Vec::new()];
+    };
+    let text = |unit: &str| if unit == "1" { String::new() } else { unit.into() };
+    let sensors = controller.sensors.iter().map(|sensor| match sensor.reads {
+        SensorReading::Quantity { unit, .. } => text(unit),
+        SensorReading::JointPosition { .. } => "rad".into(),
+        SensorReading::Way { .. } => "m".into(),
+        _ => String::new(),
+    });
+    let motors = controller.motors.iter().map(|motor| match motor.drives {
+        MotorDrive::Quantity { unit, .. } => text(unit),
+        MotorDrive::Servos { .. } => "rad".into(),
+        _ => String::new(),
+    });
+    [sensors.collect(), motors.collect()]
+}
+
+/// Groups one after the other, with the names of their channels and the units of what these stand for.
+fn groups(groups: &[ChannelGroup], names: &[String], units: &[String]) -> Vec<Group> {
     let mut first = 0;
     let group = |group: &ChannelGroup| {
         let channels = [first, first + group.count];
         first += group.count;
-        let names = (channels[0]..channels[1]).filter_map(|channel| names.get(channel).cloned()).collect();
-        Group { name: group.name.clone(), meaning: group.meaning.clone(), channels, names }
+        let [names, units] = [names, units]
+            .map(|all| (channels[0]..channels[1]).filter_map(|channel| all.get(channel).cloned()).collect());
+        Group { name: group.name.clone(), meaning: group.meaning.clone(), channels, names, units }
     };
     groups.iter().map(group).collect()
 }
@@ -57,14 +103,15 @@ impl Connections {
             (task.schema(), task.description());
         let names =
             |channels: &[farsa_view::Channel]| channels.iter().map(farsa_view::Channel::title).collect::<Vec<_>>();
+        let [of_sensors, of_motors] = units(task.as_ref());
         Ok(Self {
             experiment: plan.experiment.name().into(),
             summary: plan.experiment.summary().into(),
             condition: plan.condition.clone(),
-            sensors: groups(&sensors, &names(&schema.sensors)),
+            sensors: groups(&sensors, &names(&schema.sensors), &of_sensors),
             network,
-            parameters: task.parameters().len(),
-            motors: groups(&motors, &names(&schema.outputs)),
+            parameters: task.parameters().into_iter().map(|Parameter { name, ends }| Searched { name, ends }).collect(),
+            motors: groups(&motors, &names(&schema.outputs), &of_motors),
             terms: task.terms(),
             trials: task.trials(),
             steps,
@@ -84,7 +131,7 @@ impl Connections {
             }
         }
         let seconds = self.steps as f64 * self.step_seconds;
-        let _ = writeln!(text, "\nnetwork: {}; {} parameters", self.network, self.parameters);
+        let _ = writeln!(text, "\nnetwork: {}; {} parameters", self.network, self.parameters.len());
         let _ = writeln!(text, "trials: {}, each of at most {} steps ({seconds:?} s)", self.trials, self.steps);
         let _ = writeln!(text, "fitness: {}", self.terms.join(", "));
         text
@@ -108,10 +155,7 @@ impl Connections {
             for (row, group) in groups.iter().enumerate() {
                 let y = first + ROW * row as f64;
                 let [from, to] = group.channels;
-                let count = format!("{} {}", to - from, if to - from == 1 { "channel" } else { "channels" });
-                let unit = group.names.first().and_then(|name| name.rsplit_once(" [")).map_or("", |(_, unit)| unit);
-                let count = if unit.is_empty() { count } else { format!("{count} [{unit}") };
-                boxed(svg, [x, y, BOX, ROW - 12.0], [&group.name, &count], "#dbe9f6");
+                boxed(svg, [x, y, BOX, ROW - 12.0], [&group.name, &group.count()], "#dbe9f6");
                 let (side, end) = if x < NETWORK { (x + BOX, network[0]) } else { (x, network[0] + network[2]) };
                 let (y, at) = (y + 0.5 * (ROW - 12.0), middle);
                 let (from_to, label) = if x < NETWORK {
@@ -133,7 +177,7 @@ impl Connections {
         };
         column(&self.sensors, SENSORS, &mut svg);
         column(&self.motors, MOTORS, &mut svg);
-        let parameters = format!("{} parameters", self.parameters);
+        let parameters = format!("{} parameters", self.parameters.len());
         boxed(&mut svg, network, [&self.network, &parameters], "#fdebd0");
         let first = TOP + ROW * rows as f64 + GAP;
         let target = first + 0.5 * ROW * terms as f64;

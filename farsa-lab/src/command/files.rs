@@ -32,7 +32,7 @@ impl Invocation<'_, '_> {
         };
         let path = PathBuf::from(format!("{}{FILE}", args.name.strip_suffix(FILE).unwrap_or(&args.name)));
         // Refused before it is written: the name becomes that of the experiment.
-        (self.laboratory.files()?.read)(&path.display().to_string(), text, self.laboratory.strategies())?;
+        (self.laboratory.files()?.read)(&path.display().to_string(), text, None, self.laboratory.strategies())?;
         create_results(&[(path.clone(), text)])?;
         let (program, path) = (self.program, path.display());
         let next = format!("{path}: from `{name}`\n{program} check {path}\n{program} run {path} --generations 20\n");

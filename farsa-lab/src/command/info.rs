@@ -9,6 +9,7 @@ use crate::experiment::behaviour::Behaviour;
 use crate::experiment::definition::Experiment;
 use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
+use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::{Setting, Source, Value};
 use crate::json::pretty;
 use crate::run::plan::Plan;
@@ -71,6 +72,8 @@ struct Info {
     objectives: Vec<String>,
     /// What behaviour is described by.
     descriptors: Vec<DescriptorInfo>,
+    /// What `farsa test --protocol` offers.
+    protocols: Vec<ProtocolInfo>,
     settings: Vec<SettingInfo>,
 }
 
@@ -79,6 +82,26 @@ struct Info {
 struct DescriptorInfo {
     name: String,
     range: [f64; 2],
+}
+
+/// What there is to know of a test protocol.
+#[derive(Serialize)]
+struct ProtocolInfo {
+    name: String,
+    summary: String,
+    /// How many.
+    cases: usize,
+    /// How many of them are of a kind that was not trained.
+    held_out: usize,
+    /// Of each case, unless others are asked for.
+    trials: u32,
+}
+
+impl ProtocolInfo {
+    fn new(Protocol { name, summary, trials, cases, .. }: Protocol) -> Self {
+        let held_out = cases.iter().filter(|case| case.held_out).count();
+        Self { name, summary, cases: cases.len(), held_out, trials }
+    }
 }
 
 /// What there is to know of a setting.
@@ -119,6 +142,8 @@ impl Info {
         let evaluator = plan.evaluator()?;
         let Description { sensors, motors, network, parameters, steps, step_seconds } = evaluator.description();
         let count = |groups: &[ChannelGroup]| groups.iter().map(|group| group.count).sum();
+        let protocols = evaluator.protocols();
+        Protocol::check(&protocols)?;
         let settings = plan.settings.table().iter().map(SettingInfo::new);
         let behaviour = evaluator.behaviour();
         let others = behaviour.map(Behaviour::objectives).unwrap_or_default();
@@ -143,6 +168,7 @@ impl Info {
             fitness_terms: evaluator.terms(),
             objectives: ["fitness".into()].into_iter().chain(others).collect(),
             descriptors: descriptors.into_iter().map(descriptor).collect(),
+            protocols: protocols.into_iter().map(ProtocolInfo::new).collect(),
             settings: settings.collect(),
         })
     }
@@ -194,6 +220,14 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
             .iter()
             .map(|DescriptorInfo { name, range: [low, high] }| format!("{name} {low:?} to {high:?}"));
         let _ = writeln!(text, "behaviour: {}", named.collect::<Vec<_>>().join(", "));
+    }
+    if !info.protocols.is_empty() {
+        let _ = writeln!(text, "\nprotocols of `test --protocol`:");
+    }
+    let width = info.protocols.iter().map(|protocol| protocol.name.len()).max().unwrap_or(0);
+    for ProtocolInfo { name, summary, cases, trials, .. } in &info.protocols {
+        let s = if *cases == 1 { "" } else { "s" };
+        let _ = writeln!(text, "  {name:width$}  {summary} ({cases} case{s}, {trials} trials each)");
     }
     let _ = writeln!(text, "\nsettings:");
     for (setting, info) in plan.settings.table().iter().zip(&info.settings) {

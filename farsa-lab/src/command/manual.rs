@@ -81,12 +81,16 @@ fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> 
         ("sweep", vec!["sweep friction.toml --list".into(), "sweep friction.toml --point 3".into()]),
         ("merge", vec!["merge runs > runs.csv".into(), "merge node1/runs node2/runs --out runs --csv runs.csv".into()]),
         ("strategies", vec!["strategies".into(), "strategies cma-es".into()]),
-        ("test", vec![format!("test {run} --trials 1000 --seed 2")]),
+        (
+            "test",
+            vec![format!("test {run} --trials 1000 --seed 2"), format!("test {run} --protocol NAME --trials 200")],
+        ),
         (
             "evaluate",
             vec![
                 format!("evaluate {experiment} --genes-file best.gen --trials 2000"),
                 format!("evaluate {experiment} --genes 90,93,0,220 --seed 2 --json"),
+                format!("evaluate {experiment} --stdin < parameters.jsonl > outcomes.jsonl"),
             ],
         ),
         (

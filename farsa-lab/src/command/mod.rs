@@ -3,7 +3,9 @@
 //! - `arguments`: the words of the command line
 //! - `cli`: the command: `main` for any set of experiments
 //! - `connections`: what is connected to what: sensors with inputs, outputs with motors, terms with the fitness
+//! - `export`: `farsa export`: of what, and where to
 //! - `files`: `farsa new` and `farsa check`: files that describe experiments
+//! - `import`: `farsa import`: genotypes and configurations of the original FARSA
 //! - `info`: `farsa list` and `farsa info`: what there is and what it is made of
 //! - `interrupt`: signals that ask a run to stop, and the exit code that asks a scheduler to start it again
 //! - `invocation`: the command as it was called
@@ -14,7 +16,9 @@
 mod arguments;
 pub mod cli;
 mod connections;
+mod export;
 mod files;
+mod import;
 mod info;
 mod interrupt;
 mod invocation;

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::evaluation::genotypes::Shape;
 use crate::evaluation::populations::Populations;
-use crate::evaluation::test::{self, Tested};
+use crate::evaluation::test::{self, Tested, Trials};
 use crate::evaluation::test_table::TrialResult;
 use crate::experiment::outcome::Note;
 use crate::run::plan::Plan;
@@ -176,7 +176,7 @@ pub(crate) fn evaluate(
     let size = if names.len() > 1 { plan.size()? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);
     let given = Tested { parameters: &parameters, size, normalisation: None };
-    let results = test::run_trials(&mut pool, given, trials, seed, &progress);
+    let results = test::run_trials(&mut pool, given, Trials::plain(trials, seed), &progress);
     drop(progress);
     let results = results?;
     Ok(Evaluation::new(plan, seed, &names, &results))

@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::outcome::{Note, Outcome};
+use crate::figures::significant::significant;
 use crate::run::contained::caught;
 use crate::run::plan::Plan;
 use crate::run::told::history;
@@ -183,8 +184,9 @@ impl ReplaySummary {
             [ReplayedTrial { trial, .. }] => format!("trial {trial}"),
             trials => format!("{} trials", trials.len()),
         };
+        let fitness = significant(*fitness);
         let mut text =
-            format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {fitness:?}");
+            format!("individual {individual} of generation {generation}, {what}: {steps} steps, fitness {fitness}");
         for ReplayedTrial { trial, failure, .. } in trials {
             if let Some(why) = failure {
                 // Writing into a string cannot fail.
@@ -212,6 +214,12 @@ impl Replayed {
     fn new(replay: ReplaySummary, compared: Option<ReplaySummary>) -> Self {
         let lines: Vec<String> = [&replay].into_iter().chain(&compared).map(ReplaySummary::text).collect();
         Self { replay, compared, file: None, summary: lines.join("\n") }
+    }
+
+    /// The fitness of the individual, with all digits.
+    #[cfg(test)]
+    pub(crate) fn fitness(&self) -> f64 {
+        self.replay.fitness
     }
 }
 

@@ -2,28 +2,24 @@
 
 use std::fmt::Write as _;
 use std::sync::atomic::AtomicBool;
-use std::thread;
-use std::time::Duration;
 
 use farsa_evo::ObservationStatistics;
-use farsa_num::crc32;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::evaluation::recorded::{self, TableRecord};
 use crate::evaluation::test_table::{Findings, Table, TrialResult};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::Outcome;
+use crate::experiment::protocol::CaseId;
 use crate::run::plan::{LARGEST_SEED, Plan};
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
 use crate::run::records::{Best, Champions};
-use crate::store::bounded::read_own_text;
 use crate::store::directory::Directory;
-use crate::store::draft;
 use crate::store::lock::Lock;
-use crate::store::replace::replace;
 
 /// `test.json`: which champion `test.csv` is about, and how to make it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -36,52 +32,24 @@ pub(crate) struct Record {
     table_crc: u32,
 }
 
-/// Bytes of the largest table and of the largest record that are read.
-const LARGEST: [u64; 2] = [1 << 30, 1 << 20];
-/// How often, and with which pauses, the two files are read again while another process writes them.
-const ATTEMPTS: usize = 20;
-const PAUSE: Duration = Duration::from_millis(25);
+impl TableRecord for Record {
+    fn table_crc(&self) -> u32 {
+        self.table_crc
+    }
+}
 
-/// The test that a directory holds, with its record; none of both where there is no test, and no record of a table that was made
-/// before there were records, or by a process that was killed before it wrote one.
+/// The test that a directory holds, with its record; see [`recorded::read`].
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::Damaged`].
 pub(crate) fn read(directory: &Directory) -> Result<Option<(Table, Option<Record>)>, Error> {
-    let (table, record) = (directory.test(), directory.test_record());
-    if !table.is_file() {
-        return Ok(None);
-    }
-    for attempt in 1..=ATTEMPTS {
-        let text = read_own_text(&table, LARGEST[0])?;
-        let found: Option<Record> = if record.is_file() {
-            let text = read_own_text(&record, LARGEST[1])?;
-            Some(serde_json::from_str(&text).map_err(|error| Error::damaged(&record, error))?)
-        } else {
-            None
-        };
-        let own = found.filter(|record| record.table_crc == crc32(text.as_bytes()));
-        if own.is_some() || attempt == ATTEMPTS || !record.is_file() {
-            return Ok(Some((Table::from_text(&table, &text)?, own)));
-        }
-        // One file is of a test that is just being written.
-        thread::sleep(PAUSE);
-    }
-    Ok(None)
+    let path = directory.test();
+    let Some((text, record)) = recorded::read(&path, &directory.test_record())? else { return Ok(None) };
+    Ok(Some((Table::from_text(&path, &text)?, record)))
 }
 
-/// Writes both files of a test, which no other process does meanwhile.
-fn write(directory: &Directory, table: &Table, record: impl FnOnce(u32) -> Record) -> Result<(), Error> {
-    let (path, json) = (directory.test(), directory.test_record());
-    let bytes = table.csv(&path)?;
-    let record = record(crc32(&bytes));
-    let text = serde_json::to_string_pretty(&record).map_err(|error| Error::Other(error.to_string()))?;
-    let _lock = Lock::of_tests(directory.path())?;
-    draft::sweep_of(&path);
-    draft::sweep_of(&json);
-    replace(&path, &bytes)?;
-    replace(&json, format!("{text}\n").as_bytes())
-}
+/// Trials of a test where no number is asked for.
+pub(crate) const TRIALS: usize = 100;
 
 /// What a test found.
 #[derive(Debug, Serialize)]
@@ -110,13 +78,7 @@ impl TestRun {
         let Self { generation, individual, seed, .. } = self;
         let mut text = self.table.aligned();
         // Writing into a string cannot fail.
-        let _ = match self.individuals.as_slice() {
-            [] => writeln!(text, "\nindividual {individual} of generation {generation}, test seed {seed}"),
-            all => {
-                let all = all.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-                writeln!(text, "\nindividuals {all} of generation {generation} against each other, test seed {seed}")
-            }
-        };
+        let _ = writeln!(text, "\n{}, test seed {seed}", whose(*generation, *individual, &self.individuals));
         text.push_str(&self.findings.text());
         if let Some(warning) = &self.warning {
             let _ = writeln!(text, "warning: {warning}");
@@ -141,40 +103,93 @@ pub(crate) fn test(
     lanes: Wanted,
     quiet: bool,
 ) -> Result<TestRun, Error> {
-    let path = directory.champion();
-    if !path.is_file() && directory.checkpoint().is_file() {
-        return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
-    }
-    let Champions { identity, generation, best, normalisation } = Champions::read(plan, directory)?;
     let mut pool = Pool::new(plan, threads, lanes)?;
-    let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| best.genes.decode(pool.genotype())).collect();
-    let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
-    let Some(parameters) = parameters else {
-        return Err(Error::damaged(&path, "its genome is not one of the experiment"));
-    };
+    let subject = Subject::read(plan, directory, &pool)?;
     // Where nothing can be written, that is said before anything is computed.
     drop(Lock::of_tests(directory.path())?);
-    let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
-    let size = if best.len() > 1 { plan.size()? } else { 0 };
     let progress = Progress::new(0, trials as u64, quiet);
-    let champions = Tested { parameters: &parameters, size, normalisation: normalisation.as_ref() };
-    let results = run_trials(&mut pool, champions, trials, seed, &progress);
+    let results = run_trials(&mut pool, subject.tested(), Trials::plain(trials, seed), &progress);
     drop(progress);
     let results = results?;
-    let Some(&Best { individual, .. }) = best.first() else {
-        return Err(Error::damaged(&path, "it has no individual"));
-    };
-    let individuals = if best.len() > 1 { best.iter().map(|best| best.individual).collect() } else { Vec::new() };
 
     let terms = pool.evaluator().terms();
     let names = pool.evaluator().populations();
-    let failed =
-        results.iter().enumerate().find_map(|(number, found)| Some((number, found.outcome.why_failed(&terms)?)));
-    let failure = failed.map(|(number, why)| format!("line {number} of the test failed: {why}"));
-    let table = Table::new(&terms, names.get(1..best.len()).unwrap_or(&[]), &results);
-    write(directory, &table, |table_crc| Record { generation, individual, trials, seed, table_crc })?;
+    let failure = failure(&results, &terms);
+    let table = Table::new(&terms, names.get(1..subject.count()).unwrap_or(&[]), &results);
+    let Subject { generation, individual, individuals, warning, .. } = subject;
+    let path = directory.test();
+    let bytes = table.csv(&path)?;
+    let record = |table_crc| Record { generation, individual, trials, seed, table_crc };
+    recorded::write(directory.path(), (&path, &bytes), &directory.test_record(), record)?;
     let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
     Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, failure, table })
+}
+
+/// Whom a test is about, in words.
+pub(crate) fn whose(generation: u32, individual: u32, individuals: &[u32]) -> String {
+    match individuals {
+        [] => format!("individual {individual} of generation {generation}"),
+        all => {
+            let all = all.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            format!("individuals {all} of generation {generation} against each other")
+        }
+    }
+}
+
+/// Why the first of the trials that failed did, if any did.
+pub(crate) fn failure(results: &[TrialResult], terms: &[String]) -> Option<String> {
+    let failed =
+        results.iter().enumerate().find_map(|(number, found)| Some((number, found.outcome.why_failed(terms)?)));
+    failed.map(|(number, why)| format!("line {number} of the test failed: {why}"))
+}
+
+/// A run's champion, or those of all its populations, ready to be tested.
+pub(crate) struct Subject {
+    pub(crate) generation: u32,
+    pub(crate) individual: u32,
+    /// Those of all populations, if there are several.
+    pub(crate) individuals: Vec<u32>,
+    /// That the champion may behave otherwise than in its run.
+    pub(crate) warning: Option<String>,
+    parameters: Vec<Vec<f32>>,
+    size: usize,
+    normalisation: Option<ObservationStatistics>,
+}
+
+impl Subject {
+    /// Reads the champions of a run.
+    ///
+    /// # Errors
+    /// [`Error::Damaged`] where there are none yet, or not of this experiment; [`Error::Io`].
+    pub(crate) fn read(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>) -> Result<Self, Error> {
+        let path = directory.champion();
+        if !path.is_file() && directory.checkpoint().is_file() {
+            return Err(Error::damaged(&path, "there is none: no generation is finished yet"));
+        }
+        let Champions { identity, generation, best, normalisation } = Champions::read(plan, directory)?;
+        let parameters: Option<Vec<Vec<f32>>> = best.iter().map(|best| best.genes.decode(pool.genotype())).collect();
+        let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
+        let Some(parameters) = parameters else {
+            return Err(Error::damaged(&path, "its genome is not one of the experiment"));
+        };
+        let warning = identity.same_values(&plan.identity()?, &path).err().map(|error| error.to_string());
+        let size = if best.len() > 1 { plan.size()? } else { 0 };
+        let Some(&Best { individual, .. }) = best.first() else {
+            return Err(Error::damaged(&path, "it has no individual"));
+        };
+        let individuals = if best.len() > 1 { best.iter().map(|best| best.individual).collect() } else { Vec::new() };
+        Ok(Self { generation, individual, individuals, warning, parameters, size, normalisation })
+    }
+
+    /// What is evaluated.
+    pub(crate) fn tested(&self) -> Tested<'_> {
+        Tested { parameters: &self.parameters, size: self.size, normalisation: self.normalisation.as_ref() }
+    }
+
+    /// Champions, one of each population.
+    pub(crate) fn count(&self) -> usize {
+        self.parameters.len()
+    }
 }
 
 /// The episode of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
@@ -194,12 +209,28 @@ pub(crate) struct Tested<'t> {
     pub(crate) normalisation: Option<&'t ObservationStatistics>,
 }
 
-/// Evaluates fresh trials of some parameters.
+/// Fresh trials, the same for every case.
+#[derive(Clone, Copy)]
+pub(crate) struct Trials<'t> {
+    /// How many of each case.
+    pub(crate) count: usize,
+    pub(crate) seed: u64,
+    /// At least one.
+    pub(crate) cases: &'t [Option<CaseId>],
+}
+
+impl Trials<'_> {
+    /// Trials of no protocol.
+    pub(crate) fn plain(count: usize, seed: u64) -> Self {
+        Self { count, seed, cases: &[None] }
+    }
+}
+
+/// Evaluates fresh trials of some parameters, case after case.
 pub(crate) fn run_trials(
     pool: &mut Pool<'_>,
     tested: Tested<'_>,
-    trials: usize,
-    seed: u64,
+    trials: Trials<'_>,
     progress: &Progress,
 ) -> Result<Vec<TrialResult>, Unfinished> {
     let Tested { parameters: champions, size, normalisation } = tested;
@@ -208,28 +239,30 @@ pub(crate) fn run_trials(
     let others: Vec<Vec<&[f32]>> =
         (0..champions.len()).map(|own| others_of(own).map(|(_, other)| other.as_slice()).collect()).collect();
     let task = |number: usize| {
-        let (population, trial) = (number % count, number / count);
-        let id = EpisodeId { individual: (population * size) as u32, ..episode(trial, kinds, seed) };
+        let (population, trial) = (number % count, number / count % trials.count);
+        let case = *trials.cases.get(number / count / trials.count)?;
+        let id = EpisodeId { individual: (population * size) as u32, ..episode(trial, kinds, trials.seed) };
         let (parameters, opponents) = (champions.get(population)?, others.get(population)?);
-        Some(Evaluation { number, parameters, opponents, normalisation, id })
+        Some(Evaluation { number, parameters, opponents, normalisation, id, case })
     };
     let done = |number: usize, _: Option<&Outcome>| {
         if number.is_multiple_of(count) {
             progress.advance();
         }
     };
-    let outcomes = pool.evaluate(trials * count, &AtomicBool::new(false), task, done)?;
+    let all = trials.count * trials.cases.len();
+    let outcomes = pool.evaluate(all * count, &AtomicBool::new(false), task, done)?;
     let fitness = |outcome: &Outcome| {
         let alone = std::slice::from_ref(outcome);
         if outcome.is_finite() { pool.evaluator().fitness(alone) } else { f64::NAN }
     };
-    let mut results: Vec<TrialResult> = Vec::with_capacity(trials);
+    let mut results: Vec<TrialResult> = Vec::with_capacity(all);
     for (number, outcome) in outcomes.into_iter().flatten().enumerate() {
         let earned = fitness(&outcome);
         if let Some(first) = results.last_mut().filter(|_| !number.is_multiple_of(count)) {
             first.others.push((earned, outcome.success));
         } else {
-            let trial = (number / count % kinds) as u32;
+            let trial = (number / count % trials.count % kinds) as u32;
             results.push(TrialResult { trial, outcome, fitness: earned, others: Vec::new() });
         }
     }

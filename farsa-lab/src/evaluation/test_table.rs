@@ -8,6 +8,7 @@ use serde::{Serialize, Serializer};
 
 use crate::error::Error;
 use crate::experiment::outcome::{Note, Outcome};
+use crate::figures::significant::significant;
 
 /// The columns that every test has; the terms of the fitness, if there are more than one, and the notes follow.
 const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
@@ -85,6 +86,15 @@ impl Table {
             // A line of another length than the first is an error here, and the error says which.
             lines.push(record.map_err(|error| error.to_string())?.iter().map(str::to_owned).collect());
         }
+        let table = Self::from_lines(lines, 2)?;
+        if text.ends_with('\n') && table.lines.len() > 1 { Ok(table) } else { Err("truncated".into()) }
+    }
+
+    /// The table of these lines, the head first; the one after it is the line of this number of a file.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub(super) fn from_lines(lines: Vec<Vec<String>>, first: usize) -> Result<Self, String> {
         let head = lines.first().map(|line| line.iter().map(String::as_str).collect::<Vec<_>>()).unwrap_or_default();
         if !head.starts_with(&HEAD) {
             return Err("is not the table of a test".into());
@@ -97,10 +107,28 @@ impl Table {
                 && success.parse::<bool>().is_ok()
                 && fitness.parse::<f64>().is_ok();
             if !good {
-                return Err(format!("line {} is not a trial of a test", index + 2));
+                return Err(format!("line {} is not a trial of a test", index + first));
             }
         }
-        if text.ends_with('\n') && lines.len() > 1 { Ok(Self { lines }) } else { Err("truncated".into()) }
+        Ok(Self { lines })
+    }
+
+    /// The same in tables of so many trials, each counted from 0.
+    pub(super) fn divided(&self, trials: usize) -> Vec<Self> {
+        let Some((head, lines)) = self.lines.split_first() else { return Vec::new() };
+        let part = |lines: &[Vec<String>]| {
+            let mut lines = lines.to_vec();
+            for (index, field) in lines.iter_mut().filter_map(|line| line.first_mut()).enumerate() {
+                *field = index.to_string();
+            }
+            Self { lines: std::iter::once(head.clone()).chain(lines).collect() }
+        };
+        lines.chunks(trials.max(1)).map(part).collect()
+    }
+
+    /// The lines, the head first.
+    pub(super) fn lines(&self) -> &[Vec<String>] {
+        &self.lines
     }
 
     /// The content of the file, which is to be written to `path`.
@@ -113,10 +141,10 @@ impl Table {
         writer.into_inner().map_err(|error| Error::damaged(path, error.to_string()))
     }
 
-    /// The table with columns that stand under each other; numbers are cut to two places.
+    /// The table with columns that stand under each other; numbers have four significant digits.
     pub(crate) fn aligned(&self) -> String {
         let short = |field: &String| match field.parse::<f64>() {
-            Ok(x) if field.contains('.') => format!("{x:.2}"),
+            Ok(x) if field.contains('.') => significant(x),
             _ => field.clone(),
         };
         let table: Vec<Vec<String>> = self.lines.iter().map(|line| line.iter().map(short).collect()).collect();
@@ -212,10 +240,10 @@ impl Findings {
         if self.broken_down > 0 {
             let _ = writeln!(text, "broken down: {}", share(self.broken_down));
         }
-        let _ = writeln!(text, "fitness: mean {:.2}", self.fitness);
+        let _ = writeln!(text, "fitness: mean {}", significant(self.fitness));
         for (name, finding) in &self.notes {
             let _ = match finding {
-                Finding::Mean(mean) => writeln!(text, "{name}: mean {mean:.2}"),
+                Finding::Mean(mean) => writeln!(text, "{name}: mean {}", significant(*mean)),
                 Finding::Counts(counts) => {
                     let counts: Vec<String> =
                         counts.iter().map(|(word, &count)| format!("{word} {}", share(count))).collect();
@@ -233,11 +261,11 @@ impl Findings {
 }
 
 /// An experiment with one term has it as its fitness and gives it no column.
-fn own_columns(terms: &[String]) -> &[String] {
+pub(super) fn own_columns(terms: &[String]) -> &[String] {
     if terms.len() > 1 { terms } else { &[] }
 }
 
-fn as_map<S: Serializer>(notes: &[(String, Finding)], serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn as_map<S: Serializer>(notes: &[(String, Finding)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(notes.iter().map(|(name, finding)| (name, finding)))
 }
 
@@ -305,8 +333,8 @@ mod tests {
         let findings = table.findings(&["a".into(), "b".into()]);
         assert_eq!(
             findings.text(),
-            "success: 2 of 4 (50.0 %)\nbroken down: 1 of 4 (25.0 %)\nfitness: mean 4.67\n\
-             phase: lift 2 of 4 (50.0 %), reach 1 of 4 (25.0 %)\nheight: mean 5.00\n"
+            "success: 2 of 4 (50.0 %)\nbroken down: 1 of 4 (25.0 %)\nfitness: mean 4.667\n\
+             phase: lift 2 of 4 (50.0 %), reach 1 of 4 (25.0 %)\nheight: mean 5.000\n"
         );
         let shares = findings.by_trial.values().map(|share| (share.successes, share.of)).collect::<Vec<_>>();
         assert_eq!(shares, [(1, 2), (1, 1), (0, 1)]);

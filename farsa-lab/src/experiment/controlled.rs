@@ -2,23 +2,23 @@
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, JointId, Joints, Kinematics, Motor, Planar,
-    Rays, Recorder, Sensor,
+    Rays, Recorder, Robot, Sensor,
 };
 use farsa_nn::Leak;
 use farsa_physics::arena::{Arena, Batch, World};
 use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::experiment::controller_export::{
-    ControllerExport, MotorDrive, MotorExport, NetworkExport, SensorExport, SensorReading,
-};
+use crate::experiment::controller_export::{ControllerExport, MotorDrive, MotorExport, SensorExport, SensorReading};
 use crate::experiment::episode::{Episode, EpisodeId, seconds};
 use crate::experiment::evaluator::{Evaluation, Exports, Task};
 use crate::experiment::in_world::{InWorld, Rollout};
 use crate::experiment::lanes::Lanes;
+use crate::experiment::network_export::NetworkExport;
 use crate::experiment::neurocontroller::Neurocontroller;
 use crate::experiment::outcome::{Description, Note, Outcome};
 use crate::experiment::parameter::Parameter;
+use crate::experiment::protocol::Protocol;
 
 /// A world of wheeled robots: an arena alone, a lane of many, or one in rapier.
 pub trait PlanarWorld:
@@ -92,6 +92,7 @@ pub struct Controlled<S, M, O> {
     trials: Trials,
     steps: u32,
     sum: f64,
+    robot: Option<Robot>,
 }
 
 impl<S: Channels, M: Channels, O: Objective> Controlled<S, M, O> {
@@ -99,7 +100,15 @@ impl<S: Channels, M: Channels, O: Objective> Controlled<S, M, O> {
     pub fn new(control: Neurocontroller<S, M>, objective: O, trials: Trials) -> Self {
         let names: Vec<&str> = objective.values().into_iter().map(|(name, _)| name).collect();
         let schema = control.schema().clone().with_scalars(names);
-        Self { control: control.with_schema(schema), objective, trials, steps: 0, sum: 0.0 }
+        Self { control: control.with_schema(schema), objective, trials, steps: 0, sum: 0.0, robot: None }
+    }
+
+    /// The same with the robot that `farsa export robot` writes, [`MobileRobot::description`] for one of ours.
+    ///
+    /// [`MobileRobot::description`]: farsa_body::MobileRobot::description
+    #[must_use]
+    pub fn with_robot(self, robot: Robot) -> Self {
+        Self { robot: Some(robot), ..self }
     }
 }
 
@@ -156,6 +165,11 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S
         self.control.sensed().len()
     }
 
+    /// Those of [`Neurocontroller::protocols`].
+    fn protocols(&self) -> Vec<Protocol> {
+        self.control.protocols()
+    }
+
     fn exports(&self) -> Option<&dyn Exports> {
         Some(self)
     }
@@ -185,6 +199,10 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Rollout for Controlle
 }
 
 impl<S: Channels + Send, M: Channels + Send, O: Objective> Exports for Controlled<S, M, O> {
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        self.robot.clone()
+    }
+
     /// The network, with the numbers of the channels that it reads and writes.
     fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
         let schema = self.control.schema();
@@ -198,7 +216,7 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Exports for Controlle
             .enumerate()
             .map(|(channel, motor)| MotorExport { name: motor.name.clone(), drives: MotorDrive::Channel { channel } });
         Some(ControllerExport {
-            network: NetworkExport::new(self.control.layout(), Leak::Filter, parameters),
+            network: NetworkExport::leaky(self.control.layout(), Leak::Filter, parameters),
             sensors: sensors.collect(),
             motors: motors.collect(),
             actuators: Vec::new(),

@@ -1,8 +1,10 @@
 //! A controller, its body's channels and its starts as plain data, for `farsa export`.
 
 use farsa_body::{Axes, Law};
-use farsa_nn::{CtrnnLayout, Leak, LeakyLayout, LeakyParts};
+use farsa_nn::channel_hash;
 use serde::Serialize;
+
+use crate::experiment::network_export::NetworkExport;
 
 /// A controller with all that another program needs to run it in another world: numbers, and names of the model that
 /// `farsa export robot` writes.
@@ -29,46 +31,24 @@ pub struct ControllerExport {
     pub steps: u32,
 }
 
-/// A leaky recurrent network, [`farsa_nn::LeakyNetwork`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct NetworkExport {
-    /// Number of inputs.
-    pub inputs: usize,
-    /// Number of hidden neurons.
-    pub hidden: usize,
-    /// Number of outputs.
-    pub outputs: usize,
-    /// Slope s of sigma(x) = 1 / (1 + exp(-s x)).
-    pub slope: f32,
-    /// Which reading of the leak d, with y = sigma(net): `filter` is H = d y + (1-d) H(t-1), `two-tap` d y + (1-d) y(t-1),
-    /// `evonet` d H(t-1) + (1-d) y.
-    pub leak: &'static str,
-    /// From input j to hidden neuron i, at j * hidden + i.
-    pub sensor_weights: Vec<f32>,
-    /// From hidden neuron k, one step ago, to hidden neuron i, at k * hidden + i.
-    pub recurrent_weights: Vec<f32>,
-    /// From hidden neuron j to output i, at j * outputs + i.
-    pub output_weights: Vec<f32>,
-    /// Biases of the hidden neurons.
-    pub biases: Vec<f32>,
-    /// Leaks of the hidden neurons.
-    pub leaks: Vec<f32>,
-}
+impl ControllerExport {
+    /// A controller whose channels say all that there is to say: no actuators, surfaces or judge of a model.
+    pub fn new(
+        network: NetworkExport,
+        sensors: Vec<SensorExport>,
+        motors: Vec<MotorExport>,
+        time_step: f64,
+        steps: u32,
+    ) -> Self {
+        let (actuators, surfaces) = (Vec::new(), Vec::new());
+        Self { network, sensors, motors, actuators, surfaces, judge: None, time_step, steps }
+    }
 
-/// A continuous-time network, [`farsa_nn::Ctrnn`], with what its channels are called: all that its bytes hold.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CtrnnExport {
-    /// The layout.
-    pub layout: CtrnnLayout,
-    /// Time step \[s\].
-    pub time_step: f32,
-    /// The parameters in the order of the layout.
-    pub parameters: Vec<f32>,
-    /// What the inputs are called.
-    pub sensors: Vec<String>,
-    /// What the outputs are called.
-    pub motors: Vec<String>,
+    /// What [`farsa_nn::channel_hash`] makes of the names of its channels.
+    pub fn channels(&self) -> u64 {
+        let sensors = self.sensors.iter().map(|sensor| &sensor.name);
+        channel_hash(sensors, self.motors.iter().map(|motor| &motor.name))
+    }
 }
 
 /// A sensor channel.
@@ -79,6 +59,23 @@ pub struct SensorExport {
     /// What it reads.
     #[serde(flatten)]
     pub reads: SensorReading,
+}
+
+impl SensorExport {
+    /// A channel that reads a quantity, 0 at `ends[0]` and 1 at `ends[1]`, in proportion between.
+    pub fn quantity(name: impl Into<String>, quantity: impl Into<String>, unit: &'static str, ends: [f64; 2]) -> Self {
+        let [zero, one] = ends;
+        let reads = SensorReading::Quantity { quantity: quantity.into(), unit, zero, one, linear: true };
+        Self { name: name.into(), reads }
+    }
+}
+
+impl MotorExport {
+    /// A channel that drives a quantity, `ends[0]` at 0 and `ends[1]` at 1.
+    pub fn quantity(name: impl Into<String>, quantity: impl Into<String>, unit: &'static str, ends: [f64; 2]) -> Self {
+        let [zero, one] = ends;
+        Self { name: name.into(), drives: MotorDrive::Quantity { quantity: quantity.into(), unit, zero, one } }
+    }
 }
 
 /// What lies between a pair of shapes: a spring and a damper.
@@ -129,6 +126,19 @@ pub enum SensorReading {
         /// Units per metre.
         scale: f32,
     },
+    /// A quantity by what is read at two values of it.
+    Quantity {
+        /// Which.
+        quantity: String,
+        /// Its unit; `1` if it has none.
+        unit: &'static str,
+        /// Its value that reads 0.
+        zero: f64,
+        /// Its value that reads 1.
+        one: f64,
+        /// Whether readings between are (q - zero) / (one - zero); else they follow a curve or a table.
+        linear: bool,
+    },
     /// The sensor channel of this number, from 0, as the experiment's own program reads it.
     Channel {
         /// Its number.
@@ -152,7 +162,7 @@ pub struct PointExport {
     pub at: [f64; 3],
 }
 
-/// A motor channel; its value is clamped into \[0, 1\] first.
+/// A motor channel; its value is clamped into \[0, 1\] first, if not said otherwise.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MotorExport {
     /// What it is called here.
@@ -173,6 +183,17 @@ pub enum MotorDrive {
         actuator: String,
         /// 0 the agonist, which pulls towards the joint's lower limit, 1 the antagonist.
         muscle: usize,
+    },
+    /// A quantity, zero + (one - zero) y; here y is not clamped.
+    Quantity {
+        /// Which.
+        quantity: String,
+        /// Its unit; `1` if it has none.
+        unit: &'static str,
+        /// Its value at 0.
+        zero: f64,
+        /// Its value at 1.
+        one: f64,
     },
     /// The motor channel of this number, from 0, as the experiment's own program drives it.
     Channel {
@@ -236,24 +257,4 @@ pub struct StartExport {
     pub joints: Vec<(String, f32)>,
     /// Place of every free body's origin \[m\], by name; none is turned.
     pub bodies: Vec<(String, [f32; 3])>,
-}
-
-impl NetworkExport {
-    /// A network of these parameters.
-    pub fn new(layout: &LeakyLayout, leak: Leak, parameters: &[f32]) -> Self {
-        let LeakyParts { sensor_weights, recurrent_weights, output_weights, biases, leaks, .. } =
-            layout.split(parameters);
-        Self {
-            inputs: layout.sensors(),
-            hidden: layout.hidden(),
-            outputs: layout.outputs(),
-            slope: layout.slope(),
-            leak: leak.name(),
-            sensor_weights: sensor_weights.into(),
-            recurrent_weights: recurrent_weights.into(),
-            output_weights: output_weights.into(),
-            biases: biases.into(),
-            leaks: leaks.into(),
-        }
-    }
 }

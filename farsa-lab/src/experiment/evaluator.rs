@@ -1,17 +1,18 @@
 //! What an experiment is evaluated by: parameters go in, outcomes come out.
 
-use farsa_body::Recorder;
+use farsa_body::{Recorder, Robot};
 use farsa_evo::ObservationStatistics;
 use farsa_models::MjcfOptions;
 use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::behaviour::Behaviour;
-use crate::experiment::controller_export::{ControllerExport, CtrnnExport, StartExport};
+use crate::experiment::controller_export::{ControllerExport, StartExport};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
+use crate::experiment::protocol::{CaseId, Protocol};
 
 /// What there is to know of an experiment under its settings before anything is evaluated.
 ///
@@ -78,6 +79,13 @@ pub trait Task: Send {
         None
     }
 
+    /// The tests that `farsa test --protocol` offers beside its plain one; by default none.
+    ///
+    /// The same under all settings but those that take away what a protocol is about, and the same whenever it is asked.
+    fn protocols(&self) -> Vec<Protocol> {
+        Vec::new()
+    }
+
     /// What can be exported, if anything can.
     fn exports(&self) -> Option<&dyn Exports> {
         None
@@ -96,17 +104,25 @@ pub trait Exports {
         None
     }
 
+    /// The robot as other programs may have it, where that is not the one of the [`schema`](Task::schema): of these
+    /// parameters where bodies are made of them, else, or without parameters, the experiment's own.
+    ///
+    /// Its MuJoCo model steps as [`MjcfOptions::default`] does, unless [`mjcf_options`](Self::mjcf_options) says otherwise.
+    fn robot(&self, parameters: Option<&[f32]>) -> Option<Robot> {
+        let _ = parameters;
+        None
+    }
+
     /// The controller with these parameters and its channels.
     fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
         let _ = parameters;
         None
     }
 
-    /// The continuous-time network with these parameters, for `--format bytes` where there is no
-    /// [`controller`](Self::controller).
-    fn ctrnn(&self, parameters: &[f32]) -> Option<CtrnnExport> {
-        let _ = parameters;
-        None
+    /// The same for an individual of the population of this number, where the channels of populations stand for other things.
+    fn controller_of(&self, population: usize, parameters: &[f32]) -> Option<ControllerExport> {
+        let _ = population;
+        self.controller(parameters)
     }
 
     /// How an episode starts.
@@ -137,12 +153,16 @@ pub struct Evaluation<'p> {
     pub normalisation: Option<&'p ObservationStatistics>,
     /// Which episode.
     pub id: EpisodeId,
+    /// The case of a test protocol that it belongs to \[[`Task::protocols`]\]; none in a run and in a plain test.
+    ///
+    /// All cases of a protocol have the same episodes, so that they differ in nothing but the case.
+    pub case: Option<CaseId>,
 }
 
 impl<'p> Evaluation<'p> {
-    /// A trial of these parameters, number 0, without opponents or normalised observations.
+    /// A trial of these parameters, number 0, without opponents, normalised observations or a case.
     pub fn new(parameters: &'p [f32], id: EpisodeId) -> Self {
-        Self { number: 0, parameters, opponents: &[], normalisation: None, id }
+        Self { number: 0, parameters, opponents: &[], normalisation: None, id, case: None }
     }
 }
 

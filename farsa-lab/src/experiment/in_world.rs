@@ -12,6 +12,7 @@ use crate::experiment::lanes::Lanes;
 use crate::experiment::limited::Limited;
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
+use crate::experiment::protocol::Protocol;
 
 /// A task's episode as it is evaluated: it takes parameters before it starts and tells its outcome after its end.
 pub trait Rollout: Task {
@@ -170,6 +171,9 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
     }
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.rollout.behaviour()
+    }
+    fn protocols(&self) -> Vec<Protocol> {
+        self.rollout.protocols()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.rollout.exports()

@@ -1,5 +1,7 @@
 //! What genes control a robot by: its sensors, a network, and its motors.
 
+use std::ops::Range;
+
 use farsa_body::{BodyId, Channels, Contacts, Kinematics, Motor, Recorder, Sensor, record_world};
 use farsa_evo::ObservationStatistics;
 use farsa_nn::{Controller as _, LeakyLayout};
@@ -7,10 +9,12 @@ use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::evaluator::Evaluation;
+use crate::experiment::intervention::Interventions;
 use crate::experiment::network_parameters::{OwnedNetwork, network_parameters, resting_network};
 use crate::experiment::normalised_controller::NormalisedController;
 use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
+use crate::experiment::protocol::Protocol;
 
 /// Sensors, a recurrent network, and motors: what an episode needs beside its world and its reward.
 ///
@@ -47,6 +51,8 @@ pub struct Neurocontroller<S, M> {
     x: Vec<f32>,
     y: Vec<f32>,
     schema: Schema,
+    /// The test protocols of any network.
+    interventions: Interventions,
 }
 
 impl<S: Channels, M: Channels> Neurocontroller<S, M> {
@@ -66,8 +72,18 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         let layout = LeakyLayout::new(inputs, hidden, outputs);
         let network = NormalisedController::new(resting_network(&layout)?);
         let (x, y) = (vec![0.0; inputs], vec![0.0; outputs]);
-        Ok(Self { sensors, motors, layout, range, network, x, y, schema: Schema::default() }
-            .with_schema(Schema::default()))
+        Ok(Self {
+            sensors,
+            motors,
+            layout,
+            range,
+            network,
+            x,
+            y,
+            schema: Schema::default(),
+            interventions: Interventions::default(),
+        }
+        .with_schema(Schema::default()))
     }
 
     /// The network's parameters with their ranges.
@@ -93,7 +109,16 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     /// The same with the parameters of an evaluation, and with observations normalised where it says so; false for what is
     /// none of this network.
     pub fn load_evaluation(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        self.network.load(evaluation.normalisation) && self.load(evaluation.parameters)
+        let loaded = self.network.load(evaluation.normalisation) && self.load(evaluation.parameters);
+        self.network.intervene(self.interventions.of(evaluation.case), evaluation.id, 0);
+        loaded
+    }
+
+    /// The protocols `lesions` and `noise`, which [`load_evaluation`](Self::load_evaluation) obeys: each group of sensors is
+    /// cut, by the groups of the [`schema`](Self::schema) or one by one where it has none, and each hidden neuron is silent;
+    /// every input has noise up to 0.4.
+    pub fn protocols(&self) -> Vec<Protocol> {
+        self.interventions.protocols()
     }
 
     /// What was sensed since [`load_evaluation`](Self::load_evaluation), where it is normalised: for
@@ -148,7 +173,8 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
         let schema = if schema.outputs.len() == outputs { schema } else { schema.with_outputs(numbered(outputs)) };
         let mut schema = schema.with_network(&self.layout);
         schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
-        Self { schema, ..self }
+        let interventions = interventions(&schema, self.layout.hidden());
+        Self { schema, interventions, ..self }
     }
 
     /// What [`record`](Self::record) and the caller record, by name.
@@ -183,6 +209,24 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     pub fn sensors_mut(&mut self) -> &mut S {
         &mut self.sensors
     }
+}
+
+/// Largest noise of each case.
+const NOISE: [f32; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];
+
+/// The protocols of a network with these sensors and so many hidden neurons.
+fn interventions(schema: &Schema, hidden: usize) -> Interventions {
+    let mut groups: Vec<(String, Range<usize>)> = Vec::new();
+    for (number, sensor) in schema.sensors.iter().enumerate() {
+        let grouped = !sensor.group.is_empty() && sensor.group != "sensor";
+        match groups.last_mut() {
+            Some((group, range)) if grouped && *group == sensor.group => range.end += 1,
+            _ if grouped => groups.push((sensor.group.clone(), number..number + 1)),
+            _ => groups.push((format!("sensor {}", sensor.name), number..number + 1)),
+        }
+    }
+    let neurons = (0..hidden).map(|neuron| (format!("neuron {}", neuron + 1), neuron));
+    Interventions::default().with_lesions(groups, neurons).with_noise(&NOISE)
 }
 
 #[cfg(test)]

@@ -1,7 +1,11 @@
 //! A controller whose observations are normalised.
 
 use farsa_evo::ObservationStatistics;
-use farsa_nn::Controller;
+use farsa_nn::{Ablatable, Controller, Lesion};
+use farsa_num::{Domain, Stream};
+
+use crate::experiment::episode::EpisodeId;
+use crate::experiment::intervention::Intervention;
 
 /// The most that a normalised observation is away from 0, in standard deviations.
 const LIMIT: f32 = 10.0;
@@ -43,18 +47,49 @@ pub struct NormalisedController<C> {
     /// What was observed before, and since [`load`](Self::load); none where nothing is normalised.
     statistics: Option<[ObservationStatistics; 2]>,
     x: Vec<f32>,
+    /// What a test does to it.
+    changed: Option<Changed<C>>,
+}
+
+/// An intervention in its course.
+#[derive(Clone, Debug)]
+struct Changed<C> {
+    intervention: Intervention,
+    noise: Stream,
+    step: StepAblated<C>,
+}
+
+/// [`Ablatable::step_ablated`], which not every controller has.
+type StepAblated<C> = fn(&mut C, &[Lesion], &[f32], &mut [f32]);
+
+impl<C> Changed<C> {
+    /// Senses with noise and without what is cut, `x` being normalised already, and computes without what is silent.
+    fn step(&mut self, controller: &mut C, x: &mut [f32], y: &mut [f32]) {
+        let Intervention { lesions, cut, noise } = &self.intervention;
+        if *noise > 0.0 {
+            for x in &mut *x {
+                *x += self.noise.range(-*noise, *noise);
+            }
+        }
+        for inputs in cut {
+            let end = inputs.end.min(x.len());
+            x[inputs.start.min(end)..end].fill(0.0);
+        }
+        (self.step)(controller, lesions, x, y);
+    }
 }
 
 impl<C: Controller> NormalisedController<C> {
     /// This controller, with observations as they are.
     pub fn new(controller: C) -> Self {
         let x = vec![0.0; controller.inputs()];
-        Self { controller, statistics: None, x }
+        Self { controller, statistics: None, x, changed: None }
     }
 
     /// Normalises by what was observed before, or does not normalise, and forgets what was observed since; false for
-    /// statistics of other channels than the controller's inputs, which change nothing.
+    /// statistics of other channels than the controller's inputs, which change nothing. No intervention stays.
     pub fn load(&mut self, before: Option<&ObservationStatistics>) -> bool {
+        self.changed = None;
         let Some(before) = before else {
             self.statistics = None;
             return true;
@@ -69,6 +104,23 @@ impl<C: Controller> NormalisedController<C> {
     /// What was observed since [`load`](Self::load), before it was normalised; none where it is not.
     pub fn observed(&self) -> Option<&ObservationStatistics> {
         self.statistics.as_ref().map(|[_, since]| since)
+    }
+
+    /// Changes what the controller senses and computes until the next [`load`](Self::load), or nothing.
+    ///
+    /// The noise is drawn from the stream of [`Domain::Network`] of the episode and the number of the robot, from 0: the same in
+    /// every case of a protocol. It comes after the observations are normalised, and so does what is cut; what is
+    /// [`observed`](Self::observed) is without.
+    pub fn intervene(&mut self, intervention: Option<&Intervention>, id: EpisodeId, robot: u32)
+    where
+        C: Ablatable,
+    {
+        let EpisodeId { seed, generation, individual, trial } = id;
+        self.changed = intervention.filter(|wanted| **wanted != Intervention::default()).map(|wanted| Changed {
+            intervention: wanted.clone(),
+            noise: Stream::new(seed, Domain::Network, trial, individual.wrapping_add(robot << 16), generation),
+            step: C::step_ablated,
+        });
     }
 
     /// The controller.
@@ -98,21 +150,98 @@ impl<C: Controller> Controller for NormalisedController<C> {
 
     #[inline]
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        let Some([before, since]) = &mut self.statistics else { return self.controller.step(x, y) };
-        since.push(x);
-        // One observation has no deviation.
-        if before.count() < 2 {
-            return self.controller.step(x, y);
+        let Self { controller, statistics, x: own, changed } = self;
+        let mut normalised = false;
+        if let Some([before, since]) = statistics {
+            since.push(x);
+            // One observation has no deviation.
+            if before.count() >= 2 {
+                own.copy_from_slice(x);
+                before.normalise(own, LIMIT);
+                normalised = true;
+            }
         }
-        self.x.copy_from_slice(x);
-        before.normalise(&mut self.x, LIMIT);
-        self.controller.step(&self.x, y);
+        match changed {
+            None if normalised => controller.step(own, y),
+            None => controller.step(x, y),
+            Some(changed) => {
+                if !normalised {
+                    own.copy_from_slice(x);
+                }
+                changed.step(controller, own, y);
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use farsa_nn::{Leak, LeakyLayout, LeakyNetwork};
+
+    /// Two inputs, two hidden neurons, one output; all weights are 1.
+    fn network() -> NormalisedController<LeakyNetwork<Vec<f32>, Vec<f32>>> {
+        let layout = LeakyLayout::new(2, 2, 1);
+        let (parameters, state) = (vec![1.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
+        NormalisedController::new(LeakyNetwork::new(layout, Leak::Filter, parameters, state).unwrap())
+    }
+
+    fn response(control: &mut NormalisedController<LeakyNetwork<Vec<f32>, Vec<f32>>>, x: [f32; 2]) -> Vec<f32> {
+        control.reset();
+        let mut y = [0.0];
+        (0..5)
+            .map(|_| {
+                control.step(&x, &mut y);
+                y[0]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn interventions_cut_silence_and_disturb_until_the_next_evaluation() {
+        let mut control = network();
+        let id = EpisodeId { seed: 7, trial: 3, ..EpisodeId::default() };
+        let intact = response(&mut control, [0.5, 0.9]);
+        // A cut input is one that senses nothing.
+        control.intervene(Some(&Intervention::cut(1..2)), id, 0);
+        let cut = response(&mut control, [0.5, 0.9]);
+        control.intervene(None, id, 0);
+        assert_eq!((&response(&mut control, [0.5, 0.0]), &response(&mut control, [0.5, 0.9])), (&cut, &intact));
+        assert_ne!(cut, intact);
+        // With all hidden neurons silent the output is that of its own sum alone: half of the range, whatever is sensed.
+        let silent = Intervention { lesions: vec![Lesion::new(0), Lesion::new(1)], ..Intervention::default() };
+        control.intervene(Some(&silent), id, 0);
+        assert_eq!(response(&mut control, [0.5, 0.9]), [0.5; 5]);
+        control.intervene(Some(&Intervention::lesion(0)), id, 0);
+        let one = response(&mut control, [0.5, 0.9]);
+        assert!(one.iter().zip(&intact).all(|(one, all)| *one > 0.5 && one < all), "{one:?} {intact:?}");
+        // Noise: the same for the same episode, another for another or another robot, and none of level 0.
+        let mut noisy = |level: f32, id: EpisodeId, robot: u32| {
+            control.intervene(Some(&Intervention::noise(level)), id, robot);
+            response(&mut control, [0.5, 0.9])
+        };
+        let first = noisy(0.3, id, 0);
+        assert!(first != intact && first == noisy(0.3, id, 0) && noisy(0.0, id, 0) == intact);
+        assert!(first != noisy(0.3, EpisodeId { trial: 4, ..id }, 0) && first != noisy(0.3, id, 1));
+        // An input beyond the network's is none; what is loaded anew is intact.
+        control.intervene(Some(&Intervention::cut(1..9)), id, 0);
+        assert_eq!(response(&mut control, [0.5, 0.9]), cut);
+        assert!(control.load(None));
+        assert_eq!(response(&mut control, [0.5, 0.9]), intact);
+    }
+
+    #[test]
+    fn what_is_cut_is_the_mean_where_observations_are_normalised() {
+        let mut control = network();
+        let before = statistics(&[[1.0, 10.0], [3.0, 30.0]]);
+        assert!(control.load(Some(&before)));
+        let mean = response(&mut control, [2.5, 20.0]);
+        assert!(control.load(Some(&before)));
+        control.intervene(Some(&Intervention::cut(1..2)), EpisodeId::default(), 0);
+        assert_eq!(response(&mut control, [2.5, 35.0]), mean);
+        // What was observed is what there was.
+        assert_eq!(control.observed().unwrap().mean(), [2.5, 35.0]);
+    }
 
     /// Hands its inputs on.
     #[derive(Clone, Debug)]

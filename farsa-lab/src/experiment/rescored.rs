@@ -9,6 +9,7 @@ use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLan
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Description, Outcome, mean_of_trials};
 use crate::experiment::parameter::Parameter;
+use crate::experiment::protocol::Protocol;
 
 /// Evaluates as another evaluator does, and puts terms of its own in the place of the outcomes'.
 ///
@@ -68,6 +69,9 @@ impl Task for Rescored {
     }
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.inner.behaviour()
+    }
+    fn protocols(&self) -> Vec<Protocol> {
+        self.inner.protocols()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.inner.exports()

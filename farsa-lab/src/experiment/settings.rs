@@ -288,6 +288,11 @@ impl Settings {
         if sections().any(within) { Ok(()) } else { Err(Error::unknown(place, "section", name, sections())) }
     }
 
+    /// Whether the table has such a key.
+    pub fn has(&self, key: &str) -> bool {
+        self.values.contains_key(key)
+    }
+
     /// A value, whatever its type.
     ///
     /// # Errors

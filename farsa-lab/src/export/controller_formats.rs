@@ -2,74 +2,54 @@
 
 use std::fmt::{self, Write as _};
 
-use farsa_nn::{CtrnnBytes, Leak, LeakyLayout, LeakyNetworkBytes, channel_hash};
+use farsa_nn::{Block, Group, Leak};
 use safetensors::tensor::{Dtype, TensorView};
 use serde_json::Value;
 
 use crate::error::Error;
-use crate::experiment::controller_export::{ControllerExport, CtrnnExport, NetworkExport};
+use crate::experiment::controller_export::{ControllerExport, MotorDrive, SensorReading};
+use crate::experiment::network_export::NetworkExport;
 
-/// The bytes that [`LeakyNetworkBytes`] reads.
+/// The bytes that `farsa-nn` reads.
 pub(crate) fn bytes(controller: &ControllerExport) -> Result<Vec<u8>, Error> {
-    let (layout, leak, parameters) = network(&controller.network)?;
-    let mut bytes = vec![0; LeakyNetworkBytes::byte_count(layout)];
-    LeakyNetworkBytes::write(layout, leak, channels(controller), &parameters, &mut bytes).map_err(other)?;
-    Ok(bytes)
-}
-
-/// The bytes that [`CtrnnBytes`] reads.
-pub(crate) fn ctrnn_bytes(network: &CtrnnExport) -> Result<Vec<u8>, Error> {
-    let CtrnnExport { layout, time_step, parameters, sensors, motors } = network;
-    let mut bytes = vec![0; CtrnnBytes::byte_count(*layout)];
-    let channels = channel_hash(sensors, motors);
-    CtrnnBytes::write(*layout, *time_step, channels, parameters, &mut bytes).map_err(other)?;
-    Ok(bytes)
+    controller.network.bytes(controller.channels()).map_err(other)
 }
 
 /// A source file of constants, for a program without files; `whose` says in words whose it is.
 pub(crate) fn rust(controller: &ControllerExport, whose: &str) -> Result<String, Error> {
-    let (layout, leak, parameters) = network(&controller.network)?;
     let mut text = String::new();
-    let reading = match leak {
-        Leak::Filter => "Filter",
-        Leak::TwoTap => "TwoTap",
-        Leak::Evonet => "Evonet",
-    };
-    let (sensors, hidden, outputs, slope) = (layout.sensors(), layout.hidden(), layout.outputs(), layout.slope());
     let written = write!(
         text,
         "//! {whose}: written by `farsa export controller --format rust`.
-
-use farsa_nn::{{Leak, LeakyLayout}};
-
-/// Numbers of sensors, hidden neurons and motors.
-pub const LAYOUT: LeakyLayout = LeakyLayout::new({sensors}, {hidden}, {outputs}).with_slope({slope:?});
-
-/// The reading of the leak.
-pub const LEAK: Leak = Leak::{reading};
-
+{}
+{}
 /// What `farsa_nn::channel_hash` makes of the names below.
 pub const CHANNELS: u64 = {:#018x};
 
 /// What the inputs are called.
 #[rustfmt::skip]
-pub const SENSORS: &[&str; {sensors}] = &[
+pub const SENSORS: &[&str; {}] = &[
 {}];
 
 /// What the outputs are called.
 #[rustfmt::skip]
-pub const MOTORS: &[&str; {outputs}] = &[
+pub const MOTORS: &[&str; {}] = &[
 {}];
 
 /// The parameters in the order of the layout.
 #[rustfmt::skip]
-pub const PARAMETERS: &[f32; LAYOUT.parameter_count()] = &[
+pub const PARAMETERS: &[f32; {}] = &[
 {}];
 ",
-        channels(controller),
+        Scaling(controller),
+        Layout(&controller.network),
+        controller.channels(),
+        controller.sensors.len(),
         List(controller.sensors.iter().map(|sensor| &sensor.name)),
+        controller.motors.len(),
         List(controller.motors.iter().map(|motor| &motor.name)),
-        List(parameters.iter()),
+        ParameterCount(&controller.network),
+        List(controller.network.parameters().iter()),
     );
     written.map_err(|error| Error::Other(error.to_string()))?;
     Ok(text)
@@ -77,39 +57,180 @@ pub const PARAMETERS: &[f32; LAYOUT.parameter_count()] = &[
 
 /// Tables of safetensors, with `about`, less its tables, as the text `farsa` beside them.
 pub(crate) fn safetensors(controller: &ControllerExport, mut about: Value) -> Result<Vec<u8>, Error> {
-    let network = &controller.network;
-    let &NetworkExport { inputs, hidden, outputs, .. } = network;
-    let tables = [
-        ("sensor_weights", &network.sensor_weights, vec![inputs, hidden]),
-        ("recurrent_weights", &network.recurrent_weights, vec![hidden, hidden]),
-        ("output_weights", &network.output_weights, vec![hidden, outputs]),
-        ("biases", &network.biases, vec![hidden]),
-        ("leaks", &network.leaks, vec![hidden]),
-    ];
+    let tables = controller.network.tables();
     if let Some(network) = about.get_mut("network").and_then(Value::as_object_mut) {
         network.retain(|name, _| tables.iter().all(|(table, ..)| name != table));
     }
-    let data: Vec<Vec<u8>> = tables.iter().map(|(_, table, _)| little_endian(table)).collect();
+    let data: Vec<Vec<u8>> = tables.iter().map(|(.., table)| little_endian(table)).collect();
     let views = tables
         .into_iter()
         .zip(&data)
-        .map(|((name, _, shape), data)| TensorView::new(Dtype::F32, shape, data).map(|view| (name, view)));
+        .map(|((name, shape, _), data)| TensorView::new(Dtype::F32, shape, data).map(|view| (name, view)));
     let views: Vec<_> = views.collect::<Result<_, _>>().map_err(other)?;
     // One text, because several would be written in an order of their own each time.
     let metadata = [("farsa".to_owned(), about.to_string())].into_iter().collect();
     safetensors::serialize(views, Some(metadata)).map_err(other)
 }
 
-fn network(network: &NetworkExport) -> Result<(LeakyLayout, Leak, Vec<f32>), Error> {
-    let NetworkExport { sensor_weights, recurrent_weights, output_weights, biases, leaks, .. } = network;
-    let layout = LeakyLayout::new(network.inputs, network.hidden, network.outputs).with_slope(network.slope);
-    let parameters = [sensor_weights, recurrent_weights, output_weights, biases, leaks].map(Vec::as_slice).concat();
-    Ok((layout, network.leak.parse().map_err(other)?, parameters))
+/// The channels that are quantities, as a table of comments: nothing where there are none.
+struct Scaling<'a>(&'a ControllerExport);
+
+impl fmt::Display for Scaling<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sensors = self.0.sensors.iter().filter_map(|sensor| match &sensor.reads {
+            SensorReading::Quantity { quantity, unit, zero, one, linear } => {
+                let between = if *linear { "" } else { ", a curve between" };
+                Some((&sensor.name, format!("reads {quantity} [{unit}]: 0 at {zero}, 1 at {one}{between}")))
+            }
+            _ => None,
+        });
+        let motors = self.0.motors.iter().filter_map(|motor| match &motor.drives {
+            MotorDrive::Quantity { quantity, unit, zero, one } => {
+                Some((&motor.name, format!("drives {quantity} [{unit}]: {zero} at 0, {one} at 1")))
+            }
+            _ => None,
+        });
+        for (number, (name, what)) in sensors.chain(motors).enumerate() {
+            f.write_str(if number == 0 { "//!\n" } else { "" })?;
+            writeln!(f, "//! - `{name}` {what}")?;
+        }
+        Ok(())
+    }
 }
 
-fn channels(controller: &ControllerExport) -> u64 {
-    let sensors = controller.sensors.iter().map(|sensor| &sensor.name);
-    channel_hash(sensors, controller.motors.iter().map(|motor| &motor.name))
+/// The layout as constants.
+struct Layout<'a>(&'a NetworkExport);
+
+impl fmt::Display for Layout<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            NetworkExport::Leaky { layout, leak, .. } => {
+                let (sensors, hidden, outputs) = (layout.sensors(), layout.hidden(), layout.outputs());
+                let (slope, reading) = (layout.slope(), reading(*leak));
+                write!(
+                    f,
+                    "use farsa_nn::{{Leak, LeakyLayout}};
+
+/// Numbers of sensors, hidden neurons and motors.
+pub const LAYOUT: LeakyLayout = LeakyLayout::new({sensors}, {hidden}, {outputs}).with_slope({slope:?});
+
+/// The reading of the leak.
+pub const LEAK: Leak = Leak::{reading};
+"
+                )
+            }
+            NetworkExport::Perceptron { slope, .. } => write!(
+                f,
+                "use farsa_nn::Perceptron;
+
+/// The slope of the logistic function.
+pub const SLOPE: f32 = {slope:?};
+"
+            ),
+            NetworkExport::Ctrnn { layout, time_step, .. } => {
+                let (inputs, neurons, outputs) = (layout.inputs(), layout.neurons(), layout.outputs());
+                let direct = layout.direct_inputs();
+                let direct = direct.map(|to| format!("\n    .with_direct_inputs({})", to.start)).unwrap_or_default();
+                let (first, integrator, activation) =
+                    (layout.output_neurons().start, layout.integrator(), layout.activation());
+                write!(
+                    f,
+                    "use farsa_nn::{{Activation, CtrnnLayout, Integrator}};
+
+/// Numbers of inputs, neurons and outputs, and how they are integrated.
+pub const LAYOUT: CtrnnLayout = CtrnnLayout::new({inputs}, {neurons}, {outputs}){direct}
+    .with_outputs_from({first})
+    .with_integrator(Integrator::{integrator:?})
+    .with_activation(Activation::{activation:?});
+
+/// Time step [s].
+pub const TIME_STEP: f32 = {time_step:?};
+"
+                )
+            }
+            NetworkExport::Blocks { layout, leak, .. } => {
+                let (inputs, outputs) = (layout.inputs, layout.outputs);
+                writeln!(
+                    f,
+                    "use farsa_nn::{{Activation, Block, BlockLayout, Group, Leak, Span}};
+
+/// The groups of alike neurons.
+#[rustfmt::skip]
+pub const GROUPS: &[Group] = &["
+                )?;
+                layout.groups.iter().try_for_each(|group| write_group(f, group))?;
+                writeln!(
+                    f,
+                    "];
+
+/// What a step works through.
+#[rustfmt::skip]
+pub const BLOCKS: &[Block] = &["
+                )?;
+                layout.blocks.iter().try_for_each(|block| write_block(f, block))?;
+                writeln!(
+                    f,
+                    "];
+
+/// Numbers of inputs and outputs, groups and blocks.
+pub const LAYOUT: BlockLayout<'static> = BlockLayout::new({inputs}, {outputs}, GROUPS, BLOCKS);
+
+/// The reading of the leak.
+pub const LEAK: Leak = Leak::{};",
+                    reading(*leak)
+                )
+            }
+        }
+    }
+}
+
+/// How many parameters there are, by the layout.
+struct ParameterCount<'a>(&'a NetworkExport);
+
+impl fmt::Display for ParameterCount<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            NetworkExport::Perceptron { inputs, outputs, .. } => {
+                write!(f, "Perceptron::parameter_count({inputs}, {outputs})")
+            }
+            _ => f.write_str("LAYOUT.parameter_count()"),
+        }
+    }
+}
+
+fn write_group(f: &mut fmt::Formatter<'_>, group: &Group) -> fmt::Result {
+    let Group { neurons, activation, slope, bias, gain, leak } = *group;
+    write!(f, "    Group::new({neurons}, Activation::{activation:?}).with_slope({slope:?})")?;
+    for (has, with) in [(bias, ".with_biases()"), (gain, ".with_gains()"), (leak, ".with_leaks()")] {
+        f.write_str(if has { with } else { "" })?;
+    }
+    f.write_str(",\n")
+}
+
+fn write_block(f: &mut fmt::Formatter<'_>, block: &Block) -> fmt::Result {
+    match *block {
+        Block::Connect { from, to, delay } => {
+            let [from, to] = [from, to].map(|span| format!("Span::new({}, {})", span.first, span.count));
+            writeln!(f, "    Block::connect({from}, {to}).delayed({delay}),")
+        }
+        Block::Update(span) => writeln!(f, "    Block::Update(Span::new({}, {})),", span.first, span.count),
+        Block::Gain(span) => writeln!(f, "    Block::Gain(Span::new({}, {})),", span.first, span.count),
+        Block::ModulatedGain { neurons, by } => {
+            let (first, count) = (neurons.first, neurons.count);
+            writeln!(f, "    Block::ModulatedGain {{ neurons: Span::new({first}, {count}), by: {by} }},")
+        }
+        // There is no other; one more would not compile where it is read.
+        _ => f.write_str("    compile_error!(\"a block of a later version\"),\n"),
+    }
+}
+
+/// The reading of the leak as source text has it.
+fn reading(leak: Leak) -> &'static str {
+    match leak {
+        Leak::Filter => "Filter",
+        Leak::TwoTap => "TwoTap",
+        Leak::Evonet => "Evonet",
+    }
 }
 
 fn little_endian(values: &[f32]) -> Vec<u8> {

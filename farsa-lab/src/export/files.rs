@@ -39,27 +39,86 @@ pub(crate) enum ControllerFormat {
     Safetensors,
 }
 
-/// The robot of an experiment under a condition and its settings.
+/// The robot of an experiment under a condition and its settings. With the directory of a run, and the population that is
+/// named, it is that of its champion where bodies are made of parameters.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment without bodies.
-pub(crate) fn robot(plan: &Plan<'_>, format: ModelFormat) -> Result<String, Error> {
+/// [`Error::Usage`] for an experiment without bodies; of a run's champion as [`controller`].
+pub(crate) fn robot(
+    plan: &Plan<'_>,
+    run: Option<(&Directory, Option<&str>)>,
+    format: ModelFormat,
+) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
-    let name = plan.experiment.name();
-    let robot = evaluator.schema().robot.ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
+    let (name, names) = (plan.experiment.name(), evaluator.populations());
+    let parameters = match (run, evaluator.bodies()) {
+        (Some((directory, population)), Some(_)) => {
+            let champion = Champion::read(plan, directory, evaluator.as_ref(), population)?;
+            Some(champion.parameters(plan, directory, evaluator.as_ref())?)
+        }
+        // All its populations have the same robot.
+        (Some((_, population @ Some(_))), None) => {
+            Populations { experiment: name, names: &names }.one("--population", population)?;
+            None
+        }
+        _ => None,
+    };
+    let own = evaluator.exports().and_then(|exports| exports.robot(parameters.as_deref()));
+    let recorded = || match (&parameters, evaluator.bodies()) {
+        (Some(parameters), Some(bodies)) => bodies.schema_with(parameters).robot,
+        _ => evaluator.schema().robot,
+    };
+    // What a robot of the plane steps by is no step of its dynamics.
+    let step = if own.is_some() { 0.0 } else { evaluator.description().step_seconds };
+    let robot = own.or_else(recorded).ok_or_else(|| Error::Usage(format!("{name} has no robot to export")))?;
     let text = match format {
-        ModelFormat::Mjcf => mjcf::write(&robot, &mjcf_options(evaluator.as_ref())),
+        ModelFormat::Mjcf => mjcf::write(&robot, &mjcf_options(evaluator.as_ref(), step)),
         ModelFormat::Urdf => urdf::write(&robot),
     };
     text.map_err(|error| Error::Other(format!("{name}: {error}")))
 }
 
-/// What a MuJoCo model says beside the robot: by default the time between two steps, if the experiment has a clock, and
-/// gravity 9.81 m/s2 downwards.
-fn mjcf_options(evaluator: &dyn Evaluator) -> MjcfOptions {
+/// The champion of a run, of one of its populations.
+struct Champion {
+    generation: u32,
+    individual: u32,
+    population: usize,
+    genes: Genome,
+    normalisation: Option<ObservationStatistics>,
+}
+
+impl Champion {
+    /// Reads it; of several populations that of the one named.
+    fn read(
+        plan: &Plan<'_>,
+        directory: &Directory,
+        evaluator: &dyn Evaluator,
+        population: Option<&str>,
+    ) -> Result<Self, Error> {
+        let Champions { generation, mut best, normalisation, .. } =
+            Champions::read_checked(plan, directory, evaluator)?;
+        let (experiment, names) = (plan.experiment.name(), evaluator.populations());
+        let population = Populations { experiment, names: &names }.one("--population", population)?;
+        if population >= best.len() {
+            return Err(Error::damaged(&directory.champion(), "it has champions of other populations"));
+        }
+        let Best { individual, genes, .. } = best.swap_remove(population);
+        Ok(Self { generation, individual, population, genes, normalisation })
+    }
+
+    /// What its genes mean.
+    fn parameters(&self, plan: &Plan<'_>, directory: &Directory, evaluator: &dyn Evaluator) -> Result<Vec<f32>, Error> {
+        let damaged = || Error::damaged(&directory.champion(), "its genome is not one of the experiment");
+        self.genes.decode(&plan.genotype(evaluator)).ok_or_else(damaged)
+    }
+}
+
+/// What a MuJoCo model says beside the robot: what the experiment says, else this time between two steps, where it is above 0,
+/// and gravity 9.81 m/s2 downwards.
+fn mjcf_options(evaluator: &dyn Evaluator, step: f64) -> MjcfOptions {
     let own = evaluator.exports().and_then(Exports::mjcf_options);
     own.unwrap_or_else(|| {
-        let (plain, step) = (MjcfOptions::default(), evaluator.description().step_seconds);
+        let plain = MjcfOptions::default();
         MjcfOptions { time_step: if step > 0.0 { step } else { plain.time_step }, ..plain }
     })
 }
@@ -74,15 +133,21 @@ struct Whose<'a> {
     seed: u64,
     generation: u32,
     individual: u32,
+    /// Of which population, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    population: Option<&'a str>,
     #[serde(flatten)]
     controller: ControllerExport,
 }
 
 impl Whose<'_> {
     fn text(&self) -> String {
-        let Self { experiment, condition, seed, generation, individual, .. } = self;
+        let Self { experiment, condition, seed, generation, individual, population, .. } = self;
+        let population = population.map(|name| format!(" ({name})")).unwrap_or_default();
+        let variant = if condition.is_empty() { String::new() } else { format!(", {condition}") };
         format!(
-            "The champion of `{experiment}`, {condition}, seed {seed}: generation {generation}, individual {individual}"
+            "The champion of `{experiment}`{population}{variant}, seed {seed}: generation {generation}, individual \
+             {individual}"
         )
     }
 }
@@ -116,51 +181,43 @@ fn as_they_are(normalisation: Option<&ObservationStatistics>, directory: &Direct
 /// [`Error::Usage`] or [`Error::Unknown`] for the population, [`Error::Damaged`], [`Error::OtherConfiguration`].
 pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
-    let Champions { generation, best, normalisation, .. } =
-        Champions::read_checked(plan, directory, evaluator.as_ref())?;
+    let Champion { generation, individual, genes, normalisation, .. } =
+        Champion::read(plan, directory, evaluator.as_ref(), population)?;
     as_they_are(normalisation.as_ref(), directory)?;
-    let (experiment, names) = (plan.experiment.name(), evaluator.populations());
-    let population = Populations { experiment, names: &names }.one("--population", population)?;
-    let Some(Best { individual, genes, .. }) = best.get(population) else {
-        return Err(Error::damaged(&directory.champion(), "it has champions of other populations"));
-    };
+    let experiment = plan.experiment.name();
     let (seed, condition) = (plan.seed, plan.condition.as_str());
     let variant = if condition.is_empty() { String::new() } else { format!(" {condition}") };
     let name = format!("{experiment}{variant}, seed {seed}, generation {generation}, individual {individual}");
     Ok(match genes {
-        Genome::Words(genes) => genotypes::written(&name, genes),
-        Genome::Reals(genes) => genotypes::written_reals(genes),
+        Genome::Words(genes) => genotypes::written(&name, &genes),
+        Genome::Reals(genes) => genotypes::written_reals(&genes),
     })
 }
 
-/// The champion's controller of a run, as the content of a file.
+/// The champion's controller of a run, as the content of a file; of several populations that of the one named.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Damaged`], [`Error::OtherConfiguration`].
-pub(crate) fn controller(plan: &Plan<'_>, directory: &Directory, format: ControllerFormat) -> Result<Vec<u8>, Error> {
+/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Usage`] or [`Error::Unknown`] for the
+/// population, [`Error::Damaged`], [`Error::OtherConfiguration`].
+pub(crate) fn controller(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    population: Option<&str>,
+    format: ControllerFormat,
+) -> Result<Vec<u8>, Error> {
     let evaluator = plan.evaluator()?;
-    let Champions { generation, best, normalisation, .. } =
-        Champions::read_checked(plan, directory, evaluator.as_ref())?;
-    as_they_are(normalisation.as_ref(), directory)?;
     let name = plan.experiment.name();
-    let [Best { individual, genes, .. }] = best.as_slice() else {
-        return Err(Error::Usage(format!("{name}: controllers of {} populations cannot be exported", best.len())));
-    };
-    let damaged = || Error::damaged(&directory.champion(), "its genome is not one of the experiment");
-    let parameters = genes.decode(&plan.genotype(evaluator.as_ref())).ok_or_else(damaged)?;
+    let champion = Champion::read(plan, directory, evaluator.as_ref(), population)?;
+    as_they_are(champion.normalisation.as_ref(), directory)?;
+    let parameters = champion.parameters(plan, directory, evaluator.as_ref())?;
+    let names = evaluator.populations();
     let exports = evaluator.exports();
-    let controller = exports.and_then(|exports| exports.controller(&parameters));
-    let ctrnn = exports.and_then(|exports| exports.ctrnn(&parameters));
-    let controller = match (controller, ctrnn) {
-        (Some(controller), _) => controller,
-        // The other formats cannot describe its body.
-        (None, Some(network)) if format == ControllerFormat::Bytes => return controller_formats::ctrnn_bytes(&network),
-        (None, Some(_)) => return Err(Error::Usage(format!("{name}: its controllers are exported as bytes only"))),
-        (None, None) => return Err(Error::Usage(format!("{name}: its controllers cannot be exported"))),
-    };
+    let controller = exports.and_then(|exports| exports.controller_of(champion.population, &parameters));
+    let controller = controller.ok_or_else(|| Error::Usage(format!("{name}: its controllers cannot be exported")))?;
     let (seed, condition) = (plan.seed, plan.condition.as_str());
-    let individual = *individual;
-    let whose = Whose { format: 1, experiment: name, condition, seed, generation, individual, controller };
+    let Champion { generation, individual, .. } = champion;
+    let population = names.get(champion.population).map(String::as_str).filter(|_| names.len() > 1);
+    let whose = Whose { format: 1, experiment: name, condition, seed, generation, individual, population, controller };
     match format {
         ControllerFormat::Json => pretty(&whose).map(String::into_bytes),
         ControllerFormat::Bytes => controller_formats::bytes(&whose.controller),

@@ -95,6 +95,9 @@ impl Summary {
                 }
                 Law::Torque(torque) => format!("motor {}", at_most(torque.limit)),
                 Law::Held(held) => format!("speed {} {effort} s/{angle}", held.damping),
+                Law::Velocity(motor) => {
+                    format!("speed {} {effort} s/{angle}, {}", motor.gain, at_most(motor.limit))
+                }
                 Law::MusclePair(_) => "muscles".into(),
             };
             let own = robot.actuators.iter().filter(|actuator| actuator.joint == id);

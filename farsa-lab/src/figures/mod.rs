@@ -1,20 +1,26 @@
 //! Curves and the statistics in them.
 //!
+//! - `bar_list`: shares as bars with their intervals
 //! - `bootstrap`: how far a median would move with other runs
 //! - `fixture`: the numbers of another program that the tests here compare with
+//! - `heat_map`: a table of shares as SVG, darker where a share is larger
 //! - `mann_whitney`: an exact test of two groups of values, and a normal one where they are many
 //! - `normal`: the standard normal distribution
 //! - `plot`: Curves over generations as SVG: `fitness.svg` of a run and the figures of a report
 //! - `proportion`: shares of successes: their intervals, and whether two of them differ
 //! - `scatter`: points in two dimensions as SVG, darker where a third value is larger
+//! - `significant`: Numbers for people, with four significant digits
 //! - `statistics`: Order statistics over a few runs
 
+pub(crate) mod bar_list;
 pub(crate) mod bootstrap;
 #[cfg(test)]
 mod fixture;
+pub(crate) mod heat_map;
 pub(crate) mod mann_whitney;
 mod normal;
 pub(crate) mod plot;
 pub(crate) mod proportion;
 pub(crate) mod scatter;
+pub(crate) mod significant;
 pub(crate) mod statistics;

@@ -4,16 +4,20 @@
 //! - `moment`: when runs are compared: at a generation, or after as many evaluations where their generations differ in size
 //! - `outcome`: what came of groups of runs: medians, how many succeeded, and whether the groups differ
 //! - `page`: a page of headings, texts, tables and pictures, written as HTML or as Markdown
+//! - `protocols`: what test protocols found: a table and a picture of each
 //! - `run`: a run as a report reads it, and runs that differ in their seeds alone
 //! - `section`: what a report says about the runs of one experiment
 //! - `settings`: the configurations of the runs in a report: what differs, everything, and the commands that say it again
+//! - `tested_protocol`: a test protocol as a run was tested by it
 //! - `write`: `farsa report`: a page about one or many runs
 
 mod curves;
 mod moment;
 pub(crate) mod outcome;
 mod page;
+mod protocols;
 mod run;
 mod section;
 mod settings;
+mod tested_protocol;
 pub(crate) mod write;

@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::evaluation::test::{self, Record};
 use crate::evaluation::test_table::{Findings, Table};
 use crate::experiment::settings::Value;
+use crate::report::tested_protocol::TestedProtocol;
 use crate::run::plan::Plan;
 use crate::run::records::{Checkpoint, evolved};
 use crate::run::told::Told;
@@ -24,6 +25,8 @@ pub(crate) struct Run<'e> {
     /// The finished generations, at least one.
     pub(crate) lines: Vec<Line>,
     pub(crate) test: Option<Tested>,
+    /// The test protocols that were run, in the experiment's order.
+    pub(crate) protocols: Vec<TestedProtocol>,
 }
 
 /// The test of a run's champion.
@@ -51,7 +54,8 @@ impl<'e> Run<'e> {
         let populations = if populations.len() > 1 { populations } else { Vec::new() };
         let tested = |(table, record): (Table, Option<Record>)| Tested { findings: table.findings(&terms), record };
         let test = test::read(&directory)?.map(tested);
-        Ok(Self { directory, plan, manifest, populations, lines, test })
+        let protocols = TestedProtocol::all(&directory, evaluator.as_ref())?;
+        Ok(Self { directory, plan, manifest, populations, lines, test, protocols })
     }
 
     /// The directory as the user named it.

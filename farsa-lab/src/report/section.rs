@@ -9,6 +9,7 @@ use crate::figures::statistics::median;
 use crate::report::curves::figures;
 use crate::report::outcome::{Success, outcome};
 use crate::report::page::{Block, Figure, Table};
+use crate::report::protocols::{command_of, protocols};
 use crate::report::run::{Group, Run, duration, percent, short, whose};
 use crate::report::settings::{command, complete, differences, shell};
 use crate::strategy::settings::POPULATION;
@@ -37,6 +38,7 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
     }
     blocks.push(Block::Subheading("Champions on fresh starts".into()));
     blocks.extend(tests(&groups, program)?);
+    blocks.extend(protocols(&groups));
     let (mut pictures, mut others) = (Vec::new(), Vec::new());
     for (place, run) in runs.iter().enumerate() {
         match champion(run, place) {
@@ -59,6 +61,9 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
     for run in &runs {
         commands.push(command(run, program)?);
         commands.push(test_command(run, program)?);
+        for tested in &run.protocols {
+            commands.push(command_of(tested, run, program)?);
+        }
         commands.push(shell(&[program.into(), "replay".into(), run.name()])?);
     }
     blocks.push(Block::Subheading("The same again".into()));

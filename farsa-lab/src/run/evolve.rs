@@ -211,7 +211,10 @@ impl<'d> Run<'d> {
             session.generations += 1;
             session.evaluations += fitness.len() as u64;
         }
-        progress.generation(generation, &statistics);
+        let each: Vec<_> = self.names.iter().map(String::as_str).zip(&each).collect();
+        // Of a single population there is nothing but the whole.
+        let whole = [("", &statistics)];
+        progress.generation(generation, if each.is_empty() { &whole } else { &each });
         self.tell_of(failed, progress);
         Ok(())
     }
@@ -263,7 +266,8 @@ impl<'d> Run<'d> {
     fn summary(&self) -> Summary {
         let Identity { experiment, condition, seed, .. } = self.identity.clone();
         let session = self.manifest.sessions.last();
-        let champions: Vec<Winner> = self.champions.iter().flat_map(Winner::from_champions).collect();
+        let champions: Vec<Winner> =
+            self.champions.iter().flat_map(|all| Winner::from_champions(all, &self.names)).collect();
         Summary {
             directory: self.directory.path().display().to_string(),
             experiment,

@@ -31,7 +31,7 @@ pub(crate) struct Generation<'g> {
     pub(crate) opponents: Opponents<'g>,
     /// What was observed in the generations before, where observations are normalised.
     pub(crate) normalisation: Option<&'g ObservationStatistics>,
-    /// Seed and generation; individual and trial are set for each evaluation.
+    /// Seed, generation, and the number of the first individual; the others' and the trial are set for each evaluation.
     pub(crate) id: EpisodeId,
 }
 
@@ -81,22 +81,19 @@ pub(crate) fn judgements_of_all(
     stop: &AtomicBool,
     progress: &Progress,
 ) -> Result<Judged, Unfinished> {
-    let (count, trials) = (of.parameters.len(), pool.evaluator().trials());
+    let trials = pool.evaluator().trials();
     let ended = AtomicUsize::new(0);
     let done = |_: Option<&Outcome>| {
         if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
             progress.advance();
         }
     };
-    let mut outcomes = evaluate_all(pool, of, stop, done)?;
-    let evaluator = pool.evaluator();
-    let names = evaluator.terms();
-    let (mut all, mut failed) = (Vec::with_capacity(count * shape.width()), Vec::new());
+    let individuals = individuals(pool, of, shape, stop, done)?;
+    let (mut all, mut failed) = (Vec::with_capacity(individuals.len() * shape.width()), Vec::new());
     let empty = |before: &ObservationStatistics| ObservationStatistics::new(before.channels()).map_err(other);
     let mut observed = of.normalisation.map(empty).transpose()?;
-    for individual in 0..count {
-        let own = outcomes.iter_mut().skip(individual).step_by(count).map(Option::take);
-        match judged(own, &names, &|outcomes| row(evaluator, shape, of.opponents.told_apart, outcomes)) {
+    for (individual, found) in (of.id.individual..).zip(individuals) {
+        match found {
             Ok((mut row, outcomes)) => {
                 all.append(&mut row);
                 if let Some(observed) = &mut observed {
@@ -105,13 +102,30 @@ pub(crate) fn judgements_of_all(
             }
             Err((trial, why)) => {
                 all.extend((0..shape.width()).map(|_| f64::NAN));
-                let (generation, individual) = (of.id.generation, individual as u32);
-                failed.push(FailedEvaluation { generation, individual, trial, why });
+                failed.push(FailedEvaluation { generation: of.id.generation, individual, trial, why });
             }
         }
     }
     let judgements = Judgements::nan_as_failed(shape, all).map_err(other)?;
     Ok(Judged { judgements, failed, observed })
+}
+
+/// Evaluates all trials of all individuals and says what each comes to, by as many numbers as are asked for, with its trials, or
+/// its first trial that failed and why. `done` hears of every trial that ends.
+pub(crate) fn individuals(
+    pool: &mut Pool<'_>,
+    of: Generation<'_>,
+    shape: JudgementShape,
+    stop: &AtomicBool,
+    done: impl Fn(Option<&Outcome>) + Sync,
+) -> Result<Vec<Result<Individual, FailedTrial>>, Unfinished> {
+    let count = of.parameters.len();
+    let mut outcomes = evaluate_all(pool, of, stop, done)?;
+    let evaluator = pool.evaluator();
+    let names = evaluator.terms();
+    let row = |outcomes: &[Outcome]| row(evaluator, shape, of.opponents.told_apart, outcomes);
+    let one = |individual| judged(outcomes.iter_mut().skip(individual).step_by(count).map(Option::take), &names, &row);
+    Ok((0..count).map(one).collect())
 }
 
 /// An error of farsa-evo.
@@ -180,14 +194,17 @@ fn row(
 type Row<'r> = dyn Fn(&[Outcome]) -> Result<Vec<f64>, String> + 'r;
 
 /// The numbers that an individual comes to, and its trials.
-type Individual = (Vec<f64>, Vec<Outcome>);
+pub(crate) type Individual = (Vec<f64>, Vec<Outcome>);
+
+/// The first trial of an individual that failed, if it is a trial, and why.
+pub(crate) type FailedTrial = (Option<u32>, String);
 
 /// What an individual comes to, or its first trial that failed and why.
 fn judged(
     trials: impl Iterator<Item = Option<Outcome>>,
     names: &[String],
     row: &Row<'_>,
-) -> Result<Individual, (Option<u32>, String)> {
+) -> Result<Individual, FailedTrial> {
     let mut outcomes = Vec::new();
     for (trial, outcome) in (0..).zip(trials) {
         // Only what comes after a trial that failed is left out.
@@ -222,11 +239,11 @@ pub(crate) fn evaluate_all(
     let failed: Vec<AtomicU32> = parameters.iter().map(|_| AtomicU32::new(u32::MAX)).collect();
     let task = |number: usize| {
         let (individual, trial) = (number % count, (number / count) as u32);
-        let id = EpisodeId { individual: individual as u32, trial, ..id };
+        let id = EpisodeId { individual: id.individual + individual as u32, trial, ..id };
         let alive = trial < failed[individual].load(Ordering::Relaxed);
         let opponents = opponents.get(number);
         let own = parameters.get(individual).filter(|_| alive);
-        own.map(|parameters| Evaluation { number, parameters, opponents, normalisation, id })
+        own.map(|parameters| Evaluation { number, parameters, opponents, normalisation, id, case: None })
     };
     let heard = |number: usize, outcome: Option<&Outcome>| {
         if outcome.is_some_and(|outcome| !outcome.is_finite()) {

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::error::Error;
 use crate::experiment::definition::Experiment;
 use crate::run::config_file::ConfigFile;
+use crate::run::imported_file::ImportedFile;
 use crate::store::bounded;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::known;
@@ -29,10 +30,23 @@ pub struct Laboratory<'e> {
 
 /// Makes an experiment of a text, which is the content of a file of a name; it may name these strategies.
 ///
+/// Files that the text names are read from `folder`. A text that a run has kept comes without one, wherever the command is
+/// called: it has in it what it needs, and reads no file.
+///
+/// # Errors
+/// What is wrong with the text, with file, line and key, and a file that it names and cannot have.
+pub type ReadExperiment = fn(
+    name: &str,
+    text: &str,
+    folder: Option<&Path>,
+    strategies: &[&'static dyn StrategyDefinition],
+) -> Result<Box<dyn Experiment>, Error>;
+
+/// Makes the text of a file `name` of a text in another format, which is the content of `file`.
+///
 /// # Errors
 /// What is wrong with the text, with file, line and key.
-pub type ReadExperiment =
-    fn(name: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Box<dyn Experiment>, Error>;
+pub type ImportExperiment = fn(file: &str, name: &str, text: &str) -> Result<ImportedFile, Error>;
 
 /// How experiments are described by files.
 #[derive(Clone, Copy)]
@@ -43,6 +57,8 @@ pub struct ExperimentFiles {
     pub schema: fn() -> String,
     /// What a new file may begin as, the default one first.
     pub templates: &'static [Template],
+    /// Makes such a file of a configuration of the original FARSA.
+    pub import: ImportExperiment,
 }
 
 /// What a new file may begin as.
@@ -59,7 +75,7 @@ pub struct Template {
 /// What names of files end with that describe an experiment.
 pub(crate) const FILE: &str = ".toml";
 /// The most bytes of such a file.
-const MOST_BYTES: u64 = 1_000_000;
+pub(crate) const MOST_BYTES: u64 = 1_000_000;
 
 impl<'e> Laboratory<'e> {
     /// These experiments, in the order in which they are listed, with the strategies of this crate.
@@ -99,11 +115,11 @@ impl<'e> Laboratory<'e> {
         self.files.as_ref().ok_or_else(|| Error::Usage("this program takes no files for experiments".into()))
     }
 
-    /// The experiment of a text.
+    /// The experiment of a text that names files in a folder, or none.
     ///
     /// It lasts as long as the process, like those that are built in; a process reads few.
-    fn described(&self, name: &str, text: &str) -> Result<&'e dyn Experiment, Error> {
-        Ok(Box::leak((self.files()?.read)(name, text, &self.strategies)?))
+    fn described(&self, name: &str, text: &str, folder: Option<&Path>) -> Result<&'e dyn Experiment, Error> {
+        Ok(Box::leak((self.files()?.read)(name, text, folder, &self.strategies)?))
     }
 
     /// The experiment that a configuration names or describes.
@@ -112,7 +128,7 @@ impl<'e> Laboratory<'e> {
     /// [`Error::Usage`] where it does neither, and those of [`experiment`](Self::experiment).
     pub(crate) fn of_configuration(&self, file: &ConfigFile) -> Result<&'e dyn Experiment, Error> {
         match (&file.experiment, &file.definition) {
-            (Some(name), Some(text)) => self.described(&format!("{}{FILE}", name.value), &text.value),
+            (Some(name), Some(text)) => self.described(&format!("{}{FILE}", name.value), &text.value, None),
             (Some(name), None) => self.experiment(&name.value, &name.place),
             (None, _) => Err(Error::Usage(format!("{}: names no experiment", file.name))),
         }
@@ -124,11 +140,12 @@ impl<'e> Laboratory<'e> {
     /// [`Error::Unknown`] with the nearest name, [`Error::Io`] and what is wrong with a file.
     pub(crate) fn experiment(&self, name: &str, place: &str) -> Result<&'e dyn Experiment, Error> {
         if name.ends_with(FILE) {
-            let text = bounded::read_text(Path::new(name), MOST_BYTES).map_err(|error| match error {
+            let path = Path::new(name);
+            let text = bounded::read_text(path, MOST_BYTES).map_err(|error| match error {
                 error @ Error::Damaged { .. } => Error::Usage(error.to_string()),
                 other => other,
             })?;
-            return self.described(name, &text);
+            return self.described(name, &text, path.parent());
         }
         let names = self.experiments.iter().map(|experiment| experiment.name());
         let found = self.experiments.iter().copied().find(|experiment| experiment.name() == name);
@@ -141,5 +158,45 @@ impl<'e> Laboratory<'e> {
     /// [`Error::Unknown`] with the nearest name.
     pub(crate) fn strategy(&self, name: &str, place: &str) -> Result<&'static dyn StrategyDefinition, Error> {
         known::find(&self.strategies, name, place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Says what it was given, as an error.
+    fn read(
+        name: &str,
+        text: &str,
+        folder: Option<&Path>,
+        _: &[&'static dyn StrategyDefinition],
+    ) -> Result<Box<dyn Experiment>, Error> {
+        Err(Error::Other(format!("{name}, {text}, {folder:?}")))
+    }
+
+    /// What a run has kept may come from anyone: it names no files of the folder where the command is called.
+    #[test]
+    fn only_files_of_the_user_have_a_folder() {
+        let files = ExperimentFiles {
+            read,
+            schema: String::new,
+            templates: &[],
+            import: |_, _, _| Err(Error::Other("imports nothing".into())),
+        };
+        let laboratory = Laboratory::new(&[]).with_files(files);
+        let said = |found: Result<&dyn Experiment, Error>| found.err().map(|error| error.to_string());
+        for name in ["own", "below/own", "/own"] {
+            let config = format!("experiment = \"{name}\"\ndefinition = \"text\"\n");
+            let config = ConfigFile::parse("config.toml", &config).unwrap();
+            assert_eq!(said(laboratory.of_configuration(&config)), Some(format!("{name}.toml, text, None")));
+        }
+        let folder = std::env::temp_dir().join(format!("farsa-laboratory-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("own.toml");
+        std::fs::write(&path, "text").unwrap();
+        let path = path.display().to_string();
+        assert_eq!(said(laboratory.experiment(&path, "")), Some(format!("{path}, text, {:?}", Some(&folder))));
+        std::fs::remove_dir_all(folder).unwrap();
     }
 }

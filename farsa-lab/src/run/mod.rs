@@ -9,6 +9,7 @@
 //! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
 //! - `evolve`: evolution from the first or any later generation on, with everything kept that is needed to go on
 //! - `fitness`: the fitness of a generation: all trials of all individuals, and which of them failed
+//! - `imported_file`: a file in another format as one that describes an experiment
 //! - `laboratory`: the experiments and strategies that a command knows by name, [`Laboratory`]
 //! - `following`: what a rank other than the first does in a run: it holds the same search and writes nothing
 //! - `leading`: what ranks do around the generations of a run
@@ -35,6 +36,7 @@ mod diagnostics;
 pub(crate) mod evolve;
 pub(crate) mod fitness;
 pub(crate) mod following;
+mod imported_file;
 pub(crate) mod laboratory;
 pub(crate) mod leading;
 pub(crate) mod plan;
@@ -52,5 +54,6 @@ pub(crate) mod told;
 pub(crate) mod world_choice;
 
 pub use best_of_run::BestOfRun;
-pub use laboratory::{ExperimentFiles, Laboratory, ReadExperiment, Template};
+pub use imported_file::{ImportedFile, LeftOut};
+pub use laboratory::{ExperimentFiles, ImportExperiment, Laboratory, ReadExperiment, Template};
 pub use world_choice::ENGINE;

@@ -8,6 +8,7 @@ use farsa_evo::Statistics;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use crate::escaped::escaped;
+use crate::figures::significant::significant;
 
 /// The progress of a run or a test, on the standard error.
 pub(crate) enum Progress {
@@ -58,22 +59,30 @@ impl Progress {
         }
     }
 
-    /// A generation is finished.
-    pub(crate) fn generation(&self, generation: u32, statistics: &Statistics) {
-        let Statistics { best, mean, worst, failed, .. } = statistics;
+    /// A generation is finished; `all` is of everyone, or of each of several populations with its name.
+    pub(crate) fn generation(&self, generation: u32, all: &[(&str, &Statistics)]) {
         match self {
             Self::Quiet => {}
-            Self::Bar(bar) => bar.set_message(format!("generation {generation}: best {best:.2}, mean {mean:.2}")),
+            Self::Bar(bar) => bar.set_message(format!("generation {generation}: {}", in_words(all, false))),
             Self::Lines => {
-                let failed = if *failed == 0 { String::new() } else { format!(", {failed} failed") };
                 // A user who closed the error stream does not want to know.
-                let _ = writeln!(
-                    io::stderr(),
-                    "generation {generation}: best {best:.2}, mean {mean:.2}, worst {worst:.2}{failed}"
-                );
+                let _ = writeln!(io::stderr(), "generation {generation}: {}", escaped(&in_words(all, true)));
             }
         }
     }
+}
+
+/// The best, the mean and, where there is room, the worst of each population, and how many failed.
+fn in_words(all: &[(&str, &Statistics)], whole: bool) -> String {
+    let one = |(name, statistics): &(&str, &Statistics)| {
+        let Statistics { best, mean, worst, failed, .. } = statistics;
+        let name = if all.len() > 1 { format!("{name} ") } else { String::new() };
+        let [best, mean, worst] = [best, mean, worst].map(|x| significant(*x));
+        let rest = if whole { format!(", worst {worst}") } else { String::new() };
+        let lost = if whole && *failed > 0 { format!(", {failed} failed") } else { String::new() };
+        format!("{name}best {best}, mean {mean}{rest}{lost}")
+    };
+    all.iter().map(one).collect::<Vec<_>>().join("; ")
 }
 
 fn note(text: &str) {
@@ -86,5 +95,26 @@ impl Drop for Progress {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_evo::Fitness;
+
+    #[test]
+    fn populations_have_their_names() {
+        let of = |values: &[f64]| {
+            let fitness: Vec<Fitness> = values.iter().map(|x| Fitness::nan_as_failed(*x)).collect();
+            Statistics::from_fitness(&fitness).unwrap()
+        };
+        let (hunter, prey) = (of(&[0.25, 1.0]), of(&[-2.0, f64::NAN]));
+        assert_eq!(in_words(&[("0", &hunter)], true), "best 1.000, mean 0.6250, worst 0.2500");
+        let both = [("hunter", &hunter), ("prey", &prey)];
+        let text =
+            "hunter best 1.000, mean 0.6250, worst 0.2500; prey best -2.000, mean -2.000, worst -2.000, 1 failed";
+        assert_eq!(in_words(&both, true), text);
+        assert_eq!(in_words(&both, false), "hunter best 1.000, mean 0.6250; prey best -2.000, mean -2.000");
     }
 }

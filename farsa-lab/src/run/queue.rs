@@ -187,7 +187,9 @@ pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, 
     if done > asked {
         return Err(Error::Usage(format!("{}: has finished {done} generations already", path.display())));
     }
-    let champions = Winner::from_champions(&Champions::read(plan, &directory)?);
+    let champions = Champions::read(plan, &directory)?;
+    let names = if champions.best.len() > 1 { plan.evaluator()?.populations() } else { Vec::new() };
+    let champions = Winner::from_champions(&champions, &names);
     Ok(Some(Summary {
         directory: path.display().to_string(),
         experiment: identity.experiment,

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::escaped::OneLine;
+use crate::figures::significant::significant;
 use crate::figures::statistics::{Quartiles, median};
 use crate::run::plan::{LARGEST_SEED, Plan};
 use crate::run::pool::Pool;
@@ -113,7 +114,7 @@ impl Replications {
         rows.extend(self.runs.iter().map(|Replication { summary, .. }| {
             let Summary { directory, seed, generations, champion, .. } = summary;
             let [individual, fitness] = champion.as_ref().map_or_else(Default::default, |champion| {
-                [champion.individual.to_string(), format!("{:?}", champion.fitness)]
+                [champion.individual.to_string(), significant(champion.fitness)]
             });
             vec![OneLine(directory).to_string(), seed.to_string(), generations.to_string(), individual, fitness]
         }));
@@ -121,7 +122,8 @@ impl Replications {
         let fitness = self.runs.iter().filter_map(|one| Some(one.summary.champion.as_ref()?.fitness));
         if let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&fitness.collect::<Vec<_>>()) {
             // Writing into a string cannot fail.
-            let _ = writeln!(text, "champions' fitness: median {median:.2}, quartiles {lower:.2} and {upper:.2}");
+            let [lower, median, upper] = [lower, median, upper].map(significant);
+            let _ = writeln!(text, "champions' fitness: median {median}, quartiles {lower} and {upper}");
         }
         text
     }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::escaped::OneLine;
+use crate::figures::significant::significant;
 use crate::run::records::{Best, Champions};
 
 /// What came of a run; the champion is that of the last generation.
@@ -25,21 +26,25 @@ pub(crate) struct Summary {
 
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Winner {
+    /// Of several populations.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) population: Option<String>,
     pub(crate) generation: u32,
     pub(crate) individual: u32,
     pub(crate) fitness: f64,
 }
 
 impl Winner {
-    /// The best of every population.
-    pub(crate) fn from_champions(champions: &Champions) -> Vec<Self> {
+    /// The best of every population; `names` are those of the populations.
+    pub(crate) fn from_champions(champions: &Champions, names: &[String]) -> Vec<Self> {
         let Champions { generation, best, .. } = champions;
-        let winner = |&Best { individual, fitness, .. }: &Best| Self {
+        let winner = |(number, &Best { individual, fitness, .. }): (usize, &Best)| Self {
+            population: names.get(number).filter(|_| best.len() > 1).cloned(),
             generation: *generation,
             individual,
             fitness: fitness.get(),
         };
-        best.iter().map(winner).collect()
+        best.iter().enumerate().map(winner).collect()
     }
 }
 
@@ -48,17 +53,19 @@ impl Summary {
     pub(crate) fn text(&self) -> String {
         let (directory, generations) = (OneLine(&self.directory), self.generations);
         if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
-            let all = self.champions.iter().enumerate().map(|(population, Winner { individual, fitness, .. })| {
-                format!("population {population} individual {individual}, fitness {fitness:?}")
+            let all = self.champions.iter().map(|Winner { population, individual, fitness, .. }| {
+                let name = population.as_deref().unwrap_or_default();
+                format!("{} individual {individual}, fitness {}", OneLine(name), significant(*fitness))
             });
             let all = all.collect::<Vec<_>>().join("; ");
             return format!("{directory}: {generations} generations; champions of generation {generation}: {all}");
         }
         match &self.champion {
             None => format!("{directory}: all {generations} generations are finished already"),
-            Some(Winner { generation, individual, fitness }) => format!(
+            Some(Winner { generation, individual, fitness, .. }) => format!(
                 "{directory}: {generations} generations; champion: individual {individual} of generation {generation}, \
-                 fitness {fitness:?}"
+                 fitness {}",
+                significant(*fitness)
             ),
         }
     }

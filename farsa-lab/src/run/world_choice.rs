@@ -13,7 +13,7 @@ pub const ENGINE: &str = "world.engine";
 /// [`Error::Usage`] for an experiment that has no choice, [`Error::Setting`] for a world that it does not have.
 pub(crate) fn choose(plan: &mut Plan<'_>, world: Option<&str>) -> Result<(), Error> {
     let Some(world) = world else { return Ok(()) };
-    if plan.settings.get(ENGINE).is_err() {
+    if !plan.settings.has(ENGINE) {
         return Err(Error::Usage(format!("--world {world}: {} has one world only", plan.experiment.name())));
     }
     plan.settings.set("--world", ENGINE, Value::Word(world.into()))

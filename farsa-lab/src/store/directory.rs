@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::store::draft;
+use crate::store::lock::Lock;
 use crate::store::replace::sync_directory;
 
 /// A run's directory.
@@ -56,6 +57,34 @@ impl Directory {
         let _ = draft.keep();
         sync_directory(parent)?;
         Ok(Self::at(path.into()))
+    }
+
+    /// Moves the run that is at a place out of the way, where there is one, to the same name with `.old-` and the first number that
+    /// is free, and returns that. Nothing but a run is moved.
+    ///
+    /// # Errors
+    /// [`Error::Occupied`] for a run that another process is at, [`Error::Io`].
+    pub(crate) fn move_aside(path: &Path) -> Result<Option<PathBuf>, Error> {
+        let Some(name) = path.file_name().filter(|_| path.join("config.toml").is_file()) else { return Ok(None) };
+        let _lock = Lock::of_run(path)?;
+        for number in 1_u64.. {
+            let mut other = name.to_os_string();
+            other.push(format!(".old-{number}"));
+            let other = path.with_file_name(other);
+            // An empty directory, which nothing of a run can be in, is made exclusively and then replaced: so two processes
+            // never take the same number.
+            match fs::create_dir(&other) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+                made => made.map_err(Error::io("make", &other))?,
+            }
+            if cfg!(windows) || path.is_symlink() {
+                fs::remove_dir(&other).map_err(Error::io("move", path))?;
+            }
+            fs::rename(path, &other).map_err(Error::io("move", path))?;
+            sync_directory(draft::parent(path))?;
+            return Ok(Some(other));
+        }
+        Ok(None)
     }
 
     /// The directory of a run that exists.
@@ -133,6 +162,10 @@ impl Directory {
     pub(crate) fn test_record(&self) -> PathBuf {
         self.path.join(format!("test{}.json", self.tests))
     }
+    /// Where the tests by protocols are.
+    pub(crate) fn protocols(&self) -> PathBuf {
+        self.path.join(format!("protocols{}", self.tests))
+    }
 }
 
 fn occupied(path: &Path, why: &str) -> Error {
@@ -146,9 +179,11 @@ fn occupied(path: &Path, why: &str) -> Error {
 pub(crate) fn vacant(path: &Path) -> Result<(), Error> {
     match fs::read_dir(path).map(|mut entries| entries.next().is_none()) {
         Ok(true) => Ok(()),
-        Ok(false) if path.join("config.toml").is_file() => {
-            Err(occupied(path, "already holds a run: go on with `run --resume`, or give another directory with --out"))
-        }
+        Ok(false) if path.join("config.toml").is_file() => Err(occupied(
+            path,
+            "already holds a run: go on with `run --resume`, give another directory with --out, or move \
+                 it aside with --force",
+        )),
         Ok(false) => Err(occupied(path, "already holds other files: give another directory with --out")),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         Err(error) if error.kind() == io::ErrorKind::NotADirectory => Err(occupied(path, "is not a directory")),
@@ -187,5 +222,30 @@ mod tests {
         assert!(Directory::create(&run.join("letter.txt"), |_| Ok(())).is_err());
         assert!(Directory::open(&run).is_err() && Directory::open(&root.join("none")).is_err());
         assert_eq!(fs::read(run.join("letter.txt")).unwrap(), b"dear");
+    }
+
+    #[test]
+    fn a_run_is_moved_aside_and_never_lost() {
+        let folder = tempfile::tempdir().unwrap();
+        let run = folder.path().join("a.run");
+        assert_eq!(Directory::move_aside(&run).unwrap(), None);
+        fs::create_dir(folder.path().join("a.run.old-2")).unwrap();
+        for (text, kept) in [("first", "a.run.old-1"), ("second", "a.run.old-3")] {
+            Directory::create(&run, |directory| replace(&directory.config(), text.as_bytes())).unwrap();
+            let held = Lock::of_run(&run).unwrap();
+            let refused = Directory::move_aside(&run).unwrap_err();
+            assert!(refused.to_string().contains("another process is at this run"), "{refused}");
+            drop(held);
+            let kept = folder.path().join(kept);
+            assert_eq!(Directory::move_aside(&run).unwrap(), Some(kept.clone()));
+            assert!(!run.exists());
+            assert_eq!(fs::read_to_string(kept.join("config.toml")).unwrap(), text);
+        }
+        assert_eq!(fs::read_dir(folder.path().join("a.run.old-2")).unwrap().count(), 0);
+        // What is no run stays where it is.
+        fs::create_dir(&run).unwrap();
+        fs::write(run.join("letter.txt"), "dear").unwrap();
+        assert_eq!(Directory::move_aside(&run).unwrap(), None);
+        assert!(run.join("letter.txt").is_file());
     }
 }

@@ -67,7 +67,7 @@ pub trait StrategyDefinition: Sync {
     /// ([`Task::observations`](crate::Task::observations)); by default what a setting `strategy.normalise_observations`
     /// says, if there is one.
     fn normalises_observations(&self, settings: &Settings) -> bool {
-        settings.flag(NORMALISE).unwrap_or(false)
+        settings.has(NORMALISE) && settings.flag(NORMALISE).unwrap_or(false)
     }
 
     /// How [`Strategy::diagnostics`] are written and drawn, where the strategy has some.

@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::figures::significant::significant;
 use crate::figures::statistics::{Quartiles, median};
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
@@ -194,7 +195,7 @@ impl Found {
             let [median, quartiles] = match Quartiles::from_values(&point.fitness()) {
                 None => Default::default(),
                 Some(Quartiles { lower, median, upper }) => {
-                    [format!("{median:.4}"), format!("{lower:.4} to {upper:.4}")]
+                    [significant(median), format!("{} to {}", significant(lower), significant(upper))]
                 }
             };
             let finished = format!("{} of {}", point.runs.len(), point.replications);

@@ -32,6 +32,9 @@ pub(crate) struct ExportControllerArgs {
     /// The run's directory
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
+    /// Of which population, where there are several
+    #[arg(long, value_name = "NAME")]
+    pub(crate) population: Option<String>,
     /// Of which kind the file is
     #[arg(long, value_enum)]
     pub(crate) format: ControllerFormat,
@@ -75,8 +78,12 @@ pub(crate) struct ExportStartsArgs {
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct ExportRobotArgs {
-    /// The experiment
+    /// The experiment, or the directory of a run: of its champion where bodies evolve
+    #[arg(value_name = "EXPERIMENT")]
     pub(crate) experiment: String,
+    /// Of which population of a run, where there are several
+    #[arg(long, value_name = "NAME")]
+    pub(crate) population: Option<String>,
     #[command(flatten)]
     pub(crate) variant: VariantArgs,
     /// Of which kind the file is

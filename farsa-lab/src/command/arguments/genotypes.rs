@@ -48,6 +48,11 @@ impl GenotypeVariant {
         Ok(plan)
     }
 
+    /// Whether nothing is said.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.ir_tables.is_none() && self.variant.condition.is_none() && self.variant.set.is_empty()
+    }
+
     /// What `--set` first says of a setting.
     pub(crate) fn set(&self, key: &str) -> Option<&Value> {
         self.variant.set.iter().find(|(set, _)| set == key).map(|(_, value)| value)
@@ -63,7 +68,7 @@ pub(crate) struct EvaluateArgs {
     pub(crate) variant: GenotypeVariant,
     /// The genes, whole numbers with commas between them; of several populations once for each, in their order or with
     /// their names
-    #[arg(long, value_name = "[NAME=]G,G,...", allow_hyphen_values = true, required_unless_present = "genes_file")]
+    #[arg(long, value_name = "[NAME=]G,G,...", allow_hyphen_values = true, required_unless_present_any = ["genes_file", "stdin"])]
     pub(crate) genes: Vec<String>,
     /// A file with the genes: a .gen file of the original FARSA, or a list; of several populations as --genes
     #[arg(long, value_name = "[NAME=]FILE", value_hint = ValueHint::FilePath)]
@@ -71,10 +76,13 @@ pub(crate) struct EvaluateArgs {
     /// Which of the file's genotypes, from 0 [default: its only one]; of several files once for each
     #[arg(long, value_name = "N", requires = "genes_file")]
     pub(crate) genotype: Vec<usize>,
+    /// Read parameters as JSON lines and answer each with a line, in trials as those of a run: for optimisers of one's own
+    #[arg(long, conflicts_with_all = ["genes", "genes_file", "trials", "json"])]
+    pub(crate) stdin: bool,
     /// Random trials
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = value_parser!(u32).range(1..=100_000_000))]
     pub(crate) trials: u32,
-    /// Where the random numbers come from, as in a test; never those of a run
+    /// Where the random numbers come from, as in a test; never those of a run, except with --stdin
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: u64,
     #[command(flatten)]
@@ -94,20 +102,24 @@ impl EvaluateArgs {
 #[command(allow_negative_numbers = true)]
 pub(crate) struct ImportArgs {
     /// .gen files of the original FARSA; the first genotype becomes the champion. Of several populations one file for each
-    /// in their order, or any number as POPULATION=FILE, as many genotypes for each
+    /// in their order, or any number as POPULATION=FILE, as many genotypes for each. Or one configuration of the original,
+    /// .ini or .conf, of which an experiment file is made
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
     /// The experiment that they are genotypes of
     #[arg(long, value_name = "NAME")]
-    pub(crate) experiment: String,
+    pub(crate) experiment: Option<String>,
     #[command(flatten)]
     pub(crate) variant: GenotypeVariant,
-    /// Where the random numbers of replayed trials come from
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
-    pub(crate) seed: u64,
-    /// The new directory
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub(crate) out: PathBuf,
+    /// Where the random numbers of replayed trials come from [default: 1]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: Option<u64>,
+    /// The new directory; of a configuration the new file [default: its name with .toml, here]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::AnyPath)]
+    pub(crate) out: Option<PathBuf>,
+    /// Write nothing where a line of a configuration cannot be carried over as it is
+    #[arg(long)]
+    pub(crate) strict: bool,
     /// Write the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,

@@ -133,6 +133,9 @@ pub(crate) struct RunArgs {
     /// The run's directory [default: runs/EXPERIMENT-CONDITION-SEED]; with --replications what they lie in [default: runs]
     #[arg(long, value_name = "DIR", conflicts_with = "resume", value_hint = ValueHint::DirPath)]
     pub(crate) out: Option<PathBuf>,
+    /// Move a run that is in the directory aside, to DIR.old-1 or the next number that is free
+    #[arg(long, conflicts_with_all = ["resume", "replications"])]
+    pub(crate) force: bool,
     /// So many runs with seeds from --seed on, one after the other; the same command again skips what is finished and
     /// goes on with what is not, and a second one at the same time takes the next run that nobody has
     #[arg(long, value_name = "N", conflicts_with = "resume", value_parser = value_parser!(u32).range(1..))]
@@ -185,9 +188,12 @@ pub(crate) struct TestArgs {
     /// The run's directory
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
-    /// Fresh trials
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = value_parser!(u32).range(1..=100_000_000))]
-    pub(crate) trials: u32,
+    /// Fresh trials, with a protocol of each of its cases [default: 100, or as many as the protocol says]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=100_000_000))]
+    pub(crate) trials: Option<u32>,
+    /// Test every case of one of the experiment's test protocols, which `info` lists
+    #[arg(long, value_name = "NAME")]
+    pub(crate) protocol: Option<String>,
     /// Where the test's random numbers come from; never those of a run
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: u64,

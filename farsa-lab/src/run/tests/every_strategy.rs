@@ -79,11 +79,10 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     let rows = rows(&whole);
     for generation in [0, 3, 6] {
         let which = Which { generation: Some(generation), ..Which::default() };
-        let summary = replay(&again, &whole, which, &mut Vec::new()).unwrap().summary;
+        let replayed = replay(&again, &whole, which, &mut Vec::new()).unwrap();
         // One plus one remembers means.
         if numbers.populations == 1 && name != "one-plus-one" {
-            let fitness = format!("fitness {:?}", rows[generation as usize][1]);
-            assert!(summary.ends_with(&fitness), "{name}: {summary}, {fitness}");
+            assert_eq!(replayed.fitness(), rows[generation as usize][1], "{name}: {}", replayed.summary);
         }
     }
     // The champion is the one of the record.

@@ -65,8 +65,8 @@ fn everyone_meets_whom_the_strategy_chose_in_the_run_and_in_its_replay() {
                         individual: Some(u32::try_from(individual).unwrap()),
                         trial: None,
                     };
-                    let (lines, summary) = replayed(&plan, &directory, which);
-                    assert!(summary.ends_with(&format!("fitness {fitness:?}")), "{generation}: {summary}");
+                    let (lines, found) = replayed(&plan, &directory, which);
+                    assert_eq!(found.fitness(), fitness, "{generation}");
                     for (line, other) in lines.lines().skip(1).zip(&others) {
                         assert!(line.ends_with(&format!(",{:?}", f64::from(other[0]))), "{line}");
                     }

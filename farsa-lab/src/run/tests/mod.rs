@@ -7,6 +7,7 @@
 //! - `generalist`: whom everyone meets, where the strategy says so
 //! - `normalised`: normalised observations
 //! - `files`: what is refused, and what is mended
+//! - `protocols`: tests of champions by protocols
 //! - `faults`: evaluations that panic, that are no number and that do not end
 
 mod every_strategy;
@@ -16,6 +17,7 @@ mod generalist;
 mod normalised;
 mod own_strategy;
 mod pool;
+mod protocols;
 mod ranks;
 mod reference;
 
@@ -28,7 +30,7 @@ use farsa_num::{Domain, Stream};
 use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::evaluation::replay::{Which, replay};
+use crate::evaluation::replay::{Replayed, Which, replay};
 use crate::experiment::behaviour::{Behaviour, NotedBehaviour};
 use crate::experiment::definition::Experiment;
 use crate::experiment::episode::EpisodeId;
@@ -255,8 +257,8 @@ fn rows(directory: &Directory) -> Vec<Vec<f64>> {
     log.lines().skip(1).map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect()
 }
 
-fn replayed(plan: &Plan<'_>, directory: &Directory, which: Which) -> (String, String) {
+fn replayed(plan: &Plan<'_>, directory: &Directory, which: Which) -> (String, Replayed) {
     let mut out = Vec::new();
-    let summary = replay(plan, directory, which, &mut out).unwrap().summary;
-    (String::from_utf8(out).unwrap(), summary)
+    let found = replay(plan, directory, which, &mut out).unwrap();
+    (String::from_utf8(out).unwrap(), found)
 }

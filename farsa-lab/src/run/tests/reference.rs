@@ -64,7 +64,8 @@ fn a_steady_state_keeps_the_better_of_two() {
     assert_eq!((generation, best.len(), best[0].individual as usize), (119, 1, survivor));
     assert_eq!(*words(&best[0]), genes_of(&history, 119, survivor));
     assert_eq!(best[0].fitness.get(), rows[119][1]);
-    let (csv, summary) = replayed(&plan, &directory, Which::default());
+    let (csv, found) = replayed(&plan, &directory, Which::default());
+    let summary = &found.summary;
     assert!(summary.starts_with(&format!("individual {survivor} of generation 119, 3 trials")), "{summary}");
     assert_eq!(csv.lines().nth(1).unwrap(), format!("0,0,0.0,{:?}", f64::from(words(&best[0])[0])));
     assert!(replay(&plan, &directory, Which { individual: Some(2), ..Which::default() }, &mut Vec::new()).is_err());
@@ -158,8 +159,8 @@ fn populations_meet_each_others_champions() {
         // A trial is replayed against the same opponents.
         for individual in [0, 14, 29] {
             let which = Which { generation: Some(generation), individual: Some(individual), trial: None };
-            let (_, summary) = replayed(&plan, &directory, which);
-            assert!(summary.ends_with(&format!("fitness {:?}", all[individual as usize])), "{summary}");
+            let (_, found) = replayed(&plan, &directory, which);
+            assert_eq!(found.fitness(), all[individual as usize]);
             let (one, _) = replayed(&plan, &directory, Which { trial: Some(2), ..which });
             let other = usize::from(individual < 10);
             let met = match rule(generation, 2) {

@@ -1,0 +1,149 @@
+//! `farsa import`: genotypes and configurations of the original FARSA.
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::command::arguments::genotypes::ImportArgs;
+use crate::command::invocation::Invocation;
+use crate::error::Error;
+use crate::escaped::OneLine;
+use crate::evaluation::import;
+use crate::json::pretty;
+use crate::run::laboratory::{FILE, MOST_BYTES};
+use crate::run::{ImportedFile, LeftOut};
+use crate::store::bounded;
+use crate::store::replace::create_results;
+use crate::strategy::settings::POPULATION;
+
+/// What names of configurations end with.
+const CONFIGURATIONS: [&str; 2] = ["ini", "conf"];
+/// The most remarks that are told one by one.
+const MOST_TOLD: usize = 1000;
+
+/// What came of a configuration.
+#[derive(Debug, Serialize)]
+struct Summary<'i> {
+    file: String,
+    /// What is lost, or other here than it was there.
+    left: &'i [LeftOut],
+    /// What changes nothing that comes out.
+    without_effect: &'i [LeftOut],
+}
+
+impl Invocation<'_, '_> {
+    /// Imports what the files are: genotypes, or a configuration.
+    pub(super) fn import(&self, args: &ImportArgs) -> Result<(), Error> {
+        match &*args.files {
+            [path] if args.experiment.is_none() && is_configuration(path) => self.import_configuration(args, path),
+            files => {
+                if let Some(path) = files.iter().find(|path| has_ending(path)) {
+                    let path = path.display();
+                    let why = "is a configuration, which stands alone and has no --experiment";
+                    return Err(Error::Usage(format!("{path}: {why}")));
+                }
+                self.import_genotypes(args)
+            }
+        }
+    }
+
+    fn import_genotypes(&self, args: &ImportArgs) -> Result<(), Error> {
+        let wanted = |what: &str| Error::Usage(format!("genotypes are imported with {what}"));
+        let name = args.experiment.as_ref().ok_or_else(|| wanted("--experiment NAME"))?;
+        let out = args.out.as_ref().ok_or_else(|| wanted("--out DIR"))?;
+        if args.strict {
+            return Err(Error::Usage("--strict is for configurations".into()));
+        }
+        let mut plan = args.variant.plan(self.find(name)?)?;
+        plan.seed = args.seed.unwrap_or(1);
+        let found = import::import(plan, &args.files, args.variant.set(POPULATION), out)?;
+        self.summary(args.json, &format!("{}\n", found.text()), &|| pretty(&found))
+    }
+
+    /// Writes an experiment file, and tells what is other there.
+    fn import_configuration(&self, args: &ImportArgs, path: &Path) -> Result<(), Error> {
+        if !args.variant.is_empty() || args.seed.is_some() {
+            let why = "a configuration has its own settings and seeds: --condition, --set, --ir-tables and --seed are for genotypes";
+            return Err(Error::Usage(why.into()));
+        }
+        let text = bounded::read_text(path, MOST_BYTES)?;
+        let out = args.out.clone().unwrap_or_else(|| file_of(path));
+        let name = out.display().to_string();
+        if !name.ends_with(FILE) {
+            return Err(Error::Usage(format!("--out {name}: a file that describes an experiment ends with {FILE}")));
+        }
+        let found = (self.laboratory.files()?.import)(&path.display().to_string(), &name, &text)?;
+        let ImportedFile { text, left, idle } = &found;
+        tell_left(left);
+        if args.strict && !left.is_empty() {
+            let why = format!("{} of its lines and defaults cannot be carried over; nothing is written", left.len());
+            return Err(Error::Other(format!("{}: {why}", path.display())));
+        }
+        create_results(&[(out, text)])?;
+        let mut said = String::new();
+        // Writing into a string cannot fail.
+        let _ = writeln!(said, "{}: from {}", OneLine(&name), OneLine(path.display()));
+        let _ = writeln!(
+            said,
+            "{} not carried over as it is, {} without effect; the file begins with them",
+            left.len(),
+            idle.len()
+        );
+        let _ = writeln!(said, "{} check {}", self.program, OneLine(&name));
+        let summary = Summary { file: name.clone(), left, without_effect: idle };
+        self.summary(args.json, &said, &|| pretty(&summary))
+    }
+}
+
+/// Says on standard error what is lost; that nobody reads it is no reason to fail.
+fn tell_left(left: &[LeftOut]) {
+    let mut errors = io::stderr().lock();
+    for remark in left.iter().take(MOST_TOLD) {
+        let _ = writeln!(errors, "{remark}");
+    }
+    if left.len() > MOST_TOLD {
+        let _ = writeln!(errors, "and {} more", left.len() - MOST_TOLD);
+    }
+}
+
+fn has_ending(path: &Path) -> bool {
+    path.extension().is_some_and(|end| CONFIGURATIONS.iter().any(|known| end.eq_ignore_ascii_case(known)))
+}
+
+/// Whether a file is a configuration, by its name, or by its first line that is no comment.
+fn is_configuration(path: &Path) -> bool {
+    let begins = |text: String| {
+        let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with(['#', ';']));
+        line.is_some_and(|line| line.starts_with('['))
+    };
+    has_ending(path) || (path.is_file() && bounded::read_text(path, MOST_BYTES).is_ok_and(begins))
+}
+
+/// The file here for a configuration: its name in letters that names of experiments have.
+fn file_of(path: &Path) -> PathBuf {
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    let name: String =
+        stem.chars().take(40).map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' }).collect();
+    let name = name.trim_matches('-');
+    PathBuf::from(format!("{}{FILE}", if name.is_empty() { "experiment" } else { name }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_configurations_become_names_of_experiments() {
+        for (path, file) in [
+            ("configuration.ini", "configuration.toml"),
+            ("../a/Khepera Light_2.CONF", "khepera-light-2.toml"),
+            ("Ä.ini", "experiment.toml"),
+        ] {
+            assert_eq!(file_of(Path::new(path)), Path::new(file), "{path}");
+            assert!(has_ending(Path::new(path)), "{path}");
+        }
+        assert!(!has_ending(Path::new("a.gen")) && !has_ending(Path::new("ini")));
+    }
+}

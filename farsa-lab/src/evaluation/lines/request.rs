@@ -1,0 +1,300 @@
+//! What a line asks for.
+
+use serde::Deserialize;
+
+use crate::error::Error;
+use crate::escaped::Quoted;
+use crate::evaluation::lines::given::Given;
+use crate::experiment::genotype::Genotype;
+use crate::experiment::parameter::Parameter;
+use crate::run::plan::LARGEST_SEED;
+
+/// The most vectors of a population in one line.
+const MOST_VECTORS: usize = 65_536;
+/// The largest number of an individual.
+const LARGEST_INDIVIDUAL: u32 = 1_000_000_000;
+
+/// What an experiment takes.
+pub(super) struct Wanted {
+    pub(super) experiment: &'static str,
+    /// The names of the populations, in their order.
+    pub(super) populations: Vec<String>,
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) genotype: Genotype,
+    /// Individuals of each of several populations; 0 for a single one, of which there may be any number.
+    pub(super) size: usize,
+    /// Of lines that name none.
+    pub(super) seed: u64,
+}
+
+/// A line as it stands.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Line {
+    id: Option<serde_json::Value>,
+    seed: Option<u64>,
+    generation: Option<u32>,
+    individual: Option<u32>,
+    parameters: Option<Given>,
+    genes: Option<Given>,
+    evaluate: Option<Vec<String>>,
+}
+
+/// What a line asks for.
+#[derive(Debug, PartialEq)]
+pub(super) struct Request {
+    /// What the answer repeats.
+    pub(super) id: Option<serde_json::Value>,
+    pub(super) seed: u64,
+    pub(super) generation: u32,
+    /// The number of the first individual of each population.
+    pub(super) individual: u32,
+    /// The parameters of every individual of each population.
+    pub(super) parameters: Vec<Vec<Vec<f32>>>,
+    /// Whether each population is evaluated; what is not is met by the others.
+    pub(super) evaluated: Vec<bool>,
+}
+
+impl Request {
+    /// What the bytes of a line ask for.
+    ///
+    /// # Errors
+    /// What is wrong with them, in words.
+    pub(super) fn from_line(bytes: &[u8], wanted: &Wanted) -> Result<Self, String> {
+        let text = std::str::from_utf8(bytes).map_err(|error| format!("byte {}: is no UTF-8", error.valid_up_to()))?;
+        if text.trim().is_empty() {
+            return Err("is empty".into());
+        }
+        // Fields by their order are none of the format.
+        if !text.trim_start().starts_with('{') {
+            return Err("is no object of JSON, {..}".into());
+        }
+        let Line { id, seed, generation, individual, parameters, genes, evaluate } =
+            serde_json::from_str(text).map_err(|error| unreadable(text, &error))?;
+        let (what, given) = match (parameters, genes) {
+            (Some(given), None) => ("parameters", given),
+            (None, Some(given)) => ("genes", given),
+            (None, None) => return Err("lacks `parameters` or `genes`".into()),
+            (Some(_), Some(_)) => return Err("has `parameters` and `genes`: give one of them".into()),
+        };
+        let seed = seed.unwrap_or(wanted.seed);
+        if seed > LARGEST_SEED {
+            return Err(format!("seed: {seed} is above {LARGEST_SEED}"));
+        }
+        let individual = individual.unwrap_or(0);
+        if individual > LARGEST_INDIVIDUAL {
+            return Err(format!("individual: {individual} is above {LARGEST_INDIVIDUAL}"));
+        }
+        let evaluated = wanted.evaluated(evaluate.as_deref())?;
+        let mut all = Vec::new();
+        for (name, rows) in wanted.populations.iter().zip(wanted.divided(what, given)?) {
+            let of = if wanted.populations.len() > 1 { format!("{what} of {}", Quoted(name)) } else { what.into() };
+            wanted.counted(rows.len(), individual).map_err(|why| format!("{of}: {why}"))?;
+            let decode = |(number, row): (usize, &Vec<f64>)| {
+                let decoded = if what == "genes" { wanted.read_genes(row) } else { wanted.read_parameters(row) };
+                decoded.map_err(|why| format!("{of}: vector {number}: {why}"))
+            };
+            all.push(rows.iter().enumerate().map(decode).collect::<Result<_, _>>()?);
+        }
+        Ok(Self { id, seed, generation: generation.unwrap_or(0), individual, parameters: all, evaluated })
+    }
+}
+
+/// Why a text is no such line, with its column.
+fn unreadable(text: &str, error: &serde_json::Error) -> String {
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let message = error.to_string();
+    let why = message.strip_suffix(&place).unwrap_or(&message);
+    let number = error.is_syntax() && (text.contains("NaN") || text.contains("Infinity"));
+    let hint = if number { "; NaN and Infinity are no numbers" } else { "" };
+    format!("column {}: {why}{hint}", error.column())
+}
+
+impl Wanted {
+    /// Whether each population is evaluated, where these are named.
+    fn evaluated(&self, named: Option<&[String]>) -> Result<Vec<bool>, String> {
+        let Some(named) = named else { return Ok(vec![true; self.populations.len()]) };
+        if let Some(other) = named.iter().find(|name| !self.populations.contains(name)) {
+            return Err(self.unknown("evaluate", other));
+        }
+        if named.is_empty() {
+            return Err("evaluate: names no population".into());
+        }
+        Ok(self.populations.iter().map(|name| named.contains(name)).collect())
+    }
+
+    fn unknown(&self, place: &str, name: &str) -> String {
+        Error::unknown(place, "population", name, self.populations.iter().map(String::as_str)).to_string()
+    }
+
+    /// The vectors of each population, in their order.
+    fn divided(&self, what: &str, given: Given) -> Result<Vec<Vec<Vec<f64>>>, String> {
+        let names = &self.populations;
+        match given {
+            Given::Unnamed(rows) if names.len() == 1 => Ok(vec![rows]),
+            Given::Unnamed(_) => {
+                let example = names.iter().map(|name| format!("{name:?}: [..]")).collect::<Vec<_>>().join(", ");
+                Err(format!("{what}: {} has {} populations: {{{example}}}", self.experiment, names.len()))
+            }
+            Given::Named(mut all) => {
+                if let Some((other, _)) = all.iter().find(|(name, _)| !names.contains(name)) {
+                    return Err(self.unknown(what, other));
+                }
+                let mut take = |name: &String| {
+                    let place = all.iter().position(|(own, _)| own == name);
+                    place.map(|place| all.swap_remove(place).1).ok_or_else(|| {
+                        format!(
+                            "{what}: lacks the population {}; those that are only met stand there, too",
+                            Quoted(name)
+                        )
+                    })
+                };
+                names.iter().map(&mut take).collect()
+            }
+        }
+    }
+
+    /// Whether there may be so many vectors.
+    fn counted(&self, count: usize, first: u32) -> Result<(), String> {
+        match count {
+            0 => Err("there is no vector".into()),
+            count if count > MOST_VECTORS => Err(format!("{count} vectors, more than {MOST_VECTORS} in a line")),
+            count if self.size > 0 && first as usize + count > self.size => Err(format!(
+                "individuals {first} to {} of {}; evolution.population says how many there may be",
+                first as usize + count - 1,
+                self.size
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    fn length(&self, found: usize) -> Result<(), String> {
+        let wanted = self.parameters.len();
+        if found == wanted { Ok(()) } else { Err(format!("has {found} numbers where {wanted} are wanted")) }
+    }
+
+    /// Parameters within their ranges, rounded to single precision.
+    fn read_parameters(&self, row: &[f64]) -> Result<Vec<f32>, String> {
+        self.length(row.len())?;
+        let value = |(place, (&x, Parameter { name, ends: [first, other] })): (usize, (&f64, &Parameter))| {
+            let (rounded, low, high) = (x as f32, first.min(*other) as f32, first.max(*other) as f32);
+            // A number that is not finite is outside, too.
+            if low <= rounded && rounded <= high {
+                return Ok(rounded);
+            }
+            let name = Quoted(name);
+            Err(format!("number {place}, {name}, is {x:?}, outside {:?} to {:?}", first.min(*other), first.max(*other)))
+        };
+        row.iter().zip(&self.parameters).enumerate().map(value).collect()
+    }
+
+    /// What real genes stand for, -1 and 1 at the ends of the ranges.
+    fn read_genes(&self, row: &[f64]) -> Result<Vec<f32>, String> {
+        self.length(row.len())?;
+        self.genotype.decode_reals(row).ok_or_else(|| "has a number that is not finite".into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wanted(populations: &[&str], size: usize) -> Wanted {
+        let parameters = vec![Parameter::new("gain", [-5.0, 5.0]), Parameter::new("bias", [1.0, 0.0])];
+        let genotype = Genotype::new(&parameters, 16);
+        let populations = populations.iter().map(|&name| name.into()).collect();
+        Wanted { experiment: "toy", populations, parameters, genotype, size, seed: 4 }
+    }
+
+    fn read(text: &str, wanted: &Wanted) -> Result<Request, String> {
+        Request::from_line(text.as_bytes(), wanted)
+    }
+
+    #[test]
+    fn a_line_has_parameters_or_genes() {
+        let one = wanted(&["0"], 0);
+        let found = read(r#"{"parameters": [2.5, 0.1]}"#, &one).unwrap();
+        let rows = vec![vec![vec![2.5, 0.1]]];
+        let expected =
+            Request { id: None, seed: 4, generation: 0, individual: 0, parameters: rows, evaluated: vec![true] };
+        assert_eq!(found, expected);
+        let line = r#"{"id": {"a": [1]}, "seed": 9, "generation": 3, "individual": 7, "genes": [[-1, -1], [0, 1.5]]}"#;
+        let found = read(line, &one).unwrap();
+        assert_eq!(found.parameters, [[[-5.0, 1.0], [0.0, 0.25]]]);
+        assert_eq!((found.seed, found.generation, found.individual), (9, 3, 7));
+        assert_eq!(found.id, Some(serde_json::json!({"a": [1]})));
+        // 0.1 in single precision is a little more than 0.1.
+        let close = Wanted { parameters: vec![Parameter::new("x", [0.0, 0.1])], ..wanted(&["0"], 0) };
+        assert_eq!(
+            read(&format!(r#"{{"parameters": [{:?}]}}"#, f64::from(0.1_f32)), &close).unwrap().parameters[0][0],
+            [0.1]
+        );
+    }
+
+    #[test]
+    fn populations_have_names() {
+        let two = wanted(&["prey", "hunter"], 3);
+        let line = r#"{"parameters": {"hunter": [[1, 0]], "prey": [[2, 0], [3, 1]]}, "evaluate": ["prey"]}"#;
+        let found = read(line, &two).unwrap();
+        assert_eq!(found.parameters, [vec![vec![2.0, 0.0], vec![3.0, 1.0]], vec![vec![1.0, 0.0]]]);
+        assert_eq!(found.evaluated, [true, false]);
+        for (line, why) in [
+            (r#"{"parameters": [1, 0]}"#, r#"parameters: toy has 2 populations: {"prey": [..], "hunter": [..]}"#),
+            (r#"{"parameters": {"prey": [1, 0]}}"#, "parameters: lacks the population `hunter`; those that"),
+            (r#"{"genes": {"pray": [1, 0]}}"#, "genes: unknown population `pray`; the nearest is `prey`"),
+            (
+                r#"{"parameters": {"prey": [1, 0], "hunter": [[1, 0], [1]]}}"#,
+                "parameters of `hunter`: vector 1: has 1 numbers where 2 are wanted",
+            ),
+            (
+                r#"{"individual": 2, "genes": {"prey": [1, 0], "hunter": [[1, 0], [1, 0]]}}"#,
+                "genes of `hunter`: individuals 2 to 3 of 3; evolution.population says",
+            ),
+            (
+                r#"{"genes": {"prey": [1, 0], "hunter": [1, 0]}, "evaluate": ["huntr"]}"#,
+                "evaluate: unknown population `huntr`; the nearest is `hunter`",
+            ),
+            (r#"{"genes": {"prey": [1, 0], "hunter": [1, 0]}, "evaluate": []}"#, "evaluate: names no population"),
+        ] {
+            let found = read(line, &two).unwrap_err();
+            assert!(found.starts_with(why), "{line}: {found}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let one = wanted(&["0"], 0);
+        let many = format!(r#"{{"genes": [{}[0]]}}"#, "[0],".repeat(MOST_VECTORS));
+        for (line, why) in [
+            ("", "is empty"),
+            ("  ", "is empty"),
+            ("[1, 2]", "is no object of JSON"),
+            ("[null, null, null, null, null, [1, 0], null]", "is no object of JSON"),
+            ("{", "column 1: EOF while parsing an object"),
+            ("{}", "lacks `parameters` or `genes`"),
+            (r#"{"parameters": [1, 0], "genes": [1, 0]}"#, "has `parameters` and `genes`"),
+            (r#"{"parameter": [1, 0]}"#, "column 12: unknown field `parameter`, expected one of"),
+            (r#"{"parameters": [1, 0], "parameters": [1, 0]}"#, "column 35: duplicate field `parameters`"),
+            (r#"{"parameters": []}"#, "parameters: there is no vector"),
+            (r#"{"parameters": [[]]}"#, "parameters: vector 0: has 0 numbers where 2 are wanted"),
+            (r#"{"parameters": [1]}"#, "parameters: vector 0: has 1 numbers where 2 are wanted"),
+            (r#"{"parameters": [1, 0, 0]}"#, "parameters: vector 0: has 3 numbers where 2 are wanted"),
+            (r#"{"parameters": [NaN, 0]}"#, "column 17: expected value; NaN and Infinity are no numbers"),
+            (r#"{"parameters": [1, null]}"#, "column 23: invalid type: null, expected a number"),
+            (r#"{"parameters": [1e999, 0]}"#, "column "),
+            (r#"{"parameters": [1e300, 0]}"#, "parameters: vector 0: number 0, `gain`, is 1e300, outside -5.0 to 5.0"),
+            (
+                r#"{"parameters": [[1, 0], [1, -0.1]]}"#,
+                "parameters: vector 1: number 1, `bias`, is -0.1, outside 0.0 to 1.0",
+            ),
+            (r#"{"genes": [0, 0], "seed": -1}"#, "column 28: invalid value: integer `-1`"),
+            (r#"{"genes": [0, 0], "seed": 9223372036854775808}"#, "seed: 9223372036854775808 is above"),
+            (r#"{"genes": [0, 0], "individual": 4000000000}"#, "individual: 4000000000 is above"),
+            (many.as_str(), "genes: 65537 vectors, more than 65536 in a line"),
+        ] {
+            let found = read(line, &one).unwrap_err();
+            assert!(found.starts_with(why), "{line:.200}: {found}");
+        }
+        assert_eq!(Request::from_line(b"{\xff}", &one), Err("byte 1: is no UTF-8".into()));
+    }
+}

@@ -1,0 +1,122 @@
+//! From the first line to the last.
+
+use std::io::{BufRead, Write};
+use std::sync::atomic::AtomicBool;
+
+use farsa_evo::JudgementShape;
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::evaluation::lines::answer::{Answer, ByPopulation, Introduction, Judged, Refusal};
+use crate::evaluation::lines::bounded_line::{BoundedLine, next_line};
+use crate::evaluation::lines::request::{Request, Wanted};
+use crate::experiment::episode::EpisodeId;
+use crate::run::fitness::{Generation, Opponents, individuals};
+use crate::run::plan::Plan;
+use crate::run::pool::Pool;
+
+/// The most bytes of a line: a thousand vectors of 792 numbers of double precision.
+const LONGEST_LINE: usize = 16 << 20;
+
+/// Writes a line that describes the experiment, and then one for each line that is read: what its parameters come to, in trials
+/// as those of a run. Each is written out before the next is read.
+///
+/// # Errors
+/// [`Error::Usage`] at the end if a line was refused, which its answer says, and for observations that are to be normalised;
+/// [`Error::Io`] of input and output.
+pub(crate) fn serve(
+    plan: &Plan<'_>,
+    mut pool: Pool<'_>,
+    input: &mut impl BufRead,
+    output: &mut impl Write,
+) -> Result<(), Error> {
+    if plan.no_observations()?.is_some() {
+        let why = "--stdin: observations are normalised by what a run has observed, and this is none";
+        return Err(Error::Usage(why.into()));
+    }
+    let evaluator = pool.evaluator();
+    let populations = evaluator.populations();
+    let wanted = Wanted {
+        experiment: plan.experiment.name(),
+        size: if populations.len() > 1 { plan.size()? } else { 0 },
+        populations,
+        parameters: evaluator.parameters(),
+        genotype: pool.genotype().clone(),
+        seed: plan.seed,
+    };
+    write(output, &Introduction::new(&plan.condition, &wanted, pool.evaluator(), LONGEST_LINE))?;
+    let mut first_refused: Option<(u64, String)> = None;
+    let (mut line, mut refused) = (0, 0_u64);
+    let reading = |error| Error::io("read", "the input".as_ref())(error);
+    while let Some(found) = next_line(input, LONGEST_LINE).map_err(reading)? {
+        line += 1;
+        let request = match found {
+            BoundedLine::Whole(bytes) => Request::from_line(&bytes, &wanted),
+            BoundedLine::TooLong => Err(format!("has more than {LONGEST_LINE} bytes, the most of a line")),
+        };
+        match request {
+            Ok(request) => write(output, &answer(line, request, &wanted, &mut pool)?)?,
+            Err(error) => {
+                write(output, &Refusal { line, error: &error })?;
+                refused += 1;
+                first_refused.get_or_insert((line, error));
+            }
+        }
+    }
+    match first_refused {
+        None => Ok(()),
+        Some((first, why)) => Err(Error::Usage(format!("{refused} of {line} lines were refused; line {first}: {why}"))),
+    }
+}
+
+/// Writes a value in a line, which is on its way at once: who asks waits for it.
+fn write(output: &mut impl Write, value: &impl Serialize) -> Result<(), Error> {
+    let mut text = serde_json::to_vec(value).map_err(|error| Error::Other(error.to_string()))?;
+    text.push(b'\n');
+    output.write_all(&text).and_then(|()| output.flush()).map_err(Error::io("write", "the output".as_ref()))
+}
+
+/// Evaluates what a line asks for, one population after the other.
+fn answer<'w>(line: u64, request: Request, wanted: &'w Wanted, pool: &mut Pool<'_>) -> Result<Answer<'w>, Error> {
+    let Request { id, seed, generation, individual, parameters, evaluated } = request;
+    let behaviour = pool.evaluator().behaviour();
+    let (objectives, descriptors) =
+        behaviour.map_or((0, 0), |behaviour| (behaviour.objectives().len(), behaviour.descriptors().len()));
+    let shape = JudgementShape::new(1 + objectives, descriptors);
+    let trials = pool.evaluator().trials();
+    let mut all: Vec<(&str, Vec<Judged>)> = Vec::new();
+    for (own, name) in wanted.populations.iter().enumerate().filter(|(own, _)| evaluated[*own]) {
+        let met = opponents(&parameters, own, trials);
+        let opponents = Opponents { parameters: &met, each: parameters.len() - 1, told_apart: None };
+        let individual = (own * wanted.size) as u32 + individual;
+        let id = EpisodeId { seed, generation, individual, trial: 0 };
+        let of = Generation { parameters: &parameters[own], opponents, normalisation: None, id };
+        let found = individuals(pool, of, shape, &AtomicBool::new(false), |_| {})?;
+        let evaluator = pool.evaluator();
+        all.push((name, found.into_iter().map(|found| Judged::new(found, evaluator)).collect()));
+    }
+    let fitness = |judged: &[Judged]| judged.iter().map(|one| one.fitness).collect::<Vec<_>>();
+    let fitness: Vec<_> = all.iter().map(|(name, judged)| (*name, fitness(judged))).collect();
+    Ok(Answer {
+        line,
+        id,
+        fitness: by_population(fitness, wanted.populations.len()),
+        individuals: by_population(all, wanted.populations.len()),
+    })
+}
+
+/// Without a name where there is a single population.
+fn by_population<T>(mut all: Vec<(&str, T)>, populations: usize) -> ByPopulation<'_, T> {
+    match all.pop() {
+        Some((_, only)) if populations == 1 => ByPopulation::Only(only),
+        last => ByPopulation::Named(all.into_iter().chain(last).collect()),
+    }
+}
+
+/// Whom the individuals of a population meet, trial after trial, individual after individual: in each trial that of the trial's
+/// number of each other population, as in the first generation of a run.
+fn opponents(parameters: &[Vec<Vec<f32>>], own: usize, trials: usize) -> Vec<&[f32]> {
+    let others = || parameters.iter().enumerate().filter(move |(other, _)| *other != own);
+    let of_trial = |trial: usize| others().map(move |(_, rows)| rows[trial % rows.len()].as_slice());
+    (0..trials).flat_map(|trial| parameters[own].iter().flat_map(move |_| of_trial(trial))).collect()
+}

@@ -1,0 +1,178 @@
+//! What the trials of each case of a protocol say together.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use crate::evaluation::protocols::table::ProtocolTable;
+use crate::evaluation::test_table::{Finding, Findings, as_map, own_columns};
+use crate::experiment::protocol::{Case, Protocol};
+use crate::figures::proportion::Proportion;
+use crate::figures::significant::significant;
+use crate::run::text_table::text_table;
+
+/// What came of a case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct FoundCase {
+    pub(crate) row: String,
+    pub(crate) column: String,
+    pub(crate) held_out: bool,
+    /// Share of the trials that succeeded.
+    pub(crate) rate: f64,
+    /// Its interval of 95 %, by Wilson's score.
+    pub(crate) interval: [f64; 2],
+    /// Means of the terms of the fitness, where there are several.
+    #[serde(serialize_with = "as_map")]
+    pub(crate) terms: Vec<(String, Finding)>,
+    #[serde(flatten)]
+    pub(crate) findings: Findings,
+}
+
+impl FoundCase {
+    /// What each case of a table came to; `terms` are those of the experiment.
+    pub(crate) fn all(table: &ProtocolTable, terms: &[String]) -> Vec<Self> {
+        table.cases.iter().map(|(case, table)| Self::new(case, table.findings(&[]), own_columns(terms))).collect()
+    }
+
+    fn new(case: &Case, mut findings: Findings, terms: &[String]) -> Self {
+        let (terms, notes) = std::mem::take(&mut findings.notes).into_iter().partition(|note| terms.contains(&note.0));
+        findings.notes = notes;
+        if findings.broken_down == findings.trials {
+            // There is nothing to take a mean of.
+            findings.fitness = f64::NAN;
+        }
+        let share = Proportion { successes: findings.successes, of: findings.trials };
+        let Case { row, column, held_out } = case.clone();
+        let rate = findings.part(findings.successes);
+        Self { row, column, held_out, rate, interval: share.interval(), terms, findings }
+    }
+
+    /// The case.
+    pub(crate) fn case(&self) -> Case {
+        Case { row: self.row.clone(), column: self.column.clone(), held_out: self.held_out }
+    }
+
+    /// Trials that succeeded, of how many.
+    fn share(&self) -> Proportion {
+        Proportion { successes: self.findings.successes, of: self.findings.trials }
+    }
+
+    /// The means of terms and notes, by name.
+    fn means(&self) -> impl Iterator<Item = (&str, &Finding)> {
+        self.terms.iter().chain(&self.findings.notes).map(|(name, finding)| (name.as_str(), finding))
+    }
+}
+
+/// The cases as a table of text, the head first, and how many of its columns are words.
+pub(crate) fn rows(protocol: &Protocol, found: &[FoundCase]) -> (Vec<Vec<String>>, usize) {
+    let [row, column] = &protocol.axes;
+    let named = |name: &String, else_: &str| if name.is_empty() { else_.to_owned() } else { name.clone() };
+    let (columns, held_out) =
+        (found.iter().any(|case| !case.column.is_empty()), found.iter().any(|case| case.held_out));
+    let mut head = vec![named(row, if columns { "row" } else { "case" })];
+    head.extend(columns.then(|| named(column, "column")));
+    head.extend(held_out.then(|| "kind".to_owned()));
+    let words = head.len();
+    head.extend(["trials", "success", "rate", "95 % interval", "fitness"].map(str::to_owned));
+    let names = means(found);
+    head.extend(names.iter().map(|&name| name.to_owned()));
+    let line = |case: &FoundCase| {
+        let mut line = vec![case.row.clone()];
+        line.extend(columns.then(|| case.column.clone()));
+        line.extend(held_out.then(|| if case.held_out { "held out" } else { "trained" }.to_owned()));
+        let [low, high] = case.interval.map(|share| format!("{:.1}", 100.0 * share));
+        let Findings { trials, successes, fitness, .. } = &case.findings;
+        line.extend([trials.to_string(), successes.to_string(), format!("{:.1} %", 100.0 * case.rate)]);
+        line.push(format!("{low} to {high} %"));
+        line.push(if fitness.is_finite() { significant(*fitness) } else { "–".into() });
+        line.extend(names.iter().map(|&name| match case.means().find(|mean| mean.0 == name) {
+            Some((_, Finding::Mean(mean))) if fitness.is_finite() => significant(*mean),
+            _ => "–".into(),
+        }));
+        line
+    };
+    (std::iter::once(head.clone()).chain(found.iter().map(line)).collect(), words)
+}
+
+/// The terms and notes that are numbers in every case.
+fn means(found: &[FoundCase]) -> Vec<&str> {
+    let is_mean = |case: &FoundCase, name: &str| {
+        case.means().any(|(own, finding)| own == name && matches!(finding, Finding::Mean(_)))
+    };
+    let first = found.first().into_iter().flat_map(FoundCase::means);
+    first.map(|(name, _)| name).filter(|name| found.iter().all(|case| is_mean(case, name))).collect()
+}
+
+/// The same for a terminal, with what trained and held-out cases came to together.
+pub(crate) fn text(protocol: &Protocol, found: &[FoundCase]) -> String {
+    let (rows, words) = rows(protocol, found);
+    let mut text = text_table(&rows, words..usize::MAX);
+    if found.iter().any(|case| case.held_out) {
+        text.push('\n');
+        for (held_out, kind) in [(false, "trained"), (true, "held out")] {
+            let cases = found.iter().filter(|case| case.held_out == held_out);
+            let (successes, of) = cases.fold((0, 0), |(successes, of), case| {
+                let share = case.share();
+                (successes + share.successes, of + share.of)
+            });
+            if of > 0 {
+                let rate = 100.0 * successes as f64 / of as f64;
+                // Writing into a string cannot fail.
+                let _ = writeln!(text, "{kind}: {successes} of {of} ({rate:.1} %)");
+            }
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn found(body: &str) -> Vec<FoundCase> {
+        let head = "case,row,column,held_out,index,trial,steps,success,fitness,find,act,way,phase\n";
+        let table = ProtocolTable::from_text(Path::new("x"), &format!("{head}{body}")).unwrap();
+        FoundCase::all(&table, &["find".into(), "act".into()])
+    }
+
+    const BODY: &str = "0,TOUCH,red,false,0,0,6,true,1.5,1.0,0.5,3.0,far\n0,TOUCH,red,false,1,1,6,true,0.5,0.5,0.0,1.0,near\n\
+        1,MOVE,red,true,0,0,6,false,NaN,NaN,NaN,,\n1,MOVE,red,true,1,1,6,true,2.0,1.0,1.0,0.5,far\n";
+
+    #[test]
+    fn cases_have_rates_intervals_and_means() {
+        let found = found(BODY);
+        assert_eq!((found[0].rate, found[1].rate), (1.0, 0.5));
+        assert_eq!(found[1].interval, Proportion { successes: 1, of: 2 }.interval());
+        assert_eq!(found[0].terms, [("find".into(), Finding::Mean(0.75)), ("act".into(), Finding::Mean(0.25))]);
+        assert_eq!((found[1].findings.fitness, found[1].findings.broken_down), (2.0, 1));
+        let protocol = Protocol::new("x", "").with_axes("action", "object");
+        assert_eq!(
+            text(&protocol, &found),
+            "action  object  kind      trials  success     rate    95 % interval  fitness    find     act     way\n\
+             TOUCH   red     trained        2        2  100.0 %  34.2 to 100.0 %    1.000  0.7500  0.2500   2.000\n\
+             MOVE    red     held out       2        1   50.0 %    9.5 to 90.5 %    2.000   1.000   1.000  0.5000\n\
+             \n\
+             trained: 2 of 2 (100.0 %)\nheld out: 1 of 2 (50.0 %)\n"
+        );
+        let json = serde_json::to_value(&found[0]).unwrap();
+        assert_eq!((&json["row"], &json["successes"]), (&"TOUCH".into(), &2.into()));
+        assert_eq!(
+            (&json["terms"]["find"]["mean"], &json["notes"]["phase"]["counts"]["far"]),
+            (&0.75.into(), &1.into())
+        );
+    }
+
+    #[test]
+    fn a_list_has_no_columns_and_what_broke_down_no_means() {
+        let found = found("0,intact,,false,0,0,6,true,1.5,1.0,0.5,3.0,far\n1,cut,,false,0,0,0,false,NaN,NaN,NaN,,\n");
+        assert!(found[1].findings.fitness.is_nan());
+        assert_eq!(
+            text(&Protocol::new("x", ""), &found),
+            "case    trials  success     rate    95 % interval  fitness   find     act    way\n\
+             intact       1        1  100.0 %  20.7 to 100.0 %    1.500  1.000  0.5000  3.000\n\
+             cut          1        0    0.0 %    0.0 to 79.3 %        –      –       –      –\n"
+        );
+        assert_eq!(serde_json::to_value(&found[1]).unwrap()["fitness"], serde_json::Value::Null);
+    }
+}

@@ -1,0 +1,74 @@
+//! The table of a test and the record that says which test it is: two files that belong together.
+
+use std::path::Path;
+use std::thread;
+use std::time::Duration;
+
+use farsa_num::crc32;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::error::Error;
+use crate::store::bounded::read_own_text;
+use crate::store::draft;
+use crate::store::lock::Lock;
+use crate::store::replace::replace;
+
+/// Bytes of the largest table and of the largest record that are read.
+const LARGEST: [u64; 2] = [1 << 30, 1 << 20];
+/// How often, and with which pauses, the two files are read again while another process writes them.
+const ATTEMPTS: usize = 20;
+const PAUSE: Duration = Duration::from_millis(25);
+
+/// What says which test a table is of.
+pub(crate) trait TableRecord: Serialize + DeserializeOwned {
+    /// CRC-32 of the table: a process that was killed between the two files leaves another.
+    fn table_crc(&self) -> u32;
+}
+
+/// The text of a table, with its record; none of both where there is no table, and no record of a table that was made before
+/// there were records, or by a process that was killed before it wrote one.
+///
+/// # Errors
+/// [`Error::Io`], [`Error::Damaged`].
+pub(crate) fn read<R: TableRecord>(table: &Path, record: &Path) -> Result<Option<(String, Option<R>)>, Error> {
+    if !table.is_file() {
+        return Ok(None);
+    }
+    for attempt in 1..=ATTEMPTS {
+        let text = read_own_text(table, LARGEST[0])?;
+        let found: Option<R> = if record.is_file() {
+            let text = read_own_text(record, LARGEST[1])?;
+            Some(serde_json::from_str(&text).map_err(|error| Error::damaged(record, error))?)
+        } else {
+            None
+        };
+        let own = found.filter(|record| record.table_crc() == crc32(text.as_bytes()));
+        if own.is_some() || attempt == ATTEMPTS || !record.is_file() {
+            return Ok(Some((text, own)));
+        }
+        // One file is of a test that is just being written.
+        thread::sleep(PAUSE);
+    }
+    Ok(None)
+}
+
+/// Writes both files of a test of the run in `directory`, which no other process does meanwhile; `make` is told the CRC-32 of
+/// the table.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Occupied`] while another process writes a test.
+pub(crate) fn write<R: TableRecord>(
+    directory: &Path,
+    table: (&Path, &[u8]),
+    path: &Path,
+    make: impl FnOnce(u32) -> R,
+) -> Result<(), Error> {
+    let (place, bytes) = table;
+    let text = serde_json::to_string_pretty(&make(crc32(bytes))).map_err(|error| Error::Other(error.to_string()))?;
+    let _lock = Lock::of_tests(directory)?;
+    draft::sweep_of(place);
+    draft::sweep_of(path);
+    replace(place, bytes)?;
+    replace(path, format!("{text}\n").as_bytes())
+}

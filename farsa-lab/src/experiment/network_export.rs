@@ -1,0 +1,255 @@
+//! A network of any kind as plain data: a layout and parameters.
+
+use farsa_nn::{
+    Block, BlockLayoutBuf, BlockNetworkBytes, BlockParameter, BytesError, CtrnnBytes, CtrnnLayout, CtrnnParts, Group,
+    Leak, LeakyLayout, LeakyNetworkBytes, LeakyParts, PerceptronBytes,
+};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::{Value, json};
+
+/// A network with its parameters, each in the order of its layout.
+///
+/// As JSON it is what a program needs to compute the same: its shape, and its tables of parameters by name. All kinds
+/// but the leaky network, which was the first, say their `kind`.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum NetworkExport {
+    /// [`farsa_nn::LeakyNetwork`], with one hidden layer.
+    ///
+    /// Its slope s is that of sigma(x) = 1 / (1 + exp(-s x)). The reading of the leak d, with y = sigma(net): `filter` is
+    /// H = d y + (1-d) H(t-1), `two-tap` d y + (1-d) y(t-1), `evonet` d H(t-1) + (1-d) y.
+    Leaky {
+        /// The layout.
+        layout: LeakyLayout,
+        /// The reading of the leak.
+        leak: Leak,
+        /// The parameters.
+        parameters: Vec<f32>,
+    },
+    /// [`farsa_nn::Perceptron`], one layer without memory.
+    Perceptron {
+        /// Number of inputs.
+        inputs: usize,
+        /// Number of outputs.
+        outputs: usize,
+        /// The slope of the logistic function.
+        slope: f32,
+        /// The parameters.
+        parameters: Vec<f32>,
+    },
+    /// [`farsa_nn::Ctrnn`], in continuous time.
+    Ctrnn {
+        /// The layout.
+        layout: CtrnnLayout,
+        /// Time step \[s\].
+        time_step: f32,
+        /// The parameters.
+        parameters: Vec<f32>,
+    },
+    /// [`farsa_nn::BlockNetwork`], of any connections between groups of neurons.
+    Blocks {
+        /// The groups and blocks.
+        layout: BlockLayoutBuf,
+        /// The reading of the leak.
+        leak: Leak,
+        /// The parameters.
+        parameters: Vec<f32>,
+    },
+}
+
+/// A table of parameters: its name, its shape, source by source, and its numbers.
+pub(crate) type Table<'a> = (&'static str, Vec<usize>, &'a [f32]);
+
+impl NetworkExport {
+    /// A leaky network.
+    pub fn leaky(layout: &LeakyLayout, leak: Leak, parameters: &[f32]) -> Self {
+        Self::Leaky { layout: *layout, leak, parameters: parameters.into() }
+    }
+
+    /// Numbers of inputs and outputs.
+    pub fn shape(&self) -> [usize; 2] {
+        match self {
+            Self::Leaky { layout, .. } => [layout.sensors(), layout.outputs()],
+            Self::Perceptron { inputs, outputs, .. } => [*inputs, *outputs],
+            Self::Ctrnn { layout, .. } => [layout.inputs(), layout.outputs()],
+            Self::Blocks { layout, .. } => [layout.inputs, layout.outputs],
+        }
+    }
+
+    /// The parameters in the order of the layout.
+    pub fn parameters(&self) -> &[f32] {
+        match self {
+            Self::Leaky { parameters, .. }
+            | Self::Perceptron { parameters, .. }
+            | Self::Ctrnn { parameters, .. }
+            | Self::Blocks { parameters, .. } => parameters,
+        }
+    }
+
+    /// The network as bytes of `farsa-nn` (docs/controller-format.md), with this hash of its channels.
+    ///
+    /// # Errors
+    /// [`BytesError::Parameters`] for parameters that are none of such a network.
+    pub fn bytes(&self, channels: u64) -> Result<Vec<u8>, BytesError> {
+        let mut bytes;
+        match self {
+            Self::Leaky { layout, leak, parameters } => {
+                bytes = vec![0; LeakyNetworkBytes::byte_count(*layout)];
+                LeakyNetworkBytes::write(*layout, *leak, channels, parameters, &mut bytes)?;
+            }
+            &Self::Perceptron { inputs, outputs, slope, ref parameters } => {
+                bytes = vec![0; PerceptronBytes::byte_count(inputs, outputs)];
+                PerceptronBytes::write(inputs, outputs, slope, channels, parameters, &mut bytes)?;
+            }
+            Self::Ctrnn { layout, time_step, parameters } => {
+                bytes = vec![0; CtrnnBytes::byte_count(*layout)];
+                CtrnnBytes::write(*layout, *time_step, channels, parameters, &mut bytes)?;
+            }
+            Self::Blocks { layout, leak, parameters } => {
+                let layout = layout.layout();
+                bytes = vec![0; BlockNetworkBytes::byte_count(&layout)];
+                BlockNetworkBytes::write(layout, *leak, channels, parameters, &mut bytes)?;
+            }
+        }
+        Ok(bytes)
+    }
+
+    /// The parameters as tables, which lie one after the other in them.
+    pub(crate) fn tables(&self) -> Vec<Table<'_>> {
+        match self {
+            Self::Leaky { layout, parameters, .. } => {
+                let [inputs, hidden, outputs] = [layout.sensors(), layout.hidden(), layout.outputs()];
+                let LeakyParts { sensor_weights, recurrent_weights, output_weights, biases, leaks, .. } =
+                    layout.split(parameters);
+                vec![
+                    ("sensor_weights", vec![inputs, hidden], sensor_weights),
+                    ("recurrent_weights", vec![hidden, hidden], recurrent_weights),
+                    ("output_weights", vec![hidden, outputs], output_weights),
+                    ("biases", vec![hidden], biases),
+                    ("leaks", vec![hidden], leaks),
+                ]
+            }
+            Self::Perceptron { inputs, outputs, parameters, .. } => {
+                let (weights, biases) = parameters.split_at((inputs * outputs).min(parameters.len()));
+                vec![("weights", vec![*inputs, *outputs], weights), ("biases", vec![*outputs], biases)]
+            }
+            Self::Ctrnn { layout, parameters, .. } => {
+                let neurons = layout.neurons();
+                let CtrnnParts { input_weights, weights, biases, gains, time_constants, .. } = layout.split(parameters);
+                vec![
+                    ("input_weights", vec![input_weights.len() / neurons.max(1), neurons], input_weights),
+                    ("weights", vec![neurons, neurons], weights),
+                    ("biases", vec![neurons], biases),
+                    ("gains", vec![neurons], gains),
+                    ("time_constants", vec![neurons], time_constants),
+                ]
+            }
+            Self::Blocks { layout, parameters, .. } => {
+                let names = ["weights", "biases", "gains", "leaks"];
+                let parts = BlockParameter::ALL.map(|kind| parameters.get(layout.layout().range(kind)).unwrap_or(&[]));
+                names.into_iter().zip(parts).map(|(name, part)| (name, vec![part.len()], part)).collect()
+            }
+        }
+    }
+
+    /// Everything but the tables, by name.
+    fn facts(&self) -> Vec<(&'static str, Fact)> {
+        match self {
+            Self::Leaky { layout, leak, .. } => vec![
+                ("inputs", layout.sensors().into()),
+                ("hidden", layout.hidden().into()),
+                ("outputs", layout.outputs().into()),
+                ("slope", Fact::Real(layout.slope())),
+                ("leak", leak.name().into()),
+            ],
+            &Self::Perceptron { inputs, outputs, slope, .. } => vec![
+                ("kind", "perceptron".into()),
+                ("inputs", inputs.into()),
+                ("outputs", outputs.into()),
+                ("slope", Fact::Real(slope)),
+            ],
+            Self::Ctrnn { layout, time_step, .. } => vec![
+                ("kind", "ctrnn".into()),
+                ("inputs", layout.inputs().into()),
+                ("neurons", layout.neurons().into()),
+                ("outputs", layout.outputs().into()),
+                ("first_direct_input", Fact::Other(json!(layout.direct_inputs().map(|neurons| neurons.start)))),
+                ("first_output", layout.output_neurons().start.into()),
+                ("integrator", layout.integrator().name().into()),
+                ("activation", layout.activation().name().into()),
+                ("time_step", Fact::Real(*time_step)),
+            ],
+            Self::Blocks { layout, leak, .. } => vec![
+                ("kind", "blocks".into()),
+                ("inputs", layout.inputs.into()),
+                ("outputs", layout.outputs.into()),
+                ("leak", leak.name().into()),
+                ("groups", Fact::Other(layout.groups.iter().map(group).collect())),
+                ("blocks", Fact::Other(layout.blocks.iter().map(block).collect())),
+            ],
+        }
+    }
+}
+
+/// A value of [`NetworkExport::facts`].
+enum Fact {
+    /// With the digits that single precision needs.
+    Real(f32),
+    Other(Value),
+}
+
+impl From<usize> for Fact {
+    fn from(count: usize) -> Self {
+        Self::Other(count.into())
+    }
+}
+
+impl From<&str> for Fact {
+    fn from(word: &str) -> Self {
+        Self::Other(word.into())
+    }
+}
+
+impl Serialize for Fact {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Real(real) => real.serialize(serializer),
+            Self::Other(value) => value.serialize(serializer),
+        }
+    }
+}
+
+impl Serialize for NetworkExport {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for (name, fact) in self.facts() {
+            map.serialize_entry(name, &fact)?;
+        }
+        for (name, _, table) in self.tables() {
+            map.serialize_entry(name, table)?;
+        }
+        map.end()
+    }
+}
+
+fn group(group: &Group) -> Value {
+    let Group { neurons, activation, slope, bias, gain, leak } = *group;
+    // The shortest digits of single precision, as in the other kinds.
+    let slope = slope.to_string().parse::<f64>().unwrap_or(f64::from(slope));
+    json!({"neurons": neurons, "activation": activation.name(), "slope": slope, "bias": bias, "gain": gain, "leak": leak})
+}
+
+/// A block by what it does; spans are \[first neuron, neurons\].
+fn block(block: &Block) -> Value {
+    match *block {
+        Block::Connect { from, to, delay } => {
+            json!({"connect": {"from": [from.first, from.count], "to": [to.first, to.count], "delay": delay}})
+        }
+        Block::Update(span) => json!({"update": [span.first, span.count]}),
+        Block::Gain(span) => json!({"gain": [span.first, span.count]}),
+        Block::ModulatedGain { neurons, by } => {
+            json!({"modulated-gain": {"neurons": [neurons.first, neurons.count], "by": by}})
+        }
+        _ => Value::Null,
+    }
+}

@@ -1,0 +1,184 @@
+//! What test protocols found: a table and a picture of each.
+
+use crate::error::Error;
+use crate::evaluation::protocols::files::ProtocolRecord;
+use crate::evaluation::protocols::found;
+use crate::experiment::protocol::{Case, Protocol};
+use crate::figures::bar_list::{Bar, BarList};
+use crate::figures::heat_map::{HeatCell, HeatMap};
+use crate::figures::statistics::Quartiles;
+use crate::report::page::{Block, Figure, Table};
+use crate::report::run::{Group, Run, percent};
+use crate::report::settings::shell;
+use crate::report::tested_protocol::TestedProtocol;
+
+/// The command that makes it again.
+pub(crate) fn command_of(tested: &TestedProtocol, run: &Run<'_>, program: &str) -> Result<String, Error> {
+    let mut words = vec![program.into(), "test".into(), run.name(), "--protocol".into(), tested.protocol.name.clone()];
+    if let Some(ProtocolRecord { trials, seed, .. }) = &tested.record {
+        words.extend(["--trials".into(), trials.to_string(), "--seed".into(), seed.to_string()]);
+    }
+    shell(&words)
+}
+
+/// Runs that were tested by a protocol in the same cases.
+struct Alike<'r> {
+    label: &'r str,
+    cases: Vec<Case>,
+    runs: Vec<(&'r Run<'r>, &'r TestedProtocol)>,
+}
+
+/// What each protocol found, in each group of runs.
+pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
+    let mut names: Vec<&str> = Vec::new();
+    for tested in groups.iter().flat_map(|group| &group.runs).flat_map(|run| &run.protocols) {
+        if !names.contains(&tested.protocol.name.as_str()) {
+            names.push(&tested.protocol.name);
+        }
+    }
+    let mut blocks = Vec::new();
+    for name in names {
+        blocks.push(Block::Subheading(format!("Test protocol {name}")));
+        let alike = alike(groups, name);
+        if let Some((_, tested)) = alike.first().and_then(|alike| alike.runs.first()) {
+            let summary = &tested.protocol.summary;
+            let held_out = if tested.found.iter().any(|case| case.held_out) {
+                " Held out: of a kind that was not among the trials of the evolution."
+            } else {
+                ""
+            };
+            let how = "Every case has the same fresh starts. Intervals of 95 % by Wilson's score.";
+            blocks.push(Block::Text(format!("{summary}. {how}{held_out}")));
+        }
+        let figures = alike.iter().filter_map(Alike::figure).collect::<Vec<_>>();
+        if !figures.is_empty() {
+            blocks.push(Block::Figures(figures));
+        }
+        for alike in &alike {
+            blocks.extend(alike.tables());
+        }
+    }
+    blocks
+}
+
+/// The runs of each group that were tested in the same cases.
+fn alike<'r>(groups: &'r [Group<'r>], name: &str) -> Vec<Alike<'r>> {
+    let mut all: Vec<Alike<'r>> = Vec::new();
+    for group in groups {
+        let first = all.len();
+        for &run in &group.runs {
+            let Some(tested) = run.protocols.iter().find(|tested| tested.protocol.name == name) else { continue };
+            let cases = tested.cases();
+            match all.iter_mut().skip(first).find(|alike| alike.cases == cases) {
+                Some(alike) => alike.runs.push((run, tested)),
+                None => all.push(Alike { label: &group.label, cases, runs: vec![(run, tested)] }),
+            }
+        }
+    }
+    all
+}
+
+impl Alike<'_> {
+    /// Whose results these are.
+    fn whose(&self) -> String {
+        match self.runs.as_slice() {
+            [(run, _)] => run.name(),
+            runs => format!("{}, {} runs", self.label, runs.len()),
+        }
+    }
+
+    /// The shares of success of a case in all runs.
+    fn rates(&self, case: usize) -> Vec<f64> {
+        self.runs.iter().filter_map(|(_, tested)| Some(tested.found.get(case)?.rate)).collect()
+    }
+
+    /// The mean share of a case, what is said below it, and the ends of its interval or, of several runs, the extremes.
+    fn share(&self, case: usize) -> (f64, String, [f64; 2]) {
+        let rates = self.rates(case);
+        let mean = rates.iter().sum::<f64>() / rates.len() as f64;
+        if let [(_, tested)] = self.runs.as_slice() {
+            return tested.found.get(case).map_or((f64::NAN, String::new(), [f64::NAN; 2]), |case| {
+                (mean, format!("{} of {}", case.findings.successes, case.findings.trials), case.interval)
+            });
+        }
+        let ends = rates.iter().fold([1.0, 0.0], |[low, high], x| [x.min(low), x.max(high)]);
+        let [low, high] = ends.map(|share: f64| format!("{:.0}", 100.0 * share));
+        (mean, format!("{low} to {high}"), ends)
+    }
+
+    fn figure(&self) -> Option<Figure> {
+        let (_, tested) = self.runs.first()?;
+        let Protocol { name, axes, .. } = &tested.protocol;
+        let rows = Protocol::places(&self.cases, |case| &case.row);
+        let columns = Protocol::places(&self.cases, |case| &case.column);
+        let title = format!("{name}: success");
+        let several = if self.runs.len() > 1 { "mean of the runs, with the lowest and the highest" } else { "" };
+        let picture = if rows.len() > 1 && columns.len() > 1 {
+            let place = |names: &[&str], own: &str| names.iter().position(|name| *name == own);
+            let cell = |(number, case): (usize, &Case)| {
+                let (share, below, _) = self.share(number);
+                let place = [place(&rows, &case.row)?, place(&columns, &case.column)?];
+                Some(HeatCell { place, share, below, outlined: case.held_out })
+            };
+            let cells: Vec<HeatCell> = self.cases.iter().enumerate().filter_map(cell).collect();
+            let axes = axes.each_ref().map(String::as_str);
+            HeatMap { title: &title, axes, rows: &rows, columns: &columns, cells: &cells }.draw()?
+        } else {
+            let bar = |(number, case)| self.bar(number, case, columns.len() > 1);
+            let bars: Vec<Bar<'_>> = self.cases.iter().enumerate().map(bar).collect();
+            BarList { title: &title, bars: &bars }.draw()?
+        };
+        let end = if several.is_empty() { ".".to_owned() } else { format!(": {several}.") };
+        let caption = format!("{}: share of the trials that succeeded{end}", self.whose());
+        Some(Figure { kind: "protocol", picture, caption })
+    }
+
+    /// The bar of a case, which has its column's name or its row's.
+    fn bar<'c>(&self, number: usize, case: &'c Case, by_column: bool) -> Bar<'c> {
+        let (share, _, interval) = self.share(number);
+        let label = if by_column { &case.column } else { &case.row };
+        Bar { label, share, interval, outlined: case.held_out }
+    }
+
+    fn tables(&self) -> Vec<Block> {
+        let Some((run, tested)) = self.runs.first() else { return Vec::new() };
+        let single = |tested: &TestedProtocol| {
+            let (rows, _) = found::rows(&tested.protocol, &tested.found);
+            let mut rows = rows.into_iter();
+            Table { head: rows.next().unwrap_or_default(), rows: rows.collect() }
+        };
+        let champion = |run: &Run<'_>, tested: &TestedProtocol| {
+            let generation = match &tested.record {
+                None => "which was not recorded".into(),
+                Some(record) if record.generation as usize == run.last() => {
+                    format!("of generation {}", record.generation)
+                }
+                Some(record) => format!("of generation {}, an earlier one", record.generation),
+            };
+            format!("{}: the champion {generation}.", run.name())
+        };
+        if self.runs.len() == 1 {
+            return vec![Block::Text(champion(run, tested)), Block::Table(single(tested))];
+        }
+        let mut all = Table::new(&["case", "median", "quartiles", "lowest", "highest"]);
+        for (number, case) in self.cases.iter().enumerate() {
+            let rates = self.rates(number);
+            let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&rates) else { continue };
+            let (_, _, ends) = self.share(number);
+            let held_out = if case.held_out { ", held out" } else { "" };
+            let mut row = vec![format!("{}{held_out}", case.name()), percent(median)];
+            row.push(format!("{} to {}", percent(lower), percent(upper)));
+            row.extend(ends.map(percent));
+            all.rows.push(row);
+        }
+        let each = self
+            .runs
+            .iter()
+            .flat_map(|(run, tested)| [Block::Text(champion(run, tested)), Block::Table(single(tested))]);
+        vec![
+            Block::Text(format!("{}: share of the trials that succeeded.", self.whose())),
+            Block::Table(all),
+            Block::Fold(format!("Each of the {} runs", self.runs.len()), each.collect()),
+        ]
+    }
+}
