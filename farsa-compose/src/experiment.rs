@@ -2,20 +2,27 @@
 
 use std::path::Path;
 
+use farsa_body::Robot;
 use farsa_lab::{
-    EpisodeId, Error, Evaluator, Experiment, InWorld, Setting, Settings, StrategyDefinition, Truncation,
-    Value as Given, read_text_file,
+    EpisodeId, Error, Evaluator, Experiment, InWorld, Lanes, PlanarWorld, Setting, Settings, StrategyDefinition,
+    Truncation, Value as Given, read_text_file,
 };
+use farsa_physics::articulated::{self, Batch, Model, ModelError};
 use serde_json::Value;
 
+use crate::arena::composition::Composition;
+use crate::arena::episode::ArenaEpisode;
+use crate::check::embed::embedded;
 use crate::check::places::Places;
-use crate::check::schema::schema;
+use crate::check::schema::{scene_schema, schema};
 use crate::check::settings::{Entry, apply, entries};
-use crate::check::walk::read;
-use crate::composition::Composition;
-use crate::document::Document;
-use crate::episode::ComposedEpisode;
+use crate::check::walk;
+use crate::composed::Composed;
+use crate::document::{Document, Engine, Object};
+use crate::jointed;
+use crate::jointed::episode::JointedEpisode;
 use crate::name::is_name;
+use crate::parts::agents::Agents;
 
 /// The most bytes of a file.
 const MOST_BYTES: u64 = 1_000_000;
@@ -61,25 +68,42 @@ pub struct ComposedExperiment {
 }
 
 impl ComposedExperiment {
-    /// Reads a file, whose name without its end is the experiment's.
+    /// Reads a file, whose name without its end is the experiment's, and the files that it names in its folder.
     ///
     /// # Errors
-    /// [`Error::Io`], and those of [`from_text`](Self::from_text).
+    /// [`Error::Io`] and [`Error::Damaged`] for what cannot be read, and those of [`from_text`](Self::from_text).
     pub fn from_file(path: &Path, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
         let text = read_text_file(path, MOST_BYTES)?;
-        Self::from_text(&path.display().to_string(), &text, strategies)
+        Self::read(&path.display().to_string(), &text, path.parent(), strategies)
     }
 
     /// Reads a text as the content of a file of this name; `strategies` are those that it may name.
+    ///
+    /// No file is read: those that the text names are in its table `files`, as in the [`definition`](Experiment::definition) that
+    /// a run keeps.
     ///
     /// # Errors
     /// [`Error::Usage`] for a text that is no TOML, [`Error::Unknown`] for a word that there is not, with the nearest one,
     /// and [`Error::Setting`] for a value that cannot be; with file, line and key.
     pub fn from_text(file: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
+        Self::read(file, text, None, strategies)
+    }
+
+    /// Reads a text that names files in a folder, or none but its own.
+    pub(crate) fn read(
+        file: &str,
+        text: &str,
+        folder: Option<&Path>,
+        strategies: &[&'static dyn StrategyDefinition],
+    ) -> Result<Self, Error> {
         let schema = schema();
-        let (value, places) = read(file, text, &schema)?;
-        let document: Document =
+        let (value, mut places) = walk::read(file, text, &schema)?;
+        let mut document: Document =
             serde_json::from_value(value).map_err(|error| Error::Usage(format!("{file}: {error}")))?;
+        if let Some(text) = embedded(file, text, folder, &document, &places)? {
+            return Self::read(file, &text, None, strategies);
+        }
+        add_scene(&mut document, &schema, &mut places)?;
         let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         if !is_name(stem) {
             let why = "is the name of the experiment: 1 to 40 lower-case letters, digits, - and _, the first no sign";
@@ -131,16 +155,132 @@ impl ComposedExperiment {
         };
         // What does not go together is said before anything runs.
         for condition in if made.conditions.is_empty() { &[""][..] } else { made.conditions } {
-            made.composition(&Settings::new(made.settings(condition))?)?;
+            made.check(&Settings::new(made.settings(condition))?)?;
         }
         Ok(made)
     }
 
-    fn composition(&self, settings: &Settings) -> Result<Composition, Error> {
-        let value = apply(&self.document, &self.entries, settings)?;
-        let document = serde_json::from_value(value).map_err(|error| Error::Usage(error.to_string()))?;
-        Composition::new(document, &self.places)
+    /// An episode, for whose starts the world has room.
+    fn episode<W: PlanarWorld>(
+        &self,
+        (composition, agents): (Composition, Agents),
+        world: &mut W,
+    ) -> Result<Composed<ArenaEpisode>, Error> {
+        let mut episode = ArenaEpisode::new(composition, agents);
+        for trial in STARTS {
+            episode.arrange(world, start_of(trial)).map_err(|error| self.places.wrong("/start", error))?;
+        }
+        Ok(Composed(episode))
     }
+
+    /// Evaluates in rapier.
+    #[cfg(feature = "rapier")]
+    fn in_rapier(&self, composed: (Composition, Agents)) -> Result<Box<dyn Evaluator>, Error> {
+        use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld, Block};
+        let mut scene = ArenaScene::new(composed.0.scene.arena.clone());
+        for block in &composed.0.scene.blocks {
+            let crate::arena::scene::Block { centre, heading, size, mass, friction, color } = *block;
+            scene.add_block(Block { centre, heading, size, mass, friction, color });
+        }
+        let world = ArenaWorld::new(&scene, &ArenaOptions::default());
+        let mut world = world.map_err(|error| self.places.wrong("/world", error))?;
+        let episode = self.episode(composed, &mut world)?;
+        Ok(Box::new(InWorld::new(world, episode)))
+    }
+
+    #[cfg(not(feature = "rapier"))]
+    fn in_rapier(&self, _: (Composition, Agents)) -> Result<Box<dyn Evaluator>, Error> {
+        Err(self.without_rapier())
+    }
+
+    fn document(&self, settings: &Settings) -> Result<Document, Error> {
+        let value = apply(&self.document, &self.entries, settings)?;
+        serde_json::from_value(value).map_err(|error| Error::Usage(error.to_string()))
+    }
+
+    /// Refuses what does not go together.
+    fn check(&self, settings: &Settings) -> Result<(), Error> {
+        let document = self.document(settings)?;
+        if document.has_joints() {
+            return jointed::composition::Composition::new(document, &self.places).map(|_| ());
+        }
+        Composition::new(document, &self.places).map(|_| ())
+    }
+
+    /// Evaluates a robot with joints.
+    fn with_joints(&self, document: Document) -> Result<Box<dyn Evaluator>, Error> {
+        let wrong = |error: ModelError| self.places.wrong("/robot", error);
+        let (engine, options) = (document.world.engine, jointed::composition::options(&document));
+        let (composition, agents) = jointed::composition::Composition::new(document, &self.places)?;
+        let model = Model::<f32>::new(&composition.scene.robot, &options).map_err(wrong)?;
+        let robot = composition.scene.robot.clone();
+        let mut episode = JointedEpisode::new(composition, agents);
+        let mut world = articulated::World::new(model.clone());
+        let arranged = STARTS.into_iter().all(|trial| episode.arrange(&mut world, start_of(trial)));
+        if !arranged {
+            return Err(self.places.wrong("/start", "finds no free place after a thousand tries"));
+        }
+        if engine == Engine::Rapier {
+            return self.with_joints_in_rapier(&robot, &options, episode);
+        }
+        let batch = move |lanes: Lanes| {
+            let batch = Batch::new(model.clone(), lanes.count(), lanes.instructions());
+            batch.map_err(|error| Error::Other(error.to_string()))
+        };
+        Ok(Box::new(InWorld::new(world, Composed(episode)).with_lanes(batch)))
+    }
+
+    #[cfg(feature = "rapier")]
+    fn with_joints_in_rapier(
+        &self,
+        robot: &Robot,
+        options: &articulated::Options,
+        episode: JointedEpisode,
+    ) -> Result<Box<dyn Evaluator>, Error> {
+        use farsa_physics::rapier::{Options, World};
+        let articulated::Options { time_step, substeps, gravity, .. } = *options;
+        let world = World::new(robot, &Options { time_step, substeps, gravity, ..Options::default() });
+        let world = world.map_err(|error| self.places.wrong("/world", error))?;
+        Ok(Box::new(InWorld::new(world, Composed(episode))))
+    }
+
+    #[cfg(not(feature = "rapier"))]
+    fn with_joints_in_rapier(
+        &self,
+        _: &Robot,
+        _: &articulated::Options,
+        _: JointedEpisode,
+    ) -> Result<Box<dyn Evaluator>, Error> {
+        Err(self.without_rapier())
+    }
+
+    #[cfg(not(feature = "rapier"))]
+    fn without_rapier(&self) -> Error {
+        self.places.wrong("/world/engine", "`rapier`: this program was built without the feature `rapier`")
+    }
+}
+
+/// The starts that are tried before anything runs.
+const STARTS: std::ops::Range<u32> = 0..8;
+
+/// Seeds of this kind are neither a run's nor a test's.
+fn start_of(trial: u32) -> EpisodeId {
+    EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() }
+}
+
+/// Adds the objects of the scene's file, if there is one, to those of a document.
+fn add_scene(document: &mut Document, schema: &Value, places: &mut Places) -> Result<(), Error> {
+    let Some(name) = &document.world.scene else { return Ok(()) };
+    let Some(text) = document.files.get(name) else { return Ok(()) };
+    let (mut value, lines) = walk::read(name, text, &scene_schema(schema))?;
+    let objects = value.get_mut("objects").map(Value::take).unwrap_or_default();
+    let objects: Vec<Object> =
+        serde_json::from_value(objects).map_err(|error| Error::Usage(format!("{name}: {error}")))?;
+    for (number, object) in objects.into_iter().enumerate() {
+        places.put_elsewhere(&format!("/objects/{}", document.objects.len()), &format!("/objects/{number}"), &lines);
+        document.objects.push(object);
+    }
+    Ok(())
 }
 
 /// A text that lasts as long as the process, as the names of experiments do.
@@ -215,15 +355,20 @@ impl Experiment for ComposedExperiment {
     }
 
     fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        let composition = self.composition(settings)?;
-        let arena = composition.scene.arena.clone();
-        let mut world = farsa_physics::arena::World::new(&arena).map_err(|error| self.places.wrong("/world", error))?;
-        let mut episode = ComposedEpisode::new(composition);
-        // Seeds of this kind are neither a run's nor a test's.
-        for trial in 0..8 {
-            let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
-            episode.arrange(&mut world, id).map_err(|error| self.places.wrong("/start", error))?;
+        let document = self.document(settings)?;
+        if document.has_joints() {
+            return self.with_joints(document);
         }
+        let mut composed = Composition::new(document, &self.places)?;
+        if composed.1.document.team.coevolution {
+            composed.1.size = settings.count("evolution.population")?;
+        }
+        if composed.1.document.world.engine == Engine::Rapier {
+            return self.in_rapier(composed);
+        }
+        let arena = composed.0.scene.arena.clone();
+        let mut world = farsa_physics::arena::World::new(&arena).map_err(|error| self.places.wrong("/world", error))?;
+        let episode = self.episode(composed, &mut world)?;
         Ok(Box::new(InWorld::in_arena(&arena, episode)?))
     }
 }

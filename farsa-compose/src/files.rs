@@ -1,9 +1,12 @@
 //! Files of this format for the command.
 
+use std::path::Path;
+
 use farsa_lab::{Error, Experiment, ExperimentFiles, StrategyDefinition, Template};
 
 use crate::check::schema::schema;
 use crate::experiment::ComposedExperiment;
+use crate::original::from_original;
 
 /// What the command needs to take files of this format for experiments.
 ///
@@ -14,7 +17,8 @@ use crate::experiment::ComposedExperiment;
 ///     Laboratory::new(&[]).with_files(farsa_compose::FILES).main()
 /// }
 /// ```
-pub const FILES: ExperimentFiles = ExperimentFiles { read, schema: as_text, templates: &TEMPLATES };
+pub const FILES: ExperimentFiles =
+    ExperimentFiles { read, schema: as_text, templates: &TEMPLATES, import: from_original };
 
 const TEMPLATES: [Template; 3] = [
     Template {
@@ -34,8 +38,13 @@ const TEMPLATES: [Template; 3] = [
     },
 ];
 
-fn read(file: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Box<dyn Experiment>, Error> {
-    Ok(Box::new(ComposedExperiment::from_text(file, text, strategies)?))
+fn read(
+    file: &str,
+    text: &str,
+    folder: Option<&Path>,
+    strategies: &[&'static dyn StrategyDefinition],
+) -> Result<Box<dyn Experiment>, Error> {
+    Ok(Box::new(ComposedExperiment::read(file, text, folder, strategies)?))
 }
 
 fn as_text() -> String {

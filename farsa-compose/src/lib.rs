@@ -1,15 +1,19 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod arena;
 mod check;
-mod composition;
+mod composed;
 pub mod document;
-mod episode;
 mod experiment;
 mod files;
+mod jointed;
 mod name;
+mod original;
 mod parts;
 
+pub use arena::field::{Field, Forager};
 pub use check::schema::schema;
 pub use experiment::ComposedExperiment;
 pub use files::FILES;
+pub use original::from_original;

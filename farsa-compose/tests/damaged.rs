@@ -1,5 +1,7 @@
 //! What is wrong with a file is refused with its line and key, and with the nearest word that there is.
 
+mod drawn;
+
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{Experiment as _, Settings};
 
@@ -87,7 +89,11 @@ fn what_is_wrong_is_named_with_file_line_and_key() {
             "look.toml line 5: objects.1.name: `robot` names something else already",
         ),
         ("above = 0.1", "", "look.toml line 30: success.1: lacks `above` and `below`"),
-        ("at = \"anywhere\"", "", "look.toml line 22: start.1: lacks the key `at`: one of anywhere, around, fixed"),
+        (
+            "at = \"anywhere\"",
+            "",
+            "look.toml line 22: start.1: lacks the key `at`: one of anywhere, near, around, in-box, one-of, turned, fixed",
+        ),
         ("walls = 0.1", "wals = 0.1", "look.toml line 25: unknown key `wals`; the nearest is `walls`"),
         (
             "amplitude = 0.05",
@@ -100,7 +106,7 @@ fn what_is_wrong_is_named_with_file_line_and_key() {
             "look.toml line 36: unknown key `evolution.parent`; the nearest is `evolution.parents`",
         ),
         ("parents = 2", "parents = -2", "look.toml line 36: evolution.parents: -2 is outside"),
-        ("[robot]", "[robots]", "look.toml line 9: unknown key `robots`; the nearest is `robot`"),
+        ("[robot]", "[robotz]", "look.toml line 9: unknown key `robotz`; the nearest is `robot`"),
         ("summary = \"an e-puck looks for a lamp\"", "summary = \"a\nb\"", "look.toml line 2"),
         (
             "kind = \"wheels\"",
@@ -194,4 +200,79 @@ fn robots_are_named_alone() {
         let found = error(&format!("{RIGHT}{added}"));
         assert!(plain(&found).starts_with(message), "{added}\n  found:  {found}\n  wanted: {message}");
     }
+}
+
+/// What is done to a line of `key = value`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Damage {
+    UnknownKey,
+    OtherType,
+    OutOfRange,
+    NoNumber,
+    UnknownWord,
+    NoToml,
+    Twice,
+}
+
+/// The line damaged, if it can be.
+fn damaged(line: &str, damage: Damage) -> Option<String> {
+    // Not those of contents of files, which have several lines.
+    let (key, value) = line.split_once(" = ").filter(|(key, _)| !key.starts_with('"'))?;
+    let number = value.parse::<f64>().is_ok();
+    let words =
+        ["kind", "place", "at", "of", "object", "area", "nest", "target", "over", "model", "from", "to", "activation"];
+    let word = words.contains(&key);
+    match damage {
+        Damage::UnknownKey => Some(format!("{key}-zq = {value}")),
+        Damage::OtherType => Some(format!("{key} = {{ zq = 1 }}")),
+        Damage::OutOfRange => number.then(|| format!("{key} = 1e300")),
+        Damage::NoNumber => number.then(|| format!("{key} = nan")),
+        Damage::UnknownWord => {
+            let text = value.strip_prefix('"').filter(|_| word)?;
+            Some(format!("{key} = \"zq-{text}"))
+        }
+        Damage::NoToml => Some(format!("{key} {value}")),
+        Damage::Twice => Some(format!("{line}\n{line}")),
+    }
+}
+
+/// One line of each file drawn at random is damaged: it is refused, with that line and its key.
+#[test]
+fn drawn_files_are_refused_with_line_and_key() {
+    const ALL: [Damage; 7] = [
+        Damage::UnknownKey,
+        Damage::OtherType,
+        Damage::OutOfRange,
+        Damage::NoNumber,
+        Damage::UnknownWord,
+        Damage::NoToml,
+        Damage::Twice,
+    ];
+    let mut counts = [0; ALL.len()];
+    for file in 0..300 {
+        let mut draw = drawn::Draw::new(20_261_126, file);
+        let text = draw.file();
+        assert_eq!(error(&text), "nothing is wrong", "{text}");
+        let lines: Vec<&str> = text.lines().collect();
+        let (number, damage, line) = (0..)
+            .find_map(|_| {
+                let number = draw.stream.below(lines.len() as u32) as usize;
+                let damage = ALL[draw.stream.below(ALL.len() as u32) as usize];
+                damaged(lines[number], damage).map(|line| (number, damage, line))
+            })
+            .expect("a line that can be damaged");
+        counts[damage as usize] += 1;
+        let all = lines.iter().enumerate().map(|(own, kept)| if own == number { line.as_str() } else { kept });
+        let found = error(&all.collect::<Vec<_>>().join("\n"));
+        // The second of two is the wrong one.
+        let line_number = number + 1 + usize::from(damage == Damage::Twice);
+        assert!(
+            found.starts_with(&format!("look.toml line {line_number}: ")),
+            "{damage:?} of line {line_number}: {found}\n{text}"
+        );
+        let key = lines[number].split(" = ").next().unwrap_or_default();
+        let named = found.contains(key) || matches!(damage, Damage::NoToml | Damage::Twice) || found.contains("zq");
+        assert!(named, "{damage:?} of `{key}`: {found}");
+    }
+    assert!(counts.iter().all(|count| *count >= 10), "{counts:?}");
 }

@@ -5,11 +5,13 @@ use std::path::Path;
 use serde_json::Value;
 
 /// What a public name of a library is called in a file: the list and the word. Without a word: why it has none.
-const NAMED: [(&str, &str, &str); 56] = [
+const NAMED: [(&str, &str, &str); 60] = [
     // Sensors.
     ("InfraredAnalytic", "sensors", "infrared"),
-    ("InfraredRays", "sensors", "infrared"),
-    ("SampledInfrared", "", "measured tables cannot be named yet"),
+    ("InfraredRays", "", "part of InfraredGroups"),
+    ("InfraredGroups", "sensors", "infrared"),
+    ("InfraredDrawing", "", "for recordings"),
+    ("SampledInfrared", "sensors", "infrared"),
     ("InfraredTables", "", "part of SampledInfrared"),
     ("InfraredTable", "", "part of SampledInfrared"),
     ("InfraredTableError", "", "an error"),
@@ -41,16 +43,18 @@ const NAMED: [(&str, &str, &str); 56] = [
     ("Leds", "motors", "leds"),
     ("SignalMotor", "motors", "signal"),
     ("AttachmentMotor", "motors", "attachment"),
-    ("Muscles", "", "articulated worlds cannot be named yet"),
-    ("ServoGroup", "", "articulated worlds cannot be named yet"),
+    ("Muscles", "motors", "muscles"),
+    ("ServoGroup", "motors", "servo"),
     ("ServoRange", "", "part of ServoGroup"),
-    ("TorqueMotor", "", "articulated worlds cannot be named yet"),
+    ("TorqueMotor", "motors", "joint-torque"),
+    ("VelocityMotor", "motors", "joint-velocity"),
     // Wrappers.
     ("Noisy", "wrappers", "uniform-noise"),
     ("Noise", "wrappers", "normal-noise"),
     ("Delayed", "wrappers", "delay"),
     ("Scaled", "wrappers", "scale"),
     ("Saturated", "wrappers", "saturate"),
+    ("Thresholded", "wrappers", "threshold"),
     ("Lesioned", "wrappers", "lesion"),
     ("Stuck", "wrappers", "stuck"),
     ("StuckAt", "", "part of Stuck"),
@@ -59,9 +63,9 @@ const NAMED: [(&str, &str, &str); 56] = [
     ("Perceptron", "network", "perceptron"),
     ("LeakyNetwork", "network", "leaky"),
     ("Ctrnn", "network", "ctrnn"),
-    ("BlockNetwork", "network", "elman"),
+    ("BlockNetwork", "network", "blocks"),
     ("Architecture", "network", "jordan"),
-    ("Evonet", "", "networks from Evonet files cannot be named yet"),
+    ("Evonet", "network", "evonet"),
     ("PerceptronLanes", "", "perceptrons side by side"),
     ("QuantizedNetwork", "", "a network for boards, made of an evolved one"),
     ("LeakyNetworkBytes", "", "a format of LeakyNetwork"),

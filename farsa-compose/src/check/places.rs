@@ -9,16 +9,28 @@ use farsa_lab::Error;
 pub(crate) struct Places {
     file: String,
     lines: BTreeMap<String, usize>,
+    /// Parts that stand in other files, by the beginning of their paths.
+    others: Vec<(String, Self)>,
 }
 
 impl Places {
     /// Nothing of a file yet.
     pub(crate) fn new(file: &str) -> Self {
-        Self { file: file.into(), lines: BTreeMap::new() }
+        Self { file: file.into(), lines: BTreeMap::new(), others: Vec::new() }
     }
 
     pub(crate) fn put(&mut self, path: &str, line: usize) {
         self.lines.insert(path.into(), line);
+    }
+
+    /// Says that what begins with a path stands elsewhere, under `own` there.
+    pub(crate) fn put_elsewhere(&mut self, path: &str, own: &str, places: &Self) {
+        let lines = places
+            .lines
+            .iter()
+            .filter_map(|(known, line)| Some((format!("{path}{}", known.strip_prefix(own)?), *line)));
+        let other = Self { file: places.file.clone(), lines: lines.collect(), others: Vec::new() };
+        self.others.push((path.into(), other));
     }
 
     /// The place of a line.
@@ -28,6 +40,10 @@ impl Places {
 
     /// Where a value stands, or what it is in.
     pub(crate) fn of(&self, path: &str) -> String {
+        let within = |own: &str| path.strip_prefix(own).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+        if let Some((_, other)) = self.others.iter().find(|(own, _)| within(own)) {
+            return other.of(path);
+        }
         let mut path = path;
         loop {
             if let Some(&line) = self.lines.get(path) {

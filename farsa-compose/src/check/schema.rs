@@ -12,6 +12,18 @@ pub fn schema() -> Value {
     schema
 }
 
+/// The schema of a file that has objects only.
+pub(crate) fn scene_schema(schema: &Value) -> Value {
+    let objects = schema.pointer("/properties/objects").cloned().unwrap_or_default();
+    serde_json::json!({
+        "type": "object",
+        "properties": { "objects": objects },
+        "required": ["objects"],
+        "unevaluatedProperties": false,
+        "$defs": schema["$defs"],
+    })
+}
+
 /// Says of every table that it has no other keys than those that are named.
 fn close(schema: &mut Value) {
     match schema {

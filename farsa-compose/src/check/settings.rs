@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use crate::check::schema::{Kind, Part};
 
 /// The tables of a document that are no settings by themselves.
-const ELSEWHERE: [&str; 5] = ["conditions", "evolution", "genome", "strategy", "summary"];
+const ELSEWHERE: [&str; 6] = ["conditions", "evolution", "files", "genome", "strategy", "summary"];
 
 /// A setting and the path of its value in the document.
 #[derive(Clone, Debug)]

@@ -79,23 +79,35 @@ impl Walk<'_> {
         let word = all.tag.as_ref().and_then(|(name, words)| Some(words[chosen(words, name)?]));
         let keys = part.keys(&|_| word);
         if let Some((tag, words)) = keys.tag.as_ref().filter(|(name, _)| tag(name).is_none() && !has(table, name)) {
+            // Perhaps it is there under a wrong name.
+            let mut valid = vec![*tag];
+            for &word in words {
+                valid.extend(part.keys(&|_| Some(word)).named.into_iter().map(|(name, _)| name));
+            }
+            if let Some((name, _)) = table.iter().find(|(name, _)| !valid.contains(&name.get_ref().as_ref())) {
+                let place = self.places.of_line(self.lines.of(name.span().start));
+                return Err(Error::unknown(&place, "key", name.get_ref(), valid));
+            }
             return Err(self.places.wrong(path, format!("lacks the key `{tag}`: one of {}", words.join(", "))));
+        }
+        // Before the other keys, which depend on it.
+        if let (Some((tag, words)), None) = (&keys.tag, word)
+            && let Some((name, value)) = table.iter().find(|(name, _)| name.get_ref() == tag)
+        {
+            let line = self.lines.of(name.span().start);
+            let text = value.get_ref().as_str().ok_or_else(|| Error::Setting {
+                place: self.places.of_line(line),
+                key: key(&format!("{path}/{tag}")),
+                why: "is not a text".into(),
+            })?;
+            let what = if *tag == "at" { "way to place something" } else { "kind" };
+            return Err(Error::unknown(&self.places.of_line(line), what, text, words.iter().copied()));
         }
         let mut found = Map::new();
         for (name, value) in table {
             let (line, name) = (self.lines.of(name.span().start), name.get_ref().as_ref());
             let path = format!("{path}/{}", name.chars().take(60).collect::<String>());
             let known = keys.named.iter().find(|(key, _)| *key == name).map(|(_, part)| *part);
-            if let Some((tag, words)) = keys.tag.as_ref().filter(|(tag, _)| *tag == name && word.is_none()) {
-                let text = value.get_ref().as_str();
-                let text = text.ok_or_else(|| Error::Setting {
-                    place: self.places.of_line(line),
-                    key: key(&path),
-                    why: "is not a text".into(),
-                })?;
-                let what = if *tag == "at" { "way to place something" } else { "kind" };
-                return Err(Error::unknown(&self.places.of_line(line), what, text, words.iter().copied()));
-            }
             let Some(part) = known.or_else(|| part.any_key()) else {
                 let valid = keys.named.iter().map(|(name, _)| *name).chain(keys.tag.as_ref().map(|(tag, _)| *tag));
                 return Err(Error::unknown(&self.places.of_line(line), "key", name, valid));
@@ -133,6 +145,10 @@ impl Walk<'_> {
         if part.pattern() == Some(NAME) && !is_name(text) {
             let why = "is not a name: 1 to 40 lower-case letters, digits, - and _, the first a letter or digit";
             return Err(self.places.wrong(path, why));
+        }
+        // Contents of files may be long.
+        if path.starts_with("/files/") {
+            return Ok(Value::from(text));
         }
         if text.chars().count() > 1000 || text.chars().any(char::is_control) {
             return Err(self.places.wrong(path, "is longer than 1000 characters or has control characters"));

@@ -31,12 +31,14 @@ pub enum Ending {
     Collision,
     /// All conditions of success hold.
     Success,
+    /// All robots are dead, by the rules of `foraging`.
+    Death,
 }
 
 /// Where a trial puts something.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Start {
-    /// A thing by its name, `robot` for all robots one after the other, or `robot-1`, `robot-2` for one of them.
+    /// A thing by its name; `robot` for all robots one after the other, `robot-1`, `robot-2` for one of them, or a group of them; a joint.
     pub place: String,
     /// How.
     #[serde(flatten)]
@@ -49,6 +51,22 @@ pub struct Start {
 pub enum Placing {
     /// Uniformly where there is room.
     Anywhere {
+        /// Least distance from the walls [m].
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        walls: f64,
+        /// Least distance from all that was placed before [m]; of areas from other areas.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        apart: f64,
+    },
+    /// Uniformly near a thing, where there is room.
+    Near {
+        /// Which thing.
+        of: String,
+        /// Greatest distance of the middles [m].
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        within: f64,
         /// Least distance from the walls [m].
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 1000.0))]
@@ -66,11 +84,39 @@ pub enum Placing {
         #[schemars(inner(range(min = 0.0, max = 1000.0)))]
         distance: [f64; 2],
     },
+    /// Uniformly in a box; beside a robot with joints.
+    InBox {
+        /// The least x, y and z [m].
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        low: [f64; 3],
+        /// The greatest x, y and z [m].
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        high: [f64; 3],
+        /// Least distance from the things that were placed before [m].
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        apart: f64,
+    },
+    /// On one of these points, drawn from those that are free of the things that were placed before.
+    OneOf {
+        /// x and y of each, and z beside a robot with joints [m].
+        #[schemars(length(min = 1, max = 100))]
+        points: Vec<Vec<f64>>,
+    },
+    /// A joint at a position drawn uniformly.
+    Turned {
+        /// The least position [rad or m].
+        #[schemars(range(min = -1e6, max = 1e6))]
+        low: f64,
+        /// The greatest position [rad or m].
+        #[schemars(range(min = -1e6, max = 1e6))]
+        high: f64,
+    },
     /// Always there; a robot with this heading.
     Fixed {
-        /// Where its middle is [m].
-        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
-        point: [f64; 2],
+        /// Where its middle is: x and y, and z beside a robot with joints [m].
+        #[schemars(length(min = 2, max = 3), inner(range(min = -1000.0, max = 1000.0)))]
+        point: Vec<f64>,
         /// Where it looks to, counter-clockwise from the x axis [deg].
         #[serde(default)]
         #[schemars(range(min = -360.0, max = 360.0))]

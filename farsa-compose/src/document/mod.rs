@@ -6,7 +6,11 @@
 //! - `motor`: what they do
 //! - `wrapper`: what changes values on their way from a sensor or to a motor
 //! - `network`: what connects sensors with motors
+//! - `blocks`: a network of clusters of neurons and links between them
+//! - `evonet`: the network of the original FARSA
 //! - `episode`: how a trial starts, goes on and ends
+//! - `behaviour`: what there is to say of an individual beside its fitness
+//! - `foraging`: food and energy
 //! - `reward`: what a trial earns, and when it has succeeded
 
 use std::collections::BTreeMap;
@@ -16,7 +20,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::name::NAME;
 
+mod behaviour;
+mod blocks;
 mod episode;
+mod evonet;
+mod foraging;
 mod motor;
 mod network;
 mod reward;
@@ -25,12 +33,16 @@ mod sensor;
 mod world;
 mod wrapper;
 
+pub use behaviour::{BehaviourOfTerms, DescriptorTerm, ObjectiveTerm};
+pub use blocks::{Blocks, Cluster, ClusterActivation, Link};
 pub use episode::{Ending, Episode, Placing, Start};
+pub use evonet::{Evonet, EvonetNeurons};
+pub use foraging::Foraging;
 pub use motor::{Led, Motor, MotorKind};
-pub use network::{Network, NetworkKind, WeightOrder};
+pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
-pub use robot::{Robot, RobotKind};
-pub use sensor::{AxesName, Camera, ColorRange, InfraredModel, Sensor, SensorKind};
+pub use robot::{Robot, RobotGroup, RobotKind, Team};
+pub use sensor::{AxesName, Camera, ColorRange, InfraredModel, MeasuredBody, MeasuredTables, Sensor, SensorKind};
 pub use world::{Engine, Object, ObjectKind, World};
 pub use wrapper::Wrapper;
 
@@ -47,7 +59,14 @@ pub struct Document {
     #[serde(default)]
     pub objects: Vec<Object>,
     /// The robot, or the robots of a team: all alike, with one genome.
-    pub robot: Robot,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot: Option<Robot>,
+    /// Robots that are not all alike, in groups; in place of `robot`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robots: Vec<RobotGroup>,
+    /// Whose genomes robots have.
+    #[serde(default)]
+    pub team: Team,
     /// What each robot senses, in the order of the network's inputs.
     pub sensors: Vec<Sensor>,
     /// What each robot does, in the order of the network's outputs.
@@ -60,6 +79,9 @@ pub struct Document {
     /// Where a trial puts things, in this order; what is not named stays where its `at` says.
     #[serde(default)]
     pub start: Vec<Start>,
+    /// Food and energy, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub foraging: Option<Foraging>,
     /// What a trial earns: the terms of the fitness.
     pub reward: Vec<Reward>,
     /// How the terms become one number.
@@ -68,6 +90,15 @@ pub struct Document {
     /// When a trial has succeeded: if all of these hold at its end; by default it never does.
     #[serde(default)]
     pub success: Vec<Condition>,
+    /// When a trial has failed, which ends it: if any of these holds after a step.
+    #[serde(default)]
+    pub failure: Vec<Condition>,
+    /// What strategies with several objectives or with an archive look at.
+    #[serde(default)]
+    pub behaviour: BehaviourOfTerms,
+    /// Contents of the files that others keys name, by their names. The text of a run has them, so that it needs no other file.
+    #[serde(default)]
+    pub files: BTreeMap<String, String>,
     /// Conditions that are compared, the default one first.
     #[serde(default)]
     pub conditions: Vec<ConditionOfRuns>,
@@ -80,6 +111,13 @@ pub struct Document {
     /// Genes of strategies that search with bits.
     #[serde(default)]
     pub genome: Genome,
+}
+
+impl Document {
+    /// Whether its robot has joints instead of wheels in a plane.
+    pub(crate) fn has_joints(&self) -> bool {
+        self.robot.as_ref().is_some_and(|robot| robot.kind.has_joints())
+    }
 }
 
 /// A condition of runs.

@@ -41,11 +41,80 @@ pub enum MotorKind {
     Leds {
         /// Which.
         colors: Vec<Led>,
+        /// Whether a robot without LEDs is taken, too: nothing shines then.
+        #[serde(default)]
+        optional: bool,
     },
     /// What it signals, 0 to 1.
     Signal {},
     /// The attachment device: above 1/2 it holds what is in front.
     Attachment {},
+    /// Speeds of joints, a channel for each: 0 down .. 1/2 at rest .. 1 up.
+    JointVelocity {
+        /// Which; none is all of the robot.
+        #[serde(default)]
+        joints: Vec<String>,
+        /// The fastest [rad/s or m/s].
+        #[schemars(range(min = 1e-6, max = 1e6))]
+        largest: f64,
+        /// Torque for what is lacking of the speed [N m s/rad or N s/m]; by default that of the model's own motor.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1e-9, max = 1e9))]
+        gain: Option<f64>,
+    },
+    /// Torques of joints, a channel for each: 0 down .. 1/2 none .. 1 up.
+    JointTorque {
+        /// Which; none is all of the robot.
+        #[serde(default)]
+        joints: Vec<String>,
+        /// The largest [N m or N]; by default that of the model's own motor.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1e-9, max = 1e9))]
+        largest: Option<f64>,
+    },
+    /// Positions that servos turn joints to, a channel for each: 0 `from` .. 1 `to`.
+    Servo {
+        /// Which; none is all of the robot.
+        #[serde(default)]
+        joints: Vec<String>,
+        /// Whether one channel turns all of them.
+        #[serde(default)]
+        together: bool,
+        /// Position at 0 [rad or m]; by default the lowest that the joint allows.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = -1e6, max = 1e6))]
+        from: Option<f64>,
+        /// Position at 1 [rad or m]; by default the highest that the joint allows.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = -1e6, max = 1e6))]
+        to: Option<f64>,
+        /// Of the servo [N m/rad or N/m]; by default that of the model's own servo.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1e-9, max = 1e9))]
+        stiffness: Option<f64>,
+        /// Of the servo [N m s/rad or N s/m].
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 1e9))]
+        damping: Option<f64>,
+        /// The largest effort of the servo [N m or N].
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1e-9, max = 1e9))]
+        limit: Option<f64>,
+    },
+    /// Two muscles on each joint, a channel for each: 0 slack .. 1 as tense as can be.
+    Muscles {
+        /// Which joints; none is all of the robot.
+        #[serde(default)]
+        joints: Vec<String>,
+        /// The largest tension [N]; by default those of the robot's own muscles.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1e-6, max = 1e9))]
+        tension: Option<f64>,
+        /// Of the tension about the joint [m].
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1e-6, max = 1e3))]
+        moment_arm: Option<f64>,
+    },
 }
 
 /// An LED of a robot.

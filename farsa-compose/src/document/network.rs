@@ -1,7 +1,13 @@
 //! What connects sensors with motors.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use crate::document::blocks::{Blocks, leaks, slope};
+use crate::document::evonet::Evonet;
+use crate::name::NAME;
 
 /// A network; its numbers of inputs and outputs follow from sensors and motors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -10,6 +16,12 @@ pub struct Network {
     #[serde(default = "weights")]
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub weights: [f64; 2],
+    /// Parameters by their names that nothing searches for, with their values.
+    #[serde(default)]
+    pub fixed: BTreeMap<String, f64>,
+    /// Lists of names of parameters that are always equal: one is searched for in the place of all.
+    #[serde(default)]
+    pub shared: Vec<Vec<String>>,
     /// What it is.
     #[serde(flatten)]
     pub kind: NetworkKind,
@@ -38,6 +50,20 @@ pub enum NetworkKind {
         #[serde(default = "slope")]
         #[schemars(range(min = 0.001, max = 1000.0))]
         slope: f64,
+    },
+    /// Wires from inputs to outputs, as they stand.
+    Wired {
+        /// What each output's sum begins with, in the order of the outputs.
+        #[schemars(inner(range(min = -1e6, max = 1e6)))]
+        bias: Vec<f64>,
+        /// Whether other biases are searched for.
+        #[serde(default)]
+        search_bias: bool,
+        /// What the sums become.
+        #[serde(default)]
+        activation: Activation,
+        /// The wires, in the order in which they are added.
+        wires: Vec<Wire>,
     },
     /// A continuous-time recurrent network, all linked to all; the last neurons are the outputs.
     Ctrnn {
@@ -74,6 +100,40 @@ pub enum NetworkKind {
         #[schemars(range(min = 0, max = 10000))]
         hidden: u32,
     },
+    /// Clusters of neurons, and links between sensors, clusters and motors.
+    Blocks(Blocks),
+    /// The network of the original FARSA.
+    Evonet(Evonet),
+}
+
+/// A wire of a network that is wired by hand: it adds to an output so many times the sum of some inputs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Wire {
+    /// What settings and parameters call it; by default its number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(regex(pattern = NAME))]
+    pub name: Option<String>,
+    /// Names of inputs, such as `light 1`, in the order in which they are added.
+    pub from: Vec<String>,
+    /// The name of an output, such as `wheels left`.
+    pub to: String,
+    /// What each input is multiplied by.
+    #[schemars(range(min = -1e6, max = 1e6))]
+    pub weight: f64,
+    /// Whether another weight is searched for, between the ends of `weights`.
+    #[serde(default)]
+    pub searched: bool,
+}
+
+/// What the sum of an output becomes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Activation {
+    /// Itself, cut at 0 and 1.
+    #[default]
+    Clamp,
+    /// Its logistic function.
+    Logistic,
 }
 
 /// In which order the genes of a perceptron are.
@@ -89,12 +149,4 @@ pub enum WeightOrder {
 
 fn weights() -> [f64; 2] {
     [-5.0, 5.0]
-}
-
-fn leaks() -> [f64; 2] {
-    [0.0, 1.0]
-}
-
-fn slope() -> f64 {
-    1.0
 }

@@ -23,6 +23,9 @@ pub struct Reward {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1000))]
     pub robot: Option<u32>,
+    /// The group of `robots` that it is about; by default all of them, or those that evolve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
     /// The name of another term: only steps count in which that is more than 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub during: Option<String>,
@@ -46,16 +49,37 @@ pub enum RewardKind {
         /// How far at most [m].
         #[schemars(range(min = 0.0, max = 1000.0))]
         within: f64,
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+        /// Of which point of that body [m].
+        #[serde(default)]
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        point: [f64; 3],
     },
     /// How far the robot's middle is from that of a thing [m].
     Distance {
         /// Which thing.
         object: String,
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+        /// Of which point of that body [m].
+        #[serde(default)]
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        point: [f64; 3],
     },
     /// How much nearer to a thing the robot is than at the start [m].
     Approach {
         /// Which thing.
         object: String,
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+        /// Of which point of that body [m].
+        #[serde(default)]
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        point: [f64; 3],
     },
     /// How far off its heading the robot sees a thing [rad].
     Angle {
@@ -63,13 +87,68 @@ pub enum RewardKind {
         object: String,
     },
     /// 1 while the robot touches something.
-    Touch {},
+    Touch {
+        /// Bodies of a robot with joints that count; none is all of them.
+        #[serde(default)]
+        bodies: Vec<String>,
+        /// The only thing that counts, or `floor`, for a robot with joints.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        with: Option<String>,
+    },
     /// How far the robot is from where it started [m].
-    Displacement {},
+    Displacement {
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+    },
+    /// How far a thing is from where it stood at the start [m].
+    Moved {
+        /// Which thing.
+        object: String,
+    },
     /// How fast the robot moves [m/s].
-    Speed {},
+    Speed {
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+    },
     /// How far the robot came in this step along its heading [m].
-    Forward {},
+    Forward {
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+    },
+    /// How far the robot came in this step along a direction of the world [m].
+    Progress {
+        /// The direction, of any length.
+        #[schemars(inner(range(min = -1.0, max = 1.0)))]
+        along: [f64; 3],
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+    },
+    /// How high a point of the robot is [m].
+    Height {
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+        /// Of which point of that body [m].
+        #[serde(default)]
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        point: [f64; 3],
+    },
+    /// How upright a body is: 1 upright .. 0 lying .. -1 upside down.
+    Upright {
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+    },
+    /// How fast joints turn in the mean [rad/s or m/s].
+    JointSpeed {
+        /// Which, of a robot with joints; none is all.
+        #[serde(default)]
+        joints: Vec<String>,
+    },
     /// How fast the wheels turn in the mean, as a share of the greatest speed: 0 to 1.
     WheelSpeed {},
     /// How much the wheels turn alike: 1 both alike .. 0 against each other.
@@ -83,11 +162,24 @@ pub enum RewardKind {
     InArea {
         /// Which disc or rectangle.
         area: String,
+        /// Others that count as well.
+        #[serde(default)]
+        or: Vec<String>,
     },
+    /// How near the other robots are: 1 at one place .. 0 at a mean distance of the arena's diagonal.
+    NearOthers {},
+    /// Pieces of food that the team has brought to its nest, by the rules of `foraging`.
+    Food {},
+    /// The robot's energy, 0 dead .. 1, by the rules of `foraging`.
+    Energy {},
+    /// 1 while the robot lives, by the rules of `foraging`.
+    Alive {},
     /// 1 while the robot's attachment device holds something.
     Held {},
     /// The squares of the motors' values, of 0 to 1, in the mean.
     Effort {},
+    /// How far the motors' values are from 1/2, as a share, squared and in the mean: 0 at rest .. 1.
+    Control {},
     /// 1 in every step.
     Steps {},
 }

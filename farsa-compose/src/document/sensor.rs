@@ -38,6 +38,13 @@ pub enum SensorKind {
         #[serde(default)]
         #[schemars(range(min = 0, max = 64))]
         first: u32,
+        /// In so many groups of neighbours, each of which gives its largest value, by rays; 0 is each alone.
+        #[serde(default)]
+        #[schemars(range(min = 0, max = 64))]
+        groups: u32,
+        /// Files of measured readings, for the model `tables`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        tables: Option<MeasuredTables>,
     },
     /// How brightly lamps shine where the infrared sensors are: 0 dark .. 1.
     Light {
@@ -55,6 +62,9 @@ pub enum SensorKind {
         #[serde(default)]
         #[schemars(range(min = 0, max = 64))]
         first: u32,
+        /// Whether it is only one place, under the robot's middle.
+        #[serde(default)]
+        middle: bool,
     },
     /// A fan of laser range finders: 0 at the hull .. 1 nothing within the range.
     LaserDistance {
@@ -102,13 +112,34 @@ pub enum SensorKind {
     /// Whether the attachment device holds something: 0 or 1.
     Attachment {},
     /// Whether the robot touches something: 0 or 1.
-    Touch {},
+    Touch {
+        /// Bodies of a robot with joints that feel it; none is all of them.
+        #[serde(default)]
+        bodies: Vec<String>,
+        /// The only thing that counts, or `floor`, for a robot with joints.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        with: Option<String>,
+    },
     /// The sum of the forces at which the robot is pushed [N]; nominal in the kinematic arena.
-    ContactForce {},
+    ContactForce {
+        /// Bodies of a robot with joints that feel it; none is all of them.
+        #[serde(default)]
+        bodies: Vec<String>,
+        /// The only thing that counts, or `floor`, for a robot with joints.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        with: Option<String>,
+    },
     /// Where a thing is, three channels of which the third is its height.
     TargetPosition {
-        /// Which thing.
+        /// Which thing, or which body of a robot with joints.
         target: String,
+        /// The body of a robot with joints that it is seen from; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+        /// From which point of that body [m].
+        #[serde(default)]
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        point: [f64; 3],
         /// Seen by whom.
         #[serde(default)]
         axes: AxesName,
@@ -118,33 +149,54 @@ pub enum SensorKind {
         scale: f64,
     },
     /// Where the robot is: x, y, z [m] and four numbers of its orientation.
-    BodyPose {},
+    BodyPose {
+        /// Which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+    },
     /// How the robot moves: three of its velocity [m/s] and three of its angular velocity [rad/s].
     BodyVelocity {
+        /// Which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
         /// In which axes.
         #[serde(default)]
         axes: AxesName,
     },
     /// How high the robot's origin is [m].
-    Height {},
-    /// The angle of a wheel, 0 at `from` and 1 at `to`.
+    Height {
+        /// Which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+        /// Which point of that body [m].
+        #[serde(default)]
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        point: [f64; 3],
+    },
+    /// Positions of joints or wheels, 0 at `from` and 1 at `to`.
     JointPosition {
-        /// Which: 0 the left wheel, 1 the right one.
-        #[schemars(range(min = 0, max = 1))]
-        joint: u32,
-        /// What reads 0 [rad].
+        /// Which, `left-wheel` and `right-wheel` of a robot on wheels; none is all.
+        #[serde(default)]
+        joints: Vec<String>,
+        /// What reads 0 [rad or m]; by default the lowest that the joint allows.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
-        from: f64,
-        /// What reads 1 [rad].
+        from: Option<f64>,
+        /// What reads 1 [rad or m]; by default the highest that the joint allows.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]
-        to: f64,
+        to: Option<f64>,
     },
-    /// The speed of a wheel [rad/s].
+    /// Speeds of joints or wheels [rad/s or m/s].
     JointSpeed {
-        /// Which: 0 the left wheel, 1 the right one.
-        #[schemars(range(min = 0, max = 1))]
-        joint: u32,
+        /// Which, `left-wheel` and `right-wheel` of a robot on wheels; none is all.
+        #[serde(default)]
+        joints: Vec<String>,
     },
+    /// The robot's energy, 0 dead .. 1, by the rules of `foraging`.
+    Energy {},
+    /// Whether the robot carries food, 0 or 1, by the rules of `foraging`.
+    Carried {},
     /// A number that never changes, such as a label of the condition.
     Constant {
         /// The number.
@@ -162,6 +214,28 @@ pub enum InfraredModel {
     Analytic,
     /// By rays, as far as the robot's sensors see.
     Rays,
+    /// By measured readings, from files.
+    Tables,
+}
+
+/// Files of measured infrared readings, in the folder of the experiment's file or below it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MeasuredTables {
+    /// Readings beside a wall.
+    pub walls: String,
+    /// Readings beside round things: each takes the file whose radius is nearest to its own.
+    #[serde(default)]
+    pub bodies: Vec<MeasuredBody>,
+}
+
+/// A file of readings beside a round thing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MeasuredBody {
+    /// Its name.
+    pub file: String,
+    /// The radius of the thing [m].
+    #[schemars(range(min = 0.0001, max = 10.0))]
+    pub radius: f64,
 }
 
 /// A camera.

@@ -44,6 +44,12 @@ pub enum Wrapper {
         #[schemars(range(min = -1e6, max = 1e6))]
         high: f64,
     },
+    /// Passes on 1 for values above a number, and 0 for others.
+    Threshold {
+        /// The number.
+        #[schemars(range(min = -1e6, max = 1e6))]
+        above: f64,
+    },
     /// Passes on 0 for some channels.
     Lesion {
         /// The first and the last of them, from 0.

@@ -1,6 +1,6 @@
 //! Any network.
 
-use std::sync::{Mutex, PoisonError};
+use std::collections::BTreeMap;
 
 use farsa_lab::{Error, OwnedNetwork, Parameter, resting_network};
 use farsa_nn::{
@@ -8,7 +8,14 @@ use farsa_nn::{
     LeakyLayout, LeakyParameter, Perceptron,
 };
 
-use crate::document::{Network, NetworkKind, WeightOrder};
+use crate::check::places::Places;
+use crate::document::{Document, Network, NetworkKind, WeightOrder, Wire};
+use crate::parts::blocks;
+use crate::parts::bounded::bounded;
+use crate::parts::ends::Ends;
+use crate::parts::evonet::EvonetNetwork;
+use crate::parts::kept::kept;
+use crate::parts::wired::Wired;
 
 /// A network, and how the parameters that are searched for become its own.
 #[derive(Clone, Debug)]
@@ -17,36 +24,56 @@ pub(crate) enum AnyNetwork {
     Leaky(OwnedNetwork),
     Ctrnn(Ctrnn<Vec<f32>, Vec<f32>>),
     Block(BlockNetwork<'static, Vec<f32>, Vec<f32>>),
-}
-
-/// The names of what is sensed and of what is driven.
-#[derive(Clone, Copy)]
-pub(crate) struct Ends<'n> {
-    pub(crate) inputs: &'n [String],
-    pub(crate) outputs: &'n [String],
+    Wired(Wired),
+    Evonet(EvonetNetwork),
 }
 
 impl AnyNetwork {
-    /// A network at rest between so many inputs and outputs, for steps of `time_step` [s].
+    /// The network of a document at rest, between these inputs and outputs.
     ///
     /// # Errors
-    /// [`Error::Other`] for numbers of which no network can be made.
-    pub(crate) fn new(network: &Network, [inputs, outputs]: [usize; 2], time_step: f64) -> Result<Self, Error> {
-        let architecture = match network.kind {
-            NetworkKind::Perceptron { order } => {
+    /// [`Error::Setting`] for numbers of which no network can be made, and those of [`Wired::new`], [`blocks::layout`] and
+    /// [`EvonetNetwork::new`].
+    pub(crate) fn new(document: &Document, ends: Ends<'_>, places: &Places) -> Result<Self, Error> {
+        let made = Self::between(document, ends, places);
+        made.map_err(|error| if let Error::Other(why) = error { places.wrong("/network", why) } else { error })
+    }
+
+    fn between(document: &Document, ends: Ends<'_>, places: &Places) -> Result<Self, Error> {
+        let Document { network, files, .. } = document;
+        let [inputs, outputs] = [ends.inputs.len(), ends.outputs.len()];
+        let architecture = match &network.kind {
+            NetworkKind::Wired { bias, activation, wires, .. } => {
+                return Ok(Self::Wired(Wired::new(wires, bias, *activation, ends, places)?));
+            }
+            NetworkKind::Evonet(evonet) => {
+                return Ok(Self::Evonet(EvonetNetwork::new(
+                    evonet,
+                    [inputs, outputs],
+                    network.weights,
+                    files,
+                    places,
+                )?));
+            }
+            NetworkKind::Blocks(own) => return Self::of_blocks(blocks::layout(own, ends, places)?),
+            &NetworkKind::Perceptron { order } => {
+                bounded(Perceptron::parameter_count(inputs, outputs), 0)?;
                 let parameters = vec![0.0; Perceptron::parameter_count(inputs, outputs)];
                 return Ok(Self::Perceptron(Perceptron::new(inputs, outputs, 1.0, parameters)?, order));
             }
-            NetworkKind::Leaky { hidden, slope, .. } => {
+            &NetworkKind::Leaky { hidden, slope, .. } => {
                 let layout = LeakyLayout::new(inputs, hidden as usize, outputs).with_slope(slope as f32);
+                bounded(layout.parameter_count(), layout.state_len())?;
                 return Ok(Self::Leaky(resting_network(&layout)?));
             }
-            NetworkKind::Ctrnn { neurons, time_constants } => {
+            &NetworkKind::Ctrnn { neurons, time_constants } => {
                 let neurons = neurons as usize;
                 if neurons < outputs {
                     return Err(Error::Other(format!("{neurons} neurons where the motors want {outputs} outputs")));
                 }
                 let layout = CtrnnLayout::new(inputs, neurons, outputs);
+                bounded(layout.parameter_count(), layout.state_len())?;
+                let time_step = document.world.time_step;
                 let own = ctrnn_parameters(&layout, &vec![time_constants[0] as f32; searched(&layout)]);
                 let state = vec![0.0; layout.state_len()];
                 // Each end makes a network or none.
@@ -54,17 +81,22 @@ impl AnyNetwork {
                 Ctrnn::new(layout, time_step as f32, other, state.clone())?;
                 return Ok(Self::Ctrnn(Ctrnn::new(layout, time_step as f32, own, state)?));
             }
-            NetworkKind::FeedForward { hidden } => Architecture::feed_forward(inputs, hidden as usize, outputs),
-            NetworkKind::Elman { hidden } => Architecture::elman(inputs, hidden as usize, outputs),
-            NetworkKind::Jordan { hidden } => Architecture::jordan(inputs, hidden as usize, outputs),
-            NetworkKind::FullyRecurrent { hidden } => Architecture::fully_recurrent(inputs, hidden as usize, outputs),
+            &NetworkKind::FeedForward { hidden } => Architecture::feed_forward(inputs, hidden as usize, outputs),
+            &NetworkKind::Elman { hidden } => Architecture::elman(inputs, hidden as usize, outputs),
+            &NetworkKind::Jordan { hidden } => Architecture::jordan(inputs, hidden as usize, outputs),
+            &NetworkKind::FullyRecurrent { hidden } => Architecture::fully_recurrent(inputs, hidden as usize, outputs),
         };
-        let layout = kept(architecture.plan().into()).layout();
+        Self::of_blocks(architecture.plan().into())
+    }
+
+    fn of_blocks(layout: BlockLayoutBuf) -> Result<Self, Error> {
+        bounded(layout.layout().parameter_count(), layout.layout().state_len())?;
+        let layout = kept(layout).layout();
         let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
         Ok(Self::Block(BlockNetwork::new(layout, Leak::Filter, parameters, state)?))
     }
 
-    /// The parameters that are searched for, with names and ranges.
+    /// All parameters, with names and ranges.
     pub(crate) fn parameters(&self, network: &Network, ends: Ends<'_>) -> Vec<Parameter> {
         // As networks compute: in single precision.
         let single = |ends: [f64; 2]| ends.map(|end| f64::from(end as f32));
@@ -89,16 +121,42 @@ impl AnyNetwork {
                     _ => ("weight", weights),
                 }))
             }
-            Self::Block(block) => numbered(block.layout().kinds().map(|kind| match kind {
-                BlockParameter::Leak => ("leak", [0.0, 1.0]),
-                BlockParameter::Bias => ("bias", weights),
-                BlockParameter::Gain => ("gain", weights),
-                _ => ("weight", weights),
-            })),
+            Self::Wired(_) => {
+                let NetworkKind::Wired { wires, .. } = &network.kind else { return Vec::new() };
+                Wired::named(wires, &wire_names(wires), ends.outputs, weights)
+            }
+            Self::Block(block) => match &network.kind {
+                NetworkKind::Blocks(own) => blocks::parameters(own, block.layout(), ends, [weights, single(own.leaks)]),
+                _ => numbered(block.layout().kinds().map(|kind| match kind {
+                    BlockParameter::Leak => ("leak", [0.0, 1.0]),
+                    BlockParameter::Bias => ("bias", weights),
+                    BlockParameter::Gain => ("gain", weights),
+                    _ => ("weight", weights),
+                })),
+            },
+            Self::Evonet(evonet) => numbered(evonet.kinds().map(|kind| (kind, weights))),
         }
     }
 
-    /// Takes the parameters that were searched for; false for others than the network's.
+    /// Parameters that are not searched for unless the document says so, with their values.
+    pub(crate) fn given(&self, network: &Network, ends: Ends<'_>) -> BTreeMap<String, f64> {
+        match (self, &network.kind) {
+            (Self::Evonet(evonet), _) => {
+                let given = self.parameters(network, ends).into_iter().zip(evonet.given());
+                given.filter_map(|(parameter, value)| Some((parameter.name, f64::from((*value)?)))).collect()
+            }
+            (_, NetworkKind::Wired { bias, search_bias, wires, .. }) => {
+                let names = wire_names(wires);
+                let wires = wires.iter().zip(names).filter(|(wire, _)| !wire.searched);
+                let wires = wires.map(|(wire, name)| (format!("weight of {name}"), wire.weight));
+                let biases = ends.outputs.iter().zip(bias).filter(|_| !search_bias);
+                wires.chain(biases.map(|(output, bias)| (format!("bias of {output}"), *bias))).collect()
+            }
+            _ => BTreeMap::new(),
+        }
+    }
+
+    /// Takes all its parameters; false for others than the network's.
     pub(crate) fn load(&mut self, parameters: &[f32]) -> bool {
         match self {
             Self::Perceptron(layer, order) => {
@@ -119,6 +177,8 @@ impl AnyNetwork {
                     && ctrnn.copy_parameters(&ctrnn_parameters(&layout, parameters)).is_ok()
             }
             Self::Block(block) => block.copy_parameters(parameters).is_ok(),
+            Self::Wired(wired) => wired.copy_parameters(parameters),
+            Self::Evonet(evonet) => evonet.load(parameters),
         }
     }
 
@@ -129,16 +189,19 @@ impl AnyNetwork {
             Self::Leaky(leaky) => leaky.parameters(),
             Self::Ctrnn(ctrnn) => ctrnn.parameters(),
             Self::Block(block) => block.parameters(),
+            Self::Wired(wired) => wired.parameters(),
+            Self::Evonet(evonet) => evonet.network.parameters(),
         }
     }
 
     /// What its hidden neurons, or all its neurons, are at.
     pub(crate) fn neurons(&self) -> &[f32] {
         match self {
-            Self::Perceptron(..) => &[],
+            Self::Perceptron(..) | Self::Wired(_) => &[],
             Self::Leaky(leaky) => leaky.hidden(),
             Self::Ctrnn(ctrnn) => ctrnn.neuron_outputs(),
             Self::Block(block) => block.activations(),
+            Self::Evonet(evonet) => evonet.network.activations(),
         }
     }
 
@@ -156,9 +219,10 @@ impl AnyNetwork {
                     ctrnn.layout().neurons()
                 )
             }
-            Self::Block(block) => {
+            Self::Wired(_) => format!("{inputs}-{outputs}, wired by hand"),
+            Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => {
                 let neurons = block.activations().len().saturating_sub(inputs);
-                format!("{inputs}-{outputs}, {neurons} logistic neurons in blocks")
+                format!("{inputs}-{outputs}, {neurons} neurons in blocks")
             }
         }
     }
@@ -171,6 +235,8 @@ impl Controller for AnyNetwork {
             Self::Leaky(leaky) => leaky.inputs(),
             Self::Ctrnn(ctrnn) => ctrnn.inputs(),
             Self::Block(block) => block.inputs(),
+            Self::Wired(wired) => wired.inputs(),
+            Self::Evonet(evonet) => evonet.network.inputs(),
         }
     }
 
@@ -180,6 +246,8 @@ impl Controller for AnyNetwork {
             Self::Leaky(leaky) => leaky.outputs(),
             Self::Ctrnn(ctrnn) => ctrnn.outputs(),
             Self::Block(block) => block.outputs(),
+            Self::Wired(wired) => wired.outputs(),
+            Self::Evonet(evonet) => evonet.network.outputs(),
         }
     }
 
@@ -189,30 +257,40 @@ impl Controller for AnyNetwork {
             Self::Leaky(leaky) => leaky.reset(),
             Self::Ctrnn(ctrnn) => ctrnn.reset(),
             Self::Block(block) => block.reset(),
+            Self::Wired(wired) => wired.reset(),
+            Self::Evonet(evonet) => evonet.network.reset(),
         }
     }
 
-    #[inline]
+    /// Networks without memory are stepped here, without a call.
+    #[inline(always)]
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        if let Self::Perceptron(layer, _) = self {
+            layer.step(x, y);
+        } else {
+            self.step_other(x, y);
+        }
+    }
+}
+
+impl AnyNetwork {
+    #[inline(never)]
+    fn step_other(&mut self, x: &[f32], y: &mut [f32]) {
         match self {
             Self::Perceptron(layer, _) => layer.step(x, y),
             Self::Leaky(leaky) => leaky.step(x, y),
             Self::Ctrnn(ctrnn) => ctrnn.step(x, y),
             Self::Block(block) => block.step(x, y),
+            Self::Wired(wired) => wired.step(x, y),
+            Self::Evonet(evonet) => evonet.network.step(x, y),
         }
     }
 }
 
-/// A layout that lasts as long as the process: networks borrow theirs, and equal ones share one.
-fn kept(layout: BlockLayoutBuf) -> &'static BlockLayoutBuf {
-    static KEPT: Mutex<Vec<&BlockLayoutBuf>> = Mutex::new(Vec::new());
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = kept.iter().find(|known| ***known == layout) {
-        return known;
-    }
-    let layout: &'static BlockLayoutBuf = Box::leak(Box::new(layout));
-    kept.push(layout);
-    layout
+/// What wires are called.
+fn wire_names(wires: &[Wire]) -> Vec<String> {
+    let own = |(number, wire): (usize, &Wire)| wire.name.clone().unwrap_or_else(|| format!("wire {}", number + 1));
+    wires.iter().enumerate().map(own).collect()
 }
 
 /// A layer's own order from that in which the biases come first and then the weights, output by output.
@@ -223,7 +301,7 @@ fn by_outputs(parameters: &[f32], [inputs, outputs]: [usize; 2]) -> Vec<f32> {
 }
 
 fn perceptron_parameters(ends: Ends<'_>, order: WeightOrder, range: [f64; 2]) -> Vec<Parameter> {
-    let Ends { inputs, outputs } = ends;
+    let Ends { inputs, outputs, .. } = ends;
     let weight = |input: &String, output: &String| Parameter::new(format!("weight of {input} on {output}"), range);
     let biases = outputs.iter().map(|output| Parameter::new(format!("bias of {output}"), range));
     match order {

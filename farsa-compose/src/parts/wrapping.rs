@@ -1,7 +1,9 @@
 //! What is wrapped around sensors and motors alike.
 
-use farsa_body::{ChannelError, Channels, Delayed, Lesioned, Noise, Noisy, Saturated, Scaled, Stuck, StuckAt};
-use farsa_num::Stream;
+use farsa_body::{
+    ChannelError, Channels, Delayed, Lesioned, Noise, Noisy, Saturated, Scaled, Stuck, StuckAt, Thresholded,
+};
+use farsa_num::{Domain, Stream};
 
 use crate::document::Wrapper;
 
@@ -12,6 +14,7 @@ pub(crate) enum Wrapped<T> {
     Delayed(Delayed<Box<T>, Vec<f32>>),
     Scaled(Scaled<Box<T>, Vec<f32>>),
     Saturated(Saturated<Box<T>, Vec<f32>>),
+    Thresholded(Thresholded<Box<T>, Vec<f32>>),
     Lesioned(Lesioned<Box<T>, Vec<f32>>),
     Stuck(Stuck<Box<T>, Vec<f32>>),
 }
@@ -44,6 +47,7 @@ impl<T: Channels> Wrapped<T> {
             }
             Wrapper::Scale { gain, offset } => Self::Scaled(Scaled::new(inner, *gain as f32, *offset as f32)?),
             Wrapper::Saturate { low, high } => Self::Saturated(Saturated::new(inner, *low as f32, *high as f32)?),
+            Wrapper::Threshold { above } => Self::Thresholded(Thresholded::new(inner, *above as f32)?),
             Wrapper::Lesion { channels: [first, last] } => {
                 Self::Lesioned(Lesioned::new(inner, *first as usize..=*last as usize)?)
             }
@@ -63,12 +67,16 @@ macro_rules! around {
             $crate::parts::wrapping::Wrapped::Delayed($part) => $call,
             $crate::parts::wrapping::Wrapped::Scaled($part) => $call,
             $crate::parts::wrapping::Wrapped::Saturated($part) => $call,
+            $crate::parts::wrapping::Wrapped::Thresholded($part) => $call,
             $crate::parts::wrapping::Wrapped::Lesioned($part) => $call,
             $crate::parts::wrapping::Wrapped::Stuck($part) => $call,
         }
     };
 }
 pub(crate) use around;
+
+/// The domains of the noise of sensors and of motors.
+pub(crate) const NOISE: [Domain; 2] = [Domain::Sensor, Domain::Motor];
 
 /// Streams for the noise of an episode: one after the other on one stream, each with room for all that it may draw.
 pub(crate) struct NoiseStreams {

@@ -1,22 +1,29 @@
 //! Any sensor, with what is wrapped around it.
 
+use std::sync::Arc;
+
 use farsa_body::{
     AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ChannelError, Channels, ColorBand, ContactForce, GroundColor,
-    Height, InfraredAnalytic, InfraredRays, JointPosition, JointSpeed, LaserDistance, LightSensors, LinearCamera,
-    MobileParts, MobileRobot, PairId, Point, Sensor, Signal, SignalSensor, TargetPosition, Touch, Traction, WheelSpeed,
+    Height, InfraredAnalytic, InfraredGroups, InfraredTables, JointId, JointPosition, JointSpeed, LaserDistance,
+    LightSensors, LinearCamera, MobileParts, MobileRobot, PairId, Point, SampledInfrared, Sensor, Signal, SignalSensor,
+    TargetPosition, Touch, Traction, WheelSpeed,
 };
 use farsa_lab::{Error, PlanarWorld};
 
+use crate::arena::felt::{Feeling, Felt};
+use crate::arena::field::Forager;
+use crate::arena::scene::Scene;
 use crate::check::places::Places;
 use crate::document::{self, AxesName, InfraredModel, SensorKind};
-use crate::parts::scene::Scene;
+use crate::parts::files::{Files, measured};
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A sensor of a robot in a plane.
 #[derive(Clone, Debug)]
 pub(crate) enum Sensing {
     Analytic(InfraredAnalytic<Vec<[f32; 2]>>),
-    Rays(InfraredRays<Vec<Beam>>),
+    Rays(InfraredGroups),
+    Sampled(SampledInfrared<Arc<InfraredTables>>),
     Light(LightSensors<Vec<Beam>>),
     Ground(GroundColor<Vec<[f32; 2]>>),
     Laser(LaserDistance<Vec<Beam>>),
@@ -34,9 +41,10 @@ pub(crate) enum Sensing {
     Pose(BodyPose),
     Velocity(BodyVelocity),
     Height(Height),
-    JointPosition(JointPosition),
-    JointSpeed(JointSpeed),
+    JointPosition(Vec<JointPosition>),
+    JointSpeed(Vec<JointSpeed>),
     Constant(Signal<1>),
+    Felt(Felt),
     Wrapped(Wrapped<Self>),
 }
 
@@ -46,6 +54,7 @@ macro_rules! sensor {
         match $sensing {
             Sensing::Analytic($sensor) => $call,
             Sensing::Rays($sensor) => $call,
+            Sensing::Sampled($sensor) => $call,
             Sensing::Light($sensor) => $call,
             Sensing::Ground($sensor) => $call,
             Sensing::Laser($sensor) => $call,
@@ -66,6 +75,7 @@ macro_rules! sensor {
             Sensing::JointPosition($sensor) => $call,
             Sensing::JointSpeed($sensor) => $call,
             Sensing::Constant($sensor) => $call,
+            Sensing::Felt($sensor) => $call,
             Sensing::Wrapped(wrapped) => around!(wrapped, $sensor => $call),
         }
     };
@@ -82,9 +92,14 @@ impl Channels for Sensing {
 }
 
 impl<W: PlanarWorld> Sensor<W> for Sensing {
-    #[inline]
+    /// The commonest sensor is read here, without a call.
+    #[inline(always)]
     fn read(&mut self, world: &W, out: &mut [f32]) {
-        sensor!(self, sensor => sensor.read(world, out));
+        if let Self::Analytic(infrared) = self {
+            infrared.read(world, out);
+        } else {
+            self.read_other(world, out);
+        }
     }
 }
 
@@ -92,6 +107,22 @@ impl Reseed for Sensing {
     fn reseed(&mut self, streams: &mut NoiseStreams) {
         if let Self::Wrapped(wrapped) = self {
             wrapped.reseed(streams);
+        }
+    }
+}
+
+impl Sensing {
+    #[inline(never)]
+    fn read_other<W: PlanarWorld>(&mut self, world: &W, out: &mut [f32]) {
+        sensor!(self, sensor => sensor.read(world, out));
+    }
+
+    /// Tells it how the robot feels, if it is to sense that.
+    pub(crate) fn feel(&mut self, forager: &Forager) {
+        match self {
+            Self::Felt(felt) => felt.feel(forager),
+            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().feel(forager)),
+            _ => {}
         }
     }
 }
@@ -105,19 +136,79 @@ pub(crate) fn sensor(
     scene: &Scene,
     robot: usize,
     path: &str,
+    files: &mut Files<'_>,
     places: &Places,
 ) -> Result<Sensing, Error> {
     let target = match &sensor.kind {
         SensorKind::TargetPosition { target, .. } => Some(scene.body(target, &format!("{path}/target"), places)?),
         _ => None,
     };
-    let made = bare(&sensor.kind, &scene.robot, &scene.parts(robot), target);
+    let tables = match &sensor.kind {
+        SensorKind::Infrared { model: InfraredModel::Tables, tables: None, .. } => {
+            return Err(places.wrong(path, "lacks the key `tables`, which the model `tables` needs"));
+        }
+        SensorKind::Infrared { model: InfraredModel::Tables, tables: Some(tables), .. } => {
+            let found = measured(tables, files, path, places)?;
+            let (own, wanted) = (found.sensors(), scene.robots[robot].infrared.angles.len());
+            if own != wanted {
+                let why = format!("are of {own} sensors where the {} has {wanted}", scene.robots[robot].name);
+                return Err(places.wrong(&format!("{path}/tables"), why));
+            }
+            Some(found)
+        }
+        SensorKind::Infrared { tables: Some(_), .. } => {
+            return Err(places.wrong(&format!("{path}/tables"), "are for the model `tables`"));
+        }
+        _ => None,
+    };
+    check(&sensor.kind, path, places)?;
+    let parts = scene.parts(robot);
+    let wheels = match &sensor.kind {
+        SensorKind::JointPosition { joints, .. } | SensorKind::JointSpeed { joints } => {
+            let named = joints.iter().enumerate();
+            named.map(|(index, joint)| wheel(joint, &parts, &format!("{path}/joints/{index}"), places)).collect()
+        }
+        _ => Ok(Vec::new()),
+    };
+    let wheels = wheels?;
+    let wheels = if wheels.is_empty() { &parts.wheels[..] } else { &wheels };
+    let made = bare(&sensor.kind, &scene.robots[robot], &parts, target, tables, wheels);
     let mut made = made.map_err(|error| places.wrong(path, error))?;
     for (index, wrapper) in sensor.wrappers.iter().enumerate() {
         let wrapped = Wrapped::new(made, wrapper);
         made = Sensing::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
     }
     Ok(made)
+}
+
+/// Refuses what only a robot with joints has.
+fn check(kind: &SensorKind, path: &str, places: &Places) -> Result<(), Error> {
+    let (body, bodies, point) = match kind {
+        SensorKind::Touch { bodies, with } | SensorKind::ContactForce { bodies, with } => {
+            (with, &bodies[..], &[0.0; 3])
+        }
+        SensorKind::TargetPosition { body, point, .. } | SensorKind::Height { body, point } => (body, &[][..], point),
+        SensorKind::BodyPose { body } | SensorKind::BodyVelocity { body, .. } => (body, &[][..], &[0.0; 3]),
+        SensorKind::JointPosition { from, to, .. } => {
+            let missing = [("from", from), ("to", to)].into_iter().find(|(_, end)| end.is_none());
+            return missing.map_or(Ok(()), |(key, _)| {
+                Err(places.wrong(path, format!("lacks the key `{key}`: wheels turn on and on")))
+            });
+        }
+        _ => return Ok(()),
+    };
+    if body.is_none() && bodies.is_empty() && *point == [0.0; 3] {
+        return Ok(());
+    }
+    Err(places
+        .wrong(path, "names a body or point; a robot on wheels is one body, and only robots with joints have more"))
+}
+
+/// A wheel by its name.
+fn wheel(name: &str, parts: &MobileParts, path: &str, places: &Places) -> Result<JointId, Error> {
+    const WHEELS: [&str; 2] = ["left-wheel", "right-wheel"];
+    let found = WHEELS.iter().position(|known| *known == name);
+    Ok(parts.wheels[found.ok_or_else(|| Error::unknown(&places.of(path), "joint", name, WHEELS))?])
 }
 
 /// The first of a list, or all of it for 0.
@@ -127,29 +218,41 @@ fn first<T: Clone>(list: &[T], count: u32) -> Result<Vec<T>, ChannelError> {
     found.map(<[T]>::to_vec).ok_or(ChannelError::Selection { start: 0, end, channels: list.len() })
 }
 
-/// A sensor without wrappers; `target` is the body that it is for, if any.
+/// A sensor without wrappers; `target` is the body that it is for, if any, `wheels` are those that it is about.
 fn bare(
     kind: &SensorKind,
     robot: &MobileRobot,
     parts: &MobileParts,
     target: Option<farsa_body::BodyId>,
+    tables: Option<Arc<InfraredTables>>,
+    wheels: &[JointId],
 ) -> Result<Sensing, ChannelError> {
     let body = parts.body;
     Ok(match kind {
-        SensorKind::Infrared { model, first: count } => {
+        SensorKind::Infrared { model: InfraredModel::Tables, first: count, .. } => {
+            let tables = tables.ok_or(ChannelError::Groups { field: "tables", count: 0, size: 1 })?;
+            let sensor = SampledInfrared::new(body, robot.radius as f32, tables)?;
+            Sensing::Sampled(if *count == 0 { sensor } else { sensor.first(*count as usize)? })
+        }
+        SensorKind::Infrared { model, first: count, groups, .. } => {
             let mut robot = robot.clone();
             robot.infrared.angles = first(&robot.infrared.angles, *count)?;
-            match model {
-                InfraredModel::Analytic => Sensing::Analytic(InfraredAnalytic::for_robot(&robot, body)?),
-                InfraredModel::Rays => Sensing::Rays(InfraredRays::for_robot(&robot, body)?),
+            let sensors = robot.infrared.angles.len();
+            match (model, groups) {
+                (InfraredModel::Analytic, 0) => Sensing::Analytic(InfraredAnalytic::for_robot(&robot, body)?),
+                (InfraredModel::Analytic | InfraredModel::Tables, _) => {
+                    let field = "groups of sensors by the formula (those of the model `rays` have groups)";
+                    return Err(ChannelError::Groups { field, count: *groups as usize, size: 0 });
+                }
+                (InfraredModel::Rays, 0) => Sensing::Rays(InfraredGroups::for_robot(&robot, body, sensors)?),
+                (InfraredModel::Rays, _) => Sensing::Rays(InfraredGroups::for_robot(&robot, body, *groups as usize)?),
             }
         }
         SensorKind::Light { reference } => Sensing::Light(LightSensors::for_robot(robot, body, *reference as f32)?),
-        SensorKind::GroundColor { rgb, first: count } => {
-            let sensor = GroundColor::new(
-                body,
-                first(&robot.ground, *count)?.into_iter().map(|at| at.map(|x| x as f32)).collect::<Vec<_>>(),
-            )?;
+        SensorKind::GroundColor { rgb, first: count, middle } => {
+            let places = if *middle { vec![[0.0; 2]] } else { first(&robot.ground, *count)? };
+            let places: Vec<[f32; 2]> = places.into_iter().map(|at| at.map(|x| x as f32)).collect();
+            let sensor = GroundColor::new(body, places)?;
             Sensing::Ground(if *rgb { sensor.rgb() } else { sensor })
         }
         SensorKind::LaserDistance { beams, field_of_view, range, height } => {
@@ -175,20 +278,25 @@ fn bare(
         }
         SensorKind::Signal { range, sectors, mean } => signal(body, *range as f32, *sectors, *mean)?,
         SensorKind::Attachment {} => Sensing::Attachment(AttachmentSensor::new(body)),
-        SensorKind::Touch {} => Sensing::Touch(Touch::new([PairId(body.0)], 1.0)?),
-        SensorKind::ContactForce {} => Sensing::ContactForce(ContactForce::new([PairId(body.0)])),
+        SensorKind::Touch { .. } => Sensing::Touch(Touch::new([PairId(body.0)], 1.0)?),
+        SensorKind::ContactForce { .. } => Sensing::ContactForce(ContactForce::new([PairId(body.0)])),
         SensorKind::TargetPosition { axes, scale, .. } => {
             let [target, from] = [target.unwrap_or(body), body].map(Point::origin);
             Sensing::Target(TargetPosition::new(target, from, own_axes(*axes), *scale as f32)?)
         }
-        SensorKind::BodyPose {} => Sensing::Pose(BodyPose::new(body)),
-        SensorKind::BodyVelocity { axes } => Sensing::Velocity(BodyVelocity::new(body, own_axes(*axes))),
-        SensorKind::Height {} => Sensing::Height(Height::new(Point::origin(body))),
-        SensorKind::JointPosition { joint, from, to } => {
-            let wheel = parts.wheels[*joint as usize % 2];
-            Sensing::JointPosition(JointPosition::new(wheel, *from as f32, *to as f32)?)
+        SensorKind::BodyPose { .. } => Sensing::Pose(BodyPose::new(body)),
+        SensorKind::BodyVelocity { axes, .. } => Sensing::Velocity(BodyVelocity::new(body, own_axes(*axes))),
+        SensorKind::Height { .. } => Sensing::Height(Height::new(Point::origin(body))),
+        SensorKind::JointPosition { from, to, .. } => {
+            let [from, to] = [from, to].map(|end| end.unwrap_or(f64::INFINITY) as f32);
+            let made = wheels.iter().map(|wheel| JointPosition::new(*wheel, from, to));
+            Sensing::JointPosition(made.collect::<Result<_, _>>()?)
         }
-        SensorKind::JointSpeed { joint } => Sensing::JointSpeed(JointSpeed::new(parts.wheels[*joint as usize % 2])),
+        SensorKind::JointSpeed { .. } => {
+            Sensing::JointSpeed(wheels.iter().map(|wheel| JointSpeed::new(*wheel)).collect())
+        }
+        SensorKind::Energy {} => Sensing::Felt(Felt::new(Feeling::Energy)),
+        SensorKind::Carried {} => Sensing::Felt(Felt::new(Feeling::Carried)),
         SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
     })
 }

@@ -1,26 +1,28 @@
 //! Any motor, with what is wrapped around it.
 
 use farsa_body::{
-    ActuatorId, AttachmentMotor, ChannelError, Channels, Leds, MobileParts, Motor, SignalMotor, SpeedAndTurn,
-    WheelVelocity,
+    ActuatorId, AttachmentMotor, ChannelError, Channels, Leds, MobileParts, MobileRobot, Motor, SignalMotor,
+    SpeedAndTurn, WheelVelocity,
 };
 use farsa_lab::{Error, PlanarWorld};
 
+use crate::arena::scene::Scene;
 use crate::check::places::Places;
 use crate::document::{self, Led, MotorKind};
-use crate::parts::scene::Scene;
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A motor of a robot in a plane.
 #[derive(Clone, Debug)]
 pub(crate) enum Driving {
     Wheels(WheelVelocity),
-    SpeedAndTurn(SpeedAndTurn),
+    /// And whether it never drives backwards.
+    SpeedAndTurn(SpeedAndTurn, bool),
     Led(Leds<ActuatorId, 1>),
     TwoLeds(Leds<ActuatorId, 2>),
     Leds(Leds<ActuatorId, 3>),
     Signal(SignalMotor),
     Attachment(AttachmentMotor),
+    Nothing(Nothing),
     Wrapped(Wrapped<Self>),
 }
 
@@ -29,12 +31,13 @@ macro_rules! motor {
     ($driving:expr, $motor:ident => $call:expr) => {
         match $driving {
             Driving::Wheels($motor) => $call,
-            Driving::SpeedAndTurn($motor) => $call,
+            Driving::SpeedAndTurn($motor, _) => $call,
             Driving::Led($motor) => $call,
             Driving::TwoLeds($motor) => $call,
             Driving::Leds($motor) => $call,
             Driving::Signal($motor) => $call,
             Driving::Attachment($motor) => $call,
+            Driving::Nothing($motor) => $call,
             Driving::Wrapped(wrapped) => around!(wrapped, $motor => $call),
         }
     };
@@ -51,9 +54,14 @@ impl Channels for Driving {
 }
 
 impl<W: PlanarWorld> Motor<W> for Driving {
-    #[inline]
+    /// The commonest motor is driven here, without a call.
+    #[inline(always)]
     fn drive(&mut self, y: &[f32], world: &mut W) {
-        motor!(self, motor => motor.drive(y, world));
+        if let Self::Wheels(wheels) = self {
+            wheels.drive(y, world);
+        } else {
+            self.drive_other(y, world);
+        }
     }
 }
 
@@ -63,6 +71,45 @@ impl Reseed for Driving {
             wrapped.reseed(streams);
         }
     }
+}
+
+impl Driving {
+    #[inline(never)]
+    fn drive_other<W: PlanarWorld>(&mut self, y: &[f32], world: &mut W) {
+        motor!(self, motor => motor.drive(y, world));
+    }
+
+    /// Puts it to rest, past its wrappers, and says by which values [its channels].
+    pub(crate) fn rest<W: PlanarWorld>(&mut self, y: &mut [f32], world: &mut W) {
+        match self {
+            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().rest(y, world)),
+            Self::Wheels(_) => y.fill(0.5),
+            Self::SpeedAndTurn(_, forwards) => {
+                y.fill(0.5);
+                if let (Some(speed), true) = (y.first_mut(), *forwards) {
+                    *speed = 0.0;
+                }
+            }
+            _ => y.fill(0.0),
+        }
+        if !matches!(self, Self::Wrapped(_)) {
+            self.drive(y, world);
+        }
+    }
+}
+
+/// Outputs that drive nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nothing(usize);
+
+impl Channels for Nothing {
+    fn channels(&self) -> usize {
+        self.0
+    }
+}
+
+impl<W: ?Sized> Motor<W> for Nothing {
+    fn drive(&mut self, _: &[f32], _: &mut W) {}
 }
 
 /// A motor of robot number `robot`, which stands at a path of the document, with its wrappers.
@@ -77,8 +124,9 @@ pub(crate) fn motor(
     places: &Places,
 ) -> Result<Driving, Error> {
     let wrong = |why: String| places.wrong(path, why);
-    let made = bare(&motor.kind, scene, &scene.parts(robot)).map_err(|error| wrong(error.to_string()))?;
-    let mut made = made.map_err(|what| wrong(format!("needs {what}; the {} has none", scene.robot.name)))?;
+    let made =
+        bare(&motor.kind, &scene.robots[robot], &scene.parts(robot)).map_err(|error| wrong(error.to_string()))?;
+    let mut made = made.map_err(|what| wrong(format!("needs {what}; the {} has none", scene.robots[robot].name)))?;
     for (index, wrapper) in motor.wrappers.iter().enumerate() {
         let wrapped = Wrapped::new(made, wrapper);
         made = Driving::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
@@ -87,15 +135,22 @@ pub(crate) fn motor(
 }
 
 /// A motor without wrappers, or what the robot lacks for it.
-fn bare(kind: &MotorKind, scene: &Scene, parts: &MobileParts) -> Result<Result<Driving, &'static str>, ChannelError> {
-    let largest = scene.robot.max_wheel_speed as f32;
+fn bare(
+    kind: &MotorKind,
+    robot: &MobileRobot,
+    parts: &MobileParts,
+) -> Result<Result<Driving, &'static str>, ChannelError> {
+    let largest = robot.max_wheel_speed as f32;
     Ok(match kind {
         MotorKind::Wheels {} => Ok(Driving::Wheels(WheelVelocity::new(parts.motors, largest)?)),
         MotorKind::SpeedAndTurn { forwards } => {
             let motor = SpeedAndTurn::new(parts.motors, largest)?;
-            Ok(Driving::SpeedAndTurn(if *forwards { motor.forwards() } else { motor }))
+            Ok(Driving::SpeedAndTurn(if *forwards { motor.forwards() } else { motor }, *forwards))
         }
-        MotorKind::Leds { colors } => parts.leds.ok_or("LEDs").and_then(|leds| {
+        MotorKind::Leds { colors, optional: true } if parts.leds.is_none() => {
+            Ok(Driving::Nothing(Nothing(colors.len())))
+        }
+        MotorKind::Leds { colors, .. } => parts.leds.ok_or("LEDs").and_then(|leds| {
             let led = |color: &Led| leds[*color as usize];
             match colors.as_slice() {
                 [a] => Ok(Driving::Led(Leds::new([led(a)]))),
@@ -108,5 +163,9 @@ fn bare(kind: &MotorKind, scene: &Scene, parts: &MobileParts) -> Result<Result<D
         MotorKind::Attachment {} => {
             parts.attachment.map(|it| Driving::Attachment(AttachmentMotor::new(it))).ok_or("an attachment device")
         }
+        MotorKind::JointVelocity { .. }
+        | MotorKind::JointTorque { .. }
+        | MotorKind::Servo { .. }
+        | MotorKind::Muscles { .. } => Err("joints"),
     })
 }

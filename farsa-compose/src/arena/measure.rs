@@ -1,0 +1,157 @@
+//! What terms measure of robots.
+
+use farsa_body::BodyId;
+use farsa_lab::Error;
+use farsa_num::Scalar;
+
+use crate::arena::scene::{Scene, Thing};
+use crate::check::places::Places;
+use crate::document::RewardKind;
+
+/// What a term measures of one robot.
+#[derive(Clone, Debug)]
+pub(crate) enum Measure {
+    Near {
+        radius: f64,
+        within: f64,
+    },
+    Distance,
+    Approach,
+    Angle,
+    Touch,
+    Displacement,
+    Moved,
+    Speed,
+    Forward,
+    /// Along a unit vector of the plane.
+    Progress([f64; 2]),
+    WheelSpeed,
+    StraightOn,
+    /// Channels of the network's inputs.
+    Sensor([usize; 2]),
+    InArea {
+        /// Its body with half its sides [m], or the radius of a disc.
+        areas: Vec<(BodyId, [f64; 2], bool)>,
+    },
+    /// In units of the arena's diagonal [m].
+    NearOthers {
+        diagonal: f64,
+    },
+    Food,
+    Energy,
+    Alive,
+    Held,
+    Effort,
+    Control,
+    Steps,
+}
+
+impl Measure {
+    /// What a kind of term that stands at a path of the document measures, and the thing that it is about, if any; `sensors` are
+    /// those of a robot with their channels.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a thing or sensor that there is not, [`Error::Setting`] for one that cannot be measured.
+    pub(crate) fn new(
+        kind: &RewardKind,
+        path: &str,
+        sensors: &[(String, [usize; 2])],
+        scene: &Scene,
+        places: &Places,
+    ) -> Result<(Self, Option<BodyId>), Error> {
+        check(kind, path, places)?;
+        let body = |name: &str| scene.body(name, &format!("{path}/object"), places);
+        let mut about = None;
+        let measure = match kind {
+            RewardKind::Near { object, within, .. } => {
+                let path = format!("{path}/object");
+                let Some((thing, radius)) = scene.thing(object, &path, places)?.solid() else {
+                    return Err(places.wrong(&path, format!("`{object}` is no cylinder")));
+                };
+                about = Some(thing);
+                Measure::Near { radius, within: *within }
+            }
+            RewardKind::Distance { object, .. } => {
+                about = Some(body(object)?);
+                Measure::Distance
+            }
+            RewardKind::Approach { object, .. } => {
+                about = Some(body(object)?);
+                Measure::Approach
+            }
+            RewardKind::Angle { object } => {
+                about = Some(body(object)?);
+                Measure::Angle
+            }
+            RewardKind::Touch { .. } => Measure::Touch,
+            RewardKind::Displacement { .. } => Measure::Displacement,
+            RewardKind::Moved { object } => {
+                about = Some(body(object)?);
+                Measure::Moved
+            }
+            RewardKind::Speed { .. } => Measure::Speed,
+            RewardKind::Forward { .. } => Measure::Forward,
+            RewardKind::Progress { along: [x, y, _], .. } => {
+                let length = Scalar::sqrt(x * x + y * y);
+                if length == 0.0 {
+                    return Err(places.wrong(&format!("{path}/along"), "points nowhere in the plane"));
+                }
+                Measure::Progress([x / length, y / length])
+            }
+            RewardKind::Height { .. } | RewardKind::Upright { .. } | RewardKind::JointSpeed { .. } => {
+                return Err(places.wrong(path, "is for robots with joints; this one is on wheels"));
+            }
+            RewardKind::WheelSpeed {} => Measure::WheelSpeed,
+            RewardKind::StraightOn {} => Measure::StraightOn,
+            RewardKind::Sensor { sensor } => {
+                let found = sensors.iter().find(|(name, _)| name == sensor).map(|(_, channels)| *channels);
+                let names = sensors.iter().map(|(name, _)| name.as_str());
+                let place = places.of(&format!("{path}/sensor"));
+                Measure::Sensor(found.ok_or_else(|| Error::unknown(&place, "sensor", sensor, names))?)
+            }
+            RewardKind::InArea { area, or } => {
+                let others = or.iter().enumerate().map(|(index, area)| (format!("{path}/or/{index}"), area));
+                let areas =
+                    std::iter::once((format!("{path}/area"), area)).chain(others).map(|(path, area)| {
+                        match scene.thing(area, &path, places)? {
+                            Thing::Area { body, half, disc } => Ok((body, half, disc)),
+                            _ => Err(places.wrong(&path, format!("`{area}` is no disc or rectangle"))),
+                        }
+                    });
+                Measure::InArea { areas: areas.collect::<Result<_, Error>>()? }
+            }
+            RewardKind::NearOthers {} => {
+                let [width, depth] = scene.size;
+                Measure::NearOthers { diagonal: Scalar::sqrt(width * width + depth * depth) }
+            }
+            RewardKind::Food {} => Measure::Food,
+            RewardKind::Energy {} => Measure::Energy,
+            RewardKind::Alive {} => Measure::Alive,
+            RewardKind::Held {} => Measure::Held,
+            RewardKind::Effort {} => Measure::Effort,
+            RewardKind::Control {} => Measure::Control,
+            RewardKind::Steps {} => Measure::Steps,
+        };
+        Ok((measure, about))
+    }
+}
+
+/// Refuses what only a robot with joints has.
+fn check(kind: &RewardKind, path: &str, places: &Places) -> Result<(), Error> {
+    let (body, bodies, point) = match kind {
+        RewardKind::Near { body, point, .. }
+        | RewardKind::Distance { body, point, .. }
+        | RewardKind::Approach { body, point, .. } => (body, &[][..], point),
+        RewardKind::Displacement { body }
+        | RewardKind::Speed { body }
+        | RewardKind::Forward { body }
+        | RewardKind::Progress { body, .. } => (body, &[][..], &[0.0; 3]),
+        RewardKind::Touch { bodies, with } => (with, &bodies[..], &[0.0; 3]),
+        _ => return Ok(()),
+    };
+    if body.is_none() && bodies.is_empty() && *point == [0.0; 3] {
+        return Ok(());
+    }
+    Err(places
+        .wrong(path, "names a body or point; a robot on wheels is one body, and only robots with joints have more"))
+}

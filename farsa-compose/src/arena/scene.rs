@@ -1,0 +1,321 @@
+//! The arena, and which of its bodies a name means.
+
+use farsa_body::{BodyId, MobileParts, MobileRobot};
+use farsa_lab::Error;
+use farsa_physics::arena::{Area, Arena, Cylinder, Wall};
+
+use crate::check::places::Places;
+use crate::document::{Document, Engine, Object, ObjectKind, Robot, RobotKind};
+use crate::parts::groups::Groups;
+
+/// A thing that a name means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Thing {
+    /// A cylinder with its radius [m].
+    Cylinder { body: BodyId, radius: f64 },
+    /// A robot with its radius [m].
+    Robot { body: BodyId, radius: f64 },
+    /// An area with half its sides [m]; of a disc the radius, twice.
+    Area { body: BodyId, half: [f64; 2], disc: bool },
+    /// A block with half the diagonal of its ground [m].
+    Block { body: BodyId, reach: f64 },
+    /// A wall, which is no body.
+    Wall,
+}
+
+impl Thing {
+    /// Its body and the radius of its hull [m], if it has one that is in the way.
+    pub(crate) fn solid(self) -> Option<(BodyId, f64)> {
+        if let Self::Cylinder { body, radius } | Self::Robot { body, radius } = self {
+            Some((body, radius))
+        } else {
+            None
+        }
+    }
+
+    /// Whether it is a body that is in the way.
+    pub(crate) fn is_solid(self) -> bool {
+        matches!(self, Self::Cylinder { .. } | Self::Robot { .. } | Self::Block { .. })
+    }
+
+    /// Its body.
+    pub(crate) fn body(self) -> Option<BodyId> {
+        match self {
+            Self::Cylinder { body, .. }
+            | Self::Robot { body, .. }
+            | Self::Area { body, .. }
+            | Self::Block { body, .. } => Some(body),
+            Self::Wall => None,
+        }
+    }
+
+    /// How far its middle keeps from walls if it is to touch none [m].
+    pub(crate) fn reach(self) -> f64 {
+        match self {
+            Self::Cylinder { radius, .. } | Self::Robot { radius, .. } => radius,
+            Self::Block { reach, .. } => reach,
+            Self::Area { half, .. } => half[0].max(half[1]),
+            Self::Wall => 0.0,
+        }
+    }
+}
+
+/// An arena made of a document.
+#[derive(Clone, Debug)]
+pub(crate) struct Scene {
+    pub(crate) arena: Arena,
+    /// Every robot.
+    pub(crate) robots: Vec<MobileRobot>,
+    pub(crate) groups: Groups,
+    pub(crate) size: [f64; 2],
+    pub(crate) blocks: Vec<Block>,
+    things: Vec<(String, Thing)>,
+    /// How many of them are no robots.
+    standing: usize,
+}
+
+/// A box that can be pushed.
+#[cfg_attr(not(feature = "rapier"), allow(dead_code))]
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    /// Its middle at first [m], and where its length points to [rad].
+    pub(crate) centre: [f64; 2],
+    pub(crate) heading: f64,
+    /// Length, breadth and height [m].
+    pub(crate) size: [f64; 3],
+    /// [kg]
+    pub(crate) mass: f64,
+    pub(crate) friction: f64,
+    pub(crate) color: [f64; 3],
+}
+
+/// The most robots.
+const MOST_ROBOTS: usize = 1000;
+/// What is placed by every trial waits so far beyond the arena and from each other [m].
+const BESIDE: f64 = 1.0;
+
+impl Scene {
+    /// The arena with its robots and things.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for names that stand twice.
+    pub(crate) fn new(document: &Document, places: &Places) -> Result<Self, Error> {
+        let world = &document.world;
+        if world.engine == Engine::Articulated {
+            let why = "`articulated` is for robots with joints; this one is on wheels, for `arena` and `rapier`";
+            return Err(places.wrong("/world/engine", why));
+        }
+        let (robots, groups) = robots(document, places)?;
+        let [width, depth] = world.size;
+        let arena = if world.walls { Arena::walled(width, depth) } else { Arena::new() };
+        // Without bounds for what waits outside.
+        let mut arena = Arena { time_step: world.time_step, ground: world.ground, size: None, ..arena };
+        let widest = robots.iter().fold(0.0_f64, |most, robot| most.max(robot.radius));
+        let apart = BESIDE + 3.0 * widest;
+        for (number, robot) in robots.iter().enumerate() {
+            arena.add_robot(robot.clone(), [width + apart * (number + 1) as f64, 0.0], 0.0);
+        }
+        let mut x = width + apart * (robots.len() + 1) as f64;
+        let (mut built, mut blocks) = (Vec::new(), Vec::new());
+        for (index, object) in document.objects.iter().enumerate() {
+            let path = format!("/objects/{index}/name");
+            let of_robots = object.name.starts_with(ROBOT) || groups.named(&object.name).is_some();
+            if of_robots || built.iter().any(|(name, _)| *name == object.name) {
+                return Err(places.wrong(&path, format!("`{}` names something else already", object.name)));
+            }
+            let reach = match &object.kind {
+                ObjectKind::Cylinder { radius, .. } | ObjectKind::Disc { radius, .. } => *radius,
+                ObjectKind::Wall { size, .. } | ObjectKind::Rectangle { size, .. } => size[0].max(size[1]),
+                ObjectKind::Block { size, .. } => size[0].max(size[1]),
+                ObjectKind::Ball { .. } | ObjectKind::Marker { .. } => {
+                    let why = "is for robots with joints; beside one on wheels are cylinders, discs and rectangles";
+                    return Err(places.wrong(&format!("/objects/{index}"), why));
+                }
+            };
+            x += BESIDE + reach;
+            let at = object.at.as_deref().map(|at| flat(at, &format!("/objects/{index}/at"), places));
+            let at = at.transpose()?.unwrap_or([x, 0.0]);
+            x += reach;
+            if object.at.is_none() && matches!(object.kind, ObjectKind::Wall { .. }) {
+                return Err(places.wrong(&format!("/objects/{index}"), "lacks the key `at`: no trial places walls"));
+            }
+            if matches!(object.kind, ObjectKind::Block { .. }) && world.engine == Engine::Arena {
+                let why = "is a block, which nothing pushes in the engine `arena`; `rapier` is the one for it";
+                return Err(places.wrong(&format!("/objects/{index}"), why));
+            }
+            built.push((object.name.clone(), add(&mut arena, &mut blocks, object, at)));
+        }
+        // Bodies are numbered when all are there.
+        let [mut cylinders, mut areas, mut pushed] = [0; 3];
+        let things = built.into_iter().map(|(name, thing)| {
+            let thing = match thing {
+                Thing::Cylinder { radius, .. } => {
+                    cylinders += 1;
+                    Thing::Cylinder { body: arena.cylinder(cylinders - 1), radius }
+                }
+                Thing::Area { half, disc, .. } => {
+                    areas += 1;
+                    Thing::Area { body: arena.area(areas - 1), half, disc }
+                }
+                Thing::Block { reach, .. } => {
+                    pushed += 1;
+                    let bodies = arena.robots.len() + arena.cylinders.len() + arena.areas.len();
+                    Thing::Block { body: BodyId((bodies + pushed - 1) as u16), reach }
+                }
+                // Robots come below.
+                Thing::Wall | Thing::Robot { .. } => Thing::Wall,
+            };
+            (name, thing)
+        });
+        let mut things: Vec<(String, Thing)> = things.collect();
+        let standing = things.len();
+        for (number, robot) in robots.iter().enumerate() {
+            let thing = Thing::Robot { body: arena.parts(number).body, radius: robot.radius };
+            things.push((format!("{ROBOT}-{}", number + 1), thing));
+            let group = groups.of(number);
+            if groups.named(group) == Some([number, number + 1]) && group != ROBOT {
+                things.push((group.to_owned(), thing));
+            }
+        }
+        Ok(Self { robots, groups, size: world.size, things, standing, arena, blocks })
+    }
+
+    /// The thing of a name, which stands at a path of the document.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest name.
+    pub(crate) fn thing(&self, name: &str, path: &str, places: &Places) -> Result<Thing, Error> {
+        let found = self.things.iter().find(|(known, _)| known == name).map(|(_, thing)| *thing);
+        let named = if self.robots.len() > 1 { self.things.len() } else { self.standing };
+        let names = self.things[..named].iter().map(|(name, _)| name.as_str());
+        found.ok_or_else(|| Error::unknown(&places.of(path), "object", name, names))
+    }
+
+    /// The thing of a name that is a body, and its number.
+    ///
+    /// # Errors
+    /// As [`thing`](Self::thing), and [`Error::Setting`] for a wall.
+    pub(crate) fn body(&self, name: &str, path: &str, places: &Places) -> Result<BodyId, Error> {
+        let body = self.thing(name, path, places)?.body();
+        body.ok_or_else(|| places.wrong(path, format!("`{name}` is a wall, which has no middle to be measured")))
+    }
+
+    /// By which numbers the parts of a robot are known.
+    pub(crate) fn parts(&self, robot: usize) -> MobileParts {
+        self.arena.parts(robot)
+    }
+
+    /// The cylinders and blocks that stand somewhere from the beginning.
+    pub(crate) fn standing<'s>(&'s self, document: &'s Document) -> impl Iterator<Item = (BodyId, f64)> + 's {
+        let placed =
+            document.objects.iter().zip(&self.things[..self.standing]).filter(|(object, _)| object.at.is_some());
+        placed
+            .filter(|(_, (_, thing))| thing.is_solid())
+            .filter_map(|(_, (_, thing))| Some((thing.body()?, thing.reach())))
+    }
+
+    /// Number of bodies.
+    pub(crate) fn bodies(&self) -> u16 {
+        (self.robots.len() + self.arena.cylinders.len() + self.arena.areas.len() + self.blocks.len()) as u16
+    }
+}
+
+/// What the robots are called where things are named.
+pub(crate) const ROBOT: &str = "robot";
+
+fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]) -> Thing {
+    let (heading, body) = (object.heading.to_radians(), BodyId(0));
+    match object.kind {
+        ObjectKind::Cylinder { radius, height, color, lamp } => {
+            arena.add_cylinder(Cylinder { centre: at, radius, height, color, lamp });
+            Thing::Cylinder { body, radius }
+        }
+        ObjectKind::Wall { size, height, color } => {
+            arena.add_wall(Wall { height, color, ..Wall::cuboid(at, size, heading) });
+            Thing::Wall
+        }
+        ObjectKind::Block { size, mass, friction, color } => {
+            blocks.push(Block { centre: at, heading, size, mass, friction, color });
+            Thing::Block { body, reach: 0.5 * farsa_num::Scalar::sqrt(size[0] * size[0] + size[1] * size[1]) }
+        }
+        // They were refused before.
+        ObjectKind::Ball { .. } | ObjectKind::Marker { .. } => Thing::Wall,
+        ObjectKind::Disc { radius, color } => {
+            arena.add_area(Area { heading, ..Area::circle(at, radius, color) });
+            Thing::Area { body, half: [radius; 2], disc: true }
+        }
+        ObjectKind::Rectangle { size, color } => {
+            arena.add_area(Area::rectangle(at, size, heading, color));
+            Thing::Area { body, half: size.map(|x| 0.5 * x), disc: false }
+        }
+    }
+}
+
+/// A place in the plane.
+///
+/// # Errors
+/// [`Error::Setting`] for three numbers.
+pub(crate) fn flat(at: &[f64], path: &str, places: &Places) -> Result<[f64; 2], Error> {
+    let why = || format!("has {} values where 2 are wanted: robots on wheels have a plane", at.len());
+    at.try_into().map_err(|_| places.wrong(path, why()))
+}
+
+/// The robots of a document, and which of them are alike.
+///
+/// # Errors
+/// [`Error::Setting`] for none or both of `robot` and `robots`, and for what robots on wheels do not have.
+fn robots(document: &Document, places: &Places) -> Result<(Vec<MobileRobot>, Groups), Error> {
+    let alone = document.robot.iter().map(|robot| (ROBOT.to_owned(), None, robot, "/robot".to_owned()));
+    let grouped = document.robots.iter().enumerate();
+    let grouped =
+        grouped.map(|(index, group)| (group.name.clone(), group.color, &group.robot, format!("/robots/{index}")));
+    let all: Vec<_> = alone.chain(grouped).collect();
+    match (&document.robot, document.robots.is_empty()) {
+        (None, true) => return Err(places.wrong("", "lacks the key `robot`, or `robots` for groups of them")),
+        (Some(_), false) => return Err(places.wrong("/robots", "go not with `robot`: one of them")),
+        (Some(_), true) if document.team.coevolution => {
+            return Err(places.wrong("/team/coevolution", "is for groups of `robots`; `robot` is one group"));
+        }
+        _ => {}
+    }
+    let mut found = Vec::new();
+    for (number, (name, color, robot, path)) in all.iter().enumerate() {
+        let Robot { file, floating, base, kind, .. } = robot;
+        let joints = kind.has_joints();
+        let given = [("kind", joints), ("file", file.is_some()), ("floating", *floating), ("base", *base != [0.0; 3])];
+        if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+            return Err(places.wrong(&format!("{path}/{key}"), "is for robots with joints; this one is on wheels"));
+        }
+        let taken = all[..number].iter().any(|(other, ..)| other == name);
+        if taken || !document.robots.is_empty() && name.starts_with(ROBOT) {
+            return Err(places.wrong(&format!("{path}/name"), format!("`{name}` names something else already")));
+        }
+        let mut made = mobile_robot(robot);
+        made.color = color.unwrap_or(made.color);
+        if !document.robots.is_empty() {
+            made.name.clone_from(name);
+        }
+        found.extend((0..robot.count).map(|_| made.clone()));
+    }
+    if found.len() > MOST_ROBOTS {
+        let why = format!("are {} in all; at most {MOST_ROBOTS}", found.len());
+        return Err(places.wrong("/robots", why));
+    }
+    let groups =
+        Groups::new(all.into_iter().map(|(name, _, robot, _)| (name, robot.count as usize)), document.team.coevolution);
+    Ok((found, groups))
+}
+
+/// The named robot with what the document changes.
+fn mobile_robot(robot: &Robot) -> MobileRobot {
+    let mut own = match robot.kind {
+        // Those with joints are elsewhere.
+        RobotKind::Khepera | RobotKind::ArmAndHand | RobotKind::Model => MobileRobot::khepera(),
+        RobotKind::EPuck => MobileRobot::e_puck(),
+        RobotKind::Marxbot => MobileRobot::marxbot(),
+    };
+    own.radius = robot.radius.unwrap_or(own.radius);
+    own.infrared.range = robot.infrared_range.unwrap_or(own.infrared.range);
+    own.max_wheel_speed = robot.speed.map_or(own.max_wheel_speed, |speed| speed / own.wheel_radius);
+    own
+}

@@ -1,0 +1,273 @@
+//! Where a trial puts things.
+
+use core::f32::consts::PI;
+
+use farsa_body::{BodyId, Pose, Twist};
+use farsa_lab::{Error, PlanarWorld};
+use farsa_num::{Scalar, Stream, sin_cos};
+use farsa_physics::arena::{ArenaError, FreePlace};
+
+use crate::arena::scene::{ROBOT, Scene, Thing, flat};
+use crate::check::places::Places;
+use crate::document::{Document, Placing};
+
+/// A rule of the start with what it is about.
+#[derive(Clone, Debug)]
+struct Rule {
+    bodies: Vec<BodyId>,
+    /// Of what is in the way [m].
+    radius: f64,
+    solid: bool,
+    /// Whether a heading is drawn.
+    turned: bool,
+    how: How,
+}
+
+#[derive(Clone, Debug)]
+enum How {
+    Anywhere { walls: f64, apart: f64 },
+    Near { of: BodyId, within: f64, walls: f64, apart: f64 },
+    Around { of: BodyId, distance: [f64; 2] },
+    OneOf(Vec<[f32; 2]>),
+    Fixed { point: [f64; 2], heading: f64 },
+}
+
+/// The start of a trial.
+#[derive(Clone, Debug)]
+pub(crate) struct Starting {
+    rules: Vec<Rule>,
+    size: [f64; 2],
+    /// What stands somewhere from the beginning.
+    standing: Vec<BodyId>,
+    before: Before,
+}
+
+/// What was placed before: room for all.
+#[derive(Clone, Debug)]
+struct Before {
+    /// What things placed later keep from, with the distance [m].
+    others: Vec<(BodyId, f32)>,
+    /// Areas, with their radius [m].
+    areas: Vec<(BodyId, f64)>,
+}
+
+impl Starting {
+    /// The start that a document describes; robots that it does not name are placed last, anywhere.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a thing that there is not, [`Error::Setting`] for one that is placed twice or cannot be.
+    pub(crate) fn new(document: &Document, scene: &Scene, places: &Places) -> Result<Self, Error> {
+        let mut rules: Vec<Rule> = Vec::new();
+        let robots: Vec<BodyId> = (0..scene.robots.len()).map(|robot| scene.parts(robot).body).collect();
+        let of_robots = |bodies: Vec<BodyId>, how| {
+            let radii = bodies.iter().map(|body| scene.robots[usize::from(body.0)].radius);
+            let radius = radii.fold(0.0_f64, f64::max);
+            Rule { bodies, radius, solid: true, turned: true, how }
+        };
+        // What others are placed beside is there before them.
+        let before = |name: &str, path: &str, rules: &[Rule]| {
+            let body = scene.body(name, path, places)?;
+            let stands = document.objects.iter().any(|object| object.name == name && object.at.is_some());
+            if stands || rules.iter().any(|rule| rule.bodies.contains(&body)) {
+                return Ok(body);
+            }
+            Err(places.wrong(path, format!("`{name}` has to be placed before")))
+        };
+        for (index, start) in document.start.iter().enumerate() {
+            let path = format!("/start/{index}");
+            let how = match &start.how {
+                Placing::Anywhere { walls, apart } => How::Anywhere { walls: *walls, apart: *apart },
+                Placing::Near { of, within, walls, apart } => {
+                    let of = before(of, &format!("{path}/of"), &rules)?;
+                    How::Near { of, within: *within, walls: *walls, apart: *apart }
+                }
+                Placing::Around { of, distance } => {
+                    let of = before(of, &format!("{path}/of"), &rules)?;
+                    if distance[0] > distance[1] {
+                        return Err(places.wrong(&format!("{path}/distance"), "runs backwards"));
+                    }
+                    How::Around { of, distance: *distance }
+                }
+                Placing::OneOf { points } => {
+                    let points = points.iter().enumerate();
+                    let point = |(index, at): (usize, &Vec<f64>)| flat(at, &format!("{path}/points/{index}"), places);
+                    let found = points.map(|at| Ok(point(at)?.map(|x| x as f32))).collect::<Result<Vec<_>, Error>>();
+                    How::OneOf(found?)
+                }
+                Placing::InBox { .. } | Placing::Turned { .. } => {
+                    return Err(places.wrong(&format!("{path}/at"), "is for robots with joints; this one is on wheels"));
+                }
+                Placing::Fixed { point, heading } => {
+                    let point = flat(point, &format!("{path}/point"), places)?;
+                    How::Fixed { point, heading: heading.to_radians() }
+                }
+            };
+            let rule = if start.place == ROBOT {
+                if let (How::Fixed { .. }, true) = (&how, scene.robots.len() > 1) {
+                    return Err(places.wrong(&path, format!("puts {} robots on one point", scene.robots.len())));
+                }
+                of_robots(robots.clone(), how)
+            } else if let Some([first, end]) = scene.groups.named(&start.place) {
+                if let (How::Fixed { .. }, true) = (&how, end - first > 1) {
+                    return Err(places.wrong(&path, format!("puts {} robots on one point", end - first)));
+                }
+                of_robots(robots[first..end].to_vec(), how)
+            } else if let Some(robot) = numbered(&start.place) {
+                let found = robot.checked_sub(1).and_then(|robot| robots.get(robot));
+                let why = || places.wrong(&format!("{path}/place"), format!("is robot {robot} of {}", robots.len()));
+                of_robots(vec![*found.ok_or_else(why)?], how)
+            } else {
+                let path = format!("{path}/place");
+                let thing = scene.thing(&start.place, &path, places)?;
+                let body = scene.body(&start.place, &path, places)?;
+                Rule {
+                    bodies: vec![body],
+                    radius: thing.reach(),
+                    solid: thing.is_solid(),
+                    turned: matches!(thing, Thing::Block { .. }),
+                    how,
+                }
+            };
+            if rules.iter().any(|other| other.bodies.iter().any(|body| rule.bodies.contains(body))) {
+                return Err(places.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
+            }
+            rules.push(rule);
+        }
+        for (index, object) in document.objects.iter().enumerate() {
+            let path = format!("/objects/{index}");
+            let body = scene.body(&object.name, &path, places).ok().filter(|_| object.at.is_none());
+            if body.is_some_and(|body| !rules.iter().any(|rule| rule.bodies.contains(&body))) {
+                return Err(places.wrong(&path, "lacks the key `at`, and no `[[start]]` places it"));
+            }
+        }
+        let placed = |body: &BodyId| rules.iter().any(|rule| rule.bodies.contains(body));
+        let others: Vec<BodyId> = robots.iter().copied().filter(|body| !placed(body)).collect();
+        if !others.is_empty() {
+            rules.push(of_robots(others, How::Anywhere { walls: 0.0, apart: 0.0 }));
+        }
+        let moved = |body: &BodyId| rules.iter().any(|rule| rule.bodies.contains(body));
+        let standing: Vec<BodyId> =
+            scene.standing(document).map(|(body, _)| body).filter(|body| !moved(body)).collect();
+        let most = standing.len() + rules.iter().map(|rule| rule.bodies.len()).sum::<usize>();
+        let before = Before { others: Vec::with_capacity(most), areas: Vec::with_capacity(most) };
+        Ok(Self { rules, size: scene.size, standing, before })
+    }
+
+    /// Puts all in its place, by draws of the stream in the order of the rules.
+    ///
+    /// # Errors
+    /// [`ArenaError::NoFreePlace`] after a thousand tries.
+    pub(crate) fn arrange<W: PlanarWorld>(&mut self, world: &mut W, stream: &mut Stream) -> Result<(), ArenaError> {
+        world.clear();
+        let Self { rules, size, standing, before } = self;
+        before.others.clear();
+        before.areas.clear();
+        before.others.extend(standing.iter().map(|body| (*body, 0.0)));
+        for rule in rules {
+            for &body in &rule.bodies {
+                let apart = match rule.how {
+                    How::Anywhere { apart, .. } | How::Near { apart, .. } => apart,
+                    _ => 0.0,
+                };
+                for (_, far) in &mut before.others {
+                    *far = apart as f32;
+                }
+                let at = place(rule, *size, world, before, stream)?;
+                let heading = match (rule.turned, &rule.how) {
+                    (_, How::Fixed { heading, .. }) => *heading as f32,
+                    (true, _) => stream.range(-PI, PI),
+                    (false, _) => 0.0,
+                };
+                world.place_body(body, Pose::planar(at, heading), Twist::default());
+                world.finish_placement();
+                if rule.solid {
+                    before.others.push((body, 0.0));
+                } else {
+                    before.areas.push((body, rule.radius));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The number of a robot that is named alone: `robot-2`.
+fn numbered(name: &str) -> Option<usize> {
+    name.strip_prefix(ROBOT)?.strip_prefix('-')?.parse().ok()
+}
+
+/// A place for one body of a rule, which keeps from other bodies, or an area from other areas.
+fn place<W: PlanarWorld>(
+    rule: &Rule,
+    size: [f64; 2],
+    world: &W,
+    before: &Before,
+    stream: &mut Stream,
+) -> Result<[f32; 2], ArenaError> {
+    let (walls, apart, near) = match &rule.how {
+        How::Fixed { point, .. } => return Ok(point.map(|x| x as f32)),
+        How::OneOf(points) => {
+            // Where nothing was put before, which is exactly there.
+            let is_at = |body: BodyId, point: &[f32; 2]| {
+                let [x, y, _] = world.pose(body).position;
+                [x, y] == *point
+            };
+            let taken = |point: &[f32; 2]| {
+                before.others.iter().any(|(body, _)| is_at(*body, point))
+                    || before.areas.iter().any(|(body, _)| is_at(*body, point))
+            };
+            let free = points.iter().filter(|point| !taken(point));
+            let count = free.clone().count();
+            let none = ArenaError::NoFreePlace { tries: points.len() as u32, radius: rule.radius as f32, short: 0.0 };
+            let chosen = if count == 0 { return Err(none) } else { stream.below(count as u32) as usize };
+            return free.clone().nth(chosen).copied().ok_or(none);
+        }
+        How::Around { of, distance: [near, far] } => {
+            let distance = stream.range(*near as f32, *far as f32);
+            let (sine, cosine) = sin_cos(stream.range(-PI, PI));
+            let [x, y, _] = world.pose(*of).position;
+            return Ok([x + distance * cosine, y + distance * sine]);
+        }
+        How::Anywhere { walls, apart } => (walls, apart, None),
+        How::Near { of, within, walls, apart } => {
+            let [x, y, _] = world.pose(*of).position;
+            (walls, apart, Some(([x, y], *within as f32)))
+        }
+    };
+    let margin = rule.radius + walls;
+    let low = size.map(|x| margin.min(0.5 * x) as f32);
+    let high = size.map(|x| (x - margin).max(0.5 * x) as f32);
+    let region = near.map_or([low, high], |(at, far)| {
+        [-far, far].map(|far| [0, 1].map(|k| Scalar::clamp(at[k] + far, low[k], high[k])))
+    });
+    if rule.solid {
+        // The region keeps from the walls exactly; the hair's breadth is for the rounding of its ends.
+        let free =
+            FreePlace { walls: (walls - 1e-6) as f32, within: near, ..FreePlace::new(region, rule.radius as f32) };
+        return free.clear_of(&before.others).find(world, stream);
+    }
+    let radius = rule.radius as f32;
+    let mut short = f32::INFINITY;
+    for _ in 0..TRIES {
+        let at = [0, 1].map(|k| stream.range(region[0][k], region[1][k]));
+        let lacks = before.areas.iter().fold(f32::NEG_INFINITY, |most, (other, reach)| {
+            let [x, y, _] = world.pose(*other).position;
+            Scalar::max(most, (rule.radius + reach + apart) as f32 - length([at[0] - x, at[1] - y]))
+        });
+        if near.is_none_or(|(centre, far)| length([at[0] - centre[0], at[1] - centre[1]]) <= far) {
+            // Areas may lie upon each other unless they are to be apart.
+            if *apart == 0.0 || lacks <= 0.0 {
+                return Ok(at);
+            }
+            short = Scalar::min(short, lacks);
+        }
+    }
+    Err(ArenaError::NoFreePlace { tries: TRIES, radius, short })
+}
+
+/// Places that are tried at most.
+const TRIES: u32 = 1000;
+
+fn length([x, y]: [f32; 2]) -> f32 {
+    Scalar::sqrt(x * x + y * y)
+}

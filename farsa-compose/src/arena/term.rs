@@ -1,0 +1,224 @@
+//! What a term of the fitness measures of robots in an arena.
+
+use farsa_body::{BodyId, MobileParts, PairId, Pose};
+use farsa_lab::{Error, PlanarWorld};
+use farsa_num::{Scalar, atan2};
+
+use crate::arena::field::Field;
+use crate::arena::measure::Measure;
+use crate::arena::scene::Scene;
+use crate::check::places::Places;
+use crate::document::Reward;
+
+/// What a term measures, and where the thing is that it is about.
+#[derive(Clone, Debug)]
+pub(crate) struct Term {
+    measure: Measure,
+    /// The thing that it is about, and where that is.
+    thing: Option<BodyId>,
+    place: Pose,
+    /// Where it was at the start.
+    began: Pose,
+}
+
+/// What robots sensed and did last, where they started and where they were a step before and are [m], robot by robot.
+pub(crate) struct Rows<'r> {
+    pub(crate) x: &'r [f32],
+    pub(crate) y: &'r [f32],
+    /// Channels of a robot.
+    pub(crate) inputs: usize,
+    pub(crate) outputs: usize,
+    pub(crate) started: &'r [Pose],
+    pub(crate) before: &'r [[f64; 2]],
+    pub(crate) poses: &'r [Pose],
+    pub(crate) field: Option<&'r Field>,
+}
+
+impl Rows<'_> {
+    fn of(values: &[f32], count: usize, robot: usize) -> &[f32] {
+        values.get(robot * count..(robot + 1) * count).unwrap_or_default()
+    }
+}
+
+/// The greatest wheel speed [rad/s] and the radius [m] of the robots, and the control step [s].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Numbers {
+    pub(crate) wheel_speed: f64,
+    pub(crate) radius: f64,
+    pub(crate) time_step: f64,
+}
+
+impl Term {
+    /// What a term that stands at a path of the document measures; `sensors` are those of a robot with their channels.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a thing or sensor that there is not, [`Error::Setting`] for one that cannot be measured.
+    pub(crate) fn new(
+        reward: &Reward,
+        number: usize,
+        sensors: &[(String, [usize; 2])],
+        scene: &Scene,
+        places: &Places,
+    ) -> Result<Self, Error> {
+        let (measure, thing) = Measure::new(&reward.kind, &format!("/reward/{number}"), sensors, scene, places)?;
+        let nowhere = Pose::planar([0.0; 2], 0.0);
+        Ok(Self { measure, thing, place: nowhere, began: nowhere })
+    }
+
+    /// Whether it asks where robots were a step before.
+    pub(crate) fn looks_back(&self) -> bool {
+        matches!(self.measure, Measure::Speed | Measure::Forward | Measure::Progress(_))
+    }
+
+    /// Whether it is about a robot, which moves.
+    pub(crate) fn is_about_robot(&self, scene: &Scene) -> bool {
+        self.thing.is_some_and(|thing| (0..scene.robots.len()).any(|robot| scene.parts(robot).body == thing))
+    }
+
+    /// Whether it asks for food or energy.
+    pub(crate) fn of_foraging(&self) -> bool {
+        matches!(self.measure, Measure::Food | Measure::Energy | Measure::Alive)
+    }
+
+    /// Looks where its thing is at the start of a trial, if it has one.
+    pub(crate) fn begin<W: PlanarWorld>(&mut self, world: &W) {
+        self.locate(world);
+        self.began = self.place;
+    }
+
+    /// Looks where its thing is, if it has one.
+    pub(crate) fn locate<W: PlanarWorld>(&mut self, world: &W) {
+        if let Some(thing) = self.thing {
+            self.place = world.pose(thing);
+        }
+    }
+
+    /// What it measures of a robot, which is at `pose`, after a step; `None` for what [`value`](Self::value) measures.
+    ///
+    /// What most experiments measure is here; the rest is apart, so that its values are not made ready in every step.
+    #[inline]
+    pub(crate) fn quick<W: PlanarWorld>(
+        &self,
+        world: &W,
+        parts: &MobileParts,
+        pose: &Pose,
+        numbers: &Numbers,
+    ) -> Option<f64> {
+        Some(match &self.measure {
+            Measure::Near { radius, within } => {
+                let distance = length(self.way(pose)) - numbers.radius - radius;
+                if distance.is_finite() { yes(distance < *within) } else { f64::NAN }
+            }
+            Measure::Touch => yes(world.touches(PairId(parts.body.0))),
+            Measure::Steps => 1.0,
+            _ => return None,
+        })
+    }
+
+    /// From a robot to the thing [m].
+    fn way(&self, pose: &Pose) -> [f64; 2] {
+        [0, 1].map(|k| f64::from(self.place.position[k] - pose.position[k]))
+    }
+
+    /// From a robot to the thing, both as they are stored and in the robot's axes [m].
+    fn distance(&self, pose: &Pose) -> f64 {
+        length(turned(pose, [0, 1].map(|k| f64::from(self.place.position[k]) - f64::from(pose.position[k]))))
+    }
+
+    /// What it measures of robot number `robot` after a step.
+    pub(crate) fn value<W: PlanarWorld>(
+        &self,
+        world: &W,
+        parts: &MobileParts,
+        (rows, robot): (&Rows<'_>, usize),
+        numbers: &Numbers,
+    ) -> f64 {
+        let pose = &rows.poses[robot];
+        let at = [0, 1].map(|k| f64::from(pose.position[k]));
+        let from = |[u, v]: [f64; 2]| [at[0] - u, at[1] - v];
+        let wheels = || parts.wheels.map(|wheel| f64::from(world.speed(wheel)) / numbers.wheel_speed);
+        let forager = || rows.field.and_then(|field| field.robots().get(robot));
+        match &self.measure {
+            Measure::Distance => self.distance(pose),
+            Measure::Approach => self.distance(&rows.started[robot]) - self.distance(pose),
+            Measure::Angle => {
+                let [ahead, left] = turned(pose, self.way(pose));
+                atan2(left, ahead).abs()
+            }
+            Measure::Displacement => {
+                let [x, y, _] = rows.started[robot].position.map(f64::from);
+                length(from([x, y]))
+            }
+            Measure::Moved => {
+                let [u, v] = [0, 1].map(|k| f64::from(self.place.position[k]) - f64::from(self.began.position[k]));
+                length([u, v])
+            }
+            Measure::Speed => length(from(rows.before[robot])) / numbers.time_step,
+            Measure::Forward => turned(pose, from(rows.before[robot]))[0],
+            Measure::Progress([u, v]) => {
+                let [x, y] = from(rows.before[robot]);
+                x * u + y * v
+            }
+            Measure::WheelSpeed => {
+                let [left, right] = wheels();
+                0.5 * (left.abs() + right.abs())
+            }
+            Measure::StraightOn => {
+                let [left, right] = wheels();
+                1.0 - 0.5 * (left - right).abs()
+            }
+            Measure::Sensor([first, end]) => {
+                let channels = Rows::of(rows.x, rows.inputs, robot).get(*first..*end).unwrap_or_default();
+                channels.iter().fold(0.0, |most, x| Scalar::max(most, f64::from(*x)))
+            }
+            Measure::InArea { areas } => yes(areas.iter().any(|(area, half, disc)| {
+                let area = world.pose(*area);
+                let [u, v] = [0, 1].map(|k| pose.position[k] - area.position[k]);
+                if *disc {
+                    return Scalar::sqrt(u * u + v * v) <= half[0] as f32;
+                }
+                let [u, v] = turned(&area, [u, v].map(f64::from));
+                u.abs() <= half[0] && v.abs() <= half[1]
+            })),
+            Measure::NearOthers { diagonal } => {
+                let way = |other: &Pose| {
+                    let [u, v] = [0, 1].map(|k| pose.position[k] - other.position[k]);
+                    f64::from(Scalar::sqrt(u * u + v * v))
+                };
+                let others = rows.poses.len().saturating_sub(1).max(1) as f64;
+                1.0 - rows.poses.iter().map(way).sum::<f64>() / others / diagonal
+            }
+            Measure::Food => rows.field.map_or(0.0, |field| f64::from(field.collected())),
+            Measure::Energy => forager().map_or(0.0, |forager| forager.energy),
+            Measure::Alive => yes(forager().is_some_and(|forager| forager.alive)),
+            Measure::Held => yes(world.attached(parts.body).is_some()),
+            Measure::Effort => {
+                let y = Rows::of(rows.y, rows.outputs, robot);
+                let squares: f64 = y.iter().map(|y| f64::from(*y) * f64::from(*y)).sum();
+                squares / y.len().max(1) as f64
+            }
+            Measure::Control => {
+                let y = Rows::of(rows.y, rows.outputs, robot);
+                let squares = y.iter().map(|y| 2.0 * f64::from(*y) - 1.0).map(|u| u * u);
+                squares.sum::<f64>() / y.len().max(1) as f64
+            }
+            Measure::Near { .. } | Measure::Touch | Measure::Steps => {
+                self.quick(world, parts, pose, numbers).unwrap_or(0.0)
+            }
+        }
+    }
+}
+
+/// A way in the axes of a pose.
+fn turned(pose: &Pose, [u, v]: [f64; 2]) -> [f64; 2] {
+    let [ahead, left, _] = pose.cast::<f64>().rotate_back([u, v, 0.0]);
+    [ahead, left]
+}
+
+fn yes(flag: bool) -> f64 {
+    if flag { 1.0 } else { 0.0 }
+}
+
+fn length([x, y]: [f64; 2]) -> f64 {
+    Scalar::sqrt(x * x + y * y)
+}

@@ -1,0 +1,195 @@
+//! A composed experiment as it is evaluated, in any world.
+
+use farsa_body::{Recorder, Robot};
+use farsa_lab::{
+    Behaviour, ControllerExport, Description, Episode, EpisodeId, Evaluation, Exports, MotorDrive, MotorExport,
+    NetworkExport, Outcome, Parameter, Rollout, SensorExport, SensorReading, Task,
+};
+use farsa_models::MjcfOptions;
+use farsa_nn::Leak;
+use farsa_view::{Channel, Schema};
+
+use crate::document::{MotorKind, SensorKind};
+use crate::parts::agents::Agents;
+use crate::parts::evonet::EvonetNetwork;
+use crate::parts::meaning::Meaning;
+use crate::parts::network::AnyNetwork;
+
+/// Agents in a world of some kind: what is to be known of them there.
+pub(crate) trait Embodied: Clone + Send + 'static {
+    /// The agents.
+    fn agents(&self) -> &Agents;
+
+    /// The same, to be changed.
+    fn agents_mut(&mut self) -> &mut Agents;
+
+    /// The bodies of a recording.
+    fn bodies(&self) -> Schema;
+
+    /// The scalars of a recording before those of the terms.
+    fn places(&self) -> Vec<Channel>;
+
+    /// The robot as other programs may have it.
+    fn robot(&self) -> Robot;
+
+    /// What a MuJoCo model says beside the robot, where that is known.
+    fn mjcf_options(&self) -> Option<MjcfOptions> {
+        None
+    }
+
+    /// What a channel of a robot's sensor reads.
+    fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> Meaning;
+
+    /// What a channel of a robot's motor drives.
+    fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> Meaning;
+}
+
+/// An episode of a composed experiment.
+#[derive(Clone, Debug)]
+pub(crate) struct Composed<E>(pub(crate) E);
+
+impl<W, E: Episode<W>> Episode<W> for Composed<E> {
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.0.start(world, id);
+    }
+    fn has_started(&self) -> bool {
+        self.0.has_started()
+    }
+    #[inline]
+    fn act(&mut self, world: &mut W) {
+        self.0.act(world);
+    }
+    #[inline]
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.0.judge(world)
+    }
+    fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.0.record_action(world, recorder);
+    }
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        self.0.record(world, recorder);
+    }
+}
+
+impl<E: Embodied> Task for Composed<E> {
+    fn parameters(&self) -> Vec<Parameter> {
+        self.0.agents().wiring.searched.parameters().to_vec()
+    }
+    fn trials(&self) -> usize {
+        self.0.agents().document.episode.trials as usize
+    }
+    fn terms(&self) -> Vec<String> {
+        self.0.agents().ledger.names()
+    }
+    fn populations(&self) -> Vec<String> {
+        let names = self.0.agents().groups.populations();
+        if names.is_empty() { vec!["0".into()] } else { names }
+    }
+    fn observations(&self) -> usize {
+        self.0.agents().wiring.inputs.len()
+    }
+    fn behaviour(&self) -> Option<&dyn Behaviour> {
+        self.0.agents().ledger.behaviour.as_ref().map(|behaviour| behaviour as _)
+    }
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+    fn schema(&self) -> Schema {
+        self.0.agents().schema(self.0.bodies(), self.0.places())
+    }
+    fn description(&self) -> Description {
+        self.0.agents().description()
+    }
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        self.0.agents().ledger.fitness(trials)
+    }
+}
+
+impl<E: Embodied> Rollout for Composed<E> {
+    /// Gives robots their networks.
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        self.0.agents_mut().load(evaluation)
+    }
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        let agents = self.0.agents();
+        recorder.parameters(agents.networks[agents.evolving[0]].controller().own_parameters());
+    }
+    fn outcome(&self) -> Outcome {
+        self.0.agents().outcome()
+    }
+}
+
+impl<E: Embodied> Exports for Composed<E> {
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        Some(self.0.robot())
+    }
+
+    fn mjcf_options(&self) -> Option<MjcfOptions> {
+        self.0.mjcf_options()
+    }
+
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        self.controller_of(0, parameters)
+    }
+
+    fn controller_of(&self, population: usize, parameters: &[f32]) -> Option<ControllerExport> {
+        let Agents { document, wiring, groups, .. } = self.0.agents();
+        let [robot, _] = *groups.ranges().get(population)?;
+        let mut network = wiring.network.clone();
+        if !network.load(wiring.searched.clone().all(parameters)?) {
+            return None;
+        }
+        let network = exported(&network, document.world.time_step)?;
+        let (sensors, motors) = (self.sensors(robot), self.motors(robot));
+        Some(ControllerExport::new(network, sensors, motors, document.world.time_step, document.episode.steps))
+    }
+}
+
+impl<E: Embodied> Composed<E> {
+    fn sensors(&self, robot: usize) -> Vec<SensorExport> {
+        let Agents { document, wiring, .. } = self.0.agents();
+        let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(&wiring.sensors);
+        let meanings = enabled.flat_map(|(sensor, (_, [first, end]))| {
+            (0..end - first).map(|channel| self.0.sensed(&sensor.kind, channel, robot).with_wrappers(&sensor.wrappers))
+        });
+        let channel = |(name, Meaning { quantity, unit, ends: [zero, one], linear }): (&String, Meaning)| {
+            SensorExport { name: name.clone(), reads: SensorReading::Quantity { quantity, unit, zero, one, linear } }
+        };
+        wiring.inputs.iter().zip(meanings).map(channel).collect()
+    }
+
+    fn motors(&self, robot: usize) -> Vec<MotorExport> {
+        let Agents { document, wiring, .. } = self.0.agents();
+        let enabled = document.motors.iter().filter(|motor| motor.enabled).zip(&wiring.motors);
+        let meanings = enabled.flat_map(|(motor, (_, [first, end]))| {
+            (0..end - first).map(|channel| self.0.driven(&motor.kind, channel, robot).with_wrappers(&motor.wrappers))
+        });
+        let channel = |(name, Meaning { quantity, unit, ends: [zero, one], .. }): (&String, Meaning)| MotorExport {
+            name: name.clone(),
+            drives: MotorDrive::Quantity { quantity, unit, zero, one },
+        };
+        wiring.outputs.iter().zip(meanings).map(channel).collect()
+    }
+}
+
+/// A network with its own parameters.
+fn exported(network: &AnyNetwork, time_step: f64) -> Option<NetworkExport> {
+    let parameters = network.own_parameters().to_vec();
+    Some(match network {
+        AnyNetwork::Perceptron(layer, _) => {
+            let [inputs, outputs] = [farsa_nn::Controller::inputs(layer), farsa_nn::Controller::outputs(layer)];
+            NetworkExport::Perceptron { inputs, outputs, slope: layer.slope(), parameters }
+        }
+        AnyNetwork::Leaky(leaky) => NetworkExport::leaky(&leaky.layout(), Leak::Filter, &parameters),
+        AnyNetwork::Ctrnn(ctrnn) => {
+            NetworkExport::Ctrnn { layout: ctrnn.layout(), time_step: time_step as f32, parameters }
+        }
+        AnyNetwork::Wired(wired) => {
+            let [inputs, outputs] = [farsa_nn::Controller::inputs(wired), farsa_nn::Controller::outputs(wired)];
+            NetworkExport::Perceptron { inputs, outputs, slope: 1.0, parameters: wired.as_layer()? }
+        }
+        AnyNetwork::Block(block) | AnyNetwork::Evonet(EvonetNetwork { network: block, .. }) => {
+            NetworkExport::Blocks { layout: block.layout().into(), leak: block.leak(), parameters }
+        }
+    })
+}

@@ -1,0 +1,131 @@
+//! Any motor, with what is wrapped around it.
+
+use farsa_body::{
+    ChannelError, Channels, JointId, Law, Motor, Muscles, ServoGroup, ServoRange, TorqueMotor, VelocityMotor,
+};
+use farsa_lab::Error;
+
+use crate::check::places::Places;
+use crate::document::{self, MotorKind};
+use crate::jointed::SpatialWorld;
+use crate::jointed::actuation::{self, is_muscles, is_servo, is_torque, is_velocity};
+use crate::jointed::scene::Scene;
+use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
+
+/// A motor of a robot with joints.
+#[derive(Clone, Debug)]
+pub(crate) enum Driving {
+    Velocity(Vec<VelocityMotor>),
+    Torque(Vec<TorqueMotor>),
+    Servos(Vec<ServoGroup<Vec<ServoRange>>>),
+    Muscles(Vec<Muscles>),
+    Wrapped(Wrapped<Self>),
+}
+
+/// Calls a method of whatever motor it is.
+macro_rules! motor {
+    ($driving:expr, $motor:ident => $call:expr) => {
+        match $driving {
+            Driving::Velocity($motor) => $call,
+            Driving::Torque($motor) => $call,
+            Driving::Servos($motor) => $call,
+            Driving::Muscles($motor) => $call,
+            Driving::Wrapped(wrapped) => around!(wrapped, $motor => $call),
+        }
+    };
+}
+
+impl Channels for Driving {
+    fn channels(&self) -> usize {
+        motor!(self, motor => motor.channels())
+    }
+
+    fn reset(&mut self) {
+        motor!(self, motor => motor.reset());
+    }
+}
+
+impl<W: SpatialWorld> Motor<W> for Driving {
+    fn drive(&mut self, y: &[f32], world: &mut W) {
+        motor!(self, motor => motor.drive(y, world));
+    }
+}
+
+impl Reseed for Driving {
+    fn reseed(&mut self, streams: &mut NoiseStreams) {
+        if let Self::Wrapped(wrapped) = self {
+            wrapped.reseed(streams);
+        }
+    }
+}
+
+/// A motor that stands at a path of the document, with its wrappers; actuators that the robot lacks are added to it.
+///
+/// # Errors
+/// [`Error::Setting`] for what the robot does not have or cannot be wrapped so, [`Error::Unknown`] for a joint that there is not.
+pub(crate) fn motor(motor: &document::Motor, scene: &mut Scene, path: &str, places: &Places) -> Result<Driving, Error> {
+    let mut made = bare(&motor.kind, scene, path, places)?;
+    for (index, wrapper) in motor.wrappers.iter().enumerate() {
+        let wrapped = Wrapped::new(made, wrapper);
+        made = Driving::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
+    }
+    Ok(made)
+}
+
+/// The joints of a motor, by number: named, or all, or all that have an actuator of a kind where none is `given`.
+///
+/// # Errors
+/// Those of [`Scene::joints`].
+pub(crate) fn joints_of(kind: &MotorKind, scene: &Scene, path: &str, places: &Places) -> Result<Vec<JointId>, Error> {
+    type Is = fn(&Law<f64>) -> bool;
+    let (joints, given, of_kind): (_, _, Is) = match kind {
+        MotorKind::JointVelocity { joints, gain, .. } => (joints, gain.is_some(), is_velocity),
+        MotorKind::JointTorque { joints, largest } => (joints, largest.is_some(), is_torque),
+        MotorKind::Servo { joints, stiffness, .. } => (joints, stiffness.is_some(), is_servo),
+        MotorKind::Muscles { joints, tension, .. } => (joints, tension.is_some(), is_muscles),
+        _ => return Ok(Vec::new()),
+    };
+    scene.joints(joints, |joint| given || actuation::has(scene, joint, of_kind), path, places)
+}
+
+fn bare(kind: &MotorKind, scene: &mut Scene, path: &str, places: &Places) -> Result<Driving, Error> {
+    let wrong = |error: ChannelError| places.wrong(path, error);
+    let joints = joints_of(kind, scene, path, places)?;
+    Ok(match kind {
+        MotorKind::JointVelocity { largest, gain, .. } => {
+            let one = |joint| {
+                let (actuator, gain) = actuation::velocity(scene, joint, *gain, path, places)?;
+                VelocityMotor::new(actuator, *largest as f32, gain as f32).map_err(wrong)
+            };
+            Driving::Velocity(joints.into_iter().map(one).collect::<Result<_, _>>()?)
+        }
+        MotorKind::JointTorque { largest, .. } => {
+            let one = |joint| {
+                let (actuator, largest) = actuation::torque(scene, joint, *largest, path, places)?;
+                TorqueMotor::new(actuator, largest as f32).map_err(wrong)
+            };
+            Driving::Torque(joints.into_iter().map(one).collect::<Result<_, _>>()?)
+        }
+        MotorKind::Servo { together, from, to, stiffness, damping, limit, .. } => {
+            let one = |joint| {
+                let [low, high] = scene.range(joint);
+                let [from, to] = [from.unwrap_or(low), to.unwrap_or(high)].map(|end| end as f32);
+                let servo = actuation::servo(scene, joint, [*stiffness, *damping, *limit], path, places)?;
+                Ok(ServoRange { servo, from, to })
+            };
+            let servos = joints.into_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
+            let groups = if *together { vec![servos] } else { servos.into_iter().map(|servo| vec![servo]).collect() };
+            Driving::Servos(groups.into_iter().map(ServoGroup::new).collect::<Result<_, _>>().map_err(wrong)?)
+        }
+        MotorKind::Muscles { tension, moment_arm, .. } => {
+            let one =
+                |joint| Ok(Muscles::new(actuation::muscles(scene, joint, [*tension, *moment_arm], path, places)?));
+            Driving::Muscles(joints.into_iter().map(one).collect::<Result<_, Error>>()?)
+        }
+        MotorKind::Wheels {}
+        | MotorKind::SpeedAndTurn { .. }
+        | MotorKind::Leds { .. }
+        | MotorKind::Signal {}
+        | MotorKind::Attachment {} => return Err(places.wrong(path, "is for robots on wheels; this one has joints")),
+    })
+}

@@ -1,0 +1,209 @@
+//! An episode of a robot with joints.
+
+use farsa_body::{
+    BodyId, Channels as _, Joint, JointKind, MassProperties, Motor as _, Pose, Recorder, Robot, Segment, Sensor as _,
+};
+use farsa_lab::{Episode, EpisodeId, seconds};
+use farsa_models::MjcfOptions;
+use farsa_nn::Controller as _;
+use farsa_num::{Domain, Stream};
+use farsa_view::{Channel, Geometry, Role, SceneObject, Schema, screen_color};
+
+use crate::composed::Embodied;
+use crate::document::{Ending, MotorKind, SensorKind};
+use crate::jointed::SpatialWorld;
+use crate::jointed::composition::Composition;
+use crate::jointed::meaning;
+use crate::parts::agents::Agents;
+use crate::parts::meaning::Meaning;
+use crate::parts::wiring::Wiring;
+use crate::parts::wrapping::NOISE;
+
+/// A robot with its network in a trial.
+#[derive(Clone, Debug)]
+pub(crate) struct JointedEpisode {
+    composition: Composition,
+    agents: Agents,
+    /// Where the markers are [m].
+    markers: Vec<[f32; 3]>,
+    /// What is drawn, and what of it moves.
+    drawn: Schema,
+    shown: Vec<BodyId>,
+}
+
+/// A joint or body that is faster than this has left the dynamics behind [rad/s or m/s].
+const FASTEST: f32 = 1000.0;
+
+impl JointedEpisode {
+    /// A trial of a composition.
+    pub(crate) fn new(composition: Composition, agents: Agents) -> Self {
+        let markers = vec![[0.0; 3]; composition.scene.markers.len()];
+        let drawn = drawn(&composition);
+        let bodies = composition.scene.robot.segments.len();
+        let shown = drawn.shown().filter(|body| body.index() < bodies).collect();
+        Self { composition, agents, markers, drawn, shown }
+    }
+
+    /// Puts everything in its place; false if something finds none.
+    pub(crate) fn arrange<W: SpatialWorld>(&mut self, world: &mut W, id: EpisodeId) -> bool {
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
+        self.composition.starting.arrange(world, &mut self.markers, &mut stream)
+    }
+
+    /// Measures the terms that are asked for after each step, or the late ones.
+    fn measure<W: SpatialWorld>(&mut self, world: &W, late: bool) {
+        for (number, term) in self.composition.terms.iter_mut().enumerate() {
+            if self.agents.ledger.tallies[number].late != late {
+                continue;
+            }
+            let value = term.value(world, &self.markers, &self.agents);
+            term.remember(world, &self.markers);
+            self.agents.ledger.count(number, value);
+        }
+    }
+
+    /// Whether all moves as bodies do: not so after numbers that are none, or at speeds that no robot has.
+    fn is_sane<W: SpatialWorld>(&self, world: &W) -> bool {
+        let Composition { joints, floating, .. } = &self.composition;
+        // A comparison with NaN is false.
+        joints.iter().all(|joint| world.speed(*joint).abs() < FASTEST && world.position(*joint).is_finite())
+            && floating.iter().all(|body| {
+                let twist = world.velocity(*body);
+                twist.linear.iter().chain(&twist.angular).all(|speed| speed.abs() < FASTEST)
+            })
+    }
+}
+
+/// The robot, the things in their colours, and the markers as bodies after all others.
+fn drawn(composition: &Composition) -> Schema {
+    let scene = &composition.scene;
+    let mut robot = scene.alone();
+    let mut objects = scene.drawn.clone();
+    for marker in &scene.markers {
+        let nothing = MassProperties::sphere(0.0, marker.radius);
+        let floating = Joint::floating(Pose::identity());
+        let body = robot.add_segment(Segment::new(&marker.name, None, floating, nothing));
+        let ball = Geometry::Sphere { radius: marker.radius };
+        let object = SceneObject::new(&marker.name, ball, Pose::identity(), Role::Object);
+        objects.push(object.on_body(body).with_color(screen_color(marker.color)));
+    }
+    Schema { objects, ..Schema::from_robot(&robot) }
+}
+
+impl Embodied for JointedEpisode {
+    fn agents(&self) -> &Agents {
+        &self.agents
+    }
+
+    fn agents_mut(&mut self) -> &mut Agents {
+        &mut self.agents
+    }
+
+    fn bodies(&self) -> Schema {
+        self.drawn.clone()
+    }
+
+    fn places(&self) -> Vec<Channel> {
+        let scene = &self.composition.scene;
+        let joint = |joint: &farsa_body::JointId| {
+            let segment = &scene.robot.segments[joint.index()];
+            let unit = if segment.joint.kind == JointKind::Prismatic { "m" } else { "rad" };
+            let channel = Channel::new(&format!("{} [{unit}]", segment.joint.name)).group("joint");
+            let [low, high] = segment.joint.range;
+            if low.is_finite() && high.is_finite() { channel.range(low, high) } else { channel }
+        };
+        self.composition.joints.iter().map(joint).collect()
+    }
+
+    fn robot(&self) -> Robot {
+        self.composition.scene.robot.clone()
+    }
+
+    fn mjcf_options(&self) -> Option<MjcfOptions> {
+        let world = &self.agents.document.world;
+        let time_step = world.time_step / f64::from(world.substeps);
+        Some(MjcfOptions { time_step, gravity: world.gravity, ..MjcfOptions::default() })
+    }
+
+    fn sensed(&self, kind: &SensorKind, channel: usize, _: usize) -> Meaning {
+        meaning::sensed(kind, channel, &self.composition.scene)
+    }
+
+    fn driven(&self, kind: &MotorKind, channel: usize, _: usize) -> Meaning {
+        meaning::driven(kind, channel, &self.composition.scene)
+    }
+}
+
+impl<W: SpatialWorld> Episode<W> for JointedEpisode {
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        let arranged = self.arrange(world, id);
+        self.agents.begin(arranged);
+        let streams = NOISE.map(|domain| Stream::new(id.seed, domain, id.trial, id.individual, id.generation));
+        self.composition.reseed(streams, self.agents.document.episode.steps);
+        let Composition { sensors, motors, terms, .. } = &mut self.composition;
+        for sensor in sensors {
+            sensor.reset();
+            sensor.look(&self.markers);
+        }
+        motors.iter_mut().for_each(farsa_body::Channels::reset);
+        for term in terms {
+            term.begin(world, &self.markers);
+        }
+    }
+
+    fn has_started(&self) -> bool {
+        !self.agents.ledger.failed
+    }
+
+    fn act(&mut self, world: &mut W) {
+        let Composition { sensors, motors, .. } = &mut self.composition;
+        let Agents { wiring, networks, x, y, .. } = &mut self.agents;
+        let Wiring { sensors: inputs, motors: outputs, .. } = wiring;
+        for (sensor, (_, [first, end])) in sensors.iter_mut().zip(inputs) {
+            sensor.read(world, &mut x[*first..*end]);
+        }
+        networks[0].step(x, y);
+        for (motor, (_, [first, end])) in motors.iter_mut().zip(outputs) {
+            motor.drive(&y[*first..*end], world);
+        }
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.agents.ledger.steps += 1;
+        self.measure(world, false);
+        self.agents.ledger.failed |= !self.is_sane(world);
+        let Agents { document, ledger, .. } = &self.agents;
+        let ends = |ending: &Ending| match ending {
+            Ending::Collision => self.composition.collisions.iter().any(|pair| world.touches(*pair)),
+            Ending::Success => ledger.would_succeed(),
+            Ending::Death => false,
+        };
+        if !ledger.is_over() && !document.episode.ends.iter().any(ends) {
+            return None;
+        }
+        self.measure(world, true);
+        Some(self.agents.ledger.conclude())
+    }
+
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        let Agents { document, ledger, networks, x, y, .. } = &self.agents;
+        recorder.sensors(x);
+        recorder.neurons(networks[0].controller().neurons());
+        recorder.outputs(y);
+        for body in &self.shown {
+            recorder.pose(*body, world.pose(*body));
+        }
+        let bodies = self.composition.scene.robot.segments.len();
+        for (number, place) in self.markers.iter().enumerate() {
+            recorder.pose(BodyId((bodies + number) as u16), Pose::at(*place));
+        }
+        let mut scalars: Vec<f64> =
+            self.composition.joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
+        for (tally, term) in ledger.tallies.iter().zip(&self.composition.terms) {
+            scalars.push(if tally.late { term.value(world, &self.markers, &self.agents) } else { tally.last });
+        }
+        scalars.push(ledger.earned());
+        recorder.scalars(&scalars);
+        recorder.tick(seconds(ledger.steps, document.world.time_step));
+    }
+}

@@ -1,0 +1,44 @@
+//! Where a marker is, seen from a body.
+
+use farsa_body::{Axes, Channels, Point, Sensor};
+
+use crate::jointed::SpatialWorld;
+
+/// Reads where a marker is relative to a point of a body, three channels (x, y, z), as `TargetPosition` does of bodies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MarkerPosition {
+    marker: usize,
+    from: Point,
+    axes: Axes,
+    scale: f32,
+    /// Where the marker is [m].
+    place: [f32; 3],
+}
+
+impl MarkerPosition {
+    /// A sensor of `scale` times the way to the marker of this number.
+    pub(crate) fn new(marker: usize, from: Point, axes: Axes, scale: f32) -> Self {
+        Self { marker, from, axes, scale, place: [0.0; 3] }
+    }
+
+    /// Takes the places of all markers [m].
+    pub(crate) fn look(&mut self, markers: &[[f32; 3]]) {
+        self.place = markers[self.marker];
+    }
+}
+
+impl Channels for MarkerPosition {
+    fn channels(&self) -> usize {
+        3
+    }
+}
+
+impl<W: SpatialWorld> Sensor<W> for MarkerPosition {
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        let own = world.pose(self.from.body);
+        let from = own.transform(self.from.at);
+        let way = [0, 1, 2].map(|k| self.place[k] - from[k]);
+        let way = if self.axes == Axes::Body { own.rotate_back(way) } else { way };
+        out.iter_mut().zip(way).for_each(|(o, x)| *o = x * self.scale);
+    }
+}

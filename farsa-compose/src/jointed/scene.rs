@@ -1,0 +1,289 @@
+//! The robot with the floor and the things, and what their names mean.
+
+use farsa_body::{ActuatorId, BodyId, Collider, JointId, PairId, Point, Pose, Robot, Shape, Surface};
+use farsa_lab::Error;
+use farsa_num::Scalar;
+use farsa_view::{Geometry, Role, SceneObject};
+
+use crate::check::places::Places;
+use crate::document::Document;
+use crate::jointed::body::Body;
+use crate::jointed::spot::Spot;
+use crate::jointed::things::{Marker, Thing, What};
+
+/// A scene made of a document.
+#[derive(Clone, Debug)]
+pub(crate) struct Scene {
+    /// The robot with the things, as one description.
+    pub(crate) robot: Robot,
+    /// How many segments and colliders are the robot's own.
+    own: [usize; 2],
+    frames: Vec<(String, Option<BodyId>, Pose<f64>)>,
+    pub(crate) things: Vec<Thing>,
+    pub(crate) markers: Vec<Marker>,
+    /// What is drawn beside the robot.
+    pub(crate) drawn: Vec<SceneObject>,
+    /// The collider of the floor.
+    floor: Option<usize>,
+    /// The actuators that a motor drives.
+    pub(crate) driven: Vec<ActuatorId>,
+}
+
+/// What the robot is called where things are named, and what the floor is.
+pub(crate) const ROBOT: &str = "robot";
+const FLOOR: &str = "floor";
+
+impl Scene {
+    /// The robot of a document with its surroundings.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a robot that cannot be, and for names that stand twice.
+    pub(crate) fn new(document: &Document, places: &Places) -> Result<Self, Error> {
+        let Body { mut robot, frames } = Body::new(document, places)?;
+        let own = [robot.segments.len(), robot.colliders.len()];
+        let (mut things, mut markers, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
+        let floor = document.world.floor.then(|| {
+            drawn.push(SceneObject::new(FLOOR, Geometry::Plane, Pose::identity(), Role::Ground));
+            robot.add_collider(Collider::new(FLOOR, None, Shape::Plane, Pose::identity()))
+        });
+        for (index, object) in document.objects.iter().enumerate() {
+            let path = format!("/objects/{index}");
+            let known = |name: &str| {
+                let of_robot =
+                    robot.body(name).is_some() || robot.joint(name).is_some() || robot.collider(name).is_some();
+                of_robot || frames.iter().any(|(own, ..)| own == name)
+            };
+            let named = [ROBOT, FLOOR].contains(&object.name.as_str()) || known(&object.name);
+            if named || things.iter().any(|thing: &Thing| thing.name == object.name) {
+                let why = format!("`{}` names something else already", object.name);
+                return Err(places.wrong(&format!("{path}/name"), why));
+            }
+            things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, places))?);
+        }
+        let mut scene = Self { robot, own, frames, things, markers, drawn, floor, driven: Vec::new() };
+        scene.pair(document);
+        Ok(scene)
+    }
+
+    /// Lets all touch that can meet: the robot and the floor, each thing and all else.
+    fn pair(&mut self, document: &Document) {
+        let (stiffness, friction) = (document.world.stiffness, document.world.friction);
+        // Critically damped, as if all of the mass were on one point.
+        let surface = |mass: f64, friction| Surface {
+            friction,
+            rolling_friction: 0.0,
+            stiffness,
+            damping: 2.0 * Scalar::sqrt(stiffness * mass),
+        };
+        let [segments, colliders] = self.own;
+        let mass: f64 = self.robot.segments[..segments].iter().map(|segment| segment.mass).sum();
+        let moves = |collider: &Collider| collider.body.is_some_and(|body| self.moves(body));
+        let movable: Vec<bool> = self.robot.colliders.iter().map(moves).collect();
+        let mut pairs = Vec::new();
+        if let Some(floor) = self.floor {
+            pairs.extend((0..colliders).filter(|own| movable[*own]).map(|own| ([own, floor], surface(mass, friction))));
+        }
+        for (number, thing) in self.things.iter().enumerate() {
+            let Some(collider) = thing.collider else { continue };
+            let of_robot = (0..colliders).filter(|own| movable[*own] || movable[collider]);
+            // Beside a wall it is the robot that moves.
+            let smaller = if thing.mass > 0.0 { thing.mass } else { mass };
+            pairs.extend(of_robot.map(|own| ([own, collider], surface(smaller, friction))));
+            let floor = self.floor.filter(|_| thing.mass > 0.0);
+            pairs.extend(floor.map(|floor| ([collider, floor], surface(thing.mass, thing.friction))));
+            for other in &self.things[..number] {
+                let Some(second) = other.collider.filter(|_| thing.mass > 0.0 || other.mass > 0.0) else { continue };
+                let mass = if other.mass > 0.0 { other.mass.min(smaller) } else { smaller };
+                pairs.push(([second, collider], surface(mass, thing.friction.max(other.friction))));
+            }
+        }
+        for (colliders, surface) in pairs {
+            self.robot.add_pair(colliders, surface);
+        }
+    }
+
+    /// Whether a body can move in the world.
+    fn moves(&self, body: BodyId) -> bool {
+        let mut next = Some(body);
+        while let Some(body) = next {
+            let segment = &self.robot.segments[body.index()];
+            if segment.joint.kind != farsa_body::JointKind::Fixed {
+                return true;
+            }
+            next = segment.parent;
+        }
+        false
+    }
+
+    /// The robot's own bodies, by number.
+    pub(crate) fn own_bodies(&self) -> usize {
+        self.own[0]
+    }
+
+    /// The robot alone, as it is drawn.
+    pub(crate) fn alone(&self) -> Robot {
+        let mut robot = self.robot.clone();
+        robot.colliders.truncate(self.own[1]);
+        robot.pairs.clear();
+        robot
+    }
+
+    /// The body of the robot or the frame of its file that a name means, and where it is there; without a name the first body.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest name.
+    pub(crate) fn body(
+        &self,
+        name: Option<&String>,
+        path: &str,
+        places: &Places,
+    ) -> Result<(BodyId, Pose<f64>), Error> {
+        let Some(name) = name else { return Ok((BodyId(0), Pose::identity())) };
+        let of_file = self.frames.iter().find(|(known, body, _)| known == name && body.is_some());
+        let of_file = of_file.and_then(|(_, body, placement)| Some(((*body)?, *placement)));
+        let own =
+            || self.robot.body(name).filter(|body| body.index() < self.own[0]).map(|body| (body, Pose::identity()));
+        of_file.or_else(own).ok_or_else(|| Error::unknown(&places.of(path), "body", name, self.body_names()))
+    }
+
+    fn body_names(&self) -> Vec<&str> {
+        let of_file = self.frames.iter().filter(|(_, body, _)| body.is_some()).map(|(name, ..)| name.as_str());
+        let own = self.robot.segments[..self.own[0]].iter().map(|segment| segment.name.as_str());
+        own.chain(of_file).collect()
+    }
+
+    /// A point of one of the robot's bodies.
+    ///
+    /// # Errors
+    /// As [`body`](Self::body).
+    pub(crate) fn point(
+        &self,
+        name: Option<&String>,
+        point: [f64; 3],
+        path: &str,
+        places: &Places,
+    ) -> Result<Point, Error> {
+        let (body, placement) = self.body(name, &format!("{path}/body"), places)?;
+        Ok(Point { body, at: placement.transform(point).map(|x| x as f32) })
+    }
+
+    /// The middle of a thing or of a body of the robot, and how far its surface is from there if that is a thing [m].
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] for a wall.
+    pub(crate) fn spot(&self, name: &String, path: &str, places: &Places) -> Result<(Spot, f64), Error> {
+        if let Some(thing) = self.things.iter().find(|thing| thing.name == *name) {
+            return match thing.what {
+                What::Body(body) => Ok((Spot::Body(Point::origin(body)), thing.reach)),
+                What::Marker(number) => Ok((Spot::Marker(number), 0.0)),
+                What::Wall => {
+                    Err(places.wrong(path, format!("`{name}` is a wall, which has no middle to be measured")))
+                }
+            };
+        }
+        let found = self.body(Some(name), path, places).map_err(|_| {
+            let names = self.things.iter().map(|thing| thing.name.as_str()).chain(self.body_names());
+            Error::unknown(&places.of(path), "object", name, names)
+        });
+        let (body, placement) = found?;
+        Ok((Spot::Body(Point { body, at: placement.position.map(|x| x as f32) }), 0.0))
+    }
+
+    /// The joints that names mean; without names all of the robot for which `all` is true.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] if there is none.
+    pub(crate) fn joints(
+        &self,
+        names: &[String],
+        all: impl Fn(JointId) -> bool,
+        path: &str,
+        places: &Places,
+    ) -> Result<Vec<JointId>, Error> {
+        let own = || self.robot.joints().filter(|joint| joint.index() < self.own[0]);
+        let found: Vec<JointId> = if names.is_empty() {
+            own().filter(|joint| all(*joint)).collect()
+        } else {
+            let named = |(index, name): (usize, &String)| {
+                let joint = own().find(|joint| self.joint_name(*joint) == name);
+                let known = own().map(|joint| self.joint_name(joint));
+                joint.ok_or_else(|| Error::unknown(&places.of(&format!("{path}/joints/{index}")), "joint", name, known))
+            };
+            names.iter().enumerate().map(named).collect::<Result<_, _>>()?
+        };
+        if found.is_empty() {
+            return Err(places
+                .wrong(path, "is for joints that the robot does not have; name `joints`, and how strong they are"));
+        }
+        Ok(found)
+    }
+
+    /// What a joint is called.
+    pub(crate) fn joint_name(&self, joint: JointId) -> &str {
+        self.robot.segments.get(joint.index()).map_or("", |segment| &segment.joint.name)
+    }
+
+    /// The positions that a joint can take [rad or m].
+    pub(crate) fn range(&self, joint: JointId) -> [f64; 2] {
+        self.robot.segments.get(joint.index()).map_or([f64::NEG_INFINITY, f64::INFINITY], |segment| segment.joint.range)
+    }
+
+    /// The pairs of colliders by which bodies of the robot, or all, touch a thing, the floor or anything.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest name, [`Error::Setting`] if there is none.
+    pub(crate) fn pairs(
+        &self,
+        bodies: &[String],
+        with: Option<&String>,
+        path: &str,
+        places: &Places,
+    ) -> Result<Vec<PairId>, Error> {
+        let named = bodies.iter().enumerate();
+        let named = named.map(|(index, name)| Ok(self.body(Some(name), &format!("{path}/bodies/{index}"), places)?.0));
+        let named = named.collect::<Result<Vec<_>, Error>>()?;
+        let feels = |collider: usize| {
+            let body = self.robot.colliders[collider].body.filter(|_| collider < self.own[1]);
+            body.is_some_and(|body| named.is_empty() || named.contains(&body))
+        };
+        let thing = match with {
+            Some(name) if name != FLOOR => {
+                let found = self.things.iter().find(|thing| thing.name == *name);
+                let names = self.things.iter().map(|thing| thing.name.as_str()).chain([FLOOR]);
+                let place = places.of(&format!("{path}/with"));
+                found.ok_or_else(|| Error::unknown(&place, "object", name, names))?.collider
+            }
+            _ => None,
+        };
+        // The floor of a model is what stands in it.
+        let is_floor = |collider: usize| {
+            Some(collider) == self.floor || collider < self.own[1] && self.robot.colliders[collider].body.is_none()
+        };
+        let met = |collider: usize| match with {
+            None => true,
+            Some(name) if name == FLOOR => is_floor(collider),
+            Some(_) => thing == Some(collider),
+        };
+        let pairs = self.robot.pairs.iter().enumerate().filter(|(_, pair)| {
+            let [a, b] = pair.colliders;
+            feels(a) && met(b) || feels(b) && met(a)
+        });
+        let found: Vec<PairId> = pairs.map(|(number, _)| PairId(number as u16)).collect();
+        if found.is_empty() {
+            return Err(places.wrong(path, "can touch nothing: no shape of the robot meets anything there"));
+        }
+        Ok(found)
+    }
+
+    /// The pairs by which the robot runs into a thing.
+    pub(crate) fn collisions(&self) -> Vec<PairId> {
+        let things = self.things.iter().filter_map(|thing| thing.collider);
+        let things: Vec<usize> = things.collect();
+        let own = |collider: usize| collider < self.own[1];
+        let pairs = self.robot.pairs.iter().enumerate().filter(|(_, pair)| {
+            let [a, b] = pair.colliders;
+            own(a) && things.contains(&b) || own(b) && things.contains(&a)
+        });
+        pairs.map(|(number, _)| PairId(number as u16)).collect()
+    }
+}

@@ -1,0 +1,159 @@
+//! Any sensor, with what is wrapped around it.
+
+use farsa_body::{
+    Axes, BodyPose, BodyVelocity, ChannelError, Channels, ContactForce, Height, JointPosition, JointSpeed, PairId,
+    Sensor, Signal, TargetPosition, Touch,
+};
+use farsa_lab::Error;
+
+use crate::check::places::Places;
+use crate::document::{self, AxesName, SensorKind};
+use crate::jointed::SpatialWorld;
+use crate::jointed::marker_position::MarkerPosition;
+use crate::jointed::scene::Scene;
+use crate::jointed::spot::Spot;
+use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
+
+/// A sensor of a robot with joints.
+#[derive(Clone, Debug)]
+pub(crate) enum Sensing {
+    JointPosition(Vec<JointPosition>),
+    JointSpeed(Vec<JointSpeed>),
+    Touch(Touch<Vec<PairId>>),
+    ContactForce(ContactForce<Vec<PairId>>),
+    Target(TargetPosition),
+    Marker(MarkerPosition),
+    Pose(BodyPose),
+    Velocity(BodyVelocity),
+    Height(Height),
+    Constant(Signal<1>),
+    Wrapped(Wrapped<Self>),
+}
+
+/// Calls a method of whatever sensor it is.
+macro_rules! sensor {
+    ($sensing:expr, $sensor:ident => $call:expr) => {
+        match $sensing {
+            Sensing::JointPosition($sensor) => $call,
+            Sensing::JointSpeed($sensor) => $call,
+            Sensing::Touch($sensor) => $call,
+            Sensing::ContactForce($sensor) => $call,
+            Sensing::Target($sensor) => $call,
+            Sensing::Marker($sensor) => $call,
+            Sensing::Pose($sensor) => $call,
+            Sensing::Velocity($sensor) => $call,
+            Sensing::Height($sensor) => $call,
+            Sensing::Constant($sensor) => $call,
+            Sensing::Wrapped(wrapped) => around!(wrapped, $sensor => $call),
+        }
+    };
+}
+
+impl Channels for Sensing {
+    fn channels(&self) -> usize {
+        sensor!(self, sensor => sensor.channels())
+    }
+
+    fn reset(&mut self) {
+        sensor!(self, sensor => sensor.reset());
+    }
+}
+
+impl<W: SpatialWorld> Sensor<W> for Sensing {
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        sensor!(self, sensor => sensor.read(world, out));
+    }
+}
+
+impl Reseed for Sensing {
+    fn reseed(&mut self, streams: &mut NoiseStreams) {
+        if let Self::Wrapped(wrapped) = self {
+            wrapped.reseed(streams);
+        }
+    }
+}
+
+impl Sensing {
+    /// Takes the places of all markers [m], if it looks at one.
+    pub(crate) fn look(&mut self, markers: &[[f32; 3]]) {
+        match self {
+            Self::Marker(marker) => marker.look(markers),
+            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().look(markers)),
+            _ => {}
+        }
+    }
+}
+
+/// A sensor that stands at a path of the document, with its wrappers.
+///
+/// # Errors
+/// [`Error::Setting`] for what cannot be sensed or wrapped so, [`Error::Unknown`] for a body, joint or thing that there is not.
+pub(crate) fn sensor(sensor: &document::Sensor, scene: &Scene, path: &str, places: &Places) -> Result<Sensing, Error> {
+    let mut made = bare(&sensor.kind, scene, path, places)?;
+    for (index, wrapper) in sensor.wrappers.iter().enumerate() {
+        let wrapped = Wrapped::new(made, wrapper);
+        made = Sensing::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
+    }
+    Ok(made)
+}
+
+fn bare(kind: &SensorKind, scene: &Scene, path: &str, places: &Places) -> Result<Sensing, Error> {
+    let wrong = |error: ChannelError| places.wrong(path, error);
+    let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), places).map(|(body, _)| body);
+    Ok(match kind {
+        SensorKind::JointPosition { joints, from, to } => {
+            let one = |joint| {
+                let [low, high] = scene.range(joint);
+                let ends = [from.unwrap_or(low), to.unwrap_or(high)].map(|end| end as f32);
+                let why = || format!("lacks `from` or `to`: `{}` has no range of its own", scene.joint_name(joint));
+                if ends.iter().all(|end| end.is_finite()) {
+                    return JointPosition::new(joint, ends[0], ends[1]).map_err(wrong);
+                }
+                Err(places.wrong(path, why()))
+            };
+            let joints = scene.joints(joints, |_| true, path, places)?;
+            Sensing::JointPosition(joints.into_iter().map(one).collect::<Result<_, _>>()?)
+        }
+        SensorKind::JointSpeed { joints } => {
+            let joints = scene.joints(joints, |_| true, path, places)?;
+            Sensing::JointSpeed(joints.into_iter().map(JointSpeed::new).collect())
+        }
+        SensorKind::Touch { bodies, with } => {
+            let pairs = scene.pairs(bodies, with.as_ref(), path, places)?;
+            Sensing::Touch(Touch::new(pairs, 1.0).map_err(wrong)?)
+        }
+        SensorKind::ContactForce { bodies, with } => {
+            Sensing::ContactForce(ContactForce::new(scene.pairs(bodies, with.as_ref(), path, places)?))
+        }
+        SensorKind::TargetPosition { target, body, point, axes, scale } => {
+            let from = scene.point(body.as_ref(), *point, path, places)?;
+            let axes = if *axes == AxesName::Body { Axes::Body } else { Axes::World };
+            match scene.spot(target, &format!("{path}/target"), places)?.0 {
+                Spot::Body(target) => {
+                    Sensing::Target(TargetPosition::new(target, from, axes, *scale as f32).map_err(wrong)?)
+                }
+                Spot::Marker(marker) => Sensing::Marker(MarkerPosition::new(marker, from, axes, *scale as f32)),
+            }
+        }
+        SensorKind::BodyPose { body: name } => Sensing::Pose(BodyPose::new(body(name)?)),
+        SensorKind::BodyVelocity { body: name, axes } => {
+            let axes = if *axes == AxesName::Body { Axes::Body } else { Axes::World };
+            Sensing::Velocity(BodyVelocity::new(body(name)?, axes))
+        }
+        SensorKind::Height { body, point } => {
+            Sensing::Height(Height::new(scene.point(body.as_ref(), *point, path, places)?))
+        }
+        SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
+        SensorKind::Infrared { .. }
+        | SensorKind::Light { .. }
+        | SensorKind::GroundColor { .. }
+        | SensorKind::LaserDistance { .. }
+        | SensorKind::Camera(_)
+        | SensorKind::WheelSpeed { .. }
+        | SensorKind::Traction { .. }
+        | SensorKind::Signal { .. }
+        | SensorKind::Attachment {}
+        | SensorKind::Energy {}
+        | SensorKind::Carried {} => return Err(places.wrong(path, "is for robots on wheels; this one has joints")),
+    })
+}

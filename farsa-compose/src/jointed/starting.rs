@@ -1,0 +1,215 @@
+//! Where a trial puts joints and things.
+
+use farsa_body::{BodyId, JointId, JointKind, Pose, Twist};
+use farsa_lab::Error;
+use farsa_num::{Scalar, Stream, sin_cos};
+
+use crate::check::places::Places;
+use crate::document::{Document, Placing};
+use crate::jointed::SpatialWorld;
+use crate::jointed::scene::{ROBOT, Scene};
+use crate::jointed::things::What;
+
+/// A rule of the start.
+#[derive(Clone, Debug)]
+struct Rule {
+    what: Placed,
+    /// How far what is placed reaches from its middle at most [m].
+    reach: f64,
+    how: How,
+}
+
+/// What is placed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Placed {
+    Joint(JointId),
+    Body(BodyId),
+    Marker(usize),
+}
+
+#[derive(Clone, Debug)]
+enum How {
+    Within { low: [f64; 3], high: [f64; 3], apart: f64 },
+    OneOf(Vec<[f32; 3]>),
+    Turned { low: f64, high: f64 },
+    Fixed(Pose),
+}
+
+/// The start of a trial.
+#[derive(Clone, Debug)]
+pub(crate) struct Starting {
+    rules: Vec<Rule>,
+    /// Where markers are that no rule places.
+    markers: Vec<[f32; 3]>,
+    /// What was placed before, with its reach [m].
+    before: Vec<([f32; 3], f64)>,
+}
+
+/// Places that are tried at most.
+const TRIES: u32 = 1000;
+
+impl Starting {
+    /// The start that a document describes.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a thing or joint that there is not, [`Error::Setting`] for one that is placed twice or cannot be.
+    pub(crate) fn new(document: &Document, scene: &Scene, places: &Places) -> Result<Self, Error> {
+        let mut rules: Vec<Rule> = Vec::new();
+        for (index, start) in document.start.iter().enumerate() {
+            let path = format!("/start/{index}");
+            let (what, reach) = named(&start.place, scene, &path, places)?;
+            let how = how(&start.how, what, &path, places)?;
+            if rules.iter().any(|other| other.what == what) {
+                return Err(places.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
+            }
+            rules.push(Rule { what, reach, how });
+        }
+        for (index, (object, thing)) in document.objects.iter().zip(&scene.things).enumerate() {
+            let what = match thing.what {
+                What::Body(body) => Some(Placed::Body(body)),
+                What::Marker(number) => Some(Placed::Marker(number)),
+                What::Wall => None,
+            };
+            let path = format!("/objects/{index}");
+            if object.at.is_none() && what.is_none() {
+                return Err(places.wrong(&path, "lacks the key `at`: no trial places walls"));
+            }
+            if object.at.is_none() && !rules.iter().any(|rule| Some(rule.what) == what) {
+                return Err(places.wrong(&path, "lacks the key `at`, and no `[[start]]` places it"));
+            }
+        }
+        let markers = scene.markers.iter().map(|marker| marker.at.map(|x| x as f32)).collect();
+        let before = Vec::with_capacity(rules.len());
+        Ok(Self { rules, markers, before })
+    }
+
+    /// Puts all in its place, by draws of the stream in the order of the rules; false if something finds no place.
+    pub(crate) fn arrange<W: SpatialWorld>(
+        &mut self,
+        world: &mut W,
+        markers: &mut [[f32; 3]],
+        stream: &mut Stream,
+    ) -> bool {
+        let Self { rules, markers: resting, before } = self;
+        world.clear();
+        markers.copy_from_slice(resting);
+        before.clear();
+        for Rule { what, reach, how } in rules {
+            let pose = match how {
+                How::Turned { low, high } => {
+                    if let Placed::Joint(joint) = what {
+                        world.place_joint(*joint, stream.range(*low as f32, *high as f32), 0.0);
+                    }
+                    continue;
+                }
+                How::Fixed(pose) => *pose,
+                How::OneOf(points) => {
+                    let Some(at) = free(points, before, stream) else { return false };
+                    Pose::at(at)
+                }
+                How::Within { low, high, apart } => {
+                    let Some(at) = within(low, high, *reach + *apart, before, stream) else { return false };
+                    Pose::at(at)
+                }
+            };
+            match what {
+                Placed::Body(body) => world.place_body(*body, pose, Twist::default()),
+                Placed::Marker(number) => markers[*number] = pose.position,
+                Placed::Joint(_) => {}
+            }
+            before.push((pose.position, *reach));
+        }
+        world.finish_placement();
+        true
+    }
+}
+
+/// One of some points, of those on which nothing was put.
+fn free(points: &[[f32; 3]], before: &[([f32; 3], f64)], stream: &mut Stream) -> Option<[f32; 3]> {
+    let taken = |point: &[f32; 3]| before.iter().any(|(other, _)| other == point);
+    let count = points.iter().filter(|point| !taken(point)).count();
+    let chosen = if count == 0 { return None } else { stream.below(count as u32) as usize };
+    points.iter().filter(|point| !taken(point)).nth(chosen).copied()
+}
+
+/// A place in a box, so far from what was placed before.
+fn within(
+    low: &[f64; 3],
+    high: &[f64; 3],
+    far: f64,
+    before: &[([f32; 3], f64)],
+    stream: &mut Stream,
+) -> Option<[f32; 3]> {
+    let mut tries = 0..TRIES;
+    tries.find_map(|_| {
+        let at = [0, 1, 2].map(|k| stream.range(low[k] as f32, high[k] as f32));
+        let clear = |(other, reach): &([f32; 3], f64)| {
+            let [x, y, z] = [0, 1, 2].map(|k| f64::from(at[k] - other[k]));
+            Scalar::sqrt(x * x + y * y + z * z) >= reach + far
+        };
+        before.iter().all(clear).then_some(at)
+    })
+}
+
+/// What a name means, and how far it reaches.
+fn named(name: &String, scene: &Scene, path: &str, places: &Places) -> Result<(Placed, f64), Error> {
+    let path = format!("{path}/place");
+    if name == ROBOT {
+        let root = scene.robot.segments.first().filter(|root| root.joint.kind == JointKind::Floating);
+        let why = "`robot` stands in the world; only one whose first body floats is placed, and others have `base`";
+        return root.map(|_| (Placed::Body(BodyId(0)), 0.0)).ok_or_else(|| places.wrong(&path, why));
+    }
+    if let Some(thing) = scene.things.iter().find(|thing| thing.name == *name) {
+        return match thing.what {
+            What::Body(body) => Ok((Placed::Body(body), thing.reach)),
+            What::Marker(number) => Ok((Placed::Marker(number), 0.0)),
+            What::Wall => Err(places.wrong(&path, format!("`{name}` is a wall, which stands where `at` says"))),
+        };
+    }
+    let joints = || scene.robot.joints().filter(|joint| joint.index() < scene.own_bodies());
+    let joint = joints().find(|joint| scene.joint_name(*joint) == name);
+    let known = joints().map(|joint| scene.joint_name(joint)).chain([ROBOT]);
+    let known = known.chain(scene.things.iter().map(|thing| thing.name.as_str()));
+    let joint = joint.ok_or_else(|| Error::unknown(&places.of(&path), "joint or object", name, known))?;
+    Ok((Placed::Joint(joint), 0.0))
+}
+
+fn how(placing: &Placing, what: Placed, path: &str, places: &Places) -> Result<How, Error> {
+    let joint = matches!(what, Placed::Joint(_));
+    match placing {
+        Placing::Turned { low, high } if joint => {
+            if low > high {
+                return Err(places.wrong(path, format!("from {low} to {high} runs backwards")));
+            }
+            Ok(How::Turned { low: *low, high: *high })
+        }
+        Placing::Turned { .. } => Err(places.wrong(&format!("{path}/at"), "is for joints; this is none")),
+        _ if joint => Err(places.wrong(&format!("{path}/at"), "is for things; a joint is `turned`")),
+        Placing::InBox { low, high, apart } => {
+            if (0..3).any(|k| low[k] > high[k]) {
+                return Err(places.wrong(path, "has a `low` above its `high`"));
+            }
+            Ok(How::Within { low: *low, high: *high, apart: *apart })
+        }
+        Placing::OneOf { points } => {
+            let point = |(index, point): (usize, &Vec<f64>)| {
+                let why = || format!("has {} values where 3 are wanted: x, y and z", point.len());
+                let found = <[f64; 3]>::try_from(point.as_slice());
+                found
+                    .map(|point| point.map(|x| x as f32))
+                    .map_err(|_| places.wrong(&format!("{path}/points/{index}"), why()))
+            };
+            Ok(How::OneOf(points.iter().enumerate().map(point).collect::<Result<_, _>>()?))
+        }
+        Placing::Fixed { point, heading } => {
+            let Ok(point) = <[f64; 3]>::try_from(point.as_slice()) else {
+                return Err(places.wrong(&format!("{path}/point"), "has 2 values where 3 are wanted: x, y and z"));
+            };
+            let (sine, cosine) = sin_cos(0.5 * heading.to_radians());
+            let pose = Pose { position: point, rotation: [0.0, 0.0, sine, cosine] };
+            Ok(How::Fixed(pose.cast()))
+        }
+        Placing::Anywhere { .. } | Placing::Near { .. } | Placing::Around { .. } => Err(places
+            .wrong(&format!("{path}/at"), "is for robots on wheels; beside one with joints it is `in-box` or `fixed`")),
+    }
+}

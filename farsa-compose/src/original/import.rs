@@ -1,0 +1,229 @@
+//! A configuration of the original as an experiment file.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use farsa_lab::{Error, Experiment as _, ImportedFile, LeftOut, Settings};
+
+use crate::experiment::ComposedExperiment;
+use crate::original::channels::{Device, MOST_PARTS, Part};
+use crate::original::evolution::Evolution;
+use crate::original::experiment::Experiment;
+use crate::original::ini::{Group, Ini};
+use crate::original::motor::motor;
+use crate::original::network::{MOST_NEURONS, Network};
+use crate::original::remarks::Remarks;
+use crate::original::robot::RobotKind;
+use crate::original::sensor::sensor;
+use crate::original::written::Written;
+
+/// The most remarks of each sort that the file itself repeats.
+const MOST_REPEATED: usize = 200;
+
+/// Makes an experiment file of a configuration of the original FARSA, of its versions 1 and 2: of kinematic robots on wheels.
+///
+/// `file` is the name of the configuration, `name` that of the file to be written; the text of the latter begins with all that
+/// was lost, line by line. The file that comes out is right: it has been made into an experiment once.
+///
+/// Source: the format and the defaults of \[FARSA2\]. Of its plugins only the fitness, the walls and the starts of
+/// `KheperaDiscriminationExperiment` are known; of all others they are C++ code, and what comes out has a fitness of 0.
+///
+/// ```
+/// use farsa_compose::from_original;
+///
+/// let text = "[Component/GA]
+/// nreproducing = 10
+/// noffspring = 1
+/// [Component/GA/Experiment]
+/// type = LightExperiment
+/// ntrials = 8
+/// [Component/GA/Experiment/ROBOT]
+/// type = Epuck
+/// [Component/GA/Experiment/Sensor:0]
+/// type = EpuckProximityIRSensor
+/// [Component/GA/Experiment/Motor:0]
+/// type = EpuckWheelVelocityMotor
+/// ";
+/// let imported = from_original("light.ini", "light.toml", text)?;
+/// assert!(imported.text.contains("trials = 8"));
+/// assert_eq!(imported.left[0].line, Some(5)); // the fitness of a plugin
+/// # Ok::<(), farsa_lab::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Usage`] for a text that is no configuration, has no wheeled robot, or no sensor or motor that can be carried over;
+/// [`Error::Unknown`] for a robot that is none of the original's wheeled ones; and what is wrong with parts that do not go
+/// together.
+pub fn from_original(file: &str, name: &str, text: &str) -> Result<ImportedFile, Error> {
+    let ini = Ini::from_text(file, text)?;
+    let mut remarks = Remarks::default();
+    let general = ini.group("TOTAL99");
+    let main = general.and_then(|group| group.text("mainComponent", &mut remarks));
+    let main = main.map_or("Component", |entry| &*entry.value);
+    let summary = general.map_or_else(String::new, |group| read_general(group, &mut remarks));
+    let agents = ini.numbered(&format!("{main}/GA/Experiment"), "AGENT");
+    for group in ini.group(main).into_iter().chain(agents.first().copied()) {
+        group.idle(&["type"], "is the part that holds the others", &mut remarks);
+    }
+    for test in ini.numbered(main, "TEST") {
+        group_is_about(test, "`farsa test` tests a champion", &mut remarks);
+    }
+    let within = format!("{main}/GA/Experiment");
+    let Some(group) = ini.group(&within) else {
+        return Err(Error::Usage(format!("{file}: no group `[{within}]`: describes no evolution of robots")));
+    };
+    let [world, arena] = ["World", "Arena"].map(|name| ini.group(&format!("{within}/{name}")));
+    let agent = agents.first().map_or(&*within, |group| &*group.path);
+    let robot = ini.numbered(agent, "ROBOT").into_iter().next();
+    let robot = robot.ok_or_else(|| Error::Usage(format!("{file}: no group `[{agent}/ROBOT]`: has no robot")))?;
+    let robot = RobotKind::from_group(file, robot, &mut remarks)?;
+    let parts = Parts::from_groups(file, &ini, agent, robot, &mut remarks)?;
+    let none = Group { path: format!("{agent}/NET"), line: 0, entries: Vec::new() };
+    let network = ["CONTROLLER", "NET"].iter().find_map(|name| ini.group(&format!("{agent}/{name}")));
+    let network = Network::from_group(network.unwrap_or(&none), &mut remarks);
+    let neurons = parts.channels() + network.hidden;
+    if neurons > MOST_NEURONS {
+        return Err(Error::Usage(format!(
+            "{file}: a network of {neurons} neurons, where the original has {MOST_NEURONS}"
+        )));
+    }
+    let none = Group { path: format!("{main}/GA"), line: 0, entries: Vec::new() };
+    let search = ini.group(&format!("{main}/GA"));
+    let search = Evolution::from_group(file, search.unwrap_or(&none), &mut remarks)?;
+    // Last: what it does not ask for is the plugin's.
+    let experiment = Experiment::from_groups(group, world, arena, &mut remarks);
+    remarks.finish(&ini);
+    let Remarks { left, idle, .. } = remarks;
+
+    let mut out = Written::default();
+    let same_genes = robot == RobotKind::Khepera && network.same_genes && parts.same_channels;
+    write_head(&mut out, [file, name], &search, same_genes, [&left, &idle]);
+    out.word("summary", if summary.is_empty() { "a configuration of the original FARSA" } else { &summary });
+    experiment.write_world(&mut out);
+    robot.write(experiment.agents, &mut out);
+    parts.write(&mut out);
+    network.write(&mut out);
+    experiment.write_task(&mut out);
+    search.write(&mut out);
+    let text = out.into_text();
+    check(name, &text).map_err(|error| Error::Usage(format!("{file}: what comes out of it cannot be: {error}")))?;
+    Ok(ImportedFile { text, left, idle })
+}
+
+/// Whether an experiment can be made of a text.
+fn check(name: &str, text: &str) -> Result<(), Error> {
+    let made = ComposedExperiment::from_text(name, text, farsa_lab::strategies())?;
+    made.prepare("", &Settings::new(made.settings(""))?).map(drop)
+}
+
+/// Parts with channels in the order of the original.
+const SAME: [&str; 5] = ["infrared", "light", "ground-color", "wheel-speed", "wheels"];
+
+/// The sensors and motors of a robot.
+struct Parts {
+    sensors: Vec<Part>,
+    motors: Vec<Part>,
+    /// Whether inputs and outputs are those of the original, in its order.
+    same_channels: bool,
+}
+
+impl Parts {
+    fn from_groups(file: &str, ini: &Ini, agent: &str, robot: RobotKind, remarks: &mut Remarks) -> Result<Self, Error> {
+        let mut parts = Self { sensors: Vec::new(), motors: Vec::new(), same_channels: false };
+        let [sensors, motors] = ["SENSOR", "MOTOR"].map(|name| ini.numbered(agent, name));
+        let wanted = [sensors.len(), motors.len()];
+        for (count, what) in wanted.into_iter().zip(["sensors", "motors"]) {
+            if count > MOST_PARTS {
+                return Err(Error::Usage(format!("{file}: {count} {what}, where {MOST_PARTS} are the most")));
+            }
+        }
+        for group in sensors {
+            let device = Device::from_group(file, ini, group, "Input", remarks)?;
+            parts.sensors.extend(device.and_then(|device| sensor(&device, robot, remarks)));
+        }
+        for group in motors {
+            let device = Device::from_group(file, ini, group, "Output", remarks)?;
+            parts.motors.extend(device.and_then(|device| motor(&device, remarks)));
+        }
+        let lesioned = |part: &Part| part.wrappers.iter().any(|wrapper| wrapper.contains("lesion"));
+        let mut all = parts.sensors.iter().chain(&parts.motors);
+        let same = all.all(|part| SAME.contains(&part.kind) && !lesioned(part));
+        parts.same_channels = same && wanted == [parts.sensors.len(), parts.motors.len()];
+        for (list, what) in [(&mut parts.sensors, "sensor"), (&mut parts.motors, "motor")] {
+            let mut names = BTreeSet::new();
+            for part in list.iter_mut() {
+                part.name_once(&mut names);
+            }
+            if list.is_empty() {
+                let why = format!("{file}: no {what} of it can be carried over");
+                let lost: Vec<String> = remarks.left.iter().take(5).map(ToString::to_string).collect();
+                return Err(Error::Usage([vec![why], lost].concat().join("; ")));
+            }
+        }
+        Ok(parts)
+    }
+
+    fn channels(&self) -> u64 {
+        self.sensors.iter().chain(&self.motors).map(|part| part.channels).sum()
+    }
+
+    fn write(&self, out: &mut Written) {
+        for (list, table) in [(&self.sensors, "[[sensors]]"), (&self.motors, "[[motors]]")] {
+            for part in list {
+                part.write(table, out);
+            }
+        }
+    }
+}
+
+/// What it is called; who wrote it and with which plugin are remarks.
+fn read_general(group: &Group, remarks: &mut Remarks) -> String {
+    let summary = group.text("name", remarks).map(|entry| entry.value.clone()).unwrap_or_default();
+    let keys = ["author", "date", "version", "description", "pluginFile", "pluginPath", "logLevel", "batchFile"];
+    group.idle(&keys, "is about the original's program and its people", remarks);
+    summary
+}
+
+/// Each line of a group as one that changes nothing.
+fn group_is_about(group: &Group, why: &str, remarks: &mut Remarks) {
+    remarks.ask(group, "type");
+    for entry in &group.entries {
+        remarks.idle(group, entry, why);
+    }
+}
+
+/// Where it comes from, how to run it, and what was lost.
+fn write_head(
+    out: &mut Written,
+    [file, name]: [&str; 2],
+    search: &Evolution,
+    same_genes: bool,
+    [left, idle]: [&[LeftOut]; 2],
+) {
+    // Not where they were on the machine of the import.
+    let [file, name] =
+        [file, name].map(|path| Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or(path));
+    out.comment(&format!("Made of {file}, a configuration of the original FARSA. Lengths are metres."));
+    let seed = if search.seed == 0 { String::new() } else { format!(" --seed {}", search.seed) };
+    let replications = search.replications;
+    out.comment(&format!("Its runs: farsa run {name}{seed} --replications {replications}"));
+    out.comment(if same_genes {
+        "Genotypes of the original (.gen) have the same genes in the same order."
+    } else {
+        "Genotypes of the original (.gen) have other genes, or in another order: they mean other networks here."
+    });
+    for (list, what) in [(left, "Not carried over as it is:"), (idle, "Without effect here:")] {
+        if list.is_empty() {
+            continue;
+        }
+        out.comment("");
+        out.comment(what);
+        for remark in list.iter().take(MOST_REPEATED) {
+            out.comment(&format!("- {remark}"));
+        }
+        if list.len() > MOST_REPEATED {
+            out.comment(&format!("- and {} more", list.len() - MOST_REPEATED));
+        }
+    }
+    out.space();
+}

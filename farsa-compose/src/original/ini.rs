@@ -1,0 +1,199 @@
+//! A text in the original's format of configurations.
+
+use std::collections::BTreeMap;
+
+use farsa_lab::Error;
+
+/// The most bytes of a text.
+const MOST_BYTES: usize = 1_000_000;
+/// The most bytes of the name of a group with those that it is in: remarks repeat it.
+const MOST_OF_A_PATH: usize = 400;
+
+/// Groups of keys with values.
+///
+/// Source: the reader of \[FARSA2\]. A line that begins with `#` or `;` is a comment, `[A/B]` begins the group `B` within `A`,
+/// all other lines are `key = value`, with `\` before a sign that would mean something else. There are no lines that include
+/// another file. Deviations, so that files of FARSA 1 are read as well: white space around a line, a key and a value is
+/// dropped, the spaces around `=` may be left out, a `#` after a value begins a comment, and a key that stands twice does not
+/// end the reading.
+#[derive(Debug, Default)]
+pub(super) struct Ini {
+    groups: Vec<Group>,
+    /// Where each group is, by its path in small letters.
+    places: BTreeMap<String, usize>,
+    /// Lines that belong to no group, and lines that are no `key = value`.
+    pub(super) stray: Vec<Stray>,
+}
+
+/// A line that says nothing.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Stray {
+    pub(super) line: usize,
+    pub(super) text: String,
+    pub(super) why: &'static str,
+}
+
+/// A group: what one part of the original is told.
+#[derive(Debug)]
+pub(super) struct Group {
+    /// Its name with those of the groups that it is in: `Component/GA`.
+    pub(super) path: String,
+    /// Where it begins.
+    pub(super) line: usize,
+    pub(super) entries: Vec<Entry>,
+}
+
+/// A key with its value.
+#[derive(Debug)]
+pub(super) struct Entry {
+    pub(super) line: usize,
+    pub(super) key: String,
+    pub(super) value: String,
+}
+
+impl Ini {
+    /// Reads a text.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for more than a megabyte, and for a text without groups.
+    pub(super) fn from_text(file: &str, text: &str) -> Result<Self, Error> {
+        if text.len() > MOST_BYTES {
+            return Err(Error::Usage(format!("{file}: {} bytes where {MOST_BYTES} are the most", text.len())));
+        }
+        let mut ini = Self::default();
+        let mut group = None;
+        // An editor of another system may have left a mark of its encoding.
+        for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+            let (line, text) = (index + 1, line.trim());
+            if text.is_empty() || text.starts_with(['#', ';']) {
+                continue;
+            }
+            if let Some(path) = text.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
+                let path = unescaped(path.trim().trim_matches('/'));
+                if path.len() > MOST_OF_A_PATH {
+                    let length = path.len();
+                    let why = format!("a group with a name of {length} bytes where {MOST_OF_A_PATH} are the most");
+                    return Err(Error::Usage(format!("{file} line {line}: {why}")));
+                }
+                group = Some(ini.index(&path, line));
+                continue;
+            }
+            let stray = |why| Stray { line, text: text.into(), why };
+            let Some((key, value)) = text.split_once('=').filter(|(key, _)| !key.trim().is_empty()) else {
+                ini.stray
+                    .push(stray("is neither `[GROUP]` nor `key = value`; the original reads a value without a key"));
+                continue;
+            };
+            let Some(group) = group.and_then(|index: usize| ini.groups.get_mut(index)) else {
+                ini.stray.push(stray("stands before the first group, where no part of the original looks"));
+                continue;
+            };
+            let (key, value) = (unescaped(key.trim()), unescaped(without_comment(value).trim()));
+            group.entries.push(Entry { line, key, value });
+        }
+        if ini.groups.is_empty() {
+            return Err(Error::Usage(format!("{file}: no `[GROUP]`: is no configuration of the original")));
+        }
+        Ok(ini)
+    }
+
+    /// The place of a group, which is made where there is none.
+    fn index(&mut self, path: &str, line: usize) -> usize {
+        let next = self.groups.len();
+        let place = *self.places.entry(path.to_ascii_lowercase()).or_insert(next);
+        if place == next {
+            self.groups.push(Group { path: path.into(), line, entries: Vec::new() });
+        }
+        place
+    }
+
+    /// All groups, in the order of the text.
+    pub(super) fn groups(&self) -> &[Group] {
+        &self.groups
+    }
+
+    /// A group by its path, which the original's versions write in letters of either case.
+    pub(super) fn group(&self, path: &str) -> Option<&Group> {
+        self.groups.get(*self.places.get(&path.to_ascii_lowercase())?)
+    }
+
+    /// The groups `NAME`, `NAME:0`, `NAME:1` and so on within a group, by their numbers.
+    pub(super) fn numbered(&self, within: &str, name: &str) -> Vec<&Group> {
+        let mut found: Vec<(Option<u64>, &Group)> = Vec::new();
+        for group in &self.groups {
+            let Some((above, last)) = group.path.rsplit_once('/') else { continue };
+            let (word, number) = last.split_once(':').map_or((last, None), |(word, number)| (word, Some(number)));
+            let number = number.map(str::parse::<u64>);
+            if above.eq_ignore_ascii_case(within) && word.eq_ignore_ascii_case(name) && !matches!(number, Some(Err(_)))
+            {
+                found.push((number.and_then(Result::ok), group));
+            }
+        }
+        found.sort_by_key(|(number, _)| *number);
+        found.into_iter().map(|(_, group)| group).collect()
+    }
+}
+
+/// The text before a comment: a `#` that follows white space, as FARSA 1 has it, unless it begins the value, as colours do.
+fn without_comment(value: &str) -> &str {
+    let value = value.trim();
+    let comment = value.match_indices('#').find(|(at, _)| value[..*at].ends_with(char::is_whitespace));
+    comment.map_or(value, |(at, _)| &value[..at])
+}
+
+/// A name or a value without the signs that protect others; no line ends within it.
+fn unescaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut signs = text.chars();
+    while let Some(sign) = signs.next() {
+        match sign {
+            '\\' => match signs.next() {
+                Some('n' | 'r') => out.push(' '),
+                Some(other) => out.push(other),
+                None => {}
+            },
+            other => out.push(other),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_keys_and_comments_are_told_apart() {
+        let text = "; a\n# b\nlost = 1\n[A]\nx = 1\n[A/B:1]\r\n y=2 # two\n[a]\nz = \\#FF\\=\\[0\\]\ncolor = #00FF00\n= 3\nx x\n";
+        let ini = Ini::from_text("x.ini", text).unwrap();
+        let all: Vec<(&str, usize, &str, &str)> = ini
+            .groups()
+            .iter()
+            .flat_map(|group| group.entries.iter().map(|e| (&*group.path, e.line, &*e.key, &*e.value)))
+            .collect();
+        let expected =
+            [("A", 5, "x", "1"), ("A", 9, "z", "#FF=[0]"), ("A", 10, "color", "#00FF00"), ("A/B:1", 7, "y", "2")];
+        assert_eq!(all, expected);
+        assert_eq!(ini.stray.iter().map(|stray| stray.line).collect::<Vec<_>>(), [3, 11, 12]);
+    }
+
+    #[test]
+    fn numbers_order_the_groups_of_a_name() {
+        let ini = Ini::from_text("x.ini", "[A/S:10]\n[A/S:2]\n[A/s]\n[A/S:x]\n[A/T:1]\n[B/S:1]\n[S:0]\n").unwrap();
+        let paths: Vec<&str> = ini.numbered("a", "S").iter().map(|group| &*group.path).collect();
+        assert_eq!(paths, ["A/s", "A/S:2", "A/S:10"]);
+        assert!(ini.group("a/t:1").is_some() && ini.group("A/U").is_none());
+    }
+
+    #[test]
+    fn texts_without_groups_and_long_texts_are_refused() {
+        for (text, why) in [
+            ("x = 1".into(), "x.ini: no `[GROUP]`"),
+            ("#".repeat(1_000_001), "x.ini: 1000001 bytes"),
+            (format!("\n[{}]", "a/".repeat(300)), "x.ini line 2: a group with a name of 599 bytes"),
+        ] {
+            let error = Ini::from_text("x.ini", &text).unwrap_err().to_string();
+            assert!(error.starts_with(why), "{error}");
+        }
+    }
+}

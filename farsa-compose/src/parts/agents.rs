@@ -1,0 +1,116 @@
+//! Robots as they are controlled: channels, copies of one network, and what they have earned.
+
+use farsa_evo::ObservationStatistics;
+use farsa_lab::{ChannelGroup, Description, Evaluation, NormalisedController, Outcome};
+use farsa_view::{Channel, Links, NodeParameters, Schema};
+
+use crate::document::Document;
+use crate::parts::groups::Groups;
+use crate::parts::ledger::Ledger;
+use crate::parts::network::AnyNetwork;
+use crate::parts::wiring::Wiring;
+
+/// What robots of a document have in any world.
+#[derive(Clone, Debug)]
+pub(crate) struct Agents {
+    pub(crate) document: Document,
+    pub(crate) wiring: Wiring,
+    pub(crate) ledger: Ledger,
+    pub(crate) groups: Groups,
+    /// The individuals of each population, where there are several.
+    pub(crate) size: usize,
+    /// The robots that evolve in this trial, from the first to before the last.
+    pub(crate) evolving: [usize; 2],
+    pub(crate) networks: Vec<NormalisedController<AnyNetwork>>,
+    /// What each robot sensed and did last.
+    pub(crate) x: Vec<f32>,
+    pub(crate) y: Vec<f32>,
+}
+
+impl Agents {
+    /// Robots at rest.
+    pub(crate) fn new(document: Document, wiring: Wiring, ledger: Ledger, groups: Groups) -> Self {
+        let robots = groups.robots();
+        let networks = vec![NormalisedController::new(wiring.network.clone()); robots];
+        let (x, y) = (vec![0.0; robots * wiring.inputs.len()], vec![0.0; robots * wiring.outputs.len()]);
+        Self { document, wiring, ledger, evolving: [0, robots], groups, size: 1, networks, x, y }
+    }
+
+    /// Begins a trial; `arranged` says whether it could.
+    pub(crate) fn begin(&mut self, arranged: bool) {
+        self.ledger.begin(arranged);
+        self.networks.iter_mut().for_each(farsa_nn::Controller::reset);
+    }
+
+    /// Gives the robots of each population their network; false if there are more or fewer parameters.
+    pub(crate) fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        let Evaluation { parameters, opponents, normalisation, id, .. } = *evaluation;
+        let ranges = self.groups.ranges();
+        let own = if ranges.len() > 1 { id.population(self.size).min(ranges.len() - 1) } else { 0 };
+        self.evolving = ranges[own];
+        self.ledger.evolve(self.evolving);
+        let mut others = opponents.iter().copied();
+        ranges.into_iter().enumerate().all(|(population, [first, end])| {
+            let given = if population == own { parameters } else { others.next().unwrap_or(parameters) };
+            let Some(all) = self.wiring.searched.all(given) else { return false };
+            let mut networks = self.networks[first..end].iter_mut();
+            networks.all(|network| network.load(normalisation) && network.controller_mut().load(all))
+        })
+    }
+
+    /// What came of a trial.
+    pub(crate) fn outcome(&self) -> Outcome {
+        if self.ledger.failed {
+            return Outcome::failed();
+        }
+        let [first, end] = self.evolving;
+        let mut observed = self.networks[first..end].iter().filter_map(NormalisedController::observed);
+        let first = observed.next().cloned();
+        let merged = first.and_then(|first| {
+            let merge = |mut all: ObservationStatistics, own| all.merge(own).ok().map(|()| all);
+            observed.try_fold(first, merge)
+        });
+        Outcome { observed: merged, ..self.ledger.outcome() }
+    }
+
+    /// A schema of bodies with channels, network and terms; `places` are the scalars before those of the terms.
+    pub(crate) fn schema(&self, bodies: Schema, places: Vec<Channel>) -> Schema {
+        let Wiring { inputs, outputs, network, .. } = &self.wiring;
+        let mut schema = bodies.with_sensors(inputs).with_outputs(outputs);
+        schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
+        let (x, y) = (inputs.len(), inputs.len() + outputs.len());
+        schema = match network {
+            AnyNetwork::Leaky(leaky) => schema.with_network(&leaky.layout()),
+            AnyNetwork::Perceptron(..) => Schema {
+                links: vec![Links { from: [0, x], to: [x, y], first: 0 }],
+                node_parameters: vec![NodeParameters { name: "bias".into(), nodes: [x, y], first: x * (y - x) }],
+                ..schema
+            },
+            _ => {
+                let neurons =
+                    (1..=network.neurons().len()).map(|neuron| Channel::new(&neuron.to_string()).group("neuron"));
+                Schema { neurons: neurons.collect(), ..schema }
+            }
+        };
+        let terms = self.ledger.tallies.iter().map(|tally| Channel::new(&tally.name).group("term"));
+        let fitness = Channel::new("fitness so far").group("fitness");
+        Schema { scalars: places.into_iter().chain(terms).chain([fitness]).collect(), ..schema }
+    }
+
+    /// What robots sense, do and compute with.
+    pub(crate) fn description(&self) -> Description {
+        let Self { document, wiring, .. } = self;
+        let group = |((name, [first, end]), about): (&(String, [usize; 2]), &String)| {
+            ChannelGroup::new(name, end - first, about)
+        };
+        let (of_sensors, of_motors) = wiring.about.split_at(wiring.sensors.len().min(wiring.about.len()));
+        Description {
+            sensors: wiring.sensors.iter().zip(of_sensors).map(group).collect(),
+            motors: wiring.motors.iter().zip(of_motors).map(group).collect(),
+            network: wiring.network.summary(),
+            parameters: wiring.searched.parameters().len(),
+            steps: document.episode.steps as usize,
+            step_seconds: document.world.time_step,
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Networks of clusters and links.
+
+use farsa_lab::{Error, Parameter};
+use farsa_nn::{Activation, Block, BlockLayout, BlockLayoutBuf, BlockParameter, Group, Span};
+
+use crate::check::places::Places;
+use crate::document::{Blocks, Cluster, ClusterActivation, Link};
+use crate::parts::ends::Ends;
+
+/// What links may name, with its neurons.
+struct Known {
+    /// What it is, for messages.
+    what: &'static str,
+    name: String,
+    span: Span,
+}
+
+/// A link between neurons.
+#[derive(Clone, Copy)]
+struct Found {
+    from: Span,
+    to: Span,
+    delay: usize,
+}
+
+/// The layout of a document: first the inputs are updated, then each cluster is linked and updated, then the outputs.
+///
+/// # Errors
+/// [`Error::Unknown`] for an end that there is not, [`Error::Setting`] for a name that means several things and for links that
+/// stand twice.
+pub(crate) fn layout(blocks: &Blocks, ends: Ends<'_>, places: &Places) -> Result<BlockLayoutBuf, Error> {
+    let known = known(blocks, ends, places)?;
+    let mut links: Vec<(usize, Found)> = Vec::new();
+    for (number, link) in blocks.links.iter().enumerate() {
+        let path = format!("/network/links/{number}");
+        let Some(found) = resolved(link, &known, ends, &path, places)? else { continue };
+        let overlap = |a: Span, b: Span| a.first < b.end() && b.first < a.end();
+        let same =
+            |other: Found| overlap(other.from, found.from) && overlap(other.to, found.to) && other.delay == found.delay;
+        if let Some((other, _)) = links.iter().find(|(_, other)| same(*other)) {
+            let Link { from, to, .. } = link;
+            let why = format!("links `{from}` with `{to}`, as link {} does with the same delay", other + 1);
+            return Err(places.wrong(&path, why));
+        }
+        links.push((number, found));
+    }
+    let [inputs, outputs] = [ends.inputs.len(), ends.outputs.len()];
+    let mut groups = vec![Group::new(inputs, Activation::Linear)];
+    groups.extend(blocks.clusters.iter().map(group));
+    let biased = Group { bias: blocks.output_biases, ..Group::new(outputs, Activation::Logistic) };
+    groups.push(Group { leak: blocks.output_leaks, ..biased });
+    let (mut list, mut first) = (Vec::new(), 0);
+    for group in &groups {
+        let own = Span::new(first, group.neurons);
+        first = own.end();
+        let to_own = links.iter().map(|(_, link)| link).filter(|link| own.contains(link.to.first));
+        list.extend(to_own.map(|link| Block::connect(link.from, link.to).delayed(link.delay)));
+        list.push(Block::Update(own));
+    }
+    Ok(BlockLayoutBuf { inputs, outputs, groups, blocks: list })
+}
+
+fn group(cluster: &Cluster) -> Group {
+    let activation = match cluster.activation {
+        ClusterActivation::Logistic => Activation::Logistic,
+        ClusterActivation::Tanh => Activation::Tanh,
+        ClusterActivation::Step => Activation::Step,
+    };
+    let group = Group::new(cluster.neurons as usize, activation).with_slope(cluster.slope as f32);
+    Group { bias: cluster.biases, leak: cluster.leaks, ..group }
+}
+
+/// Sensors, clusters and motors, and all sensors and all motors.
+fn known(blocks: &Blocks, ends: Ends<'_>, places: &Places) -> Result<Vec<Known>, Error> {
+    let part = |what, (name, [first, end]): &(String, [usize; 2]), before: usize| {
+        let span = Span::new(before + first, end - first);
+        Known { what, name: name.clone(), span }
+    };
+    let mut known = vec![Known { what: "all sensors", name: "sensors".into(), span: Span::new(0, ends.inputs.len()) }];
+    known.extend(ends.sensors.iter().map(|sensor| part("a sensor", sensor, 0)));
+    let mut next = ends.inputs.len();
+    for (number, cluster) in blocks.clusters.iter().enumerate() {
+        let name = &cluster.name;
+        let before = known.iter().map(|known| &known.name);
+        let mut taken = before.chain(ends.motors.iter().map(|(name, _)| name));
+        if name == "motors" || taken.any(|known| known == name) {
+            let path = format!("/network/clusters/{number}/name");
+            return Err(places.wrong(&path, format!("`{name}` names something else already")));
+        }
+        let span = Span::new(next, cluster.neurons as usize);
+        next = span.end();
+        known.push(Known { what: "a cluster", name: name.clone(), span });
+    }
+    known.push(Known { what: "all motors", name: "motors".into(), span: Span::new(next, ends.outputs.len()) });
+    known.extend(ends.motors.iter().map(|motor| part("a motor", motor, next)));
+    Ok(known)
+}
+
+/// The neurons of a link that stands at a path; `None` if a sensor or motor at its end is switched off.
+fn resolved(link: &Link, known: &[Known], ends: Ends<'_>, path: &str, places: &Places) -> Result<Option<Found>, Error> {
+    let inputs = ends.inputs.len();
+    let end = |key: &str, name: &str| {
+        let path = format!("{path}/{key}");
+        // No link leads to a sensor.
+        let valid = || known.iter().filter(|known| key == "from" || known.span.first >= inputs);
+        let mut found = valid().filter(|known| known.name == name);
+        match (found.next(), found.next()) {
+            (Some(one), None) => Ok(one.span),
+            (Some(one), Some(other)) => {
+                let why = format!("`{name}` is {} and {}: give one of them another `name`", one.what, other.what);
+                Err(places.wrong(&path, why))
+            }
+            (None, _) if known.iter().any(|known| known.name == name) => {
+                Err(places.wrong(&path, format!("`{name}` is what is sensed: links lead to clusters and motors")))
+            }
+            (None, _) => {
+                let names = valid().map(|known| known.name.as_str());
+                Err(Error::unknown(&places.of(&path), "end of a link", name, names))
+            }
+        }
+    };
+    let off = |name: &String| ends.absent.contains(name) && known.iter().all(|known| known.name != *name);
+    if off(&link.from) || off(&link.to) {
+        return Ok(None);
+    }
+    let (from, to) = (end("from", &link.from)?, end("to", &link.to)?);
+    // Parameters are told apart by the names of channels.
+    let outputs = known.iter().find(|known| known.name == "motors").map_or(0, |known| known.span.first);
+    let sources = ends.outputs.iter().enumerate().filter(|(output, _)| from.contains(outputs + output));
+    if let Some((_, name)) = sources.into_iter().find(|(_, name)| ends.inputs.contains(name)) {
+        let why = format!("`{name}` is a sensor and a motor: give one of them another `name`");
+        return Err(places.wrong(&format!("{path}/from"), why));
+    }
+    Ok(Some(Found { from, to, delay: link.delay as usize }))
+}
+
+/// All parameters of a layout by their names, in their order.
+pub(crate) fn parameters(
+    blocks: &Blocks,
+    layout: BlockLayout<'_>,
+    ends: Ends<'_>,
+    [weights, leaks]: [[f64; 2]; 2],
+) -> Vec<Parameter> {
+    let of_cluster = |cluster: &Cluster| match cluster.neurons {
+        1 => vec![cluster.name.clone()],
+        count => (1..=count).map(|number| format!("{} {number}", cluster.name)).collect(),
+    };
+    let clusters = blocks.clusters.iter().flat_map(of_cluster);
+    let names: Vec<String> = ends.inputs.iter().cloned().chain(clusters).chain(ends.outputs.iter().cloned()).collect();
+    let mut parameters = Vec::new();
+    for block in layout.blocks() {
+        let Block::Connect { from, to, delay } = *block else { continue };
+        let later = match delay {
+            0 => String::new(),
+            1 => " a step later".into(),
+            steps => format!(" {steps} steps later"),
+        };
+        for source in &names[from.first..from.end()] {
+            let weight = |target| Parameter::new(format!("weight of {source} on {target}{later}"), weights);
+            parameters.extend(names[to.first..to.end()].iter().map(weight));
+        }
+    }
+    for (word, kind, range) in [("bias", BlockParameter::Bias, weights), ("leak", BlockParameter::Leak, leaks)] {
+        let mut first = 0;
+        for group in layout.groups() {
+            let own = &names[first..first + group.neurons];
+            first += group.neurons;
+            let has = if kind == BlockParameter::Bias { group.bias } else { group.leak };
+            let all = own.iter().filter(|_| has);
+            parameters.extend(all.map(|name| Parameter::new(format!("{word} of {name}"), range)));
+        }
+    }
+    parameters
+}

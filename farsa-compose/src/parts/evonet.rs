@@ -1,0 +1,254 @@
+//! The network of the original, with genes in its order.
+
+use std::collections::BTreeMap;
+
+use farsa_lab::Error;
+use farsa_nn::{Activation, Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter, EvonetRanges, Leak};
+
+use crate::check::places::Places;
+use crate::document::{Evonet, EvonetNeurons};
+use crate::parts::bounded::bounded;
+use crate::parts::kept::kept;
+
+/// A network of blocks whose parameters are searched for as the original writes its genes.
+#[derive(Clone, Debug)]
+pub(crate) struct EvonetNetwork {
+    pub(crate) network: BlockNetwork<'static, Vec<f32>, Vec<f32>>,
+    ranges: EvonetRanges,
+    /// For each of the original's numbers the index of its parameter, and what that is.
+    order: Vec<(usize, BlockParameter)>,
+    /// The numbers that a file gives, in the original's order.
+    given: Vec<Option<f32>>,
+}
+
+/// The most neurons of a file, as many as the original has, and the most blocks.
+const MOST_LINES: usize = 1000;
+
+impl EvonetNetwork {
+    /// A network at rest between so many inputs and outputs, whose weights go from one end to the other, of flags or of one of
+    /// these files.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for weights that are all 0, and for numbers of which no network can be made; [`Error::Setting`] for a
+    /// file that is no network, or one between others, and for flags beside it.
+    pub(crate) fn new(
+        evonet: &Evonet,
+        shape: [usize; 2],
+        weights: [f64; 2],
+        files: &BTreeMap<String, String>,
+        places: &Places,
+    ) -> Result<Self, Error> {
+        let weight = weights[0].abs().max(weights[1].abs()) as f32;
+        if weight <= 0.0 {
+            return Err(Error::Other("weights are all 0, so that biases and leaks have no size".into()));
+        }
+        let ranges = EvonetRanges { weight, bias: evonet.largest_bias as f32, gain: evonet.largest_gain as f32 };
+        let Some(name) = &evonet.file else { return Self::of_layout(of_flags(evonet, shape), Vec::new(), ranges) };
+        if let Some(flag) = flags(evonet).into_iter().find_map(|(flag, set)| set.then_some(flag)) {
+            return Err(
+                places.wrong(&format!("/network/{flag}"), format!("says nothing beside `file`: {name} says it"))
+            );
+        }
+        let wrong = |why: &dyn std::fmt::Display| places.wrong("/network/file", format!("{name}: {why}"));
+        let text = files.get(name).map(String::as_str).unwrap_or_default();
+        let found: farsa_nn::Evonet = text.parse().map_err(|error| wrong(&error))?;
+        let farsa_nn::Evonet { layout, numbers, mutations } = found;
+        let [inputs, outputs] = shape;
+        if [layout.inputs, layout.outputs] != shape {
+            let why = format!(
+                "has {} sensors and {} motors where the experiment's have {inputs} and {outputs} channels",
+                layout.inputs, layout.outputs
+            );
+            return Err(wrong(&why));
+        }
+        for (what, count) in [("neurons", layout.layout().neurons()), ("blocks", layout.blocks.len())] {
+            if count > MOST_LINES {
+                return Err(wrong(&format!("has {count} {what}; at most {MOST_LINES}")));
+            }
+        }
+        // What never mutates stays; the original draws what has no number.
+        let kept = numbers.iter().zip(mutations).map(|(number, rate)| number.filter(|_| rate == Some(0.0)));
+        let made = Self::of_layout(layout, kept.collect(), ranges);
+        made.map_err(|error| if let Error::Other(why) = error { wrong(&why) } else { error })
+    }
+
+    fn of_layout(layout: BlockLayoutBuf, given: Vec<Option<f32>>, ranges: EvonetRanges) -> Result<Self, Error> {
+        let count = layout.layout().parameter_count();
+        bounded(count, layout.layout().state_len())?;
+        let layout = kept(layout).layout();
+        let kinds: Vec<BlockParameter> = layout.kinds().collect();
+        let mut seen = vec![false; count];
+        let mut order = Vec::new();
+        for index in layout.evonet_order() {
+            if std::mem::replace(&mut seen[index], true) {
+                return Err(Error::Other("updates a neuron with a leak twice in a step".into()));
+            }
+            order.push((index, kinds[index]));
+        }
+        if order.len() < count {
+            return Err(Error::Other("has a neuron with a leak that is never updated".into()));
+        }
+        let given = if given.is_empty() { vec![None; count] } else { given };
+        let (parameters, state) = (vec![0.0; count], vec![0.0; layout.state_len()]);
+        let network = BlockNetwork::new(layout, Leak::Evonet, parameters, state)?;
+        Ok(Self { network, ranges, order, given })
+    }
+
+    /// What each of the searched parameters is, in the original's order; all have the range of the weights.
+    pub(crate) fn kinds(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.order.iter().map(|(_, kind)| match kind {
+            BlockParameter::Leak => "leak",
+            BlockParameter::Bias => "bias",
+            BlockParameter::Gain => "gain",
+            _ => "weight",
+        })
+    }
+
+    /// The numbers that a file gives, in the original's order.
+    pub(crate) fn given(&self) -> &[Option<f32>] {
+        &self.given
+    }
+
+    /// Takes the parameters that were searched for; false for others than the network's.
+    pub(crate) fn load(&mut self, parameters: &[f32]) -> bool {
+        if parameters.len() != self.order.len() {
+            return false;
+        }
+        let mut own = vec![0.0; parameters.len()];
+        for ((index, kind), p) in self.order.iter().zip(parameters) {
+            own[*index] = self.ranges.decode(*kind, *p);
+        }
+        self.network.copy_parameters(&own).is_ok()
+    }
+}
+
+/// Keys that a file stands for, and whether they say something else than by default.
+fn flags(evonet: &Evonet) -> [(&'static str, bool); 8] {
+    [
+        ("hidden", evonet.hidden > 0),
+        ("hidden_neurons", evonet.hidden_neurons != EvonetNeurons::Logistic),
+        ("hidden_biases", !evonet.hidden_biases),
+        ("output_biases", !evonet.output_biases),
+        ("recurrent_hidden", evonet.recurrent_hidden),
+        ("recurrent_outputs", evonet.recurrent_outputs),
+        ("direct", evonet.direct),
+        ("output_leaks", evonet.output_leaks),
+    ]
+}
+
+/// The layout of flags.
+fn of_flags(evonet: &Evonet, [inputs, outputs]: [usize; 2]) -> BlockLayoutBuf {
+    let hidden = evonet.hidden as usize;
+    let mut plan = if evonet.recurrent_hidden && hidden > 0 {
+        Architecture::elman(inputs, hidden, outputs)
+    } else {
+        Architecture::feed_forward(inputs, hidden, outputs)
+    };
+    plan = match evonet.hidden_neurons {
+        EvonetNeurons::Logistic => plan,
+        EvonetNeurons::Leaky => plan.with_leaks(),
+        EvonetNeurons::Binary => plan.with_activations(Activation::Step, Activation::Logistic),
+    };
+    for (wanted, change) in [
+        (!evonet.hidden_biases, Architecture::without_hidden_biases as fn(Architecture) -> Architecture),
+        (!evonet.output_biases, Architecture::without_output_biases),
+        (evonet.recurrent_outputs, Architecture::with_recurrent_outputs),
+        (evonet.direct, Architecture::with_inputs_to_outputs),
+        (evonet.output_leaks, Architecture::with_output_leaks),
+    ] {
+        plan = if wanted { change(plan) } else { plan };
+    }
+    plan.plan().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use farsa_nn::Controller as _;
+
+    use super::*;
+
+    fn evonet(hidden: u32) -> Evonet {
+        Evonet {
+            file: None,
+            hidden,
+            hidden_neurons: EvonetNeurons::Logistic,
+            hidden_biases: false,
+            output_biases: false,
+            recurrent_hidden: false,
+            recurrent_outputs: false,
+            direct: false,
+            output_leaks: false,
+            largest_bias: 5.0,
+            largest_gain: 5.0,
+        }
+    }
+
+    fn new(evonet: &Evonet, weights: [f64; 2]) -> Result<EvonetNetwork, Error> {
+        EvonetNetwork::new(evonet, [3, 2], weights, &BTreeMap::new(), &Places::new("own.toml"))
+    }
+
+    fn logistic(x: f32) -> f32 {
+        farsa_num::logistic(x)
+    }
+
+    /// A transcription of the original for leaky hidden neurons that hear each other, direct links and recurrent outputs.
+    #[test]
+    fn steps_are_those_of_the_original() {
+        let evonet = Evonet {
+            hidden_neurons: EvonetNeurons::Leaky,
+            hidden_biases: true,
+            output_biases: true,
+            recurrent_hidden: true,
+            recurrent_outputs: true,
+            direct: true,
+            largest_bias: 2.5,
+            ..evonet(2)
+        };
+        let mut made = new(&evonet, [5.0, -5.0]).unwrap();
+        let count = 4 + 6 + 4 + 2 + 6 + 4 + 4;
+        assert_eq!(made.kinds().count(), count);
+        let p: Vec<f32> = (0..count).map(|n| 5.0 - (n * 37 % 256) as f32 / 255.0 * 10.0).collect();
+        assert!(made.load(&p) && !made.load(&p[1..]));
+        let x = [0.2, 0.9, 0.4];
+        let (mut h, mut o, mut y) = ([0.0f32; 2], [0.0f32; 2], [0.0; 2]);
+        for _ in 0..5 {
+            let mut next = p.iter().copied();
+            let mut net: Vec<f32> = (0..4).map(|_| next.next().unwrap() / 5.0 * 2.5).collect();
+            for net in &mut net[..2] {
+                *net += x.iter().map(|x| x * next.next().unwrap()).sum::<f32>();
+            }
+            for net in &mut net[..2] {
+                *net += h.iter().map(|h| h * next.next().unwrap()).sum::<f32>();
+            }
+            for (h, net) in h.iter_mut().zip(&net) {
+                let leak = next.next().unwrap().abs() / 5.0;
+                *h = *h * leak + logistic(*net) * (1.0 - leak);
+            }
+            for from in [&x[..], &h, &o] {
+                for net in &mut net[2..] {
+                    *net += from.iter().map(|a| a * next.next().unwrap()).sum::<f32>();
+                }
+            }
+            o = [logistic(net[2]), logistic(net[3])];
+            assert_eq!(next.next(), None);
+            made.network.step(&x, &mut y);
+            assert!(o.iter().zip(y).all(|(o, y)| (o - y).abs() < 1e-5), "{o:?} {y:?}");
+        }
+    }
+
+    #[test]
+    fn counts_are_those_of_the_flags() {
+        for (evonet, expected) in [
+            (evonet(0), 6),
+            (Evonet { direct: true, recurrent_hidden: true, ..evonet(0) }, 6),
+            (Evonet { recurrent_outputs: true, output_biases: true, ..evonet(0) }, 12),
+            (Evonet { output_leaks: true, ..evonet(0) }, 8),
+            (evonet(4), 20),
+            (Evonet { hidden_biases: true, hidden_neurons: EvonetNeurons::Binary, ..evonet(4) }, 24),
+        ] {
+            let made = new(&evonet, [5.0, -5.0]).unwrap();
+            assert_eq!(made.kinds().count(), expected, "{evonet:?}");
+        }
+        assert!(new(&evonet(0), [0.0; 2]).is_err());
+    }
+}
