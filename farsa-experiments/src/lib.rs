@@ -3,6 +3,7 @@
 
 pub mod aggregation;
 pub mod braitenberg;
+pub mod compositional_instructions;
 pub mod discrimination;
 pub mod double_pole;
 pub mod foraging;
@@ -19,6 +20,7 @@ mod worlds;
 
 pub use aggregation::Aggregation;
 pub use braitenberg::Braitenberg;
+pub use compositional_instructions::CompositionalInstructions;
 pub use discrimination::{Discrimination, DiscriminationCylinders};
 pub use double_pole::DoublePole;
 pub use foraging::Foraging;
@@ -39,9 +41,10 @@ pub fn laboratory() -> farsa_lab::Laboratory<'static> {
 }
 
 /// The experiments in the order in which `farsa list` shows them.
-pub fn all() -> [&'static dyn farsa_lab::Experiment; 13] {
+pub fn all() -> [&'static dyn farsa_lab::Experiment; 14] {
     [
         &ReachGraspLift,
+        &CompositionalInstructions,
         &KinestheticGrasp,
         &Discrimination,
         &DiscriminationCylinders,

@@ -1,6 +1,9 @@
-//! What is recorded of wheeled robots in every experiment alike.
+//! What is recorded and exported of wheeled robots in every experiment alike.
 
-use farsa_body::{BodyId, Handles, Kinematics, Recorder};
+use farsa_body::{AnalyticInfrared, BodyId, Handles, Kinematics, MobileRobot, Recorder};
+use farsa_lab::{MotorExport, SensorExport, SensorReading};
+
+use crate::infrared::settings::InfraredModel;
 
 /// Records what was sensed and done in a step, and where bodies are after it.
 ///
@@ -27,4 +30,35 @@ pub(crate) fn place_and_heading<W: Kinematics + Handles<Body = BodyId> + ?Sized>
 /// The speeds \[rad/s\] that outputs ask of wheels which turn at most at `largest` \[rad/s\].
 pub(crate) fn wheel_speeds(y: &[f32], largest: f64) -> impl Iterator<Item = f64> {
     y.iter().map(move |y| (2.0 * f64::from(*y) - 1.0) * largest)
+}
+
+/// The infrared sensors of these names, which look along these angles \[rad\], as another program reads them.
+pub(crate) fn infrared_exports<'a>(
+    names: impl IntoIterator<Item = String> + 'a,
+    angles: &'a [f64],
+    robot: &MobileRobot,
+    model: &InfraredModel,
+) -> impl Iterator<Item = SensorExport> + 'a {
+    let (linear, [zero, one]) = match model {
+        InfraredModel::Rays => (true, [robot.infrared.range, 0.0]),
+        InfraredModel::Analytic => (false, AnalyticInfrared::WALL_ENDS),
+        InfraredModel::Sampled(_) => (false, [robot.infrared.range, 0.0]),
+    };
+    names.into_iter().zip(angles).map(move |(name, angle)| {
+        let quantity = format!("distance of a wall from the hull at {:+.1} degrees, left positive", angle.to_degrees());
+        SensorExport { name, reads: SensorReading::Quantity { quantity, unit: "m", zero, one, linear } }
+    })
+}
+
+/// The left and the right wheel, whose largest speed this is \[rad/s\], as another program drives them.
+pub(crate) fn wheel_exports(largest: f64) -> Vec<MotorExport> {
+    let wheel = |side: &str| {
+        MotorExport::quantity(
+            format!("{side} wheel"),
+            format!("speed of the {side} wheel"),
+            "rad/s",
+            [-largest, largest],
+        )
+    };
+    ["left", "right"].map(wheel).into()
 }

@@ -1,10 +1,13 @@
 //! The reference experiments as files: the same bits as those that are built in.
 
+#[path = "../../farsa-compose/tests/drawn/mod.rs"]
+mod drawn;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use farsa_compose::ComposedExperiment;
-use farsa_experiments::{Discrimination, DiscriminationCylinders};
+use farsa_experiments::{Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging};
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Outcome, Settings};
 use farsa_num::{Domain, Stream};
 
@@ -27,24 +30,35 @@ fn compared(outcome: &Outcome, terms: usize) -> (Vec<u64>, u32, bool) {
     (outcome.terms[..terms].iter().map(|term| term.to_bits()).collect(), outcome.steps, outcome.success)
 }
 
-/// The same outcomes and fitness for individuals drawn at random, and the same defaults of what they are searched with.
+/// The same as [`same_evaluators`], and the same defaults of what individuals are searched with.
 fn same_bits(file: &str, built_in: &dyn Experiment, condition: &str, individuals: u32, trials: u32) {
     let composed = from_file(file);
     assert_eq!(composed.gene_bits(), built_in.gene_bits());
     assert_eq!(composed.strategy(condition).name(), built_in.strategy(condition).name());
-    let (mut ours, mut theirs) = (evaluator(&composed, condition), evaluator(built_in, condition));
+    let (ours, theirs) = (evaluator(&composed, condition), evaluator(built_in, condition));
+    same_evaluators(ours, theirs, built_in.gene_bits(), file, individuals, trials);
+}
+
+/// The same outcomes and fitness for individuals drawn at random.
+fn same_evaluators(
+    mut ours: Box<dyn Evaluator>,
+    mut theirs: Box<dyn Evaluator>,
+    gene_bits: u32,
+    file: &str,
+    individuals: u32,
+    trials: u32,
+) {
     let terms = theirs.terms().len();
     assert_eq!(ours.parameters().len(), theirs.parameters().len());
     assert_eq!(ours.trials(), theirs.trials());
     for (ours, theirs) in ours.parameters().iter().zip(theirs.parameters()) {
         assert_eq!(ours.ends, theirs.ends, "{} and {}", ours.name, theirs.name);
     }
-    let genotype = Genotype::new(&theirs.parameters(), built_in.gene_bits());
+    let genotype = Genotype::new(&theirs.parameters(), gene_bits);
     let mut earned = 0;
     for individual in 0..individuals {
         let mut draw = Stream::new(1, Domain::InitialGenome, 0, individual, 0);
-        let genes: Vec<u16> =
-            theirs.parameters().iter().map(|_| draw.below(1 << built_in.gene_bits()) as u16).collect();
+        let genes: Vec<u16> = theirs.parameters().iter().map(|_| draw.below(1 << gene_bits) as u16).collect();
         let parameters = genotype.decode(&genes).expect("as many genes as parameters");
         let (mut own, mut other) = (Vec::new(), Vec::new());
         for trial in 0..trials {
@@ -65,11 +79,95 @@ fn discrimination_is_the_same() {
     same_bits("discrimination.toml", &Discrimination, "khepera", 60, 5);
 }
 
+/// With the tables of the original, where they are.
+#[test]
+fn discrimination_by_measured_tables_is_the_same() {
+    let named = std::env::var_os("FARSA_FIXTURES").map(PathBuf::from);
+    let must_be_there = named.is_some() || std::env::var_os("CI").is_some_and(|value| value == "true");
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    let tables = named.unwrap_or_else(beside).join("khepera");
+    if !tables.is_dir() {
+        assert!(!must_be_there, "there is no folder {}; set FARSA_FIXTURES", tables.display());
+        eprintln!("skipped: the original's tables (set FARSA_FIXTURES)");
+        return;
+    }
+    let bench = Bench::new("measured");
+    for name in ["wall.sam", "small.sam", "round.sam"] {
+        std::fs::copy(tables.join(name), bench.path(name)).expect("a table");
+    }
+    let text = std::fs::read_to_string(folder().join("discrimination.toml")).expect("the file");
+    let measured = "kind = \"infrared\"\nmodel = \"tables\"\ntables = { walls = \"wall.sam\", bodies = [\
+        { file = \"small.sam\", radius = 0.0125 }, { file = \"round.sam\", radius = 0.027 }] }";
+    let text = text.replace("kind = \"infrared\"", measured);
+    assert!(text.contains("wall.sam"));
+    std::fs::write(bench.path("discrimination.toml"), text).expect("a file");
+    let ours = ComposedExperiment::from_file(&bench.path("discrimination.toml"), farsa_lab::strategies());
+    let ours = ours.unwrap_or_else(|error| panic!("{error}"));
+    let mut settings = Settings::new(Discrimination.settings("khepera")).expect("its settings");
+    let folder = farsa_lab::Value::Word(tables.display().to_string());
+    settings.set("", "robot.infrared_tables", folder).expect("a folder");
+    let theirs = Discrimination.prepare("khepera", &settings).unwrap_or_else(|error| panic!("{error}"));
+    same_evaluators(evaluator(&ours, ""), theirs, 8, "measured", 60, 5);
+}
+
 #[test]
 fn discrimination_cylinders_is_the_same() {
     for condition in ["wheels", "no-wheels"] {
         same_bits("discrimination-cylinders.toml", &DiscriminationCylinders, condition, 60, 5);
     }
+}
+
+#[test]
+fn aggregation_is_the_same() {
+    for condition in ["marxbot", "e-puck", "khepera"] {
+        same_bits("aggregation.toml", &Aggregation, condition, 6, 2);
+    }
+}
+
+#[test]
+fn foraging_is_the_same() {
+    for condition in ["marxbot", "e-puck"] {
+        same_bits("foraging.toml", &Foraging, condition, 8, 3);
+    }
+}
+
+/// The built-in one has a success of its own: whether the vehicle does what its kind does.
+#[test]
+fn braitenberg_is_the_same() {
+    for condition in ["2a", "2b", "3a", "3b"] {
+        same_bits("braitenberg.toml", &Braitenberg, condition, 1, 20);
+    }
+}
+
+/// A run that was interrupted, by another number of threads, has the bytes of one that was not, and its trials can be replayed.
+#[test]
+fn drawn_files_resume_and_replay() {
+    let bench = Bench::new("drawn-runs");
+    let files = |numbers: std::ops::Range<u32>| {
+        for file in numbers {
+            let text = drawn::Draw::new(20_261_125, file).file().replace("steps = 100", "steps = 20");
+            let name = format!("drawn-{file}");
+            let path = bench.path(&format!("{name}.toml"));
+            std::fs::write(&path, &text).expect("a file");
+            let small = "--population 4 --set evolution.parents=2 -q";
+            bench.succeed(&format!("run {name}.toml {small} --generations 3 --threads 1 --out whole-{name}"));
+            bench.succeed(&format!("run {name}.toml {small} --generations 1 --threads 2 --lanes 1 --out {name}"));
+            std::fs::remove_file(path).expect("the file goes");
+            bench.succeed(&format!("run --resume {name} --generations 3 -q"));
+            for file in ["fitness.csv", "champion.bin", "lineage.csv"] {
+                let [own, whole] = [name.clone(), format!("whole-{name}")]
+                    .map(|run| std::fs::read(bench.path(&run).join(file)).expect(file));
+                assert!(own == whole, "{file} of\n{text}");
+            }
+            bench.succeed(&format!("replay {name} --generation 1 --individual 3 -q"));
+        }
+    };
+    // `./ci long` draws more.
+    let drawn = std::env::var("FARSA_DRAWN").map_or(60, |drawn| drawn.parse().expect("a number of files"));
+    std::thread::scope(|scope| {
+        scope.spawn(|| files(0..drawn / 2));
+        files(drawn / 2..drawn);
+    });
 }
 
 /// The command, in a folder of its own.

@@ -1,12 +1,12 @@
 //! The experiment `braitenberg`: vehicles wired by hand.
 
-use farsa_body::Recorder;
+use farsa_body::{Recorder, Robot};
 use farsa_physics::arena::{Batch, World};
 
 use crate::braitenberg::episode::{Config, LIGHTS, Vehicle, VehicleEpisode};
 use farsa_lab::{
-    ChannelGroup, Description, Error, Evaluation, Evaluator, Experiment, InWorld, Lanes, Note, Outcome, Parameter,
-    Rollout, Setting, Settings, Task, mean_of_trials,
+    ChannelGroup, Description, Error, Evaluation, Evaluator, Experiment, Exports, InWorld, Lanes, Note, Outcome,
+    Parameter, Rollout, Setting, Settings, Task, mean_of_trials,
 };
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
@@ -166,6 +166,16 @@ impl Task for VehicleEpisode {
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl Exports for VehicleEpisode {
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        Some(self.config().robot().description())
     }
 }
 

@@ -2,18 +2,19 @@
 
 use std::path::PathBuf;
 
-use farsa_body::{Arrange, BodyId, Handles, JointId, Kinematics, Planar, Recorder};
+use farsa_body::{Arrange, BodyId, Handles, JointId, Kinematics, Planar, Recorder, Robot};
 use farsa_nn::Perceptron;
 use farsa_physics::arena::World;
 
 use crate::discrimination::config::{Config, EYES, ROBOTS};
 use crate::discrimination::episode::CylinderEpisode;
 use crate::infrared::settings::InfraredModel;
+use crate::wheeled::{infrared_exports, wheel_exports};
 use crate::worlds::PlanarEngine;
 use farsa_lab::{
-    Behaviour, ChannelGroup, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld,
-    NormalisedController, Note, NotedBehaviour, OnePlusOne, Outcome, Parameter, Rollout, Setting, Settings,
-    StrategyDefinition, Task, mean_of_trials,
+    Behaviour, ChannelGroup, ControllerExport, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment,
+    Exports, InWorld, NetworkExport, NormalisedController, Note, NotedBehaviour, OnePlusOne, Outcome, Parameter,
+    Rollout, SensorExport, Setting, Settings, StrategyDefinition, Task, mean_of_trials,
 };
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
@@ -229,6 +230,35 @@ impl Task for CylinderEpisode<Layer> {
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl Exports for CylinderEpisode<Layer> {
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        Some(self.config().robot.description())
+    }
+
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let (config, inputs) = (self.config(), self.config().inputs());
+        if parameters.len() != Perceptron::parameter_count(inputs, 2) {
+            return None;
+        }
+        let robot = &config.robot;
+        let largest = robot.max_wheel_speed;
+        let parameters = in_order_of_layer(parameters, inputs);
+        let network = NetworkExport::Perceptron { inputs, outputs: 2, slope: 1.0, parameters };
+        let eyes = (1..=EYES).map(|number| format!("infrared {number}"));
+        let eyes = infrared_exports(eyes, &robot.infrared.angles, robot, &config.infrared);
+        let speeds = ["left", "right"].into_iter().filter(|_| config.wheel_speeds).map(|side| {
+            let quantity = format!("speed of the {side} wheel");
+            SensorExport::quantity(format!("{side} wheel"), quantity, "rad/s", [-largest, largest])
+        });
+        let sensors = eyes.chain(speeds).collect();
+        Some(ControllerExport::new(network, sensors, wheel_exports(largest), config.time_step, config.steps))
     }
 }
 

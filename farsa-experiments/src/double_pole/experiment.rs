@@ -2,8 +2,9 @@
 
 use farsa_body::{BodyId, Pose, Recorder};
 use farsa_lab::{
-    ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, InWorld, NoWorld, Note,
-    Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials, seconds,
+    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
+    InWorld, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Rollout, SensorExport, Setting, Settings,
+    Task, mean_of_trials, seconds,
 };
 use farsa_num::sin_cos;
 use farsa_view::{Channel, Color, Geometry, Links, OKABE_ITO, Role, SceneObject, Schema, View};
@@ -186,6 +187,42 @@ impl Task for Balancing {
     /// The mean over the trials, which are all the same.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl Exports for Balancing {
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let (config, network) = (self.episode.config(), self.episode.network());
+        if parameters.len() != network.parameters().len() {
+            return None;
+        }
+        let [of_position, of_angle, of_velocity] = config.scales;
+        let units = ["m", "rad", "rad", "m/s", "rad/s", "rad/s"];
+        let scales = [of_position, of_angle, of_angle, of_velocity, of_velocity, of_velocity];
+        let quantities = [
+            "position of the cart",
+            "angle of the long pole",
+            "angle of the short pole",
+            "velocity of the cart",
+            "angular velocity of the long pole",
+            "angular velocity of the short pole",
+        ];
+        let sensor = |((channel, quantity), (unit, scale)): ((Channel, &str), (&'static str, f64))| {
+            SensorExport::quantity(channel.name, quantity, unit, [0.0, scale])
+        };
+        let named = self.schema().sensors.into_iter().zip(quantities);
+        let sensors = named.zip(units.into_iter().zip(scales)).map(sensor).collect();
+        let quantity =
+            format!("force on the cart to the right; one of less than {} N is made so large", config.least_force);
+        let motors = vec![MotorExport::quantity("push", quantity, "N", [0.0, config.force])];
+        let (layout, leak, parameters) = (network.layout().into(), network.leak(), parameters.into());
+        let network = NetworkExport::Blocks { layout, leak, parameters };
+        let time_step = config.time_step * f64::from(config.substeps);
+        Some(ControllerExport::new(network, sensors, motors, time_step, config.steps))
     }
 }
 

@@ -1,18 +1,21 @@
 //! An episode of `foraging`: robots carry food from a field to their nest, and must return to survive.
 
 use farsa_body::{BodyId, ColorBand, Pose, Twist};
+use farsa_compose::Field;
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
 use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::foraging::config::ForagingConfig;
-use crate::foraging::field::Field;
 use crate::team::config::TeamConfig;
 use crate::team::episode::{Moment, Scenario, TeamEpisode};
 use crate::team::nest::{COLORS, on_nest};
 use crate::team::robots::{OUTPUTS, Team};
 use crate::team::task::{eye_groups, eye_names};
-use farsa_lab::{Behaviour, ChannelGroup, EpisodeId, Error, Note, NotedBehaviour, Outcome, PlanarWorld};
+use farsa_lab::{
+    Behaviour, ChannelGroup, EpisodeId, Error, Intervention, Interventions, Note, NotedBehaviour, Outcome, PlanarWorld,
+    Protocol, input_ranges,
+};
 use farsa_view::Channel;
 
 /// Robots that forage, with a controller each, and the record of their food and energy.
@@ -37,19 +40,28 @@ pub struct ForagingScenario {
     config: ForagingConfig,
     field: Field,
     nest: BodyId,
+    /// Robots that are there; all but in the cases of `team-size`.
+    present: usize,
 }
 
 impl ForagingScenario {
     /// A field of a configuration.
     pub fn new(config: ForagingConfig) -> Self {
         let TeamConfig { size, robots, .. } = config.team;
-        let field = Field::new(size, config.cells, config.cost, config.nest_radius, robots);
-        Self { field, nest: config.arena().area(0), config }
+        let field = Field::new([size; 2], config.cells, config.cost, config.nest_radius, robots);
+        Self { field, nest: config.arena().area(0), present: robots, config }
     }
 
     /// The configuration.
     pub fn config(&self) -> &ForagingConfig {
         &self.config
+    }
+
+    /// The sizes of a team that are tested: 1, 2, 4 and so on up to all.
+    fn sizes(&self) -> Vec<usize> {
+        let all = self.config.team.robots;
+        let doubled = std::iter::successors(Some(1_usize), |size| size.checked_mul(2));
+        doubled.take_while(|size| *size < all).chain([all]).collect()
     }
 
     /// The record of food and energy.
@@ -93,7 +105,7 @@ impl Scenario for ForagingScenario {
         world: &mut W,
         id: EpisodeId,
     ) -> Result<(), ArenaError> {
-        let Self { config, field, nest } = self;
+        let Self { config, field, nest, present } = self;
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, id.individual, id.generation);
         world.clear();
         let [low, high] = [config.nest_to_wall, config.team.size - config.nest_to_wall].map(|x| x as f32);
@@ -101,21 +113,45 @@ impl Scenario for ForagingScenario {
         world.place_body(*nest, Pose::planar(at, 0.0), Twist::default());
         world.finish_placement();
         field.begin(at.map(f64::from));
-        team.scatter(world, Some((at, config.start_within as f32)), &mut stream)
+        team.scatter_some(world, Some((at, config.start_within as f32)), &mut stream, *present)
     }
 
     fn sense<W: PlanarWorld>(&self, world: &W, robot: usize, at: [f32; 2], rest: &mut [f32]) -> bool {
+        if robot >= self.present {
+            return false;
+        }
         let forager = &self.field.robots()[robot];
         rest.copy_from_slice(&[on_nest(world, at), forager.energy as f32]);
         forager.alive
     }
 
     fn judge<W: PlanarWorld>(&mut self, _: &W, moment: Moment<'_>) -> bool {
-        for (robot, at) in moment.places.iter().enumerate() {
+        for (robot, at) in moment.places.iter().enumerate().take(self.present) {
             self.field.step(robot, at.map(f64::from));
         }
         // Nothing changes any more when all are dead.
-        self.field.deaths() == moment.places.len()
+        self.field.deaths() == self.present
+    }
+
+    /// `team-size`: fewer robots than evolved together; `lesions`: without one of the senses, or one hidden neuron; `noise`.
+    fn interventions(&self) -> Interventions {
+        let all = self.config.team.robots;
+        let summary = "fewer robots than evolved together; the others are not there";
+        let mut sizes = Protocol::from_list("team-size", summary, self.sizes().iter().map(ToString::to_string));
+        sizes = sizes.with_axes("robots", "").with_held_out(|robots, _| robots != all.to_string());
+        let hidden = (0..self.config.team.hidden).map(|neuron| (format!("hidden neuron {}", neuron + 1), neuron));
+        let senses = self.inputs();
+        let cut = |(name, inputs)| (format!("no {name}"), Intervention::cut(inputs));
+        Interventions::default()
+            .with_protocol(sizes, Vec::new())
+            .with_cases("senses", "one of the senses is cut", input_ranges(&senses).map(cut))
+            .with_lesions(input_ranges(&senses), hidden)
+            .with_noise(&[0.0, 0.05, 0.1, 0.2, 0.4])
+    }
+
+    fn begin_case(&mut self, case: Option<(&str, usize)>) {
+        let size = case.filter(|(name, _)| *name == "team-size").and_then(|(_, case)| self.sizes().get(case).copied());
+        self.present = size.unwrap_or(self.config.team.robots);
     }
 
     /// Pieces of food that the team carried to the nest.
@@ -129,8 +165,8 @@ impl Scenario for ForagingScenario {
 
     fn outcome(&self, own: usize, moment: Moment<'_>) -> Outcome {
         let field = &self.field;
-        let robots = field.robots().len().max(1) as f64;
-        let energy: f64 = field.robots().iter().map(|forager| forager.energy).sum();
+        let robots = self.present.max(1) as f64;
+        let energy: f64 = field.robots().iter().take(self.present).map(|forager| forager.energy).sum();
         Outcome {
             terms: vec![self.earned(own, moment)],
             steps: moment.steps,

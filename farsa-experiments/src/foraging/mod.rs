@@ -3,14 +3,12 @@
 //! - `baseline`: a forager without evolution, to compare evolved ones with
 //! - `config`: the values of `foraging`, as settings
 //! - `experiment`: its name, conditions and settings, and what runs its trials
-//! - `field`: food on a square field, and the robots that feed on it
 //! - `episode`: an episode of `foraging`: robots carry food from a field to their nest, and must return to survive
 
 mod baseline;
 mod config;
 mod episode;
 mod experiment;
-mod field;
 
 pub use crate::team::config::TeamConfig;
 pub use crate::team::eyes::RobotEyes;
@@ -20,5 +18,5 @@ pub use baseline::HomingForager;
 pub use config::ForagingConfig;
 pub use episode::{ForagingEpisode, ForagingScenario};
 pub use experiment::{Foraging, forage};
+pub use farsa_compose::{Field, Forager};
 pub use farsa_lab::OwnedNetwork;
-pub use field::{Field, Forager};

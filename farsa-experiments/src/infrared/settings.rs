@@ -4,12 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use farsa_body::{
-    Beam, BodyId, ChannelError, Channels, Handles, InfraredAnalytic, InfraredRays, InfraredTable, InfraredTables,
-    Kinematics, MobileRobot, Planar, Pose, Rays, Recorder, SampledInfrared, Sensor,
+    Beam, BodyId, ChannelError, Channels, Handles, InfraredAnalytic, InfraredDrawing, InfraredRays, InfraredTable,
+    InfraredTables, Kinematics, MobileRobot, Planar, Pose, Rays, Recorder, SampledInfrared, Sensor,
 };
 use farsa_lab::{Error, Setting, Settings, read_text_file};
-
-use crate::infrared::sensor_rays::{RayFilter, SensorRays};
 
 const MODEL: &str = "robot.infrared";
 const TABLES: &str = "robot.infrared_tables";
@@ -117,7 +115,7 @@ impl InfraredModel {
 #[derive(Clone, Debug)]
 pub struct Infrared {
     ring: Ring,
-    rays: SensorRays,
+    rays: InfraredDrawing,
 }
 
 #[derive(Clone, Debug)]
@@ -152,14 +150,14 @@ impl Infrared {
                 Ring::Sampled(all.first(sensors)?)
             }
         };
-        Ok(Self { ring, rays: SensorRays::for_robot(&part) })
+        Ok(Self { ring, rays: InfraredDrawing::for_robot(&part, sensors) })
     }
 
     /// Records a ray for each sensor: it ends where an object would be that gives the same reading.
     ///
     /// `x` \[sensors\] is what was read when the robot was at `pose`.
     pub fn record(&self, pose: Pose, x: &[f32], recorder: &mut dyn Recorder) {
-        self.rays.record(pose, x, RayFilter::All, recorder);
+        self.rays.record(pose, x, false, recorder);
     }
 }
 

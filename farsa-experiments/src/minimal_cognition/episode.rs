@@ -1,7 +1,7 @@
 //! An episode of `minimal-cognition`: one object falls, and the agent moves under it.
 
 use farsa_evo::ObservationStatistics;
-use farsa_lab::{EpisodeId, Error, NormalisedController};
+use farsa_lab::{EpisodeId, Error, Intervention, NormalisedController};
 use farsa_nn::{Controller as _, Ctrnn};
 use farsa_num::{Domain, Stream, sin_cos};
 
@@ -143,6 +143,11 @@ impl AgentEpisode {
     /// Normalises observations by what was observed before, or does not; false for statistics of other channels.
     pub fn normalise(&mut self, before: Option<&ObservationStatistics>) -> bool {
         self.network.load(before)
+    }
+
+    /// Changes what the network senses and computes until observations are normalised anew, or nothing.
+    pub(crate) fn intervene(&mut self, intervention: Option<&Intervention>, id: EpisodeId) {
+        self.network.intervene(intervention, id, 0);
     }
 
     /// What was observed since [`normalise`](Self::normalise), where it is normalised.

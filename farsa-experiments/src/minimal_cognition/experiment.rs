@@ -10,9 +10,11 @@ use crate::minimal_cognition::episode::AgentEpisode;
 use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTORS, NEURONS, RAYS, Wiring};
 use crate::minimal_cognition::object::Object;
 use farsa_lab::{
-    ChannelGroup, CtrnnExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
-    InWorld, NoWorld, Note, Outcome, Parameter, Rollout, Setting, Settings, Task, mean_of_trials, seconds,
+    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
+    InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Protocol, Rollout,
+    SensorExport, Setting, Settings, Task, mean_of_trials, seconds,
 };
+use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Color, Geometry, Links, NodeParameters, OKABE_ITO, Role, SceneObject, Schema, View};
 
 /// Does an agent with seven rays and a small dynamical network catch circles and avoid diamonds? \[Beer2003\]
@@ -75,6 +77,9 @@ pub fn evaluator(config: Config) -> Result<InWorld<NoWorld, Agent>, Error> {
 pub struct Agent {
     wiring: Wiring,
     episode: AgentEpisode,
+    interventions: Interventions,
+    /// The shape that falls and the part of the line where it starts, in a case of `psychophysics`.
+    falling: Option<(Object, [f64; 2])>,
 }
 
 impl Agent {
@@ -86,8 +91,38 @@ impl Agent {
         let wiring = Wiring::new(&config).map_err(|error| Error::Other(format!("minimal-cognition: {error}")))?;
         let first: Vec<f32> = wiring.parameters().iter().map(|parameter| parameter.ends[0] as f32).collect();
         let parameters = wiring.expand(&first).unwrap_or_default();
-        Ok(Self { wiring, episode: AgentEpisode::new(config, parameters)? })
+        let (interventions, episode) = (interventions(&config), AgentEpisode::new(config, parameters)?);
+        Ok(Self { wiring, episode, interventions, falling: None })
     }
+}
+
+/// Parts of the line in which objects start, in `psychophysics`.
+const PARTS: usize = 11;
+
+/// The protocols: each shape from each part of the line, each ray cut or inner neuron silent, and noise on the rays.
+fn interventions(config: &Config) -> Interventions {
+    let middle = |part: usize| {
+        let [low, high] = part_of_line(config, part);
+        format!("{}", (5.0 * (low + high)).round() / 10.0)
+    };
+    let summary = "does the agent catch circles and avoid diamonds that fall from each part of the line";
+    let falling = Protocol::from_table("psychophysics", summary, ["circle", "diamond"], (0..PARTS).map(middle))
+        .with_axes("shape", "offset at the start")
+        .with_trials(50);
+    let inner = (0..INNER).map(|neuron| (format!("inner neuron {}", neuron + 1), RAYS + neuron));
+    let rays = (0..RAYS).map(|ray| (format!("ray {}", ray + 1), ray..ray + 1));
+    let gain = config.input_gain as f32;
+    Interventions::default()
+        .with_protocol(falling, Vec::new())
+        .with_lesions(rays, inner)
+        .with_noise(&[0.0, 0.05, 0.1, 0.2, 0.4].map(|part| part * gain))
+}
+
+/// Where one of the [`PARTS`] of the line begins and ends: as wide as the parts of the range in which objects start.
+fn part_of_line(config: &Config, part: usize) -> [f64; 2] {
+    let width = 2.0 * config.offset / PARTS as f64;
+    let low = width * part as f64 - config.offset;
+    [low, low + width]
 }
 
 /// Records a step that has just passed.
@@ -126,7 +161,13 @@ fn in_schema_order(parameters: &[f32]) -> Vec<f32> {
 
 impl Episode<NoWorld> for Agent {
     fn start(&mut self, _: &mut NoWorld, id: EpisodeId) {
-        self.episode.arrange(id);
+        match self.falling {
+            None => self.episode.arrange(id),
+            Some((object, [low, high])) => {
+                let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
+                self.episode.place(object, stream.range_f64(low, high));
+            }
+        }
     }
     fn act(&mut self, _: &mut NoWorld) {
         self.episode.step();
@@ -154,6 +195,10 @@ impl Task for Agent {
 
     fn terms(&self) -> Vec<String> {
         vec!["score".into()]
+    }
+
+    fn protocols(&self) -> Vec<Protocol> {
+        self.interventions.protocols()
     }
 
     fn schema(&self) -> Schema {
@@ -249,23 +294,38 @@ impl Task for Agent {
 }
 
 impl Exports for Agent {
-    fn ctrnn(&self, parameters: &[f32]) -> Option<CtrnnExport> {
-        let (schema, network) = (self.schema(), self.episode.network());
-        let names = |channels: Vec<Channel>| channels.into_iter().map(|channel| channel.name).collect();
-        Some(CtrnnExport {
-            layout: network.layout(),
-            time_step: network.time_step(),
-            parameters: self.wiring.expand(parameters)?,
-            sensors: names(schema.sensors),
-            motors: names(schema.outputs),
-        })
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let (config, network) = (self.episode.config(), self.episode.network());
+        let (length, gain, speed) = (config.ray_length, config.input_gain, config.velocity_gain);
+        let one = if gain > 0.0 { length - length / gain } else { length };
+        let ray = |channel: Channel| SensorExport::quantity(channel.name, "free length of the ray", "1", [length, one]);
+        let motor = |channel: Channel| {
+            let to_the_right = if channel.name == "right" { speed } else { -speed };
+            let quantity = "part of the velocity to the right, of which both are added, per s";
+            MotorExport::quantity(channel.name, quantity, "1", [0.0, to_the_right])
+        };
+        let (layout, time_step) = (network.layout(), network.time_step());
+        let network = NetworkExport::Ctrnn { layout, time_step, parameters: self.wiring.expand(parameters)? };
+        let schema = self.schema();
+        let sensors = schema.sensors.into_iter().map(ray).collect();
+        let motors = schema.outputs.into_iter().map(motor).collect();
+        Some(ControllerExport::new(network, sensors, motors, config.time_step, config.steps()))
     }
 }
 
 impl Rollout for Agent {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let Some(parameters) = self.wiring.expand(evaluation.parameters) else { return false };
-        self.episode.normalise(evaluation.normalisation) && self.episode.set_parameters(&parameters).is_ok()
+        let Config { diameter, side, .. } = *self.episode.config();
+        self.falling =
+            self.interventions.named(evaluation.case).filter(|(name, _)| *name == "psychophysics").map(|(_, case)| {
+                let object = if case < PARTS { Object::circle(diameter) } else { Object::diamond(side) };
+                (object, part_of_line(self.episode.config(), case % PARTS))
+            });
+        let loaded =
+            self.episode.normalise(evaluation.normalisation) && self.episode.set_parameters(&parameters).is_ok();
+        self.episode.intervene(self.interventions.of(evaluation.case), evaluation.id);
+        loaded
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {

@@ -1,12 +1,14 @@
 //! What there is to know of `push-box`, and its episodes over parameters.
 
-use farsa_body::{Pose, Recorder};
+use farsa_body::{Pose, Recorder, Robot};
 use farsa_nn::Perceptron;
 
+use crate::infrared::settings::InfraredModel;
 use crate::push_box::episode::{OUTPUTS, PushEpisode};
+use crate::wheeled::{infrared_exports, wheel_exports};
 use farsa_lab::{
-    Behaviour, ChannelGroup, Description, Error, Evaluation, NormalisedController, Note, NotedBehaviour, Outcome,
-    Parameter, Rollout, Task, mean_of_trials,
+    Behaviour, ChannelGroup, ControllerExport, Description, Error, Evaluation, Exports, NetworkExport,
+    NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Rollout, Task, mean_of_trials,
 };
 use farsa_view::{Channel, Geometry, Links, NodeParameters, Role, SceneObject, Schema, screen_color};
 
@@ -106,6 +108,29 @@ impl Task for PushEpisode<Layer> {
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl Exports for PushEpisode<Layer> {
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        Some(self.config().robot.description())
+    }
+
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let (config, inputs) = (self.config(), self.config().inputs());
+        if parameters.len() != Perceptron::parameter_count(inputs, OUTPUTS) {
+            return None;
+        }
+        let (robot, parameters) = (&config.robot, parameters.into());
+        let network = NetworkExport::Perceptron { inputs, outputs: OUTPUTS, slope: 1.0, parameters };
+        let eyes = (1..=inputs).map(|number| format!("infrared {number}"));
+        let sensors = infrared_exports(eyes, &robot.infrared.angles, robot, &InfraredModel::Rays).collect();
+        let motors = wheel_exports(robot.max_wheel_speed);
+        Some(ControllerExport::new(network, sensors, motors, config.time_step, config.steps))
     }
 }
 

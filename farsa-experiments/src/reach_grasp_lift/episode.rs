@@ -19,13 +19,15 @@ pub struct Judge {
     trial: Trial,
     seen: Observation,
     earned: Rewards,
+    /// The trials whose posture and place there are at the start, where they are not the trial's own.
+    starts: Option<[usize; 2]>,
 }
 
 impl Judge {
     /// A judge of trials in this scene.
     pub fn new(scene: Arc<Scene>) -> Self {
         let (trial, seen, earned) = (Trial::default(), Observation::default(), Rewards::default());
-        Self { scene, trial, seen, earned }
+        Self { scene, trial, seen, earned, starts: None }
     }
 
     /// Sets the world up for a trial and resets the score.
@@ -33,7 +35,7 @@ impl Judge {
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
     {
-        self.scene.arrange(world, id);
+        self.scene.arrange_from(world, id, self.starts.unwrap_or([id.trial as usize; 2]));
         self.trial = Trial::default();
     }
 
@@ -97,6 +99,8 @@ pub struct ReachEpisode<C> {
     controller: C,
     x: Vec<f32>,
     y: [f32; OUTPUTS],
+    /// The label is that of the next phase, of lift that of reach.
+    wrong_label: bool,
 }
 
 impl<C: Controller> ReachEpisode<C> {
@@ -115,7 +119,7 @@ impl<C: Controller> ReachEpisode<C> {
             )));
         }
         let x = vec![0.0; senses.channels()];
-        Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS] })
+        Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS], wrong_label: false })
     }
 
     /// The judge of the trial.
@@ -141,6 +145,12 @@ impl<C: Controller> ReachEpisode<C> {
     /// The same, for other parameters.
     pub fn controller_mut(&mut self) -> &mut C {
         &mut self.controller
+    }
+
+    /// Starts from the arm's posture and the sphere's place of these trials instead of the trial's own, with the label of a
+    /// wrong phase or the right one.
+    pub(crate) fn change(&mut self, starts: Option<[usize; 2]>, wrong_label: bool) {
+        (self.judge.starts, self.wrong_label) = (starts, wrong_label);
     }
 
     /// What was sensed last \[29 or 26\].
@@ -174,7 +184,8 @@ where
 
     /// Senses, computes and acts; the label is the phase after the step before.
     fn act(&mut self, world: &mut W) {
-        self.senses.set_label(self.judge.trial().phase);
+        let phase = self.judge.trial().phase;
+        self.senses.set_label(if self.wrong_label { phase.following() } else { phase });
         self.senses.read(world, &mut self.x);
         self.controller.step(&self.x, &mut self.y);
         self.motors.drive(&self.y, world);

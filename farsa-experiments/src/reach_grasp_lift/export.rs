@@ -146,7 +146,7 @@ mod tests {
 
     fn described(scene: &Scene, parameters: &[f32]) -> ControllerExport {
         let layout = scene.config.layout();
-        let network = NetworkExport::new(&layout, Leak::Filter, parameters);
+        let network = NetworkExport::leaky(&layout, Leak::Filter, parameters);
         scene.controller(network, scene.senses().unwrap().names(), scene.motors().unwrap().names())
     }
 
@@ -272,30 +272,34 @@ mod tests {
             .kinds()
             .map(|kind| if kind == farsa_nn::LeakyParameter::Leak { stream.uniform() } else { stream.range(-6.0, 6.0) })
             .collect();
-        let exported = described(&scene, &parameters).network;
+        let NetworkExport::Leaky { layout: told, parameters: exported, .. } = described(&scene, &parameters).network
+        else {
+            panic!("another network")
+        };
+        let told_parts = told.split(&exported);
         let state = vec![0.0; layout.state_len()];
         let mut network = LeakyNetwork::new(layout, Leak::Filter, parameters, state).unwrap();
-        let sigma = |x: f64| 1.0 / (1.0 + farsa_num::exp(-f64::from(exported.slope) * x));
+        let sigma = |x: f64| 1.0 / (1.0 + farsa_num::exp(-f64::from(told.slope()) * x));
         let weight = |weights: &[f32], i: usize| f64::from(weights[i]);
-        let (mut hidden, mut y) = (vec![0.0; exported.hidden], vec![0.0; exported.outputs]);
+        let (mut hidden, mut y) = (vec![0.0; told.hidden()], vec![0.0; told.outputs()]);
         for _ in 0..50 {
-            let x: Vec<f32> = (0..exported.inputs).map(|_| stream.range(-2.0, 2.0)).collect();
+            let x: Vec<f32> = (0..told.sensors()).map(|_| stream.range(-2.0, 2.0)).collect();
             network.step(&x, &mut y);
             let next = |i: usize| {
-                let mut net = f64::from(exported.biases[i]);
-                net += (0..exported.inputs)
-                    .map(|j| f64::from(x[j]) * weight(&exported.sensor_weights, j * exported.hidden + i))
+                let mut net = f64::from(told_parts.biases[i]);
+                net += (0..told.sensors())
+                    .map(|j| f64::from(x[j]) * weight(told_parts.sensor_weights, j * told.hidden() + i))
                     .sum::<f64>();
-                net += (0..exported.hidden)
-                    .map(|k| hidden[k] * weight(&exported.recurrent_weights, k * exported.hidden + i))
+                net += (0..told.hidden())
+                    .map(|k| hidden[k] * weight(told_parts.recurrent_weights, k * told.hidden() + i))
                     .sum::<f64>();
-                let leak = f64::from(exported.leaks[i]);
+                let leak = f64::from(told_parts.leaks[i]);
                 leak * sigma(net) + (1.0 - leak) * hidden[i]
             };
-            hidden = (0..exported.hidden).map(next).collect();
+            hidden = (0..told.hidden()).map(next).collect();
             for (i, y) in y.iter().enumerate() {
-                let net: f64 = (0..exported.hidden)
-                    .map(|j| hidden[j] * weight(&exported.output_weights, j * exported.outputs + i))
+                let net: f64 = (0..told.hidden())
+                    .map(|j| hidden[j] * weight(told_parts.output_weights, j * told.outputs() + i))
                     .sum();
                 assert!((sigma(net) - f64::from(*y)).abs() < 1e-5, "output {i}");
             }

@@ -91,6 +91,15 @@ impl Phase {
         }
     }
 
+    /// The phase after this one, and the first after the last.
+    pub(crate) fn following(self) -> Self {
+        match self {
+            Self::Reach => Self::Grasp,
+            Self::Grasp => Self::Lift,
+            Self::Lift => Self::Reach,
+        }
+    }
+
     /// The phase's position in [`Phase::ALL`].
     pub fn index(self) -> usize {
         self as usize

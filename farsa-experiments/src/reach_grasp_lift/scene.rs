@@ -158,8 +158,13 @@ impl Scene {
     /// are clamped into their ranges. Deviations: the source displaces "each joint" by up to 1 degree and the sphere by
     /// up to 1.5 cm; that both are uniform and that the hand's joints are among them is chosen.
     pub fn start(&self, id: EpisodeId) -> ([f64; 27], [f64; 2]) {
+        self.start_from(id, [id.trial as usize; 2])
+    }
+
+    /// The same from the arm's posture and the sphere's place of these trials, with the displacements of the id's.
+    pub fn start_from(&self, id: EpisodeId, starts: [usize; 2]) -> ([f64; 27], [f64; 2]) {
         let config = &self.config;
-        let trial = id.trial as usize % TRIALS;
+        let [posture, place] = starts.map(|trial| trial % TRIALS);
         let individual = match config.displacement {
             Displacement::PerGeneration => 0,
             Displacement::PerIndividual => id.individual,
@@ -167,11 +172,11 @@ impl Scene {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, individual, id.generation);
         let mut displaced = |at: f64, by: f64| at + by * f64::from(stream.range(-1.0, 1.0));
         let joints = core::array::from_fn(|i| {
-            let pose = if i < 4 { config.arm_poses[4 * trial + i] } else { 0.0 };
+            let pose = if i < 4 { config.arm_poses[4 * posture + i] } else { 0.0 };
             let [low, high] = self.robot.segments[i].joint.range;
             displaced(pose, config.joint_displacement).to_radians().clamp(low, high)
         });
-        let sphere = config.sphere_start(trial).map(|x| displaced(x, config.sphere_displacement / 100.0));
+        let sphere = config.sphere_start(place).map(|x| displaced(x, config.sphere_displacement / 100.0));
         (joints, sphere)
     }
 
@@ -199,7 +204,15 @@ impl Scene {
     where
         W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
     {
-        let (joints, [x, y]) = self.start(id);
+        self.arrange_from(world, id, [id.trial as usize; 2]);
+    }
+
+    /// The same from the arm's posture and the sphere's place of these trials, [`start_from`](Self::start_from).
+    pub fn arrange_from<W>(&self, world: &mut W, id: EpisodeId, starts: [usize; 2])
+    where
+        W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        let (joints, [x, y]) = self.start_from(id, starts);
         world.clear();
         for (joint, position) in ArmAndHand::joints().into_iter().zip(joints) {
             world.place_joint(joint, position as f32, 0.0);

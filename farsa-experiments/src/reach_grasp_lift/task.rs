@@ -14,7 +14,8 @@ use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::schema::{EpisodeRecorder, NetworkEpisode};
 use farsa_lab::{
     Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
-    NetworkExport, NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Rollout, StartExport, Task,
+    Intervention, Interventions, NetworkExport, NormalisedController, Note, NotedBehaviour, Outcome, Parameter,
+    Protocol, Rollout, StartExport, Task, input_ranges,
 };
 use farsa_view::Schema;
 
@@ -24,6 +25,7 @@ pub struct ReachTask {
     episode: NetworkEpisode,
     ranges: Ranges,
     episode_recorder: Arc<EpisodeRecorder>,
+    interventions: Interventions,
 }
 
 impl ReachTask {
@@ -38,11 +40,34 @@ impl ReachTask {
         let network = LeakyNetwork::new(layout, config.leak, zeros, state);
         let network = network.map_err(|error| Error::Other(format!("reach-grasp-lift: {error}")))?;
         let episode_recorder = Arc::new(EpisodeRecorder::new(&scene));
-        Ok(Self {
-            episode: ReachEpisode::new(Arc::new(scene), NormalisedController::new(network))?,
-            ranges,
-            episode_recorder,
-        })
+        let episode = ReachEpisode::new(Arc::new(scene), NormalisedController::new(network))?;
+        let mut task = Self { episode, ranges, episode_recorder, interventions: Interventions::default() };
+        task.interventions = task.interventions();
+        Ok(task)
+    }
+
+    /// `start-positions`: every posture of the arm with every place of the sphere, of which four pairs were trained; `labels`,
+    /// where there are any: right, removed, and those of another phase; `lesions`.
+    fn interventions(&self) -> Interventions {
+        let config = &self.scene().config;
+        let groups = self.description().sensors;
+        let starts = Protocol::from_table(
+            "start-positions",
+            "every posture of the arm with every place of the sphere",
+            (1..=TRIALS).map(|posture| format!("posture {posture}")),
+            (1..=TRIALS).map(|place| format!("place {place}")),
+        );
+        let number = |name: &str| name.rsplit(' ').next().map(str::to_owned);
+        let starts = starts.with_axes("arm", "sphere").with_held_out(|row, column| number(row) != number(column));
+        let hidden = (0..config.layout().hidden()).map(|neuron| (format!("hidden neuron {}", neuron + 1), neuron));
+        let mut all = Interventions::default().with_protocol(starts, Vec::new());
+        if let Some((_, labels)) = input_ranges(&groups).find(|(name, _)| name == "label") {
+            let cases = ["as trained", "removed", "of the next phase"];
+            let protocol = Protocol::from_list("labels", "the label of the phase is removed, or wrong", cases);
+            let protocol = protocol.with_held_out(|row, _| row != cases[0]);
+            all = all.with_protocol(protocol, vec![Intervention::default(), Intervention::cut(labels)]);
+        }
+        all.with_lesions(input_ranges(&groups), hidden)
     }
 
     fn scene(&self) -> &Scene {
@@ -79,8 +104,16 @@ where
 impl Rollout for ReachTask {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let parameters = self.ranges.to_network(evaluation.parameters);
+        let named = self.interventions.named(evaluation.case);
+        let starts =
+            named.filter(|(name, _)| *name == "start-positions").map(|(_, case)| [case / TRIALS, case % TRIALS]);
+        self.episode.change(starts, named == Some(("labels", 2)));
         let network = self.episode.controller_mut();
-        network.load(evaluation.normalisation) && network.controller_mut().copy_parameters(&parameters).is_ok()
+        if !network.load(evaluation.normalisation) {
+            return false;
+        }
+        network.intervene(self.interventions.of(evaluation.case), evaluation.id, 0);
+        network.controller_mut().copy_parameters(&parameters).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
@@ -130,6 +163,10 @@ impl Task for ReachTask {
 
     fn terms(&self) -> Vec<String> {
         ["reach", "grasp", "lift", "bonus"].map(String::from).to_vec()
+    }
+
+    fn protocols(&self) -> Vec<Protocol> {
+        self.interventions.protocols()
     }
 
     fn observations(&self) -> usize {
@@ -214,7 +251,7 @@ impl Exports for ReachTask {
     fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
         let config = &self.scene().config;
         let parameters = self.ranges.to_network(parameters);
-        let network = NetworkExport::new(&config.layout(), config.leak, &parameters);
+        let network = NetworkExport::leaky(&config.layout(), config.leak, &parameters);
         Some(self.scene().controller(network, self.episode.senses().names(), self.episode.motors().names()))
     }
 

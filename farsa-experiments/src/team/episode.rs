@@ -6,7 +6,7 @@ use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::team::config::TeamConfig;
 use crate::team::robots::Team;
-use farsa_lab::{Behaviour, ChannelGroup, Episode, EpisodeId, Error, Outcome, PlanarWorld};
+use farsa_lab::{Behaviour, ChannelGroup, Episode, EpisodeId, Error, Interventions, Outcome, PlanarWorld};
 use farsa_view::Channel;
 
 /// Where the robots of a team are, and since when.
@@ -66,6 +66,16 @@ pub trait Scenario: Send {
 
     /// Scores the step that has passed; true if the trial is over before its time.
     fn judge<W: PlanarWorld>(&mut self, world: &W, moment: Moment<'_>) -> bool;
+
+    /// The test protocols, with what they do to the controllers.
+    fn interventions(&self) -> Interventions {
+        Interventions::default()
+    }
+
+    /// Takes part in a case of the protocol of this name, or in none; what an earlier one changed is forgotten.
+    fn begin_case(&mut self, case: Option<(&str, usize)>) {
+        let _ = case;
+    }
 
     /// What population `own` has earned so far.
     fn earned(&self, own: usize, moment: Moment<'_>) -> f64;
@@ -152,6 +162,11 @@ impl<M: Scenario, C: Controller> TeamEpisode<M, C> {
     /// What the robots are to do, with its score.
     pub fn scenario(&self) -> &M {
         &self.scenario
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn scenario_mut(&mut self) -> &mut M {
+        &mut self.scenario
     }
 
     /// The robots.

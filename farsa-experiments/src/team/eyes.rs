@@ -1,10 +1,10 @@
 //! What a robot of a team senses of its surroundings.
 
 use farsa_body::{
-    Beam, BodyId, ChannelError, ColorBand, InfraredRays, LinearCamera, MobileParts, MobileRobot, Recorder, Sensor as _,
+    Beam, BodyId, ChannelError, ColorBand, InfraredDrawing, InfraredGroups, LinearCamera, MobileParts, MobileRobot,
+    Recorder, Sensor as _,
 };
 
-use crate::infrared::sensor_rays::{RayFilter, SensorRays};
 use crate::team::config::{EYES, TeamConfig};
 use farsa_lab::PlanarWorld;
 
@@ -19,45 +19,10 @@ pub(crate) const BLUE: ColorBand = ColorBand { low: [0.0, 0.0, 0.5], high: [1.0,
 #[derive(Clone, Debug)]
 pub struct RobotEyes {
     body: BodyId,
-    infrared: InfraredRays<Vec<Beam>>,
-    /// Readings of all sensors of the ring.
-    ring: Vec<f32>,
-    /// What is near: the nearest point of a wall with the unit vector to it, or a body's middle and radius.
-    obstacles: Vec<Obstacle>,
-    /// From the middle of the robot to where its infrared sensors see \[m\].
-    reach: f32,
+    infrared: InfraredGroups,
     camera: LinearCamera<Vec<Beam>, Vec<ColorBand>>,
-    rays: SensorRays,
+    rays: InfraredDrawing,
 }
-
-#[derive(Clone, Copy, Debug)]
-enum Obstacle {
-    Wall { point: [f32; 2], out: [f32; 2] },
-    Round { centre: [f32; 2], radius: f32 },
-}
-
-impl Obstacle {
-    /// Whether some of it may lie on a way from one place to another; sometimes also if none does.
-    fn meets(&self, from: [f32; 2], to: [f32; 2]) -> bool {
-        match self {
-            // A wall is convex: all of it lies beyond its nearest point.
-            Self::Wall { point, out } => {
-                let beyond = |at: [f32; 2]| (at[0] - point[0]) * out[0] + (at[1] - point[1]) * out[1] >= -HAIR;
-                beyond(from) || beyond(to)
-            }
-            Self::Round { centre, radius } => {
-                let [u, v] = [to[0] - from[0], to[1] - from[1]];
-                let [x, y] = [centre[0] - from[0], centre[1] - from[1]];
-                let share = ((x * u + y * v) / (u * u + v * v)).clamp(0.0, 1.0);
-                let ([x, y], far) = ([x - share * u, y - share * v], radius + HAIR);
-                x * x + y * y <= far * far
-            }
-        }
-    }
-}
-
-/// For rounding \[m\].
-const HAIR: f32 = 1e-4;
 
 impl RobotEyes {
     /// The eyes of a robot of the team, with a camera for these colours.
@@ -66,67 +31,32 @@ impl RobotEyes {
     /// [`ChannelError`] for a robot without eight sensors or a multiple of eight, and for a camera that cannot be.
     pub fn new(config: &TeamConfig, parts: &MobileParts, colors: &[ColorBand]) -> Result<Self, ChannelError> {
         let robot = &config.robot;
-        let count = robot.infrared.angles.len();
-        if count == 0 || !count.is_multiple_of(EYES) {
-            return Err(ChannelError::Groups { field: "infrared sensors", count, size: EYES });
-        }
         // Farther than the arena's diagonal nothing is to be seen.
         let (range, view) = (1.5 * config.size as f32, config.field_of_view);
         Ok(Self {
             body: parts.body,
-            infrared: InfraredRays::for_robot(robot, parts.body)?,
-            ring: vec![0.0; count],
-            obstacles: Vec::with_capacity(64),
-            reach: (robot.radius + robot.infrared.range) as f32,
+            infrared: InfraredGroups::for_robot(robot, parts.body, EYES)?,
             camera: LinearCamera::for_view(parts.body, view, config.sectors, config.rays, colors.to_vec(), range)?,
-            rays: SensorRays::for_robot(robot),
+            rays: InfraredDrawing::for_robot(robot, robot.infrared.angles.len()),
         })
     }
 
     /// Reads the infrared channels and then the camera's \[8 + sectors x colours\].
     pub fn read<W: PlanarWorld>(&mut self, world: &W, out: &mut [f32]) {
         let (near, seen) = out.split_at_mut(EYES);
-        let Self { body, infrared, ring, obstacles, .. } = self;
-        let pose = world.pose(*body);
-        let [x, y, _] = pose.position;
-        obstacles.clear();
-        world.query_near([x, y], self.reach, &mut |obstacle| {
-            let [u, v] = [obstacle.point[0] - x, obstacle.point[1] - y];
-            let away = obstacle.distance.max(f32::MIN_POSITIVE);
-            let out = [u / away, v / away];
-            if obstacle.body.is_none() {
-                obstacles.push(Obstacle::Wall { point: obstacle.point, out });
-            } else if obstacle.body != Some(*body) {
-                let far = obstacle.distance + obstacle.radius;
-                obstacles
-                    .push(Obstacle::Round { centre: [x + far * out[0], y + far * out[1]], radius: obstacle.radius });
-            }
-        });
-        if obstacles.is_empty() {
-            // What the rays would read, too: nothing is within their range.
-            near.fill(0.0);
-            ring.fill(0.0);
-        } else {
-            infrared.read_where(world, ring, |[x, y, _], [u, v, _]| {
-                obstacles.iter().any(|obstacle| obstacle.meets([x, y], [u, v]))
-            });
-            let group = self.ring.len() / EYES;
-            for (first, o) in near.iter_mut().enumerate() {
-                let of_group = (0..group).map(|k| (first * group + k + self.ring.len() - group / 2) % self.ring.len());
-                *o = of_group.fold(0.0, |most, sensor| most.max(self.ring[sensor]));
-            }
-        }
+        self.infrared.read(world, near);
         self.camera.read(world, seen);
     }
 
-    /// Records a ray for each infrared sensor, of the robot where it read `x` last and in the same world.
+    /// Records a ray for each infrared sensor, of the robot where it read `x` last and in the same world;
+    /// `met`: only of those that read something.
     ///
     /// One that did not read because its robot is dead records none.
-    pub(crate) fn record<W: PlanarWorld>(&self, world: &W, x: &[f32], filter: RayFilter, recorder: &mut dyn Recorder) {
+    pub(crate) fn record<W: PlanarWorld>(&self, world: &W, x: &[f32], met: bool, recorder: &mut dyn Recorder) {
         let near = x.get(..EYES).unwrap_or_default();
         let pose = world.pose(self.body);
         if near.iter().all(|x| x.is_finite()) {
-            self.rays.record(pose, &self.ring, filter, recorder);
+            self.rays.record(pose, self.infrared.ring(), met, recorder);
         }
     }
 }
@@ -141,7 +71,7 @@ pub(crate) fn eye_angles(robot: &MobileRobot) -> [f64; EYES] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use farsa_body::{Arrange as _, Pose, Twist};
+    use farsa_body::{Arrange as _, InfraredRays, Pose, Twist};
     use farsa_physics::arena::World;
 
     #[test]

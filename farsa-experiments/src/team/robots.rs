@@ -8,7 +8,6 @@ use farsa_nn::Controller;
 use farsa_num::Stream;
 use farsa_physics::arena::{ArenaError, FreePlace};
 
-use crate::infrared::sensor_rays::RayFilter;
 use crate::team::config::TeamConfig;
 use crate::team::eyes::RobotEyes;
 use farsa_lab::PlanarWorld;
@@ -100,7 +99,25 @@ impl<C: Controller> Team<C> {
         near: Option<([f32; 2], f32)>,
         stream: &mut Stream,
     ) -> Result<(), ArenaError> {
-        const TRIES: u32 = 1000;
+        self.scatter_some(world, near, stream, self.members.len())
+    }
+
+    /// The same for the first robots, so many; the others are put outside the arena, farther than anybody sees.
+    ///
+    /// # Errors
+    /// [`ArenaError::NoFreePlace`] after a thousand tries.
+    pub(crate) fn scatter_some<W: PlanarWorld>(
+        &self,
+        world: &mut W,
+        near: Option<([f32; 2], f32)>,
+        stream: &mut Stream,
+        count: usize,
+    ) -> Result<(), ArenaError> {
+        for (number, member) in self.members.iter().enumerate().skip(count) {
+            let at = [-5.0 * self.size - 4.0 * self.radius * number as f32; 2];
+            world.place_body(member.parts.body, Pose::planar(at, 0.0), Twist::default());
+            world.finish_placement();
+        }
         let margin = self.radius + self.apart;
         let (low, high) = (margin.min(0.5 * self.size), (self.size - margin).max(0.5 * self.size));
         let region = match near {
@@ -108,27 +125,10 @@ impl<C: Controller> Team<C> {
             Some((at, far)) => [at.map(|x| (x - far).clamp(low, high)), at.map(|x| (x + far).clamp(low, high))],
         };
         let mut others: Vec<(BodyId, f32)> = Vec::new();
-        for member in &self.members {
-            let free = FreePlace { tries: 1, walls: 0.0, ..FreePlace::new(region, self.radius) };
-            let mut found = None;
-            let mut why = ArenaError::NoFreePlace { tries: TRIES, radius: self.radius, short: f32::INFINITY };
-            for _ in 0..TRIES {
-                match free.clear_of(&others).find(world, stream) {
-                    // The region is square, what is near is round.
-                    Ok(at) if near.is_none_or(|(centre, far)| distance(at, centre) <= far) => {
-                        found = Some(at);
-                        break;
-                    }
-                    Ok(_) => {}
-                    Err(ArenaError::NoFreePlace { short, .. }) => {
-                        if let ArenaError::NoFreePlace { short: least, .. } = &mut why {
-                            *least = least.min(short);
-                        }
-                    }
-                    Err(other) => return Err(other),
-                }
-            }
-            let at = found.ok_or(why)?;
+        for member in self.members.iter().take(count) {
+            // The region is square, what is near is round.
+            let free = FreePlace { within: near, ..FreePlace::new(region, self.radius) };
+            let at = free.clear_of(&others).find(world, stream)?;
             world.place_body(member.parts.body, Pose::planar(at, stream.range(-PI, PI)), Twist::default());
             world.finish_placement();
             others.push((member.parts.body, self.apart));
@@ -179,8 +179,7 @@ impl<C: Controller> Team<C> {
     /// the others those that met something.
     pub fn record_rays<W: PlanarWorld>(&self, world: &W, own: usize, recorder: &mut dyn Recorder) {
         for (robot, member) in self.members.iter().enumerate() {
-            let filter = if robot == own { RayFilter::All } else { RayFilter::Met };
-            member.eyes.record(world, self.sensed(robot), filter, recorder);
+            member.eyes.record(world, self.sensed(robot), robot != own, recorder);
         }
     }
 

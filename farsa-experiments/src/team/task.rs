@@ -1,17 +1,20 @@
 //! The task of a team: what is known of a scenario, and its episodes over parameters.
 
-use farsa_body::{BodyId, Recorder};
+use farsa_body::{BodyId, Recorder, Robot};
 use farsa_evo::ObservationStatistics;
-use farsa_nn::LeakyLayout;
+use farsa_nn::{Leak, LeakyLayout};
 use farsa_physics::arena::{Arena, World};
 
+use crate::infrared::settings::InfraredModel;
 use crate::team::config::{EYES, TeamConfig};
 use crate::team::episode::{Scenario, TeamEpisode};
+use crate::team::eyes::eye_angles;
 use crate::team::robots::OUTPUTS;
+use crate::wheeled::infrared_exports;
 use farsa_lab::{
-    Behaviour, ChannelGroup, Description, Episode, EpisodeId, Error, Evaluation, InWorld, NormalisedController,
-    Outcome, OwnedNetwork, Parameter, PlanarWorld, Rollout, Task, mean_of_trials, network_parameters, resting_network,
-    seconds,
+    Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, InWorld,
+    Interventions, MotorExport, NetworkExport, NormalisedController, Outcome, OwnedNetwork, Parameter, PlanarWorld,
+    Protocol, Rollout, SensorExport, Task, mean_of_trials, network_parameters, resting_network, seconds,
 };
 use farsa_view::Schema;
 
@@ -24,6 +27,7 @@ pub(crate) struct TeamTask<M> {
     own: usize,
     /// Bodies whose poses are recorded: robots and what is placed beside them.
     bodies: u16,
+    interventions: Interventions,
 }
 
 /// An arena whose robots and areas every trial places anew, without bounds for what waits outside.
@@ -49,13 +53,14 @@ pub(crate) fn evaluator<M: Scenario + Clone + 'static>(scenario: M) -> Result<In
     let networks = networks.collect::<Result<_, _>>()?;
     let bodies = (arena.robots.len() + arena.areas.len()) as u16;
     let mut world = world(arena.clone())?;
+    let interventions = scenario.interventions();
     let mut episode = TeamEpisode::from_scenario(scenario, networks)?;
     // Seeds of this kind are neither a run's nor a test's.
     for trial in 0..8 {
         let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
         episode.arrange(&mut world, id).map_err(|error| Error::setting(episode.scenario().crowded(), error))?;
     }
-    InWorld::in_arena(&parked(arena), TeamTask { episode, layout, own: 0, bodies })
+    InWorld::in_arena(&parked(arena), TeamTask { episode, layout, own: 0, bodies, interventions })
 }
 
 impl<M: Scenario> TeamTask<M> {
@@ -105,7 +110,9 @@ impl<M: Scenario> Rollout for TeamTask<M> {
     /// Gives all robots their networks; of several populations robot p that of population p. Without opponents each
     /// robot meets copies of its own network.
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let Evaluation { parameters, opponents, normalisation, id, .. } = *evaluation;
+        let Evaluation { parameters, opponents, normalisation, id, case, .. } = *evaluation;
+        let Self { episode, interventions, .. } = self;
+        episode.scenario_mut().begin_case(interventions.named(case));
         let scenario = self.episode.scenario();
         let count = scenario.population_names().len();
         let own = id.population(scenario.population_size()).min(count - 1);
@@ -113,6 +120,9 @@ impl<M: Scenario> Rollout for TeamTask<M> {
         let networks = self.episode.team_mut().controllers_mut();
         if !networks.iter_mut().all(|network| network.load(normalisation)) {
             return false;
+        }
+        for (robot, network) in networks.iter_mut().enumerate() {
+            network.intervene(self.interventions.of(case), id, robot as u32);
         }
         let mut networks = networks.iter_mut().map(NormalisedController::controller_mut);
         if count == 1 {
@@ -147,6 +157,10 @@ impl<M: Scenario> Task for TeamTask<M> {
 
     fn trials(&self) -> usize {
         self.episode.scenario().robots().trials
+    }
+
+    fn protocols(&self) -> Vec<Protocol> {
+        self.interventions.protocols()
     }
 
     fn terms(&self) -> Vec<String> {
@@ -188,6 +202,51 @@ impl<M: Scenario> Task for TeamTask<M> {
     /// The mean over the trials.
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl<M: Scenario> Exports for TeamTask<M> {
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        Some(self.episode.scenario().robots().robot().description())
+    }
+
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let scenario = self.episode.scenario();
+        let (config, [_, outputs]) = (scenario.robots(), scenario.shape());
+        if parameters.len() != self.layout.parameter_count() {
+            return None;
+        }
+        let mut names = scenario.input_names().into_iter();
+        let eyes: Vec<String> = names.by_ref().take(EYES).collect();
+        let robot = config.robot();
+        let angles = eye_angles(&robot);
+        let eyes = infrared_exports(eyes, &angles, &robot, &InfraredModel::Rays);
+        // What the other inputs mean is said in groups.
+        let groups = scenario.inputs();
+        let meanings = groups.iter().flat_map(|group| std::iter::repeat_n(&group.meaning, group.count)).skip(EYES);
+        let others = names.zip(meanings).map(|(name, meaning)| SensorExport::quantity(name, meaning, "1", [0.0, 1.0]));
+        let sensors = eyes.chain(others).collect();
+        let largest = robot.max_wheel_speed;
+        let light =
+            |color: &str| MotorExport::quantity(color, format!("brightness of the {color} LED"), "1", [0.0, 1.0]);
+        let motors = [
+            MotorExport::quantity(MOTORS[0], "mean speed of both wheels", "rad/s", [0.0, largest]),
+            MotorExport::quantity(
+                MOTORS[1],
+                "half of how much faster the right wheel is than the left; where a wheel would be too fast, both slow down",
+                "rad/s",
+                [-largest, largest],
+            ),
+            light(MOTORS[2]),
+            light(MOTORS[3]),
+        ];
+        let network = NetworkExport::leaky(&self.layout, Leak::Filter, parameters);
+        let motors = motors.into_iter().take(outputs).collect();
+        Some(ControllerExport::new(network, sensors, motors, config.time_step, config.steps))
     }
 }
 

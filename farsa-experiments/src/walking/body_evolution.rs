@@ -2,11 +2,11 @@
 
 use farsa_body::{Recorder, Robot};
 use farsa_models::MjcfOptions;
-use farsa_nn::LeakyLayout;
+use farsa_nn::{Leak, LeakyLayout};
 use farsa_num::Scalar;
 use farsa_physics::articulated::{Model, Options, World};
 
-use crate::walking::episode::{Brain, Launch, SENSES, Walk, WalkerEpisode};
+use crate::walking::episode::{Brain, FULL, Launch, SENSES, Walk, WalkerEpisode};
 use crate::walking::gait::Rules;
 use crate::walking::schema::{drawn, exported, schema};
 #[cfg(feature = "rapier")]
@@ -15,9 +15,9 @@ use crate::walking::settings::{engine, mjcf_options, on_contacts, outcome, walk}
 use crate::walking::walker::{Legs, Walker};
 use crate::worlds::Engine;
 use farsa_lab::{
-    Behaviour, Bodies, ChannelGroup, Description, ENGINE, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
-    Exports, Genotype, Note, Outcome, Parameter, Setting, Settings, Task, mean_of_note, mean_of_trials,
-    network_parameters, run_episode,
+    Behaviour, Bodies, ChannelGroup, ControllerExport, Description, ENGINE, Episode, EpisodeId, Error, Evaluation,
+    Evaluator, Experiment, Exports, Genotype, MotorExport, NetworkExport, Note, Outcome, Parameter, SensorExport,
+    Setting, Settings, Task, mean_of_note, mean_of_trials, network_parameters, run_episode,
 };
 use farsa_view::Schema;
 
@@ -377,6 +377,29 @@ impl Behaviour for Walkers {
 impl Exports for Walkers {
     fn mjcf_options(&self) -> Option<MjcfOptions> {
         Some(mjcf_options(&self.config.walk))
+    }
+
+    /// Of parameters as others may have it: ball soles, as in the [`schema`](Task::schema) of the middle of all bodies.
+    fn robot(&self, parameters: Option<&[f32]>) -> Option<Robot> {
+        parameters.map(|parameters| exported(&self.body(parameters)))
+    }
+
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let layout = self.config.layout()?;
+        let to_network = parameters.get(BODY_PARAMETERS..).filter(|rest| rest.len() == layout.parameter_count())?;
+        let [angle, speed] = FULL.map(f64::from);
+        let legs = ["outer legs from the ground's normal", "inner legs from the outer ones"];
+        let angles = legs.map(|legs| (format!("angle of the {legs}"), "rad", angle));
+        let speeds = legs.map(|legs| (format!("angular velocity of the {legs}"), "rad/s", speed));
+        let touches = ["outer", "inner"].map(|feet| (format!("whether the {feet} feet touch the ground"), "1", 1.0));
+        let named = self.schema().sensors.into_iter().map(|channel| channel.name);
+        let sensors = named.zip(angles.into_iter().chain(speeds).chain(touches));
+        let sensors = sensors.map(|(name, (what, unit, one))| SensorExport::quantity(name, what, unit, [0.0, one]));
+        let torque = self.body(parameters).torque;
+        let motor = MotorExport::quantity("hip torque", "torque on the inner legs, back", "N m", [-torque, torque]);
+        let network = NetworkExport::leaky(&layout, Leak::Filter, to_network);
+        let Walk { steps, time_step, .. } = self.config.walk;
+        Some(ControllerExport::new(network, sensors.collect(), vec![motor], time_step, steps))
     }
 }
 

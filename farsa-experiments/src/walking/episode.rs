@@ -18,7 +18,7 @@ pub const SENSES: usize = 6;
 /// How many of the last steps the pace is the mean of.
 const LAST: usize = 10;
 /// Angle that an angle sensor reads 1 at \[rad\], and speed that a speed sensor reads 1 at \[rad/s\].
-const FULL: [f32; 2] = [0.6, 3.0];
+pub(crate) const FULL: [f32; 2] = [0.6, 3.0];
 
 /// How a walk begins: angles ahead of the ground's normal \[rad\] and rates \[rad/s\] of the stance and the swing leg.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

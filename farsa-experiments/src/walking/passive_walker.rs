@@ -7,7 +7,7 @@ pub use crate::walking::{gait::End, gait::Footfall, gait::Gait, gait::Rules};
 pub use crate::walking::{walker::Legs, walker::Posture, walker::Walker, walker::WalkerParts};
 pub use crate::worlds::Engine;
 
-use farsa_body::Recorder;
+use farsa_body::{Recorder, Robot};
 use farsa_models::MjcfOptions;
 use farsa_num::{Real, Scalar};
 use farsa_physics::articulated::{Model, Options, World};
@@ -298,6 +298,11 @@ impl Task for PassiveTrial {
 impl Exports for PassiveTrial {
     fn mjcf_options(&self) -> Option<MjcfOptions> {
         Some(mjcf_options(&self.config.walk))
+    }
+
+    /// With soles that touch, where a recording has those that are drawn.
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        Some(exported(&self.config.walker))
     }
 }
 

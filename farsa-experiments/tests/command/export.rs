@@ -132,7 +132,7 @@ fn the_same_in_other_formats(here: &Path, told: &serde_json::Value) {
 }
 
 #[test]
-fn a_continuous_time_network_is_written_as_bytes_alone() {
+fn a_continuous_time_network_is_written_in_all_formats() {
     let here = scratch("export-ctrnn");
     ok(farsa(), &here, "run minimal-cognition --generations 1 --population 20 --quiet --out r");
     ok(farsa(), &here, "export controller r --format bytes --out c.bytes");
@@ -145,6 +145,68 @@ fn a_continuous_time_network_is_written_as_bytes_alone() {
     let parts = AGENT.split(&parameters);
     // The same on both sides, and no champion of nothing.
     assert!(parts.time_constants[7] == parts.time_constants[11] && parts.weights.iter().any(|w| *w != 0.0));
+    let told: serde_json::Value =
+        serde_json::from_str(&ok(farsa(), &here, "export controller r --format json")).expect("JSON");
+    assert_eq!((&told["network"]["kind"], &told["network"]["neurons"]), (&"ctrnn".into(), &14.into()));
+    let ray = &told["sensors"][0];
+    assert_eq!(["name", "reads"].map(|key| ray[key].as_str()), [Some("ray 1"), Some("quantity")]);
+    assert_eq!(["zero", "one"].map(|key| ray[key].as_f64()), [Some(220.0), Some(198.0)]);
+    let rust = ok(farsa(), &here, "export controller r --format rust");
+    for part in
+        ["CtrnnLayout::new(7, 14, 2)", ".with_direct_inputs(0)", "Integrator::", "TIME_STEP: f32 = ", "`ray 1` reads"]
+    {
+        assert!(rust.contains(part), "no {part} in {rust}");
+    }
+    ok(farsa(), &here, "export controller r --format safetensors --out c.safetensors");
+    let tables = fs::read(here.join("c.safetensors")).expect("the file");
+    let tables = SafeTensors::deserialize(&tables).expect("tables");
+    assert_eq!(tables.tensor("weights").expect("the table").shape(), [14, 14]);
+    assert_eq!(tables.tensor("input_weights").expect("the table").shape(), [0, 14]);
+}
+
+#[test]
+fn networks_of_wheeled_robots_and_of_the_cart_are_written_in_all_formats() {
+    let here = scratch("export-kinds");
+    for (experiment, kind, part) in [
+        ("discrimination", 4, "Perceptron::parameter_count(6, 2)"),
+        ("double-pole", 5, "BlockLayout::new(6, 1, GROUPS, BLOCKS)"),
+    ] {
+        ok(
+            farsa(),
+            &here,
+            &format!("run {experiment} --generations 1 --quiet --set trial.steps=100 --out {experiment}"),
+        );
+        let export = |format: &str| ok(farsa(), &here, &format!("export controller {experiment} --format {format}"));
+        assert!(export("json").contains("\"reads\": \"quantity\""));
+        let rust = export("rust");
+        assert!(rust.contains(part), "no {part} in {rust}");
+        for format in ["bytes", "safetensors"] {
+            ok(
+                farsa(),
+                &here,
+                &format!("export controller {experiment} --format {format} --out {experiment}.{format}"),
+            );
+        }
+        let bytes = fs::read(here.join(format!("{experiment}.bytes"))).expect("the file");
+        assert_eq!((&bytes[..8], bytes[12]), (&b"FARSA-NN"[..], kind), "{experiment}");
+        let tables = fs::read(here.join(format!("{experiment}.safetensors"))).expect("the file");
+        assert!(SafeTensors::deserialize(&tables).is_ok_and(|tables| tables.tensor("weights").is_ok()), "{experiment}");
+    }
+}
+
+#[test]
+fn of_several_populations_one_is_named() {
+    let here = scratch("export-populations");
+    ok(farsa(), &here, "run predator-prey --generations 1 --population 16 --quiet --set trial.steps=2 --out r");
     let said = say(farsa(), &here, "export controller r --format json");
-    assert!(said.code == Some(2) && said.err.contains("minimal-cognition: its controllers are exported as bytes only"));
+    assert!(said.code == Some(2) && said.err.contains("predator and prey: name one"), "{said:?}");
+    let said = say(farsa(), &here, "export controller r --format json --population pray");
+    assert!(said.code == Some(2) && said.err.contains("`prey`"), "{said:?}");
+    let [predator, prey] = ["predator", "prey"].map(|name| {
+        let told = ok(farsa(), &here, &format!("export controller r --format json --population {name}"));
+        let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+        assert_eq!(told["population"], name);
+        told["network"]["biases"].clone()
+    });
+    assert_ne!(predator, prey);
 }

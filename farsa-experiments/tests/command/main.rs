@@ -3,9 +3,11 @@
 mod attack;
 mod bad_input;
 mod cluster;
+mod configurations;
 mod export;
 mod files;
 mod genotypes;
+mod lines;
 mod look;
 mod manners;
 mod merge;

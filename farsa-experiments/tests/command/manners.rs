@@ -285,3 +285,57 @@ fn no_color_is_heeded_on_a_terminal() {
         assert!(with.stdout.contains(&0x1b) && !without.stdout.contains(&0x1b), "{with:?} {without:?}");
     }
 }
+
+/// `--force` moves a run aside, and nothing else.
+#[test]
+fn a_run_in_the_way_is_moved_aside_when_that_is_asked_for() {
+    let here = scratch("force");
+    ok(own(), &here, "run cart --generations 2 --out r");
+    let first = content(&here.join("r"));
+    let said = say(own(), &here, "run cart --generations 1 --seed 2 --out r");
+    assert!(said.code == Some(2) && said.err.contains("or move it aside with --force"), "{said:?}");
+    // What is refused moves nothing.
+    for wrong in ["--set cart.friction=x", "--lanes 8", "--population 0", "--replications 2", "--strategy none"] {
+        assert_eq!(say(own(), &here, &format!("run cart --out r --force {wrong}")).code, Some(2), "{wrong}");
+        assert_eq!(content(&here.join("r")), first, "{wrong}");
+    }
+    let said = say(own(), &here, "run cart --generations 1 --seed 2 --out r --force");
+    assert!(said.code == Some(0) && said.err.contains("r: the run that was there is kept as r.old-1\n"), "{said:?}");
+    let kept = |name: &str| content(&here.join(name)).into_iter().map(|(_, bytes)| bytes).collect::<Vec<_>>();
+    let bytes: Vec<_> = first.into_iter().map(|(_, bytes)| bytes).collect();
+    assert_eq!(
+        kept("r.old-1").into_iter().filter(|bytes| !bytes.is_empty()).count(),
+        bytes.iter().filter(|bytes| !bytes.is_empty()).count()
+    );
+    assert!(bytes.iter().all(|bytes| kept("r.old-1").contains(bytes)));
+    ok(own(), &here, "run cart --generations 1 --seed 3 --out r --force --quiet");
+    assert!(here.join("r.old-2/config.toml").is_file() && here.join("r/config.toml").is_file());
+    ok(own(), &here, "run --resume r.old-1 --generations 3 --quiet");
+    // Nothing was in the way, and what is no run stays there.
+    ok(own(), &here, "run cart --generations 1 --out new --force --quiet");
+    fs::create_dir(here.join("letters")).expect("a folder");
+    fs::write(here.join("letters/a.txt"), "dear").expect("a file");
+    let said = say(own(), &here, "run cart --out letters --force");
+    assert!(said.code == Some(2) && said.err.contains("already holds other files"), "{said:?}");
+    assert!(here.join("letters/a.txt").is_file());
+}
+
+#[test]
+fn populations_are_told_of_by_name() {
+    let here = scratch("named-populations");
+    let said = say(
+        farsa(),
+        &here,
+        "run predator-prey --generations 1 --population 4 --set evolution.parents=2 --set trial.steps=5 --out r",
+    );
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let line = said.err.lines().find(|line| line.starts_with("generation 0: ")).expect("a generation");
+    assert!(
+        line.contains(": predator best ") && line.contains("; prey best ") && line.matches(", worst ").count() == 2,
+        "{line}"
+    );
+    let words = said.out.split("champions of generation 0: ").nth(1).expect("the champions");
+    assert!(words.starts_with("predator individual ") && words.contains("; prey individual "), "{said:?}");
+    let log = fs::read_to_string(here.join("r/fitness.csv")).expect("the log");
+    assert!(log.starts_with("generation,best,mean,worst,evaluations,failed,"), "{log}");
+}

@@ -46,9 +46,14 @@ fn it_learns_and_its_best_life_is_seen_again() {
 
     // The fitness of every generation's best is earned again by the episode that is rebuilt from the record.
     for (generation, row) in rows.iter().enumerate() {
-        let said = say(own(), &here, &format!("replay runs/cart-rough-3 --generation {generation}"));
+        let line = format!("replay runs/cart-rough-3 --generation {generation}");
+        let said = say(own(), &here, &line);
         assert_eq!(said.code, Some(0), "{said:?}");
-        assert!(said.err.ends_with(&format!("3 trials: 1500 steps, fitness {:?}\n", row[1])), "{row:?}: {}", said.err);
+        let words = format!("3 trials: 1500 steps, fitness {:.3}\n", row[1]);
+        assert!(said.err.ends_with(&words), "{row:?}: {}", said.err);
+        let json = ok(own(), &here, &format!("{line} --json --out {generation}.csv"));
+        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        assert_eq!(json["fitness"], row[1]);
     }
     let all = ok(own(), &here, "replay runs/cart-rough-3 --generation 4 --individual 7");
     let one = ok(own(), &here, "replay runs/cart-rough-3 --generation 4 --individual 7 --trial 1");

@@ -49,3 +49,82 @@ fn what_is_wrong_is_said_with_its_line() {
     let told = ok(farsa(), &here, "robot light.urdf --least-mass 0.1 --least-inertia 0.001");
     assert!(told.contains("turns") && told.contains("without end"), "{told}");
 }
+
+/// The model that was written, as `farsa robot --json` tells it.
+fn told(here: &std::path::Path, file: &str) -> serde_json::Value {
+    serde_json::from_str(&ok(farsa(), here, &format!("robot {file} --json"))).expect("JSON")
+}
+
+fn mass(model: &serde_json::Value) -> f64 {
+    model["mass"].as_f64().expect("a mass")
+}
+
+#[test]
+fn robots_of_wheels_are_written_with_their_sensors() {
+    let here = scratch("robot-wheels");
+    ok(farsa(), &here, "new follow");
+    for (number, (experiment, infrared)) in [
+        ("discrimination --condition e-puck", 8),
+        ("discrimination", 8),
+        ("foraging", 24),
+        ("predator-prey", 24),
+        ("braitenberg", 8),
+        ("follow.toml", 8),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        for (format, element) in [("urdf", "<link"), ("mjcf", "<body")] {
+            let text =
+                ok(farsa(), &here, &format!("export robot {experiment} --format {format} --out {number}.{format}"));
+            assert_eq!(text, "", "{experiment}");
+            let text = fs::read_to_string(here.join(format!("{number}.{format}"))).expect("the file");
+            let count = text.matches(&format!("{element} name=\"infrared ")).count();
+            assert_eq!(count, infrared, "{experiment} as {format}");
+            assert_eq!(text.contains("timestep=\"0.0025\""), format == "mjcf", "{experiment} as {format}");
+            let model = told(&here, &format!("{number}.{format}"));
+            let joints = model["joints"].as_array().expect("joints");
+            let names: Vec<_> = joints.iter().filter_map(|joint| joint["name"].as_str()).collect();
+            assert_eq!(names, ["left wheel", "right wheel"], "{experiment} as {format}");
+        }
+    }
+    // As large as the settings say.
+    let wide = "discrimination --condition e-puck --set robot.radius=0.035";
+    ok(farsa(), &here, &format!("export robot {wide} --format urdf --out wide.urdf"));
+    let ratio = mass(&told(&here, "wide.urdf")) / mass(&told(&here, "0.urdf"));
+    let wider = 0.035 / 0.0275;
+    assert!((ratio - wider * wider).abs() < 1e-9, "{ratio}");
+}
+
+#[test]
+fn the_body_of_a_champion_is_written() {
+    let here = scratch("robot-champion");
+    ok(farsa(), &here, "run body-evolution --generations 1 --population 24 --quiet --set trial.count=1 --out r");
+    ok(farsa(), &here, "export robot r --format urdf --out champion.urdf");
+    ok(farsa(), &here, "export robot body-evolution --format urdf --out middle.urdf");
+    let [champion, middle] = ["champion.urdf", "middle.urdf"].map(|file| told(&here, file));
+    assert_eq!(champion["joints"].as_array().map(Vec::len), middle["joints"].as_array().map(Vec::len));
+    assert!((mass(&champion) - mass(&middle)).abs() > 1e-3, "{champion} {middle}");
+    // The same from a directory that is called like an experiment, by its path.
+    fs::rename(here.join("r"), here.join("body-evolution")).expect("a directory");
+    let again = ok(farsa(), &here, "export robot ./body-evolution --format urdf");
+    assert_eq!(again, fs::read_to_string(here.join("champion.urdf")).expect("the file"));
+    let experiment = ok(farsa(), &here, "export robot body-evolution --format urdf");
+    assert_eq!(experiment, fs::read_to_string(here.join("middle.urdf")).expect("the file"));
+    for (arguments, message) in [
+        ("export robot ./nothing --format urdf", "./nothing: there is no such directory"),
+        ("export robot . --format urdf", "holds no run"),
+        ("export robot nothing.toml --format urdf", "nothing.toml"),
+        ("export robot body-evolutoin --format urdf", "the nearest is `body-evolution`"),
+        (
+            "export robot ./body-evolution --condition powered --format urdf",
+            "--condition powered: a run has a condition",
+        ),
+        ("export robot ./body-evolution --population 1 --format urdf", "--population: unknown population `1`"),
+        ("export robot foraging --population 0 --format urdf", "for the directory of a run, and foraging is none"),
+        ("export robot minimal-cognition --format urdf", "minimal-cognition has no robot to export"),
+    ] {
+        let said = say(farsa(), &here, arguments);
+        assert!(said.code != Some(0) && said.err.contains(message), "{arguments}: {said:?}");
+    }
+}

@@ -1,0 +1,226 @@
+//! An episode of `compositional-instructions`: the agent hears an instruction and follows it, or does not.
+
+use std::sync::Arc;
+
+use farsa_body::{Actuated, ActuatorId, Arrange, Handles};
+use farsa_lab::{Episode, EpisodeId, Error};
+use farsa_nn::Controller;
+use farsa_num::{Domain, Stream};
+
+use crate::compositional_instructions::fitness::{Ledger, Observation, Parts};
+use crate::compositional_instructions::instruction::Instruction;
+use crate::compositional_instructions::network::{INPUTS, MOTORS};
+use crate::compositional_instructions::scene::Scene;
+use crate::compositional_instructions::senses::{ArmWorld, Senses};
+
+/// The channels before the two words.
+const WORDS: usize = 14;
+
+fn noise_of(id: EpisodeId) -> Stream {
+    Stream::new(id.seed, Domain::Sensor, id.trial, id.individual, id.generation)
+}
+
+/// What an agent is told in a trial: an instruction, and in a test another one later on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Told {
+    /// The instruction at the start.
+    pub first: Instruction,
+    /// From which step on another holds, and which.
+    pub change: Option<(u32, Instruction)>,
+    /// Steps of the trial.
+    pub steps: u32,
+    /// Standard deviation of the noise on camera, touch and joints.
+    pub noise: f32,
+}
+
+impl Told {
+    /// The instruction at a step.
+    pub fn at(&self, step: u32) -> Instruction {
+        match self.change {
+            Some((from, then)) if step >= from => then,
+            _ => self.first,
+        }
+    }
+}
+
+/// A trial run by a controller: it is judged by the instruction that holds at its end.
+///
+/// Where the instruction changes, the ledger begins anew at the change: displacements are those since then.
+#[derive(Clone, Debug)]
+pub struct InstructionEpisode<C> {
+    scene: Arc<Scene>,
+    senses: Senses,
+    controller: C,
+    told: Told,
+    /// Where the objects were when the instruction was given \[m\].
+    places: [[f64; 2]; 3],
+    ledger: Ledger,
+    /// What the first instruction had come to when it was withdrawn.
+    before_change: Option<(Parts, bool)>,
+    steps: u32,
+    stream: Stream,
+    /// What will be sensed, and what was sensed and done last.
+    next: [f32; INPUTS],
+    x: [f32; INPUTS],
+    y: [f32; MOTORS],
+}
+
+impl<C: Controller> InstructionEpisode<C> {
+    /// A trial of this controller, of 20 inputs and 4 outputs.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a controller of another shape or a camera that cannot be.
+    pub fn new(scene: Arc<Scene>, controller: C) -> Result<Self, Error> {
+        let (inputs, outputs) = (controller.inputs(), controller.outputs());
+        if inputs != INPUTS || outputs != MOTORS {
+            let why = format!("compositional-instructions: a controller of {inputs} inputs and {outputs} outputs");
+            return Err(Error::Other(format!("{why} for {INPUTS} sensors and {MOTORS} motors")));
+        }
+        let senses = Senses::new(&scene)?;
+        let first = scene.config.condition.instructions()[0];
+        let told = Told { first, change: None, steps: scene.config.steps, noise: 0.0 };
+        Ok(Self {
+            scene,
+            senses,
+            controller,
+            told,
+            places: [[0.0; 2]; 3],
+            ledger: Ledger::default(),
+            before_change: None,
+            steps: 0,
+            stream: noise_of(EpisodeId::default()),
+            next: [0.0; INPUTS],
+            x: [0.0; INPUTS],
+            y: [0.0; MOTORS],
+        })
+    }
+
+    /// What the next episodes are told.
+    pub fn tell(&mut self, told: Told) {
+        self.told = told;
+    }
+
+    /// What it is told.
+    pub fn told(&self) -> &Told {
+        &self.told
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The controller.
+    pub fn controller(&self) -> &C {
+        &self.controller
+    }
+
+    /// The same, for other parameters.
+    pub fn controller_mut(&mut self) -> &mut C {
+        &mut self.controller
+    }
+
+    /// What was sensed last \[20\].
+    pub fn sensed(&self) -> &[f32] {
+        &self.x
+    }
+
+    /// What was done last \[4\].
+    pub fn done(&self) -> &[f32] {
+        &self.y
+    }
+
+    /// Steps so far.
+    pub fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// The instruction that the trial is judged by.
+    pub fn instruction(&self) -> Instruction {
+        self.told.at(self.steps)
+    }
+
+    /// The ledger.
+    pub fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// What the first instruction had come to when another one was given: what it earned, and whether it had succeeded.
+    pub fn before_change(&self) -> Option<(Parts, bool)> {
+        self.before_change
+    }
+
+    /// What the trial earns if it ends now.
+    pub fn parts(&self) -> Parts {
+        self.ledger.parts(self.instruction(), &self.scene.config.judging)
+    }
+
+    /// Whether it succeeds if it ends now.
+    pub fn succeeds(&self) -> bool {
+        self.ledger.succeeds(self.instruction(), &self.scene.config.judging)
+    }
+
+    fn place_of_objects<W: ArmWorld + ?Sized>(&self, world: &W) -> [[f64; 2]; 3] {
+        self.scene.objects.map(|object| {
+            let [x, y, _] = world.pose(object).position;
+            [x, y].map(f64::from)
+        })
+    }
+
+    /// Reads the sensors for the step to come.
+    fn sense<W: ArmWorld + ?Sized>(&mut self, world: &W) -> Observation {
+        let instruction = self.told.at(self.steps);
+        self.senses.read(world, instruction, &self.places, &mut self.next)
+    }
+}
+
+impl<W, C> Episode<W> for InstructionEpisode<C>
+where
+    W: ArmWorld + Actuated + Arrange + Handles<Actuator = ActuatorId> + ?Sized,
+    C: Controller,
+{
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.scene.arrange(world, &self.scene.start_pose(id));
+        self.controller.reset();
+        (self.ledger, self.before_change, self.steps) = (Ledger::default(), None, 0);
+        (self.x, self.y) = ([0.0; INPUTS], [0.0; MOTORS]);
+        self.stream = noise_of(id);
+        self.places = self.place_of_objects(world);
+        self.sense(world);
+    }
+
+    fn act(&mut self, world: &mut W) {
+        self.x = self.next;
+        if self.told.noise > 0.0 {
+            for x in &mut self.x[..WORDS] {
+                *x += self.told.noise * self.stream.normal();
+            }
+        }
+        self.controller.step(&self.x, &mut self.y);
+        let speeds = self.scene.config.arm.speeds;
+        for ((motors, actuator), largest) in self.y.chunks_exact(2).zip(Scene::ACTUATORS).zip(speeds) {
+            world.command(actuator, [(motors[0] - motors[1]) * largest as f32, 0.0]);
+        }
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        let held = self.told.at(self.steps);
+        self.steps += 1;
+        let now = self.sense(world);
+        let window = self.scene.config.window_steps();
+        let withdrawn = self.told.change.is_some_and(|(at, _)| self.steps == at);
+        let end =
+            self.told.change.map_or(self.told.steps, |(at, _)| if self.steps <= at { at } else { self.told.steps });
+        self.ledger.add(held, now, self.steps + window > end);
+        if !now.ahead.iter().flatten().all(|x| x.is_finite()) {
+            return Some(f64::NAN);
+        }
+        if withdrawn {
+            let judging = &self.scene.config.judging;
+            self.before_change = Some((self.ledger.parts(held, judging), self.ledger.succeeds(held, judging)));
+            self.ledger = Ledger::default();
+            self.places = self.place_of_objects(world);
+        }
+        (self.steps >= self.told.steps).then(|| self.parts().fitness)
+    }
+}

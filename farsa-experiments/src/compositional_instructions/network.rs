@@ -1,0 +1,251 @@
+//! The network of `compositional-instructions`: sensory, inner and motor neurons in continuous time.
+
+use core::f64::consts::LN_10;
+
+use farsa_lab::{Error, Parameter};
+use farsa_nn::{CtrnnLayout, CtrnnParameter, CtrnnSymmetry, Integrator, Span};
+use farsa_num::exp;
+
+use crate::compositional_instructions::config::Ranges;
+
+/// Inputs, each of a sensory neuron: 9 of the camera, 3 of touch, 2 of the joints, 3 for the action, 3 for the object.
+pub const INPUTS: usize = 20;
+/// Inner neurons.
+pub const INNER: usize = 6;
+/// Motor neurons, two for each joint.
+pub const MOTORS: usize = 4;
+/// All neurons: sensory, then inner, then motor.
+pub const NEURONS: usize = INPUTS + INNER + MOTORS;
+
+/// The layout: each input is the external input of a sensory neuron.
+pub const LAYOUT: CtrnnLayout =
+    CtrnnLayout::new(INPUTS, NEURONS, MOTORS).with_direct_inputs(0).with_integrator(Integrator::ExponentialEuler);
+
+/// The sensory neurons of each kind of input, which share a gain and a bias.
+pub const KINDS: [(&str, Span); 5] = [
+    ("camera", Span::new(0, 9)),
+    ("touch", Span::new(9, 3)),
+    ("joints", Span::new(12, 2)),
+    ("action", Span::new(14, 3)),
+    ("object", Span::new(17, 3)),
+];
+pub(crate) const SENSORY: Span = Span::new(0, INPUTS);
+pub(crate) const INNER_ONES: Span = Span::new(INPUTS, INNER);
+pub(crate) const MOTOR_ONES: Span = Span::new(INPUTS + INNER, MOTORS);
+/// The layers that are linked, each neuron of the one to each of the other.
+pub(crate) const LINKED: [(Span, Span); 3] =
+    [(SENSORY, INNER_ONES), (INNER_ONES, INNER_ONES), (INNER_ONES, MOTOR_ONES)];
+const ALIKE: [Span; 5] = [KINDS[0].1, KINDS[1].1, KINDS[2].1, KINDS[3].1, KINDS[4].1];
+/// No neuron has a mirror image but itself.
+const ITSELF: [usize; NEURONS] = {
+    let mut images = [0; NEURONS];
+    let mut neuron = 0;
+    while neuron < NEURONS {
+        images[neuron] = neuron;
+        neuron += 1;
+    }
+    images
+};
+
+/// The number of the first gene where genes are numbered to find their places.
+const FIRST: usize = 1000;
+
+/// The time constant of the sensory neurons, in parts of a step: so small that they are what their input is.
+const RELAY: f64 = 0.05;
+
+/// Which parameters of the network are genes, and what is made of them.
+///
+/// Genes are, in this order, the weights neuron by neuron, the biases, the gains of the sensory neurons by kind, and the
+/// decimal logarithms of the time constants of inner and motor neurons: 180 + 15 + 5 + 10 numbers. A sensory neuron puts out
+/// sigma(gain input + bias); the network's own bias, which the gain multiplies, is bias / gain.
+#[derive(Clone, Debug)]
+pub struct Wiring {
+    /// Which number each of the network's parameters is made of, or what it always is.
+    origins: Vec<Origin>,
+    kinds: Vec<CtrnnParameter>,
+    parameters: Vec<Parameter>,
+    relay: f32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Origin {
+    Gene(u16),
+    Constant(f32),
+}
+
+impl Wiring {
+    /// The wiring for steps of `time_step` \[s\], its genes decoded to these ranges.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a range that is none.
+    pub fn new(ranges: &Ranges, time_step: f64) -> Result<Self, Error> {
+        let wrong = |error: farsa_nn::Error| Error::Other(format!("compositional-instructions: {error}"));
+        let symmetry = CtrnnSymmetry::new(LAYOUT, &[], &ITSELF)
+            .and_then(|symmetry| symmetry.with_links(&LINKED))
+            .and_then(|symmetry| symmetry.with_alike(&ALIKE))
+            .and_then(|symmetry| symmetry.with_gains(&ALIKE))
+            .map_err(wrong)?;
+        let kinds: Vec<CtrnnParameter> = symmetry.kinds().collect();
+        // Genes that are numbered from beyond all constants say where each of them goes.
+        let numbered: Vec<f32> = (0..kinds.len()).map(|gene| (FIRST + gene) as f32).collect();
+        let mut places = vec![0.0; LAYOUT.parameter_count()];
+        symmetry.expand(&numbered, &mut places).map_err(wrong)?;
+        let origin = |place: f32| match (place as usize).checked_sub(FIRST) {
+            Some(gene) => Origin::Gene(gene as u16),
+            None => Origin::Constant(place),
+        };
+        let origins = places.into_iter().map(origin).collect();
+        let mut parameters = Vec::new();
+        // The time constants of the sensory neurons come first and are no genes.
+        let mut relays = ALIKE.len();
+        for (number, kind) in kinds.iter().enumerate() {
+            let (name, ends) = match kind {
+                CtrnnParameter::Bias => ("bias", [-ranges.bias, ranges.bias]),
+                CtrnnParameter::Gain => ("gain", ranges.gains),
+                CtrnnParameter::TimeConstant if relays > 0 => {
+                    relays -= 1;
+                    continue;
+                }
+                CtrnnParameter::TimeConstant => ("exponent of the time constant", ranges.time_constant_exponents),
+                _ => ("weight", [-ranges.weight, ranges.weight]),
+            };
+            let ends = ends.map(|end| f64::from(end as f32));
+            if !(ends[0].is_finite() && ends[1].is_finite() && ends[0] <= ends[1]) {
+                let [low, high] = ends;
+                return Err(Error::Other(format!("compositional-instructions: {name} from {low} to {high}: no range")));
+            }
+            parameters.push(Parameter::new(format!("{name} {}", number + 1), ends));
+        }
+        Ok(Self { origins, kinds, parameters, relay: (RELAY * time_step) as f32 })
+    }
+
+    /// The numbers that the network is made of, with their ranges.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// Fills the network's parameters \[[`LAYOUT`]\] from these numbers; false for another count of them.
+    pub fn expand(&self, values: &[f32], genes: &mut Vec<f32>, parameters: &mut [f32]) -> bool {
+        if values.len() != self.parameters.len() || parameters.len() != self.origins.len() {
+            return false;
+        }
+        genes.clear();
+        let mut values = values.iter();
+        let mut relays = ALIKE.len();
+        let mut first_gain = 0;
+        for (number, kind) in self.kinds.iter().enumerate() {
+            let gene = if *kind == CtrnnParameter::TimeConstant && relays > 0 {
+                relays -= 1;
+                self.relay
+            } else {
+                let Some(value) = values.next() else { return false };
+                if *kind == CtrnnParameter::TimeConstant { exp(LN_10 * f64::from(*value)) as f32 } else { *value }
+            };
+            if *kind == CtrnnParameter::Gain && first_gain == 0 {
+                first_gain = number;
+            }
+            genes.push(gene);
+        }
+        // Biases of the five kinds of sensory neurons lie before those of inner and motor neurons, and gains after them all.
+        let first_bias = first_gain - (ALIKE.len() + INNER + MOTORS);
+        for kind in 0..ALIKE.len() {
+            genes[first_bias + kind] /= genes[first_gain + kind];
+        }
+        for (parameter, origin) in parameters.iter_mut().zip(&self.origins) {
+            *parameter = match origin {
+                Origin::Gene(gene) => genes[usize::from(*gene)],
+                Origin::Constant(value) => *value,
+            };
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compositional_instructions::config::Config;
+    use crate::compositional_instructions::instruction::Condition;
+    use farsa_nn::{Controller as _, Ctrnn};
+    use farsa_num::logistic;
+
+    fn wiring() -> Wiring {
+        Wiring::new(&Config::for_condition(Condition::WithIndicate).ranges, 0.1).unwrap()
+    }
+
+    fn expanded(wiring: &Wiring, values: &[f32]) -> Vec<f32> {
+        let mut parameters = vec![0.0; LAYOUT.parameter_count()];
+        assert!(wiring.expand(values, &mut Vec::new(), &mut parameters));
+        parameters
+    }
+
+    #[test]
+    fn there_are_210_numbers_and_each_is_where_it_belongs() {
+        let wiring = wiring();
+        assert_eq!(wiring.parameters().len(), 180 + 15 + 5 + 10);
+        let middle: Vec<f32> = wiring.parameters().iter().map(|p| f64::midpoint(p.ends[0], p.ends[1]) as f32).collect();
+        let parameters = expanded(&wiring, &middle);
+        let parts = LAYOUT.split(&parameters);
+        assert!(parts.gains[..INPUTS].iter().all(|gain| *gain == 7.0));
+        assert!(parts.gains[INPUTS..].iter().all(|gain| *gain == 1.0));
+        assert!(parts.time_constants[..INPUTS].iter().all(|tau| *tau == 0.005));
+        assert!(parts.time_constants[INPUTS..].iter().all(|tau| (tau - 1.778_279_4).abs() < 1e-6));
+        // How many parameters follow each number.
+        let followers: Vec<usize> = (0..middle.len())
+            .map(|i| {
+                let mut values = middle.clone();
+                values[i] = wiring.parameters()[i].ends[1] as f32;
+                expanded(&wiring, &values).iter().zip(&parameters).filter(|(a, b)| a != b).count()
+            })
+            .collect();
+        assert!(followers[..180].iter().all(|count| *count == 1));
+        assert_eq!(followers[180..185], [9, 3, 2, 3, 3]);
+        assert!(followers[185..195].iter().all(|count| *count == 1));
+        assert_eq!(followers[195..200], [9, 3, 2, 3, 3]);
+        assert!(followers[200..].iter().all(|count| *count == 1));
+        assert!(!wiring.expand(&middle[1..], &mut Vec::new(), &mut parameters.clone()));
+    }
+
+    /// The equation of the sources, written out in double precision: relays, inner and motor neurons.
+    #[test]
+    fn it_steps_as_the_equation_does() {
+        let wiring = wiring();
+        let values: Vec<f32> = wiring
+            .parameters()
+            .iter()
+            .enumerate()
+            .map(|(i, p)| (p.ends[0] + (p.ends[1] - p.ends[0]) * ((i * 37 % 101) as f64 / 100.0)) as f32)
+            .collect();
+        let parameters = expanded(&wiring, &values);
+        let mut network = Ctrnn::new(LAYOUT, 0.1, parameters, vec![0.0; LAYOUT.state_len()]).unwrap();
+        let at = |i: usize| f64::from(values[i]);
+        let kind_of = |input: usize| KINDS.iter().position(|(_, span)| span.contains(input)).unwrap();
+        let (mut y, mut relay_input) = ([0.0_f64; INNER + MOTORS], [0.0_f64; INPUTS]);
+        let mut out = [0.0_f32; MOTORS];
+        for step in 0..60 {
+            let x: [f32; INPUTS] = core::array::from_fn(|i| ((step * 7 + i * 13) % 5) as f32 / 4.0);
+            network.step(&x, &mut out);
+            // Relays put out, from the step after on, sigma(gain input + bias).
+            let relayed: Vec<f64> =
+                (0..INPUTS).map(|i| logistic(at(195 + kind_of(i)) * relay_input[i] + at(180 + kind_of(i)))).collect();
+            let o: Vec<f64> = (0..INNER + MOTORS).map(|i| logistic(y[i] + at(185 + i))).collect();
+            let mut next = y;
+            for (to, next) in next.iter_mut().enumerate() {
+                let mut net = 0.0;
+                if to < INNER {
+                    net += (0..INPUTS).map(|from| at(from * INNER + to) * relayed[from]).sum::<f64>();
+                }
+                // Of an inner neuron the weights to inner and to motor neurons lie together.
+                net += (0..INNER).map(|from| at(120 + from * (INNER + MOTORS) + to) * o[from]).sum::<f64>();
+                let tau = exp(LN_10 * at(200 + to));
+                *next = net + (y[to] - net) * exp(-0.1 / tau);
+            }
+            y = next;
+            relay_input = x.map(f64::from);
+            for (motor, out) in out.iter().enumerate() {
+                let expected = logistic(y[INNER + motor] + at(185 + INNER + motor));
+                assert!((f64::from(*out) - expected).abs() < 2e-4, "step {step}: {out} where {expected} is due");
+            }
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! The scene of `compositional-instructions`: an arm and three objects in a plane, and how a trial starts.
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Collider, Ground, Handles, Joint, JointId, Law, MassProperties, PairId,
+    Pose, Robot, RobotError, Segment, Shape, Surface, Velocity,
+};
+use farsa_lab::{EpisodeId, Error};
+use farsa_num::{Domain, Scalar, Stream, sin_cos};
+use farsa_physics::articulated::Options;
+
+use crate::compositional_instructions::config::Config;
+use crate::compositional_instructions::instruction::Color;
+
+/// The orders in which the three colours stand, from the left to the right.
+const ORDERS: [[Color; 3]; 6] = {
+    use Color::{Blue as B, Green as G, Red as R};
+    [[R, G, B], [R, B, G], [G, R, B], [G, B, R], [B, R, G], [B, G, R]]
+};
+
+/// Stiffness of what touches, so that a push of the arm presses surfaces together by a millimetre \[N/m\].
+const STIFFNESS: f64 = 2e4;
+/// Damping of what touches \[N s/m\].
+const DAMPING: f64 = 40.0;
+const GRAVITY: f64 = 9.81;
+
+/// Where everything is at the start of a trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StartPose {
+    /// The joints \[rad\].
+    pub joints: [f64; 2],
+    /// The objects, by colour \[m\].
+    pub objects: [[f64; 2]; 3],
+}
+
+/// The robot's description with the names of what matters in it.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The arm and the objects.
+    pub robot: Robot,
+    /// Every value of the experiment.
+    pub config: Config,
+    /// The objects, by colour.
+    pub objects: [BodyId; 3],
+    /// Their two sliding joints each.
+    pub sliders: [[JointId; 2]; 3],
+}
+
+impl Scene {
+    /// The first segment, which carries the camera at the base.
+    pub const FIRST: BodyId = BodyId(0);
+    /// The second segment.
+    pub const SECOND: BodyId = BodyId(1);
+    /// The joints at the base and between the segments.
+    pub const JOINTS: [JointId; 2] = [JointId(0), JointId(1)];
+    /// Their actuators.
+    pub const ACTUATORS: [ActuatorId; 2] = [ActuatorId(0), ActuatorId(1)];
+
+    /// The scene of a configuration.
+    ///
+    /// # Errors
+    /// Those of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    pub fn new(config: Config) -> Result<Self, Error> {
+        config.check()?;
+        let wrong = |error: RobotError| Error::Other(format!("compositional-instructions: {error}"));
+        let Config { arm, objects, .. } = &config;
+        let height = objects.radius;
+        let mut robot = Robot::new("arm and three objects");
+        let mut at = Pose::at([0.0, 0.0, height]);
+        let mut parent = None;
+        let mut shapes = Vec::new();
+        for (i, name) in ["first", "second"].into_iter().enumerate() {
+            let [length, mass, range] = [arm.lengths[i], arm.masses[i], arm.ranges[i].to_radians()];
+            let capsule = Collider::capsule_between(name, None, [0.0; 3], [length, 0.0, 0.0], arm.radius);
+            let joint = Joint::revolute(&format!("J{}", i + 1), [0.0, 0.0, 1.0], at, [-range, range]);
+            let body = robot.add_segment(Segment::new(name, parent, joint, capsule.mass_properties(mass)));
+            shapes.push(robot.add_collider(Collider { body: Some(body), ..capsule }));
+            (parent, at) = (Some(body), Pose::at([length, 0.0, 0.0]));
+        }
+        for (i, joint) in Self::JOINTS.into_iter().enumerate() {
+            let law = Law::Velocity(Velocity { gain: arm.gains[i], limit: arm.torques[i] });
+            robot.add_actuator(&format!("M{}", i + 1), joint, law);
+        }
+        let surface =
+            Surface { friction: objects.friction, rolling_friction: 0.0, stiffness: STIFFNESS, damping: DAMPING };
+        let mut bodies = [BodyId(0); 3];
+        let mut balls = [0; 3];
+        for color in Color::ALL {
+            let i = color.index();
+            let ball = MassProperties::sphere(objects.mass, objects.radius);
+            bodies[i] = robot.add_sliding_body(color.word(), Pose::at([0.0, 0.0, height]), ball, false);
+            let shape = Shape::Sphere { radius: objects.radius };
+            let collider =
+                Collider::new(color.word(), Some(bodies[i]), shape, Pose::identity()).with_color(color.rgb());
+            balls[i] = robot.add_collider(collider);
+            let load = objects.mass * GRAVITY;
+            robot.add_ground(Ground { body: bodies[i], friction: objects.ground_friction, load, radius: 0.0 });
+            for arm in &shapes {
+                robot.add_pair([balls[i], *arm], surface);
+            }
+        }
+        for [one, other] in [[0, 1], [0, 2], [1, 2]] {
+            robot.add_pair([balls[one], balls[other]], surface);
+        }
+        robot.validate().map_err(wrong)?;
+        let slider = |body: BodyId, before: u16| JointId(body.0 - before);
+        let sliders = bodies.map(|body| [slider(body, 1), slider(body, 0)]);
+        Ok(Self { robot, config, objects: bodies, sliders })
+    }
+
+    /// How the articulated world is stepped.
+    pub fn options(&self) -> Options {
+        let Config { time_step, substeps, objects, .. } = self.config;
+        Options { time_step, substeps, sight_height: objects.radius, ..Options::default() }
+    }
+
+    /// The pairs of an object with the second segment.
+    pub fn pair_on_second(&self, color: Color) -> PairId {
+        PairId((2 * color.index() + 1) as u16)
+    }
+
+    /// Where everything is at the start of an episode.
+    ///
+    /// Drawn in this order from the stream of [`Domain::Start`], the same for all individuals: for each place, from the left to
+    /// the right, bearing and distance; between which two objects the first joint starts, and its angle; the side of the second
+    /// joint, and its angle. Trial i has the colours in order i modulo 6.
+    pub fn start_pose(&self, id: EpisodeId) -> StartPose {
+        let Config { objects, start, .. } = &self.config;
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
+        let mut around = |middle: f64, spread: f64| stream.range_f64(middle - spread, middle + spread);
+        let mut places = [[0.0; 2]; 3];
+        for (color, bearing) in ORDERS[id.trial as usize % ORDERS.len()].into_iter().zip(objects.bearings) {
+            let angle = around(bearing, objects.bearing_spread).to_radians();
+            let distance = around(objects.distance, objects.distance_spread);
+            let (sine, cosine) = sin_cos(angle);
+            places[color.index()] = [distance * cosine, distance * sine];
+        }
+        let [left, middle, right] = objects.bearings;
+        let between = if stream.below(2) == 0 { [left, middle] } else { [middle, right] };
+        let mut around = |middle: f64, spread: f64| stream.range_f64(middle - spread, middle + spread);
+        let first = around(0.5 * (between[0] + between[1]), start.first_spread);
+        let second = around(start.second, start.second_spread);
+        let side = if stream.below(2) == 0 { 1.0 } else { -1.0 };
+        StartPose { joints: [first.to_radians(), side * second.to_radians()], objects: places }
+    }
+
+    /// Puts everything there, at rest.
+    pub fn arrange<W>(&self, world: &mut W, start: &StartPose)
+    where
+        W: Arrange + Actuated + Handles<Joint = JointId> + ?Sized,
+    {
+        world.clear();
+        for (joint, angle) in Self::JOINTS.into_iter().zip(start.joints) {
+            world.place_joint(joint, angle as f32, 0.0);
+        }
+        for (sliders, place) in self.sliders.into_iter().zip(start.objects) {
+            for (slider, x) in sliders.into_iter().zip(place) {
+                world.place_joint(slider, x as f32, 0.0);
+            }
+        }
+        world.finish_placement();
+    }
+
+    /// How far a point is from another \[m\].
+    pub(crate) fn distance([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
+        Scalar::sqrt((x - u) * (x - u) + (y - v) * (y - v))
+    }
+}

@@ -1,0 +1,166 @@
+//! A controller written by hand, which shows that the sensors and the two words suffice.
+
+use farsa_nn::Controller;
+
+use crate::compositional_instructions::config::Config;
+use crate::compositional_instructions::instruction::{Action, Color, Condition, Instruction};
+use crate::compositional_instructions::network::{INPUTS, MOTORS};
+
+/// Which word a [`Script`] does not listen to, and what it takes for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Deaf {
+    /// It hears both.
+    #[default]
+    To,
+    /// It always does this.
+    ToAction(Action),
+    /// It always turns to this object.
+    ToColor(Color),
+}
+
+/// What it is about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    /// Turns to one side until the target is in view.
+    Search { left: bool },
+    /// Turns until the target is in the middle.
+    Centre,
+    /// Stretches until it touches.
+    Stretch,
+    /// Stays as it is, on the target.
+    Hold,
+    /// Pushes through an angle that is left \[rad\].
+    Push { left: f64, before: f64 },
+    /// Lets go for so many steps.
+    Release { steps: u32 },
+    /// Turns away until nothing is in view.
+    Leave { left: bool },
+    /// Nothing remains to be done.
+    Rest,
+}
+
+/// Finds the object by its colour, then acts as the action word says: 20 sensors in, 4 motors out, and nothing else.
+#[derive(Clone, Debug)]
+pub struct Script {
+    condition: Condition,
+    ranges: [f64; 2],
+    speeds: [f64; 2],
+    deaf: Deaf,
+    stage: Stage,
+    /// The side that the second segment was folded to at the start.
+    folded_left: Option<bool>,
+}
+
+/// Beyond the outermost object the search turns back \[rad\].
+const TURN_BACK: f64 = 1.2;
+/// Through which angle the second joint pushes: 0.35 m at the distance of the objects from the elbow, and some more \[rad\].
+const PUSH: f64 = 1.8;
+
+impl Script {
+    /// A controller for an experiment's agent.
+    pub fn new(config: &Config, deaf: Deaf) -> Self {
+        Self {
+            condition: config.condition,
+            ranges: config.arm.ranges.map(f64::to_radians),
+            speeds: config.arm.speeds,
+            deaf,
+            stage: Stage::Search { left: true },
+            folded_left: None,
+        }
+    }
+
+    /// The instruction as it is taken.
+    fn heard(&self, x: &[f32]) -> Instruction {
+        let word = |words: &[f32]| words.iter().position(|value| *value > 0.5).unwrap_or(0);
+        let action = self.condition.actions()[word(&x[14..17])];
+        let color = Color::ALL[word(&x[17..20])];
+        match self.deaf {
+            Deaf::To => Instruction { action, color },
+            Deaf::ToAction(action) => Instruction { action, color },
+            Deaf::ToColor(color) => Instruction { action, color },
+        }
+    }
+
+    /// The wanted speeds of the joints \[rad/s\], after the stage was brought up to date.
+    fn speeds(&mut self, x: &[f32]) -> [f64; 2] {
+        let Instruction { action, color } = self.heard(x);
+        let seen = [0, 1, 2].map(|sector| x[3 * sector + color.index()] > 0.0);
+        let touching = x[9..12].iter().any(|value| *value > 0.0);
+        let joint = |i: usize| f64::from(x[12 + i]) * 2.0 * self.ranges[i] - self.ranges[i];
+        let [first, second] = [joint(0), joint(1)];
+        let folded_left = *self.folded_left.get_or_insert(second > 0.0);
+        let inwards = if folded_left { -1.0 } else { 1.0 };
+        let aim = match seen {
+            [true, false, _] => 0.25,
+            [_, false, true] => -0.25,
+            [true, true, false] => 0.05,
+            [false, true, true] => -0.05,
+            _ => 0.0,
+        };
+        self.stage = match self.stage {
+            Stage::Search { .. } if seen.contains(&true) => Stage::Centre,
+            Stage::Search { left } if left && first > TURN_BACK => Stage::Search { left: false },
+            Stage::Search { left } if !left && first < -TURN_BACK => Stage::Search { left: true },
+            Stage::Centre if !seen.contains(&true) => Stage::Search { left: first < 0.0 },
+            Stage::Centre if seen[1] => match action {
+                Action::Indicate => Stage::Centre,
+                Action::Touch | Action::Move => Stage::Stretch,
+                Action::Ignore => Stage::Leave { left: first > 0.0 },
+            },
+            Stage::Stretch if touching => match action {
+                Action::Move => Stage::Push { left: PUSH, before: second },
+                _ => Stage::Hold,
+            },
+            Stage::Hold if !touching => Stage::Stretch,
+            Stage::Push { left, before } => {
+                let left = left - (second - before).abs();
+                if left > 0.0 { Stage::Push { left, before: second } } else { Stage::Release { steps: 12 } }
+            }
+            Stage::Release { steps: 0 } => Stage::Rest,
+            Stage::Release { steps } => Stage::Release { steps: steps - 1 },
+            Stage::Leave { .. } if !x[..9].iter().any(|value| *value > 0.0) => Stage::Rest,
+            stage => stage,
+        };
+        match self.stage {
+            Stage::Search { left } => [if left { 1.0 } else { -1.0 }, 0.0],
+            Stage::Centre => [aim, 0.0],
+            Stage::Stretch => {
+                // Slow where it may touch: from 43 degrees from straight on.
+                let slow = inwards * second > -0.75;
+                [0.0, inwards * if slow { 0.1 } else { 1.0 }]
+            }
+            Stage::Push { .. } => [0.0, inwards * 0.4],
+            Stage::Release { .. } => [0.0, -inwards],
+            Stage::Leave { left } => [if left { 0.3 } else { -0.3 }, 0.0],
+            // What was pushed is kept in the middle.
+            Stage::Rest if action == Action::Move => [if seen.contains(&true) { aim } else { 0.3 * inwards }, 0.0],
+            Stage::Hold | Stage::Rest => [0.0, 0.0],
+        }
+    }
+}
+
+impl Controller for Script {
+    fn inputs(&self) -> usize {
+        INPUTS
+    }
+
+    fn outputs(&self) -> usize {
+        MOTORS
+    }
+
+    fn reset(&mut self) {
+        self.stage = Stage::Search { left: true };
+        self.folded_left = None;
+    }
+
+    fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        let wanted = if x.len() < INPUTS { [0.0; 2] } else { self.speeds(x) };
+        for ((motors, wanted), largest) in y.chunks_mut(2).zip(wanted).zip(self.speeds) {
+            // Two motor neurons differ by the wanted part of the largest speed.
+            let part = if largest > 0.0 { (wanted / largest).clamp(-1.0, 1.0) } else { 0.0 };
+            for (motor, sign) in motors.iter_mut().zip([0.5, -0.5]) {
+                *motor = (0.5 + sign * part) as f32;
+            }
+        }
+    }
+}

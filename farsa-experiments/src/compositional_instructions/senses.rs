@@ -1,0 +1,127 @@
+//! What the agent senses: colours ahead, touch, its joints, and the two words.
+
+use farsa_body::{
+    Beam, BodyId, ChannelError, ColorBand, Handles, JointId, Joints, Kinematics, LinearCamera, Pose, Sensor, Sight,
+};
+use farsa_lab::Error;
+
+use crate::compositional_instructions::config::Config;
+use crate::compositional_instructions::fitness::Observation;
+use crate::compositional_instructions::instruction::{Color, Condition, Instruction};
+use crate::compositional_instructions::network::INPUTS;
+use crate::compositional_instructions::scene::Scene;
+
+/// A world in which the agent can live.
+pub trait ArmWorld: Kinematics + Joints + Sight + Handles<Body = BodyId, Joint = JointId> {}
+
+impl<W> ArmWorld for W where W: Kinematics + Joints + Sight + Handles<Body = BodyId, Joint = JointId> + ?Sized {}
+
+/// The sensors, 20 channels: the camera's sectors from the left to the right, in each red, green, blue; touch of the second
+/// segment left, at its tip, right; the two joints, 0 at the lower and 1 at the upper limit; the action; the object.
+#[derive(Clone, Debug)]
+pub struct Senses {
+    camera: LinearCamera<Vec<Beam>, Vec<ColorBand>>,
+    condition: Condition,
+    objects: [BodyId; 3],
+    /// Half the range of each joint, doubled by the other side \[rad\].
+    ranges: [f64; 2],
+    /// Length of the second segment \[m\].
+    length: f64,
+    /// Distance of an object's centre from the second segment's axis below which they touch \[m\].
+    reach: f64,
+}
+
+/// The names of the channels.
+pub fn channel_names(condition: Condition) -> Vec<String> {
+    let sectors = ["left", "middle", "right"];
+    let seen = sectors.into_iter().flat_map(|sector| Color::ALL.map(|color| format!("{} {sector}", color.word())));
+    let words = condition.actions().map(|action| action.word().to_owned()).into_iter();
+    let words = words.chain(Color::ALL.map(|color| color.word().to_owned()));
+    let own = ["touch left", "touch tip", "touch right", "J1", "J2"].map(String::from);
+    seen.chain(own).chain(words).collect()
+}
+
+impl Senses {
+    /// The sensors in a scene.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a camera that cannot be.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let Config { arm, objects, camera, condition, touch_margin, .. } = &scene.config;
+        let wrong = |error: ChannelError| Error::Other(format!("compositional-instructions: {error}"));
+        let bands = Color::ALL.map(|color| ColorBand::around(color.rgb().map(|x| x as f32), 0.25)).to_vec();
+        let (view, rays, range) = (camera.view.to_radians(), camera.rays as usize, camera.range as f32);
+        Ok(Self {
+            camera: LinearCamera::for_view(Scene::FIRST, view, 3, rays, bands, range).map_err(wrong)?,
+            condition: *condition,
+            objects: scene.objects,
+            ranges: arm.ranges.map(f64::to_radians),
+            length: arm.lengths[1],
+            reach: objects.radius + arm.radius + touch_margin,
+        })
+    }
+
+    /// Reads all channels, and tells what is to be seen by whoever judges; `places` are those where the trial found the objects.
+    pub fn read<W: ArmWorld + ?Sized>(
+        &mut self,
+        world: &W,
+        instruction: Instruction,
+        places: &[[f64; 2]; 3],
+        x: &mut [f32; INPUTS],
+    ) -> Observation {
+        let mut now = Observation::default();
+        self.camera.read(world, &mut x[..9]);
+        for (sector, values) in now.seen.iter_mut().zip(x.chunks_exact_mut(3)) {
+            for (seen, value) in sector.iter_mut().zip(values) {
+                *seen = *value > 0.0;
+                *value = f32::from(u8::from(*seen));
+            }
+        }
+        let (first, second) = (world.pose(Scene::FIRST), world.pose(Scene::SECOND));
+        let mut sides = [false; 3];
+        for (i, object) in self.objects.into_iter().enumerate() {
+            let place = world.pose(object).position;
+            let [ahead, left, _] = first.transform_back(place).map(f64::from);
+            now.ahead[i] = [ahead, left];
+            now.displaced[i] = Scene::distance([place[0], place[1]].map(f64::from), places[i]);
+            if let Some(side) = self.side(&second, place) {
+                now.touched[i] = true;
+                sides[side] = true;
+            }
+        }
+        for (value, side) in x[9..12].iter_mut().zip(sides) {
+            *value = f32::from(u8::from(side));
+        }
+        for ((value, joint), range) in x[12..14].iter_mut().zip(Scene::JOINTS).zip(self.ranges) {
+            *value = ((f64::from(world.position(joint)) + range) / (2.0 * range)) as f32;
+        }
+        self.tell(instruction, x);
+        now
+    }
+
+    /// Gives the two words alone.
+    pub fn tell(&self, instruction: Instruction, x: &mut [f32; INPUTS]) {
+        let Instruction { action, color } = instruction;
+        x[14..].fill(0.0);
+        x[14 + self.condition.channel(action)] = 1.0;
+        x[17 + color.index()] = 1.0;
+    }
+
+    /// With which side the second segment is on an object at a place: 0 the left one, 1 the tip, 2 the right one.
+    fn side(&self, second: &Pose, place: [f32; 3]) -> Option<usize> {
+        let [along, left, _] = second.transform_back(place).map(f64::from);
+        let near = along.clamp(0.0, self.length);
+        let apart = Scene::distance([along, left], [near, 0.0]);
+        if apart >= self.reach {
+            return None;
+        }
+        let beyond = along > self.length;
+        Some(if beyond {
+            1
+        } else if left > 0.0 {
+            0
+        } else {
+            2
+        })
+    }
+}

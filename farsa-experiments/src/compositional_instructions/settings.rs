@@ -1,0 +1,216 @@
+//! The values of `compositional-instructions` as settings.
+
+use farsa_lab::{Error, Setting, Settings};
+
+use crate::compositional_instructions::config::{Arm, Camera, Config, Judging, Objects, Ranges, Start};
+use crate::compositional_instructions::instruction::{Condition, Instruction};
+
+fn number(key: &str, value: f64, low: f64, high: f64) -> Setting {
+    Setting::number(key, value, low..=high)
+}
+
+fn numbers(key: &str, values: &[f64], low: f64, high: f64) -> Setting {
+    Setting::numbers(key, values, low..=high)
+}
+
+impl Config {
+    /// The settings with these values as defaults.
+    pub fn table(&self) -> Vec<Setting> {
+        [self.of_search(), self.of_world(), self.of_start(), self.of_judging(), self.of_network()].concat()
+    }
+
+    fn of_search(&self) -> Vec<Setting> {
+        let told = self.condition.instructions().map(|instruction| instruction.to_string());
+        let told: Vec<&str> = told.iter().map(String::as_str).collect();
+        let [one, other] = self.held_out.map(|instruction| instruction.to_string());
+        vec![
+            Setting::whole("evolution.generations", 2000, 1..=i64::from(u32::MAX) - 1)
+                .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+            Setting::whole("evolution.population", 100, 1..=1_000_000)
+                .doc("Individuals of a generation, a multiple of the parents."),
+            Setting::whole("evolution.parents", 20, 1..=1_000_000)
+                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
+            Setting::number("evolution.mutation_rate", 0.015, 0.0..=1.0).doc("Probability that mutation hits a bit."),
+            Setting::word("instruction.held_out", &one, &told)
+                .given()
+                .doc("An instruction that is never heard before the test."),
+            Setting::word("instruction.held_out_too", &other, &told)
+                .given()
+                .doc("Another, which may be the same one again."),
+            Setting::whole("trial.starts", i64::from(self.starts), 1..=10_000)
+                .doc("Starts of each trained instruction; six meet each order of the colours once."),
+            Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000).doc("Control steps of a trial."),
+        ]
+    }
+
+    fn of_world(&self) -> Vec<Setting> {
+        let Self { arm, objects, camera, .. } = self;
+        vec![
+            number("world.time_step", self.time_step, 0.001, 1.0).unit("s").doc("Control step."),
+            Setting::whole("world.substeps", i64::from(self.substeps), 1..=1000)
+                .doc("Dynamics steps of a control step."),
+            numbers("arm.lengths", &arm.lengths, 0.05, 10.0).unit("m").doc("Lengths of the two segments."),
+            numbers("arm.masses", &arm.masses, 0.001, 1000.0).unit("kg").doc("Their masses."),
+            number("arm.radius", arm.radius, 0.001, 1.0).unit("m").doc("Their radius; both are capsules."),
+            numbers("arm.ranges", &arm.ranges, 1.0, 175.0).unit("deg").doc("How far each joint turns to each side."),
+            numbers("arm.speeds", &arm.speeds, 0.0, 10.0)
+                .unit("rad/s")
+                .doc("Speeds that are commanded by a difference of 1 between two motor neurons."),
+            numbers("arm.gains", &arm.gains, 0.0, 10_000.0)
+                .unit("N m s/rad")
+                .doc("Torque for each rad/s that a joint lacks of the commanded speed."),
+            numbers("arm.torques", &arm.torques, 0.0, 10_000.0).unit("N m").doc("Largest torques."),
+            number("object.radius", objects.radius, 0.001, 1.0).unit("m").doc("Radius of the objects."),
+            number("object.mass", objects.mass, 0.001, 1000.0).unit("kg").doc("Their mass."),
+            number("object.ground_friction", objects.ground_friction, 0.0, 10.0)
+                .doc("Coefficient of friction on the ground: a light touch does not move an object, a push does."),
+            number("object.friction", objects.friction, 0.0, 10.0)
+                .doc("Coefficient of friction where the arm or an object touches an object."),
+            number("object.distance", objects.distance, 0.05, 20.0)
+                .unit("m")
+                .doc("Distance from the base: the folded arm passes inside of all, the stretched one reaches all."),
+            number("object.distance_spread", objects.distance_spread, 0.0, 10.0)
+                .unit("m")
+                .doc("By how much that differs at most."),
+            numbers("object.bearings", &objects.bearings, -170.0, 170.0)
+                .unit("deg")
+                .doc("Where the three objects stand, from the left to the right; which colour stands where is drawn."),
+            number("object.bearing_spread", objects.bearing_spread, 0.0, 90.0)
+                .unit("deg")
+                .doc("By how much each bearing differs at most."),
+            number("camera.view", camera.view, 1.0, 180.0).unit("deg").doc("Field of view, in three sectors alike."),
+            Setting::whole("camera.rays", i64::from(camera.rays), 1..=1000).doc("Rays of a sector."),
+            number("camera.range", camera.range, 0.1, 100.0).unit("m").doc("How far the camera sees."),
+            number("touch.margin", self.touch_margin, 0.0, 0.1)
+                .unit("m")
+                .doc("Surfaces nearer than this count as touching, so that a light touch is not lost."),
+        ]
+    }
+
+    fn of_start(&self) -> Vec<Setting> {
+        let Start { first_spread, second, second_spread } = self.start;
+        vec![
+            number("start.first_spread", first_spread, 0.0, 90.0)
+                .unit("deg")
+                .doc("The first joint starts at most so far from a direction between two objects."),
+            number("start.second", second, 0.0, 175.0)
+                .unit("deg")
+                .doc("The second joint starts so far to the left or to the right."),
+            number("start.second_spread", second_spread, 0.0, 90.0)
+                .unit("deg")
+                .doc("By how much that differs at most."),
+        ]
+    }
+
+    fn of_judging(&self) -> Vec<Setting> {
+        let judging = &self.judging;
+        let length = |key: &str, value: f64| number(key, value, 1e-6, 10.0).unit("m");
+        vec![
+            number("fitness.window", judging.window, 0.001, 1000.0)
+                .unit("s")
+                .doc("The last seconds of a trial, of which shares are taken."),
+            length("fitness.still", judging.still).doc("A displacement that costs nothing."),
+            length("fitness.span", judging.span).doc("How much more than that costs all."),
+            length("fitness.far", judging.far).doc("The displacement for which MOVE earns most."),
+            numbers("success.least_shares", &judging.least_shares, 0.0, 1.0)
+                .doc("Least shares of the last seconds: of INDICATE and IGNORE, and of TOUCH."),
+            length("success.most_still", judging.most_still)
+                .doc("Most displacement of the target, of INDICATE and IGNORE."),
+            length("success.most_touched", judging.most_touched).doc("Most displacement of the target, of TOUCH."),
+            length("success.least_moved", judging.least_moved).doc("Least displacement of the target, of MOVE."),
+            length("success.most_other", judging.most_other).doc("Most displacement of another object."),
+        ]
+    }
+
+    fn of_network(&self) -> Vec<Setting> {
+        let Ranges { weight, bias, time_constant_exponents, gains } = self.ranges;
+        vec![
+            number("net.weight_range", weight, 0.1, 1000.0).doc("Weights are decoded to plus and minus this."),
+            number("net.bias_range", bias, 0.1, 1000.0).doc("Biases are decoded to plus and minus this."),
+            numbers("net.time_constant_exponents", &time_constant_exponents, -3.0, 5.0)
+                .doc("Least and greatest decimal logarithm of the time constants [s]."),
+            numbers("net.gains", &gains, 0.01, 1000.0).doc("Least and greatest gain of the sensory neurons."),
+        ]
+    }
+
+    /// The values of checked settings.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for what does not go together.
+    pub fn read(condition: Condition, settings: &Settings) -> Result<Self, Error> {
+        let number = |key: &str| settings.number(key);
+        let count = |key: &str| settings.count(key).map(|count| count as u32);
+        let two = |key: &str| {
+            let found = settings.numbers(key)?;
+            <[f64; 2]>::try_from(found).map_err(|_| Error::setting(key, format!("{} numbers, not 2", found.len())))
+        };
+        let ends = |key: &str| {
+            let [low, high] = two(key)?;
+            if low > high {
+                return Err(Error::setting(key, format!("{low}, {high}: the first must not be greater")));
+            }
+            Ok([low, high])
+        };
+        let held_out = |key: &str| -> Result<Instruction, Error> { condition.parse(settings.word(key)?) };
+        let bearings = settings.numbers("object.bearings")?;
+        let config = Self {
+            condition,
+            held_out: [held_out("instruction.held_out")?, held_out("instruction.held_out_too")?],
+            starts: count("trial.starts")?,
+            steps: count("trial.steps")?,
+            time_step: number("world.time_step")?,
+            substeps: count("world.substeps")?,
+            arm: Arm {
+                lengths: two("arm.lengths")?,
+                masses: two("arm.masses")?,
+                radius: number("arm.radius")?,
+                ranges: two("arm.ranges")?,
+                speeds: two("arm.speeds")?,
+                gains: two("arm.gains")?,
+                torques: two("arm.torques")?,
+            },
+            objects: Objects {
+                radius: number("object.radius")?,
+                mass: number("object.mass")?,
+                ground_friction: number("object.ground_friction")?,
+                friction: number("object.friction")?,
+                distance: number("object.distance")?,
+                distance_spread: number("object.distance_spread")?,
+                bearings: bearings
+                    .try_into()
+                    .map_err(|_| Error::setting("object.bearings", format!("{} numbers, not 3", bearings.len())))?,
+                bearing_spread: number("object.bearing_spread")?,
+            },
+            camera: Camera {
+                view: number("camera.view")?,
+                rays: count("camera.rays")?,
+                range: number("camera.range")?,
+            },
+            touch_margin: number("touch.margin")?,
+            start: Start {
+                first_spread: number("start.first_spread")?,
+                second: number("start.second")?,
+                second_spread: number("start.second_spread")?,
+            },
+            judging: Judging {
+                window: number("fitness.window")?,
+                still: number("fitness.still")?,
+                span: number("fitness.span")?,
+                far: number("fitness.far")?,
+                least_shares: two("success.least_shares")?,
+                most_still: number("success.most_still")?,
+                most_touched: number("success.most_touched")?,
+                least_moved: number("success.least_moved")?,
+                most_other: number("success.most_other")?,
+            },
+            ranges: Ranges {
+                weight: number("net.weight_range")?,
+                bias: number("net.bias_range")?,
+                time_constant_exponents: ends("net.time_constant_exponents")?,
+                gains: ends("net.gains")?,
+            },
+        };
+        config.check()?;
+        Ok(config)
+    }
+}

@@ -1,0 +1,241 @@
+//! What there is to know of `compositional-instructions`, and its episodes over parameters.
+
+use std::sync::Arc;
+
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Recorder, Robot};
+use farsa_lab::{
+    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, MotorExport,
+    NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,
+};
+use farsa_view::Schema;
+
+use crate::compositional_instructions::agent::Agent;
+use crate::compositional_instructions::config::Config;
+use crate::compositional_instructions::episode::{InstructionEpisode, Told};
+use crate::compositional_instructions::instruction::{Action, Instruction};
+use crate::compositional_instructions::network::{INNER, INPUTS, MOTORS, Wiring};
+use crate::compositional_instructions::protocols::Protocols;
+use crate::compositional_instructions::scene::Scene;
+use crate::compositional_instructions::schema;
+use crate::compositional_instructions::senses::{ArmWorld, channel_names};
+
+/// A trial run by a network, with what it records.
+#[derive(Clone)]
+pub struct InstructionTask {
+    episode: InstructionEpisode<Agent>,
+    wiring: Arc<Wiring>,
+    trained: Arc<[Instruction]>,
+    protocols: Arc<Protocols>,
+}
+
+impl InstructionTask {
+    /// Trials in a scene.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a configuration whose network cannot be built, [`Error::Setting`] for one in which nothing is trained.
+    pub fn new(scene: Scene) -> Result<Self, Error> {
+        let wiring = Wiring::new(&scene.config.ranges, scene.config.time_step)?;
+        let agent = Agent::new(&wiring, scene.config.time_step)?;
+        let trained: Arc<[Instruction]> = scene.config.trained().collect();
+        let protocols = Arc::new(Protocols::new(&scene.config));
+        let episode = InstructionEpisode::new(Arc::new(scene), agent)?;
+        Ok(Self { episode, wiring: Arc::new(wiring), trained, protocols })
+    }
+
+    fn config(&self) -> &Config {
+        &self.episode.scene().config
+    }
+
+    /// The episode.
+    pub fn episode(&self) -> &InstructionEpisode<Agent> {
+        &self.episode
+    }
+
+    /// What an agent is told in a trial of the training.
+    fn told(&self, trial: u32) -> Told {
+        let Config { starts, steps, .. } = *self.config();
+        let number = (trial / starts.max(1)) as usize % self.trained.len().max(1);
+        let first = self.trained.get(number).copied().unwrap_or(self.episode.told().first);
+        Told { first, change: None, steps, noise: 0.0 }
+    }
+}
+
+impl<W> Episode<W> for InstructionTask
+where
+    W: ArmWorld
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+        + ?Sized,
+{
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.episode.start(world, id);
+    }
+
+    fn act(&mut self, world: &mut W) {
+        self.episode.act(world);
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.episode.judge(world)
+    }
+
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        schema::record(world, &self.episode, recorder);
+    }
+}
+
+impl Rollout for InstructionTask {
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        let agent = self.episode.controller_mut();
+        if !agent.load(&self.wiring, evaluation.parameters) {
+            return false;
+        }
+        let told = match evaluation.case {
+            None => self.told(evaluation.id.trial),
+            Some(case) => {
+                let Some(probe) = self.protocols.probe(case) else { return false };
+                probe.apply(agent);
+                probe.told()
+            }
+        };
+        self.episode.tell(told);
+        true
+    }
+
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(&schema::in_schema_order(self.episode.controller().network().parameters()));
+    }
+
+    fn outcome(&self) -> Outcome {
+        let (parts, instruction) = (self.episode.parts(), self.episode.instruction());
+        let [target, other] = self.episode.ledger().displaced(instruction.color);
+        let broken = !self.episode.ledger().last().ahead.iter().flatten().all(|x| x.is_finite());
+        let before = match self.episode.before_change() {
+            None => "none",
+            Some((_, true)) => "succeeded",
+            Some((_, false)) => "failed",
+        };
+        Outcome {
+            terms: vec![if broken { f64::NAN } else { parts.fitness }],
+            steps: self.episode.steps(),
+            success: !broken && self.episode.succeeds(),
+            notes: vec![
+                ("instruction", Note::from(instruction.to_string().as_str())),
+                ("find", Note::from(parts.find)),
+                ("act", Note::from(parts.act)),
+                ("undisturbed", Note::from(parts.undisturbed)),
+                ("target moved [m]", Note::from(target)),
+                ("other moved [m]", Note::from(other)),
+                ("earlier instruction", Note::from(before)),
+            ],
+            ..Outcome::default()
+        }
+    }
+}
+
+impl Task for InstructionTask {
+    fn parameters(&self) -> Vec<Parameter> {
+        self.wiring.parameters().to_vec()
+    }
+
+    fn trials(&self) -> usize {
+        self.config().trials()
+    }
+
+    fn protocols(&self) -> Vec<Protocol> {
+        self.protocols.list()
+    }
+
+    /// In a test the instruction may change, and as many steps follow.
+    fn step_budget(&self) -> u64 {
+        2 * u64::from(self.config().steps)
+    }
+
+    fn terms(&self) -> Vec<String> {
+        vec!["fitness".into()]
+    }
+
+    fn schema(&self) -> Schema {
+        schema::schema(self.episode.scene())
+    }
+
+    fn description(&self) -> Description {
+        let Config { arm, time_step, condition, .. } = *self.config();
+        let [first, second] = arm.ranges;
+        let [fast, faster] = arm.speeds;
+        let actions = condition.actions().map(Action::word).join(", ");
+        let steps = self.config().steps;
+        Description {
+            sensors: vec![
+                ChannelGroup::new(
+                    "camera",
+                    9,
+                    "sectors left, middle, right, in each red, green, blue: 1 if a ray meets it",
+                ),
+                ChannelGroup::new("touch", 3, "second segment on an object: left side, tip, right side, 0 or 1"),
+                ChannelGroup::new(
+                    "joints",
+                    2,
+                    &format!("0 at -{first} and -{second}, 1 at {first} and {second} degrees"),
+                ),
+                ChannelGroup::new("action", 3, &format!("{actions}: 1 for the one that is told")),
+                ChannelGroup::new("object", 3, "red, green, blue: 1 for the one that is told"),
+            ],
+            motors: vec![ChannelGroup::new(
+                "speeds",
+                MOTORS,
+                &format!("left less right is the speed of J1 and of J2, in parts of {fast} and {faster} rad/s"),
+            )],
+            network: format!("continuous-time recurrent, {INPUTS} sensory, {INNER} inner, {MOTORS} motor neurons"),
+            parameters: self.wiring.parameters().len(),
+            steps: steps as usize,
+            step_seconds: time_step,
+        }
+    }
+
+    /// The mean over the trials.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl Exports for InstructionTask {
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        Some(self.episode.scene().robot.clone())
+    }
+
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        let Config { arm, time_step, steps, condition, .. } = *self.config();
+        let mut agent = self.episode.controller().clone();
+        if !agent.load(&self.wiring, parameters) {
+            return None;
+        }
+        let network = agent.network();
+        let network = NetworkExport::Ctrnn {
+            layout: network.layout(),
+            time_step: network.time_step(),
+            parameters: network.parameters().to_vec(),
+        };
+        let sensors = channel_names(condition).into_iter().enumerate().map(|(channel, name)| match channel {
+            0..9 => SensorExport::quantity(name, "whether a ray of the sector meets the colour first", "1", [0.0, 1.0]),
+            9..12 => SensorExport::quantity(name, "whether the second segment is on an object", "1", [0.0, 1.0]),
+            12 | 13 => {
+                let range = arm.ranges[channel - 12].to_radians();
+                SensorExport::quantity(name, "angle of the joint", "rad", [-range, range])
+            }
+            _ => SensorExport::quantity(name, "whether this is the word", "1", [0.0, 1.0]),
+        });
+        let motors = schema::OUTPUTS.into_iter().enumerate().map(|(motor, name)| {
+            let speed = arm.speeds[motor / 2];
+            let end = if motor % 2 == 0 { speed } else { -speed };
+            MotorExport::quantity(name, "part of the joint's speed, of which both are added", "rad/s", [0.0, end])
+        });
+        Some(ControllerExport::new(network, sensors.collect(), motors.collect(), time_step, steps))
+    }
+}

@@ -1,0 +1,119 @@
+//! `compositional-instructions` with a controller written by hand: the task is possible, and needs both words.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use farsa_experiments::compositional_instructions::{
+    Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, Told, evaluator,
+};
+use farsa_lab::{CaseId, EpisodeId, Evaluation, Evaluator, Lanes, Outcome, Parameter, Task as _, run_episode};
+use farsa_num::{Domain, Instructions, Stream};
+use farsa_physics::articulated::{Model, World};
+
+const CONDITIONS: [Condition; 2] = [Condition::WithIndicate, Condition::WithIgnore];
+
+/// Successes and mean fitness of a script over so many starts of each instruction.
+fn tried(condition: Condition, deaf: Deaf, starts: u32) -> Vec<(Instruction, u32, f64)> {
+    let scene = Arc::new(Scene::new(Config::for_condition(condition)).unwrap());
+    let mut world = World::<f32>::new(Model::new(&scene.robot, &scene.options()).unwrap());
+    let script = Script::new(&scene.config, deaf);
+    let mut episode = InstructionEpisode::new(Arc::clone(&scene), script).unwrap();
+    let steps = scene.config.steps;
+    let of = |first: Instruction| {
+        episode.tell(Told { first, change: None, steps, noise: 0.0 });
+        let (mut successes, mut sum) = (0, 0.0);
+        for trial in 0..starts {
+            let fitness =
+                run_episode(&mut episode, &mut world, EpisodeId { seed: 5, trial, ..EpisodeId::default() }, None);
+            assert_eq!(episode.steps(), steps);
+            successes += u32::from(episode.succeeds());
+            sum += fitness;
+        }
+        (first, successes, sum / f64::from(starts))
+    };
+    condition.instructions().into_iter().map(of).collect()
+}
+
+#[test]
+fn a_script_follows_all_nine_instructions() {
+    for condition in CONDITIONS {
+        let starts = 60;
+        for (instruction, successes, fitness) in tried(condition, Deaf::To, starts) {
+            println!("{instruction}: {successes} of {starts}, fitness {fitness:.3}");
+            assert!(successes * 100 >= 95 * starts, "{instruction}: {successes} of {starts}");
+            assert!((0.9..=1.0).contains(&fitness), "{instruction}: {fitness}");
+        }
+    }
+}
+
+#[test]
+fn who_does_not_hear_a_word_fails() {
+    for condition in CONDITIONS {
+        let starts = 18;
+        let actions = condition.actions().map(Deaf::ToAction);
+        for deaf in actions.into_iter().chain(Color::ALL.map(Deaf::ToColor)) {
+            let all: u32 = tried(condition, deaf, starts).iter().map(|(_, successes, _)| successes).sum();
+            println!("{deaf:?}: {all} of {}", 9 * starts);
+            assert!(all * 100 <= 40 * 9 * starts, "{deaf:?}: {all} of {}", 9 * starts);
+        }
+    }
+}
+
+/// Parameters of random genes.
+fn random(evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
+    let mut stream = Stream::new(2, Domain::InitialGenome, number, 0, 0);
+    let between = |parameter: Parameter| stream.range_f64(parameter.ends[0], parameter.ends[1]) as f32;
+    evaluator.parameters().into_iter().map(between).collect()
+}
+
+#[test]
+fn trials_and_cases_in_lanes_are_those_alone() {
+    for condition in CONDITIONS {
+        let mut evaluator = evaluator(Config { steps: 80, ..Config::for_condition(condition) }).unwrap();
+        let parameters: Vec<Vec<f32>> = (0..6).map(|number| random(&evaluator, number)).collect();
+        let protocols = evaluator.protocols();
+        let mut evaluations = Vec::new();
+        for number in 0..60 {
+            let id = EpisodeId { seed: 4, generation: 1, individual: 0, trial: number as u32 % 42 };
+            let protocol = number % protocols.len();
+            let case = CaseId { protocol, case: number * 7 % protocols[protocol].cases.len() };
+            let case = (number % 3 > 0).then_some(case);
+            evaluations.push(Evaluation { number, case, ..Evaluation::new(&parameters[number % 6], id) });
+        }
+        let alone: Vec<Outcome> = evaluations.iter().map(|one| evaluator.evaluate(*one, None)).collect();
+        assert!(alone.iter().all(Outcome::is_finite));
+        assert!(alone.iter().any(|one| one.terms != alone[0].terms));
+        for lanes in [8, 16] {
+            let in_lanes = evaluator.in_lanes().unwrap();
+            in_lanes.use_lanes(Lanes::new(lanes, Instructions::detect()).unwrap()).unwrap();
+            let mut left = evaluations.iter().copied();
+            let mut together: Vec<Option<Outcome>> = vec![None; alone.len()];
+            in_lanes.evaluate_all(&mut || left.next(), &mut |number, outcome| together[number] = Some(outcome));
+            for (number, (one, other)) in alone.iter().zip(&together).enumerate() {
+                assert_eq!(Some(one), other.as_ref(), "{condition:?}, {lanes} lanes, evaluation {number}");
+            }
+        }
+    }
+}
+
+/// Steps of 20 ms are short enough: with steps of 2 ms a script ends where it does, nearly.
+#[test]
+fn shorter_steps_come_to_the_same() {
+    for instruction in Condition::WithIndicate.instructions() {
+        let fitness = [5, 50].map(|substeps| {
+            let config = Config { substeps, ..Config::for_condition(Condition::WithIndicate) };
+            let scene = Arc::new(Scene::new(config).unwrap());
+            let mut world = World::<f32>::new(Model::new(&scene.robot, &scene.options()).unwrap());
+            let script = Script::new(&scene.config, Deaf::To);
+            let mut episode = InstructionEpisode::new(Arc::clone(&scene), script).unwrap();
+            episode.tell(Told { first: instruction, change: None, steps: 250, noise: 0.0 });
+            let of = |trial| EpisodeId { seed: 6, trial, ..EpisodeId::default() };
+            [0, 1, 2].map(|trial| run_episode(&mut episode, &mut world, of(trial), None))
+        });
+        for (one, other) in fitness[0].iter().zip(fitness[1]) {
+            // Where a pushed ball comes to lie, and so for how long it is in the middle at the end, differs a little more.
+            let most = if instruction.action == Action::Move { 0.2 } else { 0.03 };
+            assert!((one - other).abs() < most, "{instruction}: {fitness:?}");
+        }
+    }
+}
