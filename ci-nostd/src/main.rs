@@ -19,7 +19,8 @@ use farsa::body::{
     Actuated, ActuatorId, Channels, Handles, JointId, JointPosition, Joints, Law, Motor, Sensor, Torque, TorqueMotor,
 };
 use farsa::nn::{
-    Architecture, BlockLayout, BlockNetwork, BlockPlan, Controller, Ctrnn, CtrnnLayout, Leak, LeakyLayout, LeakyNetwork,
+    Aligned, Architecture, BlockLayout, BlockNetwork, BlockNetworkBytes, BlockPlan, Controller, Ctrnn, CtrnnLayout,
+    Leak, LeakyLayout, LeakyNetwork, Perceptron, PerceptronBytes,
 };
 use farsa::num::{Digest, Domain, Stream};
 use farsa::physics::articulated::Spatial;
@@ -96,6 +97,25 @@ fn other_networks() -> Result<(), i32> {
     if 0.5 < y[0] && y[0] < 1.0 && y[0] < z[0] && z[0] < 1.0 { Ok(()) } else { Err(8) }
 }
 
+/// Networks of bytes, without a heap.
+fn networks_of_bytes() -> Result<(), i32> {
+    let mut flash = Aligned([0; BlockNetworkBytes::byte_count(&BLOCKS)]);
+    BlockNetworkBytes::write(BLOCKS, Leak::Filter, 0, &[0.5; BLOCKS.parameter_count()], &mut flash.0).map_err(|_| 9)?;
+    let bytes = BlockNetworkBytes::read(&flash.0).map_err(|_| 20)?;
+    bytes.expect(BLOCKS, Leak::Filter).map_err(|_| 21)?;
+    let parameters = bytes.parameters().map_err(|_| 22)?;
+    let mut blocks = BlockNetwork::new(BLOCKS, bytes.leak(), parameters, [0.0; BLOCKS.state_len()]).map_err(|_| 23)?;
+    let mut flash = Aligned([0; PerceptronBytes::byte_count(1, 1)]);
+    PerceptronBytes::write(1, 1, 1.0, 0, &[1.0, 0.0], &mut flash.0).map_err(|_| 24)?;
+    let bytes = PerceptronBytes::read(&flash.0).map_err(|_| 25)?;
+    let parameters = bytes.parameters().map_err(|_| 26)?;
+    let mut layer = Perceptron::new(bytes.inputs(), bytes.outputs(), bytes.slope(), parameters).map_err(|_| 27)?;
+    let (mut y, mut z) = ([0.0], [0.0]);
+    blocks.step(&[1.0], &mut y);
+    layer.step(&y, &mut z);
+    if 0.5 < y[0] && y[0] < 1.0 && 0.5 < z[0] && z[0] < y[0] { Ok(()) } else { Err(28) }
+}
+
 /// The four-line loop on a board: 0 if it ran, else the number of what failed.
 fn on_a_board() -> Result<(), i32> {
     let mut sensor = JointPosition::new(JointId(0), -1.0, 1.0).map_err(|_| 1)?;
@@ -125,7 +145,7 @@ fn on_a_board() -> Result<(), i32> {
 // SAFETY: the one `main` of the program, with the C library's signature less the arguments, which C allows.
 #[unsafe(no_mangle)]
 extern "C" fn main() -> i32 {
-    if let Err(what) = on_a_board().and_then(|()| other_networks()) {
+    if let Err(what) = on_a_board().and_then(|()| other_networks()).and_then(|()| networks_of_bytes()) {
         return what;
     }
     #[cfg(feature = "alloc")]

@@ -1,12 +1,16 @@
 //! Every adapter over mocked pins and buses, and what happens when they fail.
 
+use std::cell::Cell;
+
 use embedded_hal::i2c::ErrorKind as I2cError;
 use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as PinTransaction};
 use embedded_hal_mock::eh1::i2c::{Mock as Bus, Transaction as BusTransaction};
 use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as PwmTransaction};
 use farsa_body::{Channels, Motor, Sensor};
-use firmware_adapters::{Fault, Guard, GuardError, Period, Pulses, Registers, Switches};
+use firmware_adapters::{
+    Converter, Converters, CurveError, Fault, Guard, GuardError, Period, Pulses, Registers, Switches,
+};
 
 /// What asking for the largest duty and setting one is to the mock.
 fn sets(duty: u16) -> [PwmTransaction; 3] {
@@ -34,6 +38,70 @@ fn a_pulse_that_fails_is_told_once() {
     stage.drive(&[0.5], &mut ());
     assert_eq!([stage.check(), stage.check()], [Err(Fault::Write), Ok(())]);
     stage.into_pins()[0].done();
+}
+
+/// A converter that has these counts; `None` fails.
+struct Counts<'a>(&'a Cell<[Option<u16>; 2]>);
+
+impl Converter for Counts<'_> {
+    type Error = ();
+
+    fn count(&mut self, sensor: usize) -> Result<u16, ()> {
+        self.0.get()[sensor].ok_or(())
+    }
+}
+
+/// In proportion, and measured: nothing below 100, much at 300, all at 400.
+const CURVES: [&[[f32; 2]]; 2] = [&[[0.0, 0.0], [4095.0, 1.0]], &[[100.0, 0.0], [300.0, 0.5], [400.0, 1.0]]];
+
+#[test]
+fn counts_are_read_by_their_curves() {
+    for (counts, expected) in [
+        ([0, 0], [0.0, 0.0]),
+        ([4095, 100], [1.0, 0.0]),
+        ([819, 200], [0.2, 0.25]),
+        ([4096, 300], [1.0, 0.5]),
+        ([u16::MAX, 325], [1.0, 0.625]),
+        ([1, 400], [1.0 / 4095.0, 1.0]),
+        ([1, 401], [1.0 / 4095.0, 1.0]),
+    ] {
+        let cell = Cell::new(counts.map(Some));
+        let mut sensors = Converters::new(Counts(&cell), CURVES).unwrap();
+        let mut x = [f32::NAN; 2];
+        sensors.read(&(), &mut x);
+        assert_eq!((x, sensors.check(), sensors.channels()), (expected, Ok(()), 2), "{counts:?}");
+    }
+}
+
+#[test]
+fn a_conversion_that_fails_leaves_what_was_read_last() {
+    let counts = Cell::new([None, Some(300)]);
+    let (mut sensors, mut x) = (Converters::new(Counts(&counts), CURVES).unwrap(), [f32::NAN; 2]);
+    for (now, read, found) in [
+        ([None, Some(300)], [0.0, 0.5], Err(Fault::Read)),
+        ([Some(819), None], [0.2, 0.5], Err(Fault::Read)),
+        ([None, None], [0.2, 0.5], Err(Fault::Read)),
+        ([Some(0), Some(200)], [0.0, 0.25], Ok(())),
+    ] {
+        counts.set(now);
+        sensors.read(&(), &mut x);
+        // Told once.
+        assert_eq!((x, sensors.check(), sensors.check()), (read, found, Ok(())), "{now:?}");
+    }
+}
+
+#[test]
+fn curves_that_are_none_are_refused() {
+    let curves: [(&'static [[f32; 2]], CurveError); 4] = [
+        (&[], CurveError::Empty { sensor: 1 }),
+        (&[[0.0, 0.0], [0.0, 1.0]], CurveError::Point { sensor: 1, point: 1 }),
+        (&[[0.0, f32::NAN]], CurveError::Point { sensor: 1, point: 0 }),
+        (&[[0.0, 0.0], [f32::INFINITY, 1.0]], CurveError::Point { sensor: 1, point: 1 }),
+    ];
+    for (curve, error) in curves {
+        assert_eq!(Converters::new(Counts(&Cell::default()), [CURVES[0], curve]).err(), Some(error));
+        assert!(error.to_string().starts_with("sensor 1: "), "{error}");
+    }
 }
 
 #[test]

@@ -10,5 +10,5 @@ mod report;
 mod stack;
 
 pub use line::{exit, say, say_hex};
-pub use report::{report, report_arm, report_fixed};
+pub use report::{report, report_arm, report_e_puck, report_fixed};
 pub use stack::{paint, used};

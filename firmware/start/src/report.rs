@@ -3,6 +3,7 @@
 use core::hint::black_box;
 
 use controller::{ARM, Board, Control, FixedRobot, LAYOUT, Robot, noise_into, self_test};
+use e_puck::run_episode;
 use farsa_nn::BytesError;
 use farsa_num::{Digest, Domain, Stream};
 
@@ -16,6 +17,9 @@ const STEPS: u32 = match option_env!("FARSA_STEPS") {
     Some(steps) => parsed(steps),
     None => 100_000,
 };
+
+/// Steps of the recorded episode.
+const STEPS_OF_EPISODE: u64 = e_puck::STEPS as u64;
 
 const fn parsed(digits: &str) -> u32 {
     let (mut number, mut rest) = (0, digits.as_bytes());
@@ -87,5 +91,23 @@ pub fn report_arm(instructions: impl Fn() -> u64) -> ! {
     say("instructions-gravity", (spent / u64::from(COUNTED)) as u32);
     say_hex("torques", digest.finish());
     say("stack", used());
+    exit(true)
+}
+
+/// Drives the recorded episode of the e-puck, prints what came of it and ends.
+pub fn report_e_puck(instructions: impl Fn() -> u64) -> ! {
+    let mut spent = 0;
+    let ran = run_episode(|tick| {
+        let begin = instructions();
+        tick();
+        spent += instructions().wrapping_sub(begin);
+    });
+    let Ok((hash, safe)) = ran else { exit(false) };
+    say("instructions-tick", (spent / STEPS_OF_EPISODE.max(1)) as u32);
+    say_hex("episode", hash);
+    say("safe", u32::from(safe));
+    say("stack", used());
+    #[cfg(feature = "planted-panic")]
+    say("never", [1, 2, 3][black_box(7)]);
     exit(true)
 }
