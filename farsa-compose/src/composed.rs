@@ -3,7 +3,7 @@
 use farsa_body::{Recorder, Robot};
 use farsa_lab::{
     Behaviour, ControllerExport, Description, Episode, EpisodeId, Evaluation, Exports, MotorDrive, MotorExport,
-    NetworkExport, Outcome, Parameter, Rollout, SensorExport, SensorReading, Task,
+    NetworkExport, Outcome, Parameter, Protocol, Rollout, SensorExport, SensorReading, Task,
 };
 use farsa_models::MjcfOptions;
 use farsa_nn::Leak;
@@ -87,6 +87,9 @@ impl<E: Embodied> Task for Composed<E> {
     }
     fn observations(&self) -> usize {
         self.0.agents().wiring.inputs.len()
+    }
+    fn protocols(&self) -> Vec<Protocol> {
+        self.0.agents().interventions.protocols()
     }
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.0.agents().ledger.behaviour.as_ref().map(|behaviour| behaviour as _)

@@ -239,6 +239,28 @@ fn a_template_is_run_resumed_tested_and_replayed() {
     bench.succeed("report my-light my-wander --html report.html");
 }
 
+/// Both protocols of a file: listed, run, and in the report.
+#[test]
+fn champions_of_files_are_tested_by_protocols() {
+    let bench = Bench::new("protocols");
+    bench.succeed("new own --from light");
+    let info = bench.succeed("info own.toml");
+    assert!(info.contains("\n  lesions ") && info.contains("\n  noise "), "{info}");
+    let small = "--population 4 --set evolution.parents=2 --set episode.trials=1 --set episode.steps=20";
+    bench.succeed(&format!("run own.toml {small} --generations 2 --out r -q"));
+    let said = bench.succeed("test r --protocol lesions --trials 3");
+    for case in ["intact", "no infrared", "no light", "no neuron 4", "no output of wheels right"] {
+        assert!(said.contains(case), "no {case}: {said}");
+    }
+    bench.succeed("test r --protocol noise --trials 3 -q");
+    for (name, cases) in [("lesions", 1 + 2 + 4 + 2), ("noise", 5)] {
+        assert_eq!(bench.read(&format!("r/protocols/{name}.csv")).lines().count(), 1 + 3 * cases, "{name}");
+    }
+    bench.succeed("report r --html page.html");
+    assert!(bench.read("page.html").contains("no output of wheels right"));
+    assert!(bench.refused("test r --protocol lesion").contains("the nearest is `lesions`"));
+}
+
 #[test]
 fn what_is_wrong_with_a_file_is_said_before_anything_is_made() {
     let bench = Bench::new("wrong");

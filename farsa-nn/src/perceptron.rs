@@ -6,6 +6,7 @@ use farsa_num::fearless_simd::Level;
 use crate::controller::Controller;
 use crate::error::Error;
 use crate::kernel::{Layer, level};
+use crate::lesion::{Ablatable, Lesion, hold};
 
 /// One layer of logistic units without memory: `O_i = sigma( beta_i + sum_j w_ji I_j )`,
 /// `sigma(x) = 1/(1 + exp(-slope*x))`.
@@ -94,6 +95,18 @@ impl<P: AsRef<[f32]>> Controller for Perceptron<P> {
         let (weights, biases) = parameters.split_at((self.inputs * self.outputs).min(parameters.len()));
         let sources = [(x, weights), (&[][..], &[][..])];
         Layer { targets: self.outputs, slope: self.slope, biases, sources }.forward(self.level, y);
+    }
+}
+
+/// The neurons are the outputs.
+impl<P: AsRef<[f32]>> Ablatable for Perceptron<P> {
+    fn neurons(&self) -> usize {
+        self.outputs
+    }
+
+    fn step_ablated(&mut self, lesions: &[Lesion], x: &[f32], y: &mut [f32]) {
+        self.step(x, y);
+        hold(lesions, 0, y);
     }
 }
 

@@ -266,7 +266,7 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
         let Agents { document, wiring, ledger, networks, x, y, evolving: [shown, _], .. } = &self.agents;
         let row = |count: usize| shown * count..(shown + 1) * count;
         recorder.sensors(&x[row(wiring.inputs.len())]);
-        recorder.neurons(networks[*shown].controller().neurons());
+        recorder.neurons(networks[*shown].controller().activations());
         recorder.outputs(&y[row(wiring.outputs.len())]);
         (0..self.composition.scene.bodies()).map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
         let pose = world.pose(self.composition.members[*shown].parts.body);

@@ -188,7 +188,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
         let Agents { document, ledger, networks, x, y, .. } = &self.agents;
         recorder.sensors(x);
-        recorder.neurons(networks[0].controller().neurons());
+        recorder.neurons(networks[0].controller().activations());
         recorder.outputs(y);
         for body in &self.shown {
             recorder.pose(*body, world.pose(*body));

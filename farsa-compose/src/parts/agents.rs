@@ -1,11 +1,12 @@
 //! Robots as they are controlled: channels, copies of one network, and what they have earned.
 
 use farsa_evo::ObservationStatistics;
-use farsa_lab::{ChannelGroup, Description, Evaluation, NormalisedController, Outcome};
+use farsa_lab::{ChannelGroup, Description, Evaluation, Interventions, NormalisedController, Outcome};
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
 use crate::document::Document;
 use crate::parts::groups::Groups;
+use crate::parts::interventions::interventions;
 use crate::parts::ledger::Ledger;
 use crate::parts::network::AnyNetwork;
 use crate::parts::wiring::Wiring;
@@ -17,6 +18,8 @@ pub(crate) struct Agents {
     pub(crate) wiring: Wiring,
     pub(crate) ledger: Ledger,
     pub(crate) groups: Groups,
+    /// The test protocols.
+    pub(crate) interventions: Interventions,
     /// The individuals of each population, where there are several.
     pub(crate) size: usize,
     /// The robots that evolve in this trial, from the first to before the last.
@@ -33,7 +36,8 @@ impl Agents {
         let robots = groups.robots();
         let networks = vec![NormalisedController::new(wiring.network.clone()); robots];
         let (x, y) = (vec![0.0; robots * wiring.inputs.len()], vec![0.0; robots * wiring.outputs.len()]);
-        Self { document, wiring, ledger, evolving: [0, robots], groups, size: 1, networks, x, y }
+        let interventions = interventions(&document.network, &wiring);
+        Self { document, wiring, ledger, interventions, evolving: [0, robots], groups, size: 1, networks, x, y }
     }
 
     /// Begins a trial; `arranged` says whether it could.
@@ -42,20 +46,26 @@ impl Agents {
         self.networks.iter_mut().for_each(farsa_nn::Controller::reset);
     }
 
-    /// Gives the robots of each population their network; false if there are more or fewer parameters.
+    /// Gives the robots of each population their network, those that are tested as the case says; false if there are more or
+    /// fewer parameters.
     pub(crate) fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let Evaluation { parameters, opponents, normalisation, id, .. } = *evaluation;
+        let Evaluation { parameters, opponents, normalisation, id, case, .. } = *evaluation;
         let ranges = self.groups.ranges();
         let own = if ranges.len() > 1 { id.population(self.size).min(ranges.len() - 1) } else { 0 };
         self.evolving = ranges[own];
         self.ledger.evolve(self.evolving);
         let mut others = opponents.iter().copied();
-        ranges.into_iter().enumerate().all(|(population, [first, end])| {
+        let loaded = ranges.into_iter().enumerate().all(|(population, [first, end])| {
             let given = if population == own { parameters } else { others.next().unwrap_or(parameters) };
             let Some(all) = self.wiring.searched.all(given) else { return false };
             let mut networks = self.networks[first..end].iter_mut();
             networks.all(|network| network.load(normalisation) && network.controller_mut().load(all))
-        })
+        });
+        let [first, end] = self.evolving;
+        for (robot, network) in self.networks.iter_mut().enumerate().take(end).skip(first) {
+            network.intervene(self.interventions.of(case), id, robot as u32);
+        }
+        loaded
     }
 
     /// What came of a trial.
@@ -88,7 +98,7 @@ impl Agents {
             },
             _ => {
                 let neurons =
-                    (1..=network.neurons().len()).map(|neuron| Channel::new(&neuron.to_string()).group("neuron"));
+                    (1..=network.activations().len()).map(|neuron| Channel::new(&neuron.to_string()).group("neuron"));
                 Schema { neurons: neurons.collect(), ..schema }
             }
         };

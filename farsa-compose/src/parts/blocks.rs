@@ -134,6 +134,15 @@ fn resolved(link: &Link, known: &[Known], ends: Ends<'_>, path: &str, places: &P
     Ok(Some(Found { from, to, delay: link.delay as usize }))
 }
 
+/// The names of the neurons of clusters, in their order.
+pub(crate) fn cluster_neurons(blocks: &Blocks) -> Vec<String> {
+    let of_cluster = |cluster: &Cluster| match cluster.neurons {
+        1 => vec![cluster.name.clone()],
+        count => (1..=count).map(|number| format!("{} {number}", cluster.name)).collect(),
+    };
+    blocks.clusters.iter().flat_map(of_cluster).collect()
+}
+
 /// All parameters of a layout by their names, in their order.
 pub(crate) fn parameters(
     blocks: &Blocks,
@@ -141,11 +150,7 @@ pub(crate) fn parameters(
     ends: Ends<'_>,
     [weights, leaks]: [[f64; 2]; 2],
 ) -> Vec<Parameter> {
-    let of_cluster = |cluster: &Cluster| match cluster.neurons {
-        1 => vec![cluster.name.clone()],
-        count => (1..=count).map(|number| format!("{} {number}", cluster.name)).collect(),
-    };
-    let clusters = blocks.clusters.iter().flat_map(of_cluster);
+    let clusters = cluster_neurons(blocks);
     let names: Vec<String> = ends.inputs.iter().cloned().chain(clusters).chain(ends.outputs.iter().cloned()).collect();
     let mut parameters = Vec::new();
     for block in layout.blocks() {

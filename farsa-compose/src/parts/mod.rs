@@ -13,6 +13,7 @@
 //! - `searched`: which parameters of a network are searched for
 //! - `network`: any network
 //! - `blocks`: networks of clusters and links
+//! - `interventions`: what the test protocols do to a network
 //! - `bounded`: the sizes of networks
 //! - `evonet`: the network of the original, with genes in its order
 //! - `kept`: layouts of networks of blocks, which borrow theirs
@@ -27,6 +28,7 @@ pub(crate) mod ends;
 pub(crate) mod evonet;
 pub(crate) mod files;
 pub(crate) mod groups;
+pub(crate) mod interventions;
 pub(crate) mod kept;
 pub(crate) mod ledger;
 pub(crate) mod meaning;

@@ -195,7 +195,7 @@ impl AnyNetwork {
     }
 
     /// What its hidden neurons, or all its neurons, are at.
-    pub(crate) fn neurons(&self) -> &[f32] {
+    pub(crate) fn activations(&self) -> &[f32] {
         match self {
             Self::Perceptron(..) | Self::Wired(_) => &[],
             Self::Leaky(leaky) => leaky.hidden(),

@@ -56,6 +56,9 @@ pub struct Interventions {
 }
 
 impl Interventions {
+    /// The levels of [`with_noise`](Self::with_noise) for inputs from 0 to 1.
+    pub const NOISE: [f32; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];
+
     /// The same with another protocol, and what is done in its cases: nothing in those for which there is no intervention.
     #[must_use]
     pub fn with_protocol(mut self, protocol: Protocol, interventions: Vec<Intervention>) -> Self {

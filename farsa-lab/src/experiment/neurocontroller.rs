@@ -211,9 +211,6 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     }
 }
 
-/// Largest noise of each case.
-const NOISE: [f32; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];
-
 /// The protocols of a network with these sensors and so many hidden neurons.
 fn interventions(schema: &Schema, hidden: usize) -> Interventions {
     let mut groups: Vec<(String, Range<usize>)> = Vec::new();
@@ -226,7 +223,7 @@ fn interventions(schema: &Schema, hidden: usize) -> Interventions {
         }
     }
     let neurons = (0..hidden).map(|neuron| (format!("neuron {}", neuron + 1), neuron));
-    Interventions::default().with_lesions(groups, neurons).with_noise(&NOISE)
+    Interventions::default().with_lesions(groups, neurons).with_noise(&Interventions::NOISE)
 }
 
 #[cfg(test)]

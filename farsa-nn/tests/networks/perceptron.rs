@@ -1,6 +1,6 @@
 //! The single layer against its equation, and through the trait.
 
-use farsa_nn::{Controller, Error, Perceptron, PerceptronLanes};
+use farsa_nn::{Ablatable, Controller, Error, Lesion, Perceptron, PerceptronLanes};
 use farsa_num::Instructions;
 use proptest::prelude::*;
 
@@ -107,4 +107,16 @@ fn wrong_lengths_use_the_shorter() {
     assert_eq!(long, [whole[0], whole[1], -1.0]);
     layer.step(&[1.0], &mut short);
     assert_eq!(short[0], whole[0]);
+}
+
+#[test]
+fn outputs_are_held() {
+    let mut layer = Perceptron::new(1, 3, 1.0, [1.0, 2.0, 3.0, 0.1, 0.2, 0.3]).unwrap();
+    assert_eq!(layer.neurons(), 3);
+    let (mut y, mut whole) = ([f32::NAN; 3], [f32::NAN; 3]);
+    layer.step(&[0.5], &mut whole);
+    layer.step_ablated(&[Lesion::new(2), Lesion { neuron: 0, activation: 0.25 }, Lesion::new(3)], &[0.5], &mut y);
+    assert_eq!(y, [0.25, whole[1], 0.0]);
+    layer.step_ablated(&[], &[0.5], &mut y);
+    assert_eq!(y, whole);
 }
