@@ -12,6 +12,7 @@ use crate::picture::svg_data::hex;
 use crate::recording::memory::Recording;
 use crate::recording::schema::Channel;
 use crate::recording::view::View;
+use crate::shape::appearance::as_screens_take_it;
 use crate::shape::geometry::Geometry;
 
 const TEMPLATE: &str = include_str!("viewer/page.html");
@@ -288,7 +289,11 @@ impl Film {
                 Some(body) if schema.is_thing(body) => "thing",
                 Some(_) => "robot",
             };
-            shape(&collider.name, collider.body, collider.shape.into(), &collider.placement, role)
+            let mut value = shape(&collider.name, collider.body, collider.shape.into(), &collider.placement, role);
+            if let Some(color) = collider.color {
+                value["color"] = hex(as_screens_take_it(color)).into();
+            }
+            value
         });
         let objects = schema.objects.iter().map(|object| {
             let mut value = shape(&object.name, object.body, object.geometry, &object.placement, object.role.name());

@@ -5,7 +5,7 @@ use farsa_body::{BodyId, Pose};
 use crate::picture::moment::{Beam, Picture, Push};
 use crate::recording::memory::Recording;
 use crate::recording::view::View;
-use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role};
+use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role, as_screens_take_it};
 use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::SceneObject;
 use crate::shape::vector::{Vector, length, sub};
@@ -14,11 +14,13 @@ use crate::shape::vector::{Vector, length, sub};
 const TRAIL: f64 = 1e-3;
 /// The colours of trails, by number: those that are seen best on the ground come first.
 const TRAILS: [usize; 6] = [4, 5, 2, 6, 0, 1];
+/// The colour of the ways of points.
+const PENCIL: Color = [96, 96, 96];
 
 impl Recording {
     /// What is to be seen at a tick, as `farsa draw` shows it; `None` if there is no such tick, or no bodies.
     ///
-    /// A view from above also shows the ways that robots went up to then.
+    /// A view from above also shows the ways that robots, things with a colour and points went up to then.
     pub fn picture(&self, tick: usize) -> Option<Picture> {
         let schema = self.schema();
         if tick >= self.times().len() || (schema.robot.is_none() && schema.objects.is_empty()) {
@@ -56,22 +58,17 @@ impl Recording {
     }
 }
 
-/// The ways that robots went up to a tick, a little above the ground, each in the colour of its robot's hull.
+/// The ways that robots, things with a colour and points went up to a tick, a little above the ground: those of robots each in the
+/// colour of its hull, those of points in the colour of pencils.
 fn trails(recording: &Recording, tick: usize) -> Vec<(Vec<Vector>, Color)> {
     let schema = recording.schema();
     let bodies: Vec<BodyId> =
         schema.objects.iter().filter(|object| object.role == Role::Robot).filter_map(|object| object.body).collect();
     let mut seen = Vec::new();
     let mut trails = Vec::new();
-    for body in bodies {
-        if seen.contains(&body) {
-            continue;
-        }
-        seen.push(body);
+    let mut add = |places: &mut dyn Iterator<Item = [f32; 3]>, color: Color| {
         let mut way: Vec<Vector> = Vec::new();
-        for place in
-            (0..=tick).filter_map(|tick| recording.pose_at(tick, body)).map(|pose| pose.position.map(f64::from))
-        {
+        for place in places.map(|place| place.map(f64::from)) {
             let place = [place[0], place[1], TRAIL];
             let moved = way.last().is_none_or(|last| length(sub(place, *last)) > 1e-4);
             if moved && place.iter().all(|x| x.is_finite()) {
@@ -79,8 +76,25 @@ fn trails(recording: &Recording, tick: usize) -> Vec<(Vec<Vector>, Color)> {
             }
         }
         if way.len() > 1 {
-            trails.push((way, OKABE_ITO[TRAILS[(seen.len() - 1) % TRAILS.len()]]));
+            trails.push((way, color));
         }
+    };
+    let places = |body: BodyId| (0..=tick).filter_map(move |tick| Some(recording.pose_at(tick, body)?.position));
+    for body in bodies {
+        if !seen.contains(&body) {
+            seen.push(body);
+            add(&mut places(body), OKABE_ITO[TRAILS[(seen.len() - 1) % TRAILS.len()]]);
+        }
+    }
+    for collider in schema.robot.iter().flat_map(|robot| &robot.colliders) {
+        let Some((body, color)) = collider.body.zip(collider.color) else { continue };
+        if schema.is_thing(body) && !seen.contains(&body) {
+            seen.push(body);
+            add(&mut places(body), as_screens_take_it(color));
+        }
+    }
+    for point in 0..schema.points.len() {
+        add(&mut (0..=tick).filter_map(|tick| recording.point_at(tick, point)), PENCIL);
     }
     trails
 }
@@ -110,6 +124,29 @@ mod tests {
         let robot = recording.schema().robot.as_ref().unwrap();
         assert_eq!(recording.picture(1).unwrap().shapes.len(), robot.colliders.len());
         assert_eq!(recording.picture(2), None, "there are two ticks");
+    }
+
+    #[test]
+    fn things_keep_their_colours_and_leave_trails_seen_from_above_as_points_do() {
+        let mut robot = farsa_body::Robot::new("one ball");
+        let ball = farsa_body::MassProperties::sphere(0.3, 0.06);
+        let body = robot.add_sliding_body("ball", Pose::identity(), ball, false);
+        let shape = farsa_body::Shape::Sphere { radius: 0.06 };
+        let collider = farsa_body::Collider::new("ball", Some(body), shape, Pose::identity());
+        robot.add_collider(collider.with_color([1.0, 0.0, 0.5]));
+        let mut recording =
+            Recording::new(Schema { view: View::Top, points: vec!["tip".into()], ..Schema::from_robot(&robot) });
+        for tick in 0..4_u8 {
+            recording.pose(body, Pose::at([0.1 * f32::from(tick), 0.0, 0.0]));
+            recording.point(0, [0.0, f32::from(tick), 0.5]);
+            recording.tick(f64::from(tick));
+        }
+        let picture = recording.picture(2).unwrap();
+        assert_eq!((picture.shapes[0].color(), picture.shapes[0].role), ([255, 0, 128], Role::Object));
+        let [(way, color), (of_point, pencil)] = &picture.trails[..] else { panic!("{:?}", picture.trails) };
+        assert_eq!((way.len(), *color, of_point.len(), *pencil), (3, [255, 0, 128], 3, PENCIL));
+        assert!((way[2][0] - 0.2).abs() < 1e-7 && of_point[2] == [0.0, 2.0, TRAIL]);
+        assert!(Page::new("ball").with("a", recording).html().contains("\"color\":\"#ff0080\""));
     }
 
     /// A round robot that drove a quarter of a circle between walls, and a post.

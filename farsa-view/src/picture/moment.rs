@@ -3,7 +3,7 @@
 use farsa_body::{BodyId, JointKind, Pose, Robot};
 
 use crate::picture::camera::{Camera, Window};
-use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role};
+use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role, as_screens_take_it};
 use crate::shape::vector::{Vector, length};
 
 /// A force on a point.
@@ -74,10 +74,10 @@ fn junction(robot: &Robot) -> Option<usize> {
 
 impl Picture {
     /// Adds all colliders of a robot or scene whose bodies are at these places: what stands fast in the world is
-    /// ground, what floats by itself a thing, all else robot.
+    /// ground, what floats or slides by itself a thing, all else robot.
     ///
-    /// Things get one colour after the other; where a robot branches, its branches differ and are what the camera
-    /// `close` looks for.
+    /// Colliders with a colour keep it. Other things get one colour after the other; where a robot branches, its branches differ
+    /// and are what the camera `close` looks for.
     pub fn add_robot(&mut self, robot: &Robot, pose: impl Fn(BodyId) -> Pose<f64>) {
         let junction = junction(robot);
         let branches: Vec<usize> = (0..robot.segments.len())
@@ -87,30 +87,40 @@ impl Picture {
             |body: usize| std::iter::successors(Some(body), |body| robot.segments[*body].parent.map(BodyId::index));
         let mut things = Vec::new();
         for collider in &robot.colliders {
+            let own = |instance: Instance| Instance {
+                color: collider.color.map(as_screens_take_it).or(instance.color),
+                ..instance
+            };
             let Some(body) = collider.body else {
-                self.shapes.push(Instance::new(collider.shape, collider.placement, Role::Ground));
+                self.shapes.push(own(Instance::new(collider.shape, collider.placement, Role::Ground)));
                 continue;
             };
             let (i, at) = (body.index(), pose(body).compose(&collider.placement));
             let leaf = robot.segments.iter().all(|s| s.parent != Some(body));
-            if robot.segments[i].joint.kind == JointKind::Floating && leaf {
+            if leaf && (robot.segments[i].joint.kind == JointKind::Floating || robot.sliders(body).is_some()) {
                 let known = things.iter().position(|thing| *thing == i).unwrap_or_else(|| {
                     things.push(i);
                     things.len() - 1
                 });
                 // Blues are the robot's.
                 let color = [0, 2, 6, 3][known % 4];
-                self.shapes.push(Instance::new(collider.shape, at, Role::Object).with_color(OKABE_ITO[color]));
+                self.shapes.push(own(Instance::new(collider.shape, at, Role::Object).with_color(OKABE_ITO[color])));
                 continue;
             }
             let placed = Instance::new(collider.shape, at, Role::Robot);
             let branch = ancestors(i).find_map(|body| branches.iter().position(|branch| *branch == body));
-            self.shapes.push(match branch {
+            self.shapes.push(own(match branch {
                 Some(branch) => placed.with_color(BRANCHES[branch % BRANCHES.len()]).with_focus(),
                 None if junction == Some(i) => placed.with_color(PALM).with_focus(),
                 None => placed,
-            });
+            }));
         }
+    }
+
+    /// The corners of what a camera has to show: as the [`frame`](Self::frame) of other pictures they get room for it too [m].
+    pub fn extent(&self) -> Vec<Vector> {
+        let corners = |(centre, radius): (Vector, f64)| [-radius, radius].map(|r| centre.map(|x| x + r));
+        self.interest(false).into_iter().flat_map(corners).collect()
     }
 
     /// The window through which a camera shows the picture in a frame of width and height [pixels].

@@ -201,11 +201,11 @@ impl Schema {
         self.channels().map(|(prefix, channel)| format!("{prefix}{}", channel.title())).collect()
     }
 
-    /// Whether a body moves by itself: it hangs on nothing and nothing with a joint hangs on it.
+    /// Whether a body moves by itself: it floats, or slides in a plane, and nothing with a joint hangs on it.
     pub(crate) fn is_thing(&self, body: BodyId) -> bool {
         let Some(robot) = &self.robot else { return false };
         let floats = |segment: &farsa_body::Segment| segment.joint.kind == JointKind::Floating;
-        robot.segments.get(body.index()).is_some_and(floats)
+        (robot.segments.get(body.index()).is_some_and(floats) || robot.sliders(body).is_some())
             && robot.segments.iter().all(|segment| segment.parent != Some(body))
     }
 }

@@ -55,6 +55,11 @@ pub const OKABE_ITO: [Color; 7] =
 const ARM: Color = [146, 161, 178];
 const GROUND: Color = [219, 222, 226];
 
+/// A colour of which each part is from 0 to 1, as colliders have it.
+pub(crate) fn as_screens_take_it(color: [f64; 3]) -> Color {
+    color.map(|part| (255.0 * part.clamp(0.0, 1.0) + 0.5) as u8)
+}
+
 impl Instance {
     /// A shape in its role's colour.
     pub fn new(geometry: impl Into<Geometry>, pose: Pose<f64>, role: Role) -> Self {
