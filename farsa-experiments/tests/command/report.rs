@@ -157,14 +157,34 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
     assert!(fs::read_to_string(here.join("moment.svg")).expect("the picture").starts_with("<svg"));
     assert!(ok(farsa(), &here, "draw arm --size 64x48 --out end.png --quiet").is_empty());
     assert!(fs::read(here.join("end.png")).expect("the picture").starts_with(b"\x89PNG"));
+    // A sheet of a test's cases says what the test says.
+    let said = ok(farsa(), &here, "draw arm --protocol labels --trial 1 --seed 5 --size 120x90 --out cases.svg");
+    assert!(said.contains("trial 1, test seed 5: 3 cases"), "{said}");
+    ok(farsa(), &here, "test arm --protocol labels --trials 2 --seed 5 --quiet");
+    let sheet = fs::read_to_string(here.join("cases.svg")).expect("the sheet");
+    assert_eq!(sheet.matches("<svg").count(), 1 + 3);
+    let table = fs::read_to_string(here.join("arm/protocols/labels.csv")).expect("the table");
+    for line in table.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let result = if fields[7] == "true" { "succeeded" } else { "failed" };
+        let label = format!("{} {}", fields[1], fields[2]);
+        assert!(fields[4] != "1" || sheet.contains(&format!("{}: {result}", label.trim_end())), "{line}");
+    }
     ok(farsa(), &here, "report arm --html arm.html --md arm.md");
-    assert_eq!(fs::read_to_string(here.join("arm.html")).expect("the page").matches("<figure><svg").count(), 2);
+    assert_eq!(fs::read_to_string(here.join("arm.html")).expect("the page").matches("<figure><svg").count(), 3);
     assert!(fs::read_to_string(here.join("arm.md")).expect("the page").contains("![champion](<arm-champion-1.svg>)"));
     ok(farsa(), &here, "replay arm --html trial.html --compare arm --quiet");
     ok(own(), &here, "run cart --generations 1 --out cart --quiet");
     for (program, arguments, words) in [
         (farsa(), "draw arm --out end.png", "end.png: there is one already"),
         (farsa(), "draw arm --out end.gif", "ends in .svg or .png"),
+        (farsa(), "draw arm --protocol labls --out new.svg", "the nearest is `labels`"),
+        (farsa(), "draw arm --protocol labels --out new.png", "ends in .svg"),
+        (farsa(), "draw arm --protocol labels --out cases.svg", "there is one already"),
+        (farsa(), "draw arm --protocol labels --size 9999x10 --out new.svg", "16 to 2048"),
+        (farsa(), "draw arm --protocol labels --time 0.1 --out new.svg", "cannot be used with"),
+        (farsa(), "draw arm --seed 2 --out new.svg", "--protocol"),
+        (own(), "draw cart --protocol labels --out new.svg", "has none"),
         (farsa(), "draw arm --camera tpo --out new.svg", "nearest is `top`"),
         (farsa(), "draw arm --size 20 --out new.svg", "not of the form 1200x800"),
         (farsa(), "draw arm --time 7 --out new.svg", "from 0.01 to 0.1 s"),

@@ -20,6 +20,7 @@ use crate::command::on_ranks::{Part, awaits_orders};
 use crate::command::{info, manual, strategies};
 use crate::error::Error;
 use crate::escaped::escaped;
+use crate::evaluation::protocols::sheet;
 use crate::evaluation::{draw, evaluate, lines, protocols, replay, test};
 use crate::experiment::definition::Experiment;
 use crate::experiment::settings::Value;
@@ -173,6 +174,10 @@ impl<'e> Invocation<'e, '_> {
             Command::Replay(args) => self.replay(&args),
             Command::Draw(args) => {
                 let (directory, plan) = self.existing(&args.directory)?;
+                if let Some(wish) = args.sheet() {
+                    let found = sheet::draw(&plan, &directory, &wish, &args.out)?;
+                    return self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found));
+                }
                 let camera = args.camera.as_deref();
                 let found = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
                 self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))

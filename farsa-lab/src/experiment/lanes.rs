@@ -98,7 +98,6 @@ fn usual(instructions: Instructions) -> usize {
 
 impl Wanted {
     /// One trial after the other, for what nobody chose.
-    #[cfg(test)]
     pub(crate) const ONE: Self = Self { count: Some(1), simd: None };
 
     /// What of it this machine has.

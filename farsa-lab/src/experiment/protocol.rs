@@ -1,12 +1,15 @@
 //! Tests of an individual under conditions that its evolution may never have had: a table of cases.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use crate::error::Error;
 use crate::escaped::{OneLine, Quoted};
 
 /// Most cases of a protocol.
 const MOST_CASES: usize = 10_000;
+/// Most neurons whose states are recorded.
+const MOST_STATES: usize = 256;
 /// Most bytes of a protocol's name, and of a row's or a column's.
 const LONGEST: [usize; 2] = [64, 120];
 
@@ -39,6 +42,9 @@ pub struct Protocol {
     /// The cells of the table, in the order in which they are run and shown; rows and columns are shown in the order in which
     /// they come first here. A table may have holes.
     pub cases: Vec<Case>,
+    /// The neurons of the [`Schema`](farsa_view::Schema) that are the internal state, of which the first trials of each case are
+    /// recorded and reports draw the first two principal components; empty where nothing is recorded.
+    pub states: Range<usize>,
 }
 
 /// A cell of a protocol's table.
@@ -117,6 +123,12 @@ impl Protocol {
         Self { axes: [rows.into(), columns.into()], ..self }
     }
 
+    /// The same, recording the states of these neurons in the first trials of each case.
+    #[must_use]
+    pub fn with_states(self, states: Range<usize>) -> Self {
+        Self { states, ..self }
+    }
+
     /// The same with one more case.
     #[must_use]
     pub fn with_case(mut self, case: Case) -> Self {
@@ -184,6 +196,9 @@ impl Protocol {
         if !(1..=MOST_CASES).contains(&self.cases.len()) {
             return Some(format!("has {} cases, not 1 to {MOST_CASES}", self.cases.len()));
         }
+        if self.states.len() > MOST_STATES {
+            return Some(format!("records the states of {} neurons, at most {MOST_STATES}", self.states.len()));
+        }
         let mut cells = BTreeSet::new();
         for (number, Case { row, column, .. }) in self.cases.iter().enumerate() {
             if row.is_empty() || [row, column].into_iter().any(|text| text.len() > place) {
@@ -250,6 +265,7 @@ mod tests {
             (named("Noise"), "small letters"),
             (named(&"n".repeat(65)), "65 bytes, at most 64"),
             (lesions().with_trials(0), "0 trials"),
+            (lesions().with_states(1..258), "257 neurons, at most 256"),
             (cases(vec![]), "0 cases"),
             (cases((0..=10_000).map(|row| Case::new(row.to_string(), "")).collect()), "10001 cases, not 1 to 10000"),
             (cases(vec![Case::new("", "red")]), "case 0 without a row"),

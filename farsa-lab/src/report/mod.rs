@@ -8,6 +8,7 @@
 //! - `run`: a run as a report reads it, and runs that differ in their seeds alone
 //! - `section`: what a report says about the runs of one experiment
 //! - `settings`: the configurations of the runs in a report: what differs, everything, and the commands that say it again
+//! - `states`: the internal states of a test protocol on their first two principal components
 //! - `tested_protocol`: a test protocol as a run was tested by it
 //! - `write`: `farsa report`: a page about one or many runs
 
@@ -19,5 +20,6 @@ mod protocols;
 mod run;
 mod section;
 mod settings;
+mod states;
 mod tested_protocol;
 pub(crate) mod write;

@@ -6,10 +6,13 @@ use crate::evaluation::protocols::found;
 use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::bar_list::{Bar, BarList};
 use crate::figures::heat_map::{HeatCell, HeatMap};
+use crate::figures::rates::{self, RateCurve, Rates};
+use crate::figures::significant::significant;
 use crate::figures::statistics::Quartiles;
 use crate::report::page::{Block, Figure, Table};
 use crate::report::run::{Group, Run, percent};
 use crate::report::settings::shell;
+use crate::report::states::states;
 use crate::report::tested_protocol::TestedProtocol;
 
 /// The command that makes it again.
@@ -50,11 +53,12 @@ pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
             let how = "Every case has the same fresh starts. Intervals of 95 % by Wilson's score.";
             blocks.push(Block::Text(format!("{summary}. {how}{held_out}")));
         }
-        let figures = alike.iter().filter_map(Alike::figure).collect::<Vec<_>>();
+        let figures = alike.iter().flat_map(|alike| [alike.figure(), alike.curves()]).flatten().collect::<Vec<_>>();
         if !figures.is_empty() {
             blocks.push(Block::Figures(figures));
         }
         for alike in &alike {
+            blocks.extend(alike.halves().map(Block::Text));
             blocks.extend(alike.tables());
         }
     }
@@ -133,6 +137,48 @@ impl Alike<'_> {
         Some(Figure { kind: "protocol", picture, caption })
     }
 
+    /// The shares over the number that the rows are, a curve for each column; none of other rows, and of a table with holes.
+    fn rates_by_row(&self) -> Option<(Vec<&str>, Vec<RateCurve<'_>>)> {
+        let rows = Protocol::places(&self.cases, |case| &case.row);
+        let columns = Protocol::places(&self.cases, |case| &case.column);
+        rates::values(&rows)?;
+        let curve = |name: &'_ str| -> Option<Vec<(f64, [f64; 2])>> {
+            let of_row = |row: &&str| {
+                let case = self.cases.iter().position(|case| case.row == *row && case.column == name)?;
+                let (share, _, interval) = self.share(case);
+                Some((share, interval))
+            };
+            rows.iter().map(of_row).collect()
+        };
+        let curves: Option<Vec<RateCurve<'_>>> =
+            columns.into_iter().map(|name| Some(RateCurve { name, shares: curve(name)? })).collect();
+        Some((rows, curves?))
+    }
+
+    /// The shares over the number that the rows are, where they are one.
+    fn curves(&self) -> Option<Figure> {
+        let (labels, curves) = self.rates_by_row()?;
+        let (_, tested) = self.runs.first()?;
+        let Protocol { name, axes: [axis, _], .. } = &tested.protocol;
+        let picture = Rates { title: &format!("{name}: success"), axis, labels: &labels, curves: &curves }.draw()?;
+        let bars = if self.runs.len() > 1 { "bars from the lowest run to the highest" } else { "bars of 95 %" };
+        let caption = format!("{}: share of the trials that succeeded, {bars}.", self.whose());
+        Some(Figure { kind: "rates", picture, caption })
+    }
+
+    /// Where along the rows the shares fall to half of the first, if they do.
+    fn halves(&self) -> Option<String> {
+        let (labels, curves) = self.rates_by_row()?;
+        let (values, unit) = rates::values(&labels)?;
+        let half = |curve: &RateCurve<'_>| {
+            let at = curve.half(&values)?;
+            let name = if curve.name.is_empty() { "the share".to_owned() } else { format!("“{}”", curve.name) };
+            Some(format!("{name} falls to half of its first value at {} {unit}", significant(at)).trim_end().to_owned())
+        };
+        let halves: Vec<String> = curves.iter().filter_map(half).collect();
+        (!halves.is_empty()).then(|| format!("{}: {}.", self.whose(), halves.join("; ")))
+    }
+
     /// The bar of a case, which has its column's name or its row's.
     fn bar<'c>(&self, number: usize, case: &'c Case, by_column: bool) -> Bar<'c> {
         let (share, _, interval) = self.share(number);
@@ -158,7 +204,9 @@ impl Alike<'_> {
             format!("{}: the champion {generation}.", run.name())
         };
         if self.runs.len() == 1 {
-            return vec![Block::Text(champion(run, tested)), Block::Table(single(tested))];
+            let mut blocks = vec![Block::Text(champion(run, tested)), Block::Table(single(tested))];
+            blocks.extend(states(run, tested));
+            return blocks;
         }
         let mut all = Table::new(&["case", "median", "quartiles", "lowest", "highest"]);
         for (number, case) in self.cases.iter().enumerate() {
@@ -171,10 +219,10 @@ impl Alike<'_> {
             row.extend(ends.map(percent));
             all.rows.push(row);
         }
-        let each = self
-            .runs
-            .iter()
-            .flat_map(|(run, tested)| [Block::Text(champion(run, tested)), Block::Table(single(tested))]);
+        let each = self.runs.iter().flat_map(|(run, tested)| {
+            let found = [Block::Text(champion(run, tested)), Block::Table(single(tested))];
+            found.into_iter().chain(states(run, tested))
+        });
         vec![
             Block::Text(format!("{}: share of the trials that succeeded.", self.whose())),
             Block::Table(all),

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::evaluation::protocols::files::{self, ProtocolRecord};
 use crate::evaluation::protocols::found::FoundCase;
+use crate::evaluation::protocols::states::States;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::protocol::{Case, Protocol};
 use crate::store::directory::Directory;
@@ -13,6 +14,8 @@ pub(crate) struct TestedProtocol {
     pub(crate) found: Vec<FoundCase>,
     /// None if a process was killed before it wrote one.
     pub(crate) record: Option<ProtocolRecord>,
+    /// The states that were recorded in the same test, if any were.
+    pub(crate) states: Option<States>,
 }
 
 impl TestedProtocol {
@@ -24,8 +27,12 @@ impl TestedProtocol {
         let (protocols, terms) = (evaluator.protocols(), evaluator.terms());
         Protocol::check(&protocols)?;
         let read = |protocol: Protocol| -> Result<Option<Self>, Error> {
-            let found = files::read(directory, &protocol.name)?;
-            Ok(found.map(|(table, record)| Self { protocol, found: FoundCase::all(&table, &terms), record }))
+            let Some((table, record)) = files::read(directory, &protocol.name)? else { return Ok(None) };
+            let states = States::read(directory, &protocol.name)?;
+            // Those of an earlier test are of other trials.
+            let own = |of: &ProtocolRecord| record.as_ref().is_some_and(|record| record.same_test(of));
+            let states = states.filter(|(_, of)| of.as_ref().is_some_and(own)).map(|(states, _)| states);
+            Ok(Some(Self { protocol, found: FoundCase::all(&table, &terms), record, states }))
         };
         protocols.into_iter().filter_map(|protocol| read(protocol).transpose()).collect()
     }

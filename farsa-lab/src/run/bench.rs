@@ -118,6 +118,7 @@ pub(crate) struct Bench {
     steps_per_second: f64,
     /// By the cores that the threads can have had.
     steps_per_second_and_core: f64,
+    trials_per_second_and_core: f64,
     study: Study,
     /// With as many cores as the measurement had.
     generations_per_hour: f64,
@@ -203,6 +204,7 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
         busy: used.map(|used| (used / (elapsed * had as f64)).min(1.0)),
         steps_per_second,
         steps_per_second_and_core: per_core,
+        trials_per_second_and_core: per_core * trials as f64 / steps as f64,
         generations_per_hour: 3600.0 * steps_per_second / study.steps_of_generation(),
         predictions: vec![predict(cores), predict(MANY)],
         study,
@@ -264,6 +266,7 @@ impl Bench {
             ("control steps per second".to_owned(), significant(self.steps_per_second)),
             ("control steps per second and core".to_owned(), significant(self.steps_per_second_and_core)),
             ("microseconds of a core per control step".to_owned(), significant(1e6 / self.steps_per_second_and_core)),
+            ("trials per second and core".to_owned(), significant(self.trials_per_second_and_core)),
             ("generations per hour".to_owned(), significant(self.generations_per_hour)),
         ];
         let place = |index| if index == 0 { "this machine" } else { "a machine of such cores" };

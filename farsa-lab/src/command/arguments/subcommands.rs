@@ -13,6 +13,7 @@ use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
 use crate::command::arguments::sweep::SweepArgs;
+use crate::evaluation::protocols::sheet::Wish;
 use crate::evaluation::replay::Which;
 use crate::report::outcome::Success;
 use crate::run::plan::LARGEST_SEED;
@@ -267,9 +268,15 @@ pub(crate) struct DrawArgs {
     /// The moment, in seconds of the trial [default: its end]
     #[arg(long, value_name = "S")]
     pub(crate) time: Option<f64>,
+    /// The champion at the end of a trial of each case of a test protocol, as a sheet of SVG; `info` lists the protocols
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["generation", "individual", "time"])]
+    pub(crate) protocol: Option<String>,
+    /// The seed of that test
+    #[arg(long, value_name = "N", requires = "protocol", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    pub(crate) seed: u64,
     #[arg(long, value_name = "NAME", help = camera_help())]
     pub(crate) camera: Option<String>,
-    /// Width and height in pixels [default: 1200x800]
+    /// Width and height in pixels [default: 1200x800; of each of a protocol's 320x260]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<(u32, u32)>,
     /// A new file, whose name ends in .svg or .png
@@ -283,6 +290,13 @@ pub(crate) struct DrawArgs {
 impl DrawArgs {
     pub(crate) fn which(&self) -> Which {
         Which { generation: self.generation, individual: self.individual, trial: self.trial }
+    }
+
+    /// The sheet that is asked for, if one is.
+    pub(crate) fn sheet(&self) -> Option<Wish<'_>> {
+        let (trial, camera) = (self.trial.unwrap_or(0), self.camera.as_deref());
+        let protocol = self.protocol.as_deref()?;
+        Some(Wish { protocol, trial, seed: self.seed, camera, size: self.size })
     }
 }
 

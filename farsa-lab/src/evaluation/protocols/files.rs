@@ -23,6 +23,13 @@ pub(crate) struct ProtocolRecord {
     pub(crate) table_crc: u32,
 }
 
+impl ProtocolRecord {
+    /// Whether both are of one test, whatever their tables hold of it.
+    pub(crate) fn same_test(&self, other: &Self) -> bool {
+        *self == Self { table_crc: self.table_crc, ..other.clone() }
+    }
+}
+
 impl TableRecord for ProtocolRecord {
     fn table_crc(&self) -> u32 {
         self.table_crc

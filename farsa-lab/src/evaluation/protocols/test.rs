@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::evaluation::protocols::files::{self, ProtocolRecord};
 use crate::evaluation::protocols::found::{self, FoundCase};
+use crate::evaluation::protocols::states::States;
 use crate::evaluation::protocols::table::ProtocolTable;
 use crate::evaluation::test::{Subject, Trials, failure, run_trials, whose};
 use crate::experiment::lanes::Wanted;
@@ -66,13 +67,14 @@ impl ProtocolRun {
     }
 }
 
-/// Runs fresh trials of the champion in every case of a protocol, and writes `protocols/NAME.csv` with its record.
+/// Runs fresh trials of the champion in every case of a protocol, and writes `protocols/NAME.csv` with its record; and
+/// `protocols/NAME.states.csv` where the protocol records states.
 ///
 /// Trial i of each case is trial i of [`test`](crate::evaluation::test::test), so that cases differ in nothing else. Without a
 /// number of `trials` it is the protocol's own.
 ///
 /// # Errors
-/// Those of [`Protocol::find`] and [`Subject::read`], [`Error::Usage`] for more than 10^8 trials, [`Error::Io`].
+/// Those of [`Protocol::find`], [`Subject::read`] and [`States::record`], [`Error::Usage`] for more than 10^8 trials, [`Error::Io`].
 pub(crate) fn test(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -102,15 +104,24 @@ pub(crate) fn test(
     let results = run_trials(&mut pool, subject.tested(), fresh, &progress);
     drop(progress);
     let results = results?;
+    let states = if protocol.states.is_empty() {
+        None
+    } else {
+        Some(States::record(plan, subject.tested(), [number, trials], &protocol, seed)?)
+    };
 
     let (terms, names) = (pool.evaluator().terms(), pool.evaluator().populations());
     let others = names.get(1..subject.count()).unwrap_or(&[]);
     let table = ProtocolTable::new(&protocol.cases, trials, &terms, others, &results);
     let Subject { generation, individual, individuals, warning, .. } = subject;
-    files::write(directory, &protocol.name, &table, |table_crc| {
+    let record = |table_crc| {
         let protocol = protocol.name.clone();
         ProtocolRecord { protocol, generation, individual, trials, seed, table_crc }
-    })?;
+    };
+    files::write(directory, &protocol.name, &table, record)?;
+    if let Some(states) = &states {
+        states.write(directory, &protocol.name, record)?;
+    }
     Ok(ProtocolRun {
         directory: directory.path().display().to_string(),
         generation,

@@ -4,6 +4,7 @@ use std::fs;
 
 use super::*;
 use crate::evaluation::protocols::files;
+use crate::evaluation::protocols::states::States;
 use crate::evaluation::protocols::test::{ProtocolRun, test};
 use crate::evaluation::test as plain_test;
 use crate::experiment::Rescored;
@@ -53,7 +54,8 @@ impl Task for Words {
         TRIALS as usize
     }
     fn schema(&self) -> Schema {
-        Schema::from_scalars(["gene"])
+        let neurons = ["sensory", "inner 1", "inner 2"].map(farsa_view::Channel::new).into();
+        Schema { neurons, ..Schema::from_scalars(["gene"]) }
     }
     fn terms(&self) -> Vec<String> {
         vec!["case".into(), "start".into()]
@@ -62,22 +64,39 @@ impl Task for Words {
         let words = Protocol::from_table("words", "two <words>", ["TOUCH", "MOVE"], ["red", "green"])
             .with_axes("action", "object")
             .with_held_out(|row, column| row == "TOUCH" && column == "green")
+            .with_states(1..3)
             .with_trials(4);
+        let times =
+            Protocol::from_list("times", "ever later", ["0 s", "2 s", "4 s"]).with_axes("time", "").with_trials(4);
         let none = Protocol::new("none", "breaks down").with_case(Case::new("always", "")).with_trials(2);
         let twice = words.clone();
-        [words, none].into_iter().chain(self.wrong.then_some(twice)).collect()
+        [words, none, times].into_iter().chain(self.wrong.then_some(twice)).collect()
     }
 }
 
 impl Evaluator for Words {
-    fn evaluate(&mut self, evaluation: Evaluation<'_>, _: Option<&mut dyn Recorder>) -> Outcome {
+    fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
         let Evaluation { id, case, .. } = evaluation;
         let case = match case {
             None => 100.0,
             Some(CaseId { protocol: 0, case }) => case as f64,
+            // At 0 s always, at 2 s in one trial of three, at 4 s never.
+            Some(CaseId { protocol: 2, case }) => {
+                if case as u32 + id.trial < 2 {
+                    1.0
+                } else {
+                    2.0
+                }
+            }
             Some(_) => return Outcome::failed(),
         };
         let start = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation).uniform_f64();
+        if let Some(recorder) = recorder {
+            for step in 0..7_u8 {
+                recorder.neurons(&[9.0, case as f32, f32::from(step) * (1.0 + id.trial as f32)]);
+                recorder.tick(f64::from(step));
+            }
+        }
         let notes = vec![("way", (2.0 * case).into()), ("population", id.population(SIZE).to_string().as_str().into())];
         Outcome { terms: vec![case, start], steps: 7, success: case != 2.0, notes, ..Outcome::default() }
     }
@@ -163,7 +182,7 @@ fn what_cannot_be_tested_is_refused() {
     assert_eq!(error.exit_code(), 2);
     let error = error.to_string();
     assert!(error.contains("unknown test protocol `wrods`; the nearest is `words`"), "{error}");
-    assert!(error.contains("experiment `words`, which has words, none: "), "{error}");
+    assert!(error.contains("experiment `words`, which has words, none, times: "), "{error}");
     assert!(!root.join("protocols").exists());
     let error = refused(tested(&Words { wrong: true, ..WORDS }, &directory, "words", 1));
     assert!(error.contains("`words` is there twice"), "{error}");
@@ -217,6 +236,34 @@ fn damaged_results_are_refused_and_those_without_a_record_are_read() {
 }
 
 #[test]
+fn the_states_of_the_first_trials_are_recorded_case_by_case() {
+    let root = scratch("protocols-states");
+    let directory = evolved(&WORDS, &root);
+    assert!(States::read(&directory, "words").unwrap().is_none());
+    tested(&WORDS, &directory, "words", 1).unwrap();
+    let (states, record) = States::read(&directory, "words").unwrap().unwrap();
+    assert_eq!((states.neurons.join(", "), states.trials.len()), ("inner 1, inner 2".into(), 4 * 4));
+    for (number, trial) in states.trials.iter().enumerate() {
+        let (case, kind) = (number / 4, number % 4 % 3);
+        assert_eq!((trial.case, trial.trial, trial.success), (case, number % 4, case != 2));
+        let expected = (0..7_u8).map(|step| (u32::from(step), vec![case as f32, f32::from(step) * (1 + kind) as f32]));
+        assert_eq!(trial.steps, expected.collect::<Vec<_>>());
+    }
+    let (_, of_table) = files::read(&directory, "words").unwrap().unwrap();
+    assert!(record.unwrap().same_test(&of_table.unwrap()));
+    // A test of other trials leaves no states of this one, and a protocol that asks for none has none.
+    test(&words_plan(&WORDS), &directory, "words", Some(1), 4, 1, Wanted::ONE, true).unwrap();
+    assert_eq!(States::read(&directory, "words").unwrap().unwrap().0.trials.len(), 4);
+    tested(&WORDS, &directory, "times", 1).unwrap();
+    assert!(!root.join("protocols/times.states.csv").exists());
+    let table = root.join("protocols/words.states.csv");
+    let text = fs::read_to_string(&table).unwrap();
+    fs::write(&table, text.replace("0,0,", "zero,0,")).unwrap();
+    assert!(matches!(States::read(&directory, "words"), Err(Error::Damaged { .. })));
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
 fn a_report_shows_what_protocols_found() {
     let root = scratch("protocols-report");
     let directories = [11, 12].map(|seed| {
@@ -227,11 +274,11 @@ fn a_report_shows_what_protocols_found() {
         directory
     });
     for (directory, seed, name) in
-        [(&directories[0], 11, "words"), (&directories[1], 12, "words"), (&directories[0], 11, "none")]
+        [(0, 11, "words"), (1, 12, "words"), (0, 11, "none"), (0, 11, "times"), (1, 12, "times")]
     {
         let mut plan = words_plan(&WORDS);
         plan.seed = seed;
-        test(&plan, directory, name, None, 3, 1, Wanted::ONE, true).unwrap();
+        test(&plan, &directories[directory], name, None, 3, 1, Wanted::ONE, true).unwrap();
     }
     let report = |runs: &[&Directory], name: &str| {
         let plans = runs.iter().zip(11..).map(|(directory, seed)| {
@@ -255,7 +302,14 @@ fn a_report_shows_what_protocols_found() {
     // The protocols are in Markdown too, with their pictures beside it.
     assert!(fs::read_to_string(root.join("one-protocol-1.svg")).unwrap().contains("words: success"));
     assert!(fs::read_to_string(root.join("one-protocol-2.svg")).unwrap().contains("none: success"));
+    // States on their components, and shares over a number: of 4, 2 and 0 successes 2 are half.
+    let states = fs::read_to_string(root.join("one-states-1.svg")).unwrap();
+    assert!(states.contains("words: internal states") && states.matches("<use ").count() == 4, "{states}");
+    assert!(one.contains("2 neurons, inner 1 to inner 2, in the first 4 trials of each case"));
+    assert!(fs::read_to_string(root.join("one-rates-1.svg")).unwrap().contains("times: success"));
+    assert!(one.contains("11: the share falls to half of its first value at 2.500 s."));
     let two = report(&[&directories[0], &directories[1]], "two.html");
+    assert!(two.contains("words, 2 runs: the share falls to half") && two.matches("internal states").count() == 2);
     assert!(two.contains("Each of the 2 runs") && two.contains("TOUCH green, held out") && two.contains("100 to 100"));
     fs::remove_dir_all(root).unwrap();
 }
