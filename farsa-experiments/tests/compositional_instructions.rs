@@ -1,6 +1,7 @@
 //! `compositional-instructions` with a controller written by hand: the task is possible, and needs both words.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use farsa_experiments::compositional_instructions::{
@@ -115,5 +116,30 @@ fn shorter_steps_come_to_the_same() {
             let most = if instruction.action == Action::Move { 0.2 } else { 0.03 };
             assert!((one - other).abs() < most, "{instruction}: {fitness:?}");
         }
+    }
+}
+
+/// Which colour stands where does not follow from the instruction, however few starts each has.
+#[test]
+fn every_instruction_meets_every_order_of_the_colours() {
+    let scene = Scene::new(Config::for_condition(Condition::WithIgnore)).unwrap();
+    let order = |generation: u32, trial: u32| {
+        let id = EpisodeId { seed: 1, generation, individual: 0, trial };
+        let places = scene.start_pose(id).objects;
+        let mut colors: Vec<usize> = (0..3).collect();
+        colors.sort_by(|a, b| places[*b][1].total_cmp(&places[*a][1]));
+        colors
+    };
+    for generation in 0..20 {
+        let six: BTreeSet<Vec<usize>> = (6..12).map(|trial| order(generation, trial)).collect();
+        assert_eq!(six.len(), 6, "six trials one after the other");
+    }
+    for trial in [0, 1, 13] {
+        let met: Vec<Vec<usize>> = (0..600).map(|generation| order(generation, trial)).collect();
+        for one in &met[..6] {
+            let times = met.iter().filter(|other| *other == one).count();
+            assert!((60..140).contains(&times), "{times} of 600 times {one:?}");
+        }
+        assert_eq!(met.into_iter().collect::<BTreeSet<_>>().len(), 6);
     }
 }

@@ -78,6 +78,10 @@ pub struct Judging {
     pub span: f64,
     /// The displacement that MOVE earns most for \[m\].
     pub far: f64,
+    /// Distance of the tip from the target's surface from which on reaching earns \[m\].
+    pub reach: f64,
+    /// What reaching counts in acts of TOUCH and MOVE \[0..1\].
+    pub reach_share: f64,
     /// Least shares of the last seconds in a success: of INDICATE and IGNORE, and of TOUCH.
     pub least_shares: [f64; 2],
     /// Most displacement of the target in a success of INDICATE and IGNORE \[m\].
@@ -174,13 +178,15 @@ impl Config {
                 still: 0.02,
                 span: 0.08,
                 far: 0.35,
+                reach: 0.7,
+                reach_share: 0.25,
                 least_shares: [0.9, 0.8],
                 most_still: 0.03,
                 most_touched: 0.05,
                 least_moved: 0.30,
                 most_other: 0.05,
             },
-            ranges: Ranges { weight: 8.0, bias: 4.0, time_constant_exponents: [-1.0, 1.5], gains: [1.0, 13.0] },
+            ranges: Ranges { weight: 8.0, bias: 8.0, time_constant_exponents: [-1.0, 0.3], gains: [1.0, 13.0] },
         }
     }
 

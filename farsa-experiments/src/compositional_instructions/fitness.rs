@@ -16,6 +16,8 @@ pub struct Observation {
     pub touched: [bool; 3],
     /// How far each object is from where the trial found it \[m\].
     pub displaced: [f64; 3],
+    /// How far the tip of the second segment is from each object's surface \[m\].
+    pub tip: [f64; 3],
     /// Where each object is from the camera, which looks along the first axis: ahead and to the left \[m\].
     pub ahead: [[f64; 2]; 3],
 }
@@ -52,14 +54,15 @@ pub struct Parts {
 
 /// The ledger of a trial: what its last seconds were like.
 ///
-/// With shares of the last seconds, `d_t` and `d_o` the displacements of the target and of the other object that moved most, and
-/// `near(d)` = 1 - clamp((d - still) / span, 0, 1):
+/// With shares of the last seconds, `d_t` and `d_o` the displacements of the target and of the other object that moved most,
+/// `near(d)` = 1 - clamp((d - still) / span, 0, 1), and r how far the arm reached: 1 if the second segment ever was on the target, else
+/// 1 - clamp(distance of its tip at the end / reach, 0, 1), which counts q:
 ///
 /// | | f | a | F |
 /// |---|---|---|---|
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
-/// | TOUCH | the same | (on the target) near(`d_t`) | the same |
-/// | MOVE | the same | clamp(`d_t` / far, 0, 1) | the same |
+/// | TOUCH | the same | (q r + (1 - q) (on the target)) near(`d_t`) | the same |
+/// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
 /// | IGNORE | 1 if the target was seen last, else 0.5 | (not in view and nothing touched) near(`d_t`) | near(`d_o`) (0.25 f + 0.75 f a) |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Ledger {
@@ -72,6 +75,8 @@ pub struct Ledger {
     on_target: u32,
     /// Which colours were in view when any was, last.
     last_seen: [bool; 3],
+    /// Which objects the second segment has been on.
+    reached: [bool; 3],
     /// The step that passed last.
     last: Observation,
 }
@@ -83,6 +88,7 @@ impl Ledger {
         if seen.contains(&true) {
             self.last_seen = seen;
         }
+        self.reached = core::array::from_fn(|i| self.reached[i] || now.touched[i]);
         self.last = now;
         if late {
             let target = instruction.color;
@@ -120,10 +126,16 @@ impl Ledger {
         let angle = atan2(left, ahead).abs();
         let found = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.centred);
         let undisturbed = near(other);
+        let reached = if self.reached[target.index()] {
+            1.0
+        } else {
+            1.0 - (self.last.tip[target.index()] / judging.reach).clamp(0.0, 1.0)
+        };
+        let with_reach = |rest: f64| judging.reach_share * reached + (1.0 - judging.reach_share) * rest;
         let (find, act, weight) = match instruction.action {
             Action::Indicate => (found, self.share(self.centred_alone) * near(displaced), 0.5),
-            Action::Touch => (found, self.share(self.on_target) * near(displaced), 0.5),
-            Action::Move => (found, (displaced / judging.far).clamp(0.0, 1.0), 0.5),
+            Action::Touch => (found, with_reach(self.share(self.on_target)) * near(displaced), 0.5),
+            Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0)), 0.5),
             Action::Ignore => {
                 let find = if self.last_seen[target.index()] { 1.0 } else { 0.5 };
                 (find, self.share(self.out_of_view_alone) * near(displaced), 0.75)
@@ -167,7 +179,8 @@ mod tests {
 
     /// Red straight ahead in the middle sector, nothing touched, nothing moved.
     fn centred() -> Observation {
-        let mut now = Observation { ahead: [[1.3, 0.0], [0.7, 1.1], [0.7, -1.1]], ..Observation::default() };
+        let ahead = [[1.3, 0.0], [0.7, 1.1], [0.7, -1.1]];
+        let mut now = Observation { ahead, tip: [0.35, 0.9, 0.9], ..Observation::default() };
         now.seen[1][0] = true;
         now
     }
@@ -218,7 +231,10 @@ mod tests {
         let mut on = centred();
         on.touched[0] = true;
         let most = ledger(red, [(10, centred()), (40, on)]);
-        close(most.parts(red, &JUDGING), [1.0, 0.8, 1.0, 0.9]);
+        // a = 0.25 + 0.75 * 0.8: it was reached.
+        close(most.parts(red, &JUDGING), [1.0, 0.85, 1.0, 0.925]);
+        // Not reached, the tip 35 of 70 cm away: a = 0.25 * 0.5.
+        close(ledger(red, [(50, centred()), (0, on)]).parts(red, &JUDGING), [1.0, 0.125, 1.0, 0.5625]);
         assert!(most.succeeds(red, &JUDGING));
         assert!(!ledger(red, [(11, centred()), (39, on)]).succeeds(red, &JUDGING));
         on.displaced[0] = 0.1;
@@ -227,8 +243,9 @@ mod tests {
         let moved = told("MOVE blue");
         let mut now = centred();
         (now.displaced[2], now.ahead[2]) = (0.175, [-1.0, 0.0]);
-        close(ledger(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.0, 0.5, 1.0, 0.0]);
-        (now.displaced[2], now.ahead[2]) = (0.5, [1.0, 0.0]);
+        // Pushed by the first segment, the tip too far away to count.
+        close(ledger(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.0, 0.375, 1.0, 0.0]);
+        (now.displaced[2], now.ahead[2], now.touched[2]) = (0.5, [1.0, 0.0], true);
         let far = ledger(moved, [(50, now), (0, now)]);
         close(far.parts(moved, &JUDGING), [0.5, 1.0, 1.0, 0.5]);
         assert!(far.succeeds(moved, &JUDGING));
@@ -259,9 +276,10 @@ mod tests {
         // One colour at most in view, and one object at most touched, as the places of the objects have it.
         let one = || prop::option::of((0..3usize, 0..3usize));
         let place = || prop::array::uniform2(-2.0..2.0);
-        (one(), prop::option::of(0..3usize), prop::array::uniform3(0.0..0.6), prop::array::uniform3(place())).prop_map(
-            |(seen, touched, displaced, ahead)| {
-                let mut now = Observation { displaced, ahead, ..Observation::default() };
+        let lengths = || prop::array::uniform3(0.0..0.6);
+        (one(), prop::option::of(0..3usize), lengths(), prop::array::uniform3(place()), lengths()).prop_map(
+            |(seen, touched, displaced, ahead, tip)| {
+                let mut now = Observation { displaced, tip, ahead, ..Observation::default() };
                 if let Some((sector, color)) = seen {
                     now.seen[sector][color] = true;
                 }

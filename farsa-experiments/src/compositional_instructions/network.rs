@@ -189,7 +189,7 @@ mod tests {
         assert!(parts.gains[..INPUTS].iter().all(|gain| *gain == 7.0));
         assert!(parts.gains[INPUTS..].iter().all(|gain| *gain == 1.0));
         assert!(parts.time_constants[..INPUTS].iter().all(|tau| *tau == 0.005));
-        assert!(parts.time_constants[INPUTS..].iter().all(|tau| (tau - 1.778_279_4).abs() < 1e-6));
+        assert!(parts.time_constants[INPUTS..].iter().all(|tau| (tau - 0.446_683_6).abs() < 1e-6));
         // How many parameters follow each number.
         let followers: Vec<usize> = (0..middle.len())
             .map(|i| {

@@ -90,6 +90,7 @@ impl Protocols {
         let summary = "every instruction, trained and held out, from fresh starts";
         let protocol = Protocol::from_table("instructions", summary, actions, Color::ALL.map(Color::word))
             .with_axes("action", "object")
+            .with_states(INNER_ONES.first..INNER_ONES.end())
             .with_held_out(|action, object| is_held_out(config, &format!("{action} {object}")));
         let probes = condition.instructions().map(|first| whole(plain(config, first)));
         self.add(protocol, probes.to_vec());

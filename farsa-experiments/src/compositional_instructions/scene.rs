@@ -11,6 +11,8 @@ use farsa_physics::articulated::Options;
 use crate::compositional_instructions::config::Config;
 use crate::compositional_instructions::instruction::Color;
 
+/// The number of no trial, by which something is drawn for all trials of a generation.
+const ALL_TRIALS: u32 = (1 << 24) - 1;
 /// The orders in which the three colours stand, from the left to the right.
 const ORDERS: [[Color; 3]; 6] = {
     use Color::{Blue as B, Green as G, Red as R};
@@ -122,13 +124,16 @@ impl Scene {
     ///
     /// Drawn in this order from the stream of [`Domain::Start`], the same for all individuals: for each place, from the left to
     /// the right, bearing and distance; between which two objects the first joint starts, and its angle; the side of the second
-    /// joint, and its angle. Trial i has the colours in order i modulo 6.
+    /// joint, and its angle. Trial i has the colours in order i + k modulo 6, with a k that is drawn for each generation: six trials
+    /// one after the other meet each order once, and fewer meet others in every generation.
     pub fn start_pose(&self, id: EpisodeId) -> StartPose {
         let Config { objects, start, .. } = &self.config;
+        let first = Stream::new(id.seed, Domain::Start, ALL_TRIALS, 0, id.generation).below(ORDERS.len() as u32);
+        let order = (u64::from(id.trial) + u64::from(first)) as usize % ORDERS.len();
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
         let mut around = |middle: f64, spread: f64| stream.range_f64(middle - spread, middle + spread);
         let mut places = [[0.0; 2]; 3];
-        for (color, bearing) in ORDERS[id.trial as usize % ORDERS.len()].into_iter().zip(objects.bearings) {
+        for (color, bearing) in ORDERS[order].into_iter().zip(objects.bearings) {
             let angle = around(bearing, objects.bearing_spread).to_radians();
             let distance = around(objects.distance, objects.distance_spread);
             let (sine, cosine) = sin_cos(angle);

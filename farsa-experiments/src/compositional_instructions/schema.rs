@@ -53,6 +53,7 @@ pub(crate) fn schema(scene: &Scene) -> Schema {
         scalars: scalars.collect(),
         links,
         node_parameters: of_neurons.collect(),
+        points: vec!["tip".into()],
         view: View::Top,
         ..schema
     }
@@ -70,6 +71,8 @@ where
     for body in scene.robot.shaped_bodies() {
         recorder.pose(body, world.pose(body));
     }
+    let length = scene.config.arm.lengths[1] as f32;
+    recorder.point(0, world.pose(Scene::SECOND).transform([length, 0.0, 0.0]));
     for pair in (0..world.pairs()).map(|pair| PairId(pair as u16)).filter(|pair| world.touches(*pair)) {
         recorder.contact(pair, &world.pair_contact(pair));
     }

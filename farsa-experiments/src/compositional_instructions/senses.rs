@@ -25,8 +25,9 @@ pub struct Senses {
     objects: [BodyId; 3],
     /// Half the range of each joint, doubled by the other side \[rad\].
     ranges: [f64; 2],
-    /// Length of the second segment \[m\].
+    /// Length of the second segment, and radius of an object \[m\].
     length: f64,
+    radius: f64,
     /// Distance of an object's centre from the second segment's axis below which they touch \[m\].
     reach: f64,
 }
@@ -57,6 +58,7 @@ impl Senses {
             objects: scene.objects,
             ranges: arm.ranges.map(f64::to_radians),
             length: arm.lengths[1],
+            radius: objects.radius,
             reach: objects.radius + arm.radius + touch_margin,
         })
     }
@@ -79,11 +81,13 @@ impl Senses {
         }
         let (first, second) = (world.pose(Scene::FIRST), world.pose(Scene::SECOND));
         let mut sides = [false; 3];
+        let tip = second.transform([self.length as f32, 0.0, 0.0]).map(f64::from);
         for (i, object) in self.objects.into_iter().enumerate() {
             let place = world.pose(object).position;
             let [ahead, left, _] = first.transform_back(place).map(f64::from);
             now.ahead[i] = [ahead, left];
             now.displaced[i] = Scene::distance([place[0], place[1]].map(f64::from), places[i]);
+            now.tip[i] = Scene::distance([tip[0], tip[1]], [place[0], place[1]].map(f64::from)) - self.radius;
             if let Some(side) = self.side(&second, place) {
                 now.touched[i] = true;
                 sides[side] = true;

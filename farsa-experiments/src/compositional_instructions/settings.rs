@@ -112,6 +112,10 @@ impl Config {
             length("fitness.still", judging.still).doc("A displacement that costs nothing."),
             length("fitness.span", judging.span).doc("How much more than that costs all."),
             length("fitness.far", judging.far).doc("The displacement for which MOVE earns most."),
+            length("fitness.reach", judging.reach)
+                .doc("Distance of the tip from the target from which on TOUCH and MOVE earn something for reaching."),
+            number("fitness.reach_share", judging.reach_share, 0.0, 1.0)
+                .doc("What reaching counts in the acts of TOUCH and MOVE: without it no agent learned to stretch."),
             numbers("success.least_shares", &judging.least_shares, 0.0, 1.0)
                 .doc("Least shares of the last seconds: of INDICATE and IGNORE, and of TOUCH."),
             length("success.most_still", judging.most_still)
@@ -197,6 +201,8 @@ impl Config {
                 still: number("fitness.still")?,
                 span: number("fitness.span")?,
                 far: number("fitness.far")?,
+                reach: number("fitness.reach")?,
+                reach_share: number("fitness.reach_share")?,
                 least_shares: two("success.least_shares")?,
                 most_still: number("success.most_still")?,
                 most_touched: number("success.most_touched")?,
