@@ -8,7 +8,9 @@ use farsa_num::Scalar;
 
 use crate::bounds::{check_sizes, range_in_file};
 use crate::mjcf::inverse_weight::inverse_weights;
-use crate::xml::write::{Lines, colliders_by_body, has_inertial, numbers, quoted, segment_names};
+use crate::xml::write::{
+    GROUND, Lines, colliders_by_body, friction_of_ground, has_inertial, numbers, quoted, segment_names,
+};
 
 /// What a MuJoCo model says beside the robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +75,7 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
 /// - a contact point's stiffness is ours at rest; its damping is critical instead of ours, and it moves as if the
 ///   touching bodies were heavier: MuJoCo's contacts are stable at steps of this size only so;
 /// - friction is elliptic and creeps by force / (2 tau stiffness impedance ratio);
+/// - friction on the ground is `frictionloss` of each sliding joint by itself, and a comment says so;
 /// - joint stops are MuJoCo's, as stiff as the step allows.
 ///
 /// A plane on a segment that moves is written, and refused by MuJoCo; so are chains of more than 496 bodies (4.0.0). A segment
@@ -121,6 +124,9 @@ fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
              them at 0 and use qfrc_applied, with stiffness and damping in dof_damping, for implicit muscles. -->",
         );
     }
+    if !robot.grounds.is_empty() {
+        out.line(GROUND);
+    }
     out.line("<compiler angle=\"radian\" autolimits=\"false\" inertiafromgeom=\"false\" fusestatic=\"false\"/>");
     let (h, ratio, gravity) = (options.time_step, options.impedance_ratio, numbers(&options.gravity));
     out.line(&format!(
@@ -138,7 +144,7 @@ fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
 /// The shapes of the world and the bodies with theirs.
 fn bodies(robot: &Robot, nested: &[(usize, usize)], out: &mut Lines) {
     let names = segment_names(robot, "world");
-    let colliders = colliders_by_body(robot);
+    let (colliders, losses) = (colliders_by_body(robot), friction_of_ground(robot));
     for collider in &colliders[0] {
         out.line(&geom(collider));
     }
@@ -151,7 +157,7 @@ fn bodies(robot: &Robot, nested: &[(usize, usize)], out: &mut Lines) {
         open += 1;
         let segment = &robot.segments[i];
         out.open(&format!("body name={}{}", quoted(&names[i]), placed(&segment.joint.placement)));
-        if let Some(joint) = joint(segment) {
+        if let Some(joint) = joint(segment, losses[i]) {
             out.line(&joint);
         }
         if let Some(inertial) = inertial(segment) {
@@ -276,7 +282,8 @@ fn placed(pose: &Pose<f64>) -> String {
     text
 }
 
-fn joint(segment: &Segment) -> Option<String> {
+/// A joint, if the segment has one, with what friction takes from it.
+fn joint(segment: &Segment, loss: f64) -> Option<String> {
     let joint = &segment.joint;
     let name = if joint.name.is_empty() { String::new() } else { format!(" name={}", quoted(&joint.name)) };
     let kind = match joint.kind {
@@ -292,8 +299,9 @@ fn joint(segment: &Segment) -> Option<String> {
         format!(" limited=\"true\" range=\"{}\"", numbers(&range_in_file(joint.range)))
     };
     let (axis, armature, damping) = (numbers(&joint.axis), joint.armature, joint.damping);
+    let loss = if loss > 0.0 { format!(" frictionloss=\"{loss:?}\"") } else { String::new() };
     Some(format!(
-        "<joint{name} type=\"{kind}\" axis=\"{axis}\"{range} armature=\"{armature:?}\" damping=\"{damping:?}\"/>"
+        "<joint{name} type=\"{kind}\" axis=\"{axis}\"{range} armature=\"{armature:?}\" damping=\"{damping:?}\"{loss}/>"
     ))
 }
 
@@ -319,7 +327,8 @@ fn geom(collider: &Collider) -> String {
         Shape::Plane => ("plane", vec![0.0, 0.0, 1.0]),
     };
     let at = placed(&collider.placement);
-    format!("<geom name={} type=\"{kind}\" size=\"{}\"{at}/>", quoted(&collider.name), numbers(&size))
+    let color = collider.color.map_or_else(String::new, |color| format!(" rgba=\"{} 1.0\"", numbers(&color)));
+    format!("<geom name={} type=\"{kind}\" size=\"{}\"{at}{color}/>", quoted(&collider.name), numbers(&size))
 }
 
 #[cfg(test)]
@@ -337,6 +346,21 @@ mod tests {
         }
         assert_eq!(impedance(1e9, 100.0, 0.01).1, STIFFEST);
         assert_eq!(impedance(1e5, 0.0, 0.01), (0.02, STIFFEST));
+    }
+
+    #[test]
+    fn colours_and_friction_on_the_ground_are_written() {
+        let text = write(&crate::xml::write::ball_on_the_ground(), &MjcfOptions::default()).expect("a valid robot");
+        assert_eq!(text.matches("<!-- Friction on the ground").count(), 1);
+        assert_eq!(text.matches(" rgba=\"1.0 0.5 0.0 1.0\"/>").count(), 1, "{text}");
+        assert_eq!(
+            (text.matches("frictionloss=\"1.5\"").count(), text.matches("frictionloss=\"0.03\"").count()),
+            (2, 1)
+        );
+        let read = crate::Imported::from_text(&text, &crate::ReadOptions::default()).expect("a valid file");
+        let losses = read.warnings.iter().filter(|warning| warning.what.contains("friction"));
+        let losses: usize = losses.map(|warning| warning.count).sum();
+        assert_eq!(losses, 3, "{:?}", read.warnings);
     }
 
     #[test]

@@ -7,7 +7,9 @@ use farsa_num::{atan2, sin_cos};
 
 use crate::bounds::{ENDLESS, check_sizes, range_in_file};
 use crate::vector::norm;
-use crate::xml::write::{Lines, colliders_by_body, has_inertial, numbers, quoted, segment_names, unused};
+use crate::xml::write::{
+    GROUND, Lines, colliders_by_body, friction_of_ground, has_inertial, numbers, quoted, segment_names, unused,
+};
 
 /// The name of the link that stands for the world.
 const WORLD: &str = "world";
@@ -22,7 +24,8 @@ const PLANE: f64 = 50.0;
 ///
 /// One link, `world`, is the root of everything (a segment of that name gets a `_` appended); what floats hangs on it by a
 /// joint of type `floating`, which some readers do not know. A capsule is a cylinder with a sphere at either end, a
-/// plane a block of 100 m. A joint without name is called after its segment. Lost are armatures, pairs, surfaces,
+/// plane a block of 100 m. A joint without name is called after its segment. Where colliders have colours, all are visuals too.
+/// Friction on the ground becomes friction of each sliding joint by itself, and a comment says so. Lost are armatures, pairs, surfaces,
 /// and the laws of actuators but for their largest effort (of a muscle pair: moment arm times largest active
 /// tension); a largest speed, which URDF wants, is 1000.
 ///
@@ -36,22 +39,26 @@ pub fn write(robot: &Robot) -> Result<String, RobotError> {
     out.open(&format!("robot name={}", quoted(&robot.name)));
     let names = segment_names(robot, WORLD);
     let colliders = colliders_by_body(robot);
-    link(&mut out, WORLD, None, &colliders[0]);
+    if !robot.grounds.is_empty() {
+        out.line(GROUND);
+    }
+    let shown = robot.colliders.iter().any(|collider| collider.color.is_some());
+    link(&mut out, WORLD, None, &colliders[0], shown);
     for (i, name) in names.iter().enumerate() {
-        link(&mut out, name, Some(&robot.segments[i]), &colliders[i + 1]);
+        link(&mut out, name, Some(&robot.segments[i]), &colliders[i + 1], shown);
     }
     let joints = joint_names(robot, &names);
-    let efforts = efforts(robot);
+    let (efforts, losses) = (efforts(robot), friction_of_ground(robot));
     for (i, segment) in robot.segments.iter().enumerate() {
         let parent = segment.parent.map_or(WORLD, |parent| names[parent.index()].as_str());
-        joint(&mut out, &segment.joint, [&joints[i], parent, &names[i]], efforts[i]);
+        joint(&mut out, &segment.joint, [&joints[i], parent, &names[i]], [efforts[i], losses[i]]);
     }
     out.close("robot");
     Ok(out.text)
 }
 
-/// A link with its mass and shapes; the world's without segment.
-fn link(out: &mut Lines, name: &str, segment: Option<&Segment>, colliders: &[&Collider]) {
+/// A link with its mass and shapes, which are `shown` or not; the world's without segment.
+fn link(out: &mut Lines, name: &str, segment: Option<&Segment>, colliders: &[&Collider], shown: bool) {
     out.open(&format!("link name={}", quoted(name)));
     if let Some(Segment { mass, centre, inertia: [xx, yy, zz, xy, xz, yz], .. }) =
         segment.filter(|segment| has_inertial(segment))
@@ -65,7 +72,10 @@ fn link(out: &mut Lines, name: &str, segment: Option<&Segment>, colliders: &[&Co
         out.close("inertial");
     }
     for collider in colliders {
-        collisions(out, collider);
+        if shown {
+            shapes(out, collider, "visual");
+        }
+        shapes(out, collider, "collision");
     }
     out.close("link");
 }
@@ -80,8 +90,8 @@ fn joint_names(robot: &Robot, segments: &[String]) -> Vec<String> {
     robot.segments.iter().map(|segment| segment.joint.name.as_str()).zip(segments).map(name).collect()
 }
 
-/// A joint with its name and those of its parent and child.
-fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], effort: f64) {
+/// A joint with its name and those of its parent and child, its largest effort and its friction.
+fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], [effort, friction]: [f64; 2]) {
     let endless = joint.range.iter().all(|end| end.is_infinite());
     let kind = match joint.kind {
         JointKind::Revolute if endless => "continuous",
@@ -104,7 +114,7 @@ fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], effor
             format!("lower=\"{:?}\" upper=\"{:?}\" ", low + 0.0, high + 0.0)
         };
         out.line(&format!("<limit {range}effort=\"{effort:?}\" velocity=\"{FASTEST:?}\"/>"));
-        out.line(&format!("<dynamics damping=\"{:?}\" friction=\"0.0\"/>", joint.damping));
+        out.line(&format!("<dynamics damping=\"{:?}\" friction=\"{friction:?}\"/>", joint.damping));
     }
     out.close("joint");
 }
@@ -124,14 +134,18 @@ fn efforts(robot: &Robot) -> Vec<f64> {
     efforts.into_iter().map(|sum: f64| sum.min(ENDLESS)).collect()
 }
 
-/// The collision elements of one shape.
-fn collisions(out: &mut Lines, collider: &Collider) {
+/// The elements of one shape, of kind `collision` or `visual`.
+fn shapes(out: &mut Lines, collider: &Collider, kind: &str) {
     let mut element = |name: &str, along: f64, geometry: &str| {
         let placement = collider.placement.compose(&Pose::at([0.0, 0.0, along]));
-        out.open(&format!("collision name={}", quoted(name)));
+        out.open(&format!("{kind} name={}", quoted(name)));
         out.line(&origin(&placement));
         out.line(&format!("<geometry>{geometry}</geometry>"));
-        out.close("collision");
+        if let Some(color) = collider.color.filter(|_| kind == "visual") {
+            let rgba = numbers(&color);
+            out.line(&format!("<material name={}><color rgba=\"{rgba} 1.0\"/></material>", quoted(&rgba)));
+        }
+        out.close(kind);
     };
     let ball = |radius: f64| format!("<sphere radius=\"{radius:?}\"/>");
     let block = |half: [f64; 3]| format!("<box size=\"{}\"/>", numbers(&half.map(|x| 2.0 * x)));
@@ -192,6 +206,19 @@ mod tests {
                 assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-15), "{q:?}: {a:?} {b:?}");
             }
         }
+    }
+
+    #[test]
+    fn colours_and_friction_on_the_ground_are_written() {
+        let text = write(&crate::xml::write::ball_on_the_ground()).expect("a valid robot");
+        assert_eq!(text.matches("<!-- Friction on the ground").count(), 1);
+        let piece = "<material name=\"1.0 0.5 0.0\"><color rgba=\"1.0 0.5 0.0 1.0\"/></material>";
+        assert_eq!((text.matches("<visual ").count(), text.matches(piece).count()), (2, 1), "{text}");
+        assert_eq!((text.matches("friction=\"1.5\"").count(), text.matches("friction=\"0.03\"").count()), (2, 1));
+        let read = crate::Imported::from_text(&text, &crate::ReadOptions::default()).expect("a valid file");
+        let losses = read.warnings.iter().filter(|warning| warning.what.contains("friction"));
+        let losses: usize = losses.map(|warning| warning.count).sum();
+        assert_eq!(losses, 3, "{:?}", read.warnings);
     }
 
     #[test]

@@ -35,6 +35,26 @@ impl Lines {
     }
 }
 
+/// What the friction on the ground takes from each joint that a body slides and turns by, by segment [N or N m].
+pub(crate) fn friction_of_ground(robot: &Robot) -> Vec<f64> {
+    let mut losses = vec![0.0; robot.segments.len()];
+    for ground in &robot.grounds {
+        let Some((sliders, turn)) = robot.sliders(ground.body) else { continue };
+        let most = ground.friction * ground.load;
+        for slider in sliders {
+            losses[slider.index()] += most;
+        }
+        if let Some(turn) = turn {
+            losses[turn.index()] += most * ground.radius;
+        }
+    }
+    losses
+}
+
+/// What a file says of grounds, where there are any.
+pub(crate) const GROUND: &str = "<!-- Friction on the ground acts along each sliding joint by itself: aslant up to 1.42 times as much \
+    as in the description. -->";
+
 /// Numbers with a space between, each the shortest that reads back the same; zeros without sign.
 pub(crate) fn numbers(of: &[f64]) -> String {
     let mut text = String::new();
@@ -93,6 +113,19 @@ pub(crate) fn colliders_by_body(robot: &Robot) -> Vec<Vec<&Collider>> {
         all[collider.body.map_or(0, |body| body.index() + 1)].push(collider);
     }
     all
+}
+
+/// An orange ball that slides and turns on the ground, beside a grey one that stands in the world.
+#[cfg(test)]
+pub(crate) fn ball_on_the_ground() -> Robot {
+    use farsa_body::{Ground, MassProperties, Pose, Shape};
+    let mut robot = Robot::new("ball");
+    let body = robot.add_sliding_body("ball", Pose::identity(), MassProperties::sphere(0.3, 0.06), true);
+    let ball = |name, body, x| Collider::new(name, body, Shape::Sphere { radius: 0.06 }, Pose::at([x, 0.0, 0.0]));
+    robot.add_collider(ball("ball", Some(body), 0.0).with_color([1.0, 0.5, 0.0]));
+    robot.add_collider(ball("post", None, 1.0));
+    robot.add_ground(Ground { body, friction: 0.5, load: 3.0, radius: 0.02 });
+    robot
 }
 
 #[cfg(test)]
