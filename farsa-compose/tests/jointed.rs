@@ -65,6 +65,21 @@ fn joints_turn_as_fast_as_they_are_told() {
 }
 
 #[test]
+fn motors_of_speeds_have_no_more_torque_than_their_limit() {
+    // 0.13 N m on 0.26 kg m2: half a rad/s more in each second, until the wanted speed is there.
+    let text = file("", "kind = \"joint-velocity\"\nlargest = 2.0\ngain = 50.0\nlimit = 0.13", SPEED);
+    for (steps, speed) in [(50, 0.25), (100, 0.5), (180, 0.9), (300, 1.0)] {
+        let text = text.replace("steps = 100", &format!("steps = {steps}"));
+        close(measured(&outcome(&text, 0.75), "joint-speed"), speed, 5e-3);
+    }
+    let why = refused(&text.replace("gain = 50.0\n", "joints = [\"hinge\"]\n"));
+    assert!(why.contains("lacks the key `gain`"), "{why}");
+    let why = refused(&text.replace("limit = 0.13", "limit = -1.0"));
+    assert!(why.contains("limit"), "{why}");
+    assert!(refused(&text.replace("limit = 0.13", "limt = 1.0")).contains("`limit`"));
+}
+
+#[test]
 fn torques_are_newton_s() {
     // 2 N m of the model's own motor, half of them for a second.
     let text = file("", "kind = \"joint-torque\"", SPEED).replace("steps = 100", "steps = 50");

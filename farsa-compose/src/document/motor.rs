@@ -61,6 +61,10 @@ pub enum MotorKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1e-9, max = 1e9))]
         gain: Option<f64>,
+        /// The largest torque of a motor with this `gain` [N m or N]; by default there is none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1e-9, max = 1e9))]
+        limit: Option<f64>,
     },
     /// Torques of joints, a channel for each: 0 down .. 1/2 none .. 1 up.
     JointTorque {

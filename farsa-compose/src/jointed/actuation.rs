@@ -1,6 +1,6 @@
 //! The actuators that motors drive: the model's own, or new ones.
 
-use farsa_body::{ActuatorId, Held, JointId, Law, MusclePair, Servo, Torque};
+use farsa_body::{ActuatorId, Held, JointId, Law, MusclePair, Servo, Torque, Velocity};
 use farsa_lab::Error;
 
 use crate::check::places::Places;
@@ -72,15 +72,22 @@ fn taken(
 /// An actuator of speeds, and what its command is per unit of speed [N m s/rad or N s/m, or 1].
 ///
 /// # Errors
-/// Those of [`taken`].
+/// Those of [`taken`], and [`Error::Setting`] for a limit without a gain.
 pub(crate) fn velocity(
     scene: &mut Scene,
     joint: JointId,
-    gain: Option<f64>,
+    [gain, limit]: [Option<f64>; 2],
     path: &str,
     places: &Places,
 ) -> Result<(ActuatorId, f64), Error> {
-    let law = gain.map(|damping| (Law::Held(Held { stiffness: 0.0, damping }), "velocity"));
+    if gain.is_none() && limit.is_some() {
+        return Err(places.wrong(path, "lacks the key `gain`, of the motor whose `limit` it says"));
+    }
+    let law = gain.map(|gain| match limit {
+        Some(limit) => Law::Velocity(Velocity { gain, limit }),
+        None => Law::Held(Held { stiffness: 0.0, damping: gain }),
+    });
+    let law = law.map(|law| (law, "velocity"));
     let (actuator, law) = taken(scene, joint, is_velocity, law, ("`gain`", path, places))?;
     // A law of the user's takes the torque that lacks at rest, a velocity motor the speed itself.
     let gain = match law {

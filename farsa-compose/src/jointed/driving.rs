@@ -92,9 +92,9 @@ fn bare(kind: &MotorKind, scene: &mut Scene, path: &str, places: &Places) -> Res
     let wrong = |error: ChannelError| places.wrong(path, error);
     let joints = joints_of(kind, scene, path, places)?;
     Ok(match kind {
-        MotorKind::JointVelocity { largest, gain, .. } => {
+        MotorKind::JointVelocity { largest, gain, limit, .. } => {
             let one = |joint| {
-                let (actuator, gain) = actuation::velocity(scene, joint, *gain, path, places)?;
+                let (actuator, gain) = actuation::velocity(scene, joint, [*gain, *limit], path, places)?;
                 VelocityMotor::new(actuator, *largest as f32, gain as f32).map_err(wrong)
             };
             Driving::Velocity(joints.into_iter().map(one).collect::<Result<_, _>>()?)

@@ -75,7 +75,7 @@ pub(crate) fn driven(kind: &MotorKind, channel: usize, scene: &Scene) -> Meaning
         (found, about(found, scene))
     };
     match kind {
-        MotorKind::JointVelocity { joints, largest, gain } => {
+        MotorKind::JointVelocity { joints, largest, gain, .. } => {
             let (_, (name, _, [_, unit, _])) = joint(joints, channel, gain.is_some(), actuation::is_velocity);
             Meaning::new(format!("speed of {name}"), unit, [-largest, *largest])
         }

@@ -72,7 +72,7 @@ impl Draw {
             (0, _) => "kind = \"muscles\"\n[[motors]]\nkind = \"servo\"\ntogether = true".into(),
             (1 | 2, 0) => "kind = \"joint-torque\"".into(),
             (_, 0) => format!("kind = \"joint-torque\"\n{joints}largest = 5.0"),
-            (_, 1) => format!("kind = \"joint-velocity\"\n{joints}largest = 2.0\ngain = 3.0"),
+            (_, 1) => format!("kind = \"joint-velocity\"\n{joints}largest = 2.0\ngain = 3.0\nlimit = 4.0"),
             (_, 2) => format!("kind = \"servo\"\n{joints}stiffness = 20.0\ndamping = 1.0\nlimit = 10.0"),
             _ => format!("kind = \"muscles\"\n{joints}tension = 200.0\nmoment_arm = 0.02"),
         };
