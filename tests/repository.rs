@@ -145,6 +145,41 @@ fn no_dependency_compiles_c_or_looks_for_a_system_library() {
     }
 }
 
+/// The crates of a section of a manifest that is not optional, each by its name in the registry.
+fn needed(manifest: &str) -> BTreeSet<&str> {
+    let (_, section) = manifest.split_once("\n[dependencies]\n").unwrap_or_default();
+    let lines = section.lines().take_while(|line| !line.starts_with('['));
+    let named = lines.filter(|line| !line.starts_with('#') && !line.contains("optional = true"));
+    named
+        .filter_map(|line| line.split_once([' ', '.', '=']).map(|(name, _)| name))
+        .filter(|name| !name.is_empty())
+        .collect()
+}
+
+#[test]
+fn lock_files_of_what_is_no_member_know_what_our_crates_need() {
+    let mut checked = 0;
+    for lock in ["farsa-lab-mpi", "benches/bbob", "firmware", "ci-nostd"].map(|folder| format!("{folder}/Cargo.lock")) {
+        let text = read(&lock);
+        for package in text.split("[[package]]\n") {
+            let line = |key: &str| package.lines().find_map(|line| line.strip_prefix(key)?.strip_suffix('"'));
+            let Some(name) = line("name = \"").filter(|name| root().join(name).join("Cargo.toml").exists()) else {
+                continue;
+            };
+            for other in needed(&read(&format!("{name}/Cargo.toml"))) {
+                let listed =
+                    package.contains(&format!("\n \"{other}\"")) || package.contains(&format!("\n \"{other} "));
+                assert!(
+                    listed,
+                    "{lock}: {name} needs {other}: run `cargo metadata` beside it and commit what it writes"
+                );
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 30, "only {checked} dependencies");
+}
+
 /// What is compiled, with its features, of what a crate of the workspace or all of them need.
 fn features(which: &[&str]) -> BTreeSet<String> {
     let tree = ["tree", "--offline", "--prefix", "none", "--no-dedupe", "--format", "{p} [{f}]"];
