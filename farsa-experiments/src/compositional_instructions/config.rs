@@ -61,10 +61,12 @@ pub struct Camera {
 pub struct Start {
     /// The first joint is at most so far from one of the two directions between the objects \[deg\].
     pub first_spread: f64,
-    /// The second joint, to either side \[deg\].
+    /// The second joint \[deg\].
     pub second: f64,
     /// By how much that differs at most \[deg\].
     pub second_spread: f64,
+    /// Whether it starts on a side that is drawn, and not always on the left.
+    pub both_sides: bool,
 }
 
 /// What counts as still, touched, moved.
@@ -76,9 +78,11 @@ pub struct Judging {
     pub still: f64,
     /// How much farther than that costs all \[m\].
     pub span: f64,
+    /// The same of the target of TOUCH \[m\].
+    pub span_touched: f64,
     /// The displacement that MOVE earns most for \[m\].
     pub far: f64,
-    /// Distance of the tip from the target's surface from which on reaching earns \[m\].
+    /// Distance of the tip from the centred target's surface from which on reaching earns \[m\].
     pub reach: f64,
     /// What reaching counts in acts of TOUCH and MOVE \[0..1\].
     pub reach_share: f64,
@@ -147,8 +151,8 @@ impl Config {
                 Instruction { action: Action::Touch, color: Color::Green },
                 Instruction { action: Action::Move, color: Color::Red },
             ],
-            starts: 6,
-            steps: 250,
+            starts: 3,
+            steps: 150,
             time_step: 0.1,
             substeps: 5,
             arm: Arm {
@@ -172,14 +176,15 @@ impl Config {
             },
             camera: Camera { view: 30.0, rays: 5, range: 2.0 },
             touch_margin: 0.002,
-            start: Start { first_spread: 30.0, second: 110.0, second_spread: 5.0 },
+            start: Start { first_spread: 30.0, second: 110.0, second_spread: 5.0, both_sides: false },
             judging: Judging {
                 window: 5.0,
                 still: 0.02,
                 span: 0.08,
+                span_touched: 0.3,
                 far: 0.35,
-                reach: 0.7,
-                reach_share: 0.25,
+                reach: 1.0,
+                reach_share: 0.5,
                 least_shares: [0.9, 0.8],
                 most_still: 0.03,
                 most_touched: 0.05,
@@ -289,7 +294,7 @@ mod tests {
         let plain = Config::for_condition(Condition::WithIgnore);
         plain.check().unwrap();
         assert_eq!(plain.trained().count(), 7);
-        assert_eq!((plain.trials(), plain.window_steps()), (42, 50));
+        assert_eq!((plain.trials(), plain.window_steps()), (21, 50));
         assert_eq!(Config { steps: 10, ..plain }.window_steps(), 10, "of a shorter trial, all of it");
         let refused = |change: fn(&mut Config), text: &str| {
             let mut config = plain;

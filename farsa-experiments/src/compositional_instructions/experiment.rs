@@ -1,6 +1,8 @@
 //! The experiment `compositional-instructions` as the `farsa` command runs it.
 
-use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings};
+use farsa_lab::{
+    Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition, Truncation, strategies,
+};
 use farsa_physics::articulated::{Batch, Model, World};
 
 use crate::compositional_instructions::config::Config;
@@ -31,6 +33,16 @@ impl Experiment for CompositionalInstructions {
 
     fn conditions(&self) -> &'static [&'static str] {
         &Condition::NAMES
+    }
+
+    // 2: reaching counts while the target is centred, a push in TOUCH costs less, the second joint starts on one side.
+    fn values_version(&self) -> u32 {
+        2
+    }
+
+    /// Natural evolution strategies: the truncation algorithm did not find the objects in ten times as many lives.
+    fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
+        strategies().iter().find(|strategy| strategy.name() == "snes").copied().unwrap_or(&Truncation)
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {

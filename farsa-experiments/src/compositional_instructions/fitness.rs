@@ -55,13 +55,13 @@ pub struct Parts {
 /// The ledger of a trial: what its last seconds were like.
 ///
 /// With shares of the last seconds, `d_t` and `d_o` the displacements of the target and of the other object that moved most,
-/// `near(d)` = 1 - clamp((d - still) / span, 0, 1), and r how far the arm reached: 1 if the second segment ever was on the target, else
-/// 1 - clamp(distance of its tip at the end / reach, 0, 1), which counts q:
+/// `near(d)` = 1 - clamp((d - still) / span, 0, 1), beside(d) the same with a span of its own, and r how far the arm ever reached while the target was centred: 1 if the second
+/// segment was on it, else 1 - clamp(distance of its tip / reach, 0, 1), which counts q:
 ///
 /// | | f | a | F |
 /// |---|---|---|---|
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
-/// | TOUCH | the same | (q r + (1 - q) (on the target)) near(`d_t`) | the same |
+/// | TOUCH | the same | (q r + (1 - q) (on the target)) beside(`d_t`) | the same |
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
 /// | IGNORE | 1 if the target was seen last, else 0.5 | (not in view and nothing touched) near(`d_t`) | near(`d_o`) (0.25 f + 0.75 f a) |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -75,8 +75,8 @@ pub struct Ledger {
     on_target: u32,
     /// Which colours were in view when any was, last.
     last_seen: [bool; 3],
-    /// Which objects the second segment has been on.
-    reached: [bool; 3],
+    /// How far the tip was from the target's surface, 0 if the second segment was on it, at best while the target was centred \[m\].
+    nearest: Option<f64>,
     /// The step that passed last.
     last: Observation,
 }
@@ -88,10 +88,13 @@ impl Ledger {
         if seen.contains(&true) {
             self.last_seen = seen;
         }
-        self.reached = core::array::from_fn(|i| self.reached[i] || now.touched[i]);
         self.last = now;
+        let target = instruction.color;
+        if now.centred(target) {
+            let away = if now.touched[target.index()] { 0.0 } else { now.tip[target.index()] };
+            self.nearest = Some(self.nearest.map_or(away, |nearest| nearest.min(away)));
+        }
         if late {
-            let target = instruction.color;
             let count = |held: bool| u32::from(held);
             self.steps += 1;
             self.centred += count(now.centred(target));
@@ -121,20 +124,20 @@ impl Ledger {
     pub fn parts(&self, instruction: Instruction, judging: &Judging) -> Parts {
         let target = instruction.color;
         let [displaced, other] = self.displaced(target);
-        let near = |distance: f64| 1.0 - ((distance - judging.still) / judging.span).clamp(0.0, 1.0);
+        let within = |span: f64, distance: f64| 1.0 - ((distance - judging.still) / span).clamp(0.0, 1.0);
+        let near = |distance: f64| within(judging.span, distance);
         let [ahead, left] = self.last.ahead[target.index()];
         let angle = atan2(left, ahead).abs();
         let found = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.centred);
         let undisturbed = near(other);
-        let reached = if self.reached[target.index()] {
-            1.0
-        } else {
-            1.0 - (self.last.tip[target.index()] / judging.reach).clamp(0.0, 1.0)
-        };
+        let reached = self.nearest.map_or(0.0, |nearest| 1.0 - (nearest / judging.reach).clamp(0.0, 1.0));
         let with_reach = |rest: f64| judging.reach_share * reached + (1.0 - judging.reach_share) * rest;
         let (find, act, weight) = match instruction.action {
             Action::Indicate => (found, self.share(self.centred_alone) * near(displaced), 0.5),
-            Action::Touch => (found, with_reach(self.share(self.on_target)) * near(displaced), 0.5),
+            Action::Touch => {
+                let beside = within(judging.span_touched, displaced);
+                (found, with_reach(self.share(self.on_target)) * beside, 0.5)
+            }
             Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0)), 0.5),
             Action::Ignore => {
                 let find = if self.last_seen[target.index()] { 1.0 } else { 0.5 };
@@ -231,23 +234,29 @@ mod tests {
         let mut on = centred();
         on.touched[0] = true;
         let most = ledger(red, [(10, centred()), (40, on)]);
-        // a = 0.25 + 0.75 * 0.8: it was reached.
-        close(most.parts(red, &JUDGING), [1.0, 0.85, 1.0, 0.925]);
-        // Not reached, the tip 35 of 70 cm away: a = 0.25 * 0.5.
-        close(ledger(red, [(50, centred()), (0, on)]).parts(red, &JUDGING), [1.0, 0.125, 1.0, 0.5625]);
+        // a = 0.5 + 0.5 * 0.8: it was reached.
+        close(most.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.95]);
+        // Not reached, the tip 35 of 100 cm away: a = 0.5 * 0.65.
+        close(ledger(red, [(50, centred()), (0, on)]).parts(red, &JUDGING), [1.0, 0.325, 1.0, 0.6625]);
         assert!(most.succeeds(red, &JUDGING));
         assert!(!ledger(red, [(11, centred()), (39, on)]).succeeds(red, &JUDGING));
-        on.displaced[0] = 0.1;
-        close(ledger(red, [(50, on), (0, on)]).parts(red, &JUDGING), [1.0, 0.0, 1.0, 0.5]);
+        // Pushed by 17 cm: 1 - 15 / 30 of it.
+        on.displaced[0] = 0.17;
+        close(ledger(red, [(50, on), (0, on)]).parts(red, &JUDGING), [1.0, 0.5, 1.0, 0.75]);
+        assert!(!ledger(red, [(50, on), (0, on)]).succeeds(red, &JUDGING));
         // Straight behind and never seen, half as far away as it should be.
         let moved = told("MOVE blue");
         let mut now = centred();
         (now.displaced[2], now.ahead[2]) = (0.175, [-1.0, 0.0]);
-        // Pushed by the first segment, the tip too far away to count.
-        close(ledger(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.0, 0.375, 1.0, 0.0]);
+        // Pushed without a look at it, so reaching counts for nothing.
+        close(ledger(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.0, 0.25, 1.0, 0.0]);
         (now.displaced[2], now.ahead[2], now.touched[2]) = (0.5, [1.0, 0.0], true);
-        let far = ledger(moved, [(50, now), (0, now)]);
-        close(far.parts(moved, &JUDGING), [0.5, 1.0, 1.0, 0.5]);
+        close(ledger(moved, [(50, now), (0, now)]).parts(moved, &JUDGING), [0.5, 0.5, 1.0, 0.375]);
+        // Centred when it was touched, and out of view then.
+        let mut pushed = now;
+        pushed.seen[1][2] = true;
+        let far = ledger(moved, [(10, pushed), (40, now)]);
+        close(far.parts(moved, &JUDGING), [0.6, 1.0, 1.0, 0.6]);
         assert!(far.succeeds(moved, &JUDGING));
         now.displaced[2] = 0.299;
         assert!(!ledger(moved, [(50, now), (0, now)]).succeeds(moved, &JUDGING));

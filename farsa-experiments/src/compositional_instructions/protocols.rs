@@ -229,7 +229,7 @@ mod tests {
                         "lesions" | "noise" => assert_eq!(words, case.column),
                         "action-transition" => {
                             let (at, then) = told.change.unwrap();
-                            assert_eq!((at, told.steps), (250, 500));
+                            assert_eq!((at, told.steps), (150, 300));
                             assert_eq!(format!("{} to {}", told.first.action.word(), then.action.word()), case.row);
                             assert!(words.ends_with(&case.column) && then.color == told.first.color);
                         }
@@ -241,7 +241,7 @@ mod tests {
                         _ => {
                             let (at, then) = told.change.unwrap();
                             assert_eq!(format!("{:.1} s", f64::from(at) * 0.1), case.row);
-                            assert_eq!((told.steps, then.to_string().as_str()), (250, "TOUCH red"));
+                            assert_eq!((told.steps, then.to_string().as_str()), (150, "TOUCH red"));
                             let same = [then.action == told.first.action, then.color == told.first.color];
                             assert_eq!(same, [case.column.starts_with("object"), case.column.starts_with("action")]);
                         }

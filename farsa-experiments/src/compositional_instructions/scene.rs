@@ -123,9 +123,9 @@ impl Scene {
     /// Where everything is at the start of an episode.
     ///
     /// Drawn in this order from the stream of [`Domain::Start`], the same for all individuals: for each place, from the left to
-    /// the right, bearing and distance; between which two objects the first joint starts, and its angle; the side of the second
-    /// joint, and its angle. Trial i has the colours in order i + k modulo 6, with a k that is drawn for each generation: six trials
-    /// one after the other meet each order once, and fewer meet others in every generation.
+    /// the right, bearing and distance; between which two objects the first joint starts, and its angle; the angle of the second
+    /// joint, and its side if that is drawn. Trial i has the colours in order i + k modulo 6, with a k that is drawn for each
+    /// generation: six trials one after the other meet each order once, and fewer meet others in every generation.
     pub fn start_pose(&self, id: EpisodeId) -> StartPose {
         let Config { objects, start, .. } = &self.config;
         let first = Stream::new(id.seed, Domain::Start, ALL_TRIALS, 0, id.generation).below(ORDERS.len() as u32);
@@ -144,7 +144,8 @@ impl Scene {
         let mut around = |middle: f64, spread: f64| stream.range_f64(middle - spread, middle + spread);
         let first = around(0.5 * (between[0] + between[1]), start.first_spread);
         let second = around(start.second, start.second_spread);
-        let side = if stream.below(2) == 0 { 1.0 } else { -1.0 };
+        // Drawn last, so that the other draws are the same with and without it.
+        let side = if !start.both_sides || stream.below(2) == 0 { 1.0 } else { -1.0 };
         StartPose { joints: [first.to_radians(), side * second.to_radians()], objects: places }
     }
 

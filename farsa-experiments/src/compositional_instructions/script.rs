@@ -51,8 +51,8 @@ pub struct Script {
     folded_left: Option<bool>,
 }
 
-/// Beyond the outermost object the search turns back \[rad\].
-const TURN_BACK: f64 = 1.2;
+/// Where the outermost object must be in view the search turns back \[rad\].
+const TURN_BACK: f64 = 1.0;
 /// Through which angle the second joint pushes: 0.35 m at the distance of the objects from the elbow, and some more \[rad\].
 const PUSH: f64 = 1.8;
 
@@ -127,13 +127,13 @@ impl Script {
             Stage::Stretch => {
                 // Slow where it may touch: from 43 degrees from straight on.
                 let slow = inwards * second > -0.75;
-                [0.0, inwards * if slow { 0.1 } else { 1.0 }]
+                [0.0, inwards * if slow { 0.3 } else { 1.0 }]
             }
-            Stage::Push { .. } => [0.0, inwards * 0.4],
+            Stage::Push { .. } => [0.0, inwards * 0.7],
             Stage::Release { .. } => [0.0, -inwards],
             Stage::Leave { left } => [if left { 0.3 } else { -0.3 }, 0.0],
             // What was pushed is kept in the middle.
-            Stage::Rest if action == Action::Move => [if seen.contains(&true) { aim } else { 0.3 * inwards }, 0.0],
+            Stage::Rest if action == Action::Move => [if seen.contains(&true) { aim } else { 0.5 * inwards }, 0.0],
             Stage::Hold | Stage::Rest => [0.0, 0.0],
         }
     }

@@ -24,13 +24,14 @@ impl Config {
         let told: Vec<&str> = told.iter().map(String::as_str).collect();
         let [one, other] = self.held_out.map(|instruction| instruction.to_string());
         vec![
-            Setting::whole("evolution.generations", 2000, 1..=i64::from(u32::MAX) - 1)
+            Setting::whole("evolution.generations", 20_000, 1..=i64::from(u32::MAX) - 1)
                 .doc("Generations that are evaluated; the one thing that a resumed run may change."),
-            Setting::whole("evolution.population", 100, 1..=1_000_000)
-                .doc("Individuals of a generation, a multiple of the parents."),
-            Setting::whole("evolution.parents", 20, 1..=1_000_000)
-                .doc("The best individuals, which make population / parents copies each, the first of them unchanged."),
-            Setting::number("evolution.mutation_rate", 0.015, 0.0..=1.0).doc("Probability that mutation hits a bit."),
+            Setting::whole("evolution.population", 40, 0..=1_000_000)
+                .doc("Individuals of a generation: more learn to find more surely."),
+            number("strategy.sigma", 0.3, 1e-6, 10.0).doc("Initial standard deviation, in halves of a range."),
+            number("strategy.sigma_learning_rate", 0.055, 0.0, 10.0).doc(
+                "Learning rate of the standard deviations: half of the source's, with which they shrink too early.",
+            ),
             Setting::word("instruction.held_out", &one, &told)
                 .given()
                 .doc("An instruction that is never heard before the test."),
@@ -88,14 +89,17 @@ impl Config {
     }
 
     fn of_start(&self) -> Vec<Setting> {
-        let Start { first_spread, second, second_spread } = self.start;
+        let Start { first_spread, second, second_spread, both_sides } = self.start;
         vec![
             number("start.first_spread", first_spread, 0.0, 90.0)
                 .unit("deg")
                 .doc("The first joint starts at most so far from a direction between two objects."),
             number("start.second", second, 0.0, 175.0)
                 .unit("deg")
-                .doc("The second joint starts so far to the left or to the right."),
+                .doc("The second joint starts so far to the left, or to a side that is drawn."),
+            Setting::flag("start.both_sides", both_sides).doc(
+                "Whether that side is drawn: half of the starts are then stretched by the speed that folds the others.",
+            ),
             number("start.second_spread", second_spread, 0.0, 90.0)
                 .unit("deg")
                 .doc("By how much that differs at most."),
@@ -111,9 +115,12 @@ impl Config {
                 .doc("The last seconds of a trial, of which shares are taken."),
             length("fitness.still", judging.still).doc("A displacement that costs nothing."),
             length("fitness.span", judging.span).doc("How much more than that costs all."),
+            length("fitness.span_touched", judging.span_touched)
+                .doc("The same of the target of TOUCH: who is punished for every push does not learn to touch."),
             length("fitness.far", judging.far).doc("The displacement for which MOVE earns most."),
-            length("fitness.reach", judging.reach)
-                .doc("Distance of the tip from the target from which on TOUCH and MOVE earn something for reaching."),
+            length("fitness.reach", judging.reach).doc(
+                "Distance of the tip from the centred target from which on TOUCH and MOVE earn something for reaching.",
+            ),
             number("fitness.reach_share", judging.reach_share, 0.0, 1.0)
                 .doc("What reaching counts in the acts of TOUCH and MOVE: without it no agent learned to stretch."),
             numbers("success.least_shares", &judging.least_shares, 0.0, 1.0)
@@ -195,11 +202,13 @@ impl Config {
                 first_spread: number("start.first_spread")?,
                 second: number("start.second")?,
                 second_spread: number("start.second_spread")?,
+                both_sides: settings.flag("start.both_sides")?,
             },
             judging: Judging {
                 window: number("fitness.window")?,
                 still: number("fitness.still")?,
                 span: number("fitness.span")?,
+                span_touched: number("fitness.span_touched")?,
                 far: number("fitness.far")?,
                 reach: number("fitness.reach")?,
                 reach_share: number("fitness.reach_share")?,

@@ -29,9 +29,11 @@ pub(crate) fn complete(mut own: Vec<Setting>, mut strategy: Vec<Setting>) -> Vec
 
 /// An experiment's table with the settings of a strategy that is not its own, and that strategy's name.
 ///
-/// The strategy has its own defaults; what the experiment says of `evolution` is about another one, but for how long to search.
+/// The strategy has its own defaults; what the experiment says of `evolution` and `strategy` is about another one, but for how long
+/// to search.
 pub(crate) fn chosen(own: Vec<Setting>, name: &str, strategy: Vec<Setting>) -> Vec<Setting> {
-    let about_this = |setting: &Setting| !setting.key().starts_with("evolution.") || setting.key() == GENERATIONS;
+    let of_strategy = |key: &str| ["evolution.", "strategy."].iter().any(|section| key.starts_with(section));
+    let about_this = |setting: &Setting| !of_strategy(setting.key()) || setting.key() == GENERATIONS;
     let own = own.into_iter().filter(about_this).collect();
     let doc = "The strategy, in place of the experiment's own.";
     let mut table = vec![Setting::word(STRATEGY, name, &[name]).doc(doc)];
@@ -67,6 +69,7 @@ mod tests {
             Setting::whole(GENERATIONS, 7, 1..=100),
             Setting::whole(POPULATION, 30, 1..=100),
             Setting::number("evolution.first_rate", 0.5, 0.0..=1.0),
+            Setting::number("strategy.sigma", 0.5, 0.0..=1.0),
             Setting::flag("world.flat", true),
         ];
         let table = chosen(own, "truncation", Truncation.settings());
