@@ -181,7 +181,7 @@ impl Config {
                 window: 5.0,
                 still: 0.02,
                 span: 0.08,
-                span_touched: 0.3,
+                span_touched: 0.15,
                 far: 0.35,
                 reach: 1.0,
                 reach_share: 0.5,

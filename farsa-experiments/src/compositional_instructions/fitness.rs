@@ -63,7 +63,7 @@ pub struct Parts {
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
 /// | TOUCH | the same | (q r + (1 - q) (on the target)) beside(`d_t`) | the same |
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
-/// | IGNORE | 1 if the target was seen last, else 0.5 | (not in view and nothing touched) near(`d_t`) | near(`d_o`) (0.25 f + 0.75 f a) |
+/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 if the target was seen last | (not in view and nothing touched) near(`d_t`) | near(`d_o`) (0.25 f + 0.75 f a) |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Ledger {
     /// Steps of the last seconds so far.
@@ -140,7 +140,7 @@ impl Ledger {
             }
             Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0)), 0.5),
             Action::Ignore => {
-                let find = if self.last_seen[target.index()] { 1.0 } else { 0.5 };
+                let find = 0.5 * (1.0 - angle / PI) + if self.last_seen[target.index()] { 0.5 } else { 0.0 };
                 (find, self.share(self.out_of_view_alone) * near(displaced), 0.75)
             }
         };
@@ -240,8 +240,8 @@ mod tests {
         close(ledger(red, [(50, centred()), (0, on)]).parts(red, &JUDGING), [1.0, 0.325, 1.0, 0.6625]);
         assert!(most.succeeds(red, &JUDGING));
         assert!(!ledger(red, [(11, centred()), (39, on)]).succeeds(red, &JUDGING));
-        // Pushed by 17 cm: 1 - 15 / 30 of it.
-        on.displaced[0] = 0.17;
+        // Pushed by 9.5 cm: 1 - 7.5 / 15 of it.
+        on.displaced[0] = 0.095;
         close(ledger(red, [(50, on), (0, on)]).parts(red, &JUDGING), [1.0, 0.5, 1.0, 0.75]);
         assert!(!ledger(red, [(50, on), (0, on)]).succeeds(red, &JUDGING));
         // Straight behind and never seen, half as far away as it should be.
@@ -272,6 +272,11 @@ mod tests {
         assert!(!unseen.succeeds(red, &JUDGING));
         let turned = ledger(red, [(5, centred()), (45, nothing)]);
         close(turned.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.25 + 0.75 * 0.9]);
+        // Turned away by a right angle: f = 0.5 * 0.5 + 0.5.
+        let aside = Observation { ahead: [[0.0, 1.3]; 3], ..nothing };
+        let away = ledger(red, [(5, centred()), (45, aside)]);
+        close(away.parts(red, &JUDGING), [0.75, 0.9, 1.0, 0.75 * (0.25 + 0.75 * 0.9)]);
+        assert!(away.succeeds(red, &JUDGING));
         assert!(turned.succeeds(red, &JUDGING));
         // Another one is seen last.
         let mut other = nothing;

@@ -116,7 +116,7 @@ impl Config {
             length("fitness.still", judging.still).doc("A displacement that costs nothing."),
             length("fitness.span", judging.span).doc("How much more than that costs all."),
             length("fitness.span_touched", judging.span_touched)
-                .doc("The same of the target of TOUCH: who is punished for every push does not learn to touch."),
+                .doc("The same of the target of TOUCH: who loses all by a push does not learn to touch."),
             length("fitness.far", judging.far).doc("The displacement for which MOVE earns most."),
             length("fitness.reach", judging.reach).doc(
                 "Distance of the tip from the centred target from which on TOUCH and MOVE earn something for reaching.",
