@@ -4,6 +4,7 @@
 
 mod channels;
 mod common;
+mod sliding;
 
 use std::cell::RefCell;
 
@@ -155,6 +156,73 @@ fn every_lane_has_the_bits_of_the_world_alone() {
     }
     println!("{ran} control steps in lanes");
     assert!(ran >= 100_000 || Batch::instructions().count() < 3);
+}
+
+/// A step of an arm that pushes balls over the ground: every so often it begins anew, and its motors get other speeds.
+fn push<W>(world: &mut W, slides: &[JointId], stream: &mut Stream, step: usize)
+where
+    W: Arrange + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
+{
+    if step.is_multiple_of(60) {
+        world.clear();
+        world.place_joint(JointId(0), stream.range(-1.3, 1.3), 0.0);
+        world.place_joint(JointId(1), if stream.below(2) == 0 { 2.0 } else { -2.0 }, 0.0);
+        for joint in slides {
+            // Slow and fast: some rest at once, some slide on.
+            world.place_joint(*joint, 0.0, stream.range(-0.5, 0.5));
+        }
+        world.finish_placement();
+    }
+    if step.is_multiple_of(12) {
+        for motor in 0..2 {
+            world.command(ActuatorId(motor), [stream.range(-4.0, 4.0).clamp(-1.0, 1.0), 0.0]);
+        }
+    }
+}
+
+/// Grounds, too, are the same in a lane and alone: balls that slide, come to rest, are pushed and push each other.
+#[test]
+fn sliding_balls_have_the_bits_of_the_world_alone() {
+    for turns in [false, true] {
+        let robot = sliding::arm(turns);
+        let model = model(&robot, Options { time_step: 0.1, substeps: 5, ..Options::default() });
+        let slides: Vec<JointId> = robot
+            .joints()
+            .filter(|joint| robot.segments[joint.index()].joint.kind == farsa_body::JointKind::Prismatic)
+            .collect();
+        let of = |lane: usize| Stream::new(21, Domain::General, lane as u32, 0, 0);
+        let mut touches = 0;
+        let truths: Vec<Vec<Digest>> = (0..WORLDS)
+            .map(|lane| {
+                let (mut world, mut stream) = (World::new(model.clone()), of(lane));
+                let mut step = |t: usize| {
+                    push(&mut world, &slides, &mut stream, t);
+                    world.step();
+                    touches += (0..world.pairs()).filter(|p| world.touches(PairId(*p as u16))).count();
+                    digest(world.state())
+                };
+                (0..300).map(&mut step).collect()
+            })
+            .collect();
+        assert!(touches > 150, "{touches} touches");
+        for level in Batch::instructions() {
+            for lanes in LANES {
+                let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
+                let mut streams: Vec<Stream> = (0..lanes).map(of).collect();
+                let mut own = vec![0.0; model.state_len()];
+                for t in 0..300 {
+                    for (lane, stream) in streams.iter_mut().enumerate() {
+                        push(&mut batch.lane(lane), &slides, stream, t);
+                    }
+                    batch.step();
+                    for (lane, truth) in truths.iter().enumerate().take(lanes) {
+                        batch.lane(lane).save(&mut own);
+                        assert!(digest(&own) == truth[t], "{level:?}: lane {lane} of {lanes} differs at step {t}");
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// A small box over the edge of a large one, with friction against rolling.

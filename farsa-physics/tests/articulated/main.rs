@@ -13,6 +13,8 @@ mod ground;
 mod honest;
 mod oracle;
 mod sight;
+#[path = "../sliding/mod.rs"]
+mod sliding;
 mod snapshot;
 mod sphere;
 #[path = "../wheeled/mod.rs"]
