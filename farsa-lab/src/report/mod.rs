@@ -1,6 +1,7 @@
 //! A page about one or many runs.
 //!
 //! - `curves`: the curves of a report: one run as it was, many as median and quartiles
+//! - `generalisation`: how many runs follow what was held out of their evolution
 //! - `moment`: when runs are compared: at a generation, or after as many evaluations where their generations differ in size
 //! - `outcome`: what came of groups of runs: medians, how many succeeded, and whether the groups differ
 //! - `page`: a page of headings, texts, tables and pictures, written as HTML or as Markdown
@@ -13,6 +14,7 @@
 //! - `write`: `farsa report`: a page about one or many runs
 
 mod curves;
+mod generalisation;
 mod moment;
 pub(crate) mod outcome;
 mod page;

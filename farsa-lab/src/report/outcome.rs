@@ -210,6 +210,6 @@ fn tests(groups: &[Group<'_>], measures: &[Measure], counts: &[Option<Proportion
 }
 
 /// A probability for reading; a small one does not become 0.
-fn probability(p: f64) -> String {
+pub(crate) fn probability(p: f64) -> String {
     if p >= 1e-4 { format!("{p:.4}") } else { format!("{p:.1e}") }
 }

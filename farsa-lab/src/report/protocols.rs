@@ -9,6 +9,7 @@ use crate::figures::heat_map::{HeatCell, HeatMap};
 use crate::figures::rates::{self, RateCurve, Rates};
 use crate::figures::significant::significant;
 use crate::figures::statistics::Quartiles;
+use crate::report::generalisation::{HeldOut, generalisation};
 use crate::report::page::{Block, Figure, Table};
 use crate::report::run::{Group, Run, percent};
 use crate::report::settings::shell;
@@ -57,6 +58,7 @@ pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
         if !figures.is_empty() {
             blocks.push(Block::Figures(figures));
         }
+        blocks.extend(generalisation(&alike.iter().filter_map(Alike::held_out).collect::<Vec<_>>()));
         for alike in &alike {
             blocks.extend(alike.halves().map(Block::Text));
             blocks.extend(alike.tables());
@@ -94,6 +96,15 @@ impl Alike<'_> {
     /// The shares of success of a case in all runs.
     fn rates(&self, case: usize) -> Vec<f64> {
         self.runs.iter().filter_map(|(_, tested)| Some(tested.found.get(case)?.rate)).collect()
+    }
+
+    /// What the runs made of the cases that were held out, if any were.
+    fn held_out(&self) -> Option<HeldOut<'_>> {
+        let cases: Vec<usize> = (0..self.cases.len()).filter(|case| self.cases[*case].held_out).collect();
+        let names = cases.iter().map(|case| self.cases[*case].name()).collect();
+        let rates = |tested: &TestedProtocol| cases.iter().map(|case| tested.found[*case].rate).collect();
+        let runs = self.runs.iter().map(|(_, tested)| rates(tested)).collect();
+        (!cases.is_empty()).then_some(HeldOut { label: self.label, cases: names, runs })
     }
 
     /// The mean share of a case, what is said below it, and the ends of its interval or, of several runs, the extremes.
