@@ -63,7 +63,7 @@ pub struct Parts {
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
 /// | TOUCH | the same | (q r + (1 - q) (on the target)) beside(`d_t`) | the same |
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
-/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 if the target was seen last | (not in view and nothing touched) near(`d_t`) | near(`d_o`) (0.25 f + 0.75 f a) |
+/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 if the target was seen last | (not in view and nothing touched) near(`d_t`) | the same |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Ledger {
     /// Steps of the last seconds so far.
@@ -132,19 +132,19 @@ impl Ledger {
         let undisturbed = near(other);
         let reached = self.nearest.map_or(0.0, |nearest| 1.0 - (nearest / judging.reach).clamp(0.0, 1.0));
         let with_reach = |rest: f64| judging.reach_share * reached + (1.0 - judging.reach_share) * rest;
-        let (find, act, weight) = match instruction.action {
-            Action::Indicate => (found, self.share(self.centred_alone) * near(displaced), 0.5),
+        let (find, act) = match instruction.action {
+            Action::Indicate => (found, self.share(self.centred_alone) * near(displaced)),
             Action::Touch => {
                 let beside = within(judging.span_touched, displaced);
-                (found, with_reach(self.share(self.on_target)) * beside, 0.5)
+                (found, with_reach(self.share(self.on_target)) * beside)
             }
-            Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0)), 0.5),
+            Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0))),
             Action::Ignore => {
                 let find = 0.5 * (1.0 - angle / PI) + if self.last_seen[target.index()] { 0.5 } else { 0.0 };
-                (find, self.share(self.out_of_view_alone) * near(displaced), 0.75)
+                (find, self.share(self.out_of_view_alone) * near(displaced))
             }
         };
-        let fitness = undisturbed * ((1.0 - weight) * find + weight * find * act);
+        let fitness = undisturbed * (0.5 * find + 0.5 * find * act);
         Parts { find, act, undisturbed, fitness }
     }
 
@@ -266,23 +266,23 @@ mod tests {
     fn ignore_by_hand() {
         let red = told("IGNORE red");
         let nothing = Observation { seen: [[false; 3]; 3], ..centred() };
-        // Never seen: f = 0.5, and u (0.25 f + 0.75 f a) with a = 1.
+        // Never seen: f = 0.5, and u (0.5 f + 0.5 f a) with a = 1.
         let unseen = ledger(red, [(50, nothing), (0, nothing)]);
         close(unseen.parts(red, &JUDGING), [0.5, 1.0, 1.0, 0.5]);
         assert!(!unseen.succeeds(red, &JUDGING));
         let turned = ledger(red, [(5, centred()), (45, nothing)]);
-        close(turned.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.25 + 0.75 * 0.9]);
+        close(turned.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.5 + 0.5 * 0.9]);
         // Turned away by a right angle: f = 0.5 * 0.5 + 0.5.
         let aside = Observation { ahead: [[0.0, 1.3]; 3], ..nothing };
         let away = ledger(red, [(5, centred()), (45, aside)]);
-        close(away.parts(red, &JUDGING), [0.75, 0.9, 1.0, 0.75 * (0.25 + 0.75 * 0.9)]);
+        close(away.parts(red, &JUDGING), [0.75, 0.9, 1.0, 0.75 * (0.5 + 0.5 * 0.9)]);
         assert!(away.succeeds(red, &JUDGING));
         assert!(turned.succeeds(red, &JUDGING));
         // Another one is seen last.
         let mut other = nothing;
         other.seen[0][1] = true;
         let looked = ledger(red, [(5, centred()), (45, other)]);
-        close(looked.parts(red, &JUDGING), [0.5, 0.9, 1.0, 0.5 * (0.25 + 0.75 * 0.9)]);
+        close(looked.parts(red, &JUDGING), [0.5, 0.9, 1.0, 0.5 * (0.5 + 0.5 * 0.9)]);
         assert!(!looked.succeeds(red, &JUDGING));
     }
 
