@@ -226,6 +226,50 @@ fn lanes_have_the_same_bits_as_one_world() {
     }
 }
 
+/// A camera at the axis of the bar that looks along it, with a red ball of 20 cm two metres ahead, and nothing that falls.
+fn watching(sight: f64, at: &str) -> String {
+    let world = format!("gravity = [0.0, 0.0, 0.0]\nfloor = false\nsight_height = {sight:?}");
+    let camera = "[[sensors]]\nkind = \"camera\"\nbody = \"rod\"\nfield_of_view = 60.0\nsectors = 3\nrange = 5.0\n\
+                  colors = [{ name = \"red\", low = [0.5, 0.0, 0.0], high = [1.0, 0.3, 0.3] }]";
+    let ball = format!(
+        "[[objects]]\nkind = \"ball\"\nname = \"apple\"\nat = {at}\nradius = 0.2\nmass = 1.0\ncolor = [1.0, 0.0, 0.0]"
+    );
+    let rest = format!("{}\n{ball}", FELT.replace("joint-position", "camera"));
+    file(&world, "kind = \"joint-velocity\"\nlargest = 2.0\ngain = 50.0", &rest)
+        .replace("[[motors]]", &format!("{camera}\n[[motors]]"))
+}
+
+#[test]
+fn cameras_see_coloured_things_in_their_plane() {
+    // Rays every 20 / 9 degrees; the ball is 5.7 degrees to each side, in a plane above its middle 3.8.
+    for (sight, share) in [(1.0, 5.0), (1.15, 3.0), (1.25, 0.0)] {
+        close(measured(&outcome(&watching(sight, "[2.0, 0.0, 1.0]"), 0.5), "camera"), share / 9.0, 1e-6);
+    }
+    // Behind it, and too far away.
+    for at in ["[-2.0, 0.0, 1.0]", "[5.5, 0.0, 1.0]"] {
+        close(measured(&outcome(&watching(1.0, at), 0.5), "camera"), 0.0, 0.0);
+    }
+    // While the bar turns, in lanes as alone.
+    let mut evaluator = made(&watching(1.0, "[1.0, 1.0, 1.0]")).unwrap();
+    let parameters = vec![0.7; evaluator.parameters().len()];
+    let evaluation = Evaluation::new(&parameters, EpisodeId::default());
+    let alone = evaluator.evaluate(evaluation, None);
+    let lanes = evaluator.in_lanes().unwrap();
+    lanes.use_lanes(farsa_lab::Lanes::best()).unwrap();
+    let (mut next, mut in_lanes) = (Some(evaluation), Vec::new());
+    lanes.evaluate_all(&mut || next.take(), &mut |_, outcome| in_lanes.push(outcome));
+    assert_eq!(in_lanes, [alone]);
+    let found = refused(&watching(1.0, "[2.0, 0.0, 1.0]").replace("body = \"rod\"", "body = \"rot\""));
+    assert!(found.contains("body `rot`") || found.contains("rod"), "{found}");
+}
+
+#[cfg(feature = "rapier")]
+#[test]
+fn cameras_are_refused_where_they_see_nothing() {
+    let found = refused(&watching(1.0, "[2.0, 0.0, 1.0]").replace("\"articulated\"", "\"rapier\""));
+    assert!(found.contains("sees nothing in `rapier`; take the engine `articulated`"), "{found}");
+}
+
 #[cfg(feature = "rapier")]
 #[test]
 fn rapier_moves_the_same_robot() {

@@ -2,15 +2,21 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::sync::Arc;
 
 use farsa_experiments::compositional_instructions::{
     Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, Told, evaluator,
 };
-use farsa_lab::{CaseId, EpisodeId, Evaluation, Evaluator, Lanes, Outcome, Parameter, Task as _, run_episode};
+use farsa_lab::{
+    CaseId, EpisodeId, Evaluation, Evaluator, Genotype, Lanes, Outcome, Parameter, Task as _, read_genotypes,
+    run_episode,
+};
 use farsa_num::{Domain, Instructions, Stream};
 use farsa_physics::articulated::{Model, World};
 
+/// Evolved agents, by the names of the files with their genes.
+const CHAMPIONS: [(Condition, &str); 1] = [(Condition::WithIndicate, "compositional-instructions-with-indicate.gen")];
 const CONDITIONS: [Condition; 2] = [Condition::WithIndicate, Condition::WithIgnore];
 
 /// Successes and mean fitness of a script over so many starts of each instruction.
@@ -93,6 +99,32 @@ fn trials_and_cases_in_lanes_are_those_alone() {
             for (number, (one, other)) in alone.iter().zip(&together).enumerate() {
                 assert_eq!(Some(one), other.as_ref(), "{condition:?}, {lanes} lanes, evaluation {number}");
             }
+        }
+    }
+}
+
+/// The champions of docs/results/compositional-instructions.md follow what they were trained for; what they make of the instructions
+/// that were held out stands there.
+#[test]
+fn evolved_agents_follow_what_they_were_trained_for() {
+    for (condition, name) in CHAMPIONS {
+        let config = Config::for_condition(condition);
+        let mut evaluator = evaluator(config).unwrap();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name);
+        let genes = read_genotypes(&path, 210, 16).unwrap().remove(0);
+        let parameters = Genotype::new(&evaluator.parameters(), 16).decode(&genes).unwrap();
+        let protocol = evaluator.protocols().iter().position(|protocol| protocol.name == "instructions").unwrap();
+        let cases = evaluator.protocols()[protocol].cases.clone();
+        assert_eq!(cases.iter().filter(|case| case.held_out).count(), 2);
+        for (case, what) in cases.iter().enumerate().filter(|(_, case)| !case.held_out) {
+            let case = Some(CaseId { protocol, case });
+            let of = |trial| EpisodeId { seed: 7 | 1 << 63, trial, ..EpisodeId::default() };
+            let mut follows = |trial| {
+                let evaluation = Evaluation { case, ..Evaluation::new(&parameters, of(trial)) };
+                evaluator.evaluate(evaluation, None).success
+            };
+            let successes = (0..80).filter(|trial| follows(*trial)).count();
+            assert!(successes >= 64, "{condition:?}, {}: {successes} of 80", what.name());
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::arena::term::Term;
 use crate::check::places::Places;
 use crate::document::{Document, Ending, MotorKind, SensorKind};
 use crate::parts::agents::Agents;
+use crate::parts::eye::{MOST_RAYS, rays_of};
 use crate::parts::files::Files;
 use crate::parts::ledger::Ledger;
 use crate::parts::wiring::Wiring;
@@ -70,9 +71,6 @@ impl Member {
         }
     }
 }
-
-/// The most rays that all robots send out in a step.
-const MOST_RAYS: usize = 200_000;
 
 impl Composition {
     /// The parts of a document with their channels and terms; errors name the places where they stand.
@@ -195,11 +193,7 @@ fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Sensing]) -> Vec<(
 /// Refuses what would take a step too long.
 fn bounded(document: &Document, robots: usize, places: &Places) -> Result<(), Error> {
     for (index, sensor) in document.sensors.iter().enumerate() {
-        let rays = match &sensor.kind {
-            SensorKind::LaserDistance { beams, .. } => *beams as usize,
-            SensorKind::Camera(camera) => camera.sectors as usize * camera.rays as usize,
-            _ => 0,
-        };
+        let rays = rays_of(&sensor.kind);
         if rays.saturating_mul(robots) > MOST_RAYS {
             let why = format!("sends out {rays} rays from each of {robots} robots; at most {MOST_RAYS} in all");
             return Err(places.wrong(&format!("/sensors/{index}"), why));

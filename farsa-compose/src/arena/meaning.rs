@@ -3,6 +3,7 @@
 use farsa_body::{AnalyticInfrared, MobileRobot};
 
 use crate::document::{InfraredModel, MotorKind, SensorKind};
+use crate::parts::eye::seen;
 use crate::parts::meaning::Meaning;
 
 /// What a channel of a sensor reads.
@@ -35,12 +36,7 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, robot: &MobileRobot) -> 
         SensorKind::LaserDistance { range, .. } => {
             Meaning::new(format!("distance along beam {} from the left", channel + 1), "m", [0.0, *range])
         }
-        SensorKind::Camera(camera) => {
-            let colors = camera.colors.len().max(1);
-            let color = camera.colors.get(channel % colors).map_or("", |color| color.name.as_str());
-            let sector = channel / colors + 1;
-            Meaning::new(format!("share of sector {sector} from the left that is {color}"), "1", [0.0, 1.0])
-        }
+        SensorKind::Camera(camera) => seen(camera, channel),
         SensorKind::WheelSpeed { signed } => {
             let largest = robot.max_wheel_speed;
             let zero = if *signed { 0.0 } else { -largest };

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use farsa_body::{
-    AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ChannelError, Channels, ColorBand, ContactForce, GroundColor,
-    Height, InfraredAnalytic, InfraredGroups, InfraredTables, JointId, JointPosition, JointSpeed, LaserDistance,
-    LightSensors, LinearCamera, MobileParts, MobileRobot, PairId, Point, SampledInfrared, Sensor, Signal, SignalSensor,
-    TargetPosition, Touch, Traction, WheelSpeed,
+    AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ChannelError, Channels, ContactForce, GroundColor, Height,
+    InfraredAnalytic, InfraredGroups, InfraredTables, JointId, JointPosition, JointSpeed, LaserDistance, LightSensors,
+    MobileParts, MobileRobot, PairId, Point, SampledInfrared, Sensor, Signal, SignalSensor, TargetPosition, Touch,
+    Traction, WheelSpeed,
 };
 use farsa_lab::{Error, PlanarWorld};
 
@@ -15,6 +15,7 @@ use crate::arena::field::Forager;
 use crate::arena::scene::Scene;
 use crate::check::places::Places;
 use crate::document::{self, AxesName, InfraredModel, SensorKind};
+use crate::parts::eye::{Eye, eye};
 use crate::parts::files::{Files, measured};
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
@@ -27,7 +28,7 @@ pub(crate) enum Sensing {
     Light(LightSensors<Vec<Beam>>),
     Ground(GroundColor<Vec<[f32; 2]>>),
     Laser(LaserDistance<Vec<Beam>>),
-    Camera(LinearCamera<Vec<Beam>, Vec<ColorBand>>),
+    Camera(Eye),
     WheelSpeed(WheelSpeed),
     Traction(Traction),
     SignalAround(SignalSensor<1>),
@@ -189,6 +190,7 @@ fn check(kind: &SensorKind, path: &str, places: &Places) -> Result<(), Error> {
         }
         SensorKind::TargetPosition { body, point, .. } | SensorKind::Height { body, point } => (body, &[][..], point),
         SensorKind::BodyPose { body } | SensorKind::BodyVelocity { body, .. } => (body, &[][..], &[0.0; 3]),
+        SensorKind::Camera(camera) => (&camera.body, &[][..], &[0.0; 3]),
         SensorKind::JointPosition { from, to, .. } => {
             let missing = [("from", from), ("to", to)].into_iter().find(|(_, end)| end.is_none());
             return missing.map_or(Ok(()), |(key, _)| {
@@ -259,16 +261,7 @@ fn bare(
             let beams = fan(robot.radius, field_of_view.to_radians(), *beams as usize);
             Sensing::Laser(LaserDistance::new(body, beams, *height as f32, *range as f32)?)
         }
-        SensorKind::Camera(camera) => {
-            let bands = camera
-                .colors
-                .iter()
-                .map(|color| ColorBand { low: color.low.map(|x| x as f32), high: color.high.map(|x| x as f32) });
-            let (view, [sectors, rays]) = (camera.field_of_view.to_radians(), [camera.sectors, camera.rays]);
-            let bands: Vec<ColorBand> = bands.collect();
-            let (sectors, rays, range) = (sectors as usize, rays as usize, camera.range as f32);
-            Sensing::Camera(LinearCamera::for_view(body, view, sectors, rays, bands, range)?)
-        }
+        SensorKind::Camera(camera) => Sensing::Camera(eye(body, camera)?),
         SensorKind::WheelSpeed { signed } => {
             let sensor = WheelSpeed::new(parts.wheels, robot.max_wheel_speed as f32)?;
             Sensing::WheelSpeed(if *signed { sensor.signed() } else { sensor })

@@ -82,7 +82,8 @@ pub enum SensorKind {
         #[schemars(range(min = 0.0, max = 100.0))]
         height: f64,
     },
-    /// A camera of sectors from left to right: of each colour the share of a sector that shows it.
+    /// A camera of sectors from left to right: of each colour the share of a sector that shows it. With a robot with joints it sees
+    /// coloured things in the horizontal plane at `world.sight_height`.
     Camera(Camera),
     /// How fast the wheels turn, left and right: 0 backwards .. 1/2 at rest .. 1 ahead.
     WheelSpeed {
@@ -241,6 +242,9 @@ pub struct MeasuredBody {
 /// A camera.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Camera {
+    /// The body of a robot with joints that carries it at its origin and along whose x axis it looks; by default the first one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
     /// How much it sees, around straight ahead [deg].
     #[schemars(range(min = 1.0, max = 360.0))]
     pub field_of_view: f64,

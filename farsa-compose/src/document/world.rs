@@ -33,6 +33,9 @@ pub struct World {
     /// Steps of the dynamics in a control step; for robots with joints.
     #[schemars(range(min = 1, max = 1000))]
     pub substeps: u32,
+    /// Height of the horizontal plane that cameras see [m]; for robots with joints.
+    #[schemars(range(min = -1000.0, max = 1000.0))]
+    pub sight_height: f64,
     /// How hard things and the floor are [N/m]; for robots with joints.
     #[schemars(range(min = 1.0, max = 1e9))]
     pub stiffness: f64,
@@ -53,6 +56,7 @@ impl Default for World {
             floor: true,
             gravity: [0.0, 0.0, -9.81],
             substeps: 10,
+            sight_height: 0.0,
             stiffness: 1e4,
             friction: 1.0,
         }

@@ -6,13 +6,14 @@ use farsa_num::Stream;
 use farsa_physics::articulated::Options;
 
 use crate::check::places::Places;
-use crate::document::{Document, Ending, Engine};
+use crate::document::{Document, Ending, Engine, SensorKind};
 use crate::jointed::driving::{Driving, motor};
 use crate::jointed::scene::{ROBOT, Scene};
 use crate::jointed::sensing::{Sensing, sensor};
 use crate::jointed::starting::Starting;
 use crate::jointed::term::Term;
 use crate::parts::agents::Agents;
+use crate::parts::eye::{MOST_RAYS, rays_of};
 use crate::parts::groups::Groups;
 use crate::parts::ledger::Ledger;
 use crate::parts::wiring::Wiring;
@@ -79,7 +80,13 @@ impl Composition {
 /// How the world of a document is stepped.
 pub(crate) fn options(document: &Document) -> Options {
     let world = &document.world;
-    Options { time_step: world.time_step, substeps: world.substeps, gravity: world.gravity, ..Options::default() }
+    Options {
+        time_step: world.time_step,
+        substeps: world.substeps,
+        gravity: world.gravity,
+        sight_height: world.sight_height,
+        ..Options::default()
+    }
 }
 
 /// Refuses what only robots on wheels have.
@@ -88,6 +95,17 @@ fn refuse(document: &Document, places: &Places) -> Result<(), Error> {
     if document.world.engine == Engine::Arena {
         let why = "`arena` is for robots on wheels; this one has joints, for `articulated` and `rapier`";
         return Err(places.wrong("/world/engine", why));
+    }
+    for (index, sensor) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
+        let rays = rays_of(&sensor.kind);
+        if rays > MOST_RAYS {
+            let why = format!("sends out {rays} rays; at most {MOST_RAYS}");
+            return Err(places.wrong(&format!("/sensors/{index}"), why));
+        }
+        if document.world.engine == Engine::Rapier && matches!(sensor.kind, SensorKind::Camera(_)) {
+            let why = "sees nothing in `rapier`; take the engine `articulated`";
+            return Err(places.wrong(&format!("/sensors/{index}"), why));
+        }
     }
     if !document.robots.is_empty() || document.team.coevolution {
         return Err(places.wrong("/robots", "are for robots on wheels; of those with joints there is one"));

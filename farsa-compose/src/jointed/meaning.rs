@@ -5,6 +5,7 @@ use farsa_body::{JointId, JointKind, Law};
 use crate::document::{MotorKind, SensorKind};
 use crate::jointed::actuation;
 use crate::jointed::scene::Scene;
+use crate::parts::eye::seen;
 use crate::parts::meaning::Meaning;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -62,6 +63,7 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> Meanin
             Meaning::new(what, "rad/s", [0.0, 1.0])
         }
         SensorKind::Height { body: name, .. } => Meaning::new(format!("height of {}", body(name)), "m", [0.0, 1.0]),
+        SensorKind::Camera(camera) => seen(camera, channel),
         SensorKind::Constant { value } => Meaning::new(format!("always {value}"), "1", [0.0, 1.0]),
         // Of robots on wheels.
         _ => Meaning::new("nothing", "1", [0.0, 1.0]),

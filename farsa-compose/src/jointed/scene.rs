@@ -146,6 +146,11 @@ impl Scene {
         of_file.or_else(own).ok_or_else(|| Error::unknown(&places.of(path), "body", name, self.body_names()))
     }
 
+    /// What a body is called.
+    pub(crate) fn body_name(&self, body: BodyId) -> &str {
+        self.robot.segments.get(body.index()).map_or("", |segment| &segment.name)
+    }
+
     fn body_names(&self) -> Vec<&str> {
         let of_file = self.frames.iter().filter(|(_, body, _)| body.is_some()).map(|(name, ..)| name.as_str());
         let own = self.robot.segments[..self.own[0]].iter().map(|segment| segment.name.as_str());

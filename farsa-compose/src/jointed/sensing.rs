@@ -2,7 +2,7 @@
 
 use farsa_body::{
     Axes, BodyPose, BodyVelocity, ChannelError, Channels, ContactForce, Height, JointPosition, JointSpeed, PairId,
-    Sensor, Signal, TargetPosition, Touch,
+    Pose, Sensor, Signal, TargetPosition, Touch,
 };
 use farsa_lab::Error;
 
@@ -12,6 +12,7 @@ use crate::jointed::SpatialWorld;
 use crate::jointed::marker_position::MarkerPosition;
 use crate::jointed::scene::Scene;
 use crate::jointed::spot::Spot;
+use crate::parts::eye::{Eye, eye};
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A sensor of a robot with joints.
@@ -26,6 +27,7 @@ pub(crate) enum Sensing {
     Pose(BodyPose),
     Velocity(BodyVelocity),
     Height(Height),
+    Camera(Camera),
     Constant(Signal<1>),
     Wrapped(Wrapped<Self>),
 }
@@ -43,10 +45,31 @@ macro_rules! sensor {
             Sensing::Pose($sensor) => $call,
             Sensing::Velocity($sensor) => $call,
             Sensing::Height($sensor) => $call,
+            Sensing::Camera($sensor) => $call,
             Sensing::Constant($sensor) => $call,
             Sensing::Wrapped(wrapped) => around!(wrapped, $sensor => $call),
         }
     };
+}
+
+/// A camera, which only some worlds show something.
+#[derive(Clone, Debug)]
+pub(crate) struct Camera(Eye);
+
+impl Channels for Camera {
+    fn channels(&self) -> usize {
+        self.0.channels()
+    }
+
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+}
+
+impl<W: SpatialWorld> Sensor<W> for Camera {
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        world.show(&mut self.0, out);
+    }
 }
 
 impl Channels for Sensing {
@@ -143,12 +166,19 @@ fn bare(kind: &SensorKind, scene: &Scene, path: &str, places: &Places) -> Result
         SensorKind::Height { body, point } => {
             Sensing::Height(Height::new(scene.point(body.as_ref(), *point, path, places)?))
         }
+        SensorKind::Camera(camera) => {
+            let (body, placement) = scene.body(camera.body.as_ref(), &format!("{path}/body"), places)?;
+            if placement != Pose::identity() {
+                let why = format!("lies within `{}`; a camera is at the origin of a body", scene.body_name(body));
+                return Err(places.wrong(&format!("{path}/body"), why));
+            }
+            Sensing::Camera(Camera(eye(body, camera).map_err(wrong)?))
+        }
         SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
         SensorKind::Infrared { .. }
         | SensorKind::Light { .. }
         | SensorKind::GroundColor { .. }
         | SensorKind::LaserDistance { .. }
-        | SensorKind::Camera(_)
         | SensorKind::WheelSpeed { .. }
         | SensorKind::Traction { .. }
         | SensorKind::Signal { .. }

@@ -1,19 +1,34 @@
 //! What a robot with joints needs of a world.
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics};
+use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Sensor as _};
+use farsa_physics::articulated::{Lane, World};
+
+use crate::parts::eye::Eye;
 
 /// A world of bodies with joints, in space.
 pub(crate) trait SpatialWorld:
     Kinematics + Joints + Actuated + Contacts + Arrange + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
 {
+    /// Shows a camera what it sees.
+    fn show(&self, eye: &mut Eye, out: &mut [f32]);
 }
 
-impl<W> SpatialWorld for W where
-    W: Kinematics
-        + Joints
-        + Actuated
-        + Contacts
-        + Arrange
-        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
-{
+impl SpatialWorld for World<f32> {
+    fn show(&self, eye: &mut Eye, out: &mut [f32]) {
+        eye.read(self, out);
+    }
+}
+
+impl SpatialWorld for Lane<'_> {
+    fn show(&self, eye: &mut Eye, out: &mut [f32]) {
+        eye.read(self, out);
+    }
+}
+
+#[cfg(feature = "rapier")]
+impl SpatialWorld for farsa_physics::rapier::World {
+    /// Shows nothing: a file with a camera is refused with this engine.
+    fn show(&self, _: &mut Eye, out: &mut [f32]) {
+        out.fill(0.0);
+    }
 }

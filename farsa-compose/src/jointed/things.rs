@@ -70,7 +70,8 @@ impl Thing {
         let pose = |height| Pose { position: in_space(at.as_deref(), height), rotation: [0.0, 0.0, sine, cosine] };
         let mut moving = |shape: Shape, geometry: Geometry, inertia: MassProperties, pose, color| {
             let body = robot.add_segment(Segment::new(name, None, Joint::floating(pose), inertia));
-            let collider = robot.add_collider(Collider::new(name, Some(body), shape, Pose::identity()));
+            let collider =
+                robot.add_collider(Collider::new(name, Some(body), shape, Pose::identity()).with_color(color));
             let object = SceneObject::new(name, geometry, Pose::identity(), Role::Object);
             drawn.push(object.on_body(body).with_color(screen_color(color)));
             (What::Body(body), Some(collider))
@@ -89,7 +90,8 @@ impl Thing {
             }
             ObjectKind::Wall { size: [along, across], height, color } => {
                 let (half, pose) = ([0.5 * along, 0.5 * across, 0.5 * height], pose(0.5 * height));
-                let collider = robot.add_collider(Collider::new(name, None, Shape::Box { half }, pose));
+                let collider =
+                    robot.add_collider(Collider::new(name, None, Shape::Box { half }, pose).with_color(color));
                 let object = SceneObject::new(name, Geometry::Box { half }, pose, Role::Ground);
                 drawn.push(object.with_color(screen_color(color)));
                 (length(half), 0.0, 0.0, (What::Wall, Some(collider)))

@@ -15,6 +15,7 @@
 //! - `blocks`: networks of clusters and links
 //! - `interventions`: what the test protocols do to a network
 //! - `bounded`: the sizes of networks
+//! - `eye`: a camera of the document as the sensor that it is
 //! - `evonet`: the network of the original, with genes in its order
 //! - `kept`: layouts of networks of blocks, which borrow theirs
 //! - `wanted`: when a trial has succeeded
@@ -26,6 +27,7 @@ pub(crate) mod blocks;
 pub(crate) mod bounded;
 pub(crate) mod ends;
 pub(crate) mod evonet;
+pub(crate) mod eye;
 pub(crate) mod files;
 pub(crate) mod groups;
 pub(crate) mod interventions;

@@ -55,15 +55,16 @@ pub struct Parts {
 /// The ledger of a trial: what its last seconds were like.
 ///
 /// With shares of the last seconds, `d_t` and `d_o` the displacements of the target and of the other object that moved most,
-/// `near(d)` = 1 - clamp((d - still) / span, 0, 1), beside(d) the same with a span of its own, and r how far the arm ever reached while the target was centred: 1 if the second
-/// segment was on it, else 1 - clamp(distance of its tip / reach, 0, 1), which counts q:
+/// `near(d)` = 1 - clamp((d - still) / span, 0, 1), beside(d) the same with a span of its own, and r how far the arm ever reached
+/// while the target was centred: 1 if the second segment was on it, else 1 - clamp(distance of its tip / reach, 0, 1), which counts
+/// q; s is 1 if the target was the last object in view, else 0:
 ///
 /// | | f | a | F |
 /// |---|---|---|---|
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
 /// | TOUCH | the same | (q r + (1 - q) (on the target)) beside(`d_t`) | the same |
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
-/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 if the target was seen last | (not in view and nothing touched) near(`d_t`) | the same |
+/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | s (not in view and nothing touched) near(`d_t`) | the same |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Ledger {
     /// Steps of the last seconds so far.
@@ -140,8 +141,9 @@ impl Ledger {
             }
             Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0))),
             Action::Ignore => {
-                let find = 0.5 * (1.0 - angle / PI) + if self.last_seen[target.index()] { 0.5 } else { 0.0 };
-                (find, self.share(self.out_of_view_alone) * near(displaced))
+                let last = f64::from(u8::from(self.last_seen[target.index()]));
+                let find = 0.5 * (1.0 - angle / PI) + 0.5 * last;
+                (find, last * self.share(self.out_of_view_alone) * near(displaced))
             }
         };
         let fitness = undisturbed * (0.5 * find + 0.5 * find * act);
@@ -266,9 +268,9 @@ mod tests {
     fn ignore_by_hand() {
         let red = told("IGNORE red");
         let nothing = Observation { seen: [[false; 3]; 3], ..centred() };
-        // Never seen: f = 0.5, and u (0.5 f + 0.5 f a) with a = 1.
+        // Never seen: f = 0.5 as it is straight ahead, and nothing for looking at nothing.
         let unseen = ledger(red, [(50, nothing), (0, nothing)]);
-        close(unseen.parts(red, &JUDGING), [0.5, 1.0, 1.0, 0.5]);
+        close(unseen.parts(red, &JUDGING), [0.5, 0.0, 1.0, 0.25]);
         assert!(!unseen.succeeds(red, &JUDGING));
         let turned = ledger(red, [(5, centred()), (45, nothing)]);
         close(turned.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.5 + 0.5 * 0.9]);
@@ -282,7 +284,7 @@ mod tests {
         let mut other = nothing;
         other.seen[0][1] = true;
         let looked = ledger(red, [(5, centred()), (45, other)]);
-        close(looked.parts(red, &JUDGING), [0.5, 0.9, 1.0, 0.5 * (0.5 + 0.5 * 0.9)]);
+        close(looked.parts(red, &JUDGING), [0.5, 0.0, 1.0, 0.25]);
         assert!(!looked.succeeds(red, &JUDGING));
     }
 

@@ -1,0 +1,41 @@
+//! A camera of the document as the sensor that it is.
+
+use farsa_body::{Beam, BodyId, ChannelError, ColorBand, LinearCamera};
+
+use crate::document::{Camera, ColorRange, SensorKind};
+use crate::parts::meaning::Meaning;
+
+/// The most rays that are sent out in a step.
+pub(crate) const MOST_RAYS: usize = 200_000;
+
+/// A camera.
+pub(crate) type Eye = LinearCamera<Vec<Beam>, Vec<ColorBand>>;
+
+/// A camera on a body.
+///
+/// # Errors
+/// Those of [`LinearCamera::for_view`].
+pub(crate) fn eye(body: BodyId, camera: &Camera) -> Result<Eye, ChannelError> {
+    let narrow = |ends: [f64; 3]| ends.map(|x| x as f32);
+    let band = |color: &ColorRange| ColorBand { low: narrow(color.low), high: narrow(color.high) };
+    let bands = camera.colors.iter().map(band).collect();
+    let (view, [sectors, rays]) = (camera.field_of_view.to_radians(), [camera.sectors, camera.rays]);
+    LinearCamera::for_view(body, view, sectors as usize, rays as usize, bands, camera.range as f32)
+}
+
+/// What a channel of a camera reads.
+pub(crate) fn seen(camera: &Camera, channel: usize) -> Meaning {
+    let colors = camera.colors.len().max(1);
+    let color = camera.colors.get(channel % colors).map_or("", |color| color.name.as_str());
+    let sector = channel / colors + 1;
+    Meaning::new(format!("share of sector {sector} from the left that is {color}"), "1", [0.0, 1.0])
+}
+
+/// How many rays a sensor sends out in a step.
+pub(crate) fn rays_of(kind: &SensorKind) -> usize {
+    match kind {
+        SensorKind::LaserDistance { beams, .. } => *beams as usize,
+        SensorKind::Camera(camera) => camera.sectors as usize * camera.rays as usize,
+        _ => 0,
+    }
+}
