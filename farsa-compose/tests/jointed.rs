@@ -243,11 +243,11 @@ fn watching(sight: f64, at: &str) -> String {
 fn cameras_see_coloured_things_in_their_plane() {
     // Rays every 20 / 9 degrees; the ball is 5.7 degrees to each side, in a plane above its middle 3.8.
     for (sight, share) in [(1.0, 5.0), (1.15, 3.0), (1.25, 0.0)] {
-        close(measured(&outcome(&watching(sight, "[2.0, 0.0, 1.0]"), 0.5), "camera"), share / 9.0, 1e-6);
+        close(measured(&outcome(&watching(sight, "[2.0, 0.0, 1.0]"), 0.5), "sensor"), share / 9.0, 1e-6);
     }
     // Behind it, and too far away.
     for at in ["[-2.0, 0.0, 1.0]", "[5.5, 0.0, 1.0]"] {
-        close(measured(&outcome(&watching(1.0, at), 0.5), "camera"), 0.0, 0.0);
+        close(measured(&outcome(&watching(1.0, at), 0.5), "sensor"), 0.0, 0.0);
     }
     // While the bar turns, in lanes as alone.
     let mut evaluator = made(&watching(1.0, "[1.0, 1.0, 1.0]")).unwrap();

@@ -9,14 +9,13 @@ use farsa_experiments::compositional_instructions::{
     Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, Told, evaluator,
 };
 use farsa_lab::{
-    CaseId, EpisodeId, Evaluation, Evaluator, Genotype, Lanes, Outcome, Parameter, Task as _, read_genotypes,
-    run_episode,
+    CaseId, EpisodeId, Evaluation, Evaluator, Genotype, Lanes, Outcome, Parameter, Task as _, run_episode,
 };
 use farsa_num::{Domain, Instructions, Stream};
 use farsa_physics::articulated::{Model, World};
 
 /// Evolved agents, by the names of the files with their genes.
-const CHAMPIONS: [(Condition, &str); 1] = [(Condition::WithIndicate, "compositional-instructions-with-indicate.gen")];
+const CHAMPIONS: [(Condition, &str); 1] = [(Condition::WithIndicate, "compositional-instructions-with-indicate.txt")];
 const CONDITIONS: [Condition; 2] = [Condition::WithIndicate, Condition::WithIgnore];
 
 /// Successes and mean fitness of a script over so many starts of each instruction.
@@ -111,8 +110,9 @@ fn evolved_agents_follow_what_they_were_trained_for() {
         let config = Config::for_condition(condition);
         let mut evaluator = evaluator(config).unwrap();
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name);
-        let genes = read_genotypes(&path, 210, 16).unwrap().remove(0);
-        let parameters = Genotype::new(&evaluator.parameters(), 16).decode(&genes).unwrap();
+        let genes: Vec<f64> =
+            std::fs::read_to_string(path).unwrap().lines().map(|line| line.parse().unwrap()).collect();
+        let parameters = Genotype::new(&evaluator.parameters(), 16).decode_reals(&genes).unwrap();
         let protocol = evaluator.protocols().iter().position(|protocol| protocol.name == "instructions").unwrap();
         let cases = evaluator.protocols()[protocol].cases.clone();
         assert_eq!(cases.iter().filter(|case| case.held_out).count(), 2);
