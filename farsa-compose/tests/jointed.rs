@@ -250,12 +250,12 @@ fn cameras_see_coloured_things_in_their_plane() {
         close(measured(&outcome(&watching(1.0, at), 0.5), "sensor"), 0.0, 0.0);
     }
     // While the bar turns, in lanes as alone.
-    let mut evaluator = made(&watching(1.0, "[1.0, 1.0, 1.0]")).unwrap();
+    let mut evaluator = made(&watching(1.0, "[1.0, 1.0, 1.0]")).expect("an evaluator");
     let parameters = vec![0.7; evaluator.parameters().len()];
     let evaluation = Evaluation::new(&parameters, EpisodeId::default());
     let alone = evaluator.evaluate(evaluation, None);
-    let lanes = evaluator.in_lanes().unwrap();
-    lanes.use_lanes(farsa_lab::Lanes::best()).unwrap();
+    let lanes = evaluator.in_lanes().expect("lanes");
+    lanes.use_lanes(farsa_lab::Lanes::best()).expect("a batch");
     let (mut next, mut in_lanes) = (Some(evaluation), Vec::new());
     lanes.evaluate_all(&mut || next.take(), &mut |_, outcome| in_lanes.push(outcome));
     assert_eq!(in_lanes, [alone]);
