@@ -145,7 +145,7 @@ fn no_dependency_compiles_c_or_looks_for_a_system_library() {
     }
 }
 
-/// The crates of a section of a manifest that is not optional, each by its name in the registry.
+/// The dependencies of a manifest that are not optional.
 fn needed(manifest: &str) -> BTreeSet<&str> {
     let (_, section) = manifest.split_once("\n[dependencies]\n").unwrap_or_default();
     let lines = section.lines().take_while(|line| !line.starts_with('['));

@@ -40,7 +40,7 @@ impl Experiment for CompositionalInstructions {
         2
     }
 
-    /// Natural evolution strategies: the truncation algorithm did not find the objects in ten times as many lives.
+    /// Natural evolution strategies: the truncation algorithm had not found the objects after nine million lives.
     fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
         strategies().iter().find(|strategy| strategy.name() == "snes").copied().unwrap_or(&Truncation)
     }
