@@ -65,6 +65,10 @@ pub trait Kinematics: Handles {
     fn pose(&self, body: Self::Body) -> Pose;
     /// The velocity of a body's origin and its angular velocity, in the world's axes.
     fn velocity(&self, body: Self::Body) -> Twist;
+    /// Where the origin of a body's frame is [m]: the same as the pose has, for less where a world turns rotations into quaternions.
+    fn origin(&self, body: Self::Body) -> [f32; 3] {
+        self.pose(body).position
+    }
 }
 
 /// Joint angles and speeds.

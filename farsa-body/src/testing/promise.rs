@@ -13,6 +13,8 @@ pub enum Promise {
     Finite,
     /// Rotations are unit quaternions.
     UnitRotation,
+    /// A body's origin is its pose's.
+    Origin,
     /// A body's velocity is its change of pose over time.
     Velocity,
     /// A joint's speed is its change of position over time.

@@ -22,6 +22,7 @@ enum Fault {
     NoTime,
     NanSpeed,
     LongRotation,
+    OriginElsewhere,
     NoVelocity,
     BodyAxes,
     WrongTurn,
@@ -119,6 +120,10 @@ impl Kinematics for Broken {
             _ => {}
         }
         pose
+    }
+    fn origin(&self, body: BodyId) -> [f32; 3] {
+        let [x, y, z] = self.pose(body).position;
+        [x, y, if self.has(Fault::OriginElsewhere) { z + 1e-6 } else { z }]
     }
     fn velocity(&self, body: BodyId) -> Twist {
         let twist = self.world.velocity(body);
@@ -247,6 +252,7 @@ fn every_broken_promise_of_a_world_is_named() {
         (Fault::NoTime, Promise::TimeStep),
         (Fault::NanSpeed, Promise::Finite),
         (Fault::LongRotation, Promise::UnitRotation),
+        (Fault::OriginElsewhere, Promise::Origin),
         (Fault::NoVelocity, Promise::Velocity),
         (Fault::BodyAxes, Promise::Velocity),
         (Fault::WrongTurn, Promise::Velocity),

@@ -162,7 +162,7 @@ impl<C: Controller> InstructionEpisode<C> {
 
     fn place_of_objects<W: ArmWorld + ?Sized>(&self, world: &W) -> [[f64; 2]; 3] {
         self.scene.objects.map(|object| {
-            let [x, y, _] = world.pose(object).position;
+            let [x, y, _] = world.origin(object);
             [x, y].map(f64::from)
         })
     }

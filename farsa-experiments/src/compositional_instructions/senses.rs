@@ -83,7 +83,7 @@ impl Senses {
         let mut sides = [false; 3];
         let tip = second.transform([self.length as f32, 0.0, 0.0]).map(f64::from);
         for (i, object) in self.objects.into_iter().enumerate() {
-            let place = world.pose(object).position;
+            let place = world.origin(object);
             let [ahead, left, _] = first.transform_back(place).map(f64::from);
             now.ahead[i] = [ahead, left];
             now.displaced[i] = Scene::distance([place[0], place[1]].map(f64::from), places[i]);

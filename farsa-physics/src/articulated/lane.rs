@@ -119,6 +119,9 @@ impl Kinematics for Lane<'_> {
     fn pose(&self, body: BodyId) -> Pose {
         view::pose(self, body)
     }
+    fn origin(&self, body: BodyId) -> [f32; 3] {
+        view::origin(self, body)
+    }
     fn velocity(&self, body: BodyId) -> Twist {
         view::velocity(self, body)
     }

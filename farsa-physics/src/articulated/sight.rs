@@ -6,18 +6,12 @@ use farsa_num::Real;
 use crate::articulated::model::Geometry;
 use crate::articulated::ray::{ball, block, capsule, collider_frame, plane};
 use crate::articulated::spatial::{Matrix, Vector, add, rotate, rotate_back, scale, sub};
-use crate::articulated::tree::WORLD;
-use crate::articulated::view::View;
+use crate::articulated::view::{self, View};
 
 /// Where a collider of a ball is; its turn does not matter.
 #[inline]
 fn centre<R: Real>(world: &impl View<R>, index: usize) -> Vector<R> {
-    let mount = &world.model().colliders[index].mount;
-    if mount.link == WORLD {
-        return mount.position;
-    }
-    let (rotation, position) = world.link_frame(usize::from(mount.link));
-    add(position, rotate(&rotation, mount.position))
+    view::place(world, &world.model().colliders[index].mount)
 }
 
 /// The first shape with a colour on a ray in the plane, other than those of `but`.

@@ -4,7 +4,7 @@
 use farsa_body::{BodyId, JointId, JointKind, PairContact, PairId, Pose, Twist};
 use farsa_num::Real;
 
-use crate::articulated::model::{Model, POINT_WORDS};
+use crate::articulated::model::{Model, Mount, POINT_WORDS};
 use crate::articulated::spatial::{Matrix, Spatial, Vector, add, cross, product, rotate, sub};
 use crate::articulated::tree::{Motion, WORLD};
 
@@ -71,6 +71,20 @@ pub(crate) fn pose<R: Real>(world: &impl View<R>, body: BodyId) -> Pose<R> {
         position: add(position, rotate(&rotation, mount.position)),
         rotation: quaternion(&product(&rotation, &mount.rotation)),
     }
+}
+
+/// Where the origin of a body's frame is; the world's origin for a body that does not exist.
+pub(crate) fn origin<R: Real>(world: &impl View<R>, body: BodyId) -> Vector<R> {
+    world.model().mounts.get(body.index()).map_or([R::from_f64(0.0); 3], |mount| place(world, mount))
+}
+
+/// Where a mount's origin is.
+pub(crate) fn place<R: Real>(world: &impl View<R>, mount: &Mount<R>) -> Vector<R> {
+    if mount.link == WORLD {
+        return mount.position;
+    }
+    let (rotation, position) = world.link_frame(usize::from(mount.link));
+    add(position, rotate(&rotation, mount.position))
 }
 
 /// Velocity of a body's origin and its angular velocity.

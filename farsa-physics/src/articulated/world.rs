@@ -162,6 +162,9 @@ impl<R: Precision> Kinematics for World<R> {
     fn pose(&self, body: BodyId) -> Pose {
         self.pose_of(body).cast()
     }
+    fn origin(&self, body: BodyId) -> [f32; 3] {
+        f32_of(view::origin(self, body))
+    }
     fn velocity(&self, body: BodyId) -> Twist {
         let v = self.velocity_of(body);
         Twist { linear: f32_of(v.linear), angular: f32_of(v.angular) }

@@ -219,6 +219,10 @@ where
         ensure((length - 1.0).abs() < 1e-3, Promise::UnitRotation, || {
             format!("step {step}, body {index}: {:?}", pose.rotation)
         })?;
+        let origin = world.origin(body);
+        ensure(origin == pose.position, Promise::Origin, || {
+            format!("step {step}, body {index}: origin {origin:?}, in the pose {:?}", pose.position)
+        })?;
     }
     for pair in pairs(world) {
         let contact = world.pair_contact(pair);
