@@ -36,8 +36,9 @@ impl Experiment for CompositionalInstructions {
     }
 
     // 2: reaching counts while the target is centred, a push in TOUCH costs less, the second joint starts on one side.
+    // 3: IGNORE asks in every one of the last steps which object was seen last, not at the end alone.
     fn values_version(&self) -> u32 {
-        2
+        3
     }
 
     /// Natural evolution strategies: the truncation algorithm had not found the objects after nine million lives.

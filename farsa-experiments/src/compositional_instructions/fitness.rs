@@ -57,14 +57,14 @@ pub struct Parts {
 /// With shares of the last seconds, `d_t` and `d_o` the displacements of the target and of the other object that moved most,
 /// `near(d)` = 1 - clamp((d - still) / span, 0, 1), beside(d) the same with a span of its own, and r how far the arm ever reached
 /// while the target was centred: 1 if the second segment was on it, else 1 - clamp(distance of its tip / reach, 0, 1), which counts
-/// q; s is 1 if the target was the last object in view, else 0:
+/// q; s(x) is the share of the last seconds in which the target was the object that had been in view last, and x held:
 ///
 /// | | f | a | F |
 /// |---|---|---|---|
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
 /// | TOUCH | the same | (q r + (1 - q) (on the target)) beside(`d_t`) | the same |
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
-/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | s (not in view and nothing touched) near(`d_t`) | the same |
+/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | s(not in view and nothing touched) near(`d_t`) | the same |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Ledger {
     /// Steps of the last seconds so far.
@@ -72,7 +72,8 @@ pub struct Ledger {
     /// In how many of them each held.
     centred: u32,
     centred_alone: u32,
-    out_of_view_alone: u32,
+    remembered: u32,
+    ignored: u32,
     on_target: u32,
     /// Which colours were in view when any was, last.
     last_seen: [bool; 3],
@@ -100,7 +101,9 @@ impl Ledger {
             self.steps += 1;
             self.centred += count(now.centred(target));
             self.centred_alone += count(now.centred(target) && !now.touches());
-            self.out_of_view_alone += count(!now.in_view(target) && !now.touches());
+            let remembered = self.last_seen[target.index()];
+            self.remembered += count(remembered);
+            self.ignored += count(remembered && !now.in_view(target) && !now.touches());
             self.on_target += count(now.touched[target.index()]);
         }
     }
@@ -141,9 +144,8 @@ impl Ledger {
             }
             Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0))),
             Action::Ignore => {
-                let last = f64::from(u8::from(self.last_seen[target.index()]));
-                let find = 0.5 * (1.0 - angle / PI) + 0.5 * last;
-                (find, last * self.share(self.out_of_view_alone) * near(displaced))
+                let find = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.remembered);
+                (find, self.share(self.ignored) * near(displaced))
             }
         };
         let fitness = undisturbed * (0.5 * find + 0.5 * find * act);
@@ -159,11 +161,7 @@ impl Ledger {
             Action::Indicate => self.share(self.centred_alone) >= least_still && displaced <= judging.most_still,
             Action::Touch => self.share(self.on_target) >= least_touching && displaced <= judging.most_touched,
             Action::Move => displaced >= judging.least_moved,
-            Action::Ignore => {
-                self.share(self.out_of_view_alone) >= least_still
-                    && self.last_seen[target.index()]
-                    && displaced <= judging.most_still
-            }
+            Action::Ignore => self.share(self.ignored) >= least_still && displaced <= judging.most_still,
         };
         done && other <= judging.most_other
     }
@@ -272,20 +270,31 @@ mod tests {
         let unseen = ledger(red, [(50, nothing), (0, nothing)]);
         close(unseen.parts(red, &JUDGING), [0.5, 0.0, 1.0, 0.25]);
         assert!(!unseen.succeeds(red, &JUDGING));
+        // Looked at all the time.
+        close(ledger(red, [(50, centred()), (0, nothing)]).parts(red, &JUDGING), [1.0, 0.0, 1.0, 0.5]);
         let turned = ledger(red, [(5, centred()), (45, nothing)]);
         close(turned.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.5 + 0.5 * 0.9]);
+        assert!(turned.succeeds(red, &JUDGING));
+        assert!(!ledger(red, [(6, centred()), (44, nothing)]).succeeds(red, &JUDGING));
         // Turned away by a right angle: f = 0.5 * 0.5 + 0.5.
         let aside = Observation { ahead: [[0.0, 1.3]; 3], ..nothing };
         let away = ledger(red, [(5, centred()), (45, aside)]);
         close(away.parts(red, &JUDGING), [0.75, 0.9, 1.0, 0.75 * (0.5 + 0.5 * 0.9)]);
         assert!(away.succeeds(red, &JUDGING));
-        assert!(turned.succeeds(red, &JUDGING));
-        // Another one is seen last.
+        // Another one is seen last, from the sixth of the last steps on.
         let mut other = nothing;
         other.seen[0][1] = true;
         let looked = ledger(red, [(5, centred()), (45, other)]);
-        close(looked.parts(red, &JUDGING), [0.5, 0.0, 1.0, 0.25]);
+        close(looked.parts(red, &JUDGING), [0.55, 0.0, 1.0, 0.275]);
         assert!(!looked.succeeds(red, &JUDGING));
+        // Another one is looked at until the end is near: to come back at the end earns what is left.
+        let late = ledger(red, [(45, other), (5, centred())]);
+        close(late.parts(red, &JUDGING), [0.55, 0.0, 1.0, 0.275]);
+        // Out of view for all of the last seconds but two steps, and the last one seen for those only.
+        let mut late = ledger(red, [(40, other), (2, centred())]);
+        (0..8).for_each(|_| late.add(red, nothing, true));
+        close(late.parts(red, &JUDGING), [0.6, 0.16, 1.0, 0.3 + 0.3 * 0.16]);
+        assert!(!late.succeeds(red, &JUDGING));
     }
 
     fn any_observation() -> impl Strategy<Value = Observation> {
