@@ -7,6 +7,7 @@ mod configurations;
 mod export;
 mod files;
 mod genotypes;
+mod guide;
 mod lines;
 mod look;
 mod manners;

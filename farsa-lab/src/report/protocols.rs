@@ -67,6 +67,29 @@ pub(crate) fn protocols(groups: &[Group<'_>]) -> Vec<Block> {
     blocks
 }
 
+/// The protocols that some runs were not tested by, and the command for the first of these.
+pub(crate) fn not_run(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
+    let mut others: Vec<(&Protocol, Vec<&Run<'_>>)> = Vec::new();
+    for &run in groups.iter().flat_map(|group| &group.runs) {
+        for protocol in &run.other_protocols {
+            match others.iter_mut().find(|(other, _)| other.name == protocol.name) {
+                Some((_, runs)) => runs.push(run),
+                None => others.push((protocol, vec![run])),
+            }
+        }
+    }
+    let all = groups.iter().map(|group| group.runs.len()).sum::<usize>();
+    let mut table = Table::new(&["protocol", "what it tries", "not run with", "command"]);
+    for (protocol, runs) in others {
+        let Some(first) = runs.first() else { continue };
+        let missing = if all == 1 { first.name() } else { format!("{} of {all} runs", runs.len()) };
+        let words = [program.into(), "test".into(), first.name(), "--protocol".into(), protocol.name.clone()];
+        table.rows.push(vec![protocol.name.clone(), protocol.summary.clone(), missing, shell(&words)?]);
+    }
+    let heading = Block::Subheading("Test protocols that were not run".into());
+    Ok(if table.rows.is_empty() { Vec::new() } else { vec![heading, Block::Table(table)] })
+}
+
 /// The runs of each group that were tested in the same cases.
 fn alike<'r>(groups: &'r [Group<'r>], name: &str) -> Vec<Alike<'r>> {
     let mut all: Vec<Alike<'r>> = Vec::new();

@@ -5,6 +5,7 @@ use std::time::Duration;
 use crate::error::Error;
 use crate::evaluation::test::{self, Record};
 use crate::evaluation::test_table::{Findings, Table};
+use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::Value;
 use crate::report::tested_protocol::TestedProtocol;
 use crate::run::plan::Plan;
@@ -27,6 +28,8 @@ pub(crate) struct Run<'e> {
     pub(crate) test: Option<Tested>,
     /// The test protocols that were run, in the experiment's order.
     pub(crate) protocols: Vec<TestedProtocol>,
+    /// The others, in the same order.
+    pub(crate) other_protocols: Vec<Protocol>,
 }
 
 /// The test of a run's champion.
@@ -54,8 +57,8 @@ impl<'e> Run<'e> {
         let populations = if populations.len() > 1 { populations } else { Vec::new() };
         let tested = |(table, record): (Table, Option<Record>)| Tested { findings: table.findings(&terms), record };
         let test = test::read(&directory)?.map(tested);
-        let protocols = TestedProtocol::all(&directory, evaluator.as_ref())?;
-        Ok(Self { directory, plan, manifest, populations, lines, test, protocols })
+        let (protocols, other_protocols) = TestedProtocol::all(&directory, evaluator.as_ref())?;
+        Ok(Self { directory, plan, manifest, populations, lines, test, protocols, other_protocols })
     }
 
     /// The directory as the user named it.

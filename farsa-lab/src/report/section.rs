@@ -9,7 +9,7 @@ use crate::figures::statistics::median;
 use crate::report::curves::figures;
 use crate::report::outcome::{Success, outcome};
 use crate::report::page::{Block, Figure, Table};
-use crate::report::protocols::{command_of, protocols};
+use crate::report::protocols::{command_of, not_run, protocols};
 use crate::report::run::{Group, Run, duration, percent, short, whose};
 use crate::report::settings::{command, complete, differences, shell};
 use crate::strategy::settings::POPULATION;
@@ -39,6 +39,7 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
     blocks.push(Block::Subheading("Champions on fresh starts".into()));
     blocks.extend(tests(&groups, program)?);
     blocks.extend(protocols(&groups));
+    blocks.extend(not_run(&groups, program)?);
     let (mut pictures, mut others) = (Vec::new(), Vec::new());
     for (place, run) in runs.iter().enumerate() {
         match champion(run, place) {

@@ -19,22 +19,26 @@ pub(crate) struct TestedProtocol {
 }
 
 impl TestedProtocol {
-    /// Those of the evaluator's protocols of which a directory holds the results.
+    /// Those of the evaluator's protocols of which a directory holds the results, and those that were not run.
     ///
     /// # Errors
     /// [`Error::Damaged`], [`Error::Io`].
-    pub(crate) fn all(directory: &Directory, evaluator: &dyn Evaluator) -> Result<Vec<Self>, Error> {
+    pub(crate) fn all(directory: &Directory, evaluator: &dyn Evaluator) -> Result<(Vec<Self>, Vec<Protocol>), Error> {
         let (protocols, terms) = (evaluator.protocols(), evaluator.terms());
         Protocol::check(&protocols)?;
-        let read = |protocol: Protocol| -> Result<Option<Self>, Error> {
-            let Some((table, record)) = files::read(directory, &protocol.name)? else { return Ok(None) };
+        let (mut tested, mut others) = (Vec::new(), Vec::new());
+        for protocol in protocols {
+            let Some((table, record)) = files::read(directory, &protocol.name)? else {
+                others.push(protocol);
+                continue;
+            };
             let states = States::read(directory, &protocol.name)?;
             // Those of an earlier test are of other trials.
             let own = |of: &ProtocolRecord| record.as_ref().is_some_and(|record| record.same_test(of));
             let states = states.filter(|(_, of)| of.as_ref().is_some_and(own)).map(|(states, _)| states);
-            Ok(Some(Self { protocol, found: FoundCase::all(&table, &terms), record, states }))
-        };
-        protocols.into_iter().filter_map(|protocol| read(protocol).transpose()).collect()
+            tested.push(Self { protocol, found: FoundCase::all(&table, &terms), record, states });
+        }
+        Ok((tested, others))
     }
 
     /// The cases, in the order of the table.

@@ -311,5 +311,9 @@ fn a_report_shows_what_protocols_found() {
     let two = report(&[&directories[0], &directories[1]], "two.html");
     assert!(two.contains("words, 2 runs: the share falls to half") && two.matches("internal states").count() == 2);
     assert!(two.contains("Each of the 2 runs") && two.contains("TOUCH green, held out") && two.contains("100 to 100"));
+    // What was not run is named with its command.
+    assert!(!one.contains("that were not run"));
+    assert!(two.contains("Test protocols that were not run") && two.contains("1 of 2 runs"), "{two}");
+    assert!(two.contains("12 --protocol none"));
     fs::remove_dir_all(root).unwrap();
 }
