@@ -7,7 +7,8 @@ use crate::tool::{farsa, ok, scratch};
 
 /// The fenced blocks of a language in a text.
 fn blocks<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
-    let pieces = text.split(&format!("```{language}\n") as &str).skip(1);
+    let fence = format!("```{language}\n");
+    let pieces = text.split(fence.as_str()).skip(1);
     pieces.filter_map(|piece| piece.split_once("```").map(|(block, _)| block)).collect()
 }
 
