@@ -8,7 +8,8 @@ mod scene;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use farsa::physics::articulated::{Batch, LANES};
+use farsa::body::{ArmAndHand, BodyId, Camera, CameraImage, Channels, Pose, Sensor, Tabletop};
+use farsa::physics::articulated::{Batch, LANES, Model, Options, World};
 use scene::{Aba, Lanes, Loop, Step};
 
 fn whole_loop(c: &mut Criterion) {
@@ -61,5 +62,23 @@ fn kernels(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, whole_loop, contacts, kernels);
+/// The image of a camera above the shoulder that looks at the table, 768 rays against the scene's colliders.
+fn image(c: &mut Criterion) {
+    let robot = Tabletop::default().scene(&ArmAndHand::default()).expect("the default scene");
+    let world = World::new(Model::<f32>::new(&robot, &Options::default()).expect("the default scene"));
+    // Turned by 50 degrees about y: downwards.
+    let placement = Pose { position: [0.0, 0.1, 0.3], rotation: [0.0, 0.422_618_27, 0.0, 0.906_307_76] };
+    let camera = Camera::new(BodyId(0), placement, [32, 24], 1.2, 2.0).expect("a camera");
+    let mut image = CameraImage::new(camera.clone());
+    let mut pixels = vec![0.0; image.channels()];
+    let mut group = c.benchmark_group("image");
+    group.throughput(Throughput::Elements(768));
+    let mut eye = camera;
+    let met = eye.look(&world).iter().flatten().count();
+    println!("image: {met} of 768 rays meet one of {} colliders", robot.colliders.len());
+    group.bench_function("32 x 24", |b| b.iter(|| image.read(&world, black_box(&mut pixels))));
+    group.finish();
+}
+
+criterion_group!(benches, whole_loop, contacts, kernels, image);
 criterion_main!(benches);

@@ -42,7 +42,7 @@ pub use motors::{
 };
 pub use ports::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, Motor,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Rays, Sensor, Sight, Snapshot, World,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Rays, Seen, Sensor, Sight, Snapshot, Vision, World,
 };
 pub use pose::{Pose, Twist};
 pub use recorder::{Recorder, record_world};
@@ -60,6 +60,7 @@ pub use sensors::{
 };
 #[cfg(feature = "alloc")]
 pub use sensors::{
-    InfraredDrawing, InfraredGroups, InfraredTable, InfraredTableError, InfraredTables, SampledInfrared,
+    Camera, CameraImage, ColorBlobs, InfraredDrawing, InfraredGroups, InfraredTable, InfraredTableError,
+    InfraredTables, SampledInfrared, VisualOffset,
 };
 pub use wrappers::{Delayed, Lesioned, Noise, Noisy, Recorded, Saturated, Scaled, Stuck, StuckAt, Thresholded};

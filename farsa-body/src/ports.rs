@@ -111,6 +111,33 @@ pub trait Rays: Handles {
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<Self::Body>>;
 }
 
+/// What a ray of an eye meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Seen<B> {
+    /// Distance along the ray [m].
+    pub distance: f32,
+    /// The body that is met; `None` for what does not move.
+    pub body: Option<B>,
+    /// What colour it shows, red, green and blue [0..1]; `None` for a surface without a colour, which hides what is behind it.
+    pub color: Option<[f32; 3]>,
+}
+
+/// What many rays from one place meet: the eyes of a camera with an image.
+#[diagnostic::on_unimplemented(message = "`{Self}` does not show itself to cameras (port `Vision`)")]
+pub trait Vision: Handles {
+    /// The first surface on each ray from `from` [m] along unit vectors within `range` [m], in the world's axes, other than those of
+    /// `but`; `seen` [directions]. What `from` lies within is not seen, nor is anything beyond the shorter of the two slices.
+    fn look(
+        &self,
+        from: [f32; 3],
+        directions: &[[f32; 3]],
+        range: f32,
+        but: Option<Self::Body>,
+        seen: &mut [Option<Seen<Self::Body>>],
+    );
+}
+
 /// How a pair of colliders touched at the end of the last step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 
 /// What a public name of a library is called in a file: the list and the word. Without a word: why it has none.
-const NAMED: [(&str, &str, &str); 60] = [
+const NAMED: [(&str, &str, &str); 64] = [
     // Sensors.
     ("InfraredAnalytic", "sensors", "infrared"),
     ("InfraredRays", "", "part of InfraredGroups"),
@@ -21,6 +21,10 @@ const NAMED: [(&str, &str, &str); 60] = [
     ("LaserDistance", "sensors", "laser-distance"),
     ("LinearCamera", "sensors", "camera"),
     ("ColorBand", "", "part of LinearCamera"),
+    ("Camera", "", "part of the next three"),
+    ("CameraImage", "", "for experiments in Rust so far"),
+    ("ColorBlobs", "", "for experiments in Rust so far"),
+    ("VisualOffset", "", "for experiments in Rust so far"),
     ("WheelSpeed", "sensors", "wheel-speed"),
     ("Traction", "sensors", "traction"),
     ("SignalSensor", "sensors", "signal"),

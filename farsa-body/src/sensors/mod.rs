@@ -12,6 +12,9 @@
 //! | what is near a wheeled robot | one of the [infrared rings](infrared) | 1 a sensor | `Rays` or `Sight` |
 //! | how far away things are, in a fan of beams | [`LaserDistance`] | 1 a beam | `Rays` |
 //! | colours around, in sectors | [`LinearCamera`] | sectors x colours | `Sight` |
+//! | an image, by a camera on any body | [`CameraImage`] | rows x columns x 3 | `Vision` |
+//! | where a colour is in an image, and how large | [`ColorBlobs`] | 3 a colour | `Vision` |
+//! | how far apart two things are in an image | [`VisualOffset`] | 2 | `Kinematics` |
 //! | lamps | [`LightSensors`] | 1 a sensor | `Planar` |
 //! | the ground's colour | [`GroundColor`] | 1 or 3 a place | `Planar` |
 //! | what other robots signal | [`SignalSensor`] | sectors | `Sight` |
@@ -23,6 +26,9 @@
 
 /// Rays that leave a robot's hull, and fans of them.
 pub(crate) mod beam;
+/// Cameras with an image, on any body.
+#[cfg(feature = "alloc")]
+pub(crate) mod camera;
 /// The colour of the ground.
 pub(crate) mod ground_color;
 pub mod infrared;
@@ -49,6 +55,8 @@ pub(crate) mod wheel_speed;
 
 pub use crate::motors::attachment::AttachmentSensor;
 pub use beam::Beam;
+#[cfg(feature = "alloc")]
+pub use camera::{Camera, CameraImage, ColorBlobs, VisualOffset};
 pub use ground_color::GroundColor;
 pub use infrared::{AnalyticInfrared, InfraredAnalytic, InfraredRays};
 #[cfg(feature = "alloc")]

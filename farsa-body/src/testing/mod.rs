@@ -29,7 +29,9 @@ mod promise;
 /// What a world did, as bits, and how two runs compare.
 mod trace;
 
-pub use checks::{check_arrange, check_motor, check_planar, check_rays, check_sensor, check_sight, check_world};
+pub use checks::{
+    check_arrange, check_motor, check_planar, check_rays, check_sensor, check_sight, check_vision, check_world,
+};
 pub use plane_world::PlaneWorld;
 pub use point_world::PointWorld;
 pub use probe::Probe;

@@ -6,7 +6,7 @@ use farsa_num::{Scalar, sin_cos};
 
 use crate::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
-    Rays, Snapshot, World,
+    Rays, Seen, Snapshot, Vision, World,
 };
 use crate::pose::{Pose, Twist};
 
@@ -14,8 +14,8 @@ use crate::pose::{Pose, Twist};
 ///
 /// Point i hangs on joint i, whose position is its height q [m]; it is body i, at (0.1 i, 0, q), and turns about the
 /// vertical by 10 rad for every metre it rises. Actuator i pushes it up with `command[0] - command[1]` [N]. Below height 0
-/// the floor, pair i with the point as its first body, pushes back. Rays meet the floor and balls of 2 cm about the
-/// points. The time step is 10 ms. There are no floating bodies. A handle that does not exist reads as 0 and takes
+/// the floor, pair i with the point as its first body, pushes back. Rays and eyes meet the floor and green balls of
+/// 2 cm about the points. The time step is 10 ms. There are no floating bodies. A handle that does not exist reads as 0 and takes
 /// commands without effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointWorld {
@@ -41,6 +41,8 @@ impl PointWorld {
     pub const SPACING: f32 = 0.1;
     /// Radius of the balls that rays meet [m].
     pub const RADIUS: f32 = 0.02;
+    /// The colour of the balls; the floor has none.
+    pub const COLOR: [f32; 3] = [0.0, 1.0, 0.0];
     /// Acceleration downwards [m/s2].
     const GRAVITY: f32 = 9.81;
     /// Friction of the screws [N s/m].
@@ -147,6 +149,13 @@ impl Contacts for PointWorld {
 
 impl Rays for PointWorld {
     fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+        self.first(origin, direction, range, None)
+    }
+}
+
+impl PointWorld {
+    /// The first surface on a ray, other than that of `but`.
+    fn first(&self, origin: [f32; 3], direction: [f32; 3], range: f32, but: Option<BodyId>) -> Option<Hit<BodyId>> {
         let mut nearest: Option<Hit<BodyId>> = None;
         let mut meet = |hit: Hit<BodyId>| {
             if hit.distance <= nearest.map_or(range, |n| n.distance) {
@@ -156,7 +165,7 @@ impl Rays for PointWorld {
         if origin[2] >= 0.0 && direction[2] < 0.0 {
             meet(Hit { distance: -origin[2] / direction[2], normal: [0.0, 0.0, 1.0], body: None });
         }
-        for body in (0..self.points.len()).map(|i| BodyId(i as u16)) {
+        for body in (0..self.points.len()).map(|i| BodyId(i as u16)).filter(|body| Some(*body) != but) {
             let centre = self.pose(body).position;
             let way = [origin[0] - centre[0], origin[1] - centre[1], origin[2] - centre[2]];
             let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -172,6 +181,25 @@ impl Rays for PointWorld {
             }
         }
         nearest
+    }
+}
+
+impl Vision for PointWorld {
+    fn look(
+        &self,
+        from: [f32; 3],
+        directions: &[[f32; 3]],
+        range: f32,
+        but: Option<BodyId>,
+        seen: &mut [Option<Seen<BodyId>>],
+    ) {
+        for (seen, direction) in seen.iter_mut().zip(directions) {
+            *seen = self.first(from, *direction, range, but).map(|hit| Seen {
+                distance: hit.distance,
+                body: hit.body,
+                color: hit.body.map(|_| Self::COLOR),
+            });
+        }
     }
 }
 

@@ -53,6 +53,8 @@ pub enum Promise {
     Near,
     /// The nearest surface in a direction of the plane is seen.
     Look,
+    /// The rays of an eye meet the nearest surfaces, together as alone.
+    Vision,
     /// Colours, signals and lamps are numbers of their ranges.
     Shown,
     /// A sensor writes all its channels.

@@ -7,6 +7,8 @@ mod arm_and_hand;
 mod cameras;
 #[cfg(feature = "alloc")]
 mod conformance;
+#[cfg(feature = "alloc")]
+mod eyes;
 mod lanes;
 #[cfg(feature = "alloc")]
 mod mobile;

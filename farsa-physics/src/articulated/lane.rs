@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, NearbySurface,
-    PairContact, PairId, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
+    PairContact, PairId, PlanarHit, Pose, Rays, Seen, Sight, Snapshot, Twist, Vision,
 };
 
 use crate::articulated::model::Model;
@@ -14,6 +14,7 @@ use crate::articulated::spatial::{Matrix, Spatial, Vector};
 use crate::articulated::step::{Precision, Scratch};
 use crate::articulated::tree::LinkData;
 use crate::articulated::view::{self, View};
+use crate::articulated::vision;
 
 /// Words that the ports read of a link: rotation, position, reference point, velocity.
 pub(crate) const LINK_WORDS: usize = 21;
@@ -175,6 +176,19 @@ impl Sight for Lane<'_> {
         but: Option<BodyId>,
     ) -> Option<PlanarHit<BodyId>> {
         sight::cast_planar(self, from, direction, range, but)
+    }
+}
+
+impl Vision for Lane<'_> {
+    fn look(
+        &self,
+        from: [f32; 3],
+        directions: &[[f32; 3]],
+        range: f32,
+        but: Option<BodyId>,
+        seen: &mut [Option<Seen<BodyId>>],
+    ) {
+        vision::look(self, from, directions, range, but, seen);
     }
 }
 

@@ -18,6 +18,7 @@
 //! - `world`: one world behind the ports
 //! - `lockstep`: the compiled steps of batches
 //! - `sight`: what cameras see in a horizontal plane
+//! - `vision`: what the eyes of a camera with an image see
 //! - `ground`: friction below bodies that slide in a plane
 //! - `batch`: many worlds in SIMD lanes
 //! - `lane`: one world of a batch behind the ports
@@ -58,6 +59,8 @@ mod stop;
 pub(crate) mod tree;
 #[cfg(feature = "alloc")]
 pub(crate) mod view;
+#[cfg(feature = "alloc")]
+mod vision;
 #[cfg(feature = "alloc")]
 mod world;
 

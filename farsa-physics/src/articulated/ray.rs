@@ -101,6 +101,17 @@ pub(crate) fn plane<R: Real>(origin: Vector<R>, direction: Vector<R>) -> Entry<R
     Some((-origin[2] / direction[2], [zero, zero, R::from_f64(1.0)]))
 }
 
+/// Where a ray enters a geometry, in the frame of its collider.
+#[inline]
+pub(crate) fn enter<R: Real>(geometry: &Geometry<R>, origin: Vector<R>, direction: Vector<R>) -> Entry<R> {
+    match *geometry {
+        Geometry::Ball { radius } => ball(origin, direction, [R::from_f64(0.0); 3], radius),
+        Geometry::Capsule { radius, half_length } => capsule(origin, direction, radius, half_length),
+        Geometry::Block { half } => block(origin, direction, half),
+        Geometry::Plane => plane(origin, direction),
+    }
+}
+
 /// The frame of a collider in the world.
 pub(crate) fn collider_frame<R: Real>(world: &impl View<R>, index: usize) -> (Matrix<R>, Vector<R>) {
     let mount = &world.model().colliders[index].mount;
@@ -126,13 +137,7 @@ pub(crate) fn cast<R: Real>(
         // In the frame of the collider; rotations keep lengths, so t is the distance in the world, too.
         let o = rotate_back(&rotation, sub(origin, position));
         let d = rotate_back(&rotation, direction);
-        let entry = match collider.geometry {
-            Geometry::Ball { radius } => ball(o, d, [R::from_f64(0.0); 3], radius),
-            Geometry::Capsule { radius, half_length } => capsule(o, d, radius, half_length),
-            Geometry::Block { half } => block(o, d, half),
-            Geometry::Plane => plane(o, d),
-        };
-        let Some((t, normal)) = entry else { continue };
+        let Some((t, normal)) = enter(&collider.geometry, o, d) else { continue };
         let distance = t.to_f64() as f32;
         if distance <= range && best.is_none_or(|hit| distance < hit.distance) {
             let normal = rotate(&rotation, normal).map(|x| x.to_f64() as f32);
@@ -182,12 +187,7 @@ mod tests {
                 if distance(geometry, origin) <= 1e-3 {
                     continue;
                 }
-                let entry = match *geometry {
-                    Geometry::Ball { radius } => ball(origin, d, [0.0; 3], radius),
-                    Geometry::Capsule { radius, half_length } => capsule(origin, d, radius, half_length),
-                    Geometry::Block { half } => block(origin, d, half),
-                    Geometry::Plane => plane(origin, d),
-                };
+                let entry = enter(geometry, origin, d);
                 // Sphere tracing: steps of the distance itself never jump over the surface.
                 let (mut t, mut hit) = (0.0, false);
                 for _ in 0..400 {

@@ -4,7 +4,7 @@ use farsa_body::{BodyId, NearbySurface, PlanarHit};
 use farsa_num::Real;
 
 use crate::articulated::model::Geometry;
-use crate::articulated::ray::{ball, block, capsule, collider_frame, plane};
+use crate::articulated::ray::{ball, collider_frame, enter};
 use crate::articulated::spatial::{Matrix, Vector, add, rotate, rotate_back, scale, sub};
 use crate::articulated::view::{self, View};
 
@@ -41,12 +41,7 @@ pub(crate) fn cast_planar<R: Real>(
             let (rotation, position) = collider_frame(world, index);
             let o = rotate_back(&rotation, sub(origin, position));
             let d = rotate_back(&rotation, direction);
-            match geometry {
-                Geometry::Ball { .. } => None,
-                Geometry::Capsule { radius, half_length } => capsule(o, d, radius, half_length),
-                Geometry::Block { half } => block(o, d, half),
-                Geometry::Plane => plane(o, d),
-            }
+            enter(&geometry, o, d)
         };
         let Some((t, _)) = entry else { continue };
         let distance = t.to_f64() as f32;

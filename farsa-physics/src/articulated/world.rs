@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, NearbySurface,
-    PairContact, PairId, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
+    PairContact, PairId, PlanarHit, Pose, Rays, Seen, Sight, Snapshot, Twist, Vision,
 };
 use farsa_num::Real;
 
@@ -17,6 +17,7 @@ use crate::articulated::spatial::{Matrix, Spatial, Vector, sub};
 use crate::articulated::step::{Precision, Scratch};
 use crate::articulated::tree::{forward_kinematics, inverse_dynamics, kinetic_energy, potential_energy};
 use crate::articulated::view::{self, View};
+use crate::articulated::vision;
 
 /// One articulated world: a model and its state.
 #[derive(Clone, Debug)]
@@ -219,6 +220,19 @@ impl<R: Precision> Sight for World<R> {
         but: Option<BodyId>,
     ) -> Option<PlanarHit<BodyId>> {
         sight::cast_planar(self, from, direction, range, but)
+    }
+}
+
+impl<R: Precision> Vision for World<R> {
+    fn look(
+        &self,
+        from: [f32; 3],
+        directions: &[[f32; 3]],
+        range: f32,
+        but: Option<BodyId>,
+        seen: &mut [Option<Seen<BodyId>>],
+    ) {
+        vision::look(self, from, directions, range, but, seen);
     }
 }
 

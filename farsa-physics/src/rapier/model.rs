@@ -71,6 +71,8 @@ pub(crate) struct RobotPlan {
     pub(crate) kinds: Vec<JointKind>,
     pub(crate) colliders: Vec<ColliderHandle>,
     pub(crate) collider_bodies: Vec<Option<BodyId>>,
+    /// The colours of the robot's colliders; objects have none.
+    pub(crate) colors: Vec<Option<[f32; 3]>>,
     pub(crate) pairs: Vec<Touching>,
     pub(crate) rules: Rules,
     pub(crate) drives: Vec<Drive>,
@@ -191,6 +193,7 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
         pairs: pairs.collect(),
         kinds,
         collider_bodies: bodies,
+        colors: robot.colliders.iter().map(|c| c.color.map(|color| color.map(|shade| shade as f32))).collect(),
         rules: Rules::new(colliders.len(), &rules),
         carriers,
         frames,

@@ -2,7 +2,7 @@
 
 use farsa_body::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
-    Pose, Rays, Snapshot, Twist,
+    Pose, Rays, Seen, Snapshot, Twist, Vision,
 };
 use rapier3d::geometry::Ray;
 
@@ -67,21 +67,58 @@ impl Contacts for World {
     }
 }
 
-impl Rays for World {
+impl World {
+    /// The first surface on a ray, other than those of `but`, and the number of its collider.
+    ///
     /// Surfaces are met from outside only, as in the other worlds: what the ray begins in is not seen.
-    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+    fn first(
+        &self,
+        origin: [f32; 3],
+        direction: [f32; 3],
+        range: f32,
+        but: Option<BodyId>,
+    ) -> Option<(Hit<BodyId>, Option<usize>)> {
         let ray = Ray::new(origin.into(), direction.into());
-        let mut nearest: Option<Hit<BodyId>> = None;
+        let mut nearest: Option<(Hit<BodyId>, Option<usize>)> = None;
         for (_, collider) in self.physics.all_colliders() {
-            let reach = nearest.map_or(range, |hit| hit.distance);
+            let number = Rules::number(collider);
+            let body = number.and_then(|c| self.plan.collider_bodies.get(c).copied().flatten());
+            if but.is_some() && body == but {
+                continue;
+            }
+            let reach = nearest.map_or(range, |(hit, _)| hit.distance);
             let met = collider.shape().cast_ray_and_get_normal(collider.position(), &ray, reach, false);
             let Some(met) = met.filter(|met| met.normal.dot(ray.dir) <= 0.0 && met.time_of_impact < reach) else {
                 continue;
             };
-            let body = Rules::number(collider).and_then(|c| self.plan.collider_bodies.get(c).copied().flatten());
-            nearest = Some(Hit { distance: met.time_of_impact, normal: met.normal.into(), body });
+            let hit = Hit { distance: met.time_of_impact, normal: met.normal.into(), body };
+            nearest = Some((hit, number));
         }
         nearest
+    }
+}
+
+impl Rays for World {
+    fn cast(&self, origin: [f32; 3], direction: [f32; 3], range: f32) -> Option<Hit<BodyId>> {
+        self.first(origin, direction, range, None).map(|(hit, _)| hit)
+    }
+}
+
+impl Vision for World {
+    fn look(
+        &self,
+        from: [f32; 3],
+        directions: &[[f32; 3]],
+        range: f32,
+        but: Option<BodyId>,
+        seen: &mut [Option<Seen<BodyId>>],
+    ) {
+        for (seen, direction) in seen.iter_mut().zip(directions) {
+            *seen = self.first(from, *direction, range, but).map(|(Hit { distance, body, .. }, number)| {
+                let color = number.and_then(|number| self.plan.colors.get(number).copied().flatten());
+                Seen { distance, body, color }
+            });
+        }
     }
 }
 

@@ -19,4 +19,5 @@ mod snapshot;
 mod sphere;
 #[path = "../wheeled/mod.rs"]
 mod vehicles;
+mod vision;
 mod wheeled;

@@ -17,19 +17,19 @@ const HEIGHT: f64 = 0.1;
 const RANGE: f32 = 2.0;
 /// Rays of the camera that is compared ray by ray.
 const RAYS: usize = 15;
-const COLORS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const COLORS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A shape of a scene where it is.
-struct Placed {
+pub(crate) struct Placed {
     shape: Shape,
     at: Pose<f64>,
-    /// None for what a camera sees through.
-    color: Option<usize>,
+    /// None for what a camera of the plane sees through.
+    pub(crate) color: Option<usize>,
 }
 
 impl Placed {
     /// Signed distance of a place, by the shape's own definition.
-    fn distance(&self, place: [f64; 3]) -> f64 {
+    pub(crate) fn distance(&self, place: [f64; 3]) -> f64 {
         let [x, y, z] = self.at.transform_back(place);
         let length = |v: [f64; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
         match self.shape {
@@ -44,7 +44,7 @@ impl Placed {
     }
 }
 
-fn turned(stream: &mut Stream) -> [f64; 4] {
+pub(crate) fn turned(stream: &mut Stream) -> [f64; 4] {
     let q: [f64; 4] = core::array::from_fn(|_| stream.range_f64(-1.0, 1.0));
     let n = q.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-3);
     let q = q.map(|x| x / n);
@@ -53,7 +53,7 @@ fn turned(stream: &mut Stream) -> [f64; 4] {
 }
 
 /// A scene with an eye, a few shapes on bodies and in the world, some of them without a colour.
-fn scene(stream: &mut Stream) -> (Robot, Vec<Placed>) {
+pub(crate) fn scene(stream: &mut Stream) -> (Robot, Vec<Placed>) {
     let mut robot = Robot::new("scene");
     let (heading, ball) = (stream.range_f64(-3.1, 3.1), MassProperties::sphere(1.0, 0.1));
     let mut eye = Pose::planar([stream.range_f64(-0.2, 0.2), stream.range_f64(-0.2, 0.2)], heading);

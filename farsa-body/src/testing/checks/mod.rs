@@ -8,6 +8,8 @@ mod channels;
 mod planar;
 /// Ray casts.
 mod rays;
+/// What eyes see.
+mod vision;
 /// A world that steps.
 mod world;
 
@@ -15,4 +17,5 @@ pub use arrange::check_arrange;
 pub use channels::{check_motor, check_sensor};
 pub use planar::{check_planar, check_sight};
 pub use rays::check_rays;
+pub use vision::check_vision;
 pub use world::check_world;

@@ -51,7 +51,7 @@ where
 }
 
 /// A random unit vector.
-fn direction(stream: &mut Stream) -> [f32; 3] {
+pub(super) fn direction(stream: &mut Stream) -> [f32; 3] {
     let v = [stream.normal(), stream.normal(), stream.normal()];
     let length = Scalar::sqrt(v.iter().fold(0.0, |sum, x| sum + x * x));
     if length > 1e-3 { v.map(|x| x / length) } else { [0.0, 0.0, -1.0] }

@@ -1,0 +1,87 @@
+//! The kit's checks of what eyes see.
+
+use alloc::{format, vec, vec::Vec};
+
+use farsa_num::{Domain, Stream};
+
+use crate::ports::{Seen, Vision};
+use crate::testing::checks::rays::direction;
+use crate::testing::promise::{ConformanceError, Promise, ensure};
+
+/// Number of rays of an eye.
+const RAYS: usize = 256;
+
+/// Checks what every world promises about eyes, with many rays of `range` \[m\] in random directions from every origin \[m\].
+///
+/// What is met is a body of the world within the range, with a colour in \[0, 1\]; it is met again by the ray alone and within twice the
+/// range, not within less than its distance, and not without its body. No ray beyond the shorter slice is answered.
+///
+/// `bodies` are all bodies of the world. Some of the rays must meet a body.
+///
+/// # Errors
+/// [`Promise::Vision`] with what was wrong.
+pub fn check_vision<W>(world: &W, bodies: &[W::Body], origins: &[[f32; 3]], range: f32) -> Result<(), ConformanceError>
+where
+    W: Vision,
+    W::Body: PartialEq,
+{
+    let mut stream = Stream::new(0, Domain::Sensor, 0, 0, 0);
+    let mut met = 0;
+    for &from in origins {
+        let directions: Vec<[f32; 3]> = (0..RAYS).map(|_| direction(&mut stream)).collect();
+        // What is left of an earlier look must not survive.
+        let stale = Seen { distance: 0.0, body: None, color: Some([0.5; 3]) };
+        let mut seen = vec![Some(stale); RAYS + 1];
+        world.look(from, &directions, range, None, &mut seen);
+        let beyond = seen.pop().flatten();
+        ensure(beyond == Some(stale), Promise::Vision, || format!("from {from:?}: a ray that was not asked for"))?;
+        for (direction, seen) in directions.iter().zip(&seen) {
+            met += usize::from(check_ray(world, bodies, from, *direction, range, *seen)?);
+        }
+    }
+    ensure(met > 0, Promise::Vision, || format!("none of {} rays met a body", RAYS * origins.len()))
+}
+
+/// Checks a ray; whether it met a body.
+fn check_ray<W>(
+    world: &W,
+    bodies: &[W::Body],
+    from: [f32; 3],
+    direction: [f32; 3],
+    range: f32,
+    seen: Option<Seen<W::Body>>,
+) -> Result<bool, ConformanceError>
+where
+    W: Vision,
+    W::Body: PartialEq,
+{
+    let ray = || format!("ray from {from:?} along {direction:?}");
+    let alone = |range: f32, but: Option<W::Body>| {
+        let mut one = [None];
+        world.look(from, &[direction], range, but, &mut one);
+        one[0]
+    };
+    ensure(alone(range, None) == seen, Promise::Vision, || format!("{}: another surface alone", ray()))?;
+    let Some(seen) = seen else { return Ok(false) };
+    let distance = seen.distance;
+    ensure((0.0..=range).contains(&distance), Promise::Vision, || format!("{}: {distance} of {range}", ray()))?;
+    let known = seen.body.as_ref().is_none_or(|body| bodies.contains(body));
+    ensure(known, Promise::Vision, || format!("{}: a body that does not exist", ray()))?;
+    let shades = seen.color.unwrap_or_default();
+    ensure(shades.iter().all(|shade| (0.0..=1.0).contains(shade)), Promise::Vision, || {
+        format!("{}: colour {shades:?}", ray())
+    })?;
+    ensure(alone(2.0 * range, None) == Some(seen), Promise::Vision, || format!("{}: not met from afar", ray()))?;
+    let short = 0.99 * distance;
+    ensure(short < 1e-3 || alone(short, None).is_none(), Promise::Vision, || {
+        format!("{}: met at {distance} and within {short}", ray())
+    })?;
+    if seen.body.is_some() {
+        let behind = alone(range, seen.body);
+        let other = behind.is_none_or(|other| other.body != seen.body && other.distance >= distance);
+        ensure(other, Promise::Vision, || {
+            format!("{}: {:?} is seen where it should not be", ray(), behind.map(|b| b.distance))
+        })?;
+    }
+    Ok(seen.body.is_some())
+}
