@@ -52,7 +52,10 @@ pub use robot::{
     Surface,
 };
 #[cfg(feature = "alloc")]
-pub use robots::{ArmAndHand, Finger, InfraredRing, MobileParts, MobileRobot, Tabletop};
+pub use robots::{
+    ArmAndHand, Chain, Finger, Hand, Icub, IcubError, IcubPosture, InfraredRing, JointControl, MobileParts,
+    MobileRobot, Side, Tabletop,
+};
 pub use sensors::{
     AnalyticInfrared, AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ColorBand, ContactForce, GroundColor,
     Height, InfraredAnalytic, InfraredRays, JointPosition, JointSpeed, LaserDistance, LightSensors, LinearCamera,

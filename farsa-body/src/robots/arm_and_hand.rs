@@ -10,45 +10,8 @@ use crate::ports::{ActuatorId, BodyId, JointId};
 use crate::pose::Pose;
 use crate::robot::description::{Collider, Joint, Robot, Segment, Surface};
 use crate::robot::mass_properties::MassProperties;
-use crate::robot::shape::Shape;
 use crate::robot::validation::RobotError;
-
-/// One of the five fingers, in the order of their joints.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Finger {
-    /// J8 (opposition), J9 to J11.
-    Thumb,
-    /// J12 (abduction), J13 to J15.
-    Index,
-    /// J16 (abduction), J17 to J19.
-    Middle,
-    /// J20 (abduction), J21 to J23.
-    Ring,
-    /// J24 (abduction), J25 to J27.
-    Little,
-}
-
-impl Finger {
-    /// All fingers, from the thumb to the little finger.
-    pub const ALL: [Self; 5] = [Self::Thumb, Self::Index, Self::Middle, Self::Ring, Self::Little];
-
-    fn name(self) -> &'static str {
-        ["thumb", "index", "middle", "ring", "little"][self as usize]
-    }
-
-    /// The number of its first joint, which abducts or opposes it.
-    fn first_joint(self) -> u16 {
-        8 + 4 * self as u16
-    }
-}
-
-/// The names of a finger's phalanges, from the palm outwards.
-const PHALANGES: [&str; 3] = ["proximal", "middle", "distal"];
-
-const fn deg(x: f64) -> f64 {
-    x * (core::f64::consts::PI / 180.0)
-}
+use crate::robots::hand::{Finger, Hand, Wrist, deg};
 
 /// The right arm and hand of [Ferrauto2010] with the sizes of the iCub, every number a field.
 ///
@@ -130,6 +93,7 @@ pub struct ArmAndHand {
 impl Default for ArmAndHand {
     fn default() -> Self {
         let range = |low: f64, high: f64| [deg(low), deg(high)];
+        let hand = Hand::default();
         Self {
             shoulder: [-0.025, -0.108, 0.21],
             upper_arm_length: 0.152,
@@ -149,33 +113,27 @@ impl Default for ArmAndHand {
             passive_reduction: 1.0,
             damping_per_torque: 1.0 / 8.0,
             arm_armature: 0.010,
-            finger_armature: 5e-4,
-            servo: Servo { stiffness: 1.0, damping: 0.04, limit: 0.3 },
-            finger_damping: 0.002,
-            arm_masses: [0.19, 0.18, 0.884, 0.074, 0.525, 0.036, 0.15],
-            knuckle_mass: 0.005,
-            phalange_masses: [0.012, 0.008, 0.006],
+            finger_armature: hand.armature,
+            servo: hand.servo,
+            finger_damping: hand.damping,
+            arm_masses: [0.19, 0.18, 0.884, 0.074, 0.525, 0.036, hand.palm_mass],
+            knuckle_mass: hand.knuckle_mass,
+            phalange_masses: hand.phalange_masses,
             upper_arm_radius: 0.025,
             forearm_radius: 0.020,
             forearm_axis: 0.130,
-            palm_half: [0.030, 0.031, 0.010],
-            palm_box: [0.050, 0.0, 0.0],
-            palm_centre: [0.0625, 0.0, -0.010],
-            phalange_radii: [0.0065, 0.0060, 0.0055],
-            phalange_lengths: [
-                [0.0260, 0.0220, 0.0168],
-                [0.0259, 0.0220, 0.0168],
-                [0.0285, 0.0240, 0.0168],
-                [0.0259, 0.0220, 0.0168],
-                [0.0219, 0.0190, 0.0168],
-            ],
-            finger_bases: [[0.080, 0.025, 0.0], [0.080, 0.008, 0.0], [0.080, -0.008, 0.0], [0.080, -0.024, 0.0]],
-            abduction_ranges: [range(0.0, 15.0), range(-2.0, 2.0), range(-10.0, 0.0), range(-15.0, 0.0)],
-            thumb_base: [0.028, 0.020, -0.002],
-            thumb_link: 0.010,
-            opposition_range: range(-120.0, 0.0),
-            flexion_range: range(-90.0, 0.0),
-            surface: Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 2e5, damping: 100.0 },
+            palm_half: hand.palm_half,
+            palm_box: hand.palm_box,
+            palm_centre: hand.palm_centre,
+            phalange_radii: hand.phalange_radii,
+            phalange_lengths: hand.phalange_lengths,
+            finger_bases: hand.finger_bases,
+            abduction_ranges: hand.abduction_ranges,
+            thumb_base: hand.thumb_base,
+            thumb_link: hand.thumb_link,
+            opposition_range: hand.opposition_range,
+            flexion_range: hand.flexion_range,
+            surface: hand.surface,
         }
     }
 }
@@ -208,37 +166,39 @@ impl ArmAndHand {
         [0, 1, 2].map(|i| 3 + 3 * finger as usize + i)
     }
 
+    /// The hand alone.
+    pub fn hand(&self) -> Hand {
+        Hand {
+            palm_mass: self.arm_masses[6],
+            palm_half: self.palm_half,
+            palm_box: self.palm_box,
+            palm_centre: self.palm_centre,
+            armature: self.finger_armature,
+            damping: self.finger_damping,
+            servo: self.servo,
+            knuckle_mass: self.knuckle_mass,
+            phalange_masses: self.phalange_masses,
+            phalange_radii: self.phalange_radii,
+            phalange_lengths: self.phalange_lengths,
+            finger_bases: self.finger_bases,
+            abduction_ranges: self.abduction_ranges,
+            thumb_base: self.thumb_base,
+            thumb_link: self.thumb_link,
+            opposition_range: self.opposition_range,
+            flexion_range: self.flexion_range,
+            surface: self.surface,
+        }
+    }
+
     /// The distal phalange of a finger and its tip in that frame [m]: the end of the capsule's axis, one radius within
     /// its surface.
     pub fn fingertip(&self, finger: Finger) -> (BodyId, [f64; 3]) {
-        let tip = self.phalange_lengths[finger as usize][2];
-        (Self::phalanges(finger)[2], if finger == Finger::Thumb { [0.0, tip, 0.0] } else { [tip, 0.0, 0.0] })
+        (Self::phalanges(finger)[2], self.hand().fingertip(finger))
     }
 
-    /// The nine groups of servos that each follow one output, with their positions at output 0 (extended, fingers
-    /// together) and 1 (flexed, spread).
-    ///
-    /// In this order: J8; J9; J10, J11; J13; J14, J15; J17; J18, J19; J12, J16, J20, J24 (abduction: index and middle
-    /// from the lower to the upper limit, ring and little the other way); J21 to J23, J25 to J27 [Ferrauto2010, chapter
-    /// 2].
+    /// The nine groups of servos that each follow one output, as [`Hand::servo_groups`] describes them.
     pub fn servo_groups(&self) -> [Vec<ServoRange>; 9] {
-        let servo =
-            |n: u16, from: f64, to: f64| ServoRange { servo: ActuatorId(n - 1), from: from as f32, to: to as f32 };
-        let [flexed, extended] = self.flexion_range;
-        let flexion = |joints: &[u16]| joints.iter().map(|n| servo(*n, extended, flexed)).collect();
-        let [opposed, aside] = self.opposition_range;
-        let abduction = [12, 16, 20, 24].into_iter().zip(self.abduction_ranges);
-        [
-            alloc::vec![servo(8, aside, opposed)],
-            flexion(&[9]),
-            flexion(&[10, 11]),
-            flexion(&[13]),
-            flexion(&[14, 15]),
-            flexion(&[17]),
-            flexion(&[18, 19]),
-            abduction.map(|(n, [low, high])| if n < 20 { servo(n, low, high) } else { servo(n, high, low) }).collect(),
-            flexion(&[21, 22, 23, 25, 26, 27]),
-        ]
+        self.hand().servo_groups(ActuatorId(Finger::Thumb.first_joint() - 1))
     }
 
     /// The robot: segments `shoulder_base`, `shoulder`, `upper_arm`, `elbow`, `forearm`, `wrist`, `palm`, then per
@@ -253,34 +213,20 @@ impl ArmAndHand {
     /// What [`Robot::validate`] finds with the numbers given.
     pub fn robot(&self) -> Result<Robot, RobotError> {
         let mut robot = Robot::new("arm_and_hand");
-        self.add_arm(&mut robot);
-        for finger in Finger::ALL {
-            self.add_finger(&mut robot, finger);
-        }
-        self.add_actuators(&mut robot);
-        let [_, thumb_middle, thumb_distal] = Self::phalange_colliders(Finger::Thumb);
-        for thumb in [thumb_middle, thumb_distal] {
-            for finger in &Finger::ALL[1..] {
-                let [_, middle, distal] = Self::phalange_colliders(*finger);
-                robot.add_pair([thumb, middle], self.surface);
-                robot.add_pair([thumb, distal], self.surface);
-            }
-        }
-        for fingers in Finger::ALL[1..].windows(2) {
-            let distal = [fingers[0], fingers[1]].map(|finger| Self::phalange_colliders(finger)[2]);
-            robot.add_pair(distal, self.surface);
-        }
-        // A closed hand without something in it would reach through its own palm.
-        let palm = Self::ARM_COLLIDERS[2];
-        let others = Finger::ALL[1..].iter().map(|finger| Self::phalange_colliders(*finger)[2]);
-        for phalanx in [thumb_middle, thumb_distal].into_iter().chain(others) {
-            robot.add_pair([phalanx, palm], self.surface);
+        let (hand, wrist) = (self.hand(), Wrist { palm: Self::PALM, prefix: "", mirrored: false });
+        self.add_arm(&mut robot, &hand.palm_collider(&wrist));
+        hand.add_fingers(&mut robot, &wrist);
+        self.add_muscles(&mut robot);
+        hand.add_servos(&mut robot, wrist.prefix, JointId(Finger::Thumb.first_joint() - 1));
+        let [thumb, ..] = Self::phalange_colliders(Finger::Thumb);
+        for pair in Hand::pairs(Self::ARM_COLLIDERS[2], thumb) {
+            robot.add_pair(pair, self.surface);
         }
         robot.validate()?;
         Ok(robot)
     }
 
-    fn add_arm(&self, robot: &mut Robot) {
+    fn add_arm(&self, robot: &mut Robot, palm_shape: &Collider) {
         let [shoulder_base, shoulder, upper_arm, elbow, forearm, wrist, palm] = self.arm_masses;
         let (thick, thin) = (self.upper_arm_radius, self.forearm_radius);
         let capsule = |name, body, length, radius| {
@@ -288,8 +234,6 @@ impl ArmAndHand {
         };
         let upper_arm_shape = capsule("upper_arm", 2, self.upper_arm_length, thick);
         let forearm_shape = capsule("forearm", 4, self.forearm_axis, thin);
-        let half = self.palm_half;
-        let palm_shape = Collider::new("palm", Some(Self::PALM), Shape::Box { half }, Pose::at(self.palm_box));
         let ball = MassProperties::sphere;
         // Name, axis, place in the parent's frame, body.
         let (here, elbow_at) = ([0.0; 3], [self.upper_arm_length, 0.0, 0.0]);
@@ -310,58 +254,18 @@ impl ArmAndHand {
                 .with_damping(damping);
             parent = Some(robot.add_segment(Segment::new(name, parent, joint, body)));
         }
-        robot.colliders.extend([upper_arm_shape, forearm_shape, palm_shape]);
+        robot.colliders.extend([upper_arm_shape, forearm_shape, palm_shape.clone()]);
     }
 
-    fn add_finger(&self, robot: &mut Robot, finger: Finger) {
-        let number = finger.first_joint();
-        // The thumb's phalanges lie along y and flex about z, so that opposition turns them under the palm.
-        let thumb = finger == Finger::Thumb;
-        let (base, first_axis, range, link, along, flexion_axis) = if thumb {
-            let link = [0.0, self.thumb_link, 0.0];
-            (self.thumb_base, [1.0, 0.0, 0.0], self.opposition_range, link, [0.0, 1.0, 0.0], [0.0, 0.0, 1.0])
-        } else {
-            let i = finger as usize - 1;
-            let (base, range) = (self.finger_bases[i], self.abduction_ranges[i]);
-            (base, [0.0, 0.0, 1.0], range, [0.0; 3], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0])
-        };
-        let joint = |n: u16, axis, at, range| {
-            Joint::revolute(&format!("J{n}"), axis, Pose::at(at), range)
-                .with_armature(self.finger_armature)
-                .with_damping(self.finger_damping)
-        };
-        let knuckle = MassProperties::sphere(self.knuckle_mass, self.phalange_radii[0]);
-        let knuckle = knuckle.placed(&Pose::at(link.map(|x| x / 2.0)));
-        let name = format!("{}_knuckle", finger.name());
-        let first = joint(number, first_axis, base, range);
-        let mut parent = robot.add_segment(Segment::new(&name, Some(Self::PALM), first, knuckle));
-        let mut at = link;
-        for (i, part) in PHALANGES.iter().enumerate() {
-            let name = format!("{}_{part}", finger.name());
-            let end = along.map(|x| x * self.phalange_lengths[finger as usize][i]);
-            let body = BodyId(number + i as u16);
-            let shape = Collider::capsule_between(&name, Some(body), [0.0; 3], end, self.phalange_radii[i]);
-            let mass = shape.mass_properties(self.phalange_masses[i]);
-            let flexion = joint(number + 1 + i as u16, flexion_axis, at, self.flexion_range);
-            parent = robot.add_segment(Segment::new(&name, Some(parent), flexion, mass));
-            robot.add_collider(shape);
-            at = end;
-        }
-    }
-
-    fn add_actuators(&self, robot: &mut Robot) {
-        for (i, joint) in Self::joints().into_iter().enumerate() {
-            let law = if let (Some(tension), Some(range)) = (self.tensions.get(i), self.arm_ranges.get(i)) {
-                Law::MusclePair(match self.muscle_variant {
-                    MuscleVariant::Thesis => MusclePair::thesis(*tension, self.moment_arm, *range),
-                    MuscleVariant::Original => {
-                        MusclePair::original(*tension, self.moment_arm, *range, self.passive_reduction)
-                    }
-                })
-            } else {
-                Law::Servo(self.servo)
+    fn add_muscles(&self, robot: &mut Robot) {
+        for (i, (tension, range)) in self.tensions.into_iter().zip(self.arm_ranges).enumerate() {
+            let muscles = match self.muscle_variant {
+                MuscleVariant::Thesis => MusclePair::thesis(tension, self.moment_arm, range),
+                MuscleVariant::Original => {
+                    MusclePair::original(tension, self.moment_arm, range, self.passive_reduction)
+                }
             };
-            robot.add_actuator(&format!("J{}", i + 1), joint, law);
+            robot.add_actuator(&format!("J{}", i + 1), JointId(i as u16), Law::MusclePair(muscles));
         }
     }
 }

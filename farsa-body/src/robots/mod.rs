@@ -1,8 +1,9 @@
-//! Robots that are ready to use, every number a public field.
+//! Robots that are ready to use, every number a public field but those of the iCub's own links.
 //!
 //! | robot | what it is | its world |
 //! |---|---|---|
 //! | [`ArmAndHand`] | an arm of seven joints driven by muscle pairs, and a hand of twenty joints driven by servos | articulated |
+//! | [`Icub`] | the upper body of the iCub: torso, neck, two arms, two hands, each of which may be rigid | articulated |
 //! | [`Tabletop`] | a table with a sphere, the scene of the arm in `reach-grasp-lift` | articulated |
 //! | [`MobileRobot`] | a round robot on two wheels: [`khepera`](MobileRobot::khepera), [`e_puck`](MobileRobot::e_puck), [`marxbot`](MobileRobot::marxbot) | planar |
 //!
@@ -10,6 +11,12 @@
 
 /// The arm and hand of `reach-grasp-lift`.
 pub(crate) mod arm_and_hand;
+/// The hand of twenty joints, right or left.
+pub(crate) mod hand;
+/// The upper body of the iCub.
+pub(crate) mod icub;
+/// The mirror image of a right side.
+pub(crate) mod mirror;
 /// Wheeled robots, and the numbers by which a planar world knows their parts.
 pub(crate) mod mobile;
 /// The table and the sphere of `reach-grasp-lift`.
@@ -17,6 +24,8 @@ pub(crate) mod tabletop;
 /// Wheeled robots as bodies with joints.
 mod vehicle;
 
-pub use arm_and_hand::{ArmAndHand, Finger};
+pub use arm_and_hand::ArmAndHand;
+pub use hand::{Finger, Hand};
+pub use icub::{Chain, Icub, IcubError, IcubPosture, JointControl, Side};
 pub use mobile::{InfraredRing, MobileParts, MobileRobot};
 pub use tabletop::Tabletop;

@@ -6,7 +6,8 @@ use crate::robot::description::{Collider, Joint, Robot, Segment, Surface};
 use crate::robot::mass_properties::MassProperties;
 use crate::robot::shape::Shape;
 use crate::robot::validation::RobotError;
-use crate::robots::arm_and_hand::{ArmAndHand, Finger};
+use crate::robots::arm_and_hand::ArmAndHand;
+use crate::robots::hand::Finger;
 
 /// A table before the arm and hand, with a sphere on it; every number a field.
 ///

@@ -9,6 +9,8 @@ mod cameras;
 mod conformance;
 #[cfg(feature = "alloc")]
 mod eyes;
+#[cfg(feature = "alloc")]
+mod icub;
 mod lanes;
 #[cfg(feature = "alloc")]
 mod mobile;

@@ -7,6 +7,8 @@ mod faults;
 mod files;
 /// Hostile and damaged texts.
 mod hostile;
+/// The iCub, written and read.
+mod icub;
 /// Models as large as the limits.
 mod large;
 /// Whatever is read is written and read back.

@@ -11,6 +11,7 @@ mod energy;
 mod floating;
 mod ground;
 mod honest;
+mod icub;
 mod oracle;
 mod sight;
 #[path = "../sliding/mod.rs"]

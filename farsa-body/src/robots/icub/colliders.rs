@@ -1,0 +1,92 @@
+//! Colliders, and the pairs of them that may touch.
+
+use alloc::format;
+use alloc::vec::Vec;
+
+use crate::ports::BodyId;
+use crate::robot::description::{Collider, JointKind, Robot, Surface};
+use crate::robots::hand::Hand;
+use crate::robots::icub::chain::Side;
+use crate::robots::mirror;
+
+/// Indices of the colliders of waist, chest and head.
+const TRUNK: [usize; 3] = [0, 1, 2];
+
+/// Indices of the colliders of upper arm, forearm and palm.
+pub(super) fn arm(side: Side) -> [usize; 3] {
+    [0, 1, 2].map(|i| 3 + 3 * side as usize + i)
+}
+
+/// Index of the collider of the thumb's proximal phalange; the fifteen phalanges follow each other.
+pub(super) fn first_phalange(side: Side) -> usize {
+    9 + 15 * side as usize
+}
+
+/// The colliders of waist, chest and head: capsules from left to right and, of the head, from back to front.
+pub(super) fn trunk() -> [Collider; 3] {
+    let capsule = |name, body, a, b, radius| Collider::capsule_between(name, Some(BodyId(body)), a, b, radius);
+    [
+        capsule("waist", 0, [-0.027, -0.045, -0.03], [-0.027, 0.045, -0.03], 0.065),
+        capsule("chest", 2, [-0.018, -0.015, 0.107], [-0.018, 0.015, 0.107], 0.080),
+        capsule("head", 5, [-0.035, 0.0, 0.121], [-0.006, 0.0, 0.121], 0.091),
+    ]
+}
+
+/// The capsules of a side's upper arm and forearm.
+pub(super) fn limbs(side: Side) -> [Collider; 2] {
+    let first = side.arm().bodies().start;
+    let capsule = |name: &str, body: usize, a: [f64; 3], b: [f64; 3], radius| {
+        let [a, b] = [a, b].map(|p| if side == Side::Left { mirror::point(p) } else { p });
+        let name = format!("{}{name}", side.prefix());
+        Collider::capsule_between(&name, Some(BodyId((first + body) as u16)), a, b, radius)
+    };
+    [
+        capsule("upper_arm", 2, [-0.008, 0.0, -0.037], [-0.002, 0.0, -0.123], 0.037),
+        capsule("forearm", 4, [-0.005, 0.0, -0.033], [-0.005, 0.0, -0.107], 0.0325),
+    ]
+}
+
+/// The pairs of limbs: of each arm with the trunk, of the arms with each other.
+fn limb_pairs() -> Vec<[usize; 2]> {
+    let mut pairs = Vec::new();
+    for side in Side::ALL {
+        let [upper_arm, forearm, palm] = arm(side);
+        pairs.push([upper_arm, TRUNK[2]]);
+        for part in [forearm, palm] {
+            pairs.extend(TRUNK.map(|trunk| [part, trunk]));
+        }
+    }
+    let [left, right] = Side::ALL.map(arm);
+    for a in left {
+        for b in right {
+            // The upper arms cannot reach each other past the chest.
+            if [a, b] != [left[0], right[0]] {
+                pairs.push([a, b]);
+            }
+        }
+    }
+    pairs
+}
+
+/// The segment with which a body moves rigidly: itself, or the next one inwards whose joint moves; none for the world.
+fn carrier(robot: &Robot, collider: usize) -> Option<BodyId> {
+    let mut body = robot.colliders.get(collider)?.body;
+    while let Some(segment) = body.and_then(|b| robot.segments.get(b.index())) {
+        if segment.joint.kind != JointKind::Fixed {
+            break;
+        }
+        body = segment.parent;
+    }
+    body
+}
+
+/// Appends the pairs whose colliders can move relative to each other.
+pub(super) fn add_pairs(robot: &mut Robot, hand: &Hand, skin: Surface) {
+    let hands = Side::ALL.into_iter().flat_map(|side| Hand::pairs(arm(side)[2], first_phalange(side)));
+    let limbs = limb_pairs().into_iter().map(|pair| (pair, skin));
+    for (pair, surface) in limbs.chain(hands.map(|pair| (pair, hand.surface))) {
+        if carrier(robot, pair[0]) != carrier(robot, pair[1]) {
+            robot.add_pair(pair, surface);
+        }
+    }
+}

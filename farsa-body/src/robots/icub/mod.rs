@@ -1,0 +1,22 @@
+//! The upper body of the iCub [Metta2010] as data: 60 joints in six chains.
+//!
+//! Its numbers are those of a URDF file [Gepetto2025], with the hands of [`crate::ArmAndHand`]. A table of masses and
+//! limits beside those of the file and the Denavit-Hartenberg table is in docs/icub-tables.md.
+
+/// The six chains, the two sides, and which joints and bodies are theirs.
+pub(crate) mod chain;
+/// Colliders, and the pairs of them that may touch.
+mod colliders;
+/// The robot with its fields, and how it is put together.
+pub(crate) mod description;
+/// What can be wrong with it.
+pub(crate) mod error;
+/// The joint angles of all chains.
+pub(crate) mod posture;
+/// Joints and masses of torso, neck and right arm, as the file has them.
+mod table;
+
+pub use chain::{Chain, Side};
+pub use description::{Icub, JointControl};
+pub use error::IcubError;
+pub use posture::IcubPosture;

@@ -1,0 +1,63 @@
+//! The joint angles of all chains.
+
+use crate::robots::hand::deg;
+use crate::robots::icub::chain::Chain;
+
+/// The joint angles of the iCub's chains, in the order of [`Chain::joint_names`] [rad].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+pub struct IcubPosture {
+    /// Pitch, roll and yaw of the trunk.
+    pub torso: [f64; 3],
+    /// Pitch, roll and yaw of the head.
+    pub neck: [f64; 3],
+    /// The left arm's.
+    pub left_arm: [f64; 7],
+    /// The right arm's.
+    pub right_arm: [f64; 7],
+    /// The left hand's J8 to J27.
+    pub left_hand: [f64; 20],
+    /// The right hand's J8 to J27.
+    pub right_hand: [f64; 20],
+}
+
+impl IcubPosture {
+    /// The angles of a chain [rad].
+    pub fn chain(&self, chain: Chain) -> &[f64] {
+        match chain {
+            Chain::Torso => &self.torso,
+            Chain::Neck => &self.neck,
+            Chain::LeftArm => &self.left_arm,
+            Chain::RightArm => &self.right_arm,
+            Chain::LeftHand => &self.left_hand,
+            Chain::RightHand => &self.right_hand,
+        }
+    }
+
+    /// The angles of a chain, to be changed [rad].
+    pub fn chain_mut(&mut self, chain: Chain) -> &mut [f64] {
+        match chain {
+            Chain::Torso => &mut self.torso,
+            Chain::Neck => &mut self.neck,
+            Chain::LeftArm => &mut self.left_arm,
+            Chain::RightArm => &mut self.right_arm,
+            Chain::LeftHand => &mut self.left_hand,
+            Chain::RightHand => &mut self.right_hand,
+        }
+    }
+}
+
+impl Default for IcubPosture {
+    /// Upright, both forearms in front of the trunk, hands open; our own choice.
+    fn default() -> Self {
+        let arm = [deg(-30.0), deg(30.0), 0.0, deg(60.0), 0.0, 0.0, 0.0];
+        Self {
+            torso: [0.0; 3],
+            neck: [0.0; 3],
+            left_arm: arm,
+            right_arm: arm,
+            left_hand: [0.0; 20],
+            right_hand: [0.0; 20],
+        }
+    }
+}
