@@ -64,7 +64,7 @@ pub struct Parts {
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
 /// | TOUCH | the same | (q r + (1 - q) (on the target)) beside(`d_t`) | the same |
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
-/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | s(not in view and nothing touched) near(`d_t`) | the same |
+/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | (s(not in view) + 0.5 s(in view, not centred)) near(`d_t`), touching nothing | the same |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Ledger {
     /// Steps of the last seconds so far.
@@ -74,6 +74,7 @@ pub struct Ledger {
     centred_alone: u32,
     remembered: u32,
     ignored: u32,
+    aside: u32,
     on_target: u32,
     /// Which colours were in view when any was, last.
     last_seen: [bool; 3],
@@ -103,7 +104,9 @@ impl Ledger {
             self.centred_alone += count(now.centred(target) && !now.touches());
             let remembered = self.last_seen[target.index()];
             self.remembered += count(remembered);
-            self.ignored += count(remembered && !now.in_view(target) && !now.touches());
+            let away = remembered && !now.centred(target) && !now.touches();
+            self.ignored += count(away && !now.in_view(target));
+            self.aside += count(away && now.in_view(target));
             self.on_target += count(now.touched[target.index()]);
         }
     }
@@ -145,7 +148,9 @@ impl Ledger {
             Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0))),
             Action::Ignore => {
                 let find = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.remembered);
-                (find, self.share(self.ignored) * near(displaced))
+                // Half for a look past it: without, nothing leads from the middle of the view out of it.
+                let looked_away = self.share(self.ignored) + 0.5 * self.share(self.aside);
+                (find, looked_away * near(displaced))
             }
         };
         let fitness = undisturbed * (0.5 * find + 0.5 * find * act);
@@ -276,6 +281,12 @@ mod tests {
         close(turned.parts(red, &JUDGING), [1.0, 0.9, 1.0, 0.5 + 0.5 * 0.9]);
         assert!(turned.succeeds(red, &JUDGING));
         assert!(!ledger(red, [(6, centred()), (44, nothing)]).succeeds(red, &JUDGING));
+        // Red at the edge of the view for 20 of the 50 steps, in its middle for the others: a = 0.5 * 0.4.
+        let mut past = centred();
+        (past.seen[1][0], past.seen[2][0]) = (false, true);
+        let looked_past = ledger(red, [(30, centred()), (20, past)]);
+        close(looked_past.parts(red, &JUDGING), [1.0, 0.2, 1.0, 0.6]);
+        assert!(!ledger(red, [(0, centred()), (50, past)]).succeeds(red, &JUDGING));
         // Turned away by a right angle: f = 0.5 * 0.5 + 0.5.
         let aside = Observation { ahead: [[0.0, 1.3]; 3], ..nothing };
         let away = ledger(red, [(5, centred()), (45, aside)]);
