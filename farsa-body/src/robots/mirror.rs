@@ -1,7 +1,7 @@
 //! The mirror image of parts at the plane y = 0: of a right arm it makes a left one.
 //!
 //! A frame's image has the images of its x and z axes and the opposite of that of y, so that it stays right-handed.
-//! Numbers are taken from 0 instead of negated, so that no zero becomes a negative one.
+//! Points and axes are taken from 0 instead of negated, so that no zero becomes a negative one.
 
 use crate::pose::Pose;
 use crate::robot::mass_properties::MassProperties;

@@ -24,6 +24,14 @@ impl ColorBand {
         Self { low: color.map(|x| x - tolerance), high: color.map(|x| x + tolerance) }
     }
 
+    /// Checks that it is finite and does not run backwards.
+    pub(crate) fn check(&self) -> Result<(), ChannelError> {
+        self.low.into_iter().zip(self.high).try_for_each(|(from, to)| {
+            finite_range(from, to)?;
+            if from > to { Err(ChannelError::Range { from, to }) } else { Ok(()) }
+        })
+    }
+
     /// Whether a colour is in the band.
     pub fn shows(&self, color: [f32; 3]) -> bool {
         (0..3).all(|i| self.low[i] <= color[i] && color[i] <= self.high[i])
@@ -78,14 +86,7 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
         groups("rays", rays.as_ref().len(), per_sector)?;
         groups("colours", bands.as_ref().len(), 1)?;
         rays.as_ref().iter().try_for_each(Beam::check)?;
-        for band in bands.as_ref() {
-            for (from, to) in band.low.into_iter().zip(band.high) {
-                finite_range(from, to)?;
-                if from > to {
-                    return Err(ChannelError::Range { from, to });
-                }
-            }
-        }
+        bands.as_ref().iter().try_for_each(ColorBand::check)?;
         Ok(Self { body, rays, per_sector, bands, range: positive("range", range)? })
     }
 }

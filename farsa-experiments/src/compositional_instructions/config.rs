@@ -86,6 +86,8 @@ pub struct Judging {
     pub reach: f64,
     /// What reaching counts in acts of TOUCH and MOVE \[0..1\].
     pub reach_share: f64,
+    /// What a step of IGNORE earns in which the target is in view but not in its middle \[0..1\].
+    pub aside_share: f64,
     /// Least shares of the last seconds in a success: of INDICATE and IGNORE, and of TOUCH.
     pub least_shares: [f64; 2],
     /// Most displacement of the target in a success of INDICATE and IGNORE \[m\].
@@ -185,6 +187,7 @@ impl Config {
                 far: 0.35,
                 reach: 1.0,
                 reach_share: 0.5,
+                aside_share: 0.5,
                 least_shares: [0.9, 0.8],
                 most_still: 0.03,
                 most_touched: 0.05,

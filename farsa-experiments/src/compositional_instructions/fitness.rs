@@ -57,14 +57,15 @@ pub struct Parts {
 /// With shares of the last seconds, `d_t` and `d_o` the displacements of the target and of the other object that moved most,
 /// `near(d)` = 1 - clamp((d - still) / span, 0, 1), beside(d) the same with a span of its own, and r how far the arm ever reached
 /// while the target was centred: 1 if the second segment was on it, else 1 - clamp(distance of its tip / reach, 0, 1), which counts
-/// q; s(x) is the share of the last seconds in which the target was the object that had been in view last, and x held:
+/// q; s(x) is the share of the last seconds in which the target was the object that had been in view last, and x held; a look past
+/// the target counts p:
 ///
 /// | | f | a | F |
 /// |---|---|---|---|
 /// | INDICATE | 0.5 (1 - angle / pi) + 0.5 centred | (centred and nothing touched) near(`d_t`) | near(`d_o`) (0.5 f + 0.5 f a) |
 /// | TOUCH | the same | (q r + (1 - q) (on the target)) beside(`d_t`) | the same |
 /// | MOVE | the same | q r + (1 - q) clamp(`d_t` / far, 0, 1) | the same |
-/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | (s(not in view) + 0.5 s(in view, not centred)) near(`d_t`), touching nothing | the same |
+/// | IGNORE | 0.5 (1 - angle / pi) + 0.5 s | (s(not in view) + p s(in view, not centred)) near(`d_t`), touching nothing | the same |
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Ledger {
     /// Steps of the last seconds so far.
@@ -148,8 +149,8 @@ impl Ledger {
             Action::Move => (found, with_reach((displaced / judging.far).clamp(0.0, 1.0))),
             Action::Ignore => {
                 let find = 0.5 * (1.0 - angle / PI) + 0.5 * self.share(self.remembered);
-                // Half for a look past it: without, nothing leads from the middle of the view out of it.
-                let looked_away = self.share(self.ignored) + 0.5 * self.share(self.aside);
+                // A part for a look past it: without, nothing leads from the middle of the view out of it.
+                let looked_away = self.share(self.ignored) + judging.aside_share * self.share(self.aside);
                 (find, looked_away * near(displaced))
             }
         };

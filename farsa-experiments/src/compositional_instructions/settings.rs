@@ -123,6 +123,9 @@ impl Config {
             ),
             number("fitness.reach_share", judging.reach_share, 0.0, 1.0)
                 .doc("What reaching counts in the acts of TOUCH and MOVE: without it no agent learned to stretch."),
+            number("fitness.aside_share", judging.aside_share, 0.0, 1.0).doc(
+                "What IGNORE earns for a look past the target: without it a run of 20 000 generations looked at the target.",
+            ),
             numbers("success.least_shares", &judging.least_shares, 0.0, 1.0)
                 .doc("Least shares of the last seconds: of INDICATE and IGNORE, and of TOUCH."),
             length("success.most_still", judging.most_still)
@@ -212,6 +215,7 @@ impl Config {
                 far: number("fitness.far")?,
                 reach: number("fitness.reach")?,
                 reach_share: number("fitness.reach_share")?,
+                aside_share: number("fitness.aside_share")?,
                 least_shares: two("success.least_shares")?,
                 most_still: number("success.most_still")?,
                 most_touched: number("success.most_touched")?,

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::channel::{ChannelError, finite_range, groups};
+use crate::channel::{ChannelError, groups};
 use crate::ports::{BodyId, Channels, Kinematics, Sensor, Vision};
 use crate::sensors::camera::Camera;
 use crate::sensors::linear_camera::ColorBand;
@@ -27,14 +27,7 @@ impl<B: Copy> ColorBlobs<B> {
     /// [`ChannelError::Groups`] for no colours, [`ChannelError::Range`] for a band that is not finite or runs backwards.
     pub fn new(camera: Camera<B>, bands: Vec<ColorBand>) -> Result<Self, ChannelError> {
         groups("colours", bands.len(), 1)?;
-        for band in &bands {
-            for (from, to) in band.low.into_iter().zip(band.high) {
-                finite_range(from, to)?;
-                if from > to {
-                    return Err(ChannelError::Range { from, to });
-                }
-            }
-        }
+        bands.iter().try_for_each(ColorBand::check)?;
         let sums = vec![[0.0; 3]; bands.len()];
         Ok(Self { camera, bands, sums })
     }

@@ -3,10 +3,11 @@
 use crate::ports::{BodyId, Channels, Kinematics, Sensor};
 use crate::sensors::camera::Camera;
 
-/// Reads how far one thing is from another in a camera's image, 2 channels in [-1, 1]: to the left and upwards, in widths of the image; 0
-/// where one of them is behind the camera.
+/// Reads how far one thing is from another in a camera's image, 2 channels in [-1, 1]: to the left and upwards, in widths of the
+/// image; 0 where one of them is behind the camera.
 ///
-/// Both are points of bodies, and are found whether or not something hides them: it is the retina of who knows where to look.
+/// Both are points of bodies and count as seen whether or not something hides them. Of the camera only its place and field of view
+/// matter, so one pixel is enough.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisualOffset<B = BodyId> {
     camera: Camera<B>,
@@ -15,7 +16,7 @@ pub struct VisualOffset<B = BodyId> {
 }
 
 impl<B: Copy> VisualOffset<B> {
-    /// The offset of a point \[m\] of one body from a point of another, each in its body's frame.
+    /// The offset of a point [m] of one body from a point of another, each in its body's frame.
     pub fn new(camera: Camera<B>, of: (B, [f32; 3]), from: (B, [f32; 3])) -> Self {
         Self { camera, of, from }
     }

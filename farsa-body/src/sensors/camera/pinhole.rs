@@ -12,11 +12,11 @@ use crate::pose::Pose;
 /// More pixels than this are not needed, and a mistake could run out of memory.
 const MOST_PIXELS: usize = 1 << 20;
 
-/// A pinhole camera on a body: its own frame looks along x, with y to the left and z up, and its pixels are squares of the plane
-/// at x = 1, the first one at the upper left, row by row.
+/// A pinhole camera on a body. Its own frame looks along x, with y to the left and z up; its pixels are squares, numbered row by row
+/// from the upper left.
 ///
-/// A place (x, y, z) of its frame is in the image at (y, z) / (x w), with w the tangent of half the field of view: from -1 at the
-/// right to 1 at the left edge, and upwards as long as the rows are many, in the same unit.
+/// A place (x, y, z) of its frame appears at (y, z) / (x w) in the image, with w the tangent of half the field of view: 1 is the
+/// left edge, -1 the right one, and the vertical axis has the same unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera<B = BodyId> {
     body: B,
@@ -32,12 +32,12 @@ pub struct Camera<B = BodyId> {
 }
 
 impl<B: Copy> Camera<B> {
-    /// A camera on `body` at `placement` in that body's frame, with an image of \[columns, rows\], a horizontal field of view \[rad\],
-    /// that sees as far as `range` \[m\].
+    /// A camera on `body` at `placement` in that body's frame, with an image of `size` [columns, rows], a horizontal field of view
+    /// [rad], that sees as far as `range` [m].
     ///
     /// # Errors
-    /// [`ChannelError::Groups`] for an image without pixels or of more than a million, [`ChannelError::Value`] if the field of view is not within 0 and
-    /// pi, `range` is not a finite number > 0, or the placement is not finite or its rotation no unit quaternion.
+    /// [`ChannelError::Groups`] for an image without pixels or of more than 2^20; [`ChannelError::Value`] if the field of view is not
+    /// within 0 and pi, `range` is not a finite number > 0, or the placement is not finite or its rotation no unit quaternion.
     pub fn new(
         body: B,
         placement: Pose,
@@ -82,7 +82,7 @@ impl<B: Copy> Camera<B> {
         self.body
     }
 
-    /// The image's \[columns, rows\].
+    /// The image's [columns, rows].
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
@@ -92,7 +92,7 @@ impl<B: Copy> Camera<B> {
         world.pose(self.body).compose(&self.placement)
     }
 
-    /// Looks: what each pixel meets \[rows x columns\], the upper left first. The camera's own body is not seen.
+    /// Looks: what each pixel meets [rows x columns], the upper left first. The camera's own body is not seen.
     pub fn look<W: Kinematics<Body = B> + Vision + ?Sized>(&mut self, world: &W) -> &[Option<Seen<B>>] {
         let pose = self.pose(world);
         for (ray, own) in self.rays.iter_mut().zip(&self.own) {
@@ -114,7 +114,7 @@ impl<B: Copy> Camera<B> {
         [(columns - 1.0 - 2.0 * column) / columns, (rows - 1.0 - 2.0 * row) / columns]
     }
 
-    /// Where a place of the world \[m\] is in the image, to the left and upwards in halves of its width, beyond 1 if beside it;
+    /// Where a place of the world [m] is in the image, to the left and upwards in halves of its width, beyond 1 if beside it;
     /// `None` for one that is not in front of the camera.
     pub fn project(&self, pose: &Pose, place: [f32; 3]) -> Option<[f32; 2]> {
         let [ahead, left, up] = pose.transform_back(place);

@@ -11,9 +11,9 @@ use crate::testing::promise::{ConformanceError, Promise, ensure};
 /// Number of rays of an eye.
 const RAYS: usize = 256;
 
-/// Checks what every world promises about eyes, with many rays of `range` \[m\] in random directions from every origin \[m\].
+/// Checks what every world promises about eyes, with many rays of `range` [m] in random directions from every origin [m].
 ///
-/// What is met is a body of the world within the range, with a colour in \[0, 1\]; it is met again by the ray alone and within twice the
+/// What is met is a body of the world within the range, with a colour in [0, 1]; it is met again by the ray alone and within twice the
 /// range, not within less than its distance, and not without its body. No ray beyond the shorter slice is answered.
 ///
 /// `bodies` are all bodies of the world. Some of the rays must meet a body.
