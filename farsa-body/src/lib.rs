@@ -37,8 +37,8 @@ pub use channel::ChannelError;
 #[cfg(feature = "alloc")]
 pub use kinematics::{Goal, InverseKinematics, InverseKinematicsError, KinematicTree, Orientation, Solution};
 pub use motors::{
-    AttachmentMotor, Leds, Muscles, ServoGroup, ServoRange, SignalMotor, SpeedAndTurn, TorqueMotor, VelocityMotor,
-    WheelVelocity,
+    AttachmentMotor, HeadTracking, Leds, Muscles, ServoGroup, ServoRange, SignalMotor, SpeedAndTurn, TorqueMotor,
+    VelocityMotor, WheelVelocity,
 };
 pub use ports::{
     Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, Motor,
@@ -53,8 +53,8 @@ pub use robot::{
 };
 #[cfg(feature = "alloc")]
 pub use robots::{
-    ArmAndHand, Chain, Finger, Hand, Icub, IcubError, IcubPosture, InfraredRing, JointControl, MobileParts,
-    MobileRobot, Side, Tabletop,
+    ArmAndHand, Chain, Finger, Hand, Icub, IcubError, IcubPosture, IcubTabletop, InfraredRing, JointControl,
+    MobileParts, MobileRobot, Side, Tabletop,
 };
 pub use sensors::{
     AnalyticInfrared, AttachmentSensor, Axes, Beam, BodyPose, BodyVelocity, ColorBand, ContactForce, GroundColor,

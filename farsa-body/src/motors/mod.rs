@@ -14,10 +14,12 @@
 //!
 //! All implement [`Motor`](crate::Motor) for any world with the ports that they name. Tuples, arrays and `Vec`s of motors
 //! are motors. A value outside [0, 1] drives like the nearer end, NaN like 0. For noise, delay or damage put a
-//! [wrapper](crate::wrappers) around one.
+//! [wrapper](crate::wrappers) around one. [`HeadTracking`] is no motor but a reflex: it moves two servos by itself.
 
 /// Devices that hold on to things: the motor that switches one and the sensor that reads whether it holds.
 pub(crate) mod attachment;
+/// A reflex that turns a head towards a thing.
+pub(crate) mod head_tracking;
 /// Motors of joints: muscles, servos, torques, speeds.
 pub(crate) mod joints;
 /// LEDs and signals.
@@ -26,6 +28,7 @@ pub(crate) mod leds;
 pub(crate) mod wheels;
 
 pub use attachment::AttachmentMotor;
+pub use head_tracking::HeadTracking;
 pub use joints::{Muscles, ServoGroup, ServoRange, TorqueMotor, VelocityMotor};
 pub use leds::{Leds, SignalMotor};
 pub use wheels::{SpeedAndTurn, WheelVelocity};

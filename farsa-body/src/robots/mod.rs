@@ -26,6 +26,6 @@ mod vehicle;
 
 pub use arm_and_hand::ArmAndHand;
 pub use hand::{Finger, Hand};
-pub use icub::{Chain, Icub, IcubError, IcubPosture, JointControl, Side};
+pub use icub::{Chain, Icub, IcubError, IcubPosture, IcubTabletop, JointControl, Side};
 pub use mobile::{InfraredRing, MobileParts, MobileRobot};
 pub use tabletop::Tabletop;

@@ -1,9 +1,9 @@
-//! Cameras with an image, by hand and by the kit.
+//! Cameras with an image, by hand and by the kit; a head that follows a thing.
 
 use farsa_body::testing::{PointWorld, Promise, check_sensor, check_vision};
 use farsa_body::{
-    Arrange, BodyId, Camera, CameraImage, ChannelError, Channels, ColorBand, ColorBlobs, Handles, JointId, Pose, Seen,
-    Sensor, Vision, VisualOffset,
+    Actuated, ActuatorId, Arrange, BodyId, Camera, CameraImage, ChannelError, Channels, ColorBand, ColorBlobs, Handles,
+    HeadTracking, JointId, Kinematics, Pose, Seen, Sensor, ServoRange, Twist, Vision, VisualOffset,
 };
 use farsa_num::sin_cos;
 
@@ -184,4 +184,105 @@ fn every_broken_promise_of_eyes_is_named() {
     }
     let nothing = check_vision(&balls(), &bodies, &[[5.0, 5.0, 1.0]], 0.5);
     assert_eq!(nothing.map_err(|error| error.promise), Err(Promise::Vision));
+}
+
+/// A head on two servos that are at once where they shall be: it turns to the left, then upwards about its own axis.
+struct Neck {
+    desired: [f32; 2],
+    target: [f32; 3],
+}
+
+impl Handles for Neck {
+    type Body = BodyId;
+    type Joint = JointId;
+    type Actuator = ActuatorId;
+}
+
+impl Kinematics for Neck {
+    fn pose(&self, body: BodyId) -> Pose {
+        if body == BodyId(1) {
+            return Pose::at(self.target);
+        }
+        let about = |axis: [f32; 3], angle: f32| {
+            let (sine, cosine) = sin_cos(0.5 * angle);
+            let [x, y, z] = axis.map(|a| a * sine);
+            Pose { position: [0.0; 3], rotation: [x, y, z, cosine] }
+        };
+        about([0.0, 0.0, 1.0], self.desired[0]).compose(&about([0.0, -1.0, 0.0], self.desired[1]))
+    }
+    fn velocity(&self, _: BodyId) -> Twist {
+        Twist::default()
+    }
+}
+
+impl Actuated for Neck {
+    fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
+        self.desired[actuator.index()] = value[0];
+    }
+}
+
+/// Servo 0 turns to the left by 0.8 rad at most, servo 1 upwards by 0.5 rad.
+fn tracking() -> HeadTracking {
+    let servos =
+        [(0, 0.8), (1, 0.5)].map(|(servo, most)| ServoRange { servo: ActuatorId(servo), from: -most, to: most });
+    HeadTracking::new((BodyId(0), Pose::identity()), (BodyId(1), [0.0; 3]), servos, [0.0; 2], 0.5, 0.1).unwrap()
+}
+
+#[test]
+fn a_head_turns_to_what_it_follows() {
+    let mut reflex = tracking();
+    // At 45 degrees to the left and, from there, below.
+    let mut world = Neck { desired: [0.0; 2], target: [1.0, 1.0, -0.4] };
+    let first = reflex.angles(&world).unwrap();
+    assert!((first[0] - core::f32::consts::FRAC_PI_4).abs() < 1e-6 && first[1] < -0.3, "{first:?}");
+    reflex.step(&mut world);
+    assert_eq!(world.desired, [0.1, -0.1]);
+    for _ in 0..60 {
+        reflex.step(&mut world);
+    }
+    let [left, up] = reflex.angles(&world).unwrap();
+    assert!(left.abs() < 1e-4 && up.abs() < 1e-4, "{left} {up}");
+    assert!((world.desired[0] - core::f32::consts::FRAC_PI_4).abs() < 1e-4, "{:?}", world.desired);
+    // Beyond a limit it stays there; what is behind it does not move it.
+    world.target = [0.5, 1.0, 0.0];
+    (0..60).for_each(|_| reflex.step(&mut world));
+    assert_eq!(world.desired[0], 0.8);
+    world.target = [-1.0, -1.0, 0.0];
+    let before = world.desired;
+    reflex.step(&mut world);
+    assert_eq!((reflex.angles(&world), world.desired), (None, before));
+    reflex.reset();
+    assert_eq!(reflex.desired(), [0.0; 2]);
+}
+
+/// A servo whose positions grow to the right and downwards comes to the same with its range the other way round.
+#[test]
+fn the_sign_of_a_servo_is_that_of_its_range() {
+    let servos =
+        [(0, 0.8), (1, 0.5)].map(|(servo, most)| ServoRange { servo: ActuatorId(servo), from: most, to: -most });
+    let eye = (BodyId(0), Pose::identity());
+    let mut turned = HeadTracking::new(eye, (BodyId(1), [0.0; 3]), servos, [0.0; 2], 0.5, 0.1).unwrap();
+    let mut plain = tracking();
+    let [mut a, mut b] = [0, 1].map(|_| Neck { desired: [0.0; 2], target: [1.0, 0.7, 0.2] });
+    plain.step(&mut a);
+    turned.step(&mut b);
+    assert_eq!(a.desired, b.desired.map(|x| -x));
+}
+
+#[test]
+fn a_head_that_cannot_turn_is_refused() {
+    let make = |low: f32, high: f32, start: f32, gain: f32, most: f32| {
+        let servos = [0, 1].map(|servo| ServoRange { servo: ActuatorId(servo), from: low, to: high });
+        let eye = (BodyId(0), Pose::identity());
+        HeadTracking::new(eye, (BodyId(1), [0.0; 3]), servos, [start; 2], gain, most).err()
+    };
+    assert_eq!(make(-1.0, 1.0, 0.5, 0.5, 0.1), None);
+    assert_eq!(make(1.0, -1.0, 0.5, 1.0, 0.1), None);
+    assert_eq!(make(1.0, 1.0, 1.0, 0.5, 0.1), Some(ChannelError::Range { from: 1.0, to: 1.0 }));
+    assert!(matches!(make(-1.0, f32::NAN, 0.0, 0.5, 0.1), Some(ChannelError::Range { .. })));
+    let value = |field, value| Some(ChannelError::Value { field, value });
+    assert_eq!(make(-1.0, 1.0, 1.5, 0.5, 0.1), value("start", 1.5));
+    assert_eq!(make(-1.0, 1.0, 0.0, 1.5, 0.1), value("gain", 1.5));
+    assert_eq!(make(-1.0, 1.0, 0.0, 0.0, 0.1), value("gain", 0.0));
+    assert_eq!(make(-1.0, 1.0, 0.0, 0.5, 0.0), value("most", 0.0));
 }

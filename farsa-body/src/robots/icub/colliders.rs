@@ -10,7 +10,7 @@ use crate::robots::icub::chain::Side;
 use crate::robots::mirror;
 
 /// Indices of the colliders of waist, chest and head.
-const TRUNK: [usize; 3] = [0, 1, 2];
+pub(super) const TRUNK: [usize; 3] = [0, 1, 2];
 
 /// Indices of the colliders of upper arm, forearm and palm.
 pub(super) fn arm(side: Side) -> [usize; 3] {
@@ -69,7 +69,7 @@ fn limb_pairs() -> Vec<[usize; 2]> {
 }
 
 /// The segment with which a body moves rigidly: itself, or the next one inwards whose joint moves; none for the world.
-fn carrier(robot: &Robot, collider: usize) -> Option<BodyId> {
+pub(super) fn carrier(robot: &Robot, collider: usize) -> Option<BodyId> {
     let mut body = robot.colliders.get(collider)?.body;
     while let Some(segment) = body.and_then(|b| robot.segments.get(b.index())) {
         if segment.joint.kind != JointKind::Fixed {

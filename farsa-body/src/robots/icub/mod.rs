@@ -15,8 +15,11 @@ pub(crate) mod error;
 pub(crate) mod posture;
 /// Joints and masses of torso, neck and right arm, as the file has them.
 mod table;
+/// The table with the ball before it.
+mod tabletop;
 
 pub use chain::{Chain, Side};
 pub use description::{Icub, JointControl};
 pub use error::IcubError;
 pub use posture::IcubPosture;
+pub use tabletop::IcubTabletop;

@@ -1,0 +1,146 @@
+//! The table with the ball before the iCub.
+
+use crate::ports::BodyId;
+use crate::pose::Pose;
+use crate::robot::description::{Collider, Joint, Robot, Segment, Surface};
+use crate::robot::mass_properties::MassProperties;
+use crate::robot::shape::Shape;
+use crate::robots::icub::chain::Side;
+use crate::robots::icub::colliders;
+use crate::robots::icub::description::Icub;
+use crate::robots::icub::error::IcubError;
+
+/// A table before the iCub, with a ball on it; every number a field.
+///
+/// All numbers are our own choice.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+pub struct IcubTabletop {
+    /// Extent of the table along X [m].
+    pub table_x: [f64; 2],
+    /// Extent of the table along Y [m].
+    pub table_y: [f64; 2],
+    /// Height of the table's top [m].
+    pub table_top: f64,
+    /// How far the solid table goes down [m].
+    pub table_depth: f64,
+    /// Radius of the ball [m].
+    pub ball_radius: f64,
+    /// Mass of the ball, solid [kg].
+    pub ball_mass: f64,
+    /// Where the ball rests on the table at first, X and Y [m].
+    pub ball_start: [f64; 2],
+    /// Contact of the robot with the ball.
+    pub robot_on_ball: Surface,
+    /// Contact of the ball with the table.
+    pub ball_on_table: Surface,
+    /// Contact of the robot with the table.
+    pub robot_on_table: Surface,
+}
+
+impl Default for IcubTabletop {
+    fn default() -> Self {
+        let Icub { hand, skin, .. } = Icub::default();
+        Self {
+            table_x: [0.12, 0.60],
+            table_y: [-0.45, 0.45],
+            table_top: -0.08,
+            table_depth: 0.30,
+            ball_radius: 0.04,
+            ball_mass: 0.080,
+            ball_start: [0.26, -0.11],
+            robot_on_ball: hand.surface,
+            ball_on_table: Surface { rolling_friction: 8e-4, ..hand.surface },
+            robot_on_table: skin,
+        }
+    }
+}
+
+impl IcubTabletop {
+    /// The ball in the robot that [`IcubTabletop::scene`] makes.
+    pub const BALL: BodyId = BodyId(60);
+
+    /// Robot, ball and table in one description, the robot's parts first.
+    ///
+    /// After the robot's own pairs come those of the `ball` with waist, chest and head, with forearm, palm and phalanges of
+    /// the left side and of the right, then those of the `table` with the ball, chest and head, and with upper arm, forearm,
+    /// palm and phalanges of either side.
+    ///
+    /// # Errors
+    /// Those of [`Icub::robot`], and what [`Robot::validate`] finds with the numbers given.
+    pub fn scene(&self, icub: &Icub) -> Result<Robot, IcubError> {
+        let mut robot = icub.robot()?;
+        let [x, y] = self.ball_start;
+        let start = Joint::floating(Pose::at([x, y, self.table_top + self.ball_radius]));
+        let solid = MassProperties::sphere(self.ball_mass, self.ball_radius);
+        let body = robot.add_segment(Segment::new("ball", None, start, solid));
+        let shape = Shape::Sphere { radius: self.ball_radius };
+        let ball = robot.add_collider(Collider::new("ball", Some(body), shape, Pose::identity()));
+        let ([x0, x1], [y0, y1], z1) = (self.table_x, self.table_y, self.table_top);
+        let half = [(x1 - x0) / 2.0, (y1 - y0) / 2.0, self.table_depth / 2.0];
+        let middle = Pose::at([f64::midpoint(x0, x1), f64::midpoint(y0, y1), z1 - half[2]]);
+        let table = robot.add_collider(Collider::new("table", None, Shape::Box { half }, middle));
+
+        let [_, chest, head] = colliders::TRUNK;
+        for part in colliders::TRUNK.into_iter().chain(Side::ALL.into_iter().flat_map(|side| limbs(side).skip(1))) {
+            robot.add_pair([part, ball], self.robot_on_ball);
+        }
+        robot.add_pair([ball, table], self.ball_on_table);
+        for part in [chest, head].into_iter().chain(Side::ALL.into_iter().flat_map(limbs)) {
+            if colliders::carrier(&robot, part).is_some() {
+                robot.add_pair([part, table], self.robot_on_table);
+            }
+        }
+        robot.validate()?;
+        Ok(robot)
+    }
+}
+
+/// Upper arm, forearm, palm, phalanges.
+fn limbs(side: Side) -> impl Iterator<Item = usize> {
+    let first = colliders::first_phalange(side);
+    colliders::arm(side).into_iter().chain(first..first + 15)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robots::icub::chain::Chain;
+    use alloc::vec;
+
+    #[test]
+    fn scene_holds_robot_ball_and_table() {
+        let robot = IcubTabletop::default().scene(&Icub::default()).expect("a valid scene");
+        let own = Icub::default().robot().expect("a valid robot");
+        assert_eq!(robot.segments.len(), 61);
+        assert_eq!(robot.body("ball"), Some(IcubTabletop::BALL));
+        assert_eq!(robot.colliders.len(), own.colliders.len() + 2);
+        // Ball with trunk, forearms, palms and phalanges, and the table; table with chest, head, upper arms and those.
+        assert_eq!(robot.pairs.len(), own.pairs.len() + (3 + 2 * 17) + 1 + (2 + 2 * 18));
+        assert_eq!(robot.pairs[..own.pairs.len()], own.pairs[..]);
+        for name in ["head", "l_forearm", "r_palm", "r_little_distal", "table"] {
+            assert!(robot.pair("ball", name).is_some(), "{name}");
+        }
+        assert!(robot.pair("table", "r_upper_arm").is_some());
+        assert!(robot.pair("table", "waist").is_none());
+    }
+
+    #[test]
+    fn what_is_rigid_has_no_pair_with_the_table() {
+        let icub = Icub { actuated: vec![Chain::RightArm], ..Icub::default() };
+        let robot = IcubTabletop::default().scene(&icub).expect("a valid scene");
+        assert!(robot.pair("table", "l_palm").is_none());
+        assert!(robot.pair("ball", "l_palm").is_some() && robot.pair("table", "r_index_middle").is_some());
+    }
+
+    #[test]
+    fn impossible_tables_are_refused() {
+        for wrong in [
+            IcubTabletop { table_depth: 0.0, ..IcubTabletop::default() },
+            IcubTabletop { ball_mass: f64::INFINITY, ..IcubTabletop::default() },
+            IcubTabletop { ball_radius: -0.1, ..IcubTabletop::default() },
+        ] {
+            assert!(matches!(wrong.scene(&Icub::default()), Err(IcubError::Robot(_))), "{wrong:?}");
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The network of an agent of `icub-reach-grasp`.
+
+use farsa_lab::{Error, NormalisedController, OwnedNetwork};
+use farsa_nn::{Controller as _, Leak, LeakyNetwork};
+
+use crate::icub_reach_grasp::config::Config;
+use crate::icub_reach_grasp::episode::Grasper;
+use crate::icub_reach_grasp::motors::MOTORS;
+use crate::icub_reach_grasp::scene::wrong;
+use crate::icub_reach_grasp::senses::SENSORS;
+
+/// A network whose inputs can be disturbed and whose neurons can be silent: hidden neurons leaky and connected to each other,
+/// motor neurons leaky.
+#[derive(Clone, Debug)]
+pub struct Agent {
+    network: NormalisedController<OwnedNetwork>,
+}
+
+impl Agent {
+    /// An agent whose parameters are 0.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a layout that makes no network.
+    pub fn new(config: &Config) -> Result<Self, Error> {
+        let layout = config.layout();
+        let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
+        let network = LeakyNetwork::new(layout, Leak::Filter, parameters, state).map_err(|error| wrong(&error))?;
+        Ok(Self { network: NormalisedController::new(network) })
+    }
+
+    /// The network.
+    pub fn network(&self) -> &NormalisedController<OwnedNetwork> {
+        &self.network
+    }
+
+    /// The same, for other parameters.
+    pub fn network_mut(&mut self) -> &mut NormalisedController<OwnedNetwork> {
+        &mut self.network
+    }
+}
+
+impl Grasper for Agent {
+    fn start(&mut self, _: [f64; 3]) {
+        self.network.reset();
+    }
+
+    fn step(&mut self, x: &[f32; SENSORS], y: &mut [f32; MOTORS]) {
+        self.network.step(x, y);
+    }
+}

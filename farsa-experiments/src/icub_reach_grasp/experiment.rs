@@ -1,0 +1,50 @@
+//! The experiment `icub-reach-grasp` as the `farsa` command runs it.
+
+use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings};
+use farsa_physics::articulated::{Batch, Model, World};
+
+use crate::icub_reach_grasp::config::Config;
+use crate::icub_reach_grasp::scene::{Scene, wrong};
+use crate::icub_reach_grasp::task::GraspTask;
+
+/// How does an iCub come to reach for a ball that lies anywhere on a table, to grasp it and to lift it?
+///
+/// Its left eye sees how far ball and hand are apart, its head follows the ball by a reflex, so that the angles of neck and trunk
+/// say where the ball is; nine touch sensors feel it. The network commands angles of trunk, right arm and hand.
+///
+/// Deviations: of the source only openings of its pages are known to us; what they do not say is of our own making, and the
+/// settings say which that is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct IcubReachGrasp;
+
+impl Experiment for IcubReachGrasp {
+    fn name(&self) -> &'static str {
+        "icub-reach-grasp"
+    }
+
+    fn summary(&self) -> &'static str {
+        "the right hand of an iCub reaches for a ball on a table, grasps it and lifts it"
+    }
+
+    fn settings(&self, _: &str) -> Vec<Setting> {
+        Config::default().table()
+    }
+
+    fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        Ok(Box::new(evaluator(Config::read(settings)?)?))
+    }
+}
+
+/// Evaluates under a configuration.
+///
+/// # Errors
+/// [`Error::Setting`] and [`Error::Other`] for a configuration whose robot cannot be built.
+pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, GraspTask>, Error> {
+    let scene = Scene::new(config)?;
+    let model = Model::new(&scene.robot, &scene.options()).map_err(|error| wrong(&error))?;
+    let world = World::new(model.clone());
+    let batch = move |lanes: Lanes| {
+        Batch::new(model.clone(), lanes.count(), lanes.instructions()).map_err(|error| wrong(&error))
+    };
+    Ok(InWorld::new(world, GraspTask::new(scene)?).with_lanes(batch))
+}

@@ -1,0 +1,184 @@
+//! The scene of `icub-reach-grasp`: how a trial starts in it, and what is seen of it.
+
+use farsa_body::{
+    ActuatorId, Arrange, BodyId, Contacts, Finger, Handles, Icub, IcubError, IcubTabletop, JointId, Kinematics, PairId,
+    Pose, Robot, Side, Twist,
+};
+use farsa_lab::{EpisodeId, Error};
+use farsa_num::{Domain, Scalar, Stream};
+use farsa_physics::articulated::Options;
+
+use crate::icub_reach_grasp::config::Config;
+use crate::icub_reach_grasp::fitness::{Observation, PARTS, opposition};
+
+/// The parts of the area in which the ball lies in a round of twelve trials, along X and Y.
+const GRID: [u32; 2] = [3, 4];
+
+/// A part of the hand: its pair with the ball, and a point in its middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Part {
+    on_ball: PairId,
+    body: BodyId,
+    middle: [f64; 3],
+}
+
+/// The robot's description with the names of what matters in it.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Robot, ball and table.
+    pub robot: Robot,
+    /// The robot in it.
+    pub icub: Icub,
+    /// Every value of the experiment.
+    pub config: Config,
+    /// The joints that move, with their angles at the start \[rad\].
+    start: Vec<(JointId, f32)>,
+    parts: [Part; PARTS],
+    /// The ball with everything but the hand.
+    others: Vec<PairId>,
+}
+
+pub(crate) fn wrong(error: &dyn core::fmt::Display) -> Error {
+    Error::Other(format!("icub-reach-grasp: {error}"))
+}
+
+impl Scene {
+    /// The palm.
+    pub const PALM: BodyId = BodyId(19);
+    /// The ball.
+    pub const BALL: BodyId = IcubTabletop::BALL;
+
+    /// The scene of a configuration.
+    ///
+    /// # Errors
+    /// Those of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    pub fn new(config: Config) -> Result<Self, Error> {
+        config.check()?;
+        let icub = config.icub();
+        let robot = config.tabletop().scene(&icub).map_err(|error| wrong(&error))?;
+        debug_assert_eq!(Self::PALM, Icub::palm(Side::Right));
+        let ball = robot.colliders.iter().position(|collider| collider.body == Some(Self::BALL));
+        let ball = ball.ok_or_else(|| wrong(&"no ball"))?;
+        let start = icub.start().into_iter().map(|angle| angle as f32);
+        let start = robot.joints().zip(start).collect();
+        let hand =
+            [Self::PALM].into_iter().chain(Finger::ALL.into_iter().flat_map(|f| Icub::phalanges(Side::Right, f)));
+        let hand: Vec<BodyId> = hand.collect();
+        let (mut parts, mut others) = (Vec::new(), Vec::new());
+        for (number, pair) in robot.pairs.iter().enumerate() {
+            let [a, b] = pair.colliders;
+            let other = match (a == ball, b == ball) {
+                (true, false) => b,
+                (false, true) => a,
+                _ => continue,
+            };
+            let on_ball = PairId(number as u16);
+            let collider = &robot.colliders[other];
+            match collider.body.filter(|body| hand.contains(body)) {
+                Some(body) if body == Self::PALM => {
+                    parts.push(Part { on_ball, body, middle: icub.palm_centre(Side::Right) });
+                }
+                Some(body) => parts.push(Part { on_ball, body, middle: collider.placement.position }),
+                None => others.push(on_ball),
+            }
+        }
+        let parts = parts.try_into().map_err(|found: Vec<Part>| wrong(&format_args!("{} parts", found.len())))?;
+        Ok(Self { robot, icub, config, start, parts, others })
+    }
+
+    /// How the articulated world is stepped.
+    pub fn options(&self) -> Options {
+        let Config { time_step, substeps, .. } = self.config;
+        Options { time_step, substeps, ..Options::default() }
+    }
+
+    /// The actuator on a joint.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a joint that there is not, or that is rigid.
+    pub fn actuator(&self, joint: &str) -> Result<ActuatorId, Error> {
+        self.icub.actuator(joint).map_err(|error| wrong(&error))
+    }
+
+    /// A joint.
+    ///
+    /// # Errors
+    /// As [`Scene::actuator`].
+    pub fn joint(&self, joint: &str) -> Result<JointId, Error> {
+        self.icub.joint(joint).map_err(|error: IcubError| wrong(&error))
+    }
+
+    /// The limits of a joint \[rad\].
+    ///
+    /// # Errors
+    /// As [`Scene::actuator`].
+    pub fn range(&self, joint: &str) -> Result<[f64; 2], Error> {
+        self.icub.range(joint).map_err(|error| wrong(&error))
+    }
+
+    /// The pairs of palm, then phalanges from the thumb's to the little finger's, with the ball.
+    pub fn on_ball(&self) -> impl Iterator<Item = PairId> + '_ {
+        self.parts.iter().map(|part| part.on_ball)
+    }
+
+    /// Where the ball lies in a trial, X and Y \[m\]: anywhere in one of the twelve parts of the area, those of a round of twelve
+    /// trials one after the other.
+    ///
+    /// From the stream of [`Domain::Start`]: the same for all individuals of a generation.
+    pub fn place(&self, id: EpisodeId) -> [f64; 2] {
+        let part = id.trial % (GRID[0] * GRID[1]);
+        self.place_in(id, [part / GRID[1], part % GRID[1]], GRID)
+    }
+
+    /// Where the ball lies in a trial if it is in a cell of the area, which is divided into so many along X and Y \[m\].
+    pub fn place_in(&self, id: EpisodeId, cell: [u32; 2], cells: [u32; 2]) -> [f64; 2] {
+        let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
+        let Config { area_centre, area_size, .. } = self.config;
+        [0, 1].map(|k| {
+            let share = (f64::from(cell[k]) + stream.range_f64(0.0, 1.0)) / f64::from(cells[k]);
+            area_centre[k] + area_size[k] * (share - 0.5)
+        })
+    }
+
+    /// Sets a world up with the robot at its start and the ball at a place of the table \[m\].
+    pub fn arrange<W>(&self, world: &mut W, [x, y]: [f64; 2])
+    where
+        W: Arrange + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        world.clear();
+        for (joint, angle) in &self.start {
+            world.place_joint(*joint, *angle, 0.0);
+        }
+        let z = self.config.table_top + self.config.ball_radius;
+        world.place_body(Self::BALL, Pose::at([x, y, z].map(|x| x as f32)), Twist::default());
+        world.finish_placement();
+    }
+
+    /// What is seen of a world.
+    pub fn observe<W>(&self, world: &W) -> Observation
+    where
+        W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized,
+    {
+        let Config { ball_radius, table_top, .. } = self.config;
+        let ball = world.pose(Self::BALL).position.map(f64::from);
+        let palm = world.pose(Self::PALM).cast::<f64>().transform(self.icub.palm_centre(Side::Right));
+        let mut directions = [[0.0; 3]; PARTS];
+        let mut touching = 0;
+        for part in self.parts.iter().filter(|part| world.touches(part.on_ball)) {
+            let at = world.pose(part.body).cast::<f64>().transform(part.middle);
+            directions[touching] = [0, 1, 2].map(|k| at[k] - ball[k]);
+            touching += 1;
+        }
+        let apart = [0, 1, 2].map(|k| palm[k] - ball[k]);
+        let apart = Scalar::sqrt(apart.iter().fold(0.0, |sum: f64, x| sum + x * x));
+        Observation {
+            palm,
+            ball,
+            distance: (apart - ball_radius).max(0.0),
+            height: ball[2] - ball_radius - table_top,
+            touching: touching as u32,
+            opposition: opposition(&directions[..touching]),
+            supported: self.others.iter().any(|pair| world.touches(*pair)),
+        }
+    }
+}

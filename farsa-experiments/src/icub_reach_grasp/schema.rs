@@ -1,0 +1,62 @@
+//! What an episode of `icub-reach-grasp` records, by name.
+
+use farsa_body::{PairId, Recorder, Robot};
+use farsa_lab::seconds;
+use farsa_view::{Channel, Schema};
+
+use crate::icub_reach_grasp::agent::Agent;
+use crate::icub_reach_grasp::episode::{GraspEpisode, GraspingWorld};
+use crate::icub_reach_grasp::motors::Motors;
+use crate::icub_reach_grasp::scene::Scene;
+use crate::icub_reach_grasp::senses::Senses;
+
+/// What is recorded beside the network.
+const SCALARS: [(&str, &str); 13] = [
+    ("fitness", "nearness so far"),
+    ("fitness", "touch so far"),
+    ("fitness", "lift so far"),
+    ("judged", "distance [m]"),
+    ("judged", "height [m]"),
+    ("judged", "touching parts"),
+    ("judged", "opposition"),
+    ("place", "palm x [m]"),
+    ("place", "palm y [m]"),
+    ("place", "palm z [m]"),
+    ("place", "ball x [m]"),
+    ("place", "ball y [m]"),
+    ("place", "ball z [m]"),
+];
+
+/// The schema of episodes in a scene.
+pub(crate) fn schema(scene: &Scene) -> Schema {
+    let schema = Schema::from_robot(&scene.robot).with_sensors(Senses::names()).with_outputs(Motors::names());
+    let mut schema = schema.with_network(&scene.config.layout());
+    schema.sensors[..2].iter_mut().for_each(|channel| channel.range = Some([-1.0, 1.0]));
+    schema.sensors[2..].iter_mut().chain(&mut schema.outputs).for_each(|channel| channel.range = Some([0.0, 1.0]));
+    let scalars = SCALARS.into_iter().map(|(group, name)| Channel::new(name).group(group)).collect();
+    Schema { scalars, points: vec!["palm's centre".into()], ..schema }
+}
+
+/// Records a step that has been judged.
+pub(crate) fn record<W>(world: &W, episode: &GraspEpisode<Agent>, recorder: &mut dyn Recorder)
+where
+    W: GraspingWorld + ?Sized,
+{
+    let (scene, seen) = (episode.scene(), episode.seen());
+    recorder.sensors(episode.sensed());
+    recorder.neurons(episode.grasper().network().controller().hidden());
+    recorder.outputs(episode.done());
+    for body in Robot::shaped_bodies(&scene.robot) {
+        recorder.pose(body, world.pose(body));
+    }
+    recorder.point(0, seen.palm.map(|x| x as f32));
+    for pair in (0..world.pairs()).map(|pair| PairId(pair as u16)).filter(|pair| world.touches(*pair)) {
+        recorder.contact(pair, &world.pair_contact(pair));
+    }
+    let mut scalars = [0.0; SCALARS.len()];
+    let judged = [seen.distance, seen.height, f64::from(seen.touching), seen.opposition];
+    let all = episode.terms().into_iter().chain(judged).chain(seen.palm).chain(seen.ball);
+    scalars.iter_mut().zip(all).for_each(|(to, x)| *to = x);
+    recorder.scalars(&scalars);
+    recorder.tick(seconds(episode.score().steps, scene.config.time_step));
+}

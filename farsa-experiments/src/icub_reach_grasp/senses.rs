@@ -1,0 +1,148 @@
+//! What the robot senses: where the ball is in its left eye, four of its joints, touch.
+
+use farsa_body::{
+    BodyId, Camera, Channels, Contacts, Finger, Handles, Icub, JointId, JointPosition, Joints, Kinematics, PairId,
+    Pose, Sensor, Side, Touch, VisualOffset,
+};
+use farsa_lab::{EpisodeId, Error};
+use farsa_num::{Domain, Stream};
+
+use crate::icub_reach_grasp::scene::{Scene, wrong};
+
+/// Sensory neurons.
+pub const SENSORS: usize = 15;
+/// The joints that are sensed.
+const JOINTS: [&str; 4] = ["neck_pitch", "neck_yaw", "torso_pitch", "torso_yaw"];
+/// As far as the eye could see \[m\]; nothing hides what the offsets are of.
+const RANGE: f32 = 10.0;
+
+/// The four patches of the palm, which feel the ball: towards fingers or wrist, on the thumb's side or the other.
+#[derive(Clone, Debug)]
+struct PalmPatches {
+    on_ball: PairId,
+    /// The middle of the palm in its frame \[m\].
+    middle: [f32; 3],
+}
+
+impl Channels for PalmPatches {
+    fn channels(&self) -> usize {
+        4
+    }
+}
+
+impl<W: Kinematics + Contacts + Handles<Body = BodyId> + ?Sized> Sensor<W> for PalmPatches {
+    /// The palm is flat: a ball touches it where its centre is above.
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        out.fill(0.0);
+        if world.touches(self.on_ball) {
+            let [x, y, _] = world.pose(Scene::PALM).transform_back(world.pose(Scene::BALL).position);
+            let patch = 2 * usize::from(x < self.middle[0]) + usize::from(y < self.middle[1]);
+            out[patch] = 1.0;
+        }
+    }
+}
+
+/// The sensors in the order of the network's inputs: the ball's offset from the hand in the left eye's image, to the left and
+/// upwards, -1..1 \[2\]; pitch and yaw of the neck, pitch and yaw of the trunk, 0 at the lower and 1 at the upper limit \[4\];
+/// touch of the five fingertips with ball or table, from the thumb's to the little finger's, and of four patches of the palm with
+/// the ball, 0 or 1 \[9\].
+#[derive(Clone, Debug)]
+pub struct Senses {
+    offset: VisualOffset,
+    joints: [JointPosition; 4],
+    tips: [Touch<Vec<PairId>>; 5],
+    palm: PalmPatches,
+    /// Largest error of each offset, and where it comes from.
+    noise: f32,
+    errors: Stream,
+}
+
+impl Senses {
+    /// The sensors in a scene.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for an eye that cannot be.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let view = scene.config.field_of_view.to_radians();
+        let eye = Camera::new(Icub::HEAD, Self::eye(), [1, 1], view, RANGE).map_err(|error| wrong(&error))?;
+        let palm_centre = scene.icub.palm_centre(Side::Right).map(|x| x as f32);
+        let offset = VisualOffset::new(eye, (Scene::BALL, [0.0; 3]), (Scene::PALM, palm_centre));
+        let joint = |name: &str| {
+            let [low, high] = scene.range(name)?.map(|x| x as f32);
+            JointPosition::new(scene.joint(name)?, low, high).map_err(|error| wrong(&error))
+        };
+        let [a, b, c, d] = JOINTS.map(joint);
+        let tip = |finger: Finger| {
+            let own = scene.icub.fingertip(Side::Right, finger).0;
+            let mine = |collider: &usize| scene.robot.colliders[*collider].body == Some(own);
+            let foreign =
+                |collider: &usize| scene.robot.colliders[*collider].body.is_none_or(|body| body == Scene::BALL);
+            let pairs = scene.robot.pairs.iter().enumerate();
+            let pairs = pairs.filter(|(_, pair)| pair.colliders.iter().any(mine) && pair.colliders.iter().any(foreign));
+            let pairs = pairs.map(|(number, _)| PairId(number as u16)).collect();
+            Touch::new(pairs, 1.0).map_err(|error| wrong(&error))
+        };
+        let [t0, t1, t2, t3, t4] = Finger::ALL.map(tip);
+        let on_ball = scene.robot.pair("ball", "r_palm").ok_or_else(|| wrong(&"no pair of ball and palm"))?;
+        let middle = scene.icub.hand.palm_box.map(|x| x as f32);
+        Ok(Self {
+            offset,
+            joints: [a?, b?, c?, d?],
+            tips: [t0?, t1?, t2?, t3?, t4?],
+            palm: PalmPatches { on_ball, middle },
+            noise: 0.0,
+            errors: Stream::new(0, Domain::Sensor, 0, 0, 0),
+        })
+    }
+
+    /// The left eye in the head's frame, which it looks along.
+    pub(crate) fn eye() -> Pose {
+        Pose::at(Icub::EYES[0].map(|x| x as f32))
+    }
+
+    /// Starts a trial in which each offset is wrong by up to so much; what it reads does not depend on earlier ones.
+    pub fn start(&mut self, id: EpisodeId, noise: f32) {
+        self.noise = noise;
+        self.errors = Stream::new(id.seed, Domain::Sensor, id.trial, id.individual, id.generation);
+    }
+
+    /// The channels' names, in their order.
+    pub fn names() -> [&'static str; SENSORS] {
+        [
+            "dx",
+            "dy",
+            "neck pitch",
+            "neck yaw",
+            "torso pitch",
+            "torso yaw",
+            "thumb tip",
+            "index tip",
+            "middle tip",
+            "ring tip",
+            "little tip",
+            "palm: index",
+            "palm: little",
+            "palm: thumb",
+            "palm: heel",
+        ]
+    }
+
+    /// Reads all channels.
+    pub fn read<W>(&mut self, world: &W, x: &mut [f32; SENSORS])
+    where
+        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        let (offset, rest) = x.split_at_mut(2);
+        let (joints, touch) = rest.split_at_mut(4);
+        let (tips, palm) = touch.split_at_mut(5);
+        self.offset.read(world, offset);
+        self.joints.read(world, joints);
+        self.tips.read(world, tips);
+        self.palm.read(world, palm);
+        if self.noise > 0.0 {
+            for x in offset {
+                *x += self.errors.range(-self.noise, self.noise);
+            }
+        }
+    }
+}
