@@ -49,6 +49,10 @@ pub trait Recorder {
     fn point(&mut self, point: usize, position: [f32; 3]) {
         let _ = (point, position);
     }
+    /// What a pixel of a camera's image shows, red, green and blue in [0, 1]; one call for each, number 0 is the upper left one.
+    fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
+        let _ = (image, pixel, color);
+    }
     /// What was sensed [sensors].
     fn sensors(&mut self, x: &[f32]) {
         let _ = x;
@@ -107,6 +111,9 @@ macro_rules! forward {
         fn point(&mut $self, point: usize, position: [f32; 3]) {
             $($to.point(point, position);)+
         }
+        fn pixel(&mut $self, image: usize, pixel: usize, color: [f32; 3]) {
+            $($to.pixel(image, pixel, color);)+
+        }
         fn sensors(&mut $self, x: &[f32]) {
             $($to.sensors(x);)+
         }
@@ -147,6 +154,9 @@ mod tests {
         fn pose(&mut self, body: BodyId, pose: Pose) {
             let _ = write!(self.0, "p{}:{} ", body.0, pose.position[0]);
         }
+        fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
+            let _ = write!(self.0, "i{image}.{pixel}:{} ", color[1]);
+        }
         fn sensors(&mut self, x: &[f32]) {
             let _ = write!(self.0, "s{x:?} ");
         }
@@ -161,6 +171,7 @@ mod tests {
         recorder.contact(PairId(1), &PairContact::default());
         recorder.ray([0.0; 3], [1.0; 3], true);
         recorder.point(0, [0.0; 3]);
+        recorder.pixel(1, 7, [0.0, 0.25, 1.0]);
         recorder.sensors(&[0.5]);
         recorder.neurons(&[0.5]);
         recorder.outputs(&[0.5]);
@@ -172,7 +183,7 @@ mod tests {
     fn both_of_a_pair_are_told_and_nobody_must_listen() {
         let (mut one, mut other) = (Told::default(), Told::default());
         tell(&mut (&mut one, (&mut other, ())));
-        assert_eq!(one.0, "p2:3 s[0.5] t0.25;");
+        assert_eq!(one.0, "p2:3 i1.7:0.25 s[0.5] t0.25;");
         assert_eq!(one.0, other.0);
     }
 

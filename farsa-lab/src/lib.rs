@@ -43,4 +43,4 @@ pub use strategy::{
     Truncation, strategies,
 };
 
-pub use farsa_view::{Channel, Links, NodeParameters, Recording, SceneObject, Schema, View};
+pub use farsa_view::{Channel, ImageChannel, Links, NodeParameters, Recording, SceneObject, Schema, View};

@@ -10,5 +10,5 @@ mod shape;
 pub use error::Error;
 pub use page::{Page, readable};
 pub use picture::{Beam, Camera, Picture, Push};
-pub use recording::{CastRay, Channel, Links, NodeParameters, Recording, Schema, Table, Touching, View};
+pub use recording::{CastRay, Channel, ImageChannel, Links, NodeParameters, Recording, Schema, Table, Touching, View};
 pub use shape::{Color, Geometry, Instance, OKABE_ITO, Role, SceneObject, screen_color};

@@ -7,7 +7,7 @@ import { crc32 } from "node:zlib";
 
 const VIEWER = new URL("../../farsa-view/src/page/viewer/", import.meta.url);
 // In the order in which the page has them.
-export const SCRIPTS = ["data.js", "camera.js", "scene.js", "view.js", "strips.js", "network.js", "player.js", "main.js"];
+export const SCRIPTS = ["data.js", "camera.js", "scene.js", "view.js", "strips.js", "images.js", "network.js", "player.js", "main.js"];
 export const viewer = (name) => readFileSync(new URL(name, VIEWER), "utf8");
 
 export const crc = (bytes) => {
@@ -160,9 +160,13 @@ export function armTrial(number) {
     facts: [["fitness", (812.3 + number).toFixed(1)], ["success", "yes"], ["phase at the end", "lift"], ["held [s]", "1.85"], ["highest [cm]", "11.2"],
       ["seed", "1"], ["experiment", "reach-grasp-lift <labels>"]],
     bodies, shapes, channels, pairs, points: ["reach target"], times, poses, marks: table.map((p) => [p]), contacts,
+    images: [{ name: "left eye", size: [8, 6], frames: times.map((_, t) => (t < 20 ? null : Array.from({ length: 48 }, (_, k) => eyePixel(t, k, number)))) }],
     rays: times.map(() => []), network: { nodes, links, values }, weights,
   };
 }
+
+// A pixel of the eye of an arm: red, green and blue in counts of 5, 6 and 5 bits. The image changes every ten ticks.
+export const eyePixel = (t, k, number) => [k % 8 === Math.floor(t / 10) % 8 ? 31 : 0, k === 0 ? 63 : 20, number ? 31 : 4];
 
 // A wheeled robot that finds its way between walls in the plane, with distance rays.
 export function arenaTrial(number) {
@@ -237,10 +241,23 @@ export function encode(trial) {
   block("points", Uint16Array.from(marks.flat().flatMap(place)));
   block("contacts", Uint16Array.from(contacts.flatMap((some) => [some.length, ...some.flatMap(([pair, p, f]) => [pair, ...place(p), ...f.map((x) => signed(Math.round(x / force_unit)))])])));
   block("rays", Uint16Array.from(rays.flatMap((some) => [some.length, ...some.flatMap((r) => [...place(r.from), ...place(r.to), Number(r.met)])])));
+  // Images are left out where there are none, as in pages of before.
+  const { images } = trial;
+  if (images) {
+    const pixels = [];
+    const starts = images.flatMap(({ frames }) => frames.map((frame) => {
+      if (!frame) return 0xffffffff;
+      pixels.push(...frame.map(([r, g, b]) => (r << 11) | (g << 5) | b));
+      return pixels.length - frame.length;
+    }));
+    block("image_starts", Uint32Array.from(starts));
+    block("pixels", Uint16Array.from(pixels));
+  }
   block("weights", Float32Array.from(weights));
   const data = Buffer.concat(parts);
   return {
     name: trial.name, facts: trial.facts, ticks, bodies: trial.bodies, shapes: trial.shapes, channels: headers, pairs: trial.pairs, points: trial.points,
+    ...(images ? { images: images.map(({ name, size }) => ({ name, size })) } : {}),
     ...(trial.network ? { network: trial.network } : {}),
     position_origin: low, position_unit: unit, force_unit, blocks, bytes, crc32: crc(data), data: data.toString("base64"),
   };

@@ -10,7 +10,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { pathToFileURL } from "node:url";
-import { armTrial, arenaTrial, compose, csvOf, encode, pageOf, SCRIPTS, viewer } from "./mock.mjs";
+import { armTrial, arenaTrial, compose, csvOf, encode, eyePixel, pageOf, SCRIPTS, viewer } from "./mock.mjs";
 import { coloursIn, decode } from "./png.mjs";
 import { KEY, startDriver } from "./webdriver.mjs";
 
@@ -89,7 +89,7 @@ async function silent(browser, name) {
 function files() {
   const template = viewer("page.html");
   const size = [template, viewer("viewer.css"), ...SCRIPTS.map(viewer)].reduce((sum, text) => sum + Buffer.byteLength(text), 0);
-  check(`the viewer has ${size} bytes, at most 67584`, size <= 67584);
+  check(`the viewer has ${size} bytes, at most 70656`, size <= 70656);
   for (const name of ["title", "style", "script", "data"]) {
     check(`page.html has one {{${name}}}`, template.split(`{{${name}}}`).length === 2);
   }
@@ -160,10 +160,12 @@ async function arithmetic(browser) {
   const half = await browser.run(() => farsa.trials[0].between(400.5, 27).position);
   const middle = [0, 1, 2].map((i) => (trials[0].poses[400][27].position[i] + trials[0].poses[401][27].position[i]) / 2);
   check("between two ticks bodies are between two poses", half.every((x, i) => close(x, middle[i], encoded[0].position_unit)));
+  await images(browser);
   await silent(browser, "invented trials");
 
   await opened(browser, write("arena.html", compose(pageOf([arenaTrial(0)], "top"))));
   const arena = await browser.run(() => [farsa.view, document.querySelector("#top").ariaPressed, document.querySelector("#trails").ariaPressed, document.querySelector("#forces").hidden, document.querySelector("#network").hidden]);
+  check("a page without images shows none", await browser.run(() => document.querySelector("#images").hidden));
   check("an arena is seen from above with trails, without what it has not", arena.join() === "top,true,true,true,true", arena.join());
   await silent(browser, "arena");
 
@@ -176,6 +178,32 @@ async function arithmetic(browser) {
   const drawn = await browser.run(() => [farsa.ready, farsa.error, document.querySelector("#message").hidden, document.querySelector("#network").hidden]);
   check("a network without neurons is drawn", drawn.join() === "true,,true,false", drawn.join());
   await silent(browser, "reflexes");
+}
+
+// What the canvases show is what the eyes of the invented trials saw, each beside the strips in squares.
+async function images(browser) {
+  for (const tick of [599, 20, 395, 394, 3]) {
+    const found = await browser.run((tick) => new Promise((done) => {
+      farsa.seek(tick);
+      requestAnimationFrame(() => requestAnimationFrame(() => done([...document.querySelectorAll("#images div")].map((element) => {
+        const canvas = element.querySelector("canvas");
+        const { width, height } = canvas;
+        return { name: element.dataset.name, note: element.querySelector(".soft").textContent, size: [width, height],
+          colors: [...canvas.getContext("2d").getImageData(0, 0, width, height).data], told: farsa.image(0, "left eye").colors === null };
+      }))));
+    }), tick);
+    const expected = [0, 1].map((number) => {
+      const t = Math.min(tick, number ? 399 : 599);
+      const pixel = (k) => [...eyePixel(t, k, number).map((count, i) => Math.round(count * 255 / [31, 63, 31][i])), 255];
+      return Array.from({ length: 48 }, (_, k) => (t < 20 ? [0, 0, 0, 0] : pixel(k))).flat();
+    });
+    const same = found.length === 2 && found.every(({ name, size, colors, note, told }, i) =>
+      name === "left eye" && size.join() === "8,6" && colors.join() === expected[i].join() && told === tick < 20 && /×/.test(note) === tick >= 20);
+    check(`images at tick ${tick} are those written`, same, JSON.stringify(found).slice(0, 300));
+  }
+  const [eye, strips, list] = [await rectOf(browser, "#images canvas"), await rectOf(browser, "#strips"), await rectOf(browser, "#list")];
+  check("images are beside the strips", eye.left >= list.right - 1 && eye.top >= strips.top && eye.bottom <= strips.bottom && eye.width > 100, JSON.stringify([eye, strips, list]));
+  check("their pixels are squares", Math.abs(eye.width / 8 - eye.height / 6) < 0.1);
 }
 
 // ---- The page itself.
@@ -397,6 +425,13 @@ async function looks(driver, url, name, size, phone) {
 
 // ---- Pages that were cut or changed.
 
+// A page of an invented trial with an eye, with another size.
+function resizedEye(size) {
+  const data = pageOf([armTrial(0)]);
+  data.lives[0].images[0].size = size;
+  return compose(data);
+}
+
 async function damaged(browser, html, name) {
   const start = html.lastIndexOf(mark) + mark.length;
   const inside = (share) => html.slice(0, Math.round(start + share * (html.length - start)));
@@ -425,6 +460,8 @@ async function damaged(browser, html, name) {
     ["a block out of range", changed((d) => (d.lives[0].blocks.channels = 4 * (d.lives[0].bytes >> 2))), /block channels .* out of range/],
     ["a block that is not there", changed((d) => delete d.lives[0].blocks.poses), /block poses .* out of range/],
     ["contacts that are none", changed((d) => (d.lives[0].blocks.contacts = d.lives[0].blocks.times)), /block contacts .* out of range|cannot be shown/],
+    ["an image out of range", resizedEye([9, 9000]), /image .* out of range/],
+    ["an image without size", resizedEye([0, 6]), /image .* out of range/],
     ["no trial", changed((d) => (d.lives = [])), /no trial/],
     ["no shapes", changed((d) => delete d.lives[0].shapes), /lacks something|cannot be shown/],
     ["data that is no page", withData(html, 7), /farsa-replay/],

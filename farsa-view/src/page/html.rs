@@ -23,6 +23,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("viewer/scene.js"),
     include_str!("viewer/view.js"),
     include_str!("viewer/strips.js"),
+    include_str!("viewer/images.js"),
     include_str!("viewer/network.js"),
     include_str!("viewer/player.js"),
     include_str!("viewer/main.js"),
@@ -128,6 +129,9 @@ impl Blocks {
     fn float(&mut self, x: f32) {
         self.bytes.extend(x.to_le_bytes());
     }
+    fn long(&mut self, x: u32) {
+        self.bytes.extend(x.to_le_bytes());
+    }
     fn word(&mut self, x: u16) {
         self.bytes.extend(x.to_le_bytes());
     }
@@ -227,6 +231,11 @@ impl Film {
                 blocks.word(u16::from(ray.met));
             }
         }
+        let images = recording.images();
+        blocks.begin("image_starts");
+        (0..schema.images.len()).for_each(|image| images.starts(image).for_each(|start| blocks.long(start)));
+        blocks.begin("pixels");
+        images.pixels().iter().for_each(|pixel| blocks.word(*pixel));
         blocks.begin("weights");
         recording.controller_parameters().iter().for_each(|weight| blocks.float(*weight));
 
@@ -240,6 +249,7 @@ impl Film {
             "channels": channels,
             "pairs": self.pairs(),
             "points": schema.points,
+            "images": self.images(),
             "position_origin": space.origin,
             "position_unit": space.unit,
             "force_unit": force_unit,
@@ -332,6 +342,11 @@ impl Film {
             told.push(described(channel, low, scale));
         }
         told
+    }
+
+    fn images(&self) -> Vec<Value> {
+        let images = self.recording.schema().images.iter();
+        images.map(|image| json!({"name": image.name, "size": image.size})).collect()
     }
 
     fn network(&self) -> Option<Value> {
@@ -476,6 +491,52 @@ mod tests {
     }
 
     #[test]
+    fn images_are_read_back_in_their_colours() {
+        let schema = Schema::from_scalars(["x"]).with_image("left eye", [3, 2]).with_image("right eye", [1, 1]);
+        let mut recording = Recording::new(schema);
+        // Those that are counts of 5, 6 and 5 bits come back exactly.
+        let color = |tick: usize, pixel: usize| [tick as f32 / 31.0, 1.0 - pixel as f32 / 63.0, 1.0];
+        for tick in 0..4_usize {
+            (0..6).for_each(|pixel| recording.pixel(0, pixel, color(tick / 2, pixel)));
+            if tick == 3 {
+                recording.pixel(1, 0, [1.0, 0.0, 0.0]);
+            }
+            recording.tick(0.1 * tick as f64);
+        }
+        for tick in 0..4_usize {
+            let kept: Vec<[f32; 3]> = recording.image_at(tick, 0).unwrap().collect();
+            let expected: Vec<[f32; 3]> = (0..6).map(|pixel| color(tick / 2, pixel)).collect();
+            assert_eq!(kept, expected);
+        }
+        assert!(recording.image_at(2, 1).is_none() && recording.image_at(3, 2).is_none());
+
+        let page = data(&Page::new("eyes").with("one", recording).html());
+        let episode = &page["lives"][0];
+        assert_eq!(
+            episode["images"],
+            json!([{"name": "left eye", "size": [3, 2]}, {"name": "right eye", "size": [1, 1]}])
+        );
+        let bytes = STANDARD.decode(episode["data"].as_str().unwrap()).unwrap();
+        let [starts, pixels] = ["image_starts", "pixels"].map(|block| episode["blocks"][block].as_u64().unwrap());
+        assert_eq!((starts % 4, pixels % 4), (0, 0));
+        let start = |image: u64, tick: u64| {
+            let at = starts + 4 * (4 * image + tick);
+            u64::from(word(&bytes, at)) + (u64::from(word(&bytes, at + 2)) << 16)
+        };
+        assert_eq!([0, 1, 2, 3].map(|tick| start(0, tick)), [0, 0, 6, 6]);
+        assert_eq!(
+            [0, 1, 2, 3].map(|tick| start(1, tick)),
+            [u64::from(u32::MAX), u64::from(u32::MAX), u64::from(u32::MAX), 12]
+        );
+        for (tick, pixel) in [(0, 0), (1, 4), (3, 5)] {
+            let read = word(&bytes, pixels + 2 * (start(0, tick) + pixel));
+            let expected = (tick as u16 / 2) << 11 | (63 - pixel as u16) << 5 | 31;
+            assert_eq!(read, expected, "{tick} {pixel}");
+        }
+        assert_eq!(word(&bytes, pixels + 2 * start(1, 3)), 31 << 11);
+    }
+
+    #[test]
     fn a_page_of_nothing_is_a_page() {
         let page = data(&Page::new("none").html());
         assert_eq!(page["lives"], json!([]));
@@ -486,6 +547,6 @@ mod tests {
     #[test]
     fn the_viewer_is_small() {
         let size = TEMPLATE.len() + STYLE.len() + SCRIPTS.iter().map(|script| script.len()).sum::<usize>();
-        assert!(size <= 66 * 1024, "{size} bytes");
+        assert!(size <= 69 * 1024, "{size} bytes");
     }
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use farsa_body::{BodyId, Contacts, Kinematics, PairContact, PairId, Pose, Recorder, record_world};
 
+use crate::recording::images::Images;
 use crate::recording::schema::Schema;
 
 /// Numbers of a pose: position and rotation.
@@ -78,12 +79,14 @@ pub struct Recording {
     contact_ends: Vec<usize>,
     rays: Vec<CastRay>,
     ray_ends: Vec<usize>,
+    images: Images,
 }
 
 impl Recording {
     /// A recording of nothing yet.
     pub fn new(schema: Schema) -> Self {
-        let mut recording = Self { schema, ..Self::default() };
+        let images = Images::new(&schema.images);
+        let mut recording = Self { schema, images, ..Self::default() };
         let widest = [POSE * recording.bodies(), 3 * recording.schema.points.len(), recording.width()];
         recording.blank = vec![f32::NAN; widest.into_iter().max().unwrap_or(0)];
         // Most episodes are shorter; a longer one makes room by itself.
@@ -168,6 +171,17 @@ impl Recording {
         self.rays.get(ended(&self.ray_ends, tick)).unwrap_or(&[])
     }
 
+    /// What an image showed at a tick, red, green and blue of the upper left pixel first, within 1/62; `None` if it was not recorded,
+    /// and for ticks after 2^22 pixels were kept. An image like the one before takes no room.
+    pub fn image_at(&self, tick: usize, image: usize) -> Option<impl Iterator<Item = [f32; 3]> + '_> {
+        self.images.at(tick, image)
+    }
+
+    /// What was kept of all images.
+    pub(crate) fn images(&self) -> &Images {
+        &self.images
+    }
+
     /// All values of a tick in the order of [`Schema::columns`].
     pub fn row(&self, tick: usize) -> impl Iterator<Item = f64> + '_ {
         fn of_tick<T>(values: &[T], tick: usize, width: usize) -> &[T] {
@@ -222,6 +236,10 @@ impl Recorder for Recording {
         }
     }
 
+    fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
+        self.images.pixel(image, pixel, color);
+    }
+
     fn sensors(&mut self, x: &[f32]) {
         self.keep(0, self.schema.sensors.len(), x);
     }
@@ -246,6 +264,7 @@ impl Recorder for Recording {
         self.times.push(time);
         self.contact_ends.push(self.contacts.len());
         self.ray_ends.push(self.rays.len());
+        self.images.tick();
         self.open();
     }
 }

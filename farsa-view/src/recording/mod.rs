@@ -3,16 +3,18 @@
 //! - `schema`: what there is to record: bodies, channels, a network
 //! - `arena_schema`: the schema of a planar arena
 //! - `view`: from where a page first looks
+//! - `images`: what cameras saw, in few bytes
 //! - `memory`: a recording in memory
 //! - `table`: a recording as comma-separated values
 
 mod arena_schema;
+mod images;
 pub(crate) mod memory;
 pub(crate) mod schema;
 mod table;
 pub(crate) mod view;
 
 pub use memory::{CastRay, Recording, Touching};
-pub use schema::{Channel, Links, NodeParameters, Schema};
+pub use schema::{Channel, ImageChannel, Links, NodeParameters, Schema};
 pub use table::Table;
 pub use view::View;

@@ -53,6 +53,27 @@ impl Channel {
     }
 }
 
+/// The image of a camera, as pages name it.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct ImageChannel {
+    /// What it is called.
+    pub name: String,
+    /// Columns and rows.
+    pub size: [usize; 2],
+}
+
+impl ImageChannel {
+    /// An image of so many columns and rows.
+    pub fn new(name: &str, size: [usize; 2]) -> Self {
+        Self { name: name.into(), size }
+    }
+
+    /// Number of pixels.
+    pub(crate) fn pixels(&self) -> usize {
+        self.size[0].saturating_mul(self.size[1])
+    }
+}
+
 /// Weights from every node of one range to every node of another, source-major.
 ///
 /// Nodes are numbered through: sensors, then neurons, then outputs.
@@ -106,6 +127,8 @@ pub struct Schema {
     pub scalars: Vec<Channel>,
     /// The points worth seeing, by number.
     pub points: Vec<String>,
+    /// The images that cameras see, by number.
+    pub images: Vec<ImageChannel>,
     /// How the nodes are linked, for a picture of the network.
     pub links: Vec<Links>,
     /// What other parameters nodes have.
@@ -142,6 +165,12 @@ impl Schema {
     /// With these values of one's own.
     pub fn with_scalars<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
         Self { scalars: channels(names, "value"), ..self }
+    }
+
+    /// With another image.
+    pub fn with_image(mut self, name: &str, size: [usize; 2]) -> Self {
+        self.images.push(ImageChannel::new(name, size));
+        self
     }
 
     /// With the neurons and links of a network whose sensors and outputs those of the schema are.
@@ -196,7 +225,7 @@ impl Schema {
         scalars.chain(sensors).chain(neurons).chain(outputs)
     }
 
-    /// The columns of a table of everything but bodies, contacts, rays and points.
+    /// The columns of a table of everything but bodies, contacts, rays, points and images.
     pub fn columns(&self) -> Vec<String> {
         self.channels().map(|(prefix, channel)| format!("{prefix}{}", channel.title())).collect()
     }

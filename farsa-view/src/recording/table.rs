@@ -8,8 +8,8 @@ use crate::recording::schema::Schema;
 
 /// A recorder that writes a line per tick: `trial,step,time [s]` and the columns of the schema.
 ///
-/// A value that single precision can hold is written with the digits that single precision needs. Bodies, contacts and
-/// points are not written; to have numbers of them, record them as scalars.
+/// A value that single precision can hold is written with the digits that single precision needs. Bodies, contacts,
+/// points and images are not written; to have numbers of them, record them as scalars.
 pub struct Table<W: Write> {
     out: csv::Writer<W>,
     trial: u32,

@@ -8,6 +8,7 @@ use farsa_num::{Scalar, sin_cos};
 use crate::channel::{ChannelError, positive};
 use crate::ports::{BodyId, Kinematics, Seen, Vision};
 use crate::pose::Pose;
+use crate::recorder::Recorder;
 
 /// More pixels than this are not needed, and a mistake could run out of memory.
 const MOST_PIXELS: usize = 1 << 20;
@@ -105,6 +106,14 @@ impl<B: Copy> Camera<B> {
     /// What colour each pixel showed when it looked last, the upper left first.
     pub fn colors(&self) -> impl Iterator<Item = Option<[f32; 3]>> {
         self.seen.iter().map(|seen| seen.as_ref().and_then(|seen| seen.color))
+    }
+
+    /// Tells a recorder what it showed when it looked last, as the image of this number; black where there was nothing, or nothing
+    /// with a colour.
+    pub fn record<R: Recorder + ?Sized>(&self, image: usize, recorder: &mut R) {
+        for (pixel, color) in self.colors().enumerate() {
+            recorder.pixel(image, pixel, color.unwrap_or_default());
+        }
     }
 
     /// Where the middle of a pixel is in the image: to the left and upwards, in halves of its width.

@@ -78,7 +78,20 @@ class Trial {
 			if (low > high) [low, high] = [0, 1];
 			return {...channel, values, low, high};
 		});
+		this.images = (json.images || []).map((image, i) => this.readImage(image, i, json.images.length, block, of));
 		if (json.network) this.network = this.readNetwork(json.network, block);
+	}
+
+	// Where an image's pixels begin at each tick, in words; NaN if there are none.
+	readImage({name, size: [columns, rows]}, i, count, block, of) {
+		const {ticks, words} = this;
+		const [from, first] = [block("image_starts", 2*ticks*count, 2) + 2*i*ticks, block("pixels", 0, 2)];
+		const starts = list(ticks, (t) => {
+			const start = words[from + 2*t] + 65536*words[from + 2*t + 1];
+			need(columns > 0 && rows > 0 && (start === 0xffffffff || first + start + columns*rows <= words.length), `image ${name} ${of} is out of range`);
+			return start === 0xffffffff ? NaN : first + start;
+		});
+		return {name, columns, rows, starts};
 	}
 
 	readNetwork({nodes, links, values}, block) {
@@ -139,6 +152,16 @@ class Trial {
 
 	rays(tick) {
 		return this.each(this.rayStarts[floor(tick)], (word) => ({from: this.place(word), to: this.place(word + 3), met: this.words[word + 6]}));
+	}
+
+	// What a camera saw at a tick, red, green, blue and opacity of each pixel, or null.
+	image(tick, i) {
+		const {columns, rows, starts} = this.images[i];
+		const start = starts[floor(tick)];
+		if (Number.isNaN(start)) return null;
+		const colors = new Uint8ClampedArray(4*columns*rows);
+		this.words.subarray(start, start + columns*rows).forEach((p, k) => colors.set([(p >> 11)*255/31, (p >> 5 & 63)*255/63, (p & 31)*255/31, 255], 4*k));
+		return colors;
 	}
 
 	tickAt(time) {

@@ -6,6 +6,7 @@
 //   seek(tick), play(), pause(), playing, speed (may be set), show(trial, beside?), setView("top" | "free"), view
 // and, as recorded at the present tick:
 //   pose(trial, body): {position [m], rotation [x, y, z, w]}, value(trial, channel, group?),
+//   image(trial, name): {columns, rows, colors: red, green, blue, opacity of each pixel, or null},
 //   contacts(trial): [{pair, point [m], force on the pair's first [N]}], project(position) [CSS pixels of the first view]
 const farsa = window.farsa = {ready: false, error: null, trials: [], playing: false};
 
@@ -45,6 +46,11 @@ function openConsole(player, trials) {
 		show: of((trial, other) => player.show(trial, other == null ? null : trialOf(other))),
 		pose: of((trial, body) => trial.pose(player.at(trial), find(trial.bodies, body, (b) => b === body))),
 		value: of((trial, name, group) => trial.channels[find(trial.channels, name, (c) => c.name === name && [c.group, undefined].includes(group))].values[player.at(trial)]),
+		image: of((trial, name) => {
+			const i = find(trial.images, name, (image) => image.name === name);
+			const {columns, rows} = trial.images[i];
+			return {columns, rows, colors: trial.image(player.at(trial), i)};
+		}),
 		contacts: of((trial) => trial.contacts(player.at(trial))),
 		project: (p) => player.views[0].project(p),
 	});

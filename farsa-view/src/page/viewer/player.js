@@ -10,6 +10,7 @@ class Player {
 			const {clock} = this;
 			this.go(round(clock.tickAt(clock.times[0] + part*(clock.end - clock.times[0]))));
 		});
+		this.images = imagesOf();
 		this.graph = graphOf();
 	}
 
@@ -48,7 +49,9 @@ class Player {
 		$("slider").setAttribute("aria-valuetext", seconds);
 		$("clock").textContent = `${seconds} · tick ${tick} of ${clock.ticks - 1}`;
 		const part = (this.now - clock.times[0])/(clock.end - clock.times[0] || 1);
-		this.strips.update(shown.map((trial) => this.tickOf(trial)), part, farsa.playing);
+		const ticks = shown.map((trial) => this.tickOf(trial));
+		this.strips.update(ticks, part, farsa.playing);
+		this.images.update(ticks);
 		this.graph.update(this.at(shown[0]));
 	}
 
@@ -135,6 +138,7 @@ class Player {
 		$("slider").max = this.clock.ticks - 1;
 		$("slider").style.setProperty("--track", `linear-gradient(90deg, ${trackOf(a, this.clock)})`);
 		for (const name of ["forces", "rays", "points"]) $(name).hidden = !shown.some((trial) => trial.has[name]);
+		this.images.set(shown);
 		this.strips.set(shown, min(...shown.map((l) => l.times[0])), this.clock.end);
 		$("network").hidden = !a.network;
 		if (a.network) this.graph.set(a);

@@ -1,0 +1,174 @@
+//! What cameras saw, in few bytes: two a pixel, and none for an image like the one before.
+
+use std::iter;
+use std::ops::Range;
+
+use crate::recording::schema::ImageChannel;
+
+/// The most pixels that a recording keeps [pixels]: 8 MB, for 32 x 24 pixels 5461 images that differ.
+const MOST_PIXELS: usize = 1 << 22;
+/// Largest counts of red, green and blue.
+const LARGEST: [f32; 3] = [31.0, 63.0, 31.0];
+/// Where counts of red, green and blue begin in a pixel.
+const SHIFT: [u32; 3] = [11, 5, 0];
+
+/// The images of a recording, and those of the tick under way.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Images {
+    /// Number of images.
+    count: usize,
+    /// Where each one lies among the pixels of a tick.
+    ranges: Vec<Range<usize>>,
+    /// All images of the tick under way, and which of them have a pixel.
+    now: Vec<u16>,
+    told: Vec<bool>,
+    /// What was kept.
+    pixels: Vec<u16>,
+    /// Where each image begins there, ticks x images.
+    starts: Vec<Option<u32>>,
+    /// The same of the last one that was kept of each.
+    last: Vec<Option<u32>>,
+}
+
+impl Images {
+    /// Nothing yet of these images.
+    pub(crate) fn new(channels: &[ImageChannel]) -> Self {
+        let mut end = 0_usize;
+        let ranges: Vec<Range<usize>> = channels
+            .iter()
+            .map(|channel| {
+                // An image that is larger than all that is kept is never kept.
+                let begin = end;
+                end += Some(channel.pixels()).filter(|pixels| *pixels <= MOST_PIXELS).unwrap_or(0);
+                begin..end
+            })
+            .collect();
+        let count = channels.len();
+        let (told, last) = (vec![false; count], vec![None; count]);
+        Self { count, ranges, now: vec![0; end], told, last, ..Self::default() }
+    }
+
+    /// Takes down a pixel of the tick under way.
+    pub(crate) fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
+        let Some(range) = self.ranges.get(image) else { return };
+        if let Some(to) = self.now[range.clone()].get_mut(pixel) {
+            *to = packed(color);
+            self.told[image] = true;
+        }
+    }
+
+    /// Ends the tick.
+    pub(crate) fn tick(&mut self) {
+        for (image, range) in self.ranges.iter().enumerate() {
+            let seen = &self.now[range.clone()];
+            let like_last = |start: &u32| {
+                self.pixels.get(*start as usize..*start as usize + seen.len()).is_some_and(|last| last == seen)
+            };
+            let start = if !self.told[image] {
+                None
+            } else if let Some(start) = self.last[image].filter(like_last) {
+                Some(start)
+            } else if self.pixels.len() + seen.len() <= MOST_PIXELS {
+                let start = Some(self.pixels.len() as u32);
+                self.pixels.extend_from_slice(seen);
+                self.last[image] = start;
+                start
+            } else {
+                None
+            };
+            self.starts.push(start);
+        }
+        self.now.fill(0);
+        self.told.fill(false);
+    }
+
+    /// An image at a tick.
+    pub(crate) fn at(&self, tick: usize, image: usize) -> Option<impl Iterator<Item = [f32; 3]> + '_> {
+        let range = self.ranges.get(image)?;
+        let start = (*self.starts.get(tick * self.count + image)?)? as usize;
+        let pixels = self.pixels.get(start..start + range.len())?;
+        Some(pixels.iter().map(|pixel| unpacked(*pixel)))
+    }
+
+    /// Where an image begins among the pixels at each tick; `u32::MAX` if it is not there.
+    pub(crate) fn starts(&self, image: usize) -> impl Iterator<Item = u32> + '_ {
+        let of_image = self.starts.iter().skip(image).step_by(self.count.max(1));
+        of_image.map(|start| start.unwrap_or(u32::MAX))
+    }
+
+    /// All pixels that were kept.
+    pub(crate) fn pixels(&self) -> &[u16] {
+        &self.pixels
+    }
+}
+
+/// A colour as counts in 5, 6 and 5 bits; NaN is 0.
+fn packed(color: [f32; 3]) -> u16 {
+    let counts = iter::zip(color, LARGEST).map(|(shade, largest)| (shade * largest).round().clamp(0.0, largest) as u16);
+    iter::zip(counts, SHIFT).fold(0, |pixel, (count, shift)| pixel | count << shift)
+}
+
+fn unpacked(pixel: u16) -> [f32; 3] {
+    core::array::from_fn(|k| f32::from((pixel >> SHIFT[k]) & LARGEST[k] as u16) / LARGEST[k])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn image(images: &Images, tick: usize, image: usize) -> Option<Vec<[f32; 3]>> {
+        images.at(tick, image).map(Iterator::collect)
+    }
+
+    #[test]
+    fn images_come_back_and_equal_ones_take_no_room() {
+        let channels = [ImageChannel::new("left", [2, 1]), ImageChannel::new("right", [1, 3])];
+        let mut images = Images::new(&channels);
+        let (red, blue, black) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]);
+        images.pixel(0, 1, red);
+        images.pixel(1, 0, blue);
+        // Neither is a pixel of an image.
+        images.pixel(0, 2, red);
+        images.pixel(2, 0, red);
+        images.tick();
+        images.pixel(0, 1, red);
+        images.tick();
+        images.pixel(0, 0, red);
+        images.tick();
+        assert_eq!(image(&images, 0, 0), Some(vec![black, red]));
+        assert_eq!(image(&images, 0, 1), Some(vec![blue, black, black]));
+        assert_eq!(image(&images, 1, 0), Some(vec![black, red]));
+        assert_eq!((image(&images, 1, 1), image(&images, 3, 0), image(&images, 0, 2)), (None, None, None));
+        assert_eq!(image(&images, 2, 0), Some(vec![red, black]));
+        assert_eq!(images.pixels().len(), 2 + 3 + 2);
+        assert_eq!(images.starts(0).collect::<Vec<_>>(), [0, 0, 5]);
+        assert_eq!(images.starts(1).collect::<Vec<_>>(), [2, u32::MAX, u32::MAX]);
+    }
+
+    #[test]
+    fn no_more_than_the_most_is_kept() {
+        let mut images =
+            Images::new(&[ImageChannel::new("eye", [1 << 10, 1 << 10]), ImageChannel::new("vast", [1 << 20, 1 << 20])]);
+        for tick in 0..6 {
+            images.pixel(0, tick, [1.0; 3]);
+            images.pixel(1, 0, [1.0; 3]);
+            images.tick();
+        }
+        assert_eq!(images.pixels().len(), MOST_PIXELS);
+        let kept: Vec<bool> = (0..6).map(|tick| images.at(tick, 0).is_some()).collect();
+        assert_eq!(kept, [true, true, true, true, false, false]);
+        assert!((0..6).all(|tick| images.at(tick, 1).is_none()));
+    }
+
+    proptest! {
+        #[test]
+        fn a_colour_is_kept_within_half_a_count(color in proptest::array::uniform3(0.0_f32..=1.0)) {
+            let read = unpacked(packed(color));
+            for k in 0..3 {
+                prop_assert!((read[k] - color[k]).abs() <= 0.5001 / LARGEST[k], "{color:?} {read:?}");
+            }
+            prop_assert_eq!(packed(read), packed(color));
+        }
+    }
+}
