@@ -8,6 +8,7 @@ use farsa_body::{BodyId, Pose};
 use farsa_num::crc32;
 use serde_json::{Value, json};
 
+use crate::page::blocks::{Blocks, COUNTS, Space};
 use crate::picture::svg_data::hex;
 use crate::recording::memory::Recording;
 use crate::recording::schema::Channel;
@@ -28,9 +29,6 @@ const SCRIPTS: &[&str] = &[
     include_str!("viewer/player.js"),
     include_str!("viewer/main.js"),
 ];
-
-/// Counts of a 16-bit quantity; one more says NaN in channels.
-const COUNTS: f64 = 65534.0;
 
 /// A page of recorded episodes, to be looked at in a browser: bodies in space, strips of everything that has a value,
 /// and the network, all on one clock.
@@ -112,60 +110,6 @@ pub(crate) fn escaped(text: &str) -> String {
         }
     }
     html
-}
-
-/// The bytes of an episode, block by block.
-#[derive(Default)]
-struct Blocks {
-    bytes: Vec<u8>,
-    starts: serde_json::Map<String, Value>,
-}
-
-impl Blocks {
-    fn begin(&mut self, name: &str) {
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.starts.insert(name.into(), self.bytes.len().into());
-    }
-    fn float(&mut self, x: f32) {
-        self.bytes.extend(x.to_le_bytes());
-    }
-    fn long(&mut self, x: u32) {
-        self.bytes.extend(x.to_le_bytes());
-    }
-    fn word(&mut self, x: u16) {
-        self.bytes.extend(x.to_le_bytes());
-    }
-}
-
-/// Positions in a box, as counts.
-struct Space {
-    origin: [f64; 3],
-    unit: f64,
-}
-
-impl Space {
-    fn from_positions(positions: impl Iterator<Item = [f32; 3]>) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for position in positions {
-            for k in 0..3 {
-                let x = f64::from(position[k]);
-                // A body that flies off to infinity must not take the others' precision with it.
-                if x.abs() < 1e6 {
-                    (low[k], high[k]) = (low[k].min(x), high[k].max(x));
-                }
-            }
-        }
-        let largest = (0..3).map(|k| high[k] - low[k]).fold(1e-3, f64::max);
-        let origin = low.map(|x| if x.is_finite() { x } else { 0.0 });
-        Self { origin, unit: largest / COUNTS }
-    }
-
-    fn write(&self, position: [f32; 3], blocks: &mut Blocks) {
-        for k in 0..3 {
-            // NaN becomes 0, what is too far goes to the border.
-            blocks.word(((f64::from(position[k]) - self.origin[k]) / self.unit).round() as u16);
-        }
-    }
 }
 
 impl Film {

@@ -1,0 +1,61 @@
+//! The bytes of an episode in a page.
+
+use serde_json::Value;
+
+/// Counts of a 16-bit quantity; one more says NaN in channels.
+pub(crate) const COUNTS: f64 = 65534.0;
+
+/// The bytes of an episode, block by block.
+#[derive(Default)]
+pub(crate) struct Blocks {
+    pub(crate) bytes: Vec<u8>,
+    /// Where each begins.
+    pub(crate) starts: serde_json::Map<String, Value>,
+}
+
+impl Blocks {
+    pub(crate) fn begin(&mut self, name: &str) {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.starts.insert(name.into(), self.bytes.len().into());
+    }
+    pub(crate) fn float(&mut self, x: f32) {
+        self.bytes.extend(x.to_le_bytes());
+    }
+    pub(crate) fn long(&mut self, x: u32) {
+        self.bytes.extend(x.to_le_bytes());
+    }
+    pub(crate) fn word(&mut self, x: u16) {
+        self.bytes.extend(x.to_le_bytes());
+    }
+}
+
+/// Positions in a box, as counts.
+pub(crate) struct Space {
+    pub(crate) origin: [f64; 3],
+    pub(crate) unit: f64,
+}
+
+impl Space {
+    pub(crate) fn from_positions(positions: impl Iterator<Item = [f32; 3]>) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for position in positions {
+            for k in 0..3 {
+                let x = f64::from(position[k]);
+                // A body that flies off to infinity must not take the others' precision with it.
+                if x.abs() < 1e6 {
+                    (low[k], high[k]) = (low[k].min(x), high[k].max(x));
+                }
+            }
+        }
+        let largest = (0..3).map(|k| high[k] - low[k]).fold(1e-3, f64::max);
+        let origin = low.map(|x| if x.is_finite() { x } else { 0.0 });
+        Self { origin, unit: largest / COUNTS }
+    }
+
+    pub(crate) fn write(&self, position: [f32; 3], blocks: &mut Blocks) {
+        for k in 0..3 {
+            // NaN becomes 0, what is too far goes to the border.
+            blocks.word(((f64::from(position[k]) - self.origin[k]) / self.unit).round() as u16);
+        }
+    }
+}
