@@ -14,6 +14,9 @@ use crate::icub_reach_grasp::fitness::{Observation, PARTS, opposition};
 /// The parts of the area in which the ball lies in a round of twelve trials, along X and Y.
 const GRID: [u32; 2] = [3, 4];
 
+/// The colour in which the robot's own eye sees it.
+const SKIN: [f64; 3] = [0.78, 0.80, 0.84];
+
 /// A part of the hand: its pair with the ball, and a point in its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Part {
@@ -55,7 +58,10 @@ impl Scene {
     pub fn new(config: Config) -> Result<Self, Error> {
         config.check()?;
         let icub = config.icub();
-        let robot = config.tabletop().scene(&icub).map_err(|error| wrong(&error))?;
+        let mut robot = config.tabletop().scene(&icub).map_err(|error| wrong(&error))?;
+        for collider in &mut robot.colliders {
+            collider.color.get_or_insert(SKIN);
+        }
         debug_assert_eq!(Self::PALM, Icub::palm(Side::Right));
         let ball = robot.colliders.iter().position(|collider| collider.body == Some(Self::BALL));
         let ball = ball.ok_or_else(|| wrong(&"no ball"))?;

@@ -1,6 +1,6 @@
 //! What an episode of `icub-reach-grasp` records, by name.
 
-use farsa_body::{PairId, Recorder, Robot};
+use farsa_body::{Camera, PairId, Recorder, Robot, Vision};
 use farsa_lab::seconds;
 use farsa_view::{Channel, Schema};
 
@@ -27,20 +27,23 @@ const SCALARS: [(&str, &str); 13] = [
     ("place", "ball z [m]"),
 ];
 
+/// Columns and rows of the left eye's image, which is recorded and which the agent does not see.
+pub(crate) const IMAGE: [usize; 2] = [32, 24];
+
 /// The schema of episodes in a scene.
 pub(crate) fn schema(scene: &Scene) -> Schema {
     let schema = Schema::from_robot(&scene.robot).with_sensors(Senses::names()).with_outputs(Motors::names());
-    let mut schema = schema.with_network(&scene.config.layout());
+    let mut schema = schema.with_network(&scene.config.layout()).with_image("left eye", IMAGE);
     schema.sensors[..2].iter_mut().for_each(|channel| channel.range = Some([-1.0, 1.0]));
     schema.sensors[2..].iter_mut().chain(&mut schema.outputs).for_each(|channel| channel.range = Some([0.0, 1.0]));
     let scalars = SCALARS.into_iter().map(|(group, name)| Channel::new(name).group(group)).collect();
     Schema { scalars, points: vec!["palm's centre".into()], ..schema }
 }
 
-/// Records a step that has been judged.
-pub(crate) fn record<W>(world: &W, episode: &GraspEpisode<Agent>, recorder: &mut dyn Recorder)
+/// Records a step that has been judged, and what the left eye sees after it.
+pub(crate) fn record<W>(world: &W, episode: &GraspEpisode<Agent>, eye: &Camera, recorder: &mut dyn Recorder)
 where
-    W: GraspingWorld + ?Sized,
+    W: GraspingWorld + Vision + ?Sized,
 {
     let (scene, seen) = (episode.scene(), episode.seen());
     recorder.sensors(episode.sensed());
@@ -49,6 +52,9 @@ where
     for body in Robot::shaped_bodies(&scene.robot) {
         recorder.pose(body, world.pose(body));
     }
+    let mut eye = eye.clone();
+    eye.look(world);
+    eye.record(0, recorder);
     recorder.point(0, seen.palm.map(|x| x as f32));
     for pair in (0..world.pairs()).map(|pair| PairId(pair as u16)).filter(|pair| world.touches(*pair)) {
         recorder.contact(pair, &world.pair_contact(pair));

@@ -63,8 +63,7 @@ impl Senses {
     /// # Errors
     /// [`Error::Other`] for an eye that cannot be.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
-        let view = scene.config.field_of_view.to_radians();
-        let eye = Camera::new(Icub::HEAD, Self::eye(), [1, 1], view, RANGE).map_err(|error| wrong(&error))?;
+        let eye = Self::camera(scene, [1, 1])?;
         let palm_centre = scene.icub.palm_centre(Side::Right).map(|x| x as f32);
         let offset = VisualOffset::new(eye, (Scene::BALL, [0.0; 3]), (Scene::PALM, palm_centre));
         let joint = |name: &str| {
@@ -98,6 +97,12 @@ impl Senses {
     /// The left eye in the head's frame, which it looks along.
     pub(crate) fn eye() -> Pose {
         Pose::at(Icub::EYES[0].map(|x| x as f32))
+    }
+
+    /// The left eye with an image of `size` \[columns, rows\].
+    pub(crate) fn camera(scene: &Scene, size: [usize; 2]) -> Result<Camera, Error> {
+        let view = scene.config.field_of_view.to_radians();
+        Camera::new(Icub::HEAD, Self::eye(), size, view, RANGE).map_err(|error| wrong(&error))
     }
 
     /// Starts a trial in which each offset is wrong by up to so much; what it reads does not depend on earlier ones.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Actuated, ActuatorId, Arrange, Handles, Recorder, Robot};
+use farsa_body::{Actuated, ActuatorId, Arrange, Camera, Handles, Recorder, Robot, Vision};
 use farsa_lab::{
     Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
     MotorExport, NetworkExport, Note, NotedBehaviour, Outcome, Parameter, Protocol, Rollout, SensorExport, Task,
@@ -26,6 +26,8 @@ pub struct GraspTask {
     episode: GraspEpisode<Agent>,
     protocols: Arc<Protocols>,
     parameters: Arc<[Parameter]>,
+    /// What is recorded of the left eye.
+    eye: Arc<Camera>,
 }
 
 impl GraspTask {
@@ -37,8 +39,9 @@ impl GraspTask {
         let (config, agent) = (scene.config, Agent::new(&scene.config)?);
         let range = config.weight_range;
         let parameters = network_parameters(&config.layout(), range, [0.0, 1.0], "net.weight_range")?;
+        let eye = Arc::new(Senses::camera(&scene, schema::IMAGE)?);
         let episode = GraspEpisode::new(Arc::new(scene), agent)?;
-        Ok(Self { episode, protocols: Arc::new(Protocols::new(&config)), parameters: parameters.into() })
+        Ok(Self { episode, protocols: Arc::new(Protocols::new(&config)), parameters: parameters.into(), eye })
     }
 
     fn config(&self) -> &Config {
@@ -53,7 +56,7 @@ impl GraspTask {
 
 impl<W> Episode<W> for GraspTask
 where
-    W: GraspingWorld + Actuated + Arrange + Handles<Actuator = ActuatorId> + ?Sized,
+    W: GraspingWorld + Vision + Actuated + Arrange + Handles<Actuator = ActuatorId> + ?Sized,
 {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.episode.start(world, id);
@@ -68,7 +71,7 @@ where
     }
 
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        schema::record(world, &self.episode, recorder);
+        schema::record(world, &self.episode, &self.eye, recorder);
     }
 }
 

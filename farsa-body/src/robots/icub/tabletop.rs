@@ -24,10 +24,14 @@ pub struct IcubTabletop {
     pub table_top: f64,
     /// How far the solid table goes down [m].
     pub table_depth: f64,
+    /// Colour of the table, red, green and blue [0..1].
+    pub table_color: [f64; 3],
     /// Radius of the ball [m].
     pub ball_radius: f64,
     /// Mass of the ball, solid [kg].
     pub ball_mass: f64,
+    /// Colour of the ball, red, green and blue [0..1].
+    pub ball_color: [f64; 3],
     /// Where the ball rests on the table at first, X and Y [m].
     pub ball_start: [f64; 2],
     /// Contact of the robot with the ball.
@@ -46,8 +50,10 @@ impl Default for IcubTabletop {
             table_y: [-0.45, 0.45],
             table_top: -0.08,
             table_depth: 0.30,
+            table_color: [0.85, 0.76, 0.62],
             ball_radius: 0.04,
             ball_mass: 0.080,
+            ball_color: [0.90, 0.35, 0.05],
             ball_start: [0.26, -0.11],
             robot_on_ball: hand.surface,
             ball_on_table: Surface { rolling_friction: 8e-4, ..hand.surface },
@@ -75,11 +81,13 @@ impl IcubTabletop {
         let solid = MassProperties::sphere(self.ball_mass, self.ball_radius);
         let body = robot.add_segment(Segment::new("ball", None, start, solid));
         let shape = Shape::Sphere { radius: self.ball_radius };
-        let ball = robot.add_collider(Collider::new("ball", Some(body), shape, Pose::identity()));
+        let ball = Collider::new("ball", Some(body), shape, Pose::identity()).with_color(self.ball_color);
+        let ball = robot.add_collider(ball);
         let ([x0, x1], [y0, y1], z1) = (self.table_x, self.table_y, self.table_top);
         let half = [(x1 - x0) / 2.0, (y1 - y0) / 2.0, self.table_depth / 2.0];
         let middle = Pose::at([f64::midpoint(x0, x1), f64::midpoint(y0, y1), z1 - half[2]]);
-        let table = robot.add_collider(Collider::new("table", None, Shape::Box { half }, middle));
+        let table = Collider::new("table", None, Shape::Box { half }, middle).with_color(self.table_color);
+        let table = robot.add_collider(table);
 
         let [_, chest, head] = colliders::TRUNK;
         for part in colliders::TRUNK.into_iter().chain(Side::ALL.into_iter().flat_map(|side| limbs(side).skip(1))) {
