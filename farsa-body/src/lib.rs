@@ -49,7 +49,7 @@ pub use recorder::{Recorder, record_world};
 #[cfg(feature = "alloc")]
 pub use robot::{
     Actuator, Collider, Ground, Joint, JointKind, MassProperties, Offsets, Pair, Robot, RobotError, Segment, Shape,
-    Surface,
+    Surface, Visual,
 };
 #[cfg(feature = "alloc")]
 pub use robots::{

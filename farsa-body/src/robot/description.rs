@@ -9,6 +9,7 @@ use crate::ports::{ActuatorId, BodyId, JointId, PairId};
 use crate::pose::{Pose, norm};
 use crate::robot::mass_properties::MassProperties;
 use crate::robot::shape::Shape;
+use crate::robot::visual::Visual;
 
 /// How a segment moves relative to its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,6 +147,9 @@ pub struct Robot {
     /// The ground below bodies that slide.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub grounds: Vec<Ground>,
+    /// What is drawn in place of the colliders of the segments that have some; no world knows them.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub visuals: Vec<Visual>,
 }
 
 /// Where the parts of a merged robot begin in the lists of the one that took them in, from [`Robot::merge`].
@@ -340,6 +344,10 @@ impl Robot {
             actuator
         }));
         self.grounds.extend(other.grounds.iter().map(|ground| Ground { body: offsets.body(ground.body), ..*ground }));
+        self.visuals.extend(other.visuals.iter().map(|visual| {
+            let body = visual.body.map(|body| offsets.body(body));
+            Visual { body, ..*visual }
+        }));
         offsets
     }
 
@@ -362,10 +370,13 @@ impl Robot {
         self.segments.iter().enumerate().filter_map(single)
     }
 
-    /// The bodies that have a collider, in the order of their segments.
+    /// The bodies that have a collider or a visual, in the order of their segments.
     pub fn shaped_bodies(&self) -> impl Iterator<Item = BodyId> + '_ {
         let bodies = (0..self.segments.len()).map(|i| BodyId(i as u16));
-        bodies.filter(|body| self.colliders.iter().any(|collider| collider.body == Some(*body)))
+        bodies.filter(|body| {
+            self.colliders.iter().any(|collider| collider.body == Some(*body))
+                || self.visuals.iter().any(|visual| visual.body == Some(*body))
+        })
     }
 
     /// The body with this name.

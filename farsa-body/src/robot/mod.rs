@@ -9,6 +9,7 @@
 //! | two points and a radius | [`Collider::capsule_between`] |
 //! | a thing that is pushed over a table | [`Robot::add_sliding_body`], and [`Ground`] below it |
 //! | two robots for one world | [`Robot::prefixed`], then [`Robot::merge`], whose [`Offsets`] say where the parts went |
+//! | looks of its own | [`Visual`]s, which views draw in place of colliders |
 //! | a file | the crate `farsa-models`, which reads and writes URDF and MJCF |
 
 /// The robot, its segments, joints, colliders, pairs and actuators.
@@ -23,8 +24,11 @@ pub(crate) mod shape;
 mod sliding;
 /// What can be wrong with a description, and the search for it.
 pub(crate) mod validation;
+/// What is drawn in place of colliders.
+pub(crate) mod visual;
 
 pub use description::{Actuator, Collider, Ground, Joint, JointKind, Offsets, Pair, Robot, Segment, Surface};
 pub use mass_properties::MassProperties;
 pub use shape::Shape;
 pub use validation::RobotError;
+pub use visual::Visual;

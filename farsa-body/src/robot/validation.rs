@@ -165,14 +165,14 @@ impl Part<'_> {
         vector.iter().try_for_each(|x| self.finite(field, *x))
     }
 
-    fn placement(&self, placement: &Pose<f64>) -> Result<(), RobotError> {
+    pub(super) fn placement(&self, placement: &Pose<f64>) -> Result<(), RobotError> {
         self.vector("position", &placement.position)?;
         self.vector("rotation", &placement.rotation)?;
         let n = norm(&placement.rotation);
         self.demand((n - 1.0).abs() <= 1e-6, "length of the rotation's quaternion", n)
     }
 
-    fn shape(&self, shape: &Shape) -> Result<(), RobotError> {
+    pub(super) fn shape(&self, shape: &Shape) -> Result<(), RobotError> {
         match shape {
             Shape::Sphere { radius } => self.positive("radius", *radius),
             Shape::Capsule { radius, half_length } => {
@@ -189,6 +189,11 @@ impl Part<'_> {
         self.not_negative("rolling friction", surface.rolling_friction)?;
         self.positive("contact stiffness", surface.stiffness)?;
         self.not_negative("contact damping", surface.damping)
+    }
+
+    pub(super) fn color(&self, color: Option<[f64; 3]>) -> Result<(), RobotError> {
+        let mut shades = color.into_iter().flatten();
+        shades.try_for_each(|shade| self.demand((0.0..=1.0).contains(&shade), "colour", shade))
     }
 
     fn law(&self, law: &Law<f64>) -> Result<(), RobotError> {
@@ -294,6 +299,7 @@ impl Robot {
             ("colliders", self.colliders.len()),
             ("pairs", self.pairs.len()),
             ("actuators", self.actuators.len()),
+            ("visuals", self.visuals.len()),
         ];
         for (parts, count) in counts {
             if count > usize::from(u16::MAX) {
@@ -316,9 +322,7 @@ impl Robot {
             }
             Part(&collider.name).shape(&collider.shape)?;
             Part(&collider.name).placement(&collider.placement)?;
-            for shade in collider.color.into_iter().flatten() {
-                Part(&collider.name).demand((0.0..=1.0).contains(&shade), "colour", shade)?;
-            }
+            Part(&collider.name).color(collider.color)?;
         }
         for actuator in &self.actuators {
             index(&actuator.name, "joint", actuator.joint.index(), self.segments.len())?;
@@ -328,6 +332,7 @@ impl Robot {
             }
             Part(&actuator.name).law(&actuator.law)?;
         }
+        self.validate_visuals()?;
         self.validate_pairs()?;
         self.validate_grounds()
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use farsa_body::{BodyId, Pose};
+use farsa_body::{BodyId, Pose, Robot, Visual};
 use farsa_num::crc32;
 use serde_json::{Value, json};
 
@@ -237,18 +237,22 @@ impl Film {
             shape["rotation"] = json!(placement.rotation);
             shape
         };
-        let colliders = schema.robot.iter().flat_map(|robot| &robot.colliders).map(|collider| {
-            let role = match collider.body {
+        let drawn = |name: &str, &Visual { body, shape: form, placement, color }: &Visual| {
+            let role = match body {
                 None => "ground",
                 Some(body) if schema.is_thing(body) => "thing",
                 Some(_) => "robot",
             };
-            let mut value = shape(&collider.name, collider.body, collider.shape.into(), &collider.placement, role);
-            if let Some(color) = collider.color {
+            let mut value = shape(name, body, form.into(), &placement, role);
+            if let Some(color) = color {
                 value["color"] = hex(as_screens_take_it(color)).into();
             }
             value
-        });
+        };
+        let colliders = schema.robot.iter().flat_map(Robot::drawn_colliders);
+        let colliders = colliders.map(|collider| drawn(&collider.name, &collider.into()));
+        let visuals = schema.robot.iter().flat_map(|robot| &robot.visuals);
+        let visuals = visuals.map(|visual| drawn(visual.body.map_or("", |body| schema.body_name(body)), visual));
         let objects = schema.objects.iter().map(|object| {
             let mut value = shape(&object.name, object.body, object.geometry, &object.placement, object.role.name());
             if let Some(color) = object.color {
@@ -256,7 +260,7 @@ impl Film {
             }
             value
         });
-        colliders.chain(objects).collect()
+        colliders.chain(visuals).chain(objects).collect()
     }
 
     fn pairs(&self) -> Vec<[&str; 2]> {

@@ -1,6 +1,6 @@
 //! What a picture shows of a moment of a simulation.
 
-use farsa_body::{BodyId, JointKind, Pose, Robot};
+use farsa_body::{BodyId, JointKind, Pose, Robot, Visual};
 
 use crate::picture::camera::{Camera, Window};
 use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role, as_screens_take_it};
@@ -73,10 +73,10 @@ fn junction(robot: &Robot) -> Option<usize> {
 }
 
 impl Picture {
-    /// Adds all colliders of a robot or scene whose bodies are at these places: what stands fast in the world is
+    /// Adds a robot or scene, its visuals and the colliders of segments without any, whose bodies are at these places: what stands fast in the world is
     /// ground, what floats or slides by itself a thing, all else robot.
     ///
-    /// Colliders with a colour keep it. Other things get one colour after the other; where a robot branches, its branches differ
+    /// Shapes with a colour keep it. Other things get one colour after the other; where a robot branches, its branches differ
     /// and are what the camera `close` looks for.
     pub fn add_robot(&mut self, robot: &Robot, pose: impl Fn(BodyId) -> Pose<f64>) {
         let junction = junction(robot);
@@ -85,17 +85,16 @@ impl Picture {
             .collect();
         let ancestors =
             |body: usize| std::iter::successors(Some(body), |body| robot.segments[*body].parent.map(BodyId::index));
+        let drawn = robot.drawn_colliders().map(Visual::from).chain(robot.visuals.iter().copied());
         let mut things = Vec::new();
-        for collider in &robot.colliders {
-            let own = |instance: Instance| Instance {
-                color: collider.color.map(as_screens_take_it).or(instance.color),
-                ..instance
-            };
-            let Some(body) = collider.body else {
-                self.shapes.push(own(Instance::new(collider.shape, collider.placement, Role::Ground)));
+        for Visual { body, shape, placement, color } in drawn {
+            let own =
+                |instance: Instance| Instance { color: color.map(as_screens_take_it).or(instance.color), ..instance };
+            let Some(body) = body else {
+                self.shapes.push(own(Instance::new(shape, placement, Role::Ground)));
                 continue;
             };
-            let (i, at) = (body.index(), pose(body).compose(&collider.placement));
+            let (i, at) = (body.index(), pose(body).compose(&placement));
             let leaf = robot.segments.iter().all(|s| s.parent != Some(body));
             if leaf && (robot.segments[i].joint.kind == JointKind::Floating || robot.sliders(body).is_some()) {
                 let known = things.iter().position(|thing| *thing == i).unwrap_or_else(|| {
@@ -103,11 +102,11 @@ impl Picture {
                     things.len() - 1
                 });
                 // Blues are the robot's.
-                let color = [0, 2, 6, 3][known % 4];
-                self.shapes.push(own(Instance::new(collider.shape, at, Role::Object).with_color(OKABE_ITO[color])));
+                let blue = [0, 2, 6, 3][known % 4];
+                self.shapes.push(own(Instance::new(shape, at, Role::Object).with_color(OKABE_ITO[blue])));
                 continue;
             }
-            let placed = Instance::new(collider.shape, at, Role::Robot);
+            let placed = Instance::new(shape, at, Role::Robot);
             let branch = ancestors(i).find_map(|body| branches.iter().position(|branch| *branch == body));
             self.shapes.push(own(match branch {
                 Some(branch) => placed.with_color(BRANCHES[branch % BRANCHES.len()]).with_focus(),
