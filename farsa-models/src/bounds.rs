@@ -21,14 +21,16 @@ pub(crate) fn has_size(shape: &Shape) -> bool {
 
 /// Refuses a valid robot with a shape that could not be read back.
 pub(crate) fn check_sizes(robot: &Robot) -> Result<(), RobotError> {
-    let Some(large) = robot.colliders.iter().find(|collider| !has_size(&collider.shape)) else { return Ok(()) };
-    let value = match large.shape {
+    let colliders = robot.colliders.iter().map(|collider| (collider.name.as_str(), collider.shape));
+    let visuals = robot.visuals.iter().map(|visual| ("visual", visual.shape));
+    let Some((name, shape)) = colliders.chain(visuals).find(|(_, shape)| !has_size(shape)) else { return Ok(()) };
+    let value = match shape {
         Shape::Sphere { radius } => radius,
         Shape::Capsule { radius, half_length } => radius.max(half_length),
         Shape::Box { half } => half.into_iter().fold(0.0, f64::max),
         Shape::Plane => 0.0,
     };
-    Err(RobotError::Value { part: large.name.clone(), field: "size (in files below 1e9)", value })
+    Err(RobotError::Value { part: name.into(), field: "size (in files below 1e9)", value })
 }
 
 /// The range that the ends in a file mean.

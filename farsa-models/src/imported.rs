@@ -35,6 +35,9 @@ use crate::xml::tree::Tree;
 ///   with equal spheres at its ends is a capsule, as [`urdf::write`](crate::urdf::write()) writes it. Masses are those of the true shapes.
 /// - *Meshes* (STL, OBJ) become the smallest by volume of a ball, a capsule and a box that hold all their points, the
 ///   latter two along the mesh's own axes or the principal axes of its surface; meshes that can touch nothing are left out.
+/// - *What is only drawn*: visuals of a URDF, unless a link has one of a mesh, and geoms of an MJCF of group 1 or 2 that can touch
+///   nothing, become [`Visual`](farsa_body::Visual)s with the colours that they have without a texture. Colours of other geoms are
+///   listed: what cameras see is not the look.
 /// - *Bounds*: radii and halves of lengths and edges are below 1e9 m, or an error; ends of ranges and efforts from 1e9 on are
 ///   none. What was read is written and read back as the same robot, but for what [`mjcf::write`](crate::mjcf::write()) and
 ///   [`urdf::write`](crate::urdf::write()) say that their formats lack.

@@ -71,6 +71,8 @@ impl Body {
         roots.for_each(|segment| moved(&mut segment.joint.placement));
         let standing = self.robot.colliders.iter_mut().filter(|collider| collider.body.is_none());
         standing.for_each(|collider| moved(&mut collider.placement));
+        let standing = self.robot.visuals.iter_mut().filter(|visual| visual.body.is_none());
+        standing.for_each(|visual| moved(&mut visual.placement));
         let standing = self.frames.iter_mut().filter(|(_, body, _)| body.is_none());
         standing.for_each(|(_, _, placement)| moved(placement));
     }

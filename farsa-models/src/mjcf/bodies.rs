@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, MassProperties, Pose, Robot, Segment};
+use farsa_body::{BodyId, Collider, Joint, JointId, JointKind, MassProperties, Pose, Robot, Segment, Visual};
 
 use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};
@@ -304,9 +304,9 @@ impl<'t, 'c> Bodies<'t, 'c> {
     ) -> Result<(), ReadError> {
         for (element, within, class) in items.iter().filter(|(element, ..)| element.tag() == "geom") {
             check_geom(*element, &mut context.warnings)?;
+            let classed = self.classes.with(*element, *class)?;
             let number = self.geom_number;
             self.geom_number += 1;
-            let classed = self.classes.with(*element, *class)?;
             // The checks of a geom's numbers come with its pairs; here any bit will do.
             let bits = |name| Ok::<_, ReadError>(classed.number(name)?.unwrap_or(1.0) != 0.0);
             let touches = bits("contype")? | bits("conaffinity")?;
@@ -321,10 +321,21 @@ impl<'t, 'c> Bodies<'t, 'c> {
             if let Some(why) = why {
                 context.warnings.add(element.place(), format!("geom {}", solid.label()), why);
             }
-            let name = own.map(str::to_owned);
-            let name = name.unwrap_or_else(|| self.names.generate("geom", format!("geom{number}")));
             let placement = frame.compose(&at).compose(&inner);
             let segment = self.list[body].segment;
+            // As models have it: what is drawn only touches nothing and is of group 1 or 2.
+            let group = classed.number("group")?;
+            if !touches && !named && (group == Some(1.0) || group == Some(2.0)) {
+                let color =
+                    classed.list("rgba", 4, 4)?.map(|rgba| [rgba[0], rgba[1], rgba[2]].map(|x| x.clamp(0.0, 1.0)));
+                robot.add_visual(Visual { color, ..Visual::new(segment, shape, placement) });
+                continue;
+            }
+            if element.attribute("rgba").is_some() {
+                context.warnings.add(element.place(), "geom `rgba`", SHOW);
+            }
+            let name = own.map(str::to_owned);
+            let name = name.unwrap_or_else(|| self.names.generate("geom", format!("geom{number}")));
             let collider = robot.add_collider(Collider::new(&name, segment, shape, placement));
             self.geoms.push(Geom { classed, body, collider });
         }

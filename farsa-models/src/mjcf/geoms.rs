@@ -141,6 +141,7 @@ pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Resul
             "mass",
             "density",
             "group",
+            "rgba",
             "shellinertia",
             "contype",
             "conaffinity",
@@ -155,7 +156,7 @@ pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Resul
     ]
     .concat();
     let ignored = [
-        ("rgba material castshadow user", SHOW),
+        ("material castshadow user", SHOW),
         ("hfield", "height fields are not described"),
         ("margin gap adhesion surfacevel", "contacts begin where surfaces meet, and do not pull or move"),
         ("fluidshape fluidcoef", "a description has no fluid"),

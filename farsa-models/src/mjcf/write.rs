@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use farsa_body::{Actuator, BodyId, Collider, JointKind, Law, Pair, Pose, Robot, RobotError, Segment, Shape};
+use farsa_body::{Actuator, BodyId, Collider, JointKind, Law, Pair, Pose, Robot, RobotError, Segment, Shape, Visual};
 use farsa_num::Scalar;
 
 use crate::bounds::{check_sizes, range_in_file};
 use crate::mjcf::inverse_weight::inverse_weights;
 use crate::xml::write::{
-    GROUND, Lines, colliders_by_body, friction_of_ground, has_inertial, numbers, quoted, segment_names,
+    GROUND, Lines, colliders_by_body, friction_of_ground, has_inertial, numbers, quoted, segment_names, visuals_by_body,
 };
 
 /// What a MuJoCo model says beside the robot.
@@ -48,6 +48,10 @@ pub struct Keyframe {
 const SOFTEST: f64 = 0.0001;
 const STIFFEST: f64 = 0.9999;
 
+/// The groups of visuals, and of the colliders that are not drawn because of them.
+const VISUAL: &str = " group=\"2\"";
+const HIDDEN: &str = " group=\"3\"";
+
 /// The time constants whose squares are numbers [s].
 const TIME_CONSTANTS: [f64; 2] = [1e-150, 1e150];
 
@@ -76,6 +80,7 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
 ///   touching bodies were heavier: MuJoCo's contacts are stable at steps of this size only so;
 /// - friction is elliptic and creeps by force / (2 tau stiffness impedance ratio);
 /// - friction on the ground is `frictionloss` of each sliding joint by itself, and a comment says so;
+/// - visuals are geoms of group 2, and the colliders that they are drawn for are of group 3, which MuJoCo does not show;
 /// - joint stops are MuJoCo's, as stiff as the step allows.
 ///
 /// A plane on a segment that moves is written, and refused by MuJoCo; so are chains of more than 496 bodies (4.0.0). A segment
@@ -145,9 +150,8 @@ fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
 fn bodies(robot: &Robot, nested: &[(usize, usize)], out: &mut Lines) {
     let names = segment_names(robot, "world");
     let (colliders, losses) = (colliders_by_body(robot), friction_of_ground(robot));
-    for collider in &colliders[0] {
-        out.line(&geom(collider));
-    }
+    let visuals = visuals_by_body(robot);
+    geoms(&colliders[0], &visuals[0], out);
     let mut open = 0;
     for &(i, depth) in nested {
         while open > depth {
@@ -163,9 +167,7 @@ fn bodies(robot: &Robot, nested: &[(usize, usize)], out: &mut Lines) {
         if let Some(inertial) = inertial(segment) {
             out.line(&inertial);
         }
-        for collider in &colliders[i + 1] {
-            out.line(&geom(collider));
-        }
+        geoms(&colliders[i + 1], &visuals[i + 1], out);
     }
     for _ in 0..open {
         out.close("body");
@@ -318,17 +320,30 @@ fn inertial(segment: &Segment) -> Option<String> {
     Some(format!("<inertial pos=\"{}\" mass=\"{:?}\" {inertia}/>", numbers(&segment.centre), segment.mass))
 }
 
-fn geom(collider: &Collider) -> String {
-    let (kind, size) = match collider.shape {
+/// The shapes of a body.
+fn geoms(colliders: &[&Collider], visuals: &[&Visual], out: &mut Lines) {
+    for collider in colliders {
+        let hidden = !visuals.is_empty() && collider.body.is_some();
+        let group = if hidden { HIDDEN } else { "" };
+        out.line(&geom(&Visual::from(*collider), &format!(" name={}", quoted(&collider.name)), group));
+    }
+    for visual in visuals {
+        out.line(&geom(visual, "", VISUAL));
+    }
+}
+
+/// A geom of a shape, with the attributes of its name and group.
+fn geom(shape: &Visual, name: &str, group: &str) -> String {
+    let (kind, size) = match shape.shape {
         Shape::Sphere { radius } => ("sphere", vec![radius]),
         Shape::Capsule { radius, half_length } => ("capsule", vec![radius, half_length]),
         Shape::Box { half } => ("box", half.to_vec()),
         // Infinite; the third number is the distance of the lines drawn on it.
         Shape::Plane => ("plane", vec![0.0, 0.0, 1.0]),
     };
-    let at = placed(&collider.placement);
-    let color = collider.color.map_or_else(String::new, |color| format!(" rgba=\"{} 1.0\"", numbers(&color)));
-    format!("<geom name={} type=\"{kind}\" size=\"{}\"{at}{color}/>", quoted(&collider.name), numbers(&size))
+    let at = placed(&shape.placement);
+    let color = shape.color.map_or_else(String::new, |color| format!(" rgba=\"{} 1.0\"", numbers(&color)));
+    format!("<geom{name} type=\"{kind}\" size=\"{}\"{at}{group}{color}/>", numbers(&size))
 }
 
 #[cfg(test)]

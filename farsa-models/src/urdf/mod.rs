@@ -2,6 +2,8 @@
 
 /// From a file's links and joints to a robot.
 pub(crate) mod read;
+/// What is drawn of links.
+mod visuals;
 /// From a robot to the text of a file.
 mod write;
 

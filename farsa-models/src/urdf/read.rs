@@ -15,6 +15,7 @@ use crate::mesh::solid::{MeshFit, Solid};
 use crate::mesh::triangles::Mesh;
 use crate::options::Meshes;
 use crate::repair::repair_masses;
+use crate::urdf::visuals::{colors, visuals};
 use crate::vector::norm;
 use crate::xml::tree::{Element, Tree};
 
@@ -40,7 +41,8 @@ struct Links<'t> {
 pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec<Frame>), ReadError> {
     let root = tree.root();
     root.check_open(&["name", "version"], &mut context.warnings)?;
-    root.check_children(&["link", "joint"], &NOTED, &mut context.warnings)?;
+    root.check_children(&["link", "joint", "material"], &NOTED, &mut context.warnings)?;
+    let colors = colors(root);
     let links = Links::from_model(root)?;
     let order = links.order()?;
     let mut robot = Robot::new(root.attribute("name").unwrap_or_default());
@@ -70,6 +72,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
         }
         frames.push(Frame { name: name.into(), body: bodies[index], placement: Pose::identity() });
         collisions(&mut robot, bodies[index], link, context)?;
+        visuals(&mut robot, bodies[index], link, &colors, context);
     }
     names(&mut robot);
     let repair = context.options.repair;
@@ -171,7 +174,7 @@ fn twice(what: &str, second: &Element<'_>, first: &Element<'_>) -> ReadError {
 }
 
 /// The place in an `origin` element.
-fn origin(within: Element<'_>, context: &mut Context<'_>) -> Result<Pose<f64>, ReadError> {
+pub(super) fn origin(within: Element<'_>, context: &mut Context<'_>) -> Result<Pose<f64>, ReadError> {
     let Some(origin) = within.one("origin")? else { return Ok(Pose::identity()) };
     origin.check_open(&["xyz", "rpy"], &mut context.warnings)?;
     let position = origin.array::<3>("xyz")?.unwrap_or([0.0; 3]);
@@ -198,7 +201,7 @@ fn origin(within: Element<'_>, context: &mut Context<'_>) -> Result<Pose<f64>, R
 /// A link's mass in its frame, and whether it says any.
 fn inertial(link: Element<'_>, context: &mut Context<'_>) -> Result<(MassProperties, bool), ReadError> {
     link.check_open(&["name"], &mut context.warnings)?;
-    link.check_children(&["inertial", "collision"], &[("visual", "only for show")], &mut context.warnings)?;
+    link.check_children(&["inertial", "collision", "visual"], &NOTED, &mut context.warnings)?;
     let Some(inertial) = link.one("inertial")? else {
         return Ok((MassProperties { mass: 0.0, centre: [0.0; 3], inertia: [0.0; 6] }, false));
     };
@@ -312,7 +315,7 @@ fn collisions(
     link: Element<'_>,
     context: &mut Context<'_>,
 ) -> Result<(), ReadError> {
-    let mut solids: Vec<(String, Solid, Pose<f64>, SourceLocation)> = Vec::new();
+    let mut solids: Vec<Placed> = Vec::new();
     for collision in link.all("collision") {
         collision.check_open(&["name"], &mut context.warnings)?;
         collision.check_children(&["origin", "geometry"], &NOTED, &mut context.warnings)?;
@@ -323,30 +326,38 @@ fn collisions(
             solids.push((name, solid, placement, collision.place()));
         }
     }
-    let mut rest = solids.as_slice();
-    while let Some((name, solid, placement, place)) = rest.first() {
-        let capsule = rest.get(1..3).and_then(|ends| capsule(solid, placement, &ends[0], &ends[1]));
-        rest = &rest[if capsule.is_some() { 3 } else { 1 }..];
-        let (shape, at, why) = capsule.map_or_else(|| solid.shape(), |shape| (shape, Pose::identity(), None));
-        if let Some(why) = why {
-            context.warnings.add(place.clone(), format!("{} in collision", solid.label()), why);
-        }
-        robot.add_collider(Collider::new(name, body, shape, placement.compose(&at)));
+    for (first, shape, placement) in joined(&solids, "collision", context) {
+        robot.add_collider(Collider::new(&solids[first].0, body, shape, placement));
     }
     Ok(())
 }
 
+/// A solid with its name and the place and line that it has.
+pub(super) type Placed = (String, Solid, Pose<f64>, SourceLocation);
+
+/// Our shapes for solids, each with the index of its first solid and its place; a cylinder and two balls at its ends are one capsule.
+pub(super) fn joined(solids: &[Placed], kind: &str, context: &mut Context<'_>) -> Vec<(usize, Shape, Pose<f64>)> {
+    let mut shapes = Vec::new();
+    let mut next = 0;
+    while let Some((_, solid, placement, place)) = solids.get(next) {
+        let first = next;
+        let capsule = solids.get(first + 1..first + 3).and_then(|ends| capsule(solid, placement, &ends[0], &ends[1]));
+        next += if capsule.is_some() { 3 } else { 1 };
+        let (shape, at, why) = capsule.map_or_else(|| solid.shape(), |shape| (shape, Pose::identity(), None));
+        if let Some(why) = why {
+            context.warnings.add(place.clone(), format!("{} in {kind}", solid.label()), why);
+        }
+        shapes.push((first, shape, placement.compose(&at)));
+    }
+    shapes
+}
+
 /// The capsule that a cylinder makes with two balls at its ends.
-fn capsule(
-    tube: &Solid,
-    at: &Pose<f64>,
-    a: &(String, Solid, Pose<f64>, SourceLocation),
-    b: &(String, Solid, Pose<f64>, SourceLocation),
-) -> Option<Shape> {
+fn capsule(tube: &Solid, at: &Pose<f64>, a: &Placed, b: &Placed) -> Option<Shape> {
     let Solid::Cylinder { radius, half_length } = *tube else { return None };
     // Far from the origin positions have fewer digits.
     let far = at.position.iter().fold(half_length, |far, x| far.max(x.abs()));
-    let end = |(_, solid, place, _): &(String, Solid, Pose<f64>, SourceLocation), z: f64| {
+    let end = |(_, solid, place, _): &Placed, z: f64| {
         let point = at.transform_back(place.position);
         let off = norm(&[point[0], point[1], point[2] - z]);
         *solid == Solid::Native(Shape::Sphere { radius }) && off <= 1e-9 * (1.0 + far)
@@ -356,7 +367,7 @@ fn capsule(
 }
 
 /// The shape in a `geometry` element; `None` if it is left out.
-fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Solid>, ReadError> {
+pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Solid>, ReadError> {
     let kinds = ["box", "cylinder", "capsule", "sphere", "mesh"];
     let mut shapes = geometry.children();
     let (Some(shape), None) = (shapes.next(), shapes.next()) else {

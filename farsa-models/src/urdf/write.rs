@@ -2,13 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use farsa_body::{Collider, Joint, JointKind, Law, Pose, Robot, RobotError, Segment, Shape};
+use farsa_body::{Collider, Joint, JointKind, Law, Pose, Robot, RobotError, Segment, Shape, Visual};
 use farsa_num::{atan2, sin_cos};
 
 use crate::bounds::{ENDLESS, check_sizes, range_in_file};
 use crate::vector::norm;
 use crate::xml::write::{
     GROUND, Lines, colliders_by_body, friction_of_ground, has_inertial, numbers, quoted, segment_names, unused,
+    visuals_by_body,
 };
 
 /// The name of the link that stands for the world.
@@ -24,7 +25,8 @@ const PLANE: f64 = 50.0;
 ///
 /// One link, `world`, is the root of everything (a segment of that name gets a `_` appended); what floats hangs on it by a
 /// joint of type `floating`, which some readers do not know. A capsule is a cylinder with a sphere at either end, a
-/// plane a block of 100 m. A joint without name is called after its segment. Where colliders have colours, all are visuals too.
+/// plane a block of 100 m. A joint without name is called after its segment. The visuals of a link are
+/// its own; where colliders have colours, those of links without any are visuals too.
 /// Friction on the ground becomes friction of each sliding joint by itself, and a comment says so. Lost are armatures, pairs, surfaces,
 /// and the laws of actuators but for their largest effort (of a muscle pair: moment arm times largest active
 /// tension); a largest speed, which URDF wants, is 1000.
@@ -38,14 +40,14 @@ pub fn write(robot: &Robot) -> Result<String, RobotError> {
     out.line("<?xml version=\"1.0\"?>");
     out.open(&format!("robot name={}", quoted(&robot.name)));
     let names = segment_names(robot, WORLD);
-    let colliders = colliders_by_body(robot);
+    let (colliders, visuals) = (colliders_by_body(robot), visuals_by_body(robot));
     if !robot.grounds.is_empty() {
         out.line(GROUND);
     }
     let shown = robot.colliders.iter().any(|collider| collider.color.is_some());
-    link(&mut out, WORLD, None, &colliders[0], shown);
+    link(&mut out, WORLD, None, (&colliders[0], &visuals[0]), shown);
     for (i, name) in names.iter().enumerate() {
-        link(&mut out, name, Some(&robot.segments[i]), &colliders[i + 1], shown);
+        link(&mut out, name, Some(&robot.segments[i]), (&colliders[i + 1], &visuals[i + 1]), shown);
     }
     let joints = joint_names(robot, &names);
     let (efforts, losses) = (efforts(robot), friction_of_ground(robot));
@@ -57,8 +59,14 @@ pub fn write(robot: &Robot) -> Result<String, RobotError> {
     Ok(out.text)
 }
 
-/// A link with its mass and shapes, which are `shown` or not; the world's without segment.
-fn link(out: &mut Lines, name: &str, segment: Option<&Segment>, colliders: &[&Collider], shown: bool) {
+/// A link with its mass, its colliders, which are `shown` or not where it has no visuals, and those; the world's without segment.
+fn link(
+    out: &mut Lines,
+    name: &str,
+    segment: Option<&Segment>,
+    (colliders, visuals): (&[&Collider], &[&Visual]),
+    shown: bool,
+) {
     out.open(&format!("link name={}", quoted(name)));
     if let Some(Segment { mass, centre, inertia: [xx, yy, zz, xy, xz, yz], .. }) =
         segment.filter(|segment| has_inertial(segment))
@@ -71,11 +79,14 @@ fn link(out: &mut Lines, name: &str, segment: Option<&Segment>, colliders: &[&Co
         out.line(&format!("<inertia {}/>", upper.join(" ")));
         out.close("inertial");
     }
+    for visual in visuals {
+        shapes(out, visual, None, "visual");
+    }
     for collider in colliders {
-        if shown {
-            shapes(out, collider, "visual");
+        if shown && visuals.is_empty() {
+            shapes(out, &Visual::from(*collider), Some(&collider.name), "visual");
         }
-        shapes(out, collider, "collision");
+        shapes(out, &Visual::from(*collider), Some(&collider.name), "collision");
     }
     out.close("link");
 }
@@ -134,14 +145,15 @@ fn efforts(robot: &Robot) -> Vec<f64> {
     efforts.into_iter().map(|sum: f64| sum.min(ENDLESS)).collect()
 }
 
-/// The elements of one shape, of kind `collision` or `visual`.
-fn shapes(out: &mut Lines, collider: &Collider, kind: &str) {
-    let mut element = |name: &str, along: f64, geometry: &str| {
-        let placement = collider.placement.compose(&Pose::at([0.0, 0.0, along]));
-        out.open(&format!("{kind} name={}", quoted(name)));
+/// The elements of one shape, of kind `collision` or `visual`, with a name or without.
+fn shapes(out: &mut Lines, shape: &Visual, name: Option<&str>, kind: &str) {
+    let mut element = |end: &str, along: f64, geometry: &str| {
+        let placement = shape.placement.compose(&Pose::at([0.0, 0.0, along]));
+        let name = name.map_or_else(String::new, |name| format!(" name={}", quoted(&format!("{name}{end}"))));
+        out.open(&format!("{kind}{name}"));
         out.line(&origin(&placement));
         out.line(&format!("<geometry>{geometry}</geometry>"));
-        if let Some(color) = collider.color.filter(|_| kind == "visual") {
+        if let Some(color) = shape.color.filter(|_| kind == "visual") {
             let rgba = numbers(&color);
             out.line(&format!("<material name={}><color rgba=\"{rgba} 1.0\"/></material>", quoted(&rgba)));
         }
@@ -149,16 +161,15 @@ fn shapes(out: &mut Lines, collider: &Collider, kind: &str) {
     };
     let ball = |radius: f64| format!("<sphere radius=\"{radius:?}\"/>");
     let block = |half: [f64; 3]| format!("<box size=\"{}\"/>", numbers(&half.map(|x| 2.0 * x)));
-    let name = collider.name.as_str();
-    match collider.shape {
-        Shape::Sphere { radius } => element(name, 0.0, &ball(radius)),
-        Shape::Box { half } => element(name, 0.0, &block(half)),
-        Shape::Plane => element(name, -PLANE, &block([PLANE; 3])),
+    match shape.shape {
+        Shape::Sphere { radius } => element("", 0.0, &ball(radius)),
+        Shape::Box { half } => element("", 0.0, &block(half)),
+        Shape::Plane => element("", -PLANE, &block([PLANE; 3])),
         Shape::Capsule { radius, half_length } => {
             let tube = format!("<cylinder radius=\"{radius:?}\" length=\"{:?}\"/>", 2.0 * half_length);
-            element(name, 0.0, &tube);
-            element(&format!("{name}_start"), -half_length, &ball(radius));
-            element(&format!("{name}_end"), half_length, &ball(radius));
+            element("", 0.0, &tube);
+            element("_start", -half_length, &ball(radius));
+            element("_end", half_length, &ball(radius));
         }
     }
 }

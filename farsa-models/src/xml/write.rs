@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use farsa_body::{Collider, Robot, Segment};
+use farsa_body::{Collider, Robot, Segment, Visual};
 
 /// Deeper lines stand no further in, or the text would grow with the square of a chain's length.
 const FURTHEST_IN: usize = 32;
@@ -111,6 +111,15 @@ pub(crate) fn colliders_by_body(robot: &Robot) -> Vec<Vec<&Collider>> {
     let mut all = vec![Vec::new(); robot.segments.len() + 1];
     for collider in &robot.colliders {
         all[collider.body.map_or(0, |body| body.index() + 1)].push(collider);
+    }
+    all
+}
+
+/// The visuals of the world, then those of each segment of a valid robot, in their order.
+pub(crate) fn visuals_by_body(robot: &Robot) -> Vec<Vec<&Visual>> {
+    let mut all = vec![Vec::new(); robot.segments.len() + 1];
+    for visual in &robot.visuals {
+        all[visual.body.map_or(0, |body| body.index() + 1)].push(visual);
     }
     all
 }

@@ -11,6 +11,8 @@ mod hostile;
 mod icub;
 /// Models as large as the limits.
 mod large;
+/// What is only drawn.
+mod looks;
 /// Whatever is read is written and read back.
 mod round_trip;
 /// Wheeled robots that were written are read as they were.

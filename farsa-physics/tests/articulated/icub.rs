@@ -2,7 +2,8 @@
 
 use crate::common::{model, stream};
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, Chain, Contacts, Icub, JointControl, Joints, Law, PairId, Robot, Side, World as _,
+    Actuated, ActuatorId, Arrange, Camera, Chain, Contacts, Icub, JointControl, Joints, Law, PairId, Pose, Robot, Side,
+    World as _,
 };
 use farsa_num::Stream;
 use farsa_physics::articulated::{Options, Precision, World};
@@ -129,4 +130,35 @@ fn every_set_of_chains_steps() {
             assert!((a - b).abs() < 0.01, "{:?}: palm from {a} m to {b} m", icub.actuated);
         }
     }
+}
+
+#[test]
+fn what_is_drawn_changes_no_bit() {
+    let icub = Icub::default();
+    let mut robot = icub.robot().unwrap();
+    robot.colliders.iter_mut().for_each(|collider| collider.color = Some([0.5, 0.4, 0.3]));
+    let bare = Robot { visuals: Vec::new(), ..robot.clone() };
+    assert!(robot.visuals.len() > 50);
+    let seen = [&robot, &bare].map(|robot| {
+        let mut stream = stream(7, 0);
+        let mut world = at_start::<f32>(&icub, robot);
+        let mut bits = Vec::new();
+        for step in 0..100 {
+            if step % 25 == 0 {
+                for (i, actuator) in robot.actuators.iter().enumerate() {
+                    let [low, high] = robot.segments[actuator.joint.index()].joint.range;
+                    world.command(ActuatorId(i as u16), [stream.range_f64(low, high) as f32, 0.0]);
+                }
+            }
+            world.step();
+            bits.extend(robot.joints().flat_map(|joint| [world.position(joint), world.speed(joint)].map(f32::to_bits)));
+        }
+        // From before the robot, towards it.
+        let placement = Pose { position: [0.5, 0.0, 0.1], rotation: [0.0, 0.0, 1.0, 0.0] };
+        let mut camera = Camera::new(Icub::CHEST, placement, [32, 24], 1.2, 3.0).unwrap();
+        let image: Vec<_> = camera.look(&world).to_vec();
+        (bits, image)
+    });
+    assert!(seen[0] == seen[1]);
+    assert!(seen[0].1.iter().flatten().count() > 20, "the camera sees the robot");
 }

@@ -154,6 +154,34 @@ impl Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn visuals_are_drawn_in_place_of_colliders() {
+        use farsa_body::{Icub, KinematicTree};
+        let mut robot = Icub::default().robot().unwrap();
+        let start = Icub::default().start();
+        let poses = KinematicTree::new(&robot).unwrap().poses(&start);
+        let drawn = |robot: &Robot| {
+            let mut picture = Picture::default();
+            picture.add_robot(robot, |body| poses[body.index()]);
+            picture
+        };
+        let dressed = drawn(&robot);
+        // Every body with a collider has visuals.
+        assert_eq!((robot.drawn_colliders().count(), dressed.shapes.len()), (0, robot.visuals.len()));
+        let eye = robot.visuals.iter().position(|visual| visual.placement.position == Icub::EYES[0]).unwrap();
+        let at = poses[Icub::HEAD.index()].transform(Icub::EYES[0]);
+        assert_eq!(dressed.shapes[eye].pose.position, at);
+        assert_eq!(dressed.shapes[eye].color, Some(as_screens_take_it([0.98; 3])));
+        if let Some(path) = std::env::var_os("FARSA_LOOK") {
+            for camera in ["front", "three-quarter"] {
+                let png = dressed.png(Camera::named(camera).unwrap(), [900, 1000]).unwrap();
+                std::fs::write(std::path::Path::new(&path).join(format!("icub-{camera}.png")), png).unwrap();
+            }
+        }
+        robot.visuals.clear();
+        assert_eq!(drawn(&robot).shapes.len(), robot.colliders.len());
+    }
     use farsa_body::{ArmAndHand, KinematicTree, Tabletop};
 
     #[test]

@@ -14,6 +14,7 @@ use crate::robots::hand::{Finger, Hand, Wrist};
 use crate::robots::icub::chain::{Chain, Side};
 use crate::robots::icub::colliders;
 use crate::robots::icub::error::IcubError;
+use crate::robots::icub::look;
 use crate::robots::icub::posture::IcubPosture;
 use crate::robots::icub::table::Part;
 use crate::robots::mirror;
@@ -196,6 +197,8 @@ impl Icub {
     /// 20 mm beside their links, those of the hands are turned by 90 degrees: the forearms' capsules lie on their axes
     /// instead, the palms are those of [`Hand`].
     ///
+    /// What is drawn are visuals instead, sized by eye: covers, a face with two eyes at [`Icub::EYES`].
+    ///
     /// Pairs that may touch: forearms and palms with waist, chest and head; upper arms with the head; every part of one
     /// arm with every one of the other but their upper arms, which cannot reach each other; within each hand, as in
     /// [`crate::ArmAndHand`]. Upper arms have no pair with the chest, into which the shoulders are built, nor
@@ -230,6 +233,7 @@ impl Icub {
             }
         }
         colliders::add_pairs(&mut robot, &self.hand, self.skin);
+        look::dress(&mut robot);
         robot.validate()?;
         Ok(robot)
     }

@@ -11,6 +11,8 @@ mod colliders;
 pub(crate) mod description;
 /// What can be wrong with it.
 pub(crate) mod error;
+/// What is drawn of it.
+mod look;
 /// The joint angles of all chains.
 pub(crate) mod posture;
 /// Joints and masses of torso, neck and right arm, as the file has them.
