@@ -68,7 +68,7 @@ pub(crate) fn edge_distance<S: Scalar>(
     // Of a small box on a large one most of the twelve edges are far away; each costs a search with twelve halvings.
     let [a, b] = pair.colliders;
     match (model.colliders[a].geometry, model.colliders[b].geometry) {
-        (Geometry::Block { .. }, Geometry::Block { half }) if index >= 8 => {
+        (Geometry::Block { .. }, Geometry::Block { half }) if (8..20).contains(&index) => {
             let (middle, direction, length) = edge(&placed[b], splat::<S>(simd, half), index - 8);
             let near = nearest_on_segment(middle, direction, length, placed[a].position);
             let d = sub(near, placed[a].position);
@@ -148,15 +148,19 @@ fn point<S: Scalar>(
             ball_plane(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb)
         }
         (Geometry::Block { half: ha }, Geometry::Block { half: hb }) => {
-            // Corners of a in b, then edges of b through a, whose normal is turned round: it pushes a away from b. Corners of
-            // b in a are not looked at by themselves; the description's order is chosen for that (see `model_builder`).
+            // Corners of a in b, then edges of b through a and, where both boxes move (see `model_builder`), corners of b in
+            // a, whose normals are turned round: they push a away from b.
             let zero = S::splat(simd, S::Real::from_f64(0.0));
             let (ha, hb) = (splat::<S>(simd, ha), splat::<S>(simd, hb));
             if index < 8 {
                 ball_box(corner(pa, ha, index), zero, pb, hb)
             } else {
-                let (middle, direction, length) = edge(pb, hb, index - 8);
-                let mut found = segment_box(middle, direction, length, zero, pa, ha);
+                let mut found = if index < 20 {
+                    let (middle, direction, length) = edge(pb, hb, index - 8);
+                    segment_box(middle, direction, length, zero, pa, ha)
+                } else {
+                    ball_box(corner(pb, hb, index - 20), zero, pa, ha)
+                };
                 found.normal = scale(found.normal, S::splat(simd, S::Real::from_f64(-1.0)));
                 found
             }

@@ -45,15 +45,15 @@ fn geometry_of(shape: Shape) -> (Geometry<f64>, f64, u8) {
     }
 }
 
-/// Contact points of a pair of geometries, in their canonical order.
-fn points_of(a: &Geometry<f64>, b: &Geometry<f64>) -> Option<usize> {
+/// Contact points of a pair of geometries, in their canonical order, and whether the second one moves too.
+fn points_of(a: &Geometry<f64>, b: &Geometry<f64>, both_move: bool) -> Option<usize> {
     match (a, b) {
         (Geometry::Ball { .. }, _) | (Geometry::Capsule { .. }, Geometry::Capsule { .. }) => Some(1),
         (Geometry::Capsule { .. }, Geometry::Plane) => Some(2),
         (Geometry::Capsule { .. }, Geometry::Block { .. }) => Some(3),
         (Geometry::Block { .. }, Geometry::Plane) => Some(8),
-        // Corners of the one in the other, edges of the other in the one.
-        (Geometry::Block { .. }, Geometry::Block { .. }) => Some(20),
+        // Corners of the one in the other, edges of the other in the one; corners of the other where it is no table.
+        (Geometry::Block { .. }, Geometry::Block { .. }) => Some(if both_move { 28 } else { 20 }),
         _ => None,
     }
 }
@@ -135,10 +135,11 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
         let [a, b] = p.colliders;
         let movable = |c: usize| colliders[c].0.link != WORLD;
         let rank = |c: usize| colliders[c].3;
-        // Of two boxes the moving one comes first: its corners and the still one's edges are looked at.
+        // Of two boxes the moving one comes first: its corners and the still one's edges are looked at. Corners of a still
+        // box are not: a table's are rarely within reach, and eight points more would cost all that lies on it.
         let flipped = rank(a) > rank(b) || (rank(a) == 2 && rank(b) == 2 && !movable(a));
         let [a, b] = if flipped { [b, a] } else { [a, b] };
-        let Some(count) = points_of(&colliders[a].1, &colliders[b].1) else {
+        let Some(count) = points_of(&colliders[a].1, &colliders[b].1, movable(a) && movable(b)) else {
             let names = [a, b].map(|c| robot.colliders[c].name.clone());
             return Err(RobotError::Shapes { colliders: names }.into());
         };

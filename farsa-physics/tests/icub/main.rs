@@ -6,3 +6,4 @@ mod common;
 #[cfg(feature = "lanes")]
 mod lanes;
 mod random;
+mod random_steps;
