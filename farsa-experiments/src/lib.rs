@@ -7,6 +7,7 @@ pub mod compositional_instructions;
 pub mod discrimination;
 pub mod double_pole;
 pub mod foraging;
+pub mod icub_reach;
 pub mod icub_reach_grasp;
 mod infrared;
 pub mod kinesthetic_grasp;
@@ -25,6 +26,7 @@ pub use compositional_instructions::CompositionalInstructions;
 pub use discrimination::{Discrimination, DiscriminationCylinders};
 pub use double_pole::DoublePole;
 pub use foraging::Foraging;
+pub use icub_reach::IcubReach;
 pub use icub_reach_grasp::IcubReachGrasp;
 pub use kinesthetic_grasp::KinestheticGrasp;
 pub use minimal_cognition::MinimalCognition;
@@ -43,10 +45,11 @@ pub fn laboratory() -> farsa_lab::Laboratory<'static> {
 }
 
 /// The experiments in the order in which `farsa list` shows them.
-pub fn all() -> [&'static dyn farsa_lab::Experiment; 15] {
+pub fn all() -> [&'static dyn farsa_lab::Experiment; 16] {
     [
         &ReachGraspLift,
         &CompositionalInstructions,
+        &IcubReach,
         &IcubReachGrasp,
         &KinestheticGrasp,
         &Discrimination,

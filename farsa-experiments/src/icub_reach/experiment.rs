@@ -1,0 +1,61 @@
+//! The experiment `icub-reach` as the `farsa` command runs it.
+
+use farsa_lab::{
+    Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition, Truncation, strategies,
+};
+use farsa_physics::articulated::{Batch, Model, ModelError, World};
+
+use crate::icub_reach::config::{Condition, Config};
+use crate::icub_reach::scene::Scene;
+use crate::icub_reach::task::ReachTask;
+
+/// How does an iCub come to reach for any target in front of it, by six joints and a network without memory?
+///
+/// Torso yaw and pitch and the left arm's shoulder and elbow move; all other joints keep their angles. Under `steady` the network
+/// senses where the target is and commands joint angles, which are the same from beginning to end; under `velocity` it senses
+/// the way from hand to target and commands joint speeds.
+///
+/// Deviations: of the source only openings of its pages are known to us; what they do not say is of our own making, and the
+/// settings say which that is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct IcubReach;
+
+impl Experiment for IcubReach {
+    fn name(&self) -> &'static str {
+        "icub-reach"
+    }
+
+    fn summary(&self) -> &'static str {
+        "the left hand of an iCub reaches for targets in front of it, by angles or by speeds of six joints"
+    }
+
+    fn conditions(&self) -> &'static [&'static str] {
+        &Condition::NAMES
+    }
+
+    /// For 46 parameters the covariances can be learned.
+    fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
+        strategies().iter().find(|strategy| strategy.name() == "cma-es").copied().unwrap_or(&Truncation)
+    }
+
+    fn settings(&self, condition: &str) -> Vec<Setting> {
+        Config::for_condition(Condition::from_name(condition)).table()
+    }
+
+    fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
+        Ok(Box::new(evaluator(Config::read(Condition::from_name(condition), settings)?)?))
+    }
+}
+
+/// Evaluates under a configuration.
+///
+/// # Errors
+/// [`Error::Setting`] and [`Error::Other`] for a configuration whose robot cannot be built.
+pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, ReachTask>, Error> {
+    let wrong = |error: ModelError| Error::Other(format!("icub-reach: {error}"));
+    let scene = Scene::new(config)?;
+    let model = Model::new(&scene.robot, &scene.options()).map_err(wrong)?;
+    let world = World::new(model.clone());
+    let batch = move |lanes: Lanes| Batch::new(model.clone(), lanes.count(), lanes.instructions()).map_err(wrong);
+    Ok(InWorld::new(world, ReachTask::new(scene)?).with_lanes(batch))
+}

@@ -1,0 +1,149 @@
+//! The scene of `icub-reach`: the robot, its six joints, and the targets.
+
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Handles, Icub, IcubError, Joint, JointId, JointKind, KinematicTree, Pose,
+    Robot, RobotError, Side,
+};
+use farsa_lab::{EpisodeId, Error};
+use farsa_num::{Domain, Scalar, Stream, sin_cos};
+use farsa_physics::articulated::Options;
+
+use crate::icub_reach::config::Config;
+
+/// The joints that the network commands, in the order of its outputs.
+pub const CONTROLLED: [&str; 6] =
+    ["torso_pitch", "torso_yaw", "l_shoulder_pitch", "l_shoulder_roll", "l_shoulder_yaw", "l_elbow"];
+
+/// A joint with its actuator and what it is held at or moves between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Driven {
+    pub(crate) joint: JointId,
+    pub(crate) actuator: ActuatorId,
+    /// Its angle at the start \[rad\].
+    pub(crate) start: f64,
+    /// Its limits \[rad\].
+    pub(crate) range: [f64; 2],
+}
+
+/// The robot's description with the names of what matters in it.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The robot.
+    pub robot: Robot,
+    /// Every value of the experiment.
+    pub config: Config,
+    /// The palm's centre in its frame \[m\].
+    pub palm_centre: [f64; 3],
+    pub(crate) controlled: [Driven; 6],
+    pub(crate) held: Vec<Driven>,
+}
+
+impl Scene {
+    /// The hand's last body.
+    pub const PALM: BodyId = BodyId(12);
+
+    /// The scene of a configuration.
+    ///
+    /// # Errors
+    /// Those of [`Config::check`], and [`Error::Other`] for a robot that no world can simulate.
+    pub fn new(config: Config) -> Result<Self, Error> {
+        config.check()?;
+        let wrong = |error: IcubError| Error::Other(format!("icub-reach: {error}"));
+        let icub = config.icub();
+        let robot = icub.robot().map_err(wrong)?;
+        let driven = |(joint, start): (JointId, f64)| -> Result<Driven, Error> {
+            let joint_of = &robot.segments[joint.index()].joint;
+            let actuator = icub.actuator(&joint_of.name).map_err(wrong)?;
+            Ok(Driven { joint, actuator, start, range: joint_of.range })
+        };
+        let all: Vec<Driven> = robot.joints().zip(icub.start()).map(driven).collect::<Result<_, _>>()?;
+        let is_controlled = |one: &Driven| CONTROLLED.contains(&robot.segments[one.joint.index()].joint.name.as_str());
+        let (controlled, held): (Vec<Driven>, Vec<Driven>) = all.into_iter().partition(is_controlled);
+        let controlled = controlled
+            .try_into()
+            .map_err(|found: Vec<Driven>| Error::Other(format!("icub-reach: {} joints, not 6", found.len())))?;
+        let palm_centre = icub.palm_centre(Side::Left);
+        debug_assert_eq!(Self::PALM, Icub::palm(Side::Left));
+        Ok(Self { robot, config, palm_centre, controlled, held })
+    }
+
+    /// How the articulated world is stepped.
+    pub fn options(&self) -> Options {
+        let Config { time_step, substeps, .. } = self.config;
+        Options { time_step, substeps, ..Options::default() }
+    }
+
+    /// The limits of the six joints \[rad\].
+    pub fn ranges(&self) -> [[f64; 2]; 6] {
+        self.controlled.map(|one| one.range)
+    }
+
+    /// The six joints at the start \[rad\].
+    pub fn start(&self) -> [f64; 6] {
+        self.controlled.map(|one| one.start)
+    }
+
+    /// The kinematics of the six joints alone: the others are fixed where they are held.
+    ///
+    /// # Errors
+    /// What [`KinematicTree::new`] refuses.
+    pub fn kinematics(&self) -> Result<KinematicTree, RobotError> {
+        let mut robot = Robot { actuators: Vec::new(), pairs: Vec::new(), ..self.robot.clone() };
+        for Driven { joint, start, .. } in &self.held {
+            let own = &mut robot.segments[joint.index()].joint;
+            let length = Scalar::sqrt(own.axis.iter().fold(0.0, |sum: f64, x| sum + x * x));
+            let (sine, cosine) = sin_cos(0.5 * start);
+            let [x, y, z] = own.axis.map(|a| a * (sine / length));
+            let turned = Pose { position: [0.0; 3], rotation: [x, y, z, cosine] };
+            *own = Joint { kind: JointKind::Fixed, ..Joint::fixed(own.placement.compose(&turned)) };
+        }
+        KinematicTree::new(&robot)
+    }
+
+    /// The target of a trial \[m\], uniform in the volume: the same for all individuals of a generation, from the stream of
+    /// [`Domain::Start`].
+    pub fn target(&self, id: EpisodeId) -> [f64; 3] {
+        self.draw(&mut self.stream(id))
+    }
+
+    /// The target of a trial and a second one, each uniform in the volume \[m\].
+    pub fn two_targets(&self, id: EpisodeId) -> [[f64; 3]; 2] {
+        let mut stream = self.stream(id);
+        [self.draw(&mut stream), self.draw(&mut stream)]
+    }
+
+    fn stream(&self, id: EpisodeId) -> Stream {
+        let generation = if self.config.same_targets { 0 } else { id.generation };
+        Stream::new(id.seed, Domain::Start, id.trial, 0, generation)
+    }
+
+    /// By rejection from the half ellipsoid's box; half of the points are in it.
+    fn draw(&self, stream: &mut Stream) -> [f64; 3] {
+        loop {
+            let parts = [stream.range_f64(0.0, 1.0), stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
+            if parts.iter().fold(0.0, |sum, x| sum + x * x) <= 1.0 {
+                return self.config.volume.at(parts);
+            }
+        }
+    }
+
+    /// Puts the robot at its start, at rest, with commands that keep it there.
+    pub fn arrange<W>(&self, world: &mut W)
+    where
+        W: Arrange + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
+    {
+        world.clear();
+        let steady = self.config.condition == crate::icub_reach::config::Condition::Steady;
+        for one in self.controlled.iter().chain(&self.held) {
+            world.place_joint(one.joint, one.start as f32, 0.0);
+            world.command(one.actuator, [if steady { one.start as f32 } else { 0.0 }, 0.0]);
+        }
+        world.finish_placement();
+    }
+
+    /// How far a point is from another \[m\].
+    pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+        let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        Scalar::sqrt(x * x + y * y + z * z)
+    }
+}

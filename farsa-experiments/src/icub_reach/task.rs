@@ -1,0 +1,202 @@
+//! What there is to know of `icub-reach`, and its episodes over parameters.
+
+use std::sync::Arc;
+
+use farsa_body::{Actuated, ActuatorId, Arrange, Contacts, Handles, Recorder, Robot};
+use farsa_lab::{
+    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, MotorExport,
+    NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,
+};
+use farsa_nn::{BlockLayoutBuf, Leak};
+use farsa_view::Schema;
+
+use crate::icub_reach::config::{Condition, Config};
+use crate::icub_reach::episode::{ReachEpisode, ReachingWorld};
+use crate::icub_reach::network::{Agent, HIDDEN, INPUTS, LAYOUT, MOTORS, parameters, weights_on};
+use crate::icub_reach::protocols::Protocols;
+use crate::icub_reach::scene::{CONTROLLED, Scene};
+use crate::icub_reach::schema;
+
+/// A trial run by a network, with what it records.
+#[derive(Clone)]
+pub struct ReachTask {
+    episode: ReachEpisode<Agent>,
+    protocols: Arc<Protocols>,
+    loaded: Vec<f32>,
+}
+
+impl ReachTask {
+    /// Trials in a scene.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a network that cannot be built.
+    pub fn new(scene: Scene) -> Result<Self, Error> {
+        let protocols = Arc::new(Protocols::new(&scene.config));
+        let episode = ReachEpisode::new(Arc::new(scene), Agent::new()?);
+        Ok(Self { episode, protocols, loaded: vec![0.0; LAYOUT.parameter_count()] })
+    }
+
+    fn config(&self) -> &Config {
+        &self.episode.scene().config
+    }
+
+    /// The episode.
+    pub fn episode(&self) -> &ReachEpisode<Agent> {
+        &self.episode
+    }
+}
+
+impl<W> Episode<W> for ReachTask
+where
+    W: ReachingWorld + Actuated + Contacts + Arrange + Handles<Actuator = ActuatorId> + ?Sized,
+{
+    fn start(&mut self, world: &mut W, id: EpisodeId) {
+        self.episode.start(world, id);
+    }
+
+    fn act(&mut self, world: &mut W) {
+        self.episode.act(world);
+    }
+
+    fn judge(&mut self, world: &mut W) -> Option<f64> {
+        self.episode.judge(world)
+    }
+
+    fn record(&self, world: &W, recorder: &mut dyn Recorder) {
+        schema::record(world, &self.episode, recorder);
+    }
+}
+
+impl Rollout for ReachTask {
+    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        if evaluation.parameters.len() != self.loaded.len() {
+            return false;
+        }
+        self.loaded.copy_from_slice(evaluation.parameters);
+        if let Some(motor) = self.protocols.without_motor(evaluation.case) {
+            weights_on(motor).for_each(|at| self.loaded[at] = 0.0);
+        }
+        self.episode.ask(self.protocols.asked(evaluation.case));
+        let network = self.episode.reacher_mut().network_mut();
+        if !network.load(evaluation.normalisation) {
+            return false;
+        }
+        network.intervene(self.protocols.intervention(evaluation.case), evaluation.id, 0);
+        network.controller_mut().copy_parameters(&self.loaded).is_ok()
+    }
+
+    fn record_parameters(&self, recorder: &mut dyn Recorder) {
+        recorder.parameters(self.episode.reacher().network().controller().parameters());
+    }
+
+    fn outcome(&self) -> Outcome {
+        let ledger = self.episode.ledger();
+        let [x, y, z] = self.episode.target();
+        Outcome {
+            terms: vec![self.episode.fitness()],
+            steps: self.episode.steps(),
+            success: ledger.mean() < self.config().success,
+            notes: vec![
+                ("distance [cm]", Note::from(100.0 * ledger.mean())),
+                ("start distance [cm]", Note::from(100.0 * ledger.start())),
+                ("target x [m]", Note::from(x)),
+                ("target y [m]", Note::from(y)),
+                ("target z [m]", Note::from(z)),
+            ],
+            observed: self.episode.reacher().network().observed().cloned(),
+            ..Outcome::default()
+        }
+    }
+}
+
+impl Task for ReachTask {
+    fn parameters(&self) -> Vec<Parameter> {
+        parameters(self.config().weight_range)
+    }
+
+    fn trials(&self) -> usize {
+        self.config().targets as usize
+    }
+
+    fn terms(&self) -> Vec<String> {
+        vec!["fitness".into()]
+    }
+
+    fn protocols(&self) -> Vec<Protocol> {
+        self.protocols.list()
+    }
+
+    fn observations(&self) -> usize {
+        INPUTS
+    }
+
+    fn schema(&self) -> Schema {
+        schema::schema(self.episode.scene())
+    }
+
+    fn description(&self) -> Description {
+        let Config { condition, speed, offset, steps, time_step, .. } = *self.config();
+        let (sensors, motors) = match condition {
+            Condition::Steady => (
+                ChannelGroup::new("target", INPUTS, "x, y, z from the least to the greatest of the volume, 0..1"),
+                ChannelGroup::new("angles", MOTORS, "desired angles, from the lower to the upper limit"),
+            ),
+            Condition::Velocity => (
+                ChannelGroup::new(
+                    "way",
+                    INPUTS,
+                    &format!("from hand to target, x, y, z: 0 at -{offset} m, 1 at {offset} m"),
+                ),
+                ChannelGroup::new(
+                    "speeds",
+                    MOTORS,
+                    &format!("desired speeds, 0 at -{speed} rad/s, 1 at {speed} rad/s"),
+                ),
+            ),
+        };
+        Description {
+            sensors: vec![sensors],
+            motors: vec![motors],
+            network: format!("feed-forward, {INPUTS} sensory, {HIDDEN} hidden, {MOTORS} motor neurons"),
+            parameters: LAYOUT.parameter_count(),
+            steps: steps as usize,
+            step_seconds: time_step,
+        }
+    }
+
+    /// The mean over the targets.
+    fn fitness(&self, trials: &[Outcome]) -> f64 {
+        mean_of_trials(trials)
+    }
+
+    fn exports(&self) -> Option<&dyn Exports> {
+        Some(self)
+    }
+}
+
+impl Exports for ReachTask {
+    fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
+        Some(self.episode.scene().robot.clone())
+    }
+
+    fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
+        if parameters.len() != LAYOUT.parameter_count() {
+            return None;
+        }
+        let Config { condition, volume, speed, offset, steps, time_step, .. } = *self.config();
+        let layout = BlockLayoutBuf::from(LAYOUT);
+        let network = NetworkExport::Blocks { layout, leak: Leak::Filter, parameters: parameters.into() };
+        let sensors = schema::sensors(self.config()).into_iter().enumerate().map(|(axis, name)| match condition {
+            Condition::Steady => {
+                SensorExport::quantity(name, "the target's place relative to the body's centre", "m", volume.ends(axis))
+            }
+            Condition::Velocity => SensorExport::quantity(name, "way from hand to target", "m", [-offset, offset]),
+        });
+        let motors = CONTROLLED.into_iter().zip(self.episode.scene().ranges());
+        let motors = motors.map(|(name, range)| match condition {
+            Condition::Steady => MotorExport::quantity(name, "desired angle of the joint", "rad", range),
+            Condition::Velocity => MotorExport::quantity(name, "desired speed of the joint", "rad/s", [-speed, speed]),
+        });
+        Some(ControllerExport::new(network, sensors.collect(), motors.collect(), time_step, steps))
+    }
+}

@@ -1,0 +1,254 @@
+//! `icub-reach`: all targets can be reached, a script reaches them, and lanes change nothing.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use farsa_body::{Actuated as _, ActuatorId, Arrange as _, Contacts as _, JointId, Joints as _, PairId, World as _};
+use farsa_experiments::icub_reach::{
+    Condition, Config, ReachEpisode, Reacher, Reaching, Scene, Script, evaluator, grid, outside,
+};
+use farsa_lab::{CaseId, Episode as _, EpisodeId, Evaluation, Evaluator as _, Lanes, Outcome, Task as _};
+use farsa_num::{Domain, Instructions, Stream};
+use farsa_physics::articulated::{Model, World};
+
+const CONDITIONS: [Condition; 2] = [Condition::Steady, Condition::Velocity];
+
+fn world_of(scene: &Scene) -> World<f32> {
+    World::new(Model::new(&scene.robot, &scene.options()).unwrap())
+}
+
+/// The deepest contact \[m\], 0 where nothing touches.
+fn depth(world: &World<f32>) -> f32 {
+    let pairs = (0..world.pairs()).map(|pair| world.pair_contact(PairId(pair as u16)));
+    pairs.filter(|contact| contact.points > 0).fold(0.0, |most, contact| most.max(contact.depth))
+}
+
+/// Runs a trial; the mean distance at its end \[m\] and the deepest contact in it \[m\].
+fn run<C: Reacher>(episode: &mut ReachEpisode<C>, world: &mut World<f32>, id: EpisodeId) -> (f64, f32) {
+    episode.start(world, id);
+    let mut deepest = 0.0_f32;
+    loop {
+        episode.act(world);
+        world.step();
+        deepest = deepest.max(depth(world));
+        if episode.judge(world).is_some() {
+            return (episode.ledger().mean(), deepest);
+        }
+    }
+}
+
+fn id(trial: u32) -> EpisodeId {
+    EpisodeId { seed: 11, trial, ..EpisodeId::default() }
+}
+
+/// Inverse kinematics by the six joints has angles for all of the volume, and a little beyond; held there, nothing touches.
+#[test]
+fn all_of_the_volume_can_be_reached() {
+    let scene = Scene::new(Config::for_condition(Condition::Steady)).unwrap();
+    let script = Script::new(&scene).unwrap();
+    let mut world = world_of(&scene);
+    let volume = scene.config.volume;
+    let drawn = (0..2000).map(|trial| scene.target(id(trial)));
+    let places = grid(&volume).into_iter().chain(outside(&volume).into_iter().map(|(_, place)| place)).chain(drawn);
+    let names = farsa_experiments::icub_reach::CONTROLLED;
+    let joints: Vec<JointId> = names.iter().map(|name| scene.robot.joint(name).unwrap()).collect();
+    let actuators: Vec<ActuatorId> = names.iter().map(|name| scene.robot.actuator(name).unwrap()).collect();
+    let (mut missed, mut touched) = (Vec::new(), Vec::new());
+    for place in places {
+        let Ok(angles) = script.angles(place) else {
+            missed.push(place);
+            continue;
+        };
+        for (i, angle) in angles.iter().enumerate() {
+            let [low, high] = scene.ranges()[i];
+            assert!((low..=high).contains(angle));
+        }
+        scene.arrange(&mut world);
+        for ((joint, actuator), angle) in joints.iter().zip(&actuators).zip(angles) {
+            world.place_joint(*joint, angle as f32, 0.0);
+            world.command(*actuator, [angle as f32, 0.0]);
+        }
+        world.finish_placement();
+        world.step();
+        if depth(&world) > 0.0 {
+            touched.push(place);
+        }
+    }
+    assert!(
+        missed.is_empty() && touched.is_empty(),
+        "{} missed: {missed:.2?}\n{} touch: {touched:.2?}",
+        missed.len(),
+        touched.len()
+    );
+}
+
+#[test]
+fn a_script_reaches_the_targets_under_both_conditions() {
+    for condition in CONDITIONS {
+        let scene = Arc::new(Scene::new(Config::for_condition(condition)).unwrap());
+        let mut world = world_of(&scene);
+        let mut episode = ReachEpisode::new(Arc::clone(&scene), Script::new(&scene).unwrap());
+        let (mut reached, mut farthest, mut deepest, mut sum) = (0, 0.0_f64, 0.0_f32, 0.0);
+        for trial in 0..200 {
+            let (distance, depth) = run(&mut episode, &mut world, id(trial));
+            reached += u32::from(distance < 0.01);
+            (farthest, deepest, sum) = (farthest.max(distance), deepest.max(depth), sum + distance);
+            assert!((0.0..=1.0).contains(&episode.fitness()));
+        }
+        println!(
+            "{condition:?}: {reached} of 200, mean {:.4} m, at most {farthest:.4} m, contacts of {deepest:.4} m",
+            sum / 200.0
+        );
+        assert!(reached >= 190, "{condition:?}: {reached} of 200");
+        assert!(deepest < 0.003, "{condition:?}: {deepest} m");
+    }
+}
+
+/// After a jump the script reaches the second target; it is that target's distance that counts.
+#[test]
+fn a_script_follows_a_target_that_jumps() {
+    for condition in CONDITIONS {
+        let scene = Arc::new(Scene::new(Config::for_condition(condition)).unwrap());
+        let mut world = world_of(&scene);
+        let mut episode = ReachEpisode::new(Arc::clone(&scene), Script::new(&scene).unwrap());
+        episode.ask(Reaching { jump: Some(100), ..Reaching::default() });
+        for trial in 0..20 {
+            let (distance, _) = run(&mut episode, &mut world, id(trial));
+            assert_eq!(episode.target(), scene.two_targets(id(trial))[1]);
+            assert!(distance < 0.02, "{condition:?}: {distance} m");
+        }
+    }
+}
+
+/// With a locked trunk its joints stay where they are.
+#[test]
+fn a_locked_torso_stays() {
+    for condition in CONDITIONS {
+        let scene = Arc::new(Scene::new(Config::for_condition(condition)).unwrap());
+        let mut world = world_of(&scene);
+        let mut episode = ReachEpisode::new(Arc::clone(&scene), Script::new(&scene).unwrap());
+        let [pitch, yaw] = ["torso_pitch", "torso_yaw"].map(|name| scene.robot.joint(name).unwrap());
+        let mut turned = [false, true].map(|locked_torso| {
+            episode.ask(Reaching { locked_torso, ..Reaching::default() });
+            (0..20).fold(0.0_f32, |most, trial| {
+                run(&mut episode, &mut world, id(trial));
+                most.max(world.position(pitch).abs()).max(world.position(yaw).abs())
+            })
+        });
+        turned[1] *= 2.0;
+        assert!(turned[0] > turned[1] && turned[1] < 0.1, "{condition:?}: {turned:?} rad");
+    }
+}
+
+/// Ten dynamics steps of 5 ms are short enough: with steps of 1 ms a script ends where it does.
+#[test]
+fn shorter_steps_come_to_the_same() {
+    for condition in CONDITIONS {
+        let ends = [10, 50].map(|substeps| {
+            let config = Config { substeps, ..Config::for_condition(condition) };
+            let scene = Arc::new(Scene::new(config).unwrap());
+            let mut world = world_of(&scene);
+            let mut episode = ReachEpisode::new(Arc::clone(&scene), Script::new(&scene).unwrap());
+            (0..10)
+                .map(|trial| {
+                    run(&mut episode, &mut world, id(trial));
+                    episode.hand()
+                })
+                .collect::<Vec<_>>()
+        });
+        for (one, other) in ends[0].iter().zip(&ends[1]) {
+            let apart = (0..3).map(|k| (one[k] - other[k]).abs()).fold(0.0, f64::max);
+            assert!(apart < 0.001, "{condition:?}: {apart} m");
+        }
+    }
+}
+
+/// Does at random what can be done.
+struct Babble(Stream, u32);
+
+impl Reacher for Babble {
+    fn reset(&mut self) {
+        self.1 = 0;
+    }
+    fn step(&mut self, _: &[f32; 3], _: &[f32; 6], y: &mut [f32; 6]) {
+        if self.1.is_multiple_of(10) {
+            *y = core::array::from_fn(|_| self.0.uniform());
+        }
+        self.1 += 1;
+    }
+}
+
+#[test]
+fn random_commands_stay_within_bounds() {
+    for condition in CONDITIONS {
+        let scene = Arc::new(Scene::new(Config::for_condition(condition)).unwrap());
+        let mut world = world_of(&scene);
+        let babble = Babble(Stream::new(3, Domain::Motor, 0, 0, 0), 0);
+        let mut episode = ReachEpisode::new(Arc::clone(&scene), babble);
+        let (mut fastest, mut deepest) = (0.0_f32, 0.0_f32);
+        for trial in 0..10 {
+            episode.start(&mut world, id(trial));
+            let mut ended = None;
+            while ended.is_none() {
+                episode.act(&mut world);
+                world.step();
+                fastest = scene.robot.joints().fold(fastest, |most, joint| most.max(world.speed(joint).abs()));
+                deepest = deepest.max(depth(&world));
+                ended = episode.judge(&mut world);
+            }
+            assert!((0.0..=1.0).contains(&ended.unwrap()));
+        }
+        println!("{condition:?}: {fastest} rad/s, {deepest} m");
+        assert!(fastest < 20.0 && deepest < 0.005, "{condition:?}: {fastest} rad/s, {deepest} m");
+    }
+}
+
+#[test]
+fn trials_and_cases_in_lanes_are_those_alone() {
+    for condition in CONDITIONS {
+        let mut evaluator = evaluator(Config { steps: 60, ..Config::for_condition(condition) }).unwrap();
+        let random = |number: u32| -> Vec<f32> {
+            let mut stream = Stream::new(2, Domain::InitialGenome, number, 0, 0);
+            evaluator.parameters().into_iter().map(|one| stream.range_f64(one.ends[0], one.ends[1]) as f32).collect()
+        };
+        let parameters: Vec<Vec<f32>> = (0..5).map(random).collect();
+        let protocols = evaluator.protocols();
+        let evaluations: Vec<Evaluation<'_>> = (0..45)
+            .map(|number| {
+                let id = EpisodeId { seed: 4, generation: 1, individual: 0, trial: number as u32 % 20 };
+                let protocol = number % protocols.len();
+                let case = CaseId { protocol, case: number * 7 % protocols[protocol].cases.len() };
+                let case = (number % 4 > 0).then_some(case);
+                Evaluation { number, case, ..Evaluation::new(&parameters[number % 5], id) }
+            })
+            .collect();
+        let alone: Vec<Outcome> = evaluations.iter().map(|one| evaluator.evaluate(*one, None)).collect();
+        assert!(alone.iter().all(Outcome::is_finite));
+        assert!(alone.iter().any(|one| one.terms != alone[0].terms));
+        for lanes in [8, 16] {
+            for instructions in Instructions::available() {
+                let in_lanes = evaluator.in_lanes().unwrap();
+                in_lanes.use_lanes(Lanes::new(lanes, instructions).unwrap()).unwrap();
+                let mut left = evaluations.iter().copied();
+                let mut together: Vec<Option<Outcome>> = vec![None; alone.len()];
+                in_lanes.evaluate_all(&mut || left.next(), &mut |number, outcome| together[number] = Some(outcome));
+                for (number, (one, other)) in alone.iter().zip(&together).enumerate() {
+                    assert_eq!(Some(one), other.as_ref(), "{condition:?}, {lanes} lanes, evaluation {number}");
+                }
+            }
+        }
+    }
+}
+
+/// Targets are those of all individuals, and new ones in each generation unless the settings say otherwise.
+#[test]
+fn targets_are_drawn_for_a_generation() {
+    let config = Config::for_condition(Condition::Steady);
+    let target = |same_targets: bool, generation: u32, individual: u32| {
+        let scene = Scene::new(Config { same_targets, ..config }).unwrap();
+        scene.target(EpisodeId { generation, individual, ..id(3) })
+    };
+    assert_eq!(target(false, 1, 0), target(false, 1, 5));
+    assert_ne!(target(false, 1, 0), target(false, 2, 0));
+    assert_eq!(target(true, 1, 0), target(true, 2, 0));
+}
