@@ -94,7 +94,10 @@ impl Config {
             same_targets: false,
             steps: 200,
             time_step: 0.05,
-            substeps: 10,
+            substeps: match condition {
+                Condition::Steady => 8,
+                Condition::Velocity => 5,
+            },
             volume: Volume { centre: [0.22, 0.11, 0.20], semi_axes: [0.16, 0.18, 0.18] },
             torso: [0.0; 3],
             arm: [-30.0, 30.0, 0.0, 60.0, 0.0, 0.0, 0.0],
@@ -102,11 +105,11 @@ impl Config {
             saturation_speed: 0.02,
             speed: 1.0,
             hold_rate: 5.0,
-            offset: 0.4,
+            offset: 0.1,
             window: 2.0,
-            least_start: 0.05,
+            least_start: 0.3,
             success: 0.03,
-            weight_range: 8.0,
+            weight_range: 4.0,
         }
     }
 

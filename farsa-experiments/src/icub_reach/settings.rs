@@ -21,8 +21,13 @@ impl Config {
     fn of_trials(&self) -> Vec<Setting> {
         let Volume { centre, semi_axes } = self.volume;
         vec![
-            Setting::whole("evolution.generations", 1000, 1..=i64::from(u32::MAX) - 1)
+            Setting::whole("evolution.generations", 600, 1..=i64::from(u32::MAX) - 1)
                 .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+            Setting::whole("evolution.population", 30, 0..=1_000_000)
+                .doc("Individuals of a generation, twice as many as the strategy's own."),
+            number("strategy.sigma", 0.2, 1e-6, 10.0).doc(
+                "Step size of the first generation, in halves of a range: with large weights neurons are saturated, and nothing is learned.",
+            ),
             Setting::whole("trial.targets", i64::from(self.targets), 1..=10_000)
                 .doc("Targets of an evaluation, a trial each."),
             Setting::flag("trial.same_targets", self.same_targets).doc(
@@ -32,7 +37,9 @@ impl Config {
                 .doc("Control steps of a trial: 10 s at the default step."),
             number("world.time_step", self.time_step, 0.001, 0.2).unit("s").doc("Control step."),
             Setting::whole("world.substeps", i64::from(self.substeps), 1..=1000)
-                .doc("Dynamics steps of a control step; tests compare with shorter ones."),
+                .doc(
+                "Dynamics steps of a control step; tests compare with shorter ones. Position servos that saturate swing where there are fewer than eight.",
+            ),
             numbers("target.centre", &centre, -2.0, 2.0).unit("m").doc(
                 "Centre of the ellipsoid of targets, relative to the body's centre: in front of the left shoulder.",
             ),
@@ -44,7 +51,7 @@ impl Config {
                 .doc("The last seconds of a trial, of which the mean distance is taken."),
             number("fitness.least_start", self.least_start, 1e-3, 1.0)
                 .unit("m")
-                .doc("Start distances below this count as this: a target at the hand would else weigh more than all others."),
+                .doc("Start distances below this count as this: most do, so that fitness is about the mean distance in parts of it; near targets would else weigh more than far ones."),
             number("success.distance", self.success, 1e-4, 1.0)
                 .unit("m")
                 .doc("The mean distance below which a trial is a success."),
