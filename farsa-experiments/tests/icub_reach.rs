@@ -140,6 +140,39 @@ fn a_locked_torso_stays() {
     }
 }
 
+/// A load on the hand is what a heavier palm is once the robot is at rest; under `velocity` the script brings it to the target.
+#[test]
+fn a_load_weighs_what_a_heavier_palm_does() {
+    const LOAD: f64 = 0.5;
+    for condition in CONDITIONS {
+        let scene = Scene::new(Config::for_condition(condition)).unwrap();
+        let mut heavier = scene.clone();
+        let palm = &mut heavier.robot.segments[Scene::PALM.index()];
+        let whole = palm.mass + LOAD;
+        palm.centre = [0, 1, 2].map(|k| (palm.mass * palm.centre[k] + LOAD * scene.palm_centre[k]) / whole);
+        palm.mass = whole;
+        let ends = [(scene.clone(), 0.0), (scene, LOAD), (heavier, 0.0)].map(|(scene, load)| {
+            // The script knows of no load in any of the three.
+            let script = Script::new(&Scene::new(scene.config).unwrap()).unwrap();
+            let scene = Arc::new(scene);
+            let mut world = world_of(&scene);
+            let mut episode = ReachEpisode::new(scene, script);
+            episode.ask(Reaching { load, ..Reaching::default() });
+            let trial = |trial| (run(&mut episode, &mut world, id(trial)).0, episode.hand());
+            (0..50).map(trial).collect::<Vec<(f64, [f64; 3])>>()
+        });
+        let mean = ends.each_ref().map(|ends| ends.iter().map(|end| end.0).sum::<f64>() / 50.0);
+        let most = ends.each_ref().map(|ends| ends.iter().map(|end| end.0).fold(0.0, f64::max));
+        println!("{condition:?}: {mean:.4?} m, at most {most:.4?} m");
+        for ((_, free), ((_, loaded), (_, heavier))) in ends[0].iter().zip(ends[1].iter().zip(&ends[2])) {
+            let apart = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max);
+            assert!(apart(loaded, heavier) < 0.001, "{condition:?}: {loaded:?}, {heavier:?}");
+            assert!(condition == Condition::Velocity || apart(loaded, free) > 0.001, "{loaded:?}, {free:?}");
+        }
+        assert!(condition == Condition::Steady || most[1] < 0.01, "{most:?} m");
+    }
+}
+
 /// The default's dynamics steps are short enough: with steps of 1 ms a script ends where it does.
 #[test]
 fn shorter_steps_come_to_the_same() {

@@ -34,6 +34,8 @@ pub struct Reaching {
     pub jump: Option<u32>,
     /// Whether the trunk stays as it is at the start.
     pub locked_torso: bool,
+    /// The mass that hangs on the hand \[kg\].
+    pub load: f64,
 }
 
 /// A trial of a network or of a script.
@@ -171,6 +173,9 @@ where
                 }
             };
             world.command(one.actuator, [command, 0.0]);
+        }
+        if self.asked.load > 0.0 {
+            scene.hang(world, self.hand, self.asked.load);
         }
     }
 

@@ -12,6 +12,8 @@ use crate::icub_reach::scene::CONTROLLED;
 pub const GRID: usize = 5;
 /// How far the targets of `outside` are, in parts of the volume's surface.
 const OUTSIDE: f64 = 1.1;
+/// What hangs on the hand in `load` \[kg\].
+const LOAD: f64 = 0.5;
 /// Trials of a case with targets of its own.
 const TRIALS: u32 = 50;
 
@@ -66,6 +68,7 @@ impl Protocols {
         };
         let jump = "the target is another one from the middle of the trial on";
         let torso = "the commands of the trunk's joints stay as at the start";
+        let load = "half a kilogram hangs on the hand";
         let inputs = ["x", "y", "z"]
             .into_iter()
             .enumerate()
@@ -78,6 +81,7 @@ impl Protocols {
             .with_protocol(beyond, Vec::new())
             .with_protocol(of_own("target-jump", jump, ["stays", "jumps"]), Vec::new())
             .with_protocol(of_own("locked-torso", torso, ["free", "locked"]), Vec::new())
+            .with_protocol(of_own("load", load, ["free", "loaded"]), Vec::new())
             .with_cases(
                 "lesions",
                 "one group of links is cut, or one neuron is silent",
@@ -106,6 +110,7 @@ impl Protocols {
             Some(("outside", case)) => Reaching { target: self.outside.get(case).copied(), ..plain },
             Some(("target-jump", 1)) => Reaching { jump: Some(self.jump), ..plain },
             Some(("locked-torso", 1)) => Reaching { locked_torso: true, ..plain },
+            Some(("load", 1)) => Reaching { load: LOAD, ..plain },
             _ => plain,
         }
     }
@@ -152,8 +157,15 @@ mod tests {
         let list = all.list();
         Protocol::check(&list).unwrap();
         let names: Vec<(&str, usize)> = list.iter().map(|one| (one.name.as_str(), one.cases.len())).collect();
-        let expected =
-            [("grid", 125), ("outside", 25), ("target-jump", 2), ("locked-torso", 2), ("lesions", 14), ("noise", 5)];
+        let expected = [
+            ("grid", 125),
+            ("outside", 25),
+            ("target-jump", 2),
+            ("locked-torso", 2),
+            ("load", 2),
+            ("lesions", 14),
+            ("noise", 5),
+        ];
         assert_eq!(names, expected);
         let at = |protocol, case| Some(CaseId { protocol, case });
         assert_eq!(all.asked(at(0, 7)).target, Some(all.grid[7]));
@@ -161,10 +173,11 @@ mod tests {
         assert_eq!(all.asked(at(2, 0)), Reaching::default());
         assert_eq!(all.asked(at(2, 1)).jump, Some(100));
         assert!(all.asked(at(3, 1)).locked_torso);
-        let cases: Vec<Option<usize>> = (0..14).map(|case| all.without_motor(at(4, case))).collect();
+        assert_eq!((all.asked(at(4, 0)), all.asked(at(4, 1)).load), (Reaching::default(), 0.5));
+        let cases: Vec<Option<usize>> = (0..14).map(|case| all.without_motor(at(5, case))).collect();
         assert_eq!(cases[7..], [None, Some(0), Some(1), Some(2), Some(3), Some(4), Some(5)]);
-        assert_eq!(list[4].cases[8].row, "no links to torso_pitch");
-        assert_eq!(all.intervention(at(4, 4)), Some(&Intervention::lesion(3)));
+        assert_eq!(list[5].cases[8].row, "no links to torso_pitch");
+        assert_eq!(all.intervention(at(5, 4)), Some(&Intervention::lesion(3)));
         assert_eq!(all.intervention(None), None);
     }
 }

@@ -1,8 +1,8 @@
 //! The scene of `icub-reach`: the robot, its six joints, and the targets.
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Handles, Icub, IcubError, Joint, JointId, JointKind, KinematicTree, Pose,
-    Robot, RobotError, Side,
+    Actuated, Actuator, ActuatorId, Arrange, BodyId, Handles, Icub, IcubError, Joint, JointId, JointKind,
+    KinematicTree, Kinematics, Law, Pose, Robot, RobotError, Side, Torque,
 };
 use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Domain, Scalar, Stream, sin_cos};
@@ -14,6 +14,11 @@ use crate::icub_reach::config::Config;
 pub const CONTROLLED: [&str; 6] =
     ["torso_pitch", "torso_yaw", "l_shoulder_pitch", "l_shoulder_roll", "l_shoulder_yaw", "l_elbow"];
 
+/// Acceleration of gravity \[m/s^2\].
+const GRAVITY: f64 = 9.81;
+/// The most that a load may turn a joint by \[N m\].
+const LARGEST_TORQUE: f64 = 1000.0;
+
 /// A joint with its actuator and what it is held at or moves between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Driven {
@@ -23,6 +28,15 @@ pub(crate) struct Driven {
     pub(crate) start: f64,
     /// Its limits \[rad\].
     pub(crate) range: [f64; 2],
+}
+
+/// A joint that carries the hand, with the torque motor through which a load acts on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Burdened {
+    body: BodyId,
+    /// Its axis in the body's frame, of unit length.
+    axis: [f64; 3],
+    actuator: ActuatorId,
 }
 
 /// The robot's description with the names of what matters in it.
@@ -36,6 +50,7 @@ pub struct Scene {
     pub palm_centre: [f64; 3],
     pub(crate) controlled: [Driven; 6],
     pub(crate) held: Vec<Driven>,
+    pub(crate) burdened: Vec<Burdened>,
 }
 
 impl Scene {
@@ -50,7 +65,8 @@ impl Scene {
         config.check()?;
         let wrong = |error: IcubError| Error::Other(format!("icub-reach: {error}"));
         let icub = config.icub();
-        let robot = icub.robot().map_err(wrong)?;
+        let mut robot = icub.robot().map_err(wrong)?;
+        let burdened = Self::burden(&mut robot);
         let driven = |(joint, start): (JointId, f64)| -> Result<Driven, Error> {
             let joint_of = &robot.segments[joint.index()].joint;
             let actuator = icub.actuator(&joint_of.name).map_err(wrong)?;
@@ -64,7 +80,50 @@ impl Scene {
             .map_err(|found: Vec<Driven>| Error::Other(format!("icub-reach: {} joints, not 6", found.len())))?;
         let palm_centre = icub.palm_centre(Side::Left);
         debug_assert_eq!(Self::PALM, Icub::palm(Side::Left));
-        Ok(Self { robot, config, palm_centre, controlled, held })
+        Ok(Self { robot, config, palm_centre, controlled, held, burdened })
+    }
+
+    /// Adds a torque motor to each joint that carries the hand, from the hand's body to the root.
+    fn burden(robot: &mut Robot) -> Vec<Burdened> {
+        let mut burdened = Vec::new();
+        let mut next = Some(Self::PALM);
+        while let Some(body) = next {
+            let segment = &robot.segments[body.index()];
+            next = segment.parent;
+            if segment.joint.kind != JointKind::Revolute {
+                continue;
+            }
+            let length = Scalar::sqrt(segment.joint.axis.iter().fold(0.0, |sum: f64, x| sum + x * x));
+            let axis = segment.joint.axis.map(|x| x / length);
+            let name = format!("load on {}", segment.joint.name);
+            let law = Law::Torque(Torque { limit: LARGEST_TORQUE });
+            burdened.push(Burdened { body, axis, actuator: ActuatorId(robot.actuators.len() as u16) });
+            robot.actuators.push(Actuator { name, joint: JointId(body.0), law });
+        }
+        burdened
+    }
+
+    /// The robot without the motors of a load.
+    pub(crate) fn bare_robot(&self) -> Robot {
+        let mut robot = self.robot.clone();
+        robot.actuators.truncate(robot.actuators.len() - self.burdened.len());
+        robot
+    }
+
+    /// Commands the torques of a weight that hangs on the palm's centre, `mass` \[kg\], until the next command.
+    ///
+    /// A force F at the point p turns a joint at o about the unit axis a by a . (p - o) x F. Inertia of the load is left out.
+    pub(crate) fn hang<W>(&self, world: &mut W, hand: [f64; 3], mass: f64)
+    where
+        W: Kinematics + Actuated + Handles<Body = BodyId, Actuator = ActuatorId> + ?Sized,
+    {
+        for Burdened { body, axis, actuator } in &self.burdened {
+            let pose = world.pose(*body).cast::<f64>();
+            let [x, y, _] = [0, 1, 2].map(|k| hand[k] - pose.position[k]);
+            let [a, b, _] = pose.rotate(*axis);
+            // (x, y, z) x (0, 0, -w) = (-y w, x w, 0).
+            world.command(*actuator, [((b * x - a * y) * mass * GRAVITY) as f32, 0.0]);
+        }
     }
 
     /// How the articulated world is stepped.

@@ -176,7 +176,7 @@ impl Task for ReachTask {
 
 impl Exports for ReachTask {
     fn robot(&self, _: Option<&[f32]>) -> Option<Robot> {
-        Some(self.episode.scene().robot.clone())
+        Some(self.episode.scene().bare_robot())
     }
 
     fn controller(&self, parameters: &[f32]) -> Option<ControllerExport> {
