@@ -77,6 +77,10 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, robot: &MobileRobot) -> 
         SensorKind::JointSpeed { joints } => {
             Meaning::new(format!("speed of the {}", joint(joints, channel)), "rad/s", [0.0, 1.0])
         }
+        // Of robots with joints.
+        SensorKind::CameraImage { .. } | SensorKind::ColorBlobs { .. } | SensorKind::VisualOffset { .. } => {
+            Meaning::new("nothing", "1", [0.0, 1.0])
+        }
         SensorKind::Energy {} => Meaning::new("energy, 0 dead", "1", [0.0, 1.0]),
         SensorKind::Carried {} => Meaning::new("whether food is carried", "1", [0.0, 1.0]),
         SensorKind::Constant { value } => Meaning::new(format!("always {value}"), "1", [0.0, 1.0]),

@@ -191,6 +191,9 @@ fn check(kind: &SensorKind, path: &str, places: &Places) -> Result<(), Error> {
         SensorKind::TargetPosition { body, point, .. } | SensorKind::Height { body, point } => (body, &[][..], point),
         SensorKind::BodyPose { body } | SensorKind::BodyVelocity { body, .. } => (body, &[][..], &[0.0; 3]),
         SensorKind::Camera(camera) => (&camera.body, &[][..], &[0.0; 3]),
+        SensorKind::CameraImage { .. } | SensorKind::ColorBlobs { .. } | SensorKind::VisualOffset { .. } => {
+            return Err(places.wrong(path, "is for robots with joints; one on wheels has a `camera` of sectors"));
+        }
         SensorKind::JointPosition { from, to, .. } => {
             let missing = [("from", from), ("to", to)].into_iter().find(|(_, end)| end.is_none());
             return missing.map_or(Ok(()), |(key, _)| {
@@ -287,6 +290,10 @@ fn bare(
         }
         SensorKind::JointSpeed { .. } => {
             Sensing::JointSpeed(wheels.iter().map(|wheel| JointSpeed::new(*wheel)).collect())
+        }
+        // Refused by `check`.
+        SensorKind::CameraImage { .. } | SensorKind::ColorBlobs { .. } | SensorKind::VisualOffset { .. } => {
+            return Err(ChannelError::Groups { field: "eyes", count: 0, size: 1 });
         }
         SensorKind::Energy {} => Sensing::Felt(Felt::new(Feeling::Energy)),
         SensorKind::Carried {} => Sensing::Felt(Felt::new(Feeling::Carried)),

@@ -42,7 +42,7 @@ pub use motor::{Led, Motor, MotorKind};
 pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
 pub use robot::{Robot, RobotGroup, RobotKind, Team};
-pub use sensor::{AxesName, Camera, ColorRange, InfraredModel, MeasuredBody, MeasuredTables, Sensor, SensorKind};
+pub use sensor::{AxesName, Camera, ColorRange, Eye, InfraredModel, MeasuredBody, MeasuredTables, Sensor, SensorKind};
 pub use world::{Engine, Object, ObjectKind, World};
 pub use wrapper::Wrapper;
 

@@ -85,6 +85,30 @@ pub enum SensorKind {
     /// A camera of sectors from left to right: of each colour the share of a sector that shows it. With a robot with joints it sees
     /// coloured things in the horizontal plane at `world.sight_height`.
     Camera(Camera),
+    /// What an eye sees: red, green and blue of each pixel, row by row from the upper left; 0 where there is nothing, or nothing with
+    /// a colour. Recordings show it.
+    CameraImage {
+        /// The eye.
+        eye: Eye,
+    },
+    /// Where colours are in an eye's image: how far to the left and upwards the middle of each is, in halves of the image's width, and
+    /// the share of all pixels; three zeros where it is not. Recordings show the image.
+    ColorBlobs {
+        /// The eye.
+        eye: Eye,
+        /// The colours.
+        colors: Vec<ColorRange>,
+    },
+    /// How far one thing is from another in an eye's image, to the left and upwards in widths of the image: -1 to 1; 0 where one is
+    /// behind the eye. Nothing hides them.
+    VisualOffset {
+        /// The eye.
+        eye: Eye,
+        /// Which thing, or which body of the robot.
+        of: String,
+        /// From which thing, or which body of the robot.
+        from: String,
+    },
     /// How fast the wheels turn, left and right: 0 backwards .. 1/2 at rest .. 1 ahead.
     WheelSpeed {
         /// Whether they read -1 .. 0 at rest .. 1 instead.
@@ -260,6 +284,34 @@ pub struct Camera {
     pub range: f64,
     /// The colours that it tells apart.
     pub colors: Vec<ColorRange>,
+}
+
+/// An eye of a robot with joints, that looks along x of its own axes, with y to the left and z up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Eye {
+    /// The body that carries it; by default the robot's first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
+    /// Where it is in the body's axes [m].
+    #[serde(default)]
+    #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+    pub at: [f64; 3],
+    /// How it is turned there, about x, then y, then z of the body [deg].
+    #[serde(default)]
+    #[schemars(inner(range(min = -360.0, max = 360.0)))]
+    pub turned: [f64; 3],
+    /// Pixels from left to right.
+    #[schemars(range(min = 1, max = 1000))]
+    pub columns: u32,
+    /// Pixels from top to bottom; they are squares.
+    #[schemars(range(min = 1, max = 1000))]
+    pub rows: u32,
+    /// How much it sees from left to right [deg].
+    #[schemars(range(min = 1.0, max = 179.0))]
+    pub field_of_view: f64,
+    /// How far it sees [m].
+    #[schemars(range(min = 0.001, max = 1000.0))]
+    pub range: f64,
 }
 
 /// A range of colours.

@@ -14,6 +14,7 @@ use crate::document::{Ending, MotorKind, SensorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::composition::Composition;
 use crate::jointed::meaning;
+use crate::jointed::sensing::Sensing;
 use crate::parts::agents::Agents;
 use crate::parts::meaning::Meaning;
 use crate::parts::wiring::Wiring;
@@ -38,7 +39,7 @@ impl JointedEpisode {
     /// A trial of a composition.
     pub(crate) fn new(composition: Composition, agents: Agents) -> Self {
         let markers = vec![[0.0; 3]; composition.scene.markers.len()];
-        let drawn = drawn(&composition);
+        let drawn = drawn(&composition, &agents.wiring.sensors);
         let bodies = composition.scene.robot.segments.len();
         let shown = drawn.shown().filter(|body| body.index() < bodies).collect();
         Self { composition, agents, markers, drawn, shown }
@@ -74,8 +75,8 @@ impl JointedEpisode {
     }
 }
 
-/// The robot, the things in their colours, and the markers as bodies after all others.
-fn drawn(composition: &Composition) -> Schema {
+/// The robot, the things in their colours, the markers as bodies after all others, and the images of its sensors.
+fn drawn(composition: &Composition, sensors: &[(String, [usize; 2])]) -> Schema {
     let scene = &composition.scene;
     let mut robot = scene.alone();
     let mut objects = scene.drawn.clone();
@@ -87,7 +88,13 @@ fn drawn(composition: &Composition) -> Schema {
         let object = SceneObject::new(&marker.name, ball, Pose::identity(), Role::Object);
         objects.push(object.on_body(body).with_color(screen_color(marker.color)));
     }
-    Schema { objects, ..Schema::from_robot(&robot) }
+    let mut schema = Schema { objects, ..Schema::from_robot(&robot) };
+    for (sensor, (name, _)) in composition.sensors.iter().zip(sensors) {
+        if let Some(camera) = sensor.camera() {
+            schema = schema.with_image(name, camera.size());
+        }
+    }
+    schema
 }
 
 impl Embodied for JointedEpisode {
@@ -188,6 +195,9 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
         let Agents { document, ledger, networks, x, y, .. } = &self.agents;
         recorder.sensors(x);
+        for (number, camera) in self.composition.sensors.iter().filter_map(Sensing::camera).enumerate() {
+            camera.record(number, recorder);
+        }
         recorder.neurons(networks[0].controller().activations());
         recorder.outputs(y);
         for body in &self.shown {

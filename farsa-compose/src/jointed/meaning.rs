@@ -4,6 +4,7 @@ use farsa_body::{JointId, JointKind, Law};
 
 use crate::document::{MotorKind, SensorKind};
 use crate::jointed::actuation;
+use crate::jointed::eyes::{of_blobs, of_image, of_offset};
 use crate::jointed::scene::Scene;
 use crate::parts::eye::seen;
 use crate::parts::meaning::Meaning;
@@ -64,6 +65,9 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, scene: &Scene) -> Meanin
         }
         SensorKind::Height { body: name, .. } => Meaning::new(format!("height of {}", body(name)), "m", [0.0, 1.0]),
         SensorKind::Camera(camera) => seen(camera, channel),
+        SensorKind::CameraImage { eye } => of_image(eye, channel),
+        SensorKind::ColorBlobs { colors, .. } => of_blobs(colors, channel),
+        SensorKind::VisualOffset { of, from, .. } => of_offset([of, from], channel),
         SensorKind::Constant { value } => Meaning::new(format!("always {value}"), "1", [0.0, 1.0]),
         // Of robots on wheels.
         _ => Meaning::new("nothing", "1", [0.0, 1.0]),

@@ -7,6 +7,7 @@
 //! - `body`: the robot itself
 //! - `spot`: a point that a name means
 //! - `sensing`: any sensor, with what is wrapped around it
+//! - `eyes`: cameras with an image
 //! - `marker_position`: where a marker is
 //! - `driving`: any motor, with what is wrapped around it
 //! - `actuation`: the actuators that motors drive
@@ -20,6 +21,7 @@ mod body;
 pub(crate) mod composition;
 mod driving;
 pub(crate) mod episode;
+mod eyes;
 mod marker_position;
 mod meaning;
 pub(crate) mod scene;

@@ -1,14 +1,15 @@
 //! Any sensor, with what is wrapped around it.
 
 use farsa_body::{
-    Axes, BodyPose, BodyVelocity, ChannelError, Channels, ContactForce, Height, JointPosition, JointSpeed, PairId,
-    Pose, Sensor, Signal, TargetPosition, Touch,
+    Axes, BodyPose, BodyVelocity, CameraImage, ChannelError, Channels, ColorBlobs, ContactForce, Height, JointPosition,
+    JointSpeed, PairId, Pose, Sensor, Signal, TargetPosition, Touch, VisualOffset,
 };
 use farsa_lab::Error;
 
 use crate::check::places::Places;
 use crate::document::{self, AxesName, SensorKind};
 use crate::jointed::SpatialWorld;
+use crate::jointed::eyes::{blobs, image, offset};
 use crate::jointed::marker_position::MarkerPosition;
 use crate::jointed::scene::Scene;
 use crate::jointed::spot::Spot;
@@ -28,6 +29,9 @@ pub(crate) enum Sensing {
     Velocity(BodyVelocity),
     Height(Height),
     Camera(Camera),
+    Image(CameraImage),
+    Blobs(ColorBlobs),
+    Offset(VisualOffset),
     Constant(Signal<1>),
     Wrapped(Wrapped<Self>),
 }
@@ -46,6 +50,9 @@ macro_rules! sensor {
             Sensing::Velocity($sensor) => $call,
             Sensing::Height($sensor) => $call,
             Sensing::Camera($sensor) => $call,
+            Sensing::Image($sensor) => $call,
+            Sensing::Blobs($sensor) => $call,
+            Sensing::Offset($sensor) => $call,
             Sensing::Constant($sensor) => $call,
             Sensing::Wrapped(wrapped) => around!(wrapped, $sensor => $call),
         }
@@ -97,6 +104,16 @@ impl Reseed for Sensing {
 }
 
 impl Sensing {
+    /// The camera of which it has an image.
+    pub(crate) fn camera(&self) -> Option<&farsa_body::Camera> {
+        match self {
+            Self::Image(image) => Some(image.camera()),
+            Self::Blobs(blobs) => Some(blobs.camera()),
+            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner().camera()),
+            _ => None,
+        }
+    }
+
     /// Takes the places of all markers [m], if it looks at one.
     pub(crate) fn look(&mut self, markers: &[[f32; 3]]) {
         match self {
@@ -174,6 +191,9 @@ fn bare(kind: &SensorKind, scene: &Scene, path: &str, places: &Places) -> Result
             }
             Sensing::Camera(Camera(eye(body, camera).map_err(wrong)?))
         }
+        SensorKind::CameraImage { eye } => Sensing::Image(image(eye, scene, path, places)?),
+        SensorKind::ColorBlobs { eye, colors } => Sensing::Blobs(blobs(eye, colors, scene, path, places)?),
+        SensorKind::VisualOffset { eye, of, from } => Sensing::Offset(offset(eye, [of, from], scene, path, places)?),
         SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
         SensorKind::Infrared { .. }
         | SensorKind::Light { .. }

@@ -1,13 +1,21 @@
 //! What a robot with joints needs of a world.
 
-use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Sensor as _};
+use farsa_body::{
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Sensor as _, Vision,
+};
 use farsa_physics::articulated::{Lane, World};
 
 use crate::parts::eye::Eye;
 
 /// A world of bodies with joints, in space.
 pub(crate) trait SpatialWorld:
-    Kinematics + Joints + Actuated + Contacts + Arrange + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
+    Kinematics
+    + Joints
+    + Actuated
+    + Contacts
+    + Arrange
+    + Vision
+    + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
 {
     /// Shows a camera what it sees.
     fn show(&self, eye: &mut Eye, out: &mut [f32]);

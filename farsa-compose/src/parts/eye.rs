@@ -36,6 +36,9 @@ pub(crate) fn rays_of(kind: &SensorKind) -> usize {
     match kind {
         SensorKind::LaserDistance { beams, .. } => *beams as usize,
         SensorKind::Camera(camera) => camera.sectors as usize * camera.rays as usize,
+        SensorKind::CameraImage { eye } | SensorKind::ColorBlobs { eye, .. } => {
+            eye.columns as usize * eye.rows as usize
+        }
         _ => 0,
     }
 }

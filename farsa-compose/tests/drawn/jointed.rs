@@ -52,8 +52,11 @@ impl Draw {
             let _ = writeln!(text, "[[start]]\nplace = \"{joint}\"\nat = \"turned\"\nlow = -0.6\nhigh = -0.2");
         }
         let joints = if joint.is_empty() { String::new() } else { format!("joints = [\"{joint}\"]\n") };
+        let eye = format!(
+            "{{ body = \"{body}\", at = [0.0, 0.0, 0.1], columns = 4, rows = 3, field_of_view = 70.0, range = 2.0 }}"
+        );
         for _ in 0..=self.stream.below(4) {
-            let sensor = match self.stream.below(11) {
+            let sensor = match self.stream.below(14) {
                 0 => format!("kind = \"joint-position\"\n{joints}"),
                 1 => format!("kind = \"joint-speed\"\n{joints}"),
                 2 => "kind = \"joint-position\"\nfrom = -1.0\nto = 1.0\n".into(),
@@ -63,6 +66,11 @@ impl Draw {
                 6 => "kind = \"target-position\"\ntarget = \"thing\"\naxes = \"world\"\n".into(),
                 7 => format!("kind = \"body-pose\"\nbody = \"{body}\"\n"),
                 8 => format!("kind = \"body-velocity\"\nbody = \"{body}\"\n"),
+                10 => format!("kind = \"camera-image\"\neye = {eye}\n"),
+                11 => format!(
+                    "kind = \"color-blobs\"\neye = {eye}\ncolors = [{{ name = \"grey\", low = [0.4, 0.4, 0.4], high = [0.6, 0.6, 0.6] }}]\n"
+                ),
+                12 => format!("kind = \"visual-offset\"\neye = {eye}\nof = \"{body}\"\nfrom = \"{body}\"\n"),
                 9 => "kind = \"height\"\npoint = [0.0, 0.0, 0.1]\n".into(),
                 _ => "kind = \"constant\"\nvalue = 0.7\n".into(),
             };
