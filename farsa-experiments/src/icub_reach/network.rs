@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn the_network_is_two_layers_written_out() {
         let mut agent = Agent::new().unwrap();
-        let own: Vec<f32> = (0..46_u8).map(|i| f32::from(i * 37 % 41) / 10.0 - 2.0).collect();
+        let own: Vec<f32> = (0..46_u16).map(|i| f32::from(i * 37 % 41) / 10.0 - 2.0).collect();
         assert_eq!(parameters(8.0).len(), own.len());
         agent.network.controller_mut().copy_parameters(&own).unwrap();
         let (x, mut y) = ([0.2, 0.9, 0.4], [0.0; 6]);
