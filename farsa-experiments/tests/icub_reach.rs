@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use farsa_body::{Actuated as _, ActuatorId, Arrange as _, Contacts as _, JointId, Joints as _, PairId, World as _};
+use farsa_body::{
+    Actuated as _, ActuatorId, Arrange as _, Contacts as _, JointId, Joints as _, Kinematics as _, PairId, World as _,
+};
 use farsa_experiments::icub_reach::{
     Condition, Config, ReachEpisode, Reacher, Reaching, Scene, Script, evaluator, grid, outside,
 };
@@ -137,6 +139,42 @@ fn a_locked_torso_stays() {
         });
         turned[1] *= 2.0;
         assert!(turned[0] > turned[1] && turned[1] < 0.1, "{condition:?}: {turned:?} rad");
+    }
+}
+
+/// Fitness is 1 less the mean distance over the last 2 s in parts of that at the start, or when the target jumped.
+#[test]
+fn fitness_is_what_the_last_two_seconds_say() {
+    for (condition, jump) in CONDITIONS.into_iter().flat_map(|condition| [(condition, None), (condition, Some(180))]) {
+        let scene = Arc::new(Scene::new(Config::for_condition(condition)).unwrap());
+        let mut world = world_of(&scene);
+        let babble = Babble(Stream::new(5, Domain::Motor, 0, 0, 0), 0);
+        let mut episode = ReachEpisode::new(Arc::clone(&scene), babble);
+        episode.ask(Reaching { jump, ..Reaching::default() });
+        for trial in 0..10 {
+            let targets = scene.two_targets(id(trial));
+            episode.start(&mut world, id(trial));
+            let mut distances = Vec::new();
+            let fitness = loop {
+                let after = distances.len() as u32;
+                let target = targets[usize::from(jump.is_some_and(|jump| after >= jump))];
+                let palm = world.pose(Scene::PALM).cast::<f64>().transform(scene.palm_centre);
+                distances.push((0..3).map(|k| (palm[k] - target[k]) * (palm[k] - target[k])).sum::<f64>().sqrt());
+                episode.act(&mut world);
+                world.step();
+                if let Some(fitness) = episode.judge(&mut world) {
+                    break fitness;
+                }
+            };
+            // The distance after the last step; the others are of the step before.
+            distances.push(episode.ledger().last());
+            assert_eq!(distances.len(), 201);
+            let begin = jump.unwrap_or(0) as usize;
+            let window = &distances[161.max(begin + 1)..];
+            let mean = window.iter().sum::<f64>() / window.len() as f64;
+            let expected = 1.0 - (mean / distances[begin].max(0.3)).min(1.0);
+            assert!((fitness - expected).abs() < 1e-9, "{condition:?}, {jump:?}: {fitness}, not {expected}");
+        }
     }
 }
 
