@@ -73,7 +73,7 @@ pub struct Config {
     pub speed: f64,
     /// Speed at which a joint that is held returns to its angle, for each radian that it is away from it \[1/s\].
     pub hold_rate: f64,
-    /// The way from hand to target that is sensed as 0 or 1, backwards or forwards on an axis \[m\].
+    /// The way from hand to target that is sensed as -1 or 1, backwards or forwards on an axis \[m\].
     pub offset: f64,
     /// The last seconds of a trial, of which the mean distance is taken \[s\].
     pub window: f64,

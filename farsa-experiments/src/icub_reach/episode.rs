@@ -131,7 +131,7 @@ impl<C: Reacher> ReachEpisode<C> {
                 let [low, high] = volume.ends(k);
                 ((target[k] - low) / (high - low)) as f32
             }
-            Condition::Velocity => (0.5 + 0.5 * (target[k] - self.hand[k]) / offset).clamp(0.0, 1.0) as f32,
+            Condition::Velocity => ((target[k] - self.hand[k]) / offset).clamp(-1.0, 1.0) as f32,
         });
     }
 }

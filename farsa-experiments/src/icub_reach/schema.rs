@@ -20,7 +20,9 @@ pub(crate) fn sensors(config: &Config) -> [&'static str; INPUTS] {
 /// The schema of episodes in a scene.
 pub(crate) fn schema(scene: &Scene) -> Schema {
     let mut schema = Schema::from_robot(&scene.robot).with_sensors(sensors(&scene.config)).with_outputs(CONTROLLED);
-    schema.sensors.iter_mut().chain(&mut schema.outputs).for_each(|channel| channel.range = Some([0.0, 1.0]));
+    let least = if scene.config.condition == Condition::Velocity { -1.0 } else { 0.0 };
+    schema.sensors.iter_mut().for_each(|channel| channel.range = Some([least, 1.0]));
+    schema.outputs.iter_mut().for_each(|channel| channel.range = Some([0.0, 1.0]));
     let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
     let joints = CONTROLLED.into_iter().zip(scene.ranges());
     let joints = joints.map(|(name, [low, high])| in_group("joint")(&format!("{name} [rad]")).range(low, high));

@@ -77,7 +77,7 @@ impl Script {
     }
 
     fn velocity(&mut self, x: &[f32; 3], joints: &[f32; 6]) -> [f32; 6] {
-        let wanted = x.map(|x| RATE * 2.0 * (f64::from(x) - 0.5) * self.config.offset);
+        let wanted = x.map(|x| RATE * f64::from(x) * self.config.offset);
         let q = joints.map(f64::from);
         self.tree.poses_into(&q, &mut self.poses);
         let jacobian = self.tree.jacobian(&self.poses, Scene::PALM, self.palm_centre);

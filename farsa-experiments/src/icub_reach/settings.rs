@@ -83,7 +83,7 @@ impl Config {
                 number("motors.speed", self.speed, 0.0, 10.0).unit("rad/s").doc("Largest speed that is commanded."),
                 number("sensors.offset", self.offset, 1e-3, 10.0)
                     .unit("m")
-                    .doc("The way from hand to target that is sensed as 0 backwards and 1 forwards on each axis."),
+                    .doc("The way from hand to target that is sensed as -1 backwards and 1 forwards on each axis."),
             ],
         };
         [of_robot, of_condition].concat()

@@ -145,7 +145,7 @@ impl Task for ReachTask {
                 ChannelGroup::new(
                     "way",
                     INPUTS,
-                    &format!("from hand to target, x, y, z: 0 at -{offset} m, 1 at {offset} m"),
+                    &format!("from hand to target, x, y, z: -1 at -{offset} m, 1 at {offset} m"),
                 ),
                 ChannelGroup::new(
                     "speeds",
@@ -190,7 +190,7 @@ impl Exports for ReachTask {
             Condition::Steady => {
                 SensorExport::quantity(name, "the target's place relative to the body's centre", "m", volume.ends(axis))
             }
-            Condition::Velocity => SensorExport::quantity(name, "way from hand to target", "m", [-offset, offset]),
+            Condition::Velocity => SensorExport::quantity(name, "way from hand to target", "m", [0.0, offset]),
         });
         let motors = CONTROLLED.into_iter().zip(self.episode.scene().ranges());
         let motors = motors.map(|(name, range)| match condition {
