@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 
 /// What a public name of a library is called in a file: the list and the word. Without a word: why it has none.
-const NAMED: [(&str, &str, &str); 64] = [
+const NAMED: [(&str, &str, &str); 65] = [
     // Sensors.
     ("InfraredAnalytic", "sensors", "infrared"),
     ("InfraredRays", "", "part of InfraredGroups"),
@@ -52,6 +52,7 @@ const NAMED: [(&str, &str, &str); 64] = [
     ("ServoRange", "", "part of ServoGroup"),
     ("TorqueMotor", "motors", "joint-torque"),
     ("VelocityMotor", "motors", "joint-velocity"),
+    ("HeadTracking", "", "no motor: a reflex of built-in experiments"),
     // Wrappers.
     ("Noisy", "wrappers", "uniform-noise"),
     ("Noise", "wrappers", "normal-noise"),

@@ -14,6 +14,8 @@
 
 /// The robot, its segments, joints, colliders, pairs and actuators.
 pub(crate) mod description;
+/// What is drawn of a robot: visuals, and the colliders that none of them replaces.
+mod drawn;
 /// Mass, centre of mass and inertia of solid bodies: computed, moved, joined.
 pub(crate) mod mass_properties;
 /// Pairs of colliders that may touch.
@@ -24,7 +26,7 @@ pub(crate) mod shape;
 mod sliding;
 /// What can be wrong with a description, and the search for it.
 pub(crate) mod validation;
-/// What is drawn in place of colliders.
+/// A shape that is drawn.
 pub(crate) mod visual;
 
 pub use description::{Actuator, Collider, Ground, Joint, JointKind, Offsets, Pair, Robot, Segment, Surface};

@@ -3,6 +3,11 @@
 use farsa_body::{Chain, Icub, IcubPosture, JointControl};
 use farsa_lab::Error;
 
+/// Sensory neurons.
+pub(crate) const INPUTS: usize = 3;
+/// Motor neurons.
+pub(crate) const MOTORS: usize = 6;
+
 /// What the network senses and commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {

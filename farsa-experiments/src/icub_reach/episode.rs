@@ -5,9 +5,8 @@ use std::sync::Arc;
 use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Handles, JointId, Joints, Kinematics};
 use farsa_lab::{Episode, EpisodeId};
 
-use crate::icub_reach::config::{Condition, Config};
+use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};
 use crate::icub_reach::ledger::Ledger;
-use crate::icub_reach::network::{INPUTS, MOTORS};
 use crate::icub_reach::scene::Scene;
 
 /// What moves the hand.

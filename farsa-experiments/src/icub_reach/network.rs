@@ -3,15 +3,12 @@
 use farsa_lab::{Error, NormalisedController, Parameter};
 use farsa_nn::{Architecture, BlockLayout, BlockNetwork, BlockPlan, Controller, Leak, Span};
 
+use crate::icub_reach::config::{INPUTS, MOTORS};
 use crate::icub_reach::episode::Reacher;
 use crate::icub_reach::scene::CONTROLLED;
 
-/// Sensory neurons.
-pub(crate) const INPUTS: usize = 3;
 /// Hidden neurons.
 pub(crate) const HIDDEN: usize = 4;
-/// Motor neurons.
-pub(crate) const MOTORS: usize = 6;
 /// The hidden neurons among all.
 pub(crate) const HIDDEN_ONES: Span = Span::new(INPUTS, HIDDEN);
 

@@ -3,9 +3,9 @@
 use farsa_lab::{CaseId, Intervention, Interventions, Protocol};
 use farsa_num::Scalar;
 
-use crate::icub_reach::config::{Config, Volume};
+use crate::icub_reach::config::{Config, INPUTS, Volume};
 use crate::icub_reach::episode::Reaching;
-use crate::icub_reach::network::{HIDDEN, HIDDEN_ONES, INPUTS};
+use crate::icub_reach::network::{HIDDEN, HIDDEN_ONES};
 use crate::icub_reach::scene::CONTROLLED;
 
 /// Places of the grid along an axis.

@@ -4,9 +4,9 @@ use farsa_body::{Contacts, Handles, PairId, Recorder};
 use farsa_lab::seconds;
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
-use crate::icub_reach::config::{Condition, Config};
+use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};
 use crate::icub_reach::episode::{ReachEpisode, ReachingWorld};
-use crate::icub_reach::network::{Agent, HIDDEN, HIDDEN_ONES, INPUTS, MOTORS};
+use crate::icub_reach::network::{Agent, HIDDEN, HIDDEN_ONES};
 use crate::icub_reach::scene::{CONTROLLED, Scene};
 
 /// The names of the sensory neurons.

@@ -10,9 +10,9 @@ use farsa_lab::{
 use farsa_nn::{BlockLayoutBuf, Leak};
 use farsa_view::Schema;
 
-use crate::icub_reach::config::{Condition, Config};
+use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};
 use crate::icub_reach::episode::{ReachEpisode, ReachingWorld};
-use crate::icub_reach::network::{Agent, HIDDEN, INPUTS, LAYOUT, MOTORS, parameters, weights_on};
+use crate::icub_reach::network::{Agent, HIDDEN, LAYOUT, parameters, weights_on};
 use crate::icub_reach::protocols::Protocols;
 use crate::icub_reach::scene::{CONTROLLED, Scene};
 use crate::icub_reach::schema;

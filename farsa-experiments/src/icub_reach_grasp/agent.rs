@@ -3,11 +3,9 @@
 use farsa_lab::{Error, NormalisedController, OwnedNetwork};
 use farsa_nn::{Controller as _, Leak, LeakyNetwork};
 
-use crate::icub_reach_grasp::config::Config;
+use crate::icub_reach_grasp::config::{Config, MOTORS, SENSORS};
 use crate::icub_reach_grasp::episode::Grasper;
-use crate::icub_reach_grasp::motors::MOTORS;
 use crate::icub_reach_grasp::scene::wrong;
-use crate::icub_reach_grasp::senses::SENSORS;
 
 /// A network whose inputs can be disturbed and whose neurons can be silent: hidden neurons leaky and connected to each other,
 /// motor neurons leaky.

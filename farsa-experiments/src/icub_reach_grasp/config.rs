@@ -4,8 +4,10 @@ use farsa_body::{Chain, Icub, IcubPosture, IcubTabletop, Side};
 use farsa_lab::Error;
 use farsa_nn::LeakyLayout;
 
-use crate::icub_reach_grasp::motors::MOTORS;
-use crate::icub_reach_grasp::senses::SENSORS;
+/// Sensory neurons.
+pub const SENSORS: usize = 15;
+/// Motor neurons.
+pub const MOTORS: usize = 10;
 
 /// Every value of the experiment; `settings` has the reasons.
 #[derive(Clone, Copy, Debug, PartialEq)]

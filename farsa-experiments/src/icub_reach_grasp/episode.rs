@@ -7,10 +7,11 @@ use farsa_body::{
 };
 use farsa_lab::{Episode, EpisodeId, Error};
 
+use crate::icub_reach_grasp::config::{MOTORS, SENSORS};
 use crate::icub_reach_grasp::fitness::{Observation, Score};
-use crate::icub_reach_grasp::motors::{MOTORS, Motors};
+use crate::icub_reach_grasp::motors::Motors;
 use crate::icub_reach_grasp::scene::Scene;
-use crate::icub_reach_grasp::senses::{SENSORS, Senses};
+use crate::icub_reach_grasp::senses::Senses;
 
 /// What moves the robot.
 pub trait Grasper {

@@ -29,13 +29,13 @@ mod settings;
 mod task;
 
 pub use agent::Agent;
-pub use config::Config;
+pub use config::{Config, MOTORS, SENSORS};
 pub use episode::{GraspEpisode, Grasper, GraspingWorld, Lifting};
 pub use experiment::{IcubReachGrasp, evaluator};
 pub use fitness::{Observation, Score, opposition};
-pub use motors::{MOTORS, Motors};
+pub use motors::Motors;
 pub use protocols::CELLS;
 pub use scene::Scene;
 pub use script::Script;
-pub use senses::{SENSORS, Senses};
+pub use senses::Senses;
 pub use task::GraspTask;

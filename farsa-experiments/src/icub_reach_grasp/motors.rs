@@ -5,11 +5,9 @@ use farsa_body::{
 };
 use farsa_lab::Error;
 
+use crate::icub_reach_grasp::config::MOTORS;
 use crate::icub_reach_grasp::scene::{Scene, wrong};
 use crate::icub_reach_grasp::senses::Senses;
-
-/// Motor neurons.
-pub const MOTORS: usize = 10;
 
 /// The joints with a motor neuron each.
 pub(crate) const CONTROLLED: [&str; 9] = [

@@ -2,9 +2,9 @@
 
 use farsa_lab::{CaseId, Intervention, Interventions, Protocol};
 
-use crate::icub_reach_grasp::config::Config;
+use crate::icub_reach_grasp::config::{Config, SENSORS};
 use crate::icub_reach_grasp::episode::Lifting;
-use crate::icub_reach_grasp::senses::{SENSORS, Senses};
+use crate::icub_reach_grasp::senses::Senses;
 
 /// The cells of the area that are tested one by one, along X and Y.
 pub const CELLS: [u32; 2] = [4, 4];

@@ -6,10 +6,10 @@ use farsa_body::{
 use farsa_lab::Error;
 use farsa_num::sin_cos;
 
+use crate::icub_reach_grasp::config::{MOTORS, SENSORS};
 use crate::icub_reach_grasp::episode::Grasper;
-use crate::icub_reach_grasp::motors::{CONTROLLED, MOTORS};
+use crate::icub_reach_grasp::motors::CONTROLLED;
 use crate::icub_reach_grasp::scene::{Scene, wrong};
-use crate::icub_reach_grasp::senses::SENSORS;
 
 /// How far down the palm looks: it comes from above and from the right \[deg\].
 const DOWN: f64 = 60.0;

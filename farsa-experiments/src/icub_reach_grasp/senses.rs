@@ -7,10 +7,9 @@ use farsa_body::{
 use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Domain, Stream};
 
+use crate::icub_reach_grasp::config::SENSORS;
 use crate::icub_reach_grasp::scene::{Scene, wrong};
 
-/// Sensory neurons.
-pub const SENSORS: usize = 15;
 /// The joints that are sensed.
 const JOINTS: [&str; 4] = ["neck_pitch", "neck_yaw", "torso_pitch", "torso_yaw"];
 /// As far as the eye could see \[m\]; nothing hides what the offsets are of.

@@ -12,13 +12,13 @@ use farsa_nn::Leak;
 use farsa_view::Schema;
 
 use crate::icub_reach_grasp::agent::Agent;
-use crate::icub_reach_grasp::config::Config;
+use crate::icub_reach_grasp::config::{Config, SENSORS};
 use crate::icub_reach_grasp::episode::{GraspEpisode, GraspingWorld};
 use crate::icub_reach_grasp::motors::{CONTROLLED, Motors};
 use crate::icub_reach_grasp::protocols::Protocols;
 use crate::icub_reach_grasp::scene::Scene;
 use crate::icub_reach_grasp::schema;
-use crate::icub_reach_grasp::senses::{SENSORS, Senses};
+use crate::icub_reach_grasp::senses::Senses;
 
 /// A trial run by a network, with what it records.
 #[derive(Clone)]

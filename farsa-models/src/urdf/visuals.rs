@@ -6,7 +6,7 @@ use farsa_body::{BodyId, Robot, Visual};
 
 use crate::context::Context;
 use crate::error::ReadError;
-use crate::urdf::read::{Placed, joined, origin, solid};
+use crate::urdf::geometry::{Placed, joined, origin, solid};
 use crate::xml::tree::Element;
 
 /// The colours of the materials that have one, by name, red, green and blue [0..1].

@@ -233,7 +233,7 @@ impl Icub {
             }
         }
         colliders::add_pairs(&mut robot, &self.hand, self.skin);
-        look::dress(&mut robot);
+        look::dress(&mut robot, Self::EYES);
         robot.validate()?;
         Ok(robot)
     }

@@ -7,8 +7,7 @@ use crate::pose::Pose;
 use crate::robot::description::{Collider, Robot};
 use crate::robot::shape::Shape;
 use crate::robot::visual::Visual;
-use crate::robots::icub::chain::Side;
-use crate::robots::icub::description::Icub;
+use crate::robots::icub::chain::{Chain, Side};
 use crate::robots::mirror;
 
 const WHITE: [f64; 3] = [0.92, 0.92, 0.93];
@@ -65,13 +64,13 @@ fn trunk() -> [Parts; 3] {
 }
 
 /// Skull, face, eyes, ears.
-fn head() -> Parts {
-    let mut head = Parts(Icub::HEAD, Vec::new())
+fn head(eyes: [[f64; 3]; 2]) -> Parts {
+    let mut head = Parts(BodyId(Chain::Neck.bodies().end as u16 - 1), Vec::new())
         .capsule([-0.035, 0.0, 0.125], [-0.012, 0.0, 0.125], 0.083, WHITE)
         .capsule([0.028, -0.026, 0.082], [0.028, 0.026, 0.082], 0.040, WHITE)
         .capsule([0.0, 0.0, 0.0], [0.0, 0.0, 0.06], 0.024, DARK)
         .capsule([0.053, -0.014, 0.052], [0.053, 0.014, 0.052], 0.003, RED);
-    for (eye, side) in Icub::EYES.into_iter().zip([1.0, -1.0]) {
+    for (eye, side) in eyes.into_iter().zip([1.0, -1.0]) {
         let ahead = |by: f64| [eye[0] + by, eye[1], eye[2]];
         head = head
             .ball(ahead(0.0), 0.020, [0.98, 0.98, 0.98])
@@ -109,7 +108,7 @@ fn arm(side: Side) -> Vec<Parts> {
 fn hands(robot: &Robot) -> Vec<Visual> {
     let of_hand = |collider: &&Collider| {
         let own = collider.body.map_or(0, BodyId::index);
-        Side::ALL.into_iter().any(|side| own == Icub::palm(side).index() || side.hand().bodies().contains(&own))
+        Side::ALL.into_iter().any(|side| own + 1 == side.arm().bodies().end || side.hand().bodies().contains(&own))
     };
     let colored = |collider: &Collider| {
         let tip = collider.name.ends_with("_distal");
@@ -118,9 +117,9 @@ fn hands(robot: &Robot) -> Vec<Visual> {
     robot.colliders.iter().filter(of_hand).map(colored).collect()
 }
 
-/// Dresses a robot that has its segments and colliders.
-pub(super) fn dress(robot: &mut Robot) {
-    let parts = trunk().into_iter().chain([head()]).chain(Side::ALL.into_iter().flat_map(arm));
+/// Dresses a robot that has its segments and colliders, with eyes at these places of its head [m].
+pub(super) fn dress(robot: &mut Robot, eyes: [[f64; 3]; 2]) {
+    let parts = trunk().into_iter().chain([head(eyes)]).chain(Side::ALL.into_iter().flat_map(arm));
     let visuals: Vec<Visual> = parts.flat_map(|Parts(_, visuals)| visuals).collect();
     robot.visuals.extend(visuals);
     robot.visuals.extend(hands(robot));
