@@ -1,6 +1,8 @@
 //! `compositional-instructions` with a controller written by hand: the task is possible, and needs both words.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod common;
+
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -8,10 +10,7 @@ use std::sync::Arc;
 use farsa_experiments::compositional_instructions::{
     Action, Color, Condition, Config, Deaf, Instruction, InstructionEpisode, Scene, Script, Told, evaluator,
 };
-use farsa_lab::{
-    CaseId, EpisodeId, Evaluation, Evaluator, Genotype, Lanes, Outcome, Parameter, Task as _, run_episode,
-};
-use farsa_num::{Domain, Instructions, Stream};
+use farsa_lab::{CaseId, EpisodeId, Evaluation, Evaluator, Genotype, Task as _, run_episode};
 use farsa_physics::articulated::{Model, World};
 
 /// Evolved agents, by the names of the files with their genes.
@@ -69,39 +68,11 @@ fn who_does_not_hear_a_word_fails() {
 }
 
 /// Parameters of random genes.
-fn random(evaluator: &dyn Evaluator, number: u32) -> Vec<f32> {
-    let mut stream = Stream::new(2, Domain::InitialGenome, number, 0, 0);
-    let between = |parameter: Parameter| stream.range_f64(parameter.ends[0], parameter.ends[1]) as f32;
-    evaluator.parameters().into_iter().map(between).collect()
-}
-
 #[test]
 fn trials_and_cases_in_lanes_are_those_alone() {
     for condition in CONDITIONS {
         let mut evaluator = evaluator(Config { steps: 80, ..Config::for_condition(condition) }).unwrap();
-        let parameters: Vec<Vec<f32>> = (0..6).map(|number| random(&evaluator, number)).collect();
-        let protocols = evaluator.protocols();
-        let mut evaluations = Vec::new();
-        for number in 0..60 {
-            let id = EpisodeId { seed: 4, generation: 1, individual: 0, trial: number as u32 % 42 };
-            let protocol = number % protocols.len();
-            let case = CaseId { protocol, case: number * 7 % protocols[protocol].cases.len() };
-            let case = (number % 3 > 0).then_some(case);
-            evaluations.push(Evaluation { number, case, ..Evaluation::new(&parameters[number % 6], id) });
-        }
-        let alone: Vec<Outcome> = evaluations.iter().map(|one| evaluator.evaluate(*one, None)).collect();
-        assert!(alone.iter().all(Outcome::is_finite));
-        assert!(alone.iter().any(|one| one.terms != alone[0].terms));
-        for lanes in [8, 16] {
-            let in_lanes = evaluator.in_lanes().unwrap();
-            in_lanes.use_lanes(Lanes::new(lanes, Instructions::detect()).unwrap()).unwrap();
-            let mut left = evaluations.iter().copied();
-            let mut together: Vec<Option<Outcome>> = vec![None; alone.len()];
-            in_lanes.evaluate_all(&mut || left.next(), &mut |number, outcome| together[number] = Some(outcome));
-            for (number, (one, other)) in alone.iter().zip(&together).enumerate() {
-                assert_eq!(Some(one), other.as_ref(), "{condition:?}, {lanes} lanes, evaluation {number}");
-            }
-        }
+        common::assert_lanes_are_alone(&mut evaluator, 60, 42);
     }
 }
 

@@ -1,6 +1,8 @@
 //! `icub-reach`: all targets can be reached, a script reaches them, and lanes change nothing.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod common;
+
 use std::sync::Arc;
 
 use farsa_body::{
@@ -9,8 +11,8 @@ use farsa_body::{
 use farsa_experiments::icub_reach::{
     Condition, Config, ReachEpisode, Reacher, Reaching, Scene, Script, evaluator, grid, outside,
 };
-use farsa_lab::{CaseId, Episode as _, EpisodeId, Evaluation, Evaluator as _, Lanes, Outcome, Task as _};
-use farsa_num::{Domain, Instructions, Stream};
+use farsa_lab::{Episode as _, EpisodeId};
+use farsa_num::{Domain, Stream};
 use farsa_physics::articulated::{Model, World};
 
 const CONDITIONS: [Condition; 2] = [Condition::Steady, Condition::Velocity];
@@ -279,36 +281,7 @@ fn random_commands_stay_within_bounds() {
 fn trials_and_cases_in_lanes_are_those_alone() {
     for condition in CONDITIONS {
         let mut evaluator = evaluator(Config { steps: 60, ..Config::for_condition(condition) }).unwrap();
-        let random = |number: u32| -> Vec<f32> {
-            let mut stream = Stream::new(2, Domain::InitialGenome, number, 0, 0);
-            evaluator.parameters().into_iter().map(|one| stream.range_f64(one.ends[0], one.ends[1]) as f32).collect()
-        };
-        let parameters: Vec<Vec<f32>> = (0..5).map(random).collect();
-        let protocols = evaluator.protocols();
-        let evaluations: Vec<Evaluation<'_>> = (0..45)
-            .map(|number| {
-                let id = EpisodeId { seed: 4, generation: 1, individual: 0, trial: number as u32 % 20 };
-                let protocol = number % protocols.len();
-                let case = CaseId { protocol, case: number * 7 % protocols[protocol].cases.len() };
-                let case = (number % 4 > 0).then_some(case);
-                Evaluation { number, case, ..Evaluation::new(&parameters[number % 5], id) }
-            })
-            .collect();
-        let alone: Vec<Outcome> = evaluations.iter().map(|one| evaluator.evaluate(*one, None)).collect();
-        assert!(alone.iter().all(Outcome::is_finite));
-        assert!(alone.iter().any(|one| one.terms != alone[0].terms));
-        for lanes in [8, 16] {
-            for instructions in Instructions::available() {
-                let in_lanes = evaluator.in_lanes().unwrap();
-                in_lanes.use_lanes(Lanes::new(lanes, instructions).unwrap()).unwrap();
-                let mut left = evaluations.iter().copied();
-                let mut together: Vec<Option<Outcome>> = vec![None; alone.len()];
-                in_lanes.evaluate_all(&mut || left.next(), &mut |number, outcome| together[number] = Some(outcome));
-                for (number, (one, other)) in alone.iter().zip(&together).enumerate() {
-                    assert_eq!(Some(one), other.as_ref(), "{condition:?}, {lanes} lanes, evaluation {number}");
-                }
-            }
-        }
+        common::assert_lanes_are_alone(&mut evaluator, 45, 20);
     }
 }
 

@@ -8,6 +8,7 @@
 //! | the size and mass of a solid part | [`MassProperties`]: `sphere`, `capsule`, `cylinder`, `cuboid`; `placed` and `with` move and join them |
 //! | two points and a radius | [`Collider::capsule_between`] |
 //! | a thing that is pushed over a table | [`Robot::add_sliding_body`], and [`Ground`] below it |
+//! | a joint that shall not move | [`Joint::locked`] |
 //! | two robots for one world | [`Robot::prefixed`], then [`Robot::merge`], whose [`Offsets`] say where the parts went |
 //! | looks of its own | [`Visual`]s, which views draw in place of colliders |
 //! | a file | the crate `farsa-models`, which reads and writes URDF and MJCF |
@@ -16,6 +17,8 @@
 pub(crate) mod description;
 /// What is drawn of a robot: visuals, and the colliders that none of them replaces.
 mod drawn;
+/// Joints that are held for good.
+mod locked;
 /// Mass, centre of mass and inertia of solid bodies: computed, moved, joined.
 pub(crate) mod mass_properties;
 /// Pairs of colliders that may touch.

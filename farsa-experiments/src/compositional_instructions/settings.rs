@@ -154,10 +154,7 @@ impl Config {
     pub fn read(condition: Condition, settings: &Settings) -> Result<Self, Error> {
         let number = |key: &str| settings.number(key);
         let count = |key: &str| settings.count(key).map(|count| count as u32);
-        let two = |key: &str| {
-            let found = settings.numbers(key)?;
-            <[f64; 2]>::try_from(found).map_err(|_| Error::setting(key, format!("{} numbers, not 2", found.len())))
-        };
+        let two = |key: &str| settings.array::<2>(key);
         let ends = |key: &str| {
             let [low, high] = two(key)?;
             if low > high {
@@ -166,7 +163,6 @@ impl Config {
             Ok([low, high])
         };
         let held_out = |key: &str| -> Result<Instruction, Error> { condition.parse(settings.word(key)?) };
-        let bearings = settings.numbers("object.bearings")?;
         let config = Self {
             condition,
             held_out: [held_out("instruction.held_out")?, held_out("instruction.held_out_too")?],
@@ -190,9 +186,7 @@ impl Config {
                 friction: number("object.friction")?,
                 distance: number("object.distance")?,
                 distance_spread: number("object.distance_spread")?,
-                bearings: bearings
-                    .try_into()
-                    .map_err(|_| Error::setting("object.bearings", format!("{} numbers, not 3", bearings.len())))?,
+                bearings: settings.array("object.bearings")?,
                 bearing_spread: number("object.bearing_spread")?,
             },
             camera: Camera {

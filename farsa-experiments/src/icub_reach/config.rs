@@ -3,6 +3,8 @@
 use farsa_body::{Chain, Icub, IcubPosture, JointControl};
 use farsa_lab::Error;
 
+use crate::icub_limits::within_limits;
+
 /// Sensory neurons.
 pub(crate) const INPUTS: usize = 3;
 /// Motor neurons.
@@ -149,15 +151,7 @@ impl Config {
     /// [`Error::Setting`] for a start out of the joints' limits.
     pub fn check(&self) -> Result<(), Error> {
         let icub = self.icub();
-        let chains = [("start.torso", Chain::Torso, &self.torso[..]), ("start.arm", Chain::LeftArm, &self.arm[..])];
-        for (key, chain, angles) in chains {
-            for ((angle, range), name) in angles.iter().zip(icub.ranges(chain)).zip(chain.joint_names()) {
-                let [low, high] = range.map(f64::to_degrees);
-                if !(low - 1e-9..=high + 1e-9).contains(angle) {
-                    return Err(Error::setting(key, format!("{name} at {angle} deg, not from {low:.1} to {high:.1}")));
-                }
-            }
-        }
-        Ok(())
+        within_limits(&icub, "start.torso", Chain::Torso, &self.torso)?;
+        within_limits(&icub, "start.arm", Chain::LeftArm, &self.arm)
     }
 }

@@ -1,14 +1,14 @@
 //! The scene of `icub-reach`: the robot, its six joints, and the targets.
 
 use farsa_body::{
-    Actuated, Actuator, ActuatorId, Arrange, BodyId, Handles, Icub, IcubError, Joint, JointId, JointKind,
-    KinematicTree, Kinematics, Law, Pose, Robot, RobotError, Side, Torque,
+    Actuated, Actuator, ActuatorId, Arrange, BodyId, Handles, Icub, IcubError, JointId, JointKind, KinematicTree,
+    Kinematics, Law, Robot, RobotError, Side, Torque,
 };
 use farsa_lab::{EpisodeId, Error};
-use farsa_num::{Domain, Scalar, Stream, sin_cos};
+use farsa_num::{Domain, Scalar, Stream};
 use farsa_physics::articulated::Options;
 
-use crate::icub_reach::config::Config;
+use crate::icub_reach::config::{Condition, Config};
 
 /// The joints that the network commands, in the order of its outputs.
 pub const CONTROLLED: [&str; 6] =
@@ -150,11 +150,7 @@ impl Scene {
         let mut robot = Robot { actuators: Vec::new(), pairs: Vec::new(), ..self.robot.clone() };
         for Driven { joint, start, .. } in &self.held {
             let own = &mut robot.segments[joint.index()].joint;
-            let length = Scalar::sqrt(own.axis.iter().fold(0.0, |sum: f64, x| sum + x * x));
-            let (sine, cosine) = sin_cos(0.5 * start);
-            let [x, y, z] = own.axis.map(|a| a * (sine / length));
-            let turned = Pose { position: [0.0; 3], rotation: [x, y, z, cosine] };
-            *own = Joint { kind: JointKind::Fixed, ..Joint::fixed(own.placement.compose(&turned)) };
+            *own = own.locked(*start);
         }
         KinematicTree::new(&robot)
     }
@@ -192,7 +188,7 @@ impl Scene {
         W: Arrange + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
     {
         world.clear();
-        let steady = self.config.condition == crate::icub_reach::config::Condition::Steady;
+        let steady = self.config.condition == Condition::Steady;
         for one in self.controlled.iter().chain(&self.held) {
             world.place_joint(one.joint, one.start as f32, 0.0);
             world.command(one.actuator, [if steady { one.start as f32 } else { 0.0 }, 0.0]);

@@ -101,10 +101,6 @@ impl Config {
     /// # Errors
     /// [`Error::Setting`] for what does not go together.
     pub fn read(condition: Condition, settings: &Settings) -> Result<Self, Error> {
-        fn list<const N: usize>(settings: &Settings, key: &str) -> Result<[f64; N], Error> {
-            let found = settings.numbers(key)?;
-            found.try_into().map_err(|_| Error::setting(key, format!("{} numbers, not {N}", found.len())))
-        }
         let number = |key: &str| settings.number(key);
         let count = |key: &str| settings.count(key).map(|count| count as u32);
         let mut config = Self {
@@ -113,9 +109,9 @@ impl Config {
             steps: count("trial.steps")?,
             time_step: number("world.time_step")?,
             substeps: count("world.substeps")?,
-            volume: Volume { centre: list(settings, "target.centre")?, semi_axes: list(settings, "target.semi_axes")? },
-            torso: list(settings, "start.torso")?,
-            arm: list(settings, "start.arm")?,
+            volume: Volume { centre: settings.array("target.centre")?, semi_axes: settings.array("target.semi_axes")? },
+            torso: settings.array("start.torso")?,
+            arm: settings.array("start.arm")?,
             window: number("fitness.window")?,
             least_start: number("fitness.least_start")?,
             success: number("success.distance")?,

@@ -4,6 +4,8 @@ use farsa_body::{Chain, Icub, IcubPosture, IcubTabletop, Side};
 use farsa_lab::Error;
 use farsa_nn::LeakyLayout;
 
+use crate::icub_limits::{within, within_limits};
+
 /// Sensory neurons.
 pub const SENSORS: usize = 15;
 /// Motor neurons.
@@ -149,9 +151,7 @@ impl Config {
             ("start.left_arm", Chain::LeftArm, &self.left_arm[..]),
         ];
         for (key, chain, angles) in chains {
-            for ((angle, range), name) in angles.iter().zip(icub.ranges(chain)).zip(chain.joint_names()) {
-                within(key, &name, *angle, range)?;
-            }
+            within_limits(&icub, key, chain, angles)?;
         }
         let hand = icub.ranges(Side::Right.hand());
         for angle in self.opposition {
@@ -171,12 +171,4 @@ impl Config {
         }
         Ok(())
     }
-}
-
-fn within(key: &str, joint: &str, angle: f64, range: [f64; 2]) -> Result<(), Error> {
-    let [low, high] = range.map(f64::to_degrees);
-    if (low - 1e-9..=high + 1e-9).contains(&angle) {
-        return Ok(());
-    }
-    Err(Error::setting(key, format!("{joint} at {angle} deg, not from {low:.1} to {high:.1}")))
 }

@@ -46,8 +46,9 @@ impl Observation {
     }
 }
 
-/// How far two of some directions from a centre are opposite: 0 for one direction or none, 1 for opposite ones, (1 - cos) / 2 of
-/// the largest angle between two in general.
+/// How far two of some directions from a centre, of any length \[n x 3\], are opposite.
+///
+/// 0 for one direction or none, 1 for opposite ones, in general (1 - cos) / 2 of the largest angle between two.
 pub fn opposition(directions: &[[f64; 3]]) -> f64 {
     let mut most = 0.0_f64;
     for (i, a) in directions.iter().enumerate() {

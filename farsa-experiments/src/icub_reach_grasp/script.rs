@@ -1,8 +1,6 @@
 //! A grasp by script, with the agent's own motors: the task is possible.
 
-use farsa_body::{
-    Chain, Goal, Icub, InverseKinematics, Joint, JointKind, KinematicTree, Law, Orientation, Pose, Robot, Side,
-};
+use farsa_body::{Chain, Goal, Icub, InverseKinematics, KinematicTree, Law, Orientation, Pose, Robot, Side};
 use farsa_lab::Error;
 use farsa_num::sin_cos;
 
@@ -10,6 +8,7 @@ use crate::icub_reach_grasp::config::{MOTORS, SENSORS};
 use crate::icub_reach_grasp::episode::Grasper;
 use crate::icub_reach_grasp::motors::CONTROLLED;
 use crate::icub_reach_grasp::scene::{Scene, wrong};
+use crate::smooth::smooth;
 
 /// How far down the palm looks: it comes from above and from the right \[deg\].
 const DOWN: f64 = 60.0;
@@ -124,9 +123,7 @@ impl Script {
         } else {
             (at, lifted, (time - lift) / (up - lift))
         };
-        // From 0 to 1 with speed and acceleration 0 at both ends.
-        let s = share.clamp(0.0, 1.0);
-        let share = s * s * s * (10.0 + s * (6.0 * s - 15.0));
+        let share = smooth(share);
         core::array::from_fn(|i| from[i] + (to[i] - from[i]) * share)
     }
 }
@@ -139,10 +136,7 @@ fn arm(scene: &Scene) -> Result<Robot, Error> {
     robot.pairs.clear();
     let roll = scene.joint("torso_roll")?.index();
     let joint = &mut robot.segments[roll].joint;
-    let (sine, cosine) = sin_cos(0.5 * scene.config.torso[1].to_radians());
-    let [x, y, z] = joint.axis.map(|axis| axis * sine);
-    let turned = Pose { position: [0.0; 3], rotation: [x, y, z, cosine] };
-    *joint = Joint { kind: JointKind::Fixed, ..Joint::fixed(joint.placement.compose(&turned)) };
+    *joint = joint.locked(scene.config.torso[1].to_radians());
     Ok(robot)
 }
 

@@ -199,7 +199,7 @@ impl Exports for GraspTask {
         }
         let network = NetworkExport::leaky(&layout, Leak::Filter, parameters);
         let sensors = Senses::names().into_iter().enumerate().map(|(i, name)| match i {
-            0 | 1 => SensorExport::quantity(name, "ball from hand in the image, in its widths", "1", [-1.0, 1.0]),
+            0 | 1 => SensorExport::quantity(name, "ball from hand in the image, in its widths", "1", [0.0, 1.0]),
             2..6 => {
                 let range = scene.range(&name.replace(' ', "_")).unwrap_or_default();
                 SensorExport::quantity(name, "angle of the joint", "rad", range)

@@ -10,6 +10,7 @@ use farsa_lab::{Episode, EpisodeId, Error};
 
 use crate::reach_grasp_lift::episode::Judge;
 use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene};
+use crate::smooth::smooth;
 
 /// Postures with the palm exactly down, its centre 5 cm above the sphere in its four places \[deg\]: where the search for a
 /// posture begins.
@@ -153,12 +154,6 @@ pub struct GraspPlan {
     statics: Arc<Statics>,
     /// J1..J7 at the start, at the way-point, around the sphere, lifted.
     postures: [[f64; 7]; 4],
-}
-
-/// From 0 to 1 while `s` does, with speed and acceleration 0 at both ends.
-fn smooth(s: f64) -> f64 {
-    let s = s.clamp(0.0, 1.0);
-    s * s * s * (10.0 + s * (6.0 * s - 15.0))
 }
 
 fn seven(joints: &[f64]) -> [f64; 7] {

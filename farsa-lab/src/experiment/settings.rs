@@ -375,6 +375,15 @@ impl Settings {
         }
     }
 
+    /// A list of exactly N numbers.
+    ///
+    /// # Errors
+    /// As [`number`](Self::number), and [`Error::Setting`] for another count.
+    pub fn array<const N: usize>(&self, key: &str) -> Result<[f64; N], Error> {
+        let found = self.numbers(key)?;
+        found.try_into().map_err(|_| Error::setting(key, format!("{} numbers, not {N}", found.len())))
+    }
+
     fn other_kind(key: &str, value: &Value, wanted: &str) -> Error {
         Error::setting(key, format!("the experiment reads {wanted} where its table has {value}"))
     }

@@ -3,12 +3,10 @@
 use alloc::format;
 use alloc::vec::Vec;
 
-use farsa_num::sin_cos;
-
 use crate::actuators::law::{Law, Servo, Velocity};
 use crate::motors::joints::ServoRange;
 use crate::ports::{ActuatorId, BodyId, JointId};
-use crate::pose::{Pose, norm};
+use crate::pose::Pose;
 use crate::robot::description::{Joint, Robot, Segment, Surface};
 use crate::robots::hand::{Finger, Hand, Wrist};
 use crate::robots::icub::chain::{Chain, Side};
@@ -228,7 +226,7 @@ impl Icub {
             } else {
                 let segments = robot.segments[chain.bodies()].iter_mut();
                 for (segment, angle) in segments.zip(self.posture.chain(chain)) {
-                    segment.joint = fixed(&segment.joint, *angle);
+                    segment.joint = segment.joint.locked(*angle);
                 }
             }
         }
@@ -339,12 +337,4 @@ fn wrist(side: Side) -> Wrist<'static> {
 fn find(name: &str) -> Result<(Chain, usize), IcubError> {
     let place = |chain: Chain| chain.joint_names().iter().position(|other| other == name).map(|i| (chain, i));
     Chain::ALL.into_iter().find_map(place).ok_or_else(|| IcubError::Joint { name: name.into() })
-}
-
-/// A joint that does not move, in the place of one that turns, at this angle [rad].
-fn fixed(joint: &Joint, angle: f64) -> Joint {
-    let (sine, cosine) = sin_cos(angle / 2.0);
-    let length = norm(&joint.axis);
-    let [x, y, z] = joint.axis.map(|a| a * (sine / length));
-    Joint::fixed(joint.placement.compose(&Pose { position: [0.0; 3], rotation: [x, y, z, cosine] }))
 }
