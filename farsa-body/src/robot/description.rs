@@ -102,6 +102,10 @@ pub struct Pair {
     pub colliders: [usize; 2],
     /// How their surfaces act on each other.
     pub surface: Surface,
+    /// Pairs that follow each other with the same number may be searched together: only while the spheres around all
+    /// their first colliders and around all their second ones are near each other. It changes no motion.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub group: Option<u16>,
 }
 
 /// An actuator on a joint.
@@ -306,8 +310,22 @@ impl Robot {
 
     /// Appends a pair of colliders, given by their indices, that may touch.
     pub fn add_pair(&mut self, colliders: [usize; 2], surface: Surface) -> PairId {
-        self.pairs.push(Pair { colliders, surface });
+        self.pairs.push(Pair { colliders, surface, group: None });
         PairId((self.pairs.len() - 1) as u16)
+    }
+
+    /// Appends a group of pairs, given by the indices of their colliders.
+    ///
+    /// It pays where the first colliders, or the second ones, keep together, such as the parts of a hand: while the two
+    /// sets are apart, their pairs cost next to nothing.
+    pub fn add_pair_group(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>, surface: Surface) {
+        let group = Some(self.first_group());
+        self.pairs.extend(pairs.into_iter().map(|colliders| Pair { colliders, surface, group }));
+    }
+
+    /// A number that no group has.
+    fn first_group(&self) -> u16 {
+        self.pairs.iter().filter_map(|pair| pair.group).max().map_or(0, |group| group.saturating_add(1))
     }
 
     /// Appends an actuator on `joint`.
@@ -335,9 +353,11 @@ impl Robot {
             collider.body = collider.body.map(|body| offsets.body(body));
             collider
         }));
+        let group = self.first_group();
         self.pairs.extend(other.pairs.iter().map(|pair| Pair {
             colliders: pair.colliders.map(|collider| offsets.collider(collider)),
             surface: pair.surface,
+            group: pair.group.map(|number| number.saturating_add(group)),
         }));
         self.actuators.extend(other.actuators.iter().cloned().map(|mut actuator| {
             actuator.joint = offsets.joint(actuator.joint);

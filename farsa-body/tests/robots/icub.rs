@@ -367,8 +367,15 @@ fn servo_groups_are_those_of_the_arm_and_hand() {
 #[test]
 fn pairs_are_those_that_can_move() {
     let whole = robot();
-    assert_eq!(whole.pairs.len(), 2 * 25 + 2 * 7 + 8);
-    for (a, b) in [("l_forearm", "chest"), ("r_palm", "head"), ("l_upper_arm", "r_palm"), ("l_palm", "r_forearm")] {
+    assert_eq!(whole.pairs.len(), 2 * 25 + 2 * 7 + 8 + 2 * 15 * 6 + 15 * 15);
+    for (a, b) in [
+        ("l_forearm", "chest"),
+        ("r_palm", "head"),
+        ("l_upper_arm", "r_palm"),
+        ("l_palm", "r_forearm"),
+        ("r_thumb_distal", "waist"),
+        ("l_ring_middle", "r_upper_arm"),
+    ] {
         assert!(whole.pair(a, b).is_some(), "{a}, {b}");
     }
     for (a, b) in [("l_upper_arm", "chest"), ("l_upper_arm", "l_forearm"), ("l_forearm", "l_palm"), ("chest", "head")] {
@@ -379,9 +386,9 @@ fn pairs_are_those_that_can_move() {
         icub.robot().expect("a valid robot").pairs.len()
     };
     assert_eq!(count(&[]), 0);
-    assert_eq!(count(&[Chain::Neck]), 6, "arms with the head");
-    assert_eq!(count(&[Chain::RightHand]), 25);
-    assert_eq!(count(&[Chain::LeftArm]), 7 + 8);
+    assert_eq!(count(&[Chain::Neck]), 6 + 30, "arms and fingers with the head");
+    assert_eq!(count(&[Chain::RightHand]), 25 + 15 * 6 + 15 * 15);
+    assert_eq!(count(&[Chain::LeftArm]), 7 + 8 + 15 * 6 + 15 * 3 + 15 * 15);
 }
 
 /// Balls that fill a collider, capsules to 0.1 mm, boxes by points of their surface and inside.

@@ -5,12 +5,14 @@
 use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use farsa_num::fearless_simd::{Simd, f32x8, f32x16};
-use farsa_num::{Instructions, Scalar};
+use farsa_num::{Instructions, Mask as _, Scalar};
 
+use crate::articulated::group::{is_clear, unknown_gap};
 use crate::articulated::lane::{LINK_WORDS, Words};
-use crate::articulated::model::Model;
+use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::step::{Scratch, step};
 
 /// The numbers of worlds that a [`Batch`](crate::articulated::Batch) can have.
@@ -55,9 +57,7 @@ impl<S: Scalar<Real = f32>> Vectors<S> {
             }
         }
         step(simd, model, &mut self.state, &mut self.scratch);
-        for (x, to) in self.state.iter().zip(words.state.chunks_exact_mut(S::LANES)) {
-            x.store(to);
-        }
+        self.store(model, &mut words.state);
         for (w, to) in self.scratch.links.iter().zip(words.links.chunks_exact_mut(LINK_WORDS * S::LANES)) {
             let rotation = w.rotation.as_flattened();
             let velocity = [w.velocity.angular, w.velocity.linear];
@@ -66,6 +66,28 @@ impl<S: Scalar<Real = f32>> Vectors<S> {
                 x.store(to);
             }
         }
+    }
+
+    /// Copies the state, but for the points of groups that are far and were so before: their words are the same.
+    #[inline(always)]
+    fn store(&self, model: &Model<f32>, to: &mut [f32]) {
+        let copy = |range: Range<usize>, to: &mut [f32]| {
+            let to = to[S::LANES * range.start..S::LANES * range.end].chunks_exact_mut(S::LANES);
+            for (x, to) in self.state[range].iter().zip(to) {
+                x.store(to);
+            }
+        };
+        let first = model.first_point();
+        copy(0..first, to);
+        for group in &model.groups {
+            let at = first + POINT_WORDS * group.points.start;
+            let gap = S::load(self.simd, &to[S::LANES * (at + 7)..S::LANES * (at + 8)]);
+            let was_far = !gap.lt(unknown_gap(self.simd)).any();
+            if !(was_far && is_clear(self.simd, &self.state[first..], group)) {
+                copy(at..first + POINT_WORDS * group.points.end, to);
+            }
+        }
+        copy(first + POINT_WORDS * model.points..self.state.len(), to);
     }
 }
 

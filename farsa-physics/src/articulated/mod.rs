@@ -31,6 +31,8 @@ mod collision;
 mod contact;
 #[cfg(feature = "alloc")]
 mod ground;
+#[cfg(feature = "alloc")]
+mod group;
 #[cfg(all(feature = "lanes", not(test)))]
 mod lane;
 #[cfg(feature = "alloc")]

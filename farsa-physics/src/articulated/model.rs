@@ -3,6 +3,7 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
+use core::ops::Range;
 
 use farsa_body::{BodyId, JointKind, Law, RobotError};
 use farsa_num::Real;
@@ -186,6 +187,24 @@ pub(crate) struct Pair<R> {
     pub(crate) reach: Reach,
 }
 
+/// The colliders that the pairs of a group have first, or those that they have second.
+#[derive(Clone, Debug)]
+pub(crate) struct Cluster<R> {
+    pub(crate) colliders: Vec<usize>,
+    /// The reciprocal of their number.
+    pub(crate) share: R,
+}
+
+/// Pairs that follow each other: those of a group, or some of none.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Group {
+    pub(crate) pairs: Range<usize>,
+    /// Their contact points.
+    pub(crate) points: Range<usize>,
+    /// The clusters of those of a group.
+    pub(crate) clusters: Option<[usize; 2]>,
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Actuator<R> {
     pub(crate) link: u16,
@@ -206,6 +225,9 @@ pub struct Model<R> {
     pub(crate) shown: Vec<(u16, [f32; 3])>,
     pub(crate) sight_height: R,
     pub(crate) pairs: Vec<Pair<R>>,
+    /// All pairs in their order.
+    pub(crate) groups: Vec<Group>,
+    pub(crate) clusters: Vec<Cluster<R>>,
     pub(crate) actuators: Vec<Actuator<R>>,
     pub(crate) grounds: Vec<Ground<R>>,
     /// The state after [`farsa_body::Arrange::clear`].

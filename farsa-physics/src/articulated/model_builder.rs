@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use farsa_body::{JointKind, Robot, RobotError, Shape};
 use farsa_num::{Real, Scalar};
 
+use crate::articulated::group::{groups_of, is_plane};
 use crate::articulated::links::{IDENTITY, cast_mount, choose_references, compose, frame, links_of, set_limits, unit};
 use crate::articulated::model::{
     Actuator, Collider, Geometry, Ground, Model, ModelError, Mount, Options, Pair, Reach, StopPath,
@@ -254,6 +255,7 @@ impl<R: Real> Model<R> {
         let colliders = colliders_of(robot, &mounts);
         let Pairs { list: mut pairs, points, rolling, row_entries, rolling_entries } =
             pairs_of(robot, &links, &colliders)?;
+        let (groups, clusters) = groups_of(robot, &pairs, |collider| is_plane(&colliders[collider].1));
         let h = options.time_step / f64::from(options.substeps);
         let grounds = grounds_of(robot, &mounts, &colliders, &mut pairs, h);
         let positions = links.iter().map(|l| if l.motion == Motion::Floating { 7 } else { 1 }).sum();
@@ -276,6 +278,8 @@ impl<R: Real> Model<R> {
             shown: shown.collect(),
             sight_height: R::from_f64(options.sight_height),
             pairs,
+            groups,
+            clusters,
             actuators: actuators.collect(),
             grounds,
             initial: Vec::new(),

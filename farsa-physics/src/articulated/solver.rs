@@ -9,16 +9,14 @@
 use farsa_num::{Mask, Real, Scalar};
 
 use crate::articulated::collision::{PlacedShape, Point};
-use crate::articulated::contact::{clearance, edge_distance, find};
+use crate::articulated::contact::{TURNING, clearance, edge_distance, find};
 use crate::articulated::ground::{Rubbing, relax_ground};
-use crate::articulated::model::{Model, POINT_WORDS, Pair};
+use crate::articulated::group::{Sphere, is_clear, spheres_near, unknown_gap};
+use crate::articulated::model::{Group, Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
 use crate::articulated::spatial::{Vector, add, dot, scale, select, sub};
 use crate::articulated::stop::{Stop, relax_stop};
 use crate::articulated::tree::{LinkData, Root};
-
-/// How much faster than their centres the surfaces of two shapes may approach [m/s]: a shape of 3 cm at 50 rad/s.
-const TURNING: f64 = 1.5;
 
 /// One contact point's block of three rows: normal, two tangents (or spin and two rolling axes).
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +75,7 @@ struct Candidate<S: Scalar> {
 /// The parts of the scratch that the contact solver uses.
 pub(crate) struct Solver<'a, S: Scalar> {
     pub(crate) placed: &'a [PlacedShape<S>],
+    pub(crate) spheres: &'a [Sphere<S>],
     pub(crate) work: &'a [LinkData<S>],
     pub(crate) roots: &'a [Root<S>],
     /// Square roots of the reciprocals of the joints' articulated inertias [dofs].
@@ -155,52 +154,82 @@ impl<S: Scalar> Solver<'_, S> {
         for mask in self.on_grounds.iter_mut() {
             *mask = zero.lt(zero);
         }
-        for (p, pair) in model.pairs.iter().enumerate() {
-            // Broad phase: most pairs are far apart, and cost one distance. Every way out of here writes the words of all
-            // points, or an impulse of an earlier step would start a later contact.
-            let own = &mut points[POINT_WORDS * pair.point..POINT_WORDS * (pair.point + pair.points)];
-            let [far, reach] = bounds(simd, model, pair, self.placed);
-            let near = far.le(reach);
-            // Overlapping bounds say nothing of the surfaces.
-            let far = far.max(zero);
-            if !near.any() {
-                for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
-                    forget_point(words, rolling_words(pair, index, rolling_impulses), far);
-                }
+        for group in &model.groups {
+            // In which lanes a group's spheres are near: in the others its pairs are not looked at.
+            let within = group.clusters.map(|[a, b]| spheres_near(simd, model, &self.spheres[a], &self.spheres[b]));
+            if within.is_some_and(|within| !within.any()) {
+                forget_group(simd, model, group, points, rolling_impulses);
                 continue;
             }
-            for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
-                let rolling = rolling_words(pair, index, rolling_impulses);
-                let near = match edge_distance(simd, model, pair, self.placed, index) {
-                    Some(distance) => near & distance.le(reach),
-                    None => near,
-                };
-                if !near.any() {
-                    forget_point(words, rolling, far);
-                    continue;
-                }
-                let candidate = self.gap_and_mask(simd, model, pair, index, near, far);
-                if !candidate.mask.any() {
-                    forget_point(words, rolling, candidate.gap);
-                    continue;
-                }
-                self.normal_block(simd, model, pair, index, &candidate, [words[0], words[1], words[2]]);
-                if let [x, y, z] = *rolling {
-                    self.rolling_block(simd, model, pair, index, [x, y, z]);
-                }
-                touched[0] = touched[0] | candidate.mask;
-                if pair.at_stops {
-                    touched[1] = touched[1] | candidate.mask;
-                }
-                for ground in pair.grounds.into_iter().flatten() {
-                    let mask = &mut self.on_grounds[usize::from(ground)];
-                    *mask = *mask | candidate.mask;
-                }
-                self.active[count] = (p as u16, index as u16);
-                count += 1;
+            for (p, pair) in model.pairs[group.pairs.clone()].iter().enumerate() {
+                let own = &mut points[POINT_WORDS * pair.point..POINT_WORDS * (pair.point + pair.points)];
+                let number = group.pairs.start + p;
+                count = self.set_up_pair(simd, model, number, within, own, rolling_impulses, count, &mut touched);
             }
         }
         (count, touched)
+    }
+
+    /// The points of one pair, in the lanes of its group that are near; returns how many are active now.
+    #[inline(always)]
+    fn set_up_pair(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        p: usize,
+        within: Option<S::Mask>,
+        own: &mut [S],
+        rolling_impulses: &mut [S],
+        mut count: usize,
+        touched: &mut [S::Mask; 2],
+    ) -> usize {
+        // Broad phase: most pairs are far apart, and cost one distance. Every way out of here writes the words of all
+        // points, or an impulse of an earlier step would start a later contact.
+        let pair = &model.pairs[p];
+        let [far, reach] = bounds(simd, model, pair, self.placed);
+        // Overlapping bounds say nothing of the surfaces.
+        let (mut near, mut far) = (far.le(reach), far.max(S::splat(simd, S::Real::from_f64(0.0))));
+        if let Some(within) = within {
+            near = near & within;
+            far = S::select(within, far, unknown_gap(simd));
+        }
+        if !near.any() {
+            for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
+                forget_point(words, rolling_words(pair, index, rolling_impulses), far);
+            }
+            return count;
+        }
+        for (index, words) in own.chunks_exact_mut(POINT_WORDS).enumerate() {
+            let rolling = rolling_words(pair, index, rolling_impulses);
+            let near = match edge_distance(simd, model, pair, self.placed, index) {
+                Some(distance) => near & distance.le(reach),
+                None => near,
+            };
+            if !near.any() {
+                forget_point(words, rolling, far);
+                continue;
+            }
+            let candidate = self.gap_and_mask(simd, model, pair, index, near, far);
+            if !candidate.mask.any() {
+                forget_point(words, rolling, candidate.gap);
+                continue;
+            }
+            self.normal_block(simd, model, pair, index, &candidate, [words[0], words[1], words[2]]);
+            if let [x, y, z] = *rolling {
+                self.rolling_block(simd, model, pair, index, [x, y, z]);
+            }
+            touched[0] = touched[0] | candidate.mask;
+            if pair.at_stops {
+                touched[1] = touched[1] | candidate.mask;
+            }
+            for ground in pair.grounds.into_iter().flatten() {
+                let mask = &mut self.on_grounds[usize::from(ground)];
+                *mask = *mask | candidate.mask;
+            }
+            self.active[count] = (p as u16, index as u16);
+            count += 1;
+        }
+        count
     }
 
     /// One contact point: where it is, and in which lanes it may carry an impulse. `far` is the distance of the pair's
@@ -463,6 +492,26 @@ fn forget_point<S: Scalar>(words: &mut [S], rolling: &mut [S], gap: S) {
         *w = zero;
     }
     words[7] = gap;
+}
+
+/// Writes the state of all points of a group that is far in every lane, where it was not before.
+#[inline(always)]
+fn forget_group<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    group: &Group,
+    points: &mut [S],
+    rolling_impulses: &mut [S],
+) {
+    if is_clear(simd, points, group) {
+        return;
+    }
+    for pair in &model.pairs[group.pairs.clone()] {
+        for index in 0..pair.points {
+            let words = &mut points[POINT_WORDS * (pair.point + index)..POINT_WORDS * (pair.point + index + 1)];
+            forget_point(words, rolling_words(pair, index, rolling_impulses), unknown_gap(simd));
+        }
+    }
 }
 
 #[inline(always)]

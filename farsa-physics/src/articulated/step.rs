@@ -8,6 +8,7 @@ use farsa_num::{Mask as _, Real, Scalar};
 use crate::articulated::collision::PlacedShape;
 use crate::articulated::contact::place_colliders;
 use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
+use crate::articulated::group::{Sphere, place_spheres};
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::solver::{Block, Solver};
 use crate::articulated::spatial::{Spatial, Vector, add, matrix_of, rotate, scale, splat, sub};
@@ -25,6 +26,7 @@ pub struct Scratch<S: Scalar> {
     inverse_sqrt_inertia: Vec<S>,
     response: Vec<S>,
     pub(crate) placed: Vec<PlacedShape<S>>,
+    spheres: Vec<Sphere<S>>,
     blocks: Vec<Block<S>>,
     rolling: Vec<Block<S>>,
     rows: Vec<[S; 3]>,
@@ -49,6 +51,7 @@ impl<S: Scalar> Scratch<S> {
             inverse_sqrt_inertia: vec![zero; model.dofs],
             response: vec![zero; model.dofs],
             placed: vec![PlacedShape::new(simd); model.colliders.len()],
+            spheres: vec![Sphere::new(simd); model.clusters.len()],
             blocks: vec![Block::new(simd); model.points],
             rolling: vec![Block::new(simd); model.rolling],
             rows: vec![[zero; 3]; model.row_entries],
@@ -157,6 +160,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
     if model.points > 0 || !model.grounds.is_empty() {
         predict(simd, model, state.v, &mut s.links);
         place_colliders(simd, model, &s.links, &mut s.placed);
+        place_spheres(simd, model, &s.placed, &mut s.spheres);
         for (link, w) in model.links.iter().zip(&s.links) {
             if link.motion != Motion::Floating {
                 s.inverse_sqrt_inertia[usize::from(link.dof)] = w.reciprocal.sqrt();
@@ -167,6 +171,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
         }
         let mut solver = Solver {
             placed: &s.placed,
+            spheres: &s.spheres,
             work: &s.links,
             roots: &s.roots,
             inverse_sqrt_inertia: &s.inverse_sqrt_inertia,

@@ -48,7 +48,7 @@ fn ball_on(shape: Shape, placement: Pose<f64>, surface: Surface) -> Robot {
             },
             Collider::new("ground", None, shape, placement),
         ],
-        pairs: vec![Pair { colliders: [0, 1], surface }],
+        pairs: vec![Pair { colliders: [0, 1], surface, group: None }],
         actuators: vec![],
         ..Robot::default()
     }

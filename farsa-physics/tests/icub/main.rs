@@ -3,6 +3,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod groups;
 #[cfg(feature = "lanes")]
 mod lanes;
 mod random;

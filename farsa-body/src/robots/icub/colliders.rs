@@ -68,6 +68,19 @@ fn limb_pairs() -> Vec<[usize; 2]> {
     pairs
 }
 
+/// The pairs of fingers with what is not of their own hand nor arm: each hand's with waist, chest and head, with the other
+/// upper arm, forearm and palm, and with the other hand's fingers, a list for each.
+fn finger_pairs() -> Vec<Vec<[usize; 2]>> {
+    let phalanges = |side| first_phalange(side)..first_phalange(side) + 15;
+    let [left, right] = Side::ALL.map(phalanges);
+    let [left_arm, right_arm] = Side::ALL.map(arm);
+    let with = |fingers: core::ops::Range<usize>, parts: [usize; 3]| {
+        TRUNK.into_iter().chain(parts).map(move |part| fingers.clone().map(|finger| [finger, part]).collect())
+    };
+    let each = left.clone().flat_map(|a| right.clone().map(move |b| [a, b])).collect();
+    with(left, right_arm).chain(with(right, left_arm)).chain([each]).collect()
+}
+
 /// The segment with which a body moves rigidly: itself, or the next one inwards whose joint moves; none for the world.
 pub(super) fn carrier(robot: &Robot, collider: usize) -> Option<BodyId> {
     let mut body = robot.colliders.get(collider)?.body;
@@ -84,9 +97,14 @@ pub(super) fn carrier(robot: &Robot, collider: usize) -> Option<BodyId> {
 pub(super) fn add_pairs(robot: &mut Robot, hand: &Hand, skin: Surface) {
     let hands = Side::ALL.into_iter().flat_map(|side| Hand::pairs(arm(side)[2], first_phalange(side)));
     let limbs = limb_pairs().into_iter().map(|pair| (pair, skin));
+    let moves = |robot: &Robot, [a, b]: [usize; 2]| carrier(robot, a) != carrier(robot, b);
     for (pair, surface) in limbs.chain(hands.map(|pair| (pair, hand.surface))) {
-        if carrier(robot, pair[0]) != carrier(robot, pair[1]) {
+        if moves(robot, pair) {
             robot.add_pair(pair, surface);
         }
+    }
+    for mut pairs in finger_pairs() {
+        pairs.retain(|pair| moves(robot, *pair));
+        robot.add_pair_group(pairs, skin);
     }
 }

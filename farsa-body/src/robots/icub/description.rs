@@ -199,9 +199,10 @@ impl Icub {
     ///
     /// Pairs that may touch: forearms and palms with waist, chest and head; upper arms with the head; every part of one
     /// arm with every one of the other but their upper arms, which cannot reach each other; within each hand, as in
-    /// [`crate::ArmAndHand`]. Upper arms have no pair with the chest, into which the shoulders are built, nor
-    /// neighbours along an arm with each other; fingers touch only their own hand and pass through all else. Pairs whose
-    /// colliders cannot move relative to each other, because the joints between are rigid, are left out.
+    /// [`crate::ArmAndHand`]; fingers with the trunk and the other arm, its hand included. Upper arms have no pair with
+    /// the chest, into which the shoulders are built, nor neighbours along an arm with each other; no hand comes near its
+    /// own forearm or upper arm. Pairs whose colliders cannot move relative to each other, because the joints between are
+    /// rigid, are left out.
     ///
     /// # Errors
     /// [`IcubError::Twice`], [`IcubError::Posture`] and [`IcubError::Value`] for fields, [`IcubError::Robot`] for what

@@ -1,0 +1,114 @@
+//! Groups of pairs that are searched together: only while the spheres around their two sets of colliders are near.
+
+use alloc::vec::Vec;
+
+use farsa_body::Robot;
+use farsa_num::{Mask as _, Real, Scalar};
+
+use crate::articulated::collision::PlacedShape;
+use crate::articulated::contact::TURNING;
+use crate::articulated::model::{Cluster, Geometry, Group, Model, POINT_WORDS, Pair};
+use crate::articulated::spatial::{Vector, add, dot, scale, sub};
+
+/// A sphere around a cluster that holds its colliders' bounds, also at the end of a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sphere<S> {
+    centre: Vector<S>,
+    velocity: Vector<S>,
+    radius: S,
+}
+
+impl<S: Scalar> Sphere<S> {
+    pub(crate) fn new(simd: S::Simd) -> Self {
+        let zero = S::splat(simd, S::Real::from_f64(0.0));
+        Self { centre: [zero; 3], velocity: [zero; 3], radius: zero }
+    }
+}
+
+/// The runs of pairs with one group, and of pairs without one, in their order, and the clusters of the groups.
+pub(crate) fn groups_of<R: Real>(
+    robot: &Robot,
+    pairs: &[Pair<R>],
+    is_plane: impl Fn(usize) -> bool,
+) -> (Vec<Group>, Vec<Cluster<R>>) {
+    let (mut groups, mut sets) = (Vec::new(), Vec::<Vec<usize>>::new());
+    let mut start = 0;
+    for run in robot.pairs.chunk_by(|a, b| a.group == b.group) {
+        let end = start + run.len();
+        // No sphere holds a plane.
+        let grouped = run[0].group.is_some() && !run.iter().any(|pair| pair.colliders.into_iter().any(&is_plane));
+        let clusters = grouped.then(|| {
+            [0, 1].map(|side| {
+                let mut set: Vec<usize> = run.iter().map(|pair| pair.colliders[side]).collect();
+                set.sort_unstable();
+                set.dedup();
+                sets.iter().position(|known| *known == set).unwrap_or_else(|| {
+                    sets.push(set);
+                    sets.len() - 1
+                })
+            })
+        });
+        let points = pairs[start].point..pairs[end - 1].point + pairs[end - 1].points;
+        groups.push(Group { pairs: start..end, points, clusters });
+        start = end;
+    }
+    let share = |set: &Vec<usize>| R::from_f64(1.0 / set.len() as f64);
+    (groups, sets.into_iter().map(|set| Cluster { share: share(&set), colliders: set }).collect())
+}
+
+/// The spheres around all clusters, for colliders at these places.
+#[inline(always)]
+pub(crate) fn place_spheres<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    placed: &[PlacedShape<S>],
+    out: &mut [Sphere<S>],
+) {
+    let (zero, h) = (S::splat(simd, S::Real::from_f64(0.0)), S::splat(simd, model.h));
+    for (cluster, o) in model.clusters.iter().zip(out) {
+        let share = S::splat(simd, cluster.share);
+        let members = cluster.colliders.iter().map(|index| &placed[*index]);
+        let sum =
+            |of: fn(&PlacedShape<S>) -> Vector<S>| members.clone().fold([zero; 3], |sum, shape| add(sum, of(shape)));
+        let (centre, velocity) = (scale(sum(|shape| shape.position), share), scale(sum(|shape| shape.velocity), share));
+        // A collider may move by h |v| more than the centre does.
+        let mut radius = zero;
+        for (index, shape) in cluster.colliders.iter().zip(members.clone()) {
+            let (apart, moves) = (sub(shape.position, centre), sub(shape.velocity, velocity));
+            let bound = S::splat(simd, model.colliders[*index].bound);
+            radius = radius.max(dot(apart, apart).sqrt() + h * dot(moves, moves).sqrt() + bound);
+        }
+        *o = Sphere { centre, velocity, radius };
+    }
+}
+
+/// In which lanes two spheres are so near that a pair of what they hold may have to be looked at.
+///
+/// Where a pair's own bounds are near ([`crate::articulated::solver`]), so are the spheres: they are the larger, and what
+/// their members move relative to each other is in the radii and in the relative velocity of the centres.
+#[inline(always)]
+pub(crate) fn spheres_near<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, a: &Sphere<S>, b: &Sphere<S>) -> S::Mask {
+    let h = S::splat(simd, model.h);
+    let (apart, approach) = (sub(a.centre, b.centre), sub(a.velocity, b.velocity));
+    let reach = S::splat(simd, model.margin) + h * (dot(approach, approach).sqrt() + h.constant(TURNING));
+    (dot(apart, apart).sqrt() - a.radius - b.radius).le(reach)
+}
+
+/// The gap of a point of a group that is far: nothing nearer is known.
+#[inline(always)]
+pub(crate) fn unknown_gap<S: Scalar>(simd: S::Simd) -> S {
+    S::splat(simd, S::Real::from_f64(f64::INFINITY))
+}
+
+/// Whether the words of a group's points, [`POINT_WORDS`] of each, are those of a group that is far in every lane.
+///
+/// Its first point tells: while a group is near, that point's gap is finite.
+#[inline(always)]
+pub(crate) fn is_clear<S: Scalar>(simd: S::Simd, points: &[S], group: &Group) -> bool {
+    group.clusters.is_some() && !points[POINT_WORDS * group.points.start + 7].lt(unknown_gap(simd)).any()
+}
+
+/// Whether a geometry is endless.
+pub(crate) fn is_plane<R>(geometry: &Geometry<R>) -> bool {
+    matches!(geometry, Geometry::Plane)
+}
