@@ -11,8 +11,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use farsa::body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Chain, Contacts, Icub, JointId, Law, PairId, Robot, Snapshot,
-    World as _,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Chain, Contacts, Icub, JointId, Law, Pair, PairId, Robot,
+    Snapshot, World as _,
 };
 use farsa::num::{Domain, Stream, sin_cos};
 use farsa::physics::articulated::{Batch, Model, Options, World};
@@ -121,10 +121,11 @@ fn with_more_hands(whole: &Case) -> Case {
             robot.add_collider(collider)
         })
         .collect();
-    for pair in whole.robot.pairs.clone() {
+    let groups = whole.robot.pairs.iter().filter_map(|pair| pair.group).max().map_or(0, |last| last + 1);
+    for pair in &whole.robot.pairs {
         let second = pair.colliders.map(|i| colliders[i]);
         if second != pair.colliders {
-            robot.add_pair(second, pair.surface);
+            robot.pairs.push(Pair { colliders: second, group: pair.group.map(|group| group + groups), ..*pair });
         }
     }
     for actuator in whole.robot.actuators.iter().filter(|actuator| actuator.joint.index() >= first) {

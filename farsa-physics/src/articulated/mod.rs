@@ -19,6 +19,7 @@
 //! - `lockstep`: the compiled steps of batches
 //! - `sight`: what cameras see in a horizontal plane
 //! - `vision`: what the eyes of a camera with an image see
+//! - `group`: groups of pairs that are looked at together
 //! - `ground`: friction below bodies that slide in a plane
 //! - `batch`: many worlds in SIMD lanes
 //! - `lane`: one world of a batch behind the ports
