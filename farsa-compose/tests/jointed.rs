@@ -1,5 +1,7 @@
 //! Robots with joints, from files: motors do what they say, things fall, and what is wrong is said.
 
+use std::path::Path;
+
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{EpisodeId, Evaluation, Evaluator, Experiment as _, ImageChannel, Note, Outcome, Recording, Settings};
 
@@ -200,9 +202,15 @@ fn what_breaks_down_has_failed() {
 
 #[test]
 fn lanes_have_the_same_bits_as_one_world() {
-    // Arms beside balls are among the files of tests/random.rs; here is the one that is shown.
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../experiments/reaching.toml");
-    let made = ComposedExperiment::from_file(path.as_ref(), farsa_lab::strategies()).expect("an experiment");
+    // Arms beside balls are among the files of tests/random.rs; here are those that are shown.
+    for file in ["reaching.toml", "hand-eye.toml"] {
+        shown_in_lanes(file);
+    }
+}
+
+fn shown_in_lanes(file: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../experiments").join(file);
+    let made = ComposedExperiment::from_file(&path, farsa_lab::strategies()).expect("an experiment");
     let settings = Settings::new(made.settings("")).expect("settings");
     assert!(made.definition().is_some_and(|text| text.contains("<robot name=\"arm\">")));
     // The text of a run needs no other file.
@@ -367,6 +375,26 @@ fn eyes_that_cannot_be_are_refused_by_name() {
 fn cameras_are_refused_where_they_see_nothing() {
     let found = refused(&watching(1.0, "[2.0, 0.0, 1.0]").replace("\"articulated\"", "\"rapier\""));
     assert!(found.contains("sees nothing in `rapier`; take the engine `articulated`"), "{found}");
+}
+
+#[cfg(feature = "rapier")]
+#[test]
+fn eyes_see_the_same_in_rapier() {
+    let colors = "colors = [{ name = \"red\", low = [0.5, 0.0, 0.0], high = [1.0, 0.3, 0.3] }]";
+    for (name, rest) in
+        [("camera-image", ""), ("color-blobs", colors), ("visual-offset", "of = \"pear\"\nfrom = \"apple\"")]
+    {
+        let text = eyed(&format!("kind = \"{name}\"\n{EYE}\n{rest}"));
+        let [ours, other] = [text.clone(), text.replace("\"articulated\"", "\"rapier\"")].map(|text| recorded(&text));
+        let [seen, there] = [&ours, &other].map(|recording| sensed(recording, name));
+        assert!(seen.iter().any(|value| *value > 0.01), "{name}: {seen:?}");
+        assert_eq!(seen.len(), there.len());
+        for (here, there) in seen.into_iter().zip(there) {
+            close(here, there, 1e-6);
+        }
+        let [image, there] = [&ours, &other].map(|recording| recording.image_at(0, 0).map(Iterator::collect::<Vec<_>>));
+        assert!(image == there, "{name}");
+    }
 }
 
 #[cfg(feature = "rapier")]
