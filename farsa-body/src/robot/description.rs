@@ -315,10 +315,8 @@ impl Robot {
         PairId((self.pairs.len() - 1) as u16)
     }
 
-    /// Appends a group of pairs, given by the indices of their colliders.
-    ///
-    /// It pays where the first colliders, or the second ones, keep together, such as the parts of a hand: while the two
-    /// sets are apart, their pairs cost next to nothing.
+    /// Appends a group of pairs, given by the indices of their colliders: while its first ones and its second ones are
+    /// apart, it costs next to nothing, which pays where they keep together such as the parts of a hand.
     pub fn add_pair_group(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>, surface: Surface) {
         let group = Some(self.first_group());
         self.pairs.extend(pairs.into_iter().map(|colliders| Pair { colliders, surface, group }));
@@ -357,8 +355,8 @@ impl Robot {
         let group = self.first_group();
         self.pairs.extend(other.pairs.iter().map(|pair| Pair {
             colliders: pair.colliders.map(|collider| offsets.collider(collider)),
-            surface: pair.surface,
             group: pair.group.map(|number| number.saturating_add(group)),
+            ..*pair
         }));
         self.actuators.extend(other.actuators.iter().cloned().map(|mut actuator| {
             actuator.joint = offsets.joint(actuator.joint);

@@ -1,4 +1,6 @@
 //! Groups of pairs that are searched together: only while the spheres around their two sets of colliders are near.
+//!
+//! And what is remembered of points that are far.
 
 use alloc::vec::Vec;
 
@@ -106,6 +108,48 @@ pub(crate) fn unknown_gap<S: Scalar>(simd: S::Simd) -> S {
 #[inline(always)]
 pub(crate) fn is_clear<S: Scalar>(simd: S::Simd, points: &[S], group: &Group) -> bool {
     group.clusters.is_some() && !points[POINT_WORDS * group.points.start + 7].lt(unknown_gap(simd)).any()
+}
+
+/// The rolling impulse of a pair's point among those of all points; empty for a pair without rolling friction.
+#[inline(always)]
+pub(crate) fn rolling_words<'a, R, S>(pair: &Pair<R>, index: usize, all: &'a mut [S]) -> &'a mut [S] {
+    match pair.rolling {
+        Some(first) => &mut all[3 * (first + index)..3 * (first + index + 1)],
+        None => &mut [],
+    }
+}
+
+/// Writes the state of a point that carries nothing: its gap, and no impulse from which the next step could start.
+#[inline(always)]
+pub(crate) fn forget_point<S: Scalar>(words: &mut [S], rolling: &mut [S], gap: S) {
+    let zero = gap.constant(0.0);
+    for w in words.iter_mut() {
+        *w = zero;
+    }
+    for w in rolling {
+        *w = zero;
+    }
+    words[7] = gap;
+}
+
+/// Writes the state of all points of a group that is far in every lane, where it was not before.
+#[inline(always)]
+pub(crate) fn forget_group<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    group: &Group,
+    points: &mut [S],
+    rolling_impulses: &mut [S],
+) {
+    if is_clear(simd, points, group) {
+        return;
+    }
+    for pair in &model.pairs[group.pairs.clone()] {
+        for index in 0..pair.points {
+            let words = &mut points[POINT_WORDS * (pair.point + index)..POINT_WORDS * (pair.point + index + 1)];
+            forget_point(words, rolling_words(pair, index, rolling_impulses), unknown_gap(simd));
+        }
+    }
 }
 
 /// Whether a geometry is endless.

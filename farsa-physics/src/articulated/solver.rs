@@ -11,8 +11,8 @@ use farsa_num::{Mask, Real, Scalar};
 use crate::articulated::collision::{PlacedShape, Point};
 use crate::articulated::contact::{TURNING, clearance, edge_distance, find};
 use crate::articulated::ground::{Rubbing, relax_ground};
-use crate::articulated::group::{Sphere, is_clear, spheres_near, unknown_gap};
-use crate::articulated::model::{Group, Model, POINT_WORDS, Pair};
+use crate::articulated::group::{Sphere, forget_group, forget_point, rolling_words, spheres_near, unknown_gap};
+use crate::articulated::model::{Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
 use crate::articulated::spatial::{Vector, add, dot, scale, select, sub};
 use crate::articulated::stop::{Stop, relax_stop};
@@ -468,48 +468,6 @@ impl<S: Scalar> Solver<'_, S> {
                     rolling_impulses[3 * (first + index) + k] = S::select(roll.mask, total[k], zero);
                 }
             }
-        }
-    }
-}
-
-/// The rolling impulse of a pair's point among those of all points; empty for a pair without rolling friction.
-#[inline(always)]
-fn rolling_words<'a, R, S>(pair: &Pair<R>, index: usize, all: &'a mut [S]) -> &'a mut [S] {
-    match pair.rolling {
-        Some(first) => &mut all[3 * (first + index)..3 * (first + index + 1)],
-        None => &mut [],
-    }
-}
-
-/// Writes the state of a point that carries nothing: its gap, and no impulse from which the next step could start.
-#[inline(always)]
-fn forget_point<S: Scalar>(words: &mut [S], rolling: &mut [S], gap: S) {
-    let zero = gap.constant(0.0);
-    for w in words.iter_mut() {
-        *w = zero;
-    }
-    for w in rolling {
-        *w = zero;
-    }
-    words[7] = gap;
-}
-
-/// Writes the state of all points of a group that is far in every lane, where it was not before.
-#[inline(always)]
-fn forget_group<S: Scalar>(
-    simd: S::Simd,
-    model: &Model<S::Real>,
-    group: &Group,
-    points: &mut [S],
-    rolling_impulses: &mut [S],
-) {
-    if is_clear(simd, points, group) {
-        return;
-    }
-    for pair in &model.pairs[group.pairs.clone()] {
-        for index in 0..pair.points {
-            let words = &mut points[POINT_WORDS * (pair.point + index)..POINT_WORDS * (pair.point + index + 1)];
-            forget_point(words, rolling_words(pair, index, rolling_impulses), unknown_gap(simd));
         }
     }
 }
