@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use farsa_body::{Contacts as _, HeadTracking, Icub, JointId, Joints as _, PairId, Pose, ServoRange, World as _};
 use farsa_experiments::icub_reach_grasp::{
-    CELLS, Config, GraspEpisode, Grasper, Lifting, MOTORS, SENSORS, Scene, Script, Senses, evaluator,
+    Area, CELLS, Config, GraspEpisode, Grasper, Lifting, MOTORS, SENSORS, Scene, Script, Senses, evaluator,
 };
 use farsa_lab::{Episode as _, EpisodeId, Exports as _, SensorReading, Task as _};
 use farsa_num::{Domain, Stream};
@@ -289,4 +289,21 @@ fn places_are_drawn_for_a_generation() {
     }
     let expected: Vec<[u32; 2]> = (0..12).map(|trial| [trial / 4, trial % 4]).collect();
     assert_eq!(parts, expected);
+}
+
+#[test]
+fn conditions_differ_in_the_area_of_training_and_not_in_what_is_tested() {
+    let scenes = Area::NAMES.map(|name| Scene::new(Config::for_area(Area::from_name(name))).unwrap());
+    for (scene, size) in scenes.iter().zip([0.4, 0.2, 0.1]) {
+        let places: Vec<[f64; 2]> =
+            (0..120).map(|trial| scene.place(EpisodeId { generation: trial, ..id(trial) })).collect();
+        for axis in 0..2 {
+            let most =
+                places.iter().map(|place| (place[axis] - scene.config.area_centre[axis]).abs()).fold(0.0, f64::max);
+            assert!(most < 0.5 * size && most > 0.4 * size, "{most} of {size}");
+        }
+        for cell in [[0, 0], [1, 2], [3, 3]] {
+            assert_eq!(scene.place_in(id(5), cell, CELLS), scenes[0].place_in(id(5), cell, CELLS));
+        }
+    }
 }

@@ -11,6 +11,41 @@ pub const SENSORS: usize = 15;
 /// Motor neurons.
 pub const MOTORS: usize = 10;
 
+/// How large the area is in which the ball lies while agents evolve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Area {
+    /// 40 by 40 cm, all that is tested.
+    #[default]
+    Wide,
+    /// 20 by 20 cm.
+    Medium,
+    /// 10 by 10 cm.
+    Narrow,
+}
+
+impl Area {
+    /// The names of the conditions, as [`Area::from_name`] takes them.
+    pub const NAMES: [&str; 3] = ["wide", "medium", "narrow"];
+
+    /// The area of a condition's name; the widest for another one.
+    pub fn from_name(name: &str) -> Self {
+        match name {
+            "medium" => Self::Medium,
+            "narrow" => Self::Narrow,
+            _ => Self::Wide,
+        }
+    }
+
+    /// Its extent along X and Y \[m\].
+    fn size(self) -> f64 {
+        match self {
+            Self::Wide => 0.40,
+            Self::Medium => 0.20,
+            Self::Narrow => 0.10,
+        }
+    }
+}
+
 /// Every value of the experiment; `settings` has the reasons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
@@ -26,6 +61,8 @@ pub struct Config {
     pub area_centre: [f64; 2],
     /// Its extent along X and Y \[m\].
     pub area_size: [f64; 2],
+    /// The extent of the area, with the same middle, that is tested part by part \[m\].
+    pub tested_size: [f64; 2],
     /// Radius of the ball \[m\].
     pub ball_radius: f64,
     /// Its mass \[kg\].
@@ -73,6 +110,7 @@ impl Default for Config {
             substeps: 10,
             area_centre: [0.32, -0.08],
             area_size: [0.40, 0.40],
+            tested_size: [0.40, 0.40],
             ball_radius: 0.04,
             ball_mass: 0.080,
             table_top: -0.08,
@@ -87,7 +125,7 @@ impl Default for Config {
             head_gain: 0.5,
             head_speed: 2.0,
             hidden: 6,
-            weight_range: 8.0,
+            weight_range: 4.0,
             window: 5.0,
             height: 0.10,
             hold: 1.0,
@@ -96,6 +134,11 @@ impl Default for Config {
 }
 
 impl Config {
+    /// The values of a condition.
+    pub fn for_area(area: Area) -> Self {
+        Self { area_size: [area.size(); 2], ..Self::default() }
+    }
+
     /// The robot with these values: the left arm and hand are rigid.
     pub fn icub(&self) -> Icub {
         let mut posture = IcubPosture {
@@ -161,12 +204,14 @@ impl Config {
             within("hand.flexion", "J9", -angle, hand[1])?;
         }
         let table = self.tabletop();
-        for (axis, [low, high]) in [table.table_x, table.table_y].into_iter().enumerate() {
-            let (middle, half) = (self.area_centre[axis], 0.5 * self.area_size[axis]);
-            if middle - half < low || middle + half > high {
-                let (from, to, axis) = (middle - half, middle + half, ["x", "y"][axis]);
-                let text = format!("{axis} from {from} to {to} m, the table from {low} to {high} m");
-                return Err(Error::setting("area.size", text));
+        for (key, size) in [("area.size", self.area_size), ("area.tested", self.tested_size)] {
+            for (axis, [low, high]) in [table.table_x, table.table_y].into_iter().enumerate() {
+                let (middle, half) = (self.area_centre[axis], 0.5 * size[axis]);
+                if middle - half < low || middle + half > high {
+                    let (from, to, axis) = (middle - half, middle + half, ["x", "y"][axis]);
+                    let text = format!("{axis} from {from} to {to} m, the table from {low} to {high} m");
+                    return Err(Error::setting(key, text));
+                }
             }
         }
         Ok(())

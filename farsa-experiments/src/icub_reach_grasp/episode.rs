@@ -29,7 +29,7 @@ impl<W> GraspingWorld for W where W: Kinematics + Joints + Contacts + Handles<Bo
 /// What a trial asks.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Lifting {
-    /// In which cell the ball is, of so many along X and Y; where none is said, in the trial's own part of the area.
+    /// In which cell of the tested area the ball is, of so many along X and Y; where none is said, in the trial's own part of the area.
     pub cell: Option<[[u32; 2]; 2]>,
     /// Largest error of the offsets in the eye's image.
     pub noise: f32,

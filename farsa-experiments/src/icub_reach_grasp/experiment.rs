@@ -1,9 +1,11 @@
 //! The experiment `icub-reach-grasp` as the `farsa` command runs it.
 
-use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings};
+use farsa_lab::{
+    Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition, Truncation, strategies,
+};
 use farsa_physics::articulated::{Batch, Model, World};
 
-use crate::icub_reach_grasp::config::Config;
+use crate::icub_reach_grasp::config::{Area, Config};
 use crate::icub_reach_grasp::scene::{Scene, wrong};
 use crate::icub_reach_grasp::task::GraspTask;
 
@@ -26,8 +28,18 @@ impl Experiment for IcubReachGrasp {
         "the right hand of an iCub reaches for a ball on a table, grasps it and lifts it"
     }
 
-    fn settings(&self, _: &str) -> Vec<Setting> {
-        Config::default().table()
+    /// The area in which the ball lies during evolution.
+    fn conditions(&self) -> &'static [&'static str] {
+        &Area::NAMES
+    }
+
+    /// For 198 parameters standard deviations can be learned, and not their covariances.
+    fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
+        strategies().iter().find(|strategy| strategy.name() == "snes").copied().unwrap_or(&Truncation)
+    }
+
+    fn settings(&self, condition: &str) -> Vec<Setting> {
+        Config::for_area(Area::from_name(condition)).table()
     }
 
     fn prepare(&self, _: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {

@@ -29,7 +29,7 @@ mod settings;
 mod task;
 
 pub use agent::Agent;
-pub use config::{Config, MOTORS, SENSORS};
+pub use config::{Area, Config, MOTORS, SENSORS};
 pub use episode::{GraspEpisode, Grasper, GraspingWorld, Lifting};
 pub use experiment::{IcubReachGrasp, evaluator};
 pub use fitness::{Observation, Score, opposition};

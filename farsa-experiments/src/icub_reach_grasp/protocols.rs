@@ -6,7 +6,7 @@ use crate::icub_reach_grasp::config::{Config, SENSORS};
 use crate::icub_reach_grasp::episode::Lifting;
 use crate::icub_reach_grasp::senses::Senses;
 
-/// The cells of the area that are tested one by one, along X and Y.
+/// The cells of the tested area, which is the same in all conditions, that are tested one by one, along X and Y.
 pub const CELLS: [u32; 2] = [4, 4];
 /// Trials of a case.
 const TRIALS: u32 = 24;

@@ -133,16 +133,19 @@ impl Scene {
     /// From the stream of [`Domain::Start`]: the same for all individuals of a generation.
     pub fn place(&self, id: EpisodeId) -> [f64; 2] {
         let part = id.trial % (GRID[0] * GRID[1]);
-        self.place_in(id, [part / GRID[1], part % GRID[1]], GRID)
+        self.place_of(id, [part / GRID[1], part % GRID[1]], GRID, self.config.area_size)
     }
 
-    /// Where the ball lies in a trial if it is in a cell of the area, which is divided into so many along X and Y \[m\].
+    /// Where the ball lies in a trial if it is in a cell of the tested area, which is divided into so many along X and Y \[m\].
     pub fn place_in(&self, id: EpisodeId, cell: [u32; 2], cells: [u32; 2]) -> [f64; 2] {
+        self.place_of(id, cell, cells, self.config.tested_size)
+    }
+
+    fn place_of(&self, id: EpisodeId, cell: [u32; 2], cells: [u32; 2], size: [f64; 2]) -> [f64; 2] {
         let mut stream = Stream::new(id.seed, Domain::Start, id.trial, 0, id.generation);
-        let Config { area_centre, area_size, .. } = self.config;
         [0, 1].map(|k| {
             let share = (f64::from(cell[k]) + stream.range_f64(0.0, 1.0)) / f64::from(cells[k]);
-            area_centre[k] + area_size[k] * (share - 0.5)
+            self.config.area_centre[k] + size[k] * (share - 0.5)
         })
     }
 

@@ -20,8 +20,13 @@ impl Config {
 
     fn of_trials(&self) -> Vec<Setting> {
         vec![
-            Setting::whole("evolution.generations", 2000, 1..=i64::from(u32::MAX) - 1)
+            Setting::whole("evolution.generations", 1000, 1..=i64::from(u32::MAX) - 1)
                 .doc("Generations that are evaluated; the one thing that a resumed run may change."),
+            Setting::whole("evolution.population", 40, 0..=1_000_000)
+                .doc("Individuals of a generation; 0 for 4 + 3 ln n of n genes."),
+            number("strategy.sigma", 0.2, 1e-6, 10.0).doc(
+                "Initial standard deviation, in halves of a range: with 0.5 and weights up to 8, 80 generations earned what ten do so.",
+            ),
             Setting::whole("trial.trials", i64::from(self.trials), 1..=10_000)
                 .doc("Trials of an evaluation; twelve have a part of the area each."),
             Setting::whole("trial.steps", i64::from(self.steps), 1..=1_000_000)
@@ -33,6 +38,9 @@ impl Config {
                 .unit("m")
                 .doc("Middle of the area in which the ball lies, forwards and leftwards of the body's centre."),
             numbers("area.size", &self.area_size, 0.0, 2.0).unit("m").doc("Its extent along both axes."),
+            numbers("area.tested", &self.tested_size, 0.0, 2.0)
+                .unit("m")
+                .doc("Extent of the area, with the same middle, of which the protocol `areas` tests every part."),
             number("ball.radius", self.ball_radius, 0.005, 0.2).unit("m").doc("Radius of the ball."),
             number("ball.mass", self.ball_mass, 0.001, 10.0).unit("kg").doc("Its mass, of a solid ball."),
             number("table.top", self.table_top, -0.3, 0.1).unit("m").doc(
@@ -112,6 +120,7 @@ impl Config {
             substeps: count("world.substeps")?,
             area_centre: settings.array("area.centre")?,
             area_size: settings.array("area.size")?,
+            tested_size: settings.array("area.tested")?,
             ball_radius: number("ball.radius")?,
             ball_mass: number("ball.mass")?,
             table_top: number("table.top")?,
