@@ -3,14 +3,15 @@
     for p in areas noise lesions; do farsa test RUN --protocol $p --trials 100; done
     python benches/icub/grasp.py RUNS MAP.svg > tables.md
 
-RUNS holds the runs of `farsa run icub-reach-grasp --replications`. Standard library alone.
+RUNS holds the runs of `farsa run icub-reach-grasp --replications`. Python 3.11, standard library alone.
 """
 
-import csv
-import json
 import pathlib
 import statistics
 import sys
+import tomllib
+
+from reach import case_name, rows, seed
 
 PARTS = 4
 
@@ -18,18 +19,12 @@ PARTS = 4
 def cases(run: pathlib.Path, protocol: str):
     """Share of successes [%] and mean fitness of each case, in order, by name."""
     found = {}
-    with open(run / "protocols" / f"{protocol}.csv", newline="") as file:
-        for row in csv.DictReader(file):
-            name = " ".join(part for part in (row["row"], row["column"]) if part)
-            found.setdefault(name, []).append((row["success"] == "true", float(row["fitness"])))
+    for row in rows(run, protocol):
+        found.setdefault(case_name(row), []).append((row["success"] == "true", float(row["fitness"])))
     return {
         name: (100 * statistics.mean(success for success, _ in trials), statistics.mean(fitness for _, fitness in trials))
         for name, trials in found.items()
     }
-
-
-def seed(run: pathlib.Path) -> int:
-    return json.loads((run / "manifest.json").read_text())["seed"]
 
 
 def color(share: float) -> str:
@@ -53,23 +48,12 @@ def map_of(runs) -> str:
             ink = "#fff" if share > 60 else "#333"
             out.append(f'<rect x="{x}" y="{y}" width="{cell}" height="{cell}" fill="{color(share)}" stroke="#ccc"/>')
             out.append(f'<text x="{x + cell / 2}" y="{y + 21}" text-anchor="middle" font-size="11" fill="{ink}">{share:.0f}</text>')
-        settings = (run / "config.toml").read_text()
-        trained, tested = (float(setting(settings, key)) for key in ("size", "tested"))
+        area = tomllib.loads((run / "config.toml").read_text())["area"]
+        trained, tested = area["size"][0], area["tested"][0]
         side = PARTS * cell * trained / tested
         at = (PARTS * cell - side) / 2
         out.append(f'<rect x="{x0 + at}" y="{top + at}" width="{side}" height="{side}" fill="none" stroke="#c33" stroke-width="2"/>')
     return "\n".join([*out, "</svg>", ""])
-
-
-def setting(text: str, key: str) -> str:
-    """The first of the two numbers of a setting of the table `area`."""
-    within = False
-    for line in text.splitlines():
-        if line.startswith("["):
-            within = line.strip() == "[area]"
-        elif within and line.split("=")[0].strip() == key:
-            return line.split("[")[1].split(",")[0]
-    sys.exit(f"no area.{key}")
 
 
 def main() -> None:

@@ -21,12 +21,15 @@ def rows(run: pathlib.Path, protocol: str):
         return list(csv.DictReader(file))
 
 
+def case_name(row) -> str:
+    return " ".join(part for part in (row["row"], row["column"]) if part)
+
+
 def by_case(run: pathlib.Path, protocol: str):
     """Mean distance [cm] of each case, in order, by name."""
     cases = {}
     for row in rows(run, protocol):
-        name = " ".join(part for part in (row["row"], row["column"]) if part)
-        cases.setdefault(name, []).append(float(row["distance [cm]"]))
+        cases.setdefault(case_name(row), []).append(float(row["distance [cm]"]))
     return {name: statistics.mean(distances) for name, distances in cases.items()}
 
 

@@ -17,6 +17,7 @@ pub mod predator_prey;
 pub mod push_box;
 pub mod reach_grasp_lift;
 mod smooth;
+mod strategy;
 mod team;
 mod walking;
 mod wheeled;

@@ -105,7 +105,7 @@ pub struct Pair {
     pub surface: Surface,
     /// Pairs that follow each other with the same number may be searched together: only while the spheres around all
     /// their first colliders and around all their second ones are near each other. It changes no motion.
-    #[cfg_attr(feature = "serde", serde(default))]
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub group: Option<u16>,
 }
 

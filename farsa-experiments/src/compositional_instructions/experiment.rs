@@ -1,14 +1,13 @@
 //! The experiment `compositional-instructions` as the `farsa` command runs it.
 
-use farsa_lab::{
-    Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition, Truncation, strategies,
-};
+use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition};
 use farsa_physics::articulated::{Batch, Model, World};
 
 use crate::compositional_instructions::config::Config;
 use crate::compositional_instructions::instruction::Condition;
 use crate::compositional_instructions::scene::Scene;
 use crate::compositional_instructions::task::InstructionTask;
+use crate::strategy::strategy;
 
 /// How does an agent come to understand two words that it never heard together? \[Tuci2011; Ferrauto2010, chapter 3\]
 ///
@@ -44,7 +43,7 @@ impl Experiment for CompositionalInstructions {
 
     /// Natural evolution strategies: the truncation algorithm had not found the objects after nine million lives.
     fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
-        strategies().iter().find(|strategy| strategy.name() == "snes").copied().unwrap_or(&Truncation)
+        strategy("snes")
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {

@@ -1,13 +1,12 @@
 //! The experiment `icub-reach` as the `farsa` command runs it.
 
-use farsa_lab::{
-    Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition, Truncation, strategies,
-};
+use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition};
 use farsa_physics::articulated::{Batch, Model, ModelError, World};
 
 use crate::icub_reach::config::{Condition, Config};
 use crate::icub_reach::scene::Scene;
 use crate::icub_reach::task::ReachTask;
+use crate::strategy::strategy;
 
 /// How does an iCub come to reach for any target in front of it, by six joints and a network without memory?
 ///
@@ -35,7 +34,7 @@ impl Experiment for IcubReach {
 
     /// For 46 parameters the covariances can be learned.
     fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
-        strategies().iter().find(|strategy| strategy.name() == "cma-es").copied().unwrap_or(&Truncation)
+        strategy("cma-es")
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {

@@ -1,13 +1,12 @@
 //! The experiment `icub-reach-grasp` as the `farsa` command runs it.
 
-use farsa_lab::{
-    Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition, Truncation, strategies,
-};
+use farsa_lab::{Error, Evaluator, Experiment, InWorld, Lanes, Setting, Settings, StrategyDefinition};
 use farsa_physics::articulated::{Batch, Model, World};
 
 use crate::icub_reach_grasp::config::{Area, Config};
 use crate::icub_reach_grasp::scene::{Scene, wrong};
 use crate::icub_reach_grasp::task::GraspTask;
+use crate::strategy::strategy;
 
 /// How does an iCub come to reach for a ball that lies anywhere on a table, to grasp it and to lift it?
 ///
@@ -35,7 +34,7 @@ impl Experiment for IcubReachGrasp {
 
     /// For 198 parameters standard deviations can be learned, and not their covariances.
     fn strategy(&self, _: &str) -> &'static dyn StrategyDefinition {
-        strategies().iter().find(|strategy| strategy.name() == "snes").copied().unwrap_or(&Truncation)
+        strategy("snes")
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {

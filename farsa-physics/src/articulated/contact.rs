@@ -11,7 +11,7 @@ use crate::articulated::spatial::{Vector, add, dot, product, rotate, scale, spla
 use crate::articulated::tree::{LinkData, WORLD};
 
 /// How much faster than their centres the surfaces of two shapes may approach [m/s]: a shape of 3 cm at 50 rad/s.
-pub(crate) const TURNING: f64 = 1.5;
+const TURNING: f64 = 1.5;
 
 /// The colliders in the world.
 #[inline(always)]
@@ -34,6 +34,13 @@ pub(crate) fn place_colliders<S: Scalar>(
             PlacedShape { rotation: product(&w.rotation, &own), position, velocity }
         };
     }
+}
+
+/// The distance within which what closes by a relative velocity is looked at [m], and a little more for turning.
+#[inline(always)]
+pub(crate) fn reach<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, approach: Vector<S>) -> S {
+    let h = S::splat(simd, model.h);
+    S::splat(simd, model.margin) + h * (dot(approach, approach).sqrt() + h.constant(TURNING))
 }
 
 /// Distance between a pair's bounds [m]; nothing can touch while it is positive.

@@ -8,7 +8,7 @@ use farsa_body::Robot;
 use farsa_num::{Mask as _, Real, Scalar};
 
 use crate::articulated::collision::PlacedShape;
-use crate::articulated::contact::TURNING;
+use crate::articulated::contact::reach;
 use crate::articulated::model::{Cluster, Geometry, Group, Model, POINT_WORDS, Pair};
 use crate::articulated::spatial::{Vector, add, dot, scale, sub};
 
@@ -90,10 +90,8 @@ pub(crate) fn place_spheres<S: Scalar>(
 /// their members move relative to each other is in the radii and in the relative velocity of the centres.
 #[inline(always)]
 pub(crate) fn spheres_near<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, a: &Sphere<S>, b: &Sphere<S>) -> S::Mask {
-    let h = S::splat(simd, model.h);
     let (apart, approach) = (sub(a.centre, b.centre), sub(a.velocity, b.velocity));
-    let reach = S::splat(simd, model.margin) + h * (dot(approach, approach).sqrt() + h.constant(TURNING));
-    (dot(apart, apart).sqrt() - a.radius - b.radius).le(reach)
+    (dot(apart, apart).sqrt() - a.radius - b.radius).le(reach(simd, model, approach))
 }
 
 /// The gap of a point of a group that is far: nothing nearer is known.

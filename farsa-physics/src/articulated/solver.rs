@@ -9,7 +9,7 @@
 use farsa_num::{Mask, Real, Scalar};
 
 use crate::articulated::collision::{PlacedShape, Point};
-use crate::articulated::contact::{TURNING, clearance, edge_distance, find};
+use crate::articulated::contact::{clearance, edge_distance, find, reach};
 use crate::articulated::ground::{Rubbing, relax_ground};
 use crate::articulated::group::{Sphere, forget_group, forget_point, rolling_words, spheres_near, unknown_gap};
 use crate::articulated::model::{Model, POINT_WORDS, Pair};
@@ -96,15 +96,11 @@ pub(crate) struct Solver<'a, S: Scalar> {
 }
 
 /// Distance between a pair's bounds, and the distance within which its surfaces are looked at [m].
-///
-/// The bounds close by the centres' relative velocity, and a little more for turning.
 #[inline(always)]
 fn bounds<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Real>, placed: &[PlacedShape<S>]) -> [S; 2] {
-    let h = S::splat(simd, model.h);
     let [a, b] = pair.colliders;
     let approach = sub(placed[a].velocity, placed[b].velocity);
-    let reach = S::splat(simd, model.margin) + h * (dot(approach, approach).sqrt() + h.constant(TURNING));
-    [clearance(simd, model, pair, placed), reach]
+    [clearance(simd, model, pair, placed), reach(simd, model, approach)]
 }
 
 #[inline(always)]
