@@ -105,6 +105,10 @@ impl View<f32> for Lane<'_> {
     fn link_frame(&self, link: usize) -> (Matrix<f32>, Vector<f32>) {
         (self.link_matrix(link), self.link(link, 9))
     }
+    #[inline]
+    fn link_position(&self, link: usize) -> Vector<f32> {
+        self.link(link, 9)
+    }
     fn motion(&self, link: usize) -> (Spatial<f32>, Vector<f32>) {
         (Spatial { angular: self.link(link, 15), linear: self.link(link, 18) }, self.link(link, 12))
     }

@@ -7,6 +7,7 @@ use farsa_body::{JointKind, Pose, Robot};
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::model::{ModelError, Mount, Options};
+use crate::articulated::sliding::Sliding;
 use crate::articulated::spatial::{Matrix, Vector, add, cross, matrix_of, product, rotate, rotate_symmetric, sub};
 use crate::articulated::tree::{Link, LinkData, Motion, WORLD, forward_kinematics, mass_matrix};
 
@@ -80,7 +81,7 @@ impl Link<f64> {
         self.centre = joint;
     }
 
-    pub(crate) fn cast<R: Real>(&self) -> Link<R> {
+    fn cast<R: Real>(&self) -> Link<R> {
         let r = R::from_f64;
         Link {
             parent: self.parent,
@@ -100,8 +101,20 @@ impl Link<f64> {
             upper: r(self.upper),
             limit_stiffness: r(self.limit_stiffness),
             limit_damping: r(self.limit_damping),
+            sliding: None,
         }
     }
+}
+
+/// The links in the precision of a world.
+pub(crate) fn cast_links<R: Real>(links: &[Link<f64>]) -> Vec<Link<R>> {
+    let mut cast: Vec<Link<R>> = Vec::with_capacity(links.len());
+    for link in links {
+        let mut link = link.cast();
+        link.sliding = Sliding::of(&link, &cast);
+        cast.push(link);
+    }
+    cast
 }
 
 pub(crate) fn cast_mount<R: Real>(m: &Mount<f64>) -> Mount<R> {
@@ -156,6 +169,7 @@ pub(crate) fn links_of(robot: &Robot) -> (Vec<Link<f64>>, Vec<Mount<f64>>) {
             upper: joint.range[1],
             limit_stiffness: 0.0,
             limit_damping: 0.0,
+            sliding: None,
         };
         link.carry(segment.mass, segment.centre, &segment.inertia, &mount);
         q += nq;

@@ -6,6 +6,7 @@
 //! - `model_builder`: makes a model from a description
 //! - `links`: the moving links of a description, and their inertias
 //! - `spatial`: spatial vectors and inertias [Featherstone2008]
+//! - `sliding`: the same for links that only slide
 //! - `tree`: forward kinematics, articulated bodies, Newton-Euler, composite bodies
 //! - `collision`: gap, normal and point of two convex shapes
 //! - `contact`: the contact points of each pair of colliders
@@ -50,6 +51,8 @@ pub(crate) mod ray;
 mod rows;
 #[cfg(feature = "alloc")]
 mod sight;
+#[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
+mod sliding;
 #[cfg(feature = "alloc")]
 mod solver;
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "contacts need models, which own vectors"))]

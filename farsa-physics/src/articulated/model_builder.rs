@@ -7,7 +7,9 @@ use farsa_body::{JointKind, Robot, RobotError, Shape};
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::group::{groups_of, is_plane};
-use crate::articulated::links::{IDENTITY, cast_mount, choose_references, compose, frame, links_of, set_limits, unit};
+use crate::articulated::links::{
+    IDENTITY, cast_links, cast_mount, choose_references, compose, frame, links_of, set_limits, unit,
+};
 use crate::articulated::model::{
     Actuator, Collider, Geometry, Ground, Model, ModelError, Mount, Options, Pair, Reach, StopPath,
 };
@@ -269,7 +271,7 @@ impl<R: Real> Model<R> {
         let colors = robot.colliders.iter().enumerate();
         let shown = colors.filter_map(|(i, c)| Some((i as u16, c.color?.map(|shade| shade as f32))));
         let mut model = Self {
-            links: links.iter().map(Link::cast).collect(),
+            links: cast_links(&links),
             mounts: mounts.iter().map(cast_mount).collect(),
             pair_bodies: robot.pairs.iter().map(bodies_of).collect(),
             joints: robot.segments.iter().map(|s| s.joint.kind).collect(),

@@ -345,11 +345,13 @@ impl<S: Scalar> Solver<'_, S> {
         let limit = S::splat(simd, pair.rolling_friction) * block.impulse[0];
         let wanted = cap([dot(old, axes[0]), dot(old, axes[1]), dot(old, axes[2])], limit);
         let impulse = select(block.mask, wanted, [zero; 3]);
+        // About an axis that neither side can turn about a moment does nothing, and none is needed.
+        let inverse = |a: S| S::select(a.gt(zero), one / a, zero);
         self.rolling[first + index] = Block {
             velocity: [dot(turning, axes[0]), dot(turning, axes[1]), dot(turning, axes[2])],
             impulse,
             response,
-            inverse: [one / response[0], one / response[1], one / response[2]],
+            inverse: [inverse(response[0]), inverse(response[1]), inverse(response[2])],
             ..block
         };
         apply(&pair.reach.dofs, rows, impulse, block.mask, self.response);

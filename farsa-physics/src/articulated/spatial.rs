@@ -176,6 +176,9 @@ pub(crate) struct Inertia<S> {
     pub(crate) linear: [S; 6],
 }
 
+/// Row and column of each entry of a symmetric matrix.
+const TRIANGLE: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
 #[inline(always)]
 pub(crate) fn symmetric<S: Scalar>(m: &[S; 6], a: Vector<S>) -> Vector<S> {
     [
@@ -260,14 +263,24 @@ impl<S: Scalar> Inertia<S> {
         // enough.
         let (w, v, sw, sv) = (u.angular, u.linear, s.angular, s.linear);
         let mut o = *self;
-        for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+        for (k, (a, b)) in TRIANGLE.into_iter().enumerate() {
             o.angular[k] -= sw[a] * w[b];
-            o.linear[k] -= sv[a] * v[b];
         }
+        o.linear = Self::linear_minus_square(&self.linear, v, sv);
         for a in 0..3 {
             for b in 0..3 {
                 o.coupling[a][b] -= sw[a] * v[b];
             }
+        }
+        o
+    }
+
+    /// The linear block of the same, with `sv` for `v d`.
+    #[inline(always)]
+    pub(crate) fn linear_minus_square(linear: &[S; 6], v: Vector<S>, sv: Vector<S>) -> [S; 6] {
+        let mut o = *linear;
+        for (k, (a, b)) in TRIANGLE.into_iter().enumerate() {
+            o[k] -= sv[a] * v[b];
         }
         o
     }

@@ -5,6 +5,7 @@
 
 use farsa_num::{Real, Scalar, sin_cos};
 
+use crate::articulated::sliding::{self, Sliding};
 use crate::articulated::spatial::{
     Cholesky, Inertia, Matrix, Spatial, Vector, add, cross, dot, matrix_of, product, rotate, rotate_symmetric, scale,
     splat, splat_matrix, splat_symmetric, sub,
@@ -45,6 +46,8 @@ pub struct Link<R> {
     pub(crate) upper: R,
     pub(crate) limit_stiffness: R,
     pub(crate) limit_damping: R,
+    /// Of a link that only slides, what makes its kernels short.
+    pub(crate) sliding: Option<Sliding<R>>,
 }
 
 /// What the sweeps compute for one link.
@@ -111,6 +114,12 @@ pub fn forward_kinematics<S: Scalar>(
     // First pass: rotations and origins. A joint's frame turns about or slides along its own z axis.
     for (i, link) in links.iter().enumerate() {
         let at = usize::from(link.q);
+        if let Some(own) = &link.sliding {
+            let parent = (link.parent != WORLD).then(|| work[usize::from(link.parent)].position);
+            let w = &mut work[i];
+            (w.rotation, w.position, w.centre) = own.place(simd, parent, q[at]);
+            continue;
+        }
         let (rotation, position) = if link.motion == Motion::Floating {
             (matrix_of([q[at + 3], q[at + 4], q[at + 5], q[at + 6]]), [q[at], q[at + 1], q[at + 2]])
         } else {
@@ -144,6 +153,10 @@ pub fn forward_kinematics<S: Scalar>(
         let at = usize::from(link.dof);
         let w = &mut work[i];
         w.reference = reference;
+        if link.sliding.is_some() {
+            sliding::set_in_motion(simd, w, parent.linear, v[at]);
+            continue;
+        }
         let axis = [w.rotation[0][2], w.rotation[1][2], w.rotation[2][2]];
         match link.motion {
             Motion::Floating => {
@@ -169,10 +182,15 @@ pub fn forward_kinematics<S: Scalar>(
 #[inline(always)]
 pub(crate) fn rigid_inertias<S: Scalar>(simd: S::Simd, links: &[Link<S::Real>], work: &mut [LinkData<S>]) {
     for (link, w) in links.iter().zip(work) {
-        let about_centre = splat_symmetric(simd, link.inertia);
-        let turned = rotate_symmetric(&w.rotation, &about_centre);
-        w.inertia = Inertia::rigid(S::splat(simd, link.mass), sub(w.centre, w.reference), turned);
+        w.inertia = rigid_inertia(simd, link, w);
     }
+}
+
+#[inline(always)]
+fn rigid_inertia<S: Scalar>(simd: S::Simd, link: &Link<S::Real>, w: &LinkData<S>) -> Inertia<S> {
+    let about_centre = splat_symmetric(simd, link.inertia);
+    let turned = rotate_symmetric(&w.rotation, &about_centre);
+    Inertia::rigid(S::splat(simd, link.mass), sub(w.centre, w.reference), turned)
 }
 
 /// Joint accelerations under joint efforts: articulated bodies [Featherstone2008] table 7.1.
@@ -193,9 +211,13 @@ pub fn accelerations<S: Scalar>(
     qdd: &mut [S],
 ) {
     let one = S::splat(simd, S::Real::from_f64(1.0));
-    rigid_inertias(simd, links, work);
     // Bias forces p_i = v_i x* I_i v_i; gravity comes in with the acceleration of the base, below.
-    for w in work.iter_mut() {
+    for (link, w) in links.iter().zip(work.iter_mut()) {
+        if link.sliding.is_some() {
+            sliding::weigh(simd, w, link.mass);
+            continue;
+        }
+        w.inertia = rigid_inertia(simd, link, w);
         w.force = w.velocity.cross_force(w.inertia.times(w.velocity));
     }
     // Inwards, articulated inertias I^A and bias forces p^A. With U = I^A s, D = s . U + diagonal and u = tau - s . p^A a link
@@ -208,6 +230,13 @@ pub fn accelerations<S: Scalar>(
             roots[usize::from(link.root)].factor = w.inertia.cholesky();
             continue;
         }
+        if link.sliding.is_some() {
+            let (inertia, force) = sliding::inwards(simd, w, tau[at], diagonal[at]);
+            if link.parent != WORLD {
+                sliding::take(&mut work[usize::from(link.parent)], &inertia, force);
+            }
+            continue;
+        }
         let column = w.inertia.times(w.subspace);
         let d = one / (w.subspace.dot(column) + diagonal[at]);
         let u = tau[at] - w.subspace.dot(w.force);
@@ -218,6 +247,10 @@ pub fn accelerations<S: Scalar>(
             let inertia = w.inertia.minus_square(column, d);
             let force = w.force + inertia.times(w.bias) + column.scale(u * d);
             let parent = &mut work[usize::from(link.parent)];
+            if links[usize::from(link.parent)].sliding.is_some() {
+                sliding::take(parent, &inertia.linear, force.linear);
+                continue;
+            }
             parent.inertia.add(&inertia);
             parent.force += force;
         }
@@ -248,6 +281,10 @@ pub fn accelerations<S: Scalar>(
         }
         let parent = if link.parent == WORLD { base } else { work[usize::from(link.parent)].acceleration };
         let w = &mut work[i];
+        if link.sliding.is_some() {
+            qdd[at] = sliding::outwards(simd, w, parent.linear);
+            continue;
+        }
         let a = parent + w.bias;
         let x = (w.effort - w.column.dot(a)) * w.reciprocal;
         qdd[at] = x;

@@ -22,6 +22,8 @@ pub(crate) trait View<R: Real> {
     fn set_word(&mut self, index: usize, x: R);
     /// Rotation and position of a moving link.
     fn link_frame(&self, link: usize) -> (Matrix<R>, Vector<R>);
+    /// Position of a moving link.
+    fn link_position(&self, link: usize) -> Vector<R>;
     /// Velocity of a moving link, and the point that its linear part belongs to.
     fn motion(&self, link: usize) -> (Spatial<R>, Vector<R>);
 }
@@ -83,7 +85,12 @@ pub(crate) fn place<R: Real>(world: &impl View<R>, mount: &Mount<R>) -> Vector<R
     if mount.link == WORLD {
         return mount.position;
     }
-    let (rotation, position) = world.link_frame(usize::from(mount.link));
+    let link = usize::from(mount.link);
+    if mount.position == [R::from_f64(0.0); 3] {
+        // The nine words of the rotation need not be read.
+        return add(world.link_position(link), mount.position);
+    }
+    let (rotation, position) = world.link_frame(link);
     add(position, rotate(&rotation, mount.position))
 }
 

@@ -138,6 +138,9 @@ impl<R: Precision> View<R> for World<R> {
         let w = &self.scratch.links[link];
         (w.rotation, w.position)
     }
+    fn link_position(&self, link: usize) -> Vector<R> {
+        self.scratch.links[link].position
+    }
     fn motion(&self, link: usize) -> (Spatial<R>, Vector<R>) {
         let w = &self.scratch.links[link];
         (w.velocity, w.reference)
