@@ -4,7 +4,8 @@
 use alloc::vec::Vec;
 
 use crate::channel::{ChannelError, finite_range, groups, positive};
-use crate::ports::{BodyId, Channels, Kinematics, Sensor, Sight};
+use crate::ports::{BodyId, Channels, Kinematics, NearbySurface, Sensor, Sight};
+use crate::pose::Pose;
 use crate::sensors::beam::Beam;
 use crate::sensors::stance::Stance;
 
@@ -72,6 +73,7 @@ pub struct LinearCamera<R, C, B = BodyId> {
     per_sector: usize,
     bands: C,
     range: f32,
+    wedge: Wedge,
 }
 
 impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
@@ -87,7 +89,8 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> LinearCamera<R, C, B> {
         groups("colours", bands.as_ref().len(), 1)?;
         rays.as_ref().iter().try_for_each(Beam::check)?;
         bands.as_ref().iter().try_for_each(ColorBand::check)?;
-        Ok(Self { body, rays, per_sector, bands, range: positive("range", range)? })
+        let wedge = Wedge::around(rays.as_ref());
+        Ok(Self { body, rays, per_sector, bands, range: positive("range", range)?, wedge })
     }
 }
 
@@ -133,26 +136,18 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> Channels for LinearCamera<R, C,
     }
 }
 
-impl<R, C, B, W> Sensor<W> for LinearCamera<R, C, B>
-where
-    R: AsRef<[Beam]>,
-    C: AsRef<[ColorBand]>,
-    B: Copy,
-    W: Sight<Body = B> + Kinematics + ?Sized,
-{
-    fn read(&mut self, world: &W, out: &mut [f32]) {
-        let (stance, bands) = (Stance::from_world(world, self.body), self.bands.as_ref());
-        let rays = self.rays.as_ref();
-        let shown =
-            Shown::from_world(world, &stance, rays, self.range, |color| bands.iter().any(|band| band.shows(color)));
-        for (values, sector) in out.chunks_mut(bands.len()).zip(rays.chunks_exact(self.per_sector)) {
+impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B: Copy + PartialEq> LinearCamera<R, C, B> {
+    /// Reads what the camera sees from a pose of its body that is known already; `out` as for [`Sensor::read`].
+    pub fn read_from<W: Sight<Body = B> + ?Sized>(&self, world: &W, pose: &Pose, out: &mut [f32]) {
+        let (stance, bands) = (Stance::from_pose(pose), self.bands.as_ref());
+        let (own, wedge, range) = (self.body, &self.wedge, self.range);
+        let shows = |near: &NearbySurface<B>| near.body != Some(own) && bands.iter().any(|band| band.shows(near.color));
+        let shown = Shown::from_world(world, &stance, wedge, range, shows);
+        for (values, sector) in out.chunks_mut(bands.len()).zip(self.rays.as_ref().chunks_exact(self.per_sector)) {
             values.fill(0.0);
-            for ray in sector {
+            for ray in sector.iter().filter(|ray| shown.may_meet(ray)) {
                 let (from, direction) = (stance.place(ray.from), stance.turn(ray.direction));
-                if !shown.may_meet(from, direction) {
-                    continue;
-                }
-                if let Some(sight) = world.cast_planar(from, direction, self.range, Some(self.body)) {
+                if let Some(sight) = world.cast_planar(from, direction, range, Some(own)) {
                     for (o, band) in values.iter_mut().zip(bands) {
                         *o += if band.shows(sight.color) { 1.0 } else { 0.0 };
                     }
@@ -165,13 +160,60 @@ where
     }
 }
 
+impl<R, C, B, W> Sensor<W> for LinearCamera<R, C, B>
+where
+    R: AsRef<[Beam]>,
+    C: AsRef<[ColorBand]>,
+    B: Copy + PartialEq,
+    W: Sight<Body = B> + Kinematics + ?Sized,
+{
+    fn read(&mut self, world: &W, out: &mut [f32]) {
+        self.read_from(world, &world.pose(self.body), out);
+    }
+}
+
+/// The part of the plane that the rays of a camera cross, in the robot's frame: all within an angle to both sides of straight
+/// ahead, and a little more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wedge {
+    /// Cosine and sine of the angle; both 0 for one beyond a right angle, whose wedge has no line beside it.
+    edge: [f32; 2],
+    /// How far from the robot's origin rays begin at most [m].
+    aside: f32,
+}
+
+impl Wedge {
+    fn around(rays: &[Beam]) -> Self {
+        let least = rays.iter().map(|ray| ray.direction[0]).fold(1.0, f32::min);
+        let widest = rays.iter().map(|ray| ray.direction[1].abs()).fold(0.0, f32::max);
+        let edge = if least > 0.0 { [least, widest] } else { [0.0; 2] };
+        Self { edge, aside: rays.iter().map(|ray| ray.from[0].abs() + ray.from[1].abs()).fold(0.0, f32::max) }
+    }
+
+    /// Whether something round may reach into it; sometimes also if it does not.
+    #[inline]
+    fn may_hold(&self, Round { centre: [x, y], room }: &Round) -> bool {
+        let [cosine, sine] = self.edge;
+        // Beyond the edge of its own side by more than the radius: the edge's line has all rays on its other side.
+        let outside = y.abs() * cosine - x * sine > room + self.aside;
+        !outside
+    }
+}
+
 /// What a camera's bands show of what is around: only a ray that may meet some of it can change what the camera reads.
 struct Shown {
-    /// Centre and radius of round bodies [m].
-    rounds: [([f32; 2], f32); MOST_SHOWN],
+    rounds: [Round; MOST_SHOWN],
     count: usize,
     /// A wall is shown, or more bodies than there is room for: every ray may meet something.
     anywhere: bool,
+}
+
+/// A round body, in the robot's frame.
+#[derive(Clone, Copy)]
+struct Round {
+    centre: [f32; 2],
+    /// Its radius and a little more, for rounding [m].
+    room: f32,
 }
 
 /// As many bodies as there usually are; of more it does not pay to try each before every ray.
@@ -182,42 +224,50 @@ impl Shown {
     fn from_world<W: Sight + ?Sized>(
         world: &W,
         stance: &Stance,
-        rays: &[Beam],
+        wedge: &Wedge,
         range: f32,
-        shows: impl Fn([f32; 3]) -> bool,
+        shows: impl Fn(&NearbySurface<W::Body>) -> bool,
     ) -> Self {
-        let mut shown = Self { rounds: [([0.0; 2], 0.0); MOST_SHOWN], count: 0, anywhere: false };
-        let aside = |ray: &Beam| ray.from[0].abs() + ray.from[1].abs();
-        let reach = rays.iter().map(aside).fold(0.0, f32::max) + range;
-        world.query_near(stance.at, reach, &mut |near| {
-            if shown.anywhere || !shows(near.color) {
+        let nothing = Round { centre: [0.0; 2], room: 0.0 };
+        let mut shown = Self { rounds: [nothing; MOST_SHOWN], count: 0, anywhere: false };
+        world.query_near(stance.at, wedge.aside + range, &mut |near| {
+            if shown.anywhere || !shows(&near) {
                 return;
             }
             // The middle lies a radius behind the nearest point, which cannot be known from close by.
             let round = near.body.is_some() && near.radius > 0.0;
-            let told = round && near.distance > 0.5 * near.radius;
-            let Some(room) = shown.rounds.get_mut(shown.count).filter(|_| told) else {
+            if !(round && near.distance > 0.5 * near.radius) {
                 shown.anywhere = true;
                 return;
-            };
-            let behind = near.radius / near.distance;
-            let centre = [0, 1].map(|k| near.point[k] + (near.point[k] - stance.at[k]) * behind);
-            *room = (centre, near.radius);
-            shown.count += 1;
+            }
+            let further = (near.distance + near.radius) / near.distance;
+            let centre = stance.way_to(near.point).map(|x| x * further);
+            let away = centre[0].abs() + centre[1].abs() + wedge.aside;
+            let round = Round { centre, room: 1.01 * near.radius + 1e-3 * away };
+            if !wedge.may_hold(&round) {
+                return;
+            }
+            match shown.rounds.get_mut(shown.count) {
+                Some(next) => {
+                    *next = round;
+                    shown.count += 1;
+                }
+                None => shown.anywhere = true,
+            }
         });
         shown
     }
 
     /// Whether a ray of unit direction may meet something shown; sometimes also if it does not.
     #[inline]
-    fn may_meet(&self, from: [f32; 2], direction: [f32; 2]) -> bool {
+    fn may_meet(&self, ray: &Beam) -> bool {
+        let (from, direction) = (ray.from, ray.direction);
         self.anywhere
-            || self.rounds[..self.count].iter().any(|(centre, radius)| {
+            || self.rounds[..self.count].iter().any(|Round { centre, room }| {
                 let [x, y] = [centre[0] - from[0], centre[1] - from[1]];
                 let (along, across) = (x * direction[0] + y * direction[1], x * direction[1] - y * direction[0]);
-                // A little more than the radius, for rounding; and never "no" for a number that is none.
-                let room = 1.01 * radius + 1e-3 * (x.abs() + y.abs());
-                !(along < -room || across.abs() > room)
+                // Never "no" for a number that is none.
+                !(along < -room || across.abs() > *room)
             })
     }
 }

@@ -3,6 +3,7 @@
 use farsa_num::Scalar;
 
 use crate::ports::{Kinematics, NearbySurface};
+use crate::pose::Pose;
 
 /// The pose of a robot in the plane; a tilted one is seen from above.
 #[derive(Clone, Copy)]
@@ -16,7 +17,11 @@ pub(crate) struct Stance {
 impl Stance {
     #[inline]
     pub(crate) fn from_world<W: Kinematics + ?Sized>(world: &W, body: W::Body) -> Self {
-        let pose = world.pose(body);
+        Self::from_pose(&world.pose(body))
+    }
+
+    #[inline]
+    pub(crate) fn from_pose(pose: &Pose) -> Self {
         let [x, y, _] = pose.rotate([1.0, 0.0, 0.0]);
         let length = Scalar::sqrt(x * x + y * y);
         // One that stands on its head or its tail looks along the world's x axis, for want of better.

@@ -3,7 +3,9 @@
 use core::f32::consts::PI;
 
 use farsa_body::testing::PlaneWorld;
-use farsa_body::{Beam, BodyId, Channels, ColorBand, LightSensors, LinearCamera, MobileRobot, Sensor, Sight};
+use farsa_body::{
+    Beam, BodyId, Channels, ColorBand, Kinematics as _, LightSensors, LinearCamera, MobileRobot, Sensor, Sight,
+};
 use proptest::prelude::*;
 
 const RED: [f32; 3] = [1.0, 0.0, 0.0];
@@ -106,21 +108,26 @@ proptest! {
         }
     }
 
-    /// Rays that cannot meet a colour are left out; that must not show, be the discs few, many, near or around the robot.
+    /// Rays that cannot meet a colour are left out; that must not show, be the discs few, many, near or around the robot, and the
+    /// view narrow or wide.
     #[test]
     fn a_camera_reads_what_all_of_its_rays_see(
         discs in prop::collection::vec((-PI..PI, 0.01_f32..2.0, 0.05_f32..1.5, 0_usize..3), 0..24),
         aside in prop::array::uniform2(-0.3_f64..0.3),
         wall in prop::option::of(0_usize..3),
+        field in prop::sample::select(vec![0.2, 0.9, 3.0, 6.0]),
     ) {
         const RAYS: usize = 30;
         let mut world = world_of(&discs, 1.0);
         if let Some(color) = wall {
             world.add_wall([[1.0, -1.0], [1.0, 2.0]], [RED, BLUE, GREEN][color]);
         }
-        let beams: Vec<Beam> = (0..RAYS).map(|ray| Beam::in_view(aside, 6.0, ray, RAYS)).collect();
+        let beams: Vec<Beam> = (0..RAYS).map(|ray| Beam::in_view(aside, field, ray, RAYS)).collect();
         let mut camera = LinearCamera::new(BodyId(0), beams.clone(), 10, bands(), 1.5).unwrap();
         let values = read(&mut camera, &world);
+        let mut from_pose = vec![f32::NAN; values.len()];
+        camera.read_from(&world, &world.pose(BodyId(0)), &mut from_pose);
+        prop_assert_eq!(&values, &from_pose);
         // The robot stands at the origin and looks along x.
         let sights = beams.iter().map(|beam| world.cast_planar(beam.from, beam.direction, 1.5, Some(BodyId(0))));
         let seen: Vec<_> = sights.map(|sight| sight.map(|sight| sight.color)).collect();

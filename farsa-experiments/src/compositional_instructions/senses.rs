@@ -1,7 +1,7 @@
 //! What the agent senses: colours ahead, touch, its joints, and the two words.
 
 use farsa_body::{
-    Beam, BodyId, ChannelError, ColorBand, Handles, JointId, Joints, Kinematics, LinearCamera, Pose, Sensor, Sight,
+    Beam, BodyId, ChannelError, ColorBand, Handles, JointId, Joints, Kinematics, LinearCamera, Pose, Sight,
 };
 use farsa_lab::Error;
 
@@ -72,14 +72,14 @@ impl Senses {
         x: &mut [f32; INPUTS],
     ) -> Observation {
         let mut now = Observation::default();
-        self.camera.read(world, &mut x[..9]);
+        let (first, second) = (world.pose(Scene::FIRST), world.pose(Scene::SECOND));
+        self.camera.read_from(world, &first, &mut x[..9]);
         for (sector, values) in now.seen.iter_mut().zip(x.chunks_exact_mut(3)) {
             for (seen, value) in sector.iter_mut().zip(values) {
                 *seen = *value > 0.0;
                 *value = f32::from(u8::from(*seen));
             }
         }
-        let (first, second) = (world.pose(Scene::FIRST), world.pose(Scene::SECOND));
         let mut sides = [false; 3];
         let tip = second.transform([self.length as f32, 0.0, 0.0]).map(f64::from);
         for (i, object) in self.objects.into_iter().enumerate() {
@@ -88,7 +88,7 @@ impl Senses {
             now.ahead[i] = [ahead, left];
             now.displaced[i] = Scene::distance([place[0], place[1]].map(f64::from), places[i]);
             now.tip[i] = Scene::distance([tip[0], tip[1]], [place[0], place[1]].map(f64::from)) - self.radius;
-            if let Some(side) = self.side(&second, place) {
+            if let Some(side) = self.side(&second, tip, place) {
                 now.touched[i] = true;
                 sides[side] = true;
             }
@@ -111,8 +111,16 @@ impl Senses {
         x[17 + color.index()] = 1.0;
     }
 
-    /// With which side the second segment is on an object at a place: 0 the left one, 1 the tip, 2 the right one.
-    fn side(&self, second: &Pose, place: [f32; 3]) -> Option<usize> {
+    /// With which side the second segment, whose tip is there, is on an object at a place: 0 the left one, 1 the tip, 2 the right
+    /// one.
+    fn side(&self, second: &Pose, tip: [f64; 3], place: [f32; 3]) -> Option<usize> {
+        // Twice the way from the segment's middle: an object that touches it is no further along any axis than half the length
+        // and the reach, and a hundredth for rounding. Most are, and that is known for little.
+        let most = 1.01 * (self.length + 2.0 * self.reach);
+        let beyond = |k: usize| (2.0 * f64::from(place[k]) - f64::from(second.position[k]) - tip[k]).abs() > most;
+        if beyond(0) || beyond(1) {
+            return None;
+        }
         let [along, left, _] = second.transform_back(place).map(f64::from);
         let near = along.clamp(0.0, self.length);
         let apart = Scene::distance([along, left], [near, 0.0]);
