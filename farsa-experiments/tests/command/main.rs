@@ -2,6 +2,7 @@
 
 mod attack;
 mod bad_input;
+mod cases;
 mod cluster;
 mod configurations;
 mod export;

@@ -10,8 +10,7 @@ use clap::FromArgMatches as _;
 use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::subcommands::{
-    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, ReplayArgs, RunArgs, StrategiesArgs,
-    TestArgs,
+    BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, RunArgs, StrategiesArgs, TestArgs,
 };
 use crate::command::arguments::sweep::SweepArgs;
 use crate::command::interrupt::{INTERRUPTED, START_AGAIN, stop_on_signals, under_scheduler};
@@ -39,7 +38,7 @@ use crate::run::replications::{self, Replications};
 use crate::run::summary::Summary;
 use crate::run::{evolve, world_choice};
 use crate::store::directory::Directory;
-use crate::store::replace::{create_result, create_results};
+use crate::store::replace::create_results;
 use crate::strategy::settings::{GENERATIONS, POPULATION};
 use crate::sweep::SweepFile;
 use crate::sweep::work::{self, Sweep};
@@ -245,33 +244,6 @@ impl<'e> Invocation<'e, '_> {
             (false, true) => Ok(()),
             (false, false) => tell(text),
         }
-    }
-
-    fn replay(&self, args: &ReplayArgs) -> Result<(), Error> {
-        let (directory, mut plan) = self.existing(&args.directory)?;
-        world_choice::visit(&mut plan, args.world.name.as_deref())?;
-        let which = args.which.which();
-        let mut found = match (&args.html, &args.out) {
-            (Some(path), _) => {
-                let other = args.compare.as_deref().map(|path| self.existing(path)).transpose()?;
-                let other = other.as_ref().map(|(directory, plan)| (plan, directory));
-                replay::page(&plan, &directory, which, other, path)?
-            }
-            (None, Some(path)) => replay::replay(&plan, &directory, which, &mut create_result(path)?)?,
-            (None, None) => replay::replay(&plan, &directory, which, &mut io::stdout().lock())?,
-        };
-        found.file = args.html.as_ref().or(args.out.as_ref()).map(|path| path.display().to_string());
-        if args.json {
-            let summary = pretty(&found)?;
-            // The standard output is free only when the steps went elsewhere.
-            if found.file.is_some() {
-                return say(&summary);
-            }
-            let _ = write!(io::stderr(), "{summary}");
-        } else if !self.quiet {
-            let _ = writeln!(io::stderr(), "{}", escaped(&found.summary));
-        }
-        Ok(())
     }
 
     /// The experiment of this name.

@@ -105,6 +105,7 @@ fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> 
             vec![
                 format!("replay {run} --trial 0 --out trial.csv"),
                 format!("replay {run} --html trial.html"),
+                format!("replay {run} --protocol NAME --case 3 --html case.html"),
                 format!("replay {run} --generation 0 --individual 7 | head"),
             ],
         ),

@@ -11,6 +11,7 @@
 //! - `invocation`: the command as it was called
 //! - `manual`: what the command says about itself: help with examples, completions, and pages of the manual
 //! - `on_ranks`: the command on several ranks: what all do before and around what rank 0 does
+//! - `replay`: `farsa replay`: trials of a run, or of a protocol's cases
 //! - `strategies`: `farsa strategies`: what a run can search with
 
 mod arguments;
@@ -24,4 +25,5 @@ mod interrupt;
 mod invocation;
 mod manual;
 mod on_ranks;
+mod replay;
 mod strategies;

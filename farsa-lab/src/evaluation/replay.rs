@@ -116,9 +116,7 @@ impl Replayable {
 
     /// The fitness of the replayed trials.
     pub(crate) fn fitness(&self, outcomes: &[Outcome]) -> f64 {
-        let finite = outcomes.iter().all(Outcome::is_finite);
-        let fitness = if finite { Fitness::nan_as_failed(self.evaluator.fitness(outcomes)) } else { Fitness::WORST };
-        fitness.get()
+        fitness(self.evaluator.as_ref(), outcomes)
     }
 
     /// The outcomes of the replayed trials, in the order of the requested ones.
@@ -272,7 +270,7 @@ pub(crate) fn page(
             // What distinguishes trials comes first: a narrow screen cuts the rest.
             let run = [plan.condition.as_str(), "seed"].into_iter().find(|word| !word.is_empty()).unwrap_or_default();
             let name = format!("trial {trial}: {run} {}, generation {generation}, individual {individual}", plan.seed);
-            page.add(&name, facts(&replayable, &outcome), recording);
+            page.add(&name, facts(replayable.evaluator.as_ref(), &outcome), recording);
             outcomes.push(outcome);
         }
         Ok(replayable.summary(plan, directory, &outcomes))
@@ -284,10 +282,17 @@ pub(crate) fn page(
     Ok(Replayed::new(replay, compared))
 }
 
+/// The fitness of trials; that of a failed one is the worst.
+pub(crate) fn fitness(evaluator: &dyn Evaluator, outcomes: &[Outcome]) -> f64 {
+    let finite = outcomes.iter().all(Outcome::is_finite);
+    let fitness = if finite { Fitness::nan_as_failed(evaluator.fitness(outcomes)) } else { Fitness::WORST };
+    fitness.get()
+}
+
 /// What came of a trial, by name.
-fn facts(replayable: &Replayable, outcome: &Outcome) -> Vec<(String, String)> {
-    let fitness = replayable.fitness(core::slice::from_ref(outcome));
-    let terms = replayable.evaluator.terms().into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
+pub(crate) fn facts(evaluator: &dyn Evaluator, outcome: &Outcome) -> Vec<(String, String)> {
+    let fitness = fitness(evaluator, core::slice::from_ref(outcome));
+    let terms = evaluator.terms().into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
     let notes = outcome.notes.iter().map(|(name, note)| {
         let value = match note {
             Note::Number(x) => readable(*x),

@@ -162,6 +162,19 @@ impl Protocol {
         found.ok_or_else(|| Error::unknown(&place, "test protocol", name, names()))
     }
 
+    /// The number of the case of this name, or of this number from 0 if none has the name.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest name that there is.
+    pub(crate) fn case(&self, name: &str) -> Result<usize, Error> {
+        let names: Vec<String> = self.cases.iter().map(Case::name).collect();
+        let number = || name.parse().ok().filter(|number| *number < names.len());
+        let place =
+            format!("protocol `{}`, whose cases are numbered 0 to {}", self.name, names.len().saturating_sub(1));
+        let found = names.iter().position(|other| other == name).or_else(number);
+        found.ok_or_else(|| Error::unknown(&place, "case", name, names.iter().map(String::as_str)))
+    }
+
     /// Refuses protocols of which a name is none or is there twice, and those without cases or trials.
     ///
     /// # Errors
@@ -250,6 +263,15 @@ mod tests {
         assert!(matches!(&error, Error::Unknown { nearest: Some(nearest), .. } if nearest == "lesions"));
         let text = error.to_string();
         assert!(text.contains("noise, lesions") && text.contains("`lesion`"), "{text}");
+        assert_eq!(two[1].case("neuron 1").unwrap(), 1);
+        assert_eq!(two[1].case("1").unwrap(), 1);
+        assert_eq!(two[0].case("0").unwrap(), 0, "the name before the number");
+        let error = two[1].case("neuron 2").unwrap_err().to_string();
+        assert!(
+            error.contains("`lesions`, whose cases are numbered 0 to 1") && error.contains("`neuron 1`"),
+            "{error}"
+        );
+        assert!(two[1].case("2").is_err() && two[1].case("-1").is_err());
         let none = Protocol::find(&[], "lesions", "toy").unwrap_err();
         assert!(matches!(none, Error::Usage(_)) && none.to_string().contains("experiment `toy` has none"), "{none}");
     }

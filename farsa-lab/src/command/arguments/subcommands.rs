@@ -13,6 +13,7 @@ use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
 use crate::command::arguments::sweep::SweepArgs;
+use crate::evaluation::protocols::chosen::Choice;
 use crate::evaluation::protocols::sheet::Wish;
 use crate::evaluation::replay::Which;
 use crate::report::outcome::Success;
@@ -234,6 +235,11 @@ pub(crate) struct ReplayArgs {
     pub(crate) directory: PathBuf,
     #[command(flatten)]
     pub(crate) which: WhichArgs,
+    /// The champion in the cases of a test protocol, as `test` runs them; `info` lists the protocols
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["generation", "individual"])]
+    protocol: Option<String>,
+    #[command(flatten)]
+    cases: CaseArgs,
     #[command(flatten)]
     pub(crate) world: WorldArgs,
     /// A new file for the steps as CSV [default: the standard output]
@@ -248,6 +254,35 @@ pub(crate) struct ReplayArgs {
     /// Write the summary as JSON: where the steps do not go, the standard error without --out or --html
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl ReplayArgs {
+    /// Where the trials go, if not to the standard output.
+    pub(crate) fn file(&self) -> Option<String> {
+        self.html.as_ref().or(self.out.as_ref()).map(|path| path.display().to_string())
+    }
+
+    /// The cases that are asked for, if any are.
+    pub(crate) fn choice(&self) -> Option<Choice<'_>> {
+        Some(self.cases.choice(self.protocol.as_deref()?, self.which.trial))
+    }
+}
+
+/// Which cases of a protocol.
+#[derive(Args)]
+pub(crate) struct CaseArgs {
+    /// A case of the protocol, by its name (row, space, column) or number from 0; may be repeated [default: all]
+    #[arg(id = "case", long = "case", value_name = "CASE", requires = "protocol")]
+    cases: Vec<String>,
+    /// The seed of that test
+    #[arg(long, value_name = "N", requires = "protocol", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
+    seed: u64,
+}
+
+impl CaseArgs {
+    fn choice<'c>(&'c self, protocol: &'c str, trial: Option<u32>) -> Choice<'c> {
+        Choice { protocol, cases: &self.cases, trial: trial.unwrap_or(0), seed: self.seed }
+    }
 }
 
 #[derive(Args)]
@@ -270,10 +305,9 @@ pub(crate) struct DrawArgs {
     pub(crate) time: Option<f64>,
     /// The champion at the end of a trial of each case of a test protocol, as a sheet of SVG; `info` lists the protocols
     #[arg(long, value_name = "NAME", conflicts_with_all = ["generation", "individual", "time"])]
-    pub(crate) protocol: Option<String>,
-    /// The seed of that test
-    #[arg(long, value_name = "N", requires = "protocol", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
-    pub(crate) seed: u64,
+    protocol: Option<String>,
+    #[command(flatten)]
+    cases: CaseArgs,
     #[arg(long, value_name = "NAME", help = camera_help())]
     pub(crate) camera: Option<String>,
     /// Width and height in pixels [default: 1200x800; of each of a protocol's 320x260]
@@ -294,9 +328,8 @@ impl DrawArgs {
 
     /// The sheet that is asked for, if one is.
     pub(crate) fn sheet(&self) -> Option<Wish<'_>> {
-        let (trial, camera) = (self.trial.unwrap_or(0), self.camera.as_deref());
-        let protocol = self.protocol.as_deref()?;
-        Some(Wish { protocol, trial, seed: self.seed, camera, size: self.size })
+        let choice = self.cases.choice(self.protocol.as_deref()?, self.trial);
+        Some(Wish { choice, camera: self.camera.as_deref(), size: self.size })
     }
 }
 

@@ -7,23 +7,19 @@ use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::evaluation::protocols::trial::CaseTrial;
-use crate::evaluation::test::{Subject, whose};
-use crate::experiment::evaluator::Bodies;
-use crate::experiment::lanes::Wanted;
-use crate::experiment::protocol::{CaseId, Protocol};
+use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
+use crate::evaluation::test::Subject;
+use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::heat_map::OUTLINE;
 use crate::figures::plot::{FONT, INK, MARGIN, PAPER};
 use crate::run::plan::Plan;
-use crate::run::pool::Pool;
 use crate::store::directory::Directory;
 use crate::store::replace::create_results;
 
 /// Width and height of each picture where none are asked for, and the largest.
 const SIZE: (u32, u32) = (320, 260);
 const LARGEST: u32 = 2048;
-/// Most cases of a protocol that is drawn, and most pictures beside each other.
-const MOST_CASES: usize = 60;
+/// Most pictures beside each other.
 const COLUMNS: usize = 8;
 /// Heights of the title and of a picture's label, and what lies between pictures.
 const HEAD: u32 = 44;
@@ -32,11 +28,7 @@ const GAP: u32 = 12;
 
 /// Which trials are drawn, and how.
 pub(crate) struct Wish<'w> {
-    pub(crate) protocol: &'w str,
-    /// The number of the trial in each case.
-    pub(crate) trial: u32,
-    /// Of the test.
-    pub(crate) seed: u64,
+    pub(crate) choice: Choice<'w>,
     pub(crate) camera: Option<&'w str>,
     /// Of each picture.
     pub(crate) size: Option<(u32, u32)>,
@@ -71,8 +63,8 @@ struct DrawnCase {
 /// Draws the end of a trial of each case of a protocol, all to the same scale, and writes them to a new file.
 ///
 /// # Errors
-/// Those of [`Protocol::find`] and [`Subject::read`]; [`Error::Usage`] for a file that is no SVG, a size that none is, too many
-/// cases, and trials without bodies; [`Error::Other`] for a trial that panics; [`Error::Io`].
+/// Those of [`CaseTrials::find`] and [`CaseTrials::run`]; [`Error::Usage`] for a file that is no SVG, a size that none is, and
+/// trials without bodies; [`Error::Io`].
 pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path: &Path) -> Result<Sheet, Error> {
     if path.extension().is_none_or(|end| !end.eq_ignore_ascii_case("svg")) {
         return Err(Error::Usage(format!("{}: the name of a sheet of pictures ends in .svg", path.display())));
@@ -82,68 +74,46 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path
     if !(16..=LARGEST).contains(&width) || !(16..=LARGEST).contains(&height) {
         return Err(Error::Usage(format!("pictures of {width}x{height}: each side is 16 to {LARGEST} pixels")));
     }
-    let pool = Pool::new(plan, 1, Wanted::ONE)?;
-    let mut protocols = pool.evaluator().protocols();
-    let number = Protocol::find(&protocols, wish.protocol, plan.experiment.name())?;
-    let protocol = protocols.swap_remove(number);
-    let count = protocol.cases.len();
-    if count > MOST_CASES {
-        return Err(Error::Usage(format!("protocol `{}` has {count} cases; {MOST_CASES} are drawn", protocol.name)));
-    }
-    let subject = Subject::read(plan, directory, &pool)?;
-    let (cases, view) = pictures(plan, &subject, (number, &protocol), wish)?;
-    let camera = camera.unwrap_or(Camera::for_view(view));
-    let Subject { generation, individual, individuals, .. } = &subject;
-    let trial = format!("trial {}, test seed {}", wish.trial, wish.seed);
-    let caption = format!("{}, {}, {trial}", protocol.name, whose(*generation, *individual, individuals));
-    let columns = Protocol::places(&protocol.cases, |case| &case.column).len().clamp(1, COLUMNS);
+    let mut trials = CaseTrials::find(plan, directory, wish.choice)?;
+    let cases = pictures(plan, &mut trials)?;
+    let camera = camera.unwrap_or(Camera::for_view(trials.schema().view));
+    let caption = trials.caption();
+    let shown: Vec<Case> = trials.cases.iter().map(|number| trials.case(*number)).collect();
+    let columns = Protocol::places(&shown, |case| &case.column).len().clamp(1, COLUMNS);
     let picture = sheet(&caption, &cases, columns, camera, [width, height]);
     create_results(&[(path.to_owned(), picture)])?;
+    let Subject { generation, individual, .. } = trials.subject();
     Ok(Sheet {
         directory: directory.path().display().to_string(),
-        protocol: protocol.name,
+        protocol: trials.protocol().name.clone(),
         generation: *generation,
         individual: *individual,
-        trial: wish.trial,
-        seed: wish.seed,
-        summary: format!("{caption}: {count} cases, camera {}", camera.name()),
+        trial: trials.trial,
+        seed: trials.seed,
+        summary: format!("{caption}: {} cases, camera {}", cases.len(), camera.name()),
         cases,
         file: path.display().to_string(),
     })
 }
 
 /// The end of the trial in each case, each with room for what is to be seen in all.
-fn pictures(
-    plan: &Plan<'_>,
-    subject: &Subject,
-    (number, protocol): (usize, &Protocol),
-    wish: &Wish<'_>,
-) -> Result<(Vec<DrawnCase>, farsa_view::View), Error> {
-    let mut evaluator = plan.evaluator()?;
-    let tested = subject.tested();
-    let with = |bodies: &dyn Bodies| tested.parameters.first().map(|parameters| bodies.schema_with(parameters));
-    let schema = evaluator.bodies().and_then(with).unwrap_or_else(|| evaluator.schema());
-    let view = schema.view;
+fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, Error> {
     let mut cases = Vec::new();
-    for (case, found) in protocol.cases.iter().enumerate() {
-        let mut recording = Recording::new(schema.clone());
-        let of_case =
-            CaseTrial { case: CaseId { protocol: number, case }, trial: wish.trial as usize, seed: wish.seed };
-        let Ok(outcome) = of_case.run(evaluator.as_mut(), tested, &mut recording) else {
-            return Err(Error::Other(format!("trial {} of the case {} panicked", wish.trial, found.name())));
-        };
+    for number in trials.cases.clone() {
+        let mut recording = Recording::new(trials.schema());
+        let outcome = trials.run(number, &mut recording)?;
         let last = recording.times().len().checked_sub(1);
         let picture = last
             .and_then(|tick| recording.picture(tick))
             .ok_or_else(|| Error::Usage(format!("trials of `{}` have no bodies to draw", plan.name())))?;
-        let (row, column, held_out) = (found.row.clone(), found.column.clone(), found.held_out);
+        let Case { row, column, held_out } = trials.case(number);
         cases.push(DrawnCase { row, column, held_out, success: outcome.success, picture });
     }
     let corners: Vec<[f64; 3]> = cases.iter().flat_map(|case| case.picture.extent()).collect();
     for case in &mut cases {
         case.picture.frame.clone_from(&corners);
     }
-    Ok((cases, view))
+    Ok(cases)
 }
 
 /// The pictures with their labels, so many beside each other.
