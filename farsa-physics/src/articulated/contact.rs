@@ -6,9 +6,9 @@ use crate::articulated::collision::{
     PlacedShape, Point, ball_box, ball_plane, balls, corner, distance_to_box, edge, nearest_of_segments,
     nearest_on_segment, segment_box,
 };
+use crate::articulated::link::{LinkData, WORLD};
 use crate::articulated::model::{Geometry, Model, Pair};
 use crate::articulated::spatial::{Vector, add, dot, product, rotate, scale, splat, splat_matrix, sub};
-use crate::articulated::tree::{LinkData, WORLD};
 
 /// How much faster than their centres the surfaces of two shapes may approach [m/s]: a shape of 3 cm at 50 rad/s.
 const TURNING: f64 = 1.5;

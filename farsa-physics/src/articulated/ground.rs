@@ -6,9 +6,9 @@
 
 use farsa_num::{Mask, Real, Scalar};
 
+use crate::articulated::link::LinkData;
 use crate::articulated::model::{Ground, Model};
 use crate::articulated::spatial::Spatial;
-use crate::articulated::tree::LinkData;
 
 /// The rows of one ground: two of the sliding joints, and one of the turn.
 #[derive(Clone, Copy, Debug)]

@@ -7,12 +7,12 @@ use farsa_body::{
     PairContact, PairId, PlanarHit, Pose, Rays, Seen, Sight, Snapshot, Twist, Vision,
 };
 
+use crate::articulated::link::LinkData;
 use crate::articulated::model::Model;
 use crate::articulated::ray;
 use crate::articulated::sight;
 use crate::articulated::spatial::{Matrix, Spatial, Vector};
 use crate::articulated::step::{Precision, Scratch};
-use crate::articulated::tree::LinkData;
 use crate::articulated::view::{self, View};
 use crate::articulated::vision;
 

@@ -6,10 +6,10 @@ use alloc::vec::Vec;
 use farsa_body::{JointKind, Pose, Robot};
 use farsa_num::{Real, Scalar};
 
+use crate::articulated::link::{Link, LinkData, Motion, Sliding, WORLD};
 use crate::articulated::model::{ModelError, Mount, Options};
-use crate::articulated::sliding::Sliding;
 use crate::articulated::spatial::{Matrix, Vector, add, cross, matrix_of, product, rotate, rotate_symmetric, sub};
-use crate::articulated::tree::{Link, LinkData, Motion, WORLD, forward_kinematics, mass_matrix};
+use crate::articulated::tree::{forward_kinematics, mass_matrix};
 
 /// A rotation whose third column is the axis.
 fn axis_frame(axis: Vector<f64>) -> Matrix<f64> {

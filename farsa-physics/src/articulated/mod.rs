@@ -4,6 +4,7 @@
 //!
 //! - `model`: the constant part: links, colliders, pairs, actuators, options
 //! - `model_builder`: makes a model from a description
+//! - `link`: a moving link: its constants, and what the sweeps compute for it
 //! - `links`: the moving links of a description, and their inertias
 //! - `spatial`: spatial vectors and inertias [Featherstone2008]
 //! - `sliding`: the same for links that only slide
@@ -37,6 +38,8 @@ mod ground;
 mod group;
 #[cfg(all(feature = "lanes", not(test)))]
 mod lane;
+#[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
+pub(crate) mod link;
 #[cfg(feature = "alloc")]
 pub(crate) mod links;
 #[cfg(all(feature = "lanes", not(test)))]
@@ -74,6 +77,7 @@ mod world;
 pub use batch::Batch;
 #[cfg(all(feature = "lanes", not(test)))]
 pub use lane::Lane;
+pub use link::{Link, LinkData};
 #[cfg(all(feature = "lanes", not(test)))]
 pub use lockstep::LANES;
 #[cfg(feature = "alloc")]
@@ -82,8 +86,8 @@ pub use spatial::Spatial;
 #[cfg(feature = "alloc")]
 pub use step::{Precision, Scratch, step};
 pub use tree::{
-    Link, LinkData, Root, accelerations, centre_of_mass, forward_kinematics, inverse_dynamics, jacobian,
-    kinetic_energy, mass_matrix, potential_energy,
+    Root, accelerations, centre_of_mass, forward_kinematics, inverse_dynamics, jacobian, kinetic_energy, mass_matrix,
+    potential_energy,
 };
 #[cfg(feature = "alloc")]
 pub use world::World;

@@ -8,8 +8,8 @@ use core::ops::Range;
 use farsa_body::{BodyId, JointKind, Law, RobotError};
 use farsa_num::Real;
 
+use crate::articulated::link::{Link, WORLD};
 use crate::articulated::spatial::{Matrix, Vector};
-use crate::articulated::tree::{Link, WORLD};
 
 /// How an articulated world is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]

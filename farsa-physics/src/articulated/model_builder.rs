@@ -7,13 +7,13 @@ use farsa_body::{JointKind, Robot, RobotError, Shape};
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::group::{groups_of, is_plane};
+use crate::articulated::link::{Link, Motion, WORLD};
 use crate::articulated::links::{
     IDENTITY, cast_links, cast_mount, choose_references, compose, frame, links_of, set_limits, unit,
 };
 use crate::articulated::model::{
     Actuator, Collider, Geometry, Ground, Model, ModelError, Mount, Options, Pair, Reach, StopPath,
 };
-use crate::articulated::tree::{Link, Motion, WORLD};
 
 fn check(options: &Options) -> Result<(), ModelError> {
     let bad = |name, value: f64| Err(ModelError::Option { name, value });

@@ -3,9 +3,9 @@
 use farsa_body::{BodyId, Hit};
 use farsa_num::Real;
 
+use crate::articulated::link::WORLD;
 use crate::articulated::model::Geometry;
 use crate::articulated::spatial::{Matrix, Vector, add, dot, product, rotate, rotate_back, scale, sub};
-use crate::articulated::tree::WORLD;
 use crate::articulated::view::View;
 
 /// Where a ray enters a shape, in the shape's frame: distance and outward normal. Rays that begin inside meet nothing.

@@ -7,9 +7,10 @@
 
 use farsa_num::{Mask, Real, Scalar};
 
+use crate::articulated::link::{LinkData, Motion, WORLD};
 use crate::articulated::model::{Model, Pair};
 use crate::articulated::spatial::{Spatial, Vector, sub};
-use crate::articulated::tree::{LinkData, Motion, Root, WORLD};
+use crate::articulated::tree::Root;
 
 /// Two unit vectors across a unit normal, without a branch [Duff2017].
 #[inline(always)]

@@ -7,20 +7,10 @@
 
 use farsa_num::{Real, Scalar};
 
+use crate::articulated::link::{Link, LinkData, Motion, Sliding, WORLD};
 use crate::articulated::spatial::{
     Inertia, Matrix, Spatial, Vector, add, dot, product, rotate, scale, splat, splat_matrix, symmetric,
 };
-use crate::articulated::tree::{Link, LinkData, Motion, WORLD};
-
-/// What of a link that only slides does not change, in the world's axes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sliding<R> {
-    pub(crate) rotation: Matrix<R>,
-    /// From the parent's origin, or the world's, to where the joint is at 0.
-    offset: Vector<R>,
-    /// From the link's origin to its centre of mass.
-    arm: Vector<R>,
-}
 
 impl<R: Real> Sliding<R> {
     /// For a link, given the links before it; `None` if it may turn.

@@ -12,11 +12,12 @@ use crate::articulated::collision::{PlacedShape, Point};
 use crate::articulated::contact::{clearance, edge_distance, find, reach};
 use crate::articulated::ground::{Rubbing, relax_ground};
 use crate::articulated::group::{Sphere, forget_group, forget_point, rolling_words, spheres_near, unknown_gap};
+use crate::articulated::link::LinkData;
 use crate::articulated::model::{Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
 use crate::articulated::spatial::{Vector, add, dot, scale, select, sub};
 use crate::articulated::stop::{Stop, relax_stop};
-use crate::articulated::tree::{LinkData, Root};
+use crate::articulated::tree::Root;
 
 /// One contact point's block of three rows: normal, two tangents (or spin and two rolling axes).
 #[derive(Clone, Copy, Debug)]

@@ -9,11 +9,12 @@ use crate::articulated::collision::PlacedShape;
 use crate::articulated::contact::place_colliders;
 use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
 use crate::articulated::group::{Sphere, place_spheres};
+use crate::articulated::link::{LinkData, Motion, WORLD};
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::solver::{Block, Solver};
 use crate::articulated::spatial::{Spatial, Vector, add, matrix_of, rotate, scale, splat, sub};
 use crate::articulated::stop::{Stop, set_up_stops};
-use crate::articulated::tree::{LinkData, Motion, Root, WORLD, accelerations, forward_kinematics};
+use crate::articulated::tree::{Root, accelerations, forward_kinematics};
 
 /// Everything that a step computes and forgets, for one model; made once, reused for every step.
 #[derive(Clone, Debug)]

@@ -5,10 +5,10 @@
 
 use farsa_num::{Mask, Real, Scalar};
 
+use crate::articulated::link::{LinkData, Motion, WORLD};
 use crate::articulated::model::Model;
 use crate::articulated::rows::equal;
 use crate::articulated::spatial::Spatial;
-use crate::articulated::tree::{LinkData, Motion, WORLD};
 
 /// Joints are watched when a change of speed of this size [rad/s or m/s] would bring them to a stop within a step.
 const CHANGE: f64 = 20.0;

@@ -4,9 +4,9 @@
 use farsa_body::{BodyId, JointId, JointKind, PairContact, PairId, Pose, Twist};
 use farsa_num::Real;
 
+use crate::articulated::link::{Motion, WORLD};
 use crate::articulated::model::{Model, Mount, POINT_WORDS};
 use crate::articulated::spatial::{Matrix, Spatial, Vector, add, cross, product, rotate, sub};
-use crate::articulated::tree::{Motion, WORLD};
 
 /// A world as its ports see it.
 pub(crate) trait View<R: Real> {

@@ -12,10 +12,10 @@ use rapier3d::math::Mat3;
 use rapier3d::parry::mass_properties::MassProperties;
 use rapier3d::pipeline::{ActiveHooks, PhysicsWorld};
 
+use crate::articulated::link::{Link, Motion, WORLD};
 use crate::articulated::links::{compose, frame, links_of, set_limits};
 use crate::articulated::model::{ModelError, Mount, Options as Stops};
 use crate::articulated::spatial::{rotate, sub};
-use crate::articulated::tree::{Link, Motion, WORLD};
 use crate::articulated::view::quaternion;
 use crate::rapier::convert::{pose, shape_of, vector};
 use crate::rapier::error::RapierError;

@@ -1,0 +1,99 @@
+//! A moving link: its constants, and what the sweeps compute for it.
+
+use farsa_num::{Real, Scalar};
+
+use crate::articulated::spatial::{Inertia, Matrix, Spatial, Vector};
+
+/// The parent of a link that hangs on the world.
+pub(crate) const WORLD: u16 = u16::MAX;
+
+/// How a moving link moves relative to its parent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Motion {
+    Revolute,
+    Prismatic,
+    Floating,
+}
+
+/// A moving link as the kernels need it, each number rounded once from the robot's description.
+#[derive(Clone, Copy, Debug)]
+pub struct Link<R> {
+    pub(crate) parent: u16,
+    pub(crate) motion: Motion,
+    /// First position, first velocity.
+    pub(crate) q: u16,
+    pub(crate) dof: u16,
+    /// The link of its tree whose centre of mass is the tree's reference point.
+    pub(crate) reference: u16,
+    /// Number among the floating links.
+    pub(crate) root: u16,
+    /// Joint frame in the parent's frame.
+    pub(crate) rotation: Matrix<R>,
+    pub(crate) offset: Vector<R>,
+    pub(crate) mass: R,
+    pub(crate) centre: Vector<R>,
+    pub(crate) inertia: [R; 6],
+    pub(crate) armature: R,
+    pub(crate) damping: R,
+    pub(crate) lower: R,
+    pub(crate) upper: R,
+    pub(crate) limit_stiffness: R,
+    pub(crate) limit_damping: R,
+    /// Of a link that only slides, what makes its kernels short.
+    pub(crate) sliding: Option<Sliding<R>>,
+}
+
+/// What the sweeps compute for one link.
+#[derive(Clone, Copy, Debug)]
+pub struct LinkData<S> {
+    pub(crate) rotation: Matrix<S>,
+    pub(crate) position: Vector<S>,
+    /// Centre of mass in the world.
+    pub(crate) centre: Vector<S>,
+    /// The tree's reference point in the world.
+    pub(crate) reference: Vector<S>,
+    pub(crate) subspace: Spatial<S>,
+    pub(crate) velocity: Spatial<S>,
+    /// Velocity-dependent acceleration of the joint.
+    pub(crate) bias: Spatial<S>,
+    pub(crate) inertia: Inertia<S>,
+    pub(crate) force: Spatial<S>,
+    /// Articulated inertia times subspace, and the reciprocal of the joint's articulated inertia.
+    pub(crate) column: Spatial<S>,
+    pub(crate) reciprocal: S,
+    pub(crate) effort: S,
+    pub(crate) acceleration: Spatial<S>,
+}
+
+impl<S: Scalar> LinkData<S> {
+    /// An empty one.
+    pub fn new(simd: S::Simd) -> Self {
+        let o = S::splat(simd, S::Real::from_f64(0.0));
+        let zero = Spatial::zero(simd);
+        Self {
+            rotation: [[o; 3]; 3],
+            position: [o; 3],
+            centre: [o; 3],
+            reference: [o; 3],
+            subspace: zero,
+            velocity: zero,
+            bias: zero,
+            inertia: Inertia::zero(simd),
+            force: zero,
+            column: zero,
+            reciprocal: o,
+            effort: o,
+            acceleration: zero,
+        }
+    }
+}
+
+/// What of a link that only slides does not change, in the world's axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sliding<R> {
+    pub(crate) rotation: Matrix<R>,
+    /// From the parent's origin, or the world's, to where the joint is at 0.
+    pub(crate) offset: Vector<R>,
+    /// From the link's origin to its centre of mass.
+    pub(crate) arm: Vector<R>,
+}
