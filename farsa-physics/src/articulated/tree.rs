@@ -27,11 +27,32 @@ pub fn forward_kinematics<S: Scalar>(
     v: &[S],
     work: &mut [LinkData<S>],
 ) {
+    if some_slide(links) {
+        place::<S, true>(simd, links, q, v, work);
+    } else {
+        place::<S, false>(simd, links, q, v, work);
+    }
+}
+
+/// Whether there is a link that only slides. Where there is none, the kernels are compiled as if there never were one: with a
+/// question of each link they take a tenth more.
+fn some_slide<R>(links: &[Link<R>]) -> bool {
+    links.iter().any(|link| link.sliding.is_some())
+}
+
+#[inline(always)]
+fn place<S: Scalar, const SLIDING: bool>(
+    simd: S::Simd,
+    links: &[Link<S::Real>],
+    q: &[S],
+    v: &[S],
+    work: &mut [LinkData<S>],
+) {
     let zero = S::splat(simd, S::Real::from_f64(0.0));
     // First pass: rotations and origins. A joint's frame turns about or slides along its own z axis.
     for (i, link) in links.iter().enumerate() {
         let at = usize::from(link.q);
-        if let Some(own) = &link.sliding {
+        if let Some(own) = link.sliding.as_ref().filter(|_| SLIDING) {
             let parent = (link.parent != WORLD).then(|| work[usize::from(link.parent)].position);
             let w = &mut work[i];
             (w.rotation, w.position, w.centre) = own.place(simd, parent, q[at]);
@@ -70,7 +91,7 @@ pub fn forward_kinematics<S: Scalar>(
         let at = usize::from(link.dof);
         let w = &mut work[i];
         w.reference = reference;
-        if link.sliding.is_some() {
+        if SLIDING && link.sliding.is_some() {
             sliding::set_in_motion(simd, w, parent.linear, v[at]);
             continue;
         }
@@ -127,15 +148,38 @@ pub fn accelerations<S: Scalar>(
     roots: &mut [Root<S>],
     qdd: &mut [S],
 ) {
+    if some_slide(links) {
+        articulated_bodies::<S, true>(simd, links, gravity, tau, diagonal, work, roots, qdd);
+    } else {
+        articulated_bodies::<S, false>(simd, links, gravity, tau, diagonal, work, roots, qdd);
+    }
+}
+
+#[inline(always)]
+fn articulated_bodies<S: Scalar, const SLIDING: bool>(
+    simd: S::Simd,
+    links: &[Link<S::Real>],
+    gravity: [S::Real; 3],
+    tau: &[S],
+    diagonal: &[S],
+    work: &mut [LinkData<S>],
+    roots: &mut [Root<S>],
+    qdd: &mut [S],
+) {
+    let slides = |link: &Link<S::Real>| SLIDING && link.sliding.is_some();
     let one = S::splat(simd, S::Real::from_f64(1.0));
+    for (link, w) in links.iter().zip(work.iter_mut()) {
+        if slides(link) {
+            sliding::weigh(simd, w, link.mass);
+        } else {
+            w.inertia = rigid_inertia(simd, link, w);
+        }
+    }
     // Bias forces p_i = v_i x* I_i v_i; gravity comes in with the acceleration of the base, below.
     for (link, w) in links.iter().zip(work.iter_mut()) {
-        if link.sliding.is_some() {
-            sliding::weigh(simd, w, link.mass);
-            continue;
+        if !slides(link) {
+            w.force = w.velocity.cross_force(w.inertia.times(w.velocity));
         }
-        w.inertia = rigid_inertia(simd, link, w);
-        w.force = w.velocity.cross_force(w.inertia.times(w.velocity));
     }
     // Inwards, articulated inertias I^A and bias forces p^A. With U = I^A s, D = s . U + diagonal and u = tau - s . p^A a link
     // hands its parent I^A - U U^T / D and p^A + (I^A - U U^T / D) c + U u / D. Common axes and one reference point: both are
@@ -147,7 +191,7 @@ pub fn accelerations<S: Scalar>(
             roots[usize::from(link.root)].factor = w.inertia.cholesky();
             continue;
         }
-        if link.sliding.is_some() {
+        if slides(link) {
             let (inertia, force) = sliding::inwards(simd, w, tau[at], diagonal[at]);
             if link.parent != WORLD {
                 sliding::take(&mut work[usize::from(link.parent)], &inertia, force);
@@ -164,7 +208,7 @@ pub fn accelerations<S: Scalar>(
             let inertia = w.inertia.minus_square(column, d);
             let force = w.force + inertia.times(w.bias) + column.scale(u * d);
             let parent = &mut work[usize::from(link.parent)];
-            if links[usize::from(link.parent)].sliding.is_some() {
+            if slides(&links[usize::from(link.parent)]) {
                 sliding::take(parent, &inertia.linear, force.linear);
                 continue;
             }
@@ -198,7 +242,7 @@ pub fn accelerations<S: Scalar>(
         }
         let parent = if link.parent == WORLD { base } else { work[usize::from(link.parent)].acceleration };
         let w = &mut work[i];
-        if link.sliding.is_some() {
+        if slides(link) {
             qdd[at] = sliding::outwards(simd, w, parent.linear);
             continue;
         }
