@@ -22,7 +22,27 @@ fn a_page_holds_the_lives_that_were_asked_for() {
     let page = data(&fs::read_to_string(here.join("all.html")).expect("the page"));
     let names: Vec<&str> = page["lives"].as_array().expect("lives").iter().filter_map(|l| l["name"].as_str()).collect();
     assert_eq!(names.len(), 6);
-    assert!(names[2].starts_with("trial 2: rough 1, generation 1") && names[3].starts_with("trial 0: rough 2"));
+    // Of each run the best trial first, and the best of both beside each other.
+    let parts = |name: &str| -> (String, f64, String) {
+        let (trial, rest) = name.split_once(": ").expect("a trial");
+        let (came, run) = rest.split_once("; ").expect("a run");
+        let (success, fitness) = came.split_once(", ").expect("an outcome");
+        assert!(["success", "no success"].contains(&success), "{name}");
+        (trial.to_owned(), fitness.parse().expect("a number"), run.to_owned())
+    };
+    for (run, names) in ["rough 1, generation 1", "rough 2, generation 1"].into_iter().zip(names.chunks(3)) {
+        let found: Vec<_> = names.iter().map(|name| parts(name)).collect();
+        assert!(found.iter().all(|(_, _, of)| of.starts_with(run)), "{names:?}");
+        assert!(found.windows(2).all(|two| two[0].1 >= two[1].1), "{names:?}");
+        let mut trials: Vec<&str> = found.iter().map(|(trial, ..)| trial.as_str()).collect();
+        trials.sort_unstable();
+        assert_eq!(trials, ["trial 0", "trial 1", "trial 2"]);
+    }
+    assert_eq!(page["beside"], 3);
+    ok(own(), &here, "replay r1 --trial best --html best.html");
+    let best = data(&fs::read_to_string(here.join("best.html")).expect("the page"));
+    assert_eq!((&best["lives"][0], best["lives"].as_array().map(Vec::len)), (&page["lives"][0], Some(1)));
+    assert_eq!(best["beside"], serde_json::Value::Null);
     let episode = &page["lives"][0];
     assert_eq!((&episode["ticks"], &episode["bodies"]), (&500.into(), &serde_json::json!([])));
     assert_eq!(episode["channels"][2]["unit"], "N");
@@ -36,6 +56,7 @@ fn a_page_holds_the_lives_that_were_asked_for() {
         ("replay r1 --html one.html", "there is one already"),
         ("replay r1 --html new.html --compare r3", "there is no such directory"),
         ("replay r1 --trial 3 --html new.html", "trial 3 of 3"),
+        ("replay r1 --trial bets --html new.html", "neither a number from 0 nor `best`"),
         ("draw r1 --out new.svg", "have no bodies to draw"),
     ] {
         let said = say(own(), &here, arguments);
@@ -54,6 +75,7 @@ fn a_moment_is_drawn_from_a_named_camera() {
     let bytes = fs::read(here.join("a.png")).expect("the picture");
     assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
     assert_eq!((&bytes[16..20], &bytes[20..24]), (&[0, 0, 0, 120][..], &[0, 0, 0, 80][..]));
+    assert!(ok(farsa(), &here, "draw r --trial best --out best.svg").contains(", trial "));
     ok(farsa(), &here, "draw r --out a.svg");
     let svg = fs::read_to_string(here.join("a.svg")).expect("the picture");
     assert!(svg.starts_with("<svg") || svg.starts_with("<?xml"), "{}", &svg[..80]);

@@ -173,7 +173,7 @@ impl<'e> Invocation<'e, '_> {
             Command::Replay(args) => self.replay(&args),
             Command::Draw(args) => {
                 let (directory, plan) = self.existing(&args.directory)?;
-                if let Some(wish) = args.sheet() {
+                if let Some(wish) = args.sheet()? {
                     let found = sheet::draw(&plan, &directory, &wish, &args.out)?;
                     return self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found));
                 }

@@ -19,7 +19,7 @@ impl Invocation<'_, '_> {
     pub(super) fn replay(&self, args: &ReplayArgs) -> Result<(), Error> {
         let (directory, mut plan) = self.existing(&args.directory)?;
         world_choice::visit(&mut plan, args.world.name.as_deref())?;
-        if let Some(choice) = args.choice() {
+        if let Some(choice) = args.choice()? {
             return self.replay_cases(args, &plan, &directory, choice);
         }
         let which = args.which.which();

@@ -23,6 +23,17 @@ use crate::store::replace::create_results;
 use crate::strategy::opponents;
 use crate::strategy::search::Genome;
 
+/// Which of its trials.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum WhichTrial {
+    #[default]
+    All,
+    /// The one of this number.
+    Number(u32),
+    /// The one that earns most.
+    Best,
+}
+
 /// Which trials to replay; individuals are counted through all populations.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Which {
@@ -30,8 +41,7 @@ pub(crate) struct Which {
     pub(crate) generation: Option<u32>,
     /// The individual; the best of the generation, in the first population, if none is named.
     pub(crate) individual: Option<u32>,
-    /// The trial; all of them if none is named.
-    pub(crate) trial: Option<u32>,
+    pub(crate) trial: WhichTrial,
 }
 
 /// An individual of a run, with all that a replay needs.
@@ -79,9 +89,9 @@ impl Replayable {
         let parameters = genes.first().and_then(|genes| genes.decode(&genotype)).ok_or_else(others)?;
         let trials = 0..evaluator.trials() as u32;
         let trials = match which.trial {
-            None => trials,
-            Some(trial) if trials.contains(&trial) => trial..trial + 1,
-            Some(trial) => {
+            WhichTrial::All | WhichTrial::Best => trials,
+            WhichTrial::Number(trial) if trials.contains(&trial) => trial..trial + 1,
+            WhichTrial::Number(trial) => {
                 return Err(Error::Usage(format!("trial {trial} of {} (the first is 0)", trials.end)));
             }
         };
@@ -90,7 +100,29 @@ impl Replayable {
         let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
         let normalisation = history.normalisation(generation).cloned();
         let seed = plan.seed;
-        Ok(Self { evaluator, parameters, opponents, normalisation, seed, generation, individual, trials })
+        let mut found = Self { evaluator, parameters, opponents, normalisation, seed, generation, individual, trials };
+        if which.trial == WhichTrial::Best {
+            found.keep_best()?;
+        }
+        Ok(found)
+    }
+
+    /// Keeps the trial that earns most, the first of those that do.
+    fn keep_best(&mut self) -> Result<(), Error> {
+        let mut best: Option<(f64, u32)> = None;
+        for trial in self.trials.clone() {
+            let outcome = self.evaluate(trial, None)?;
+            let fitness = self.fitness(std::slice::from_ref(&outcome));
+            if best.is_none_or(|(other, _)| fitness > other) {
+                best = Some((fitness, trial));
+            }
+        }
+        if let Some((_, trial)) = best {
+            let index = (trial - self.trials.start) as usize;
+            self.opponents = self.opponents.drain(..).skip(index).take(1).collect();
+            self.trials = trial..trial + 1;
+        }
+        Ok(())
     }
 
     /// The schema of its recordings.
@@ -104,6 +136,10 @@ impl Replayable {
     /// # Errors
     /// [`Error::TrialPanicked`]; the panic is printed as any other, with a backtrace if the user wants one.
     pub(crate) fn run(&mut self, trial: u32, recorder: &mut dyn Recorder) -> Result<Outcome, Error> {
+        self.evaluate(trial, Some(recorder))
+    }
+
+    fn evaluate(&mut self, trial: u32, recorder: Option<&mut dyn Recorder>) -> Result<Outcome, Error> {
         let id = EpisodeId { seed: self.seed, generation: self.generation, individual: self.individual, trial };
         let opponents = self.opponents.get((trial - self.trials.start) as usize).map_or(&[][..], Vec::as_slice);
         let opponents: Vec<&[f32]> = opponents.iter().map(Vec::as_slice).collect();
@@ -111,7 +147,7 @@ impl Replayable {
         let evaluation = Evaluation { opponents: &opponents, normalisation, ..Evaluation::new(&self.parameters, id) };
         let (generation, individual) = (self.generation, self.individual);
         let panicked = |()| Error::TrialPanicked { generation, individual, trial };
-        caught(|| self.evaluator.evaluate(evaluation, Some(recorder))).map_err(panicked)
+        caught(|| self.evaluator.evaluate(evaluation, recorder)).map_err(panicked)
     }
 
     /// The fitness of the replayed trials.
@@ -250,7 +286,8 @@ pub(crate) fn replay(
     Ok(Replayed::new(replay, None))
 }
 
-/// Writes the trials, and those of the same choice in another run, as a page for a browser.
+/// Writes the trials, and those of the same choice in another run, as a page for a browser: of each run the best trial first, and
+/// the best of both beside each other.
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -260,23 +297,34 @@ pub(crate) fn page(
 ) -> Result<Replayed, Error> {
     let title = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
     let mut page = Page::new(&title);
-    let mut add = |plan: &Plan<'_>, directory: &Directory| -> Result<ReplaySummary, Error> {
+    let add = |page: &mut Page, plan: &Plan<'_>, directory: &Directory| -> Result<ReplaySummary, Error> {
         let mut replayable = Replayable::find(plan, directory, which)?;
-        let mut outcomes = Vec::new();
+        let (mut outcomes, mut films) = (Vec::new(), Vec::new());
         for trial in replayable.trials.clone() {
             let mut recording = Recording::new(replayable.schema());
             let outcome = replayable.run(trial, &mut recording)?;
             let Replayable { generation, individual, .. } = replayable;
             // What distinguishes trials comes first: a narrow screen cuts the rest.
+            let came = came_to(replayable.evaluator.as_ref(), &outcome);
             let run = [plan.condition.as_str(), "seed"].into_iter().find(|word| !word.is_empty()).unwrap_or_default();
-            let name = format!("trial {trial}: {run} {}, generation {generation}, individual {individual}", plan.seed);
-            page.add(&name, facts(replayable.evaluator.as_ref(), &outcome), recording);
+            let run = format!("{run} {}, generation {generation}, individual {individual}", plan.seed);
+            let facts = facts(replayable.evaluator.as_ref(), &outcome);
+            let fitness = replayable.fitness(std::slice::from_ref(&outcome));
+            films.push((fitness, format!("trial {trial}: {came}; {run}"), facts, recording));
             outcomes.push(outcome);
+        }
+        films.sort_by(|one, other| other.0.total_cmp(&one.0));
+        for (_, name, facts, recording) in films {
+            page.add(&name, facts, recording);
         }
         Ok(replayable.summary(plan, directory, &outcomes))
     };
-    let replay = add(plan, directory)?;
-    let compared = compare.map(|(plan, directory)| add(plan, directory)).transpose()?;
+    let replay = add(&mut page, plan, directory)?;
+    let second = page.episodes();
+    let compared = compare.map(|(plan, directory)| add(&mut page, plan, directory)).transpose()?;
+    if compared.is_some() {
+        page.open_beside(second);
+    }
     let html = page.html();
     create_results(&[(path.to_owned(), html)])?;
     Ok(Replayed::new(replay, compared))
@@ -287,6 +335,12 @@ pub(crate) fn fitness(evaluator: &dyn Evaluator, outcomes: &[Outcome]) -> f64 {
     let finite = outcomes.iter().all(Outcome::is_finite);
     let fitness = if finite { Fitness::nan_as_failed(evaluator.fitness(outcomes)) } else { Fitness::WORST };
     fitness.get()
+}
+
+/// Whether a trial succeeded, and what it earned, in words.
+pub(crate) fn came_to(evaluator: &dyn Evaluator, outcome: &Outcome) -> String {
+    let success = if outcome.success { "success" } else { "no success" };
+    format!("{success}, {}", readable(fitness(evaluator, std::slice::from_ref(outcome))))
 }
 
 /// What came of a trial, by name.

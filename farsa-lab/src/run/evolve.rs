@@ -285,7 +285,7 @@ impl<'d> Run<'d> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::replay::{Which, replay};
+    use crate::evaluation::replay::{Which, WhichTrial, replay};
     use crate::evaluation::test;
     use crate::experiment::definition::Experiment;
     use crate::experiment::evaluator::{Evaluation, Evaluator, Task};
@@ -385,7 +385,7 @@ mod tests {
         let counted: u64 =
             log.lines().skip(1).map(|line| line.split(',').nth(5).unwrap().parse::<u64>().unwrap()).sum();
         assert_eq!(failures.lines().count() as u64 - 1, counted);
-        let which = Which { generation: Some(2), individual: Some(3), trial: Some(0) };
+        let which = Which { generation: Some(2), individual: Some(3), trial: WhichTrial::Number(0) };
         let error = replay(&plan, &directory, which, &mut Vec::new()).unwrap_err();
         assert_eq!(error.to_string(), "trial 0 of individual 3 of generation 2 panicked");
         fs::remove_dir_all(root).unwrap();

@@ -38,6 +38,7 @@ const SCRIPTS: &[&str] = &[
 pub struct Page {
     title: String,
     episodes: Vec<Film>,
+    beside: Option<usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -50,7 +51,7 @@ struct Film {
 impl Page {
     /// A page without episodes.
     pub fn new(title: &str) -> Self {
-        Self { title: title.into(), episodes: Vec::new() }
+        Self { title: title.into(), ..Self::default() }
     }
 
     /// The same page with another episode.
@@ -64,11 +65,21 @@ impl Page {
         self.episodes.push(Film { name: name.into(), facts, recording });
     }
 
+    /// Number of episodes.
+    pub fn episodes(&self) -> usize {
+        self.episodes.len()
+    }
+
+    /// Shows the episode of this number, from 0, beside the first one when the page opens.
+    pub fn open_beside(&mut self, episode: usize) {
+        self.beside = Some(episode);
+    }
+
     /// The whole file.
     pub fn html(&self) -> String {
         let top = self.episodes.first().is_some_and(|film| film.recording.schema().view == View::Top);
         let episodes: Vec<Value> = self.episodes.iter().map(Film::data).collect();
-        let data = json!({
+        let mut data = json!({
             "format": "farsa-replay",
             "version": 1,
             "made_by": concat!("farsa ", env!("CARGO_PKG_VERSION")),
@@ -76,6 +87,9 @@ impl Page {
             "view": if top { "top" } else { "free" },
             "lives": episodes,
         });
+        if let Some(beside) = self.beside {
+            data["beside"] = beside.into();
+        }
         // No text of a recording can end the element that holds it.
         let data = data.to_string().replace('<', "\\u003c");
         let parts = [

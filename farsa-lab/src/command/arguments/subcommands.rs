@@ -13,9 +13,10 @@ use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs};
 use crate::command::arguments::sweep::SweepArgs;
+use crate::error::Error;
 use crate::evaluation::protocols::chosen::Choice;
 use crate::evaluation::protocols::sheet::Wish;
-use crate::evaluation::replay::Which;
+use crate::evaluation::replay::{Which, WhichTrial};
 use crate::report::outcome::Success;
 use crate::run::plan::LARGEST_SEED;
 
@@ -217,14 +218,23 @@ pub(crate) struct WhichArgs {
     /// The individual, from 0 [default: the best of the generation]
     #[arg(long, value_name = "N")]
     individual: Option<u32>,
-    /// The trial, from 0 [default: all]
-    #[arg(long, value_name = "N")]
-    trial: Option<u32>,
+    /// The trial, from 0, or `best`, the one that earns most [default: all]
+    #[arg(long, value_name = "N", value_parser = which_trial)]
+    trial: Option<WhichTrial>,
 }
 
 impl WhichArgs {
     pub(crate) fn which(&self) -> Which {
-        Which { generation: self.generation, individual: self.individual, trial: self.trial }
+        let trial = self.trial.unwrap_or_default();
+        Which { generation: self.generation, individual: self.individual, trial }
+    }
+}
+
+/// A trial's number, or `best`.
+fn which_trial(text: &str) -> Result<WhichTrial, String> {
+    match text {
+        "best" => Ok(WhichTrial::Best),
+        number => number.parse().map(WhichTrial::Number).map_err(|_| "neither a number from 0 nor `best`".into()),
     }
 }
 
@@ -263,8 +273,11 @@ impl ReplayArgs {
     }
 
     /// The cases that are asked for, if any are.
-    pub(crate) fn choice(&self) -> Option<Choice<'_>> {
-        Some(self.cases.choice(self.protocol.as_deref()?, self.which.trial))
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a trial without a number.
+    pub(crate) fn choice(&self) -> Result<Option<Choice<'_>>, Error> {
+        self.protocol.as_deref().map(|protocol| self.cases.choice(protocol, self.which.trial)).transpose()
     }
 }
 
@@ -280,8 +293,15 @@ pub(crate) struct CaseArgs {
 }
 
 impl CaseArgs {
-    fn choice<'c>(&'c self, protocol: &'c str, trial: Option<u32>) -> Choice<'c> {
-        Choice { protocol, cases: &self.cases, trial: trial.unwrap_or(0), seed: self.seed }
+    fn choice<'c>(&'c self, protocol: &'c str, trial: Option<WhichTrial>) -> Result<Choice<'c>, Error> {
+        let trial = match trial {
+            None | Some(WhichTrial::All) => 0,
+            Some(WhichTrial::Number(trial)) => trial,
+            Some(WhichTrial::Best) => {
+                return Err(Error::Usage("--trial best: of a protocol's cases name the trial by its number".into()));
+            }
+        };
+        Ok(Choice { protocol, cases: &self.cases, trial, seed: self.seed })
     }
 }
 
@@ -297,9 +317,9 @@ pub(crate) struct DrawArgs {
     /// The individual, from 0 [default: the best of the generation]
     #[arg(long, value_name = "N")]
     individual: Option<u32>,
-    /// The trial, from 0 [default: 0]
-    #[arg(long, value_name = "N")]
-    trial: Option<u32>,
+    /// The trial, from 0, or `best`, the one that earns most [default: 0]
+    #[arg(long, value_name = "N", value_parser = which_trial)]
+    trial: Option<WhichTrial>,
     /// The moment, in seconds of the trial [default: its end]
     #[arg(long, value_name = "S")]
     pub(crate) time: Option<f64>,
@@ -323,13 +343,18 @@ pub(crate) struct DrawArgs {
 
 impl DrawArgs {
     pub(crate) fn which(&self) -> Which {
-        Which { generation: self.generation, individual: self.individual, trial: self.trial }
+        let trial = self.trial.unwrap_or(WhichTrial::Number(0));
+        Which { generation: self.generation, individual: self.individual, trial }
     }
 
     /// The sheet that is asked for, if one is.
-    pub(crate) fn sheet(&self) -> Option<Wish<'_>> {
-        let choice = self.cases.choice(self.protocol.as_deref()?, self.trial);
-        Some(Wish { choice, camera: self.camera.as_deref(), size: self.size })
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a trial without a number.
+    pub(crate) fn sheet(&self) -> Result<Option<Wish<'_>>, Error> {
+        let Some(protocol) = self.protocol.as_deref() else { return Ok(None) };
+        let choice = self.cases.choice(protocol, self.trial)?;
+        Ok(Some(Wish { choice, camera: self.camera.as_deref(), size: self.size }))
     }
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
-use crate::evaluation::replay::{facts, fitness};
+use crate::evaluation::replay::{came_to, facts, fitness};
 use crate::evaluation::test::Subject;
 use crate::experiment::outcome::Outcome;
 use crate::figures::significant::significant;
@@ -97,7 +97,7 @@ impl CasesSummary {
     fn text(&self) -> String {
         let mut text = self.caption.clone();
         for ReplayedCase { name, steps, fitness, success, failure, .. } in &self.cases {
-            let came = if *success { "succeeded" } else { "no success" };
+            let came = if *success { "success" } else { "no success" };
             // Writing into a string cannot fail.
             let _ = write!(text, "\n{name}: {came}, {steps} steps, fitness {}", significant(*fitness));
             if let Some(why) = failure {
@@ -153,21 +153,26 @@ pub(crate) fn page(
 ) -> Result<ReplayedCases, Error> {
     let title = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
     let mut page = Page::new(&format!("{title}, {}", choice.protocol));
-    let mut add = |plan: &Plan<'_>, directory: &Directory| -> Result<CasesSummary, Error> {
+    let add = |page: &mut Page, plan: &Plan<'_>, directory: &Directory| -> Result<CasesSummary, Error> {
         let mut trials = CaseTrials::find(plan, directory, choice)?;
         let mut outcomes = Vec::new();
         for case in trials.cases.clone() {
             let mut recording = Recording::new(trials.schema());
             let outcome = trials.run(case, &mut recording)?;
             let run = [plan.condition.as_str(), "seed"].into_iter().find(|word| !word.is_empty()).unwrap_or_default();
-            let name = format!("{}: {run} {}, {}", trials.case(case).name(), plan.seed, trials.caption());
+            let (case, came) = (trials.case(case).name(), came_to(trials.evaluator(), &outcome));
+            let name = format!("{case}: {came}; {run} {}, {}", plan.seed, trials.caption());
             page.add(&name, facts(trials.evaluator(), &outcome), recording);
             outcomes.push(outcome);
         }
         Ok(CasesSummary::new(plan, directory, &trials, &outcomes))
     };
-    let replay = add(plan, directory)?;
-    let compared = compare.map(|(plan, directory)| add(plan, directory)).transpose()?;
+    let replay = add(&mut page, plan, directory)?;
+    let second = page.episodes();
+    let compared = compare.map(|(plan, directory)| add(&mut page, plan, directory)).transpose()?;
+    if compared.is_some() {
+        page.open_beside(second);
+    }
     let html = page.html();
     create_results(&[(path.to_owned(), html)])?;
     Ok(ReplayedCases::new(replay, compared))

@@ -25,6 +25,8 @@ const COLUMNS: usize = 8;
 const HEAD: u32 = 44;
 const LABEL: u32 = 26;
 const GAP: u32 = 12;
+/// Width of a letter of the title, at most in the mean.
+const TITLE_LETTER: u32 = 10;
 
 /// Which trials are drawn, and how.
 pub(crate) struct Wish<'w> {
@@ -79,7 +81,10 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path
     let camera = camera.unwrap_or(Camera::for_view(trials.schema().view));
     let caption = trials.caption();
     let shown: Vec<Case> = trials.cases.iter().map(|number| trials.case(*number)).collect();
-    let columns = Protocol::places(&shown, |case| &case.column).len().clamp(1, COLUMNS);
+    // Of a whole table a row is a row; cases that were named stand beside each other.
+    let abreast =
+        if wish.choice.cases.is_empty() { Protocol::places(&shown, |case| &case.column).len() } else { shown.len() };
+    let columns = abreast.clamp(1, COLUMNS);
     let picture = sheet(&caption, &cases, columns, camera, [width, height]);
     create_results(&[(path.to_owned(), picture)])?;
     let Subject { generation, individual, .. } = trials.subject();
@@ -121,7 +126,8 @@ fn sheet(title: &str, cases: &[DrawnCase], columns: usize, camera: Camera, [widt
     let margin = MARGIN as u32;
     let rows = cases.len().div_ceil(columns) as u32;
     let beside = columns.min(cases.len()) as u32;
-    let all = [2 * margin + beside * (width + GAP) - GAP, HEAD + rows * (height + LABEL + GAP) + 8];
+    let wide = (beside * (width + GAP) - GAP).max(TITLE_LETTER * title.chars().count() as u32);
+    let all = [2 * margin + wide, HEAD + rows * (height + LABEL + GAP) + 8];
     let draw = |number: usize, case: &DrawnCase| -> Markup {
         let [x, y] = [(number % columns) as u32, (number / columns) as u32];
         let [x, y] = [margin + x * (width + GAP), HEAD + LABEL + y * (height + LABEL + GAP)];

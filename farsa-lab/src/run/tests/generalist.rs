@@ -63,7 +63,7 @@ fn everyone_meets_whom_the_strategy_chose_in_the_run_and_in_its_replay() {
                     let which = Which {
                         generation: Some(generation),
                         individual: Some(u32::try_from(individual).unwrap()),
-                        trial: None,
+                        ..Which::default()
                     };
                     let (lines, found) = replayed(&plan, &directory, which);
                     assert_eq!(found.fitness(), fitness, "{generation}");

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use crate::evaluation::replay::{Which, replay};
+use crate::evaluation::replay::{Which, WhichTrial, replay};
 use crate::evaluation::test;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Iteration, Learner};
@@ -158,10 +158,10 @@ fn populations_meet_each_others_champions() {
         assert_eq!(row[4], 30.0);
         // A trial is replayed against the same opponents.
         for individual in [0, 14, 29] {
-            let which = Which { generation: Some(generation), individual: Some(individual), trial: None };
+            let which = Which { generation: Some(generation), individual: Some(individual), ..Which::default() };
             let (_, found) = replayed(&plan, &directory, which);
             assert_eq!(found.fitness(), all[individual as usize]);
-            let (one, _) = replayed(&plan, &directory, Which { trial: Some(2), ..which });
+            let (one, _) = replayed(&plan, &directory, Which { trial: WhichTrial::Number(2), ..which });
             let other = usize::from(individual < 10);
             let met = match rule(generation, 2) {
                 Some(earlier) => genes(earlier, history.champion(other, earlier).unwrap()),

@@ -115,7 +115,7 @@ function main() {
 	(dark.onchange = () => player.setTheme(dark.matches ? "dark" : "light"))();
 
 	$("app").hidden = false;
-	player.show(trials[0]);
+	player.show(trials[0], trials[page.beside]);
 	player.marks();
 	$("message").hidden = true;
 	farsa.ready = true;
