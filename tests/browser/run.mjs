@@ -501,22 +501,30 @@ async function compared(browser, html) {
     }, value);
     await settled(browser);
   };
+  const bothColoured = async (what) => {
+    const picture = decode(await browser.screenshot());
+    for (const i of [0, 1]) {
+      const rect = await browser.run((i) => {
+        const { left, top, right, bottom } = document.querySelectorAll(".scene")[i].getBoundingClientRect();
+        return { left, top, right, bottom };
+      }, i);
+      const colours = coloursIn(picture, rect);
+      check(`${what}: view ${i} has ${colours} colours`, colours > 300);
+    }
+  };
   await beside("1");
   const [views, values] = await browser.run(() => [[...document.querySelectorAll("figure")].filter((f) => f.offsetWidth).length, [...document.querySelectorAll(".row")].map((r) => r.querySelectorAll(".value").length)]);
   check("beside: two views, and two values in every strip", views === 2 && values.every((n) => n === 2), views);
-  const picture = decode(await browser.screenshot());
-  for (const i of [0, 1]) {
-    const rect = await browser.run((i) => {
-      const { left, top, right, bottom } = document.querySelectorAll(".scene")[i].getBoundingClientRect();
-      return { left, top, right, bottom };
-    }, i);
-    const colours = coloursIn(picture, rect);
-    check(`beside: view ${i} has ${colours} colours`, colours > 300);
-  }
+  await bothColoured("beside");
   if (shots) writeFileSync(join(shots, "two.png"), await browser.screenshot());
   await beside("");
   check("beside nothing: one view again", (await browser.run(() => [...document.querySelectorAll("figure")].filter((f) => f.offsetWidth).length)) === 1);
   await silent(browser, "two trials");
+  // A page that says so opens with both.
+  await opened(browser, write("both.html", withData(html, { ...data, lives: [trial, data.lives[1] ?? trial], beside: 1 })));
+  check("a page opens with the trial beside that it names", (await browser.run(() => document.querySelector("#beside").value)) === "1");
+  await bothColoured("opened with both");
+  await silent(browser, "opened with both");
 }
 
 async function withoutWebGL(driver, url) {
