@@ -137,7 +137,7 @@ impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B> Channels for LinearCamera<R, C,
 }
 
 impl<R: AsRef<[Beam]>, C: AsRef<[ColorBand]>, B: Copy + PartialEq> LinearCamera<R, C, B> {
-    /// Reads what the camera sees from a pose of its body that is known already; `out` as for [`Sensor::read`].
+    /// Reads what the camera sees from a pose of its body that is known already; `out` [sectors x colours].
     pub fn read_from<W: Sight<Body = B> + ?Sized>(&self, world: &W, pose: &Pose, out: &mut [f32]) {
         let (stance, bands) = (Stance::from_pose(pose), self.bands.as_ref());
         let (own, wedge, range) = (self.body, &self.wedge, self.range);
