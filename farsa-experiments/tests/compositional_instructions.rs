@@ -76,8 +76,8 @@ fn trials_and_cases_in_lanes_are_those_alone() {
     }
 }
 
-/// The champions of docs/results/compositional-instructions.md follow what they were trained for; what they make of the instructions
-/// that were held out stands there.
+/// The champions of docs/results/compositional-instructions.md follow what they were trained for, and that of `with-indicate` moves
+/// red as well, which it was never told to.
 #[test]
 fn evolved_agents_follow_what_they_were_trained_for() {
     for (condition, name) in CHAMPIONS {
@@ -90,8 +90,14 @@ fn evolved_agents_follow_what_they_were_trained_for() {
         let protocol = evaluator.protocols().iter().position(|protocol| protocol.name == "instructions").unwrap();
         let cases = evaluator.protocols()[protocol].cases.clone();
         assert_eq!(cases.iter().filter(|case| case.held_out).count(), 2);
-        for (case, what) in cases.iter().enumerate().filter(|(_, case)| !case.held_out) {
-            let case = Some(CaseId { protocol, case });
+        for (number, what) in cases.iter().enumerate() {
+            let understood = condition == Condition::WithIndicate && what.row == "MOVE";
+            let least = match what.held_out {
+                false => 320,
+                true if understood => 300,
+                true => continue,
+            };
+            let case = Some(CaseId { protocol, case: number });
             let of = |trial| EpisodeId { seed: 7 | 1 << 63, trial, ..EpisodeId::default() };
             let mut follows = |trial| {
                 let evaluation = Evaluation { case, ..Evaluation::new(&parameters, of(trial)) };
@@ -99,7 +105,7 @@ fn evolved_agents_follow_what_they_were_trained_for() {
             };
             let successes = (0..400).filter(|trial| follows(*trial)).count();
             println!("{condition:?}, {}: {successes} of 400", what.name());
-            assert!(successes >= 320, "{condition:?}, {}: {successes} of 400", what.name());
+            assert!(successes >= least, "{condition:?}, {}: {successes} of 400", what.name());
         }
     }
 }
