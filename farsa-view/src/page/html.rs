@@ -2,19 +2,11 @@
 
 use std::fmt::Write as _;
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
-use farsa_body::{BodyId, Pose, Robot, Visual};
-use farsa_num::crc32;
 use serde_json::{Value, json};
 
-use crate::page::blocks::{Blocks, COUNTS, Space};
-use crate::picture::svg_data::hex;
+use crate::page::film::Film;
 use crate::recording::memory::Recording;
-use crate::recording::schema::Channel;
 use crate::recording::view::View;
-use crate::shape::appearance::as_screens_take_it;
-use crate::shape::geometry::Geometry;
 
 const TEMPLATE: &str = include_str!("viewer/page.html");
 const STYLE: &str = include_str!("viewer/viewer.css");
@@ -39,13 +31,6 @@ pub struct Page {
     title: String,
     episodes: Vec<Film>,
     beside: Option<usize>,
-}
-
-#[derive(Clone, Debug)]
-struct Film {
-    name: String,
-    facts: Vec<(String, String)>,
-    recording: Recording,
 }
 
 impl Page {
@@ -126,230 +111,6 @@ pub(crate) fn escaped(text: &str) -> String {
     html
 }
 
-impl Film {
-    fn data(&self) -> Value {
-        let Self { name, facts, recording } = self;
-        let schema = recording.schema();
-        let ticks = recording.times().len();
-        let bodies: Vec<BodyId> = schema.shown().collect();
-        let position = |tick: usize, body: BodyId| recording.pose_at(tick, body).map(|pose| pose.position);
-        let of_bodies = (0..ticks).flat_map(|tick| bodies.iter().filter_map(move |body| position(tick, *body)));
-        let of_points = (0..ticks)
-            .flat_map(|tick| (0..schema.points.len()).filter_map(move |point| recording.point_at(tick, point)));
-        let touching = || (0..ticks).flat_map(|tick| recording.contacts_at(tick));
-        let rays = (0..ticks).flat_map(|tick| recording.rays_at(tick)).flat_map(|ray| [ray.from, ray.to]);
-        let space = Space::from_positions(
-            of_bodies.chain(of_points).chain(touching().map(|contact| contact.point)).chain(rays),
-        );
-        let largest = touching().flat_map(|contact| contact.force).map(f32::abs).fold(1e-3, f32::max);
-        let force_unit = f64::from(largest) / 32767.0;
-
-        let mut blocks = Blocks::default();
-        blocks.begin("times");
-        recording.times().iter().for_each(|time| blocks.float(*time as f32));
-        blocks.begin("poses");
-        let mut last = vec![farsa_body::Pose::identity(); bodies.len()];
-        for tick in 0..ticks {
-            for (body, last) in bodies.iter().zip(&mut last) {
-                // A body that was not recorded stays where it was.
-                if let Some(pose) = recording.pose_at(tick, *body)
-                    && pose.position.iter().chain(&pose.rotation).all(|x| x.is_finite())
-                {
-                    *last = pose;
-                }
-                space.write(last.position, &mut blocks);
-                last.rotation.iter().for_each(|x| blocks.word(((x * 32767.0).round() as i16).cast_unsigned()));
-            }
-        }
-        let channels = self.channels(&mut blocks);
-        blocks.begin("points");
-        for tick in 0..ticks {
-            (0..schema.points.len())
-                .filter_map(|point| recording.point_at(tick, point))
-                .for_each(|position| space.write(position, &mut blocks));
-        }
-        blocks.begin("contacts");
-        for contacts in (0..ticks).map(|tick| recording.contacts_at(tick)) {
-            blocks.word(contacts.len() as u16);
-            for contact in contacts {
-                blocks.word(contact.pair.0);
-                space.write(contact.point, &mut blocks);
-                contact
-                    .force
-                    .iter()
-                    .for_each(|f| blocks.word(((f64::from(*f) / force_unit).round() as i16).cast_unsigned()));
-            }
-        }
-        blocks.begin("rays");
-        for rays in (0..ticks).map(|tick| recording.rays_at(tick)) {
-            blocks.word(rays.len() as u16);
-            for ray in rays {
-                space.write(ray.from, &mut blocks);
-                space.write(ray.to, &mut blocks);
-                blocks.word(u16::from(ray.met));
-            }
-        }
-        let images = recording.images();
-        blocks.begin("image_starts");
-        (0..schema.images.len()).for_each(|image| images.starts(image).for_each(|start| blocks.long(start)));
-        blocks.begin("pixels");
-        images.pixels().iter().for_each(|pixel| blocks.word(*pixel));
-        blocks.begin("weights");
-        recording.controller_parameters().iter().for_each(|weight| blocks.float(*weight));
-
-        let Blocks { bytes, starts } = blocks;
-        let mut data = json!({
-            "name": name,
-            "facts": facts,
-            "ticks": ticks,
-            "bodies": self.names(&bodies),
-            "shapes": self.shapes(&bodies),
-            "channels": channels,
-            "pairs": self.pairs(),
-            "points": schema.points,
-            "images": self.images(),
-            "position_origin": space.origin,
-            "position_unit": space.unit,
-            "force_unit": force_unit,
-            "blocks": starts,
-            "bytes": bytes.len(),
-            "crc32": crc32(&bytes),
-        });
-        if let Some(network) = self.network() {
-            data["network"] = network;
-        }
-        // Last, so that a reader sees all names before the long line of numbers.
-        data["data"] = STANDARD.encode(&bytes).into();
-        data
-    }
-
-    fn names(&self, bodies: &[BodyId]) -> Vec<&str> {
-        bodies.iter().map(|body| self.recording.schema().body_name(*body)).collect()
-    }
-
-    fn shapes(&self, bodies: &[BodyId]) -> Vec<Value> {
-        let schema = self.recording.schema();
-        let shape = |name: &str, body: Option<BodyId>, geometry: Geometry, placement: &Pose<f64>, role: &str| {
-            let mut shape = match geometry {
-                Geometry::Sphere { radius } => json!({"kind": "sphere", "radius": radius}),
-                Geometry::Capsule { radius, half_length } => {
-                    json!({"kind": "capsule", "radius": radius, "half_length": half_length})
-                }
-                Geometry::Cylinder { radius, half_length } => {
-                    json!({"kind": "cylinder", "radius": radius, "half_length": half_length})
-                }
-                Geometry::Box { half } => json!({"kind": "box", "half": half}),
-                Geometry::Plane => json!({"kind": "plane"}),
-                Geometry::Disc { radius } => json!({"kind": "cylinder", "radius": radius, "half_length": 0.0}),
-                Geometry::Rectangle { half: [x, y] } => json!({"kind": "box", "half": [x, y, 0.0]}),
-            };
-            let body = body.and_then(|body| bodies.iter().position(|other| *other == body));
-            shape["name"] = name.into();
-            shape["body"] = body.map_or_else(|| (-1).into(), Value::from);
-            shape["role"] = role.into();
-            shape["position"] = json!(placement.position);
-            shape["rotation"] = json!(placement.rotation);
-            shape
-        };
-        let drawn = |name: &str, &Visual { body, shape: form, placement, color }: &Visual| {
-            let role = match body {
-                None => "ground",
-                Some(body) if schema.is_thing(body) => "thing",
-                Some(_) => "robot",
-            };
-            let mut value = shape(name, body, form.into(), &placement, role);
-            if let Some(color) = color {
-                value["color"] = hex(as_screens_take_it(color)).into();
-            }
-            value
-        };
-        let colliders = schema.robot.iter().flat_map(Robot::drawn_colliders);
-        let colliders = colliders.map(|collider| drawn(&collider.name, &collider.into()));
-        let visuals = schema.robot.iter().flat_map(|robot| &robot.visuals);
-        let visuals = visuals.map(|visual| drawn(visual.body.map_or("", |body| schema.body_name(body)), visual));
-        let objects = schema.objects.iter().map(|object| {
-            let mut value = shape(&object.name, object.body, object.geometry, &object.placement, object.role.name());
-            if let Some(color) = object.color {
-                value["color"] = hex(color).into();
-            }
-            value
-        });
-        colliders.chain(visuals).chain(objects).collect()
-    }
-
-    fn pairs(&self) -> Vec<[&str; 2]> {
-        let Some(robot) = &self.recording.schema().robot else { return Vec::new() };
-        let name = |collider: usize| robot.colliders.get(collider).map_or("", |collider| collider.name.as_str());
-        robot.pairs.iter().map(|pair| pair.colliders.map(name)).collect()
-    }
-
-    /// Writes the values of all channels and says how to read them.
-    fn channels(&self, blocks: &mut Blocks) -> Vec<Value> {
-        let recording = &self.recording;
-        let ticks = recording.times().len();
-        let rows: Vec<Vec<f64>> = (0..ticks).map(|tick| recording.row(tick).collect()).collect();
-        blocks.begin("channels");
-        let mut told = Vec::new();
-        for (index, (_, channel)) in recording.schema().channels().enumerate() {
-            let values = || rows.iter().map(|row| row[index]);
-            let finite = || values().filter(|x| x.is_finite());
-            let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-            let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
-            // Whole numbers stay exact: phases, counts of contacts.
-            let whole = finite().all(|x| x.fract() == 0.0) && high - low <= COUNTS;
-            let scale = if whole { 1.0 } else { (high - low) / COUNTS };
-            for x in values() {
-                blocks.word(if x.is_nan() { u16::MAX } else { ((x - low) / scale).round().min(COUNTS) as u16 });
-            }
-            told.push(described(channel, low, scale));
-        }
-        told
-    }
-
-    fn images(&self) -> Vec<Value> {
-        let images = self.recording.schema().images.iter();
-        images.map(|image| json!({"name": image.name, "size": image.size})).collect()
-    }
-
-    fn network(&self) -> Option<Value> {
-        let schema = self.recording.schema();
-        if schema.links.is_empty() || self.recording.controller_parameters().is_empty() {
-            return None;
-        }
-        let layers = [&schema.sensors, &schema.neurons, &schema.outputs];
-        let channels = layers.into_iter().enumerate().flat_map(|(layer, of)| of.iter().map(move |x| (layer, x)));
-        let first = schema.scalars.len();
-        let nodes: Vec<Value> = channels
-            .enumerate()
-            .map(|(index, (layer, node))| json!({"name": node.title(), "layer": layer, "channel": first + index}))
-            .collect();
-        let links: Vec<Value> = (schema.links.iter())
-            .map(|links| json!({"from": links.from, "to": links.to, "first": links.first}))
-            .collect();
-        let values: Vec<Value> = (schema.node_parameters.iter())
-            .map(|of| json!({"name": of.name, "nodes": of.nodes, "first": of.first}))
-            .collect();
-        Some(json!({"nodes": nodes, "links": links, "values": values}))
-    }
-}
-
-fn described(channel: &Channel, minimum: f64, scale: f64) -> Value {
-    let mut told = json!({
-        "group": channel.group,
-        "name": channel.name,
-        "unit": channel.unit,
-        "minimum": minimum,
-        "scale": scale,
-    });
-    if let Some(range) = channel.range {
-        told["range"] = json!(range);
-    }
-    if !channel.words.is_empty() {
-        told["words"] = json!(channel.words);
-    }
-    told
-}
-
 /// A number with as many digits as a reader wants.
 pub fn readable(x: f64) -> String {
     let mut text = String::new();
@@ -369,7 +130,10 @@ pub fn readable(x: f64) -> String {
 mod tests {
     use super::*;
     use crate::recording::schema::Schema;
+    use base64::Engine as _;
+    use base64::engine::general_purpose::STANDARD;
     use farsa_body::{PairContact, PairId, Pose, Recorder, Tabletop};
+    use farsa_num::crc32;
 
     /// The data of a page, as a browser reads it.
     fn data(html: &str) -> Value {
