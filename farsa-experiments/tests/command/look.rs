@@ -56,6 +56,7 @@ fn a_page_holds_the_lives_that_were_asked_for() {
         ("replay r1 --html one.html", "there is one already"),
         ("replay r1 --html new.html --compare r3", "there is no such directory"),
         ("replay r1 --trial 3 --html new.html", "trial 3 of 3"),
+        ("replay r1 --trial 3 --out new.csv", "trial 3 of 3"),
         ("replay r1 --trial bets --html new.html", "neither a number from 0 nor `best`"),
         ("draw r1 --out new.svg", "have no bodies to draw"),
     ] {
@@ -63,7 +64,7 @@ fn a_page_holds_the_lives_that_were_asked_for() {
         assert!(said.code != Some(0) && said.err.contains(complaint), "{arguments}: {said:?}");
     }
     assert_eq!(before, fs::read(here.join("one.html")).expect("the page"));
-    assert!(!here.join("new.html").exists() && !here.join("new.svg").exists());
+    assert!(["new.html", "new.csv", "new.svg"].into_iter().all(|name| !here.join(name).exists()));
 }
 
 #[test]

@@ -9,6 +9,7 @@
 //! - `protocols`: `farsa test --protocol`: the champion in every case of a table
 //! - `recorded`: the table of a test and its record, two files that belong together
 //! - `replay`: `farsa replay`: a trial of the run again, step by step
+//! - `replayed`: what a replay came to, and its page: of one run, or of two beside each other
 //! - `test`: `farsa test`: the champion on starts that it has never met
 //! - `test_table`: `test.csv`: a line per trial of a test, and what they say together
 
@@ -21,6 +22,7 @@ pub(crate) mod populations;
 pub(crate) mod protocols;
 mod recorded;
 pub(crate) mod replay;
+pub(crate) mod replayed;
 pub(crate) mod test;
 pub(crate) mod test_table;
 

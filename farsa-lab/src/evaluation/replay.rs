@@ -7,10 +7,11 @@ use std::path::Path;
 
 use farsa_body::Recorder;
 use farsa_evo::{Fitness, ObservationStatistics};
-use farsa_view::{Page, Recording, Schema, Table, readable};
+use farsa_view::{Recording, Schema, Table, readable};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::outcome::{Note, Outcome};
@@ -19,11 +20,10 @@ use crate::run::contained::caught;
 use crate::run::plan::Plan;
 use crate::run::told::history;
 use crate::store::directory::Directory;
-use crate::store::replace::create_results;
 use crate::strategy::opponents;
 use crate::strategy::search::Genome;
 
-/// Which of its trials.
+/// Which trials of an individual.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum WhichTrial {
     #[default]
@@ -41,6 +41,7 @@ pub(crate) struct Which {
     pub(crate) generation: Option<u32>,
     /// The individual; the best of the generation, in the first population, if none is named.
     pub(crate) individual: Option<u32>,
+    /// Which of its trials.
     pub(crate) trial: WhichTrial,
 }
 
@@ -193,7 +194,7 @@ pub(crate) struct ReplaySummary {
     /// Of all trials.
     steps: u32,
     /// Of all trials: that of the individual if no trial was left out.
-    fitness: f64,
+    pub(crate) fitness: f64,
     /// Whether every trial succeeded.
     success: bool,
 }
@@ -210,8 +211,8 @@ struct ReplayedTrial {
     failure: Option<String>,
 }
 
-impl ReplaySummary {
-    /// The same in a line of words.
+impl InWords for ReplaySummary {
+    /// A line.
     fn text(&self) -> String {
         let Self { generation, individual, trials, steps, fitness, .. } = self;
         let what = match trials.as_slice() {
@@ -231,42 +232,16 @@ impl ReplaySummary {
     }
 }
 
-/// What a replay came to.
-#[derive(Debug, Serialize)]
-pub(crate) struct Replayed {
-    #[serde(flatten)]
-    replay: ReplaySummary,
-    /// The same choice in another run, if there is one.
-    compared: Option<ReplaySummary>,
-    /// Where the recordings went, as the caller knows; none for the standard output.
-    pub(crate) file: Option<String>,
-    /// The same in words, a line each.
-    pub(crate) summary: String,
-}
-
-impl Replayed {
-    fn new(replay: ReplaySummary, compared: Option<ReplaySummary>) -> Self {
-        let lines: Vec<String> = [&replay].into_iter().chain(&compared).map(ReplaySummary::text).collect();
-        Self { replay, compared, file: None, summary: lines.join("\n") }
-    }
-
-    /// The fitness of the individual, with all digits.
-    #[cfg(test)]
-    pub(crate) fn fitness(&self) -> f64 {
-        self.replay.fitness
-    }
-}
-
-/// Writes the trials as CSV, a line per step.
-pub(crate) fn replay(
+/// Writes the trials as CSV, a line per step, to what `out` opens once it is known that there are such trials.
+pub(crate) fn replay<W: Write>(
     plan: &Plan<'_>,
     directory: &Directory,
     which: Which,
-    out: &mut dyn Write,
-) -> Result<Replayed, Error> {
+    out: impl FnOnce() -> Result<W, Error>,
+) -> Result<Replayed<ReplaySummary>, Error> {
     let mut replayable = Replayable::find(plan, directory, which)?;
     let failed = |source: io::Error| Error::Io { doing: "write", path: "the replay".into(), source };
-    let mut table = Table::new(out, &replayable.schema()).map_err(failed)?;
+    let mut table = Table::new(out()?, &replayable.schema()).map_err(failed)?;
     let mut outcomes = Vec::new();
     let mut ended = Ok(());
     for trial in replayable.trials.clone() {
@@ -294,10 +269,8 @@ pub(crate) fn page(
     which: Which,
     compare: Option<(&Plan<'_>, &Directory)>,
     path: &Path,
-) -> Result<Replayed, Error> {
-    let title = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
-    let mut page = Page::new(&title);
-    let add = |page: &mut Page, plan: &Plan<'_>, directory: &Directory| -> Result<ReplaySummary, Error> {
+) -> Result<Replayed<ReplaySummary>, Error> {
+    replayed::page((plan, directory), compare, "", path, |page, plan, directory| {
         let mut replayable = Replayable::find(plan, directory, which)?;
         let (mut outcomes, mut films) = (Vec::new(), Vec::new());
         for trial in replayable.trials.clone() {
@@ -306,8 +279,7 @@ pub(crate) fn page(
             let Replayable { generation, individual, .. } = replayable;
             // What distinguishes trials comes first: a narrow screen cuts the rest.
             let came = came_to(replayable.evaluator.as_ref(), &outcome);
-            let run = [plan.condition.as_str(), "seed"].into_iter().find(|word| !word.is_empty()).unwrap_or_default();
-            let run = format!("{run} {}, generation {generation}, individual {individual}", plan.seed);
+            let run = format!("{}, generation {generation}, individual {individual}", run_in_words(plan));
             let facts = facts(replayable.evaluator.as_ref(), &outcome);
             let fitness = replayable.fitness(std::slice::from_ref(&outcome));
             films.push((fitness, format!("trial {trial}: {came}; {run}"), facts, recording));
@@ -318,16 +290,7 @@ pub(crate) fn page(
             page.add(&name, facts, recording);
         }
         Ok(replayable.summary(plan, directory, &outcomes))
-    };
-    let replay = add(&mut page, plan, directory)?;
-    let second = page.episodes();
-    let compared = compare.map(|(plan, directory)| add(&mut page, plan, directory)).transpose()?;
-    if compared.is_some() {
-        page.open_beside(second);
-    }
-    let html = page.html();
-    create_results(&[(path.to_owned(), html)])?;
-    Ok(Replayed::new(replay, compared))
+    })
 }
 
 /// The fitness of trials; that of a failed one is the worst.

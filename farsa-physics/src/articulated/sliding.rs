@@ -2,8 +2,8 @@
 //!
 //! Their rotations are constants, they have no angular velocity, and their joints feel nothing but forces: of spatial vectors
 //! the linear half is left, of inertias the linear block. That half is computed as for other links, so that a motion has the
-//! same bits either way; the angular half, which such joints multiply by zero, is left out. A disc that slides in the plane
-//! consists of two such links.
+//! same bits either way, but for the signs of zeros; the angular half, which such joints multiply by zero, is left out. A disc
+//! that slides in the plane consists of two such links.
 
 use farsa_num::{Real, Scalar};
 

@@ -267,11 +267,6 @@ pub(crate) struct ReplayArgs {
 }
 
 impl ReplayArgs {
-    /// Where the trials go, if not to the standard output.
-    pub(crate) fn file(&self) -> Option<String> {
-        self.html.as_ref().or(self.out.as_ref()).map(|path| path.display().to_string())
-    }
-
     /// The cases that are asked for, if any are.
     ///
     /// # Errors

@@ -4,35 +4,22 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-use farsa_view::{Page, Recording, Table};
+use farsa_view::{Recording, Table};
 use serde::Serialize;
 
 use crate::error::Error;
 use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
 use crate::evaluation::replay::{came_to, facts, fitness};
+use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::test::Subject;
 use crate::experiment::outcome::Outcome;
 use crate::figures::significant::significant;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::create_results;
-
-/// What a replay of a protocol's cases came to.
-#[derive(Debug, Serialize)]
-pub(crate) struct ReplayedCases {
-    #[serde(flatten)]
-    replay: CasesSummary,
-    /// The same cases in another run, if there is one.
-    compared: Option<CasesSummary>,
-    /// Where the recordings went, as the caller knows; none for the standard output.
-    pub(crate) file: Option<String>,
-    /// The same in words.
-    pub(crate) summary: String,
-}
 
 /// The cases of one run.
 #[derive(Debug, Serialize)]
-struct CasesSummary {
+pub(crate) struct CasesSummary {
     directory: String,
     experiment: String,
     condition: String,
@@ -92,7 +79,9 @@ impl CasesSummary {
             caption: trials.caption(),
         }
     }
+}
 
+impl InWords for CasesSummary {
     /// A line for the champion, and one for each case.
     fn text(&self) -> String {
         let mut text = self.caption.clone();
@@ -108,23 +97,16 @@ impl CasesSummary {
     }
 }
 
-impl ReplayedCases {
-    fn new(replay: CasesSummary, compared: Option<CasesSummary>) -> Self {
-        let texts: Vec<String> = [&replay].into_iter().chain(&compared).map(CasesSummary::text).collect();
-        Self { replay, compared, file: None, summary: texts.join("\n") }
-    }
-}
-
-/// Writes the trial of one case as CSV, a line per step.
+/// Writes the trial of one case as CSV, a line per step, to what `out` opens once it is known that there is such a trial.
 ///
 /// # Errors
 /// Those of [`CaseTrials::find`] and [`CaseTrials::run`], [`Error::Usage`] for more cases than one, [`Error::Io`].
-pub(crate) fn replay(
+pub(crate) fn replay<W: Write>(
     plan: &Plan<'_>,
     directory: &Directory,
     choice: Choice<'_>,
-    out: impl FnOnce() -> Result<Box<dyn Write>, Error>,
-) -> Result<ReplayedCases, Error> {
+    out: impl FnOnce() -> Result<W, Error>,
+) -> Result<Replayed<CasesSummary>, Error> {
     let mut trials = CaseTrials::find(plan, directory, choice)?;
     let &[case] = trials.cases.as_slice() else {
         let (name, count) = (&trials.protocol().name, trials.cases.len());
@@ -137,7 +119,7 @@ pub(crate) fn replay(
     let outcome = trials.run(case, &mut table);
     // The steps before a panic are worth having.
     table.finish().map_err(failed)?;
-    Ok(ReplayedCases::new(CasesSummary::new(plan, directory, &trials, &[outcome?]), None))
+    Ok(Replayed::new(CasesSummary::new(plan, directory, &trials, &[outcome?]), None))
 }
 
 /// Writes the trials, and those of the same cases in another run, as a page for a browser.
@@ -150,30 +132,19 @@ pub(crate) fn page(
     choice: Choice<'_>,
     compare: Option<(&Plan<'_>, &Directory)>,
     path: &Path,
-) -> Result<ReplayedCases, Error> {
-    let title = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
-    let mut page = Page::new(&format!("{title}, {}", choice.protocol));
-    let add = |page: &mut Page, plan: &Plan<'_>, directory: &Directory| -> Result<CasesSummary, Error> {
+) -> Result<Replayed<CasesSummary>, Error> {
+    let what = format!(", {}", choice.protocol);
+    replayed::page((plan, directory), compare, &what, path, |page, plan, directory| {
         let mut trials = CaseTrials::find(plan, directory, choice)?;
         let mut outcomes = Vec::new();
         for case in trials.cases.clone() {
             let mut recording = Recording::new(trials.schema());
             let outcome = trials.run(case, &mut recording)?;
-            let run = [plan.condition.as_str(), "seed"].into_iter().find(|word| !word.is_empty()).unwrap_or_default();
             let (case, came) = (trials.case(case).name(), came_to(trials.evaluator(), &outcome));
-            let name = format!("{case}: {came}; {run} {}, {}", plan.seed, trials.caption());
+            let name = format!("{case}: {came}; {}, {}", run_in_words(plan), trials.caption());
             page.add(&name, facts(trials.evaluator(), &outcome), recording);
             outcomes.push(outcome);
         }
         Ok(CasesSummary::new(plan, directory, &trials, &outcomes))
-    };
-    let replay = add(&mut page, plan, directory)?;
-    let second = page.episodes();
-    let compared = compare.map(|(plan, directory)| add(&mut page, plan, directory)).transpose()?;
-    if compared.is_some() {
-        page.open_beside(second);
-    }
-    let html = page.html();
-    create_results(&[(path.to_owned(), html)])?;
-    Ok(ReplayedCases::new(replay, compared))
+    })
 }

@@ -66,7 +66,7 @@ fn everyone_meets_whom_the_strategy_chose_in_the_run_and_in_its_replay() {
                         ..Which::default()
                     };
                     let (lines, found) = replayed(&plan, &directory, which);
-                    assert_eq!(found.fitness(), fitness, "{generation}");
+                    assert_eq!(found.replay.fitness, fitness, "{generation}");
                     for (line, other) in lines.lines().skip(1).zip(&others) {
                         assert!(line.ends_with(&format!(",{:?}", f64::from(other[0]))), "{line}");
                     }

@@ -30,7 +30,8 @@ use farsa_num::{Domain, Stream};
 use farsa_view::Schema;
 
 use crate::error::Error;
-use crate::evaluation::replay::{Replayed, Which, replay};
+use crate::evaluation::replay::{ReplaySummary, Which, replay};
+use crate::evaluation::replayed::Replayed;
 use crate::experiment::behaviour::{Behaviour, NotedBehaviour};
 use crate::experiment::definition::Experiment;
 use crate::experiment::episode::EpisodeId;
@@ -257,8 +258,8 @@ fn rows(directory: &Directory) -> Vec<Vec<f64>> {
     log.lines().skip(1).map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect()
 }
 
-fn replayed(plan: &Plan<'_>, directory: &Directory, which: Which) -> (String, Replayed) {
+fn replayed(plan: &Plan<'_>, directory: &Directory, which: Which) -> (String, Replayed<ReplaySummary>) {
     let mut out = Vec::new();
-    let found = replay(plan, directory, which, &mut out).unwrap();
+    let found = replay(plan, directory, which, || Ok(&mut out)).unwrap();
     (String::from_utf8(out).unwrap(), found)
 }

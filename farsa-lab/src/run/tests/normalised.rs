@@ -170,8 +170,8 @@ fn a_generation_is_normalised_by_all_before_it() {
         // Each champion is replayed with the fitness that it had.
         for (generation, row) in rows(&whole).iter().enumerate() {
             let which = Which { generation: Some(generation as u32), ..Which::default() };
-            let found = replay(&all, &whole, which, &mut Vec::new()).unwrap();
-            assert_eq!(found.fitness(), row[1], "{strategy}: {}", found.summary);
+            let found = replay(&all, &whole, which, || Ok(Vec::new())).unwrap();
+            assert_eq!(found.replay.fitness, row[1], "{strategy}: {}", found.summary);
         }
         // Stopped twice, on other threads.
         let parts = create(&plan(&scales, 1), &root.join(strategy).join("parts")).unwrap();

@@ -116,7 +116,7 @@ fn a_strategy_of_ones_own_runs_resumes_and_replays() {
     let plan = plan(GENERATIONS);
     for generation in [0, 5, 8] {
         let (_, found) = replayed(&plan, &whole, Which { generation: Some(generation), ..Which::default() });
-        assert_eq!(found.fitness(), rows[generation as usize][1]);
+        assert_eq!(found.replay.fitness, rows[generation as usize][1]);
     }
     fs::remove_dir_all(root).unwrap();
 }

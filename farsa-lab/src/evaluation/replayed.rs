@@ -1,0 +1,66 @@
+//! What a replay came to, and its page: of one run, or of two beside each other.
+
+use std::path::Path;
+
+use farsa_view::Page;
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::run::plan::Plan;
+use crate::store::directory::Directory;
+use crate::store::replace::create_results;
+
+/// What a replay came to, with a summary of each run.
+#[derive(Debug, Serialize)]
+pub(crate) struct Replayed<S> {
+    #[serde(flatten)]
+    pub(crate) replay: S,
+    /// The same choice in another run, if there is one.
+    compared: Option<S>,
+    /// Where the recordings went, as the caller knows; none for the standard output.
+    pub(crate) file: Option<String>,
+    /// The same in words.
+    pub(crate) summary: String,
+}
+
+/// The same in words.
+pub(crate) trait InWords {
+    fn text(&self) -> String;
+}
+
+impl<S: InWords> Replayed<S> {
+    pub(crate) fn new(replay: S, compared: Option<S>) -> Self {
+        let texts: Vec<String> = [&replay].into_iter().chain(&compared).map(S::text).collect();
+        Self { replay, compared, file: None, summary: texts.join("\n") }
+    }
+}
+
+/// Condition and seed of a run, or its seed.
+pub(crate) fn run_in_words(plan: &Plan<'_>) -> String {
+    let condition = if plan.condition.is_empty() { "seed" } else { plan.condition.as_str() };
+    format!("{condition} {}", plan.seed)
+}
+
+/// Writes what `add` adds of a run, and of another one whose first trial is then shown beside it, as a page for a browser;
+/// `what` ends its title.
+///
+/// # Errors
+/// Those of `add`, and of [`create_results`].
+pub(crate) fn page<S: InWords>(
+    (plan, directory): (&Plan<'_>, &Directory),
+    compare: Option<(&Plan<'_>, &Directory)>,
+    what: &str,
+    path: &Path,
+    add: impl Fn(&mut Page, &Plan<'_>, &Directory) -> Result<S, Error>,
+) -> Result<Replayed<S>, Error> {
+    let both = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
+    let mut page = Page::new(&format!("{both}{what}"));
+    let replay = add(&mut page, plan, directory)?;
+    let second = page.episodes();
+    let compared = compare.map(|(plan, directory)| add(&mut page, plan, directory)).transpose()?;
+    if compared.is_some() {
+        page.open_beside(second);
+    }
+    create_results(&[(path.to_owned(), page.html())])?;
+    Ok(Replayed::new(replay, compared))
+}
