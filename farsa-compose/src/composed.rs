@@ -2,8 +2,8 @@
 
 use farsa_body::{Recorder, Robot};
 use farsa_lab::{
-    Behaviour, ControllerExport, Description, Episode, EpisodeId, Evaluation, Exports, MotorDrive, MotorExport,
-    NetworkExport, Outcome, Parameter, Protocol, Rollout, SensorExport, SensorReading, Task,
+    Anatomy, Behaviour, ControllerExport, Description, Episode, EpisodeId, Evaluation, Exports, MotorDrive,
+    MotorExport, NetworkExport, Outcome, Parameter, Protocol, Rollout, SensorExport, SensorReading, Task,
 };
 use farsa_models::MjcfOptions;
 use farsa_nn::Leak;
@@ -90,6 +90,10 @@ impl<E: Embodied> Task for Composed<E> {
     }
     fn protocols(&self) -> Vec<Protocol> {
         self.0.agents().interventions.protocols()
+    }
+    /// A network that is wired by hand has no neurons to hold, but inputs and links as every other.
+    fn anatomy(&self) -> Option<Anatomy> {
+        Some(self.0.agents().anatomy(&self.schema()))
     }
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         self.0.agents().ledger.behaviour.as_ref().map(|behaviour| behaviour as _)

@@ -252,6 +252,69 @@ fn sensors_are_cut_and_disturbed() {
     }
 }
 
+/// What the first robot sensed and did with changes of this list.
+fn changed(evaluator: &mut dyn Evaluator, list: &str) -> Vec<[Vec<f32>; 2]> {
+    let change = evaluator.anatomy().expect("parts").intervention(list).expect("a change");
+    let (parameters, mut steps) = (drawn(evaluator), Steps::default());
+    let evaluation = Evaluation { intervention: Some(&change), ..Evaluation::new(&parameters, ID) };
+    evaluator.evaluate(evaluation, Some(&mut steps));
+    steps.all
+}
+
+#[test]
+fn parts_are_changed_by_name() {
+    for (network, neurons) in NETWORKS {
+        let mut evaluator = of(network);
+        let schema = evaluator.schema();
+        let (_, intact) = recorded(evaluator.as_mut(), None);
+        let of_case = |evaluator: &mut dyn Evaluator, case| recorded(evaluator, Some(CaseId { protocol: 0, case })).1;
+        assert!(changed(evaluator.as_mut(), "sensor:body-pose") == of_case(evaluator.as_mut(), 2), "{network}");
+        let left = neurons.len() - 2;
+        let silent = changed(evaluator.as_mut(), "output:wheels left");
+        assert!(silent == of_case(evaluator.as_mut(), 4 + left) && silent != intact, "{network}");
+        // The first neuron that is no input is called by its number in the network.
+        let named: Vec<&str> = schema.neurons.iter().map(|neuron| neuron.name.as_str()).collect();
+        let first = named.len().saturating_sub(neurons.len());
+        if let Some(name) = named.get(first) {
+            assert!(
+                changed(evaluator.as_mut(), &format!("neuron:{name}")) == of_case(evaluator.as_mut(), 4),
+                "{network}"
+            );
+        }
+
+        let Some(links) = schema.links.first() else {
+            let error =
+                evaluator.anatomy().expect("parts").intervention("link:constant-wheels left").expect_err("no links");
+            assert!(error.to_string().ends_with("the schema names no links"), "{error}");
+            continue;
+        };
+        // From the constant, the last input, to the first target.
+        let target = named.first().copied().unwrap_or("wheels left");
+        let parameters = drawn(evaluator.as_ref());
+        let export = evaluator.exports().and_then(|exports| exports.controller(&parameters)).expect("a network");
+        let mut cut = export.network;
+        let weight = links.first + (links.from[1] - 1) * (links.to[1] - links.to[0]);
+        match &mut cut {
+            NetworkExport::Perceptron { parameters, .. } | NetworkExport::Leaky { parameters, .. } => {
+                parameters[weight] = -0.25;
+            }
+            other => panic!("{other:?}"),
+        }
+        let mut oracle = controller(cut);
+        let steps = changed(evaluator.as_mut(), &format!("link:constant-{target}=-0.25"));
+        for [x, y] in &steps {
+            let mut expected = [f32::NAN; 2];
+            oracle.step(x, &mut expected);
+            assert_eq!(y[..], expected, "{network}");
+        }
+        assert!(steps != intact, "{network}");
+    }
+    // A hand-wired network has inputs.
+    let mut wired = of(WIRED);
+    let (_, intact) = recorded(wired.as_mut(), None);
+    assert!(changed(wired.as_mut(), "sensor:constant=0.2") != intact);
+}
+
 #[test]
 fn what_is_wired_by_hand_has_noise_alone() {
     let protocols = of(WIRED).protocols();

@@ -1,7 +1,8 @@
 //! What is recorded and exported of wheeled robots in every experiment alike.
 
 use farsa_body::{AnalyticInfrared, BodyId, Handles, Kinematics, MobileRobot, Recorder};
-use farsa_lab::{MotorExport, SensorExport, SensorReading};
+use farsa_lab::{Evaluation, Intervention, Interventions, MotorExport, SensorExport, SensorReading, Task};
+use farsa_view::Schema;
 
 use crate::infrared::settings::InfraredModel;
 
@@ -30,6 +31,18 @@ pub(crate) fn place_and_heading<W: Kinematics + Handles<Body = BodyId> + ?Sized>
 /// The speeds \[rad/s\] that outputs ask of wheels which turn at most at `largest` \[rad/s\].
 pub(crate) fn wheel_speeds(y: &[f32], largest: f64) -> impl Iterator<Item = f64> {
     y.iter().map(move |y| (2.0 * f64::from(*y) - 1.0) * largest)
+}
+
+/// The protocols of a layer without hidden neurons whose sensors are these: `lesions`, of each sensor alone, and `noise`.
+pub(crate) fn layer_protocols(schema: &Schema) -> Interventions {
+    let sensors = schema.sensors.iter().enumerate().map(|(number, sensor)| (&sensor.name, number..number + 1));
+    Interventions::default().with_lesions(sensors, []).with_noise(&Interventions::NOISE)
+}
+
+/// What is done to such a layer in an evaluation; protocols are made only where a case is asked for.
+pub(crate) fn applied(task: &impl Task, evaluation: &Evaluation<'_>) -> Intervention {
+    let all = evaluation.case.map(|_| layer_protocols(&task.schema())).unwrap_or_default();
+    all.applied(evaluation).into_owned()
 }
 
 /// The infrared sensors of these names, which look along these angles \[rad\], as another program reads them.

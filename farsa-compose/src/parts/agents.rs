@@ -1,12 +1,12 @@
 //! Robots as they are controlled: channels, copies of one network, and what they have earned.
 
 use farsa_evo::ObservationStatistics;
-use farsa_lab::{ChannelGroup, Description, Evaluation, Interventions, NormalisedController, Outcome};
+use farsa_lab::{Anatomy, ChannelGroup, Description, Evaluation, Interventions, NormalisedController, Outcome};
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
 use crate::document::Document;
 use crate::parts::groups::Groups;
-use crate::parts::interventions::interventions;
+use crate::parts::interventions::{first_output, interventions};
 use crate::parts::ledger::Ledger;
 use crate::parts::network::AnyNetwork;
 use crate::parts::wiring::Wiring;
@@ -49,21 +49,22 @@ impl Agents {
     /// Gives the robots of each population their network, those that are tested as the case says; false if there are more or
     /// fewer parameters.
     pub(crate) fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let Evaluation { parameters, opponents, normalisation, id, case, .. } = *evaluation;
+        let Evaluation { parameters, opponents, normalisation, id, .. } = *evaluation;
         let ranges = self.groups.ranges();
         let own = if ranges.len() > 1 { id.population(self.size).min(ranges.len() - 1) } else { 0 };
         self.evolving = ranges[own];
         self.ledger.evolve(self.evolving);
         let mut others = opponents.iter().copied();
-        let loaded = ranges.into_iter().enumerate().all(|(population, [first, end])| {
+        let mut loaded = ranges.into_iter().enumerate().all(|(population, [first, end])| {
             let given = if population == own { parameters } else { others.next().unwrap_or(parameters) };
             let Some(all) = self.wiring.searched.all(given) else { return false };
             let mut networks = self.networks[first..end].iter_mut();
             networks.all(|network| network.load(normalisation) && network.controller_mut().load(all))
         });
-        let [first, end] = self.evolving;
+        let (change, [first, end]) = (self.interventions.applied(evaluation), self.evolving);
         for (robot, network) in self.networks.iter_mut().enumerate().take(end).skip(first) {
-            network.intervene(self.interventions.of(case), id, robot as u32);
+            network.intervene(&change, id, robot as u32);
+            loaded = loaded && network.controller_mut().edit(&change);
         }
         loaded
     }
@@ -105,6 +106,12 @@ impl Agents {
         let terms = self.ledger.tallies.iter().map(|tally| Channel::new(&tally.name).group("term"));
         let fitness = Channel::new("fitness so far").group("fitness");
         Schema { scalars: places.into_iter().chain(terms).chain([fitness]).collect(), ..schema }
+    }
+
+    /// What tests can change by name, where `schema` is what robots record: neurons by their numbers in the network.
+    pub(crate) fn anatomy(&self, schema: &Schema) -> Anatomy {
+        let Wiring { network, outputs, .. } = &self.wiring;
+        Anatomy::new(schema, &self.description()).with_first(0, first_output(network, outputs.len()))
     }
 
     /// What robots sense, do and compute with.

@@ -28,10 +28,7 @@ fn neurons(network: &Network, own: &AnyNetwork, inputs: usize, outputs: &[String
         AnyNetwork::Block(_) | AnyNetwork::Evonet(_) => inputs,
         _ => 0,
     };
-    let last = match own {
-        AnyNetwork::Ctrnn(ctrnn) => ctrnn.layout().output_neurons().start,
-        _ => own.neurons() - outputs.len(),
-    };
+    let last = first_output(own, outputs.len());
     let mut clusters = match &network.kind {
         NetworkKind::Blocks(blocks) => blocks::cluster_neurons(blocks),
         _ => Vec::new(),
@@ -42,6 +39,14 @@ fn neurons(network: &Network, own: &AnyNetwork, inputs: usize, outputs: &[String
         None => clusters.next().unwrap_or_else(|| format!("neuron {}", neuron + 1)),
     };
     (first..own.neurons()).map(name).zip(first..).collect()
+}
+
+/// The number of the first of so many output neurons.
+pub(crate) fn first_output(network: &AnyNetwork, outputs: usize) -> usize {
+    match network {
+        AnyNetwork::Ctrnn(ctrnn) => ctrnn.layout().output_neurons().start,
+        _ => network.neurons().saturating_sub(outputs),
+    }
 }
 
 /// Neurons are those of the network that it is; one that is wired by hand has none.

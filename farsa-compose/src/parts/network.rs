@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use farsa_lab::{Error, OwnedNetwork, Parameter, resting_network};
+use farsa_lab::{Error, Intervention, OwnedNetwork, Parameter, resting_network};
 use farsa_nn::{
     Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter, Controller, Ctrnn, CtrnnLayout, CtrnnParameter, Leak,
     LeakyLayout, LeakyParameter, Perceptron,
@@ -179,6 +179,24 @@ impl AnyNetwork {
             Self::Block(block) => block.copy_parameters(parameters).is_ok(),
             Self::Wired(wired) => wired.copy_parameters(parameters),
             Self::Evonet(evonet) => evonet.load(parameters),
+        }
+    }
+
+    /// Changes its own parameters as a test says; false for what makes no network.
+    pub(crate) fn edit(&mut self, change: &Intervention) -> bool {
+        if change.parameters.is_empty() {
+            return true;
+        }
+        let own = change.edited(self.own_parameters()).into_owned();
+        match self {
+            Self::Perceptron(layer, _) => {
+                Perceptron::new(layer.inputs(), layer.outputs(), 1.0, own).map(|made| *layer = made).is_ok()
+            }
+            Self::Leaky(leaky) => leaky.copy_parameters(&own).is_ok(),
+            Self::Ctrnn(ctrnn) => ctrnn.copy_parameters(&own).is_ok(),
+            Self::Block(block) => block.copy_parameters(&own).is_ok(),
+            Self::Wired(wired) => wired.copy_parameters(&own),
+            Self::Evonet(evonet) => evonet.network.copy_parameters(&own).is_ok(),
         }
     }
 

@@ -1,15 +1,14 @@
-//! The network of an agent, whole or with lesions.
+//! The network of an agent, whole or changed by a test.
 
-use farsa_lab::Error;
-use farsa_nn::{Ablatable as _, Controller, Ctrnn, CtrnnParameter, Lesion, Span};
+use farsa_lab::{EpisodeId, Error, Intervention, NormalisedController};
+use farsa_nn::{Controller, Ctrnn};
 
-use crate::compositional_instructions::network::{LAYOUT, NEURONS, Wiring};
+use crate::compositional_instructions::network::{LAYOUT, Wiring};
 
-/// A network that is made of genes and can have lesions.
+/// A network that is made of genes and that tests can change.
 #[derive(Clone, Debug)]
 pub struct Agent {
-    network: Ctrnn<Vec<f32>, Vec<f32>>,
-    lesions: Vec<Lesion>,
+    network: NormalisedController<Ctrnn<Vec<f32>, Vec<f32>>>,
     genes: Vec<f32>,
     parameters: Vec<f32>,
 }
@@ -26,34 +25,26 @@ impl Agent {
         wiring.expand(&first, &mut genes, &mut parameters);
         let state = vec![0.0; LAYOUT.state_len()];
         let network = Ctrnn::new(LAYOUT, time_step as f32, parameters.clone(), state).map_err(wrong)?;
-        Ok(Self { network, lesions: Vec::with_capacity(NEURONS), genes, parameters })
+        Ok(Self { network: NormalisedController::new(network), genes, parameters })
     }
 
     /// Gives it these numbers, and makes it whole; false for another count of them or for numbers that make no network.
     pub fn load(&mut self, wiring: &Wiring, values: &[f32]) -> bool {
-        self.lesions.clear();
-        wiring.expand(values, &mut self.genes, &mut self.parameters)
-            && self.network.copy_parameters(&self.parameters).is_ok()
+        self.network.load(None)
+            && wiring.expand(values, &mut self.genes, &mut self.parameters)
+            && self.network.controller_mut().copy_parameters(&self.parameters).is_ok()
     }
 
-    /// Silences a neuron until the next [`load`](Self::load).
-    pub fn silence(&mut self, neuron: usize) {
-        self.lesions.push(Lesion::new(neuron));
-    }
-
-    /// Cuts the links from one group of neurons to another until the next [`load`](Self::load).
-    pub fn cut(&mut self, from: Span, to: Span) {
-        let weights = &mut self.parameters[LAYOUT.range(CtrnnParameter::Weight)];
-        for source in from.first..from.end() {
-            weights[source * NEURONS + to.first..source * NEURONS + to.end()].fill(0.0);
-        }
-        // What was accepted is so with fewer links.
-        let _ = self.network.copy_parameters(&self.parameters);
+    /// Changes it as a test says until the next [`load`](Self::load); false for what makes no network.
+    pub fn change(&mut self, intervention: &Intervention, id: EpisodeId) -> bool {
+        self.network.intervene(intervention, id, 0);
+        intervention.parameters.is_empty()
+            || self.network.controller_mut().copy_parameters(&intervention.edited(&self.parameters)).is_ok()
     }
 
     /// The network.
     pub fn network(&self) -> &Ctrnn<Vec<f32>, Vec<f32>> {
-        &self.network
+        self.network.controller()
     }
 }
 
@@ -71,6 +62,6 @@ impl Controller for Agent {
     }
 
     fn step(&mut self, x: &[f32], y: &mut [f32]) {
-        self.network.step_ablated(&self.lesions, x, y);
+        self.network.step(x, y);
     }
 }

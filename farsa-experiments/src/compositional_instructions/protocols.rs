@@ -1,13 +1,12 @@
 //! The test protocols of `compositional-instructions`: what each of their cases tells an agent, and does to it.
 
-use farsa_lab::{CaseId, Protocol};
-use farsa_nn::Span;
+use farsa_lab::{CaseId, Intervention, Protocol};
+use farsa_nn::{CtrnnParameter, Span};
 
-use crate::compositional_instructions::agent::Agent;
 use crate::compositional_instructions::config::Config;
 use crate::compositional_instructions::episode::Told;
 use crate::compositional_instructions::instruction::{Action, Color, Instruction};
-use crate::compositional_instructions::network::{INNER, INNER_ONES, KINDS, MOTOR_ONES};
+use crate::compositional_instructions::network::{INNER, INNER_ONES, KINDS, LAYOUT, MOTOR_ONES, NEURONS};
 
 /// Trials of a case.
 const TRIALS: u32 = 84;
@@ -18,19 +17,11 @@ const TIMES: usize = 10;
 /// The ordered pairs of two of three.
 const PAIRS: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 0], [1, 2], [2, 0], [2, 1]];
 
-/// What a case does to the network.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Cut {
-    Nothing,
-    Neuron(usize),
-    Links(Span, Span),
-}
-
 /// What a case is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Probe {
     told: Told,
-    cut: Cut,
+    change: Intervention,
 }
 
 impl Probe {
@@ -39,14 +30,17 @@ impl Probe {
         self.told
     }
 
-    /// Does to an agent that has just been loaded what the case does.
-    pub(crate) fn apply(&self, agent: &mut Agent) {
-        match self.cut {
-            Cut::Nothing => {}
-            Cut::Neuron(neuron) => agent.silence(neuron),
-            Cut::Links(from, to) => agent.cut(from, to),
-        }
+    /// What is done to its network.
+    pub(crate) fn change(&self) -> &Intervention {
+        &self.change
     }
+}
+
+/// Cuts the links from one group of neurons to another.
+fn cut(from: Span, to: Span) -> Intervention {
+    let first = LAYOUT.range(CtrnnParameter::Weight).start;
+    let of_source = |source: usize| (to.first..to.end()).map(move |target| first + source * NEURONS + target);
+    Intervention::cut_links((from.first..from.end()).flat_map(of_source))
 }
 
 /// The protocols of a configuration, with what each case is.
@@ -155,13 +149,15 @@ impl Protocols {
     }
 
     fn add_lesions(&mut self, config: &Config) {
-        let mut cuts = vec![("intact".to_owned(), Cut::Nothing)];
-        cuts.extend((0..INNER).map(|i| (format!("inner neuron {}", i + 1), Cut::Neuron(INNER_ONES.first + i))));
-        cuts.extend(KINDS.map(|(kind, span)| (format!("links from {kind}"), Cut::Links(span, INNER_ONES))));
-        cuts.push(("links between inner neurons".into(), Cut::Links(INNER_ONES, INNER_ONES)));
+        let mut cuts = vec![("intact".to_owned(), Intervention::default())];
+        cuts.extend(
+            (0..INNER).map(|i| (format!("inner neuron {}", i + 1), Intervention::lesion(INNER_ONES.first + i))),
+        );
+        cuts.extend(KINDS.map(|(kind, span)| (format!("links from {kind}"), cut(span, INNER_ONES))));
+        cuts.push(("links between inner neurons".into(), cut(INNER_ONES, INNER_ONES)));
         for (joint, name) in ["J1", "J2"].into_iter().enumerate() {
             let motors = Span::new(MOTOR_ONES.first + 2 * joint, 2);
-            cuts.push((format!("links to {name}"), Cut::Links(INNER_ONES, motors)));
+            cuts.push((format!("links to {name}"), cut(INNER_ONES, motors)));
         }
         let told = config.condition.instructions();
         let rows = cuts.iter().map(|(name, _)| name.clone());
@@ -169,7 +165,9 @@ impl Protocols {
         let protocol = Protocol::from_table("lesions", summary, rows, told.map(|one| one.to_string()))
             .with_axes("without", "instruction")
             .with_held_out(|_, instruction| is_held_out(config, instruction));
-        let probes = cuts.iter().flat_map(|(_, cut)| told.map(|first| Probe { told: plain(config, first), cut: *cut }));
+        let probes = cuts
+            .iter()
+            .flat_map(|(_, cut)| told.map(|first| Probe { told: plain(config, first), change: cut.clone() }));
         let probes = probes.collect();
         self.add(protocol, probes);
     }
@@ -193,7 +191,7 @@ impl Protocols {
 }
 
 fn whole(told: Told) -> Probe {
-    Probe { told, cut: Cut::Nothing }
+    Probe { told, change: Intervention::default() }
 }
 
 fn plain(config: &Config, first: Instruction) -> Told {
@@ -252,8 +250,10 @@ mod tests {
                 }
             }
             assert!(all.probe(CaseId { protocol: 0, case: 9 }).is_none());
-            let cut = all.probes[4][9 * 9].cut;
-            assert_eq!(cut, Cut::Links(KINDS[2].1, INNER_ONES));
+            // Without the links from the two joints, which are inputs 12 and 13, to inner neurons.
+            let first = LAYOUT.range(CtrnnParameter::Weight).start;
+            let weights = (12..14).flat_map(|from| (20..26).map(move |to| (first + 30 * from + to, 0.0)));
+            assert_eq!(all.probes[4][9 * 9].change.parameters, weights.collect::<Vec<_>>());
         }
     }
 }

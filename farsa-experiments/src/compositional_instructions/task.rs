@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use farsa_body::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Recorder, Robot};
 use farsa_lab::{
-    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, MotorExport,
-    NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,
+    Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, Intervention,
+    MotorExport, NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,
 };
 use farsa_view::Schema;
 
@@ -13,7 +13,7 @@ use crate::compositional_instructions::agent::Agent;
 use crate::compositional_instructions::config::Config;
 use crate::compositional_instructions::episode::{InstructionEpisode, Told};
 use crate::compositional_instructions::instruction::{Action, Instruction};
-use crate::compositional_instructions::network::{INNER, INPUTS, MOTORS, Wiring};
+use crate::compositional_instructions::network::{INNER, INPUTS, LAYOUT, MOTORS, Wiring};
 use crate::compositional_instructions::protocols::Protocols;
 use crate::compositional_instructions::scene::Scene;
 use crate::compositional_instructions::schema;
@@ -88,20 +88,19 @@ where
 
 impl Rollout for InstructionTask {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let agent = self.episode.controller_mut();
-        if !agent.load(&self.wiring, evaluation.parameters) {
-            return false;
-        }
-        let told = match evaluation.case {
-            None => self.told(evaluation.id.trial),
+        let (told, mut change) = match evaluation.case {
+            None => (self.told(evaluation.id.trial), Intervention::default()),
             Some(case) => {
                 let Some(probe) = self.protocols.probe(case) else { return false };
-                probe.apply(agent);
-                probe.told()
+                (probe.told(), probe.change().clone())
             }
         };
+        if let Some(other) = evaluation.intervention {
+            change = change.and(other);
+        }
         self.episode.tell(told);
-        true
+        let agent = self.episode.controller_mut();
+        agent.load(&self.wiring, evaluation.parameters) && agent.change(&change, evaluation.id)
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
@@ -146,6 +145,11 @@ impl Task for InstructionTask {
 
     fn protocols(&self) -> Vec<Protocol> {
         self.protocols.list()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        let anatomy = Anatomy::new(&self.schema(), &self.description());
+        Some(anatomy.with_parameter_order(LAYOUT.parameter_count(), schema::in_schema_order))
     }
 
     /// In a test the instruction may change, and as many steps follow.

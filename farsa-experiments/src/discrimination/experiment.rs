@@ -9,12 +9,12 @@ use farsa_physics::arena::World;
 use crate::discrimination::config::{Config, EYES, ROBOTS};
 use crate::discrimination::episode::CylinderEpisode;
 use crate::infrared::settings::InfraredModel;
-use crate::wheeled::{infrared_exports, wheel_exports};
+use crate::wheeled::{applied, infrared_exports, layer_protocols, wheel_exports};
 use crate::worlds::PlanarEngine;
 use farsa_lab::{
-    Behaviour, ChannelGroup, ControllerExport, Description, EpisodeId, Error, Evaluation, Evaluator, Experiment,
-    Exports, InWorld, NetworkExport, NormalisedController, Note, NotedBehaviour, OnePlusOne, Outcome, Parameter,
-    Rollout, SensorExport, Setting, Settings, StrategyDefinition, Task, mean_of_trials,
+    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, EpisodeId, Error, Evaluation, Evaluator,
+    Experiment, Exports, InWorld, NetworkExport, NormalisedController, Note, NotedBehaviour, OnePlusOne, Outcome,
+    Parameter, Protocol, Rollout, SensorExport, Setting, Settings, StrategyDefinition, Task, mean_of_trials,
 };
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
@@ -223,6 +223,14 @@ impl Task for CylinderEpisode<Layer> {
         self.config().inputs()
     }
 
+    fn protocols(&self) -> Vec<Protocol> {
+        layer_protocols(&self.schema()).protocols()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        Some(Anatomy::new(&self.schema(), &self.description()))
+    }
+
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         Some(if self.config().radii.len() == 1 { &NEAR_ONE } else { &NEAR_TWO })
     }
@@ -268,9 +276,11 @@ impl Rollout for CylinderEpisode<Layer> {
         if evaluation.parameters.len() != Perceptron::parameter_count(inputs, 2) {
             return false;
         }
-        let Ok(layer) = layer(inputs, in_order_of_layer(evaluation.parameters, inputs)) else { return false };
+        let (change, own) = (applied(self, evaluation), in_order_of_layer(evaluation.parameters, inputs));
+        let Ok(layer) = layer(inputs, change.edited(&own).into_owned()) else { return false };
         let mut layer = NormalisedController::new(layer);
         let loaded = layer.load(evaluation.normalisation);
+        layer.intervene(&change, evaluation.id, 0);
         self.set_controller(layer);
         loaded
     }

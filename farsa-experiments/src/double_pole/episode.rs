@@ -1,7 +1,7 @@
 //! An episode of `double-pole`: a network pushes the cart until a pole falls.
 
 use farsa_evo::ObservationStatistics;
-use farsa_lab::{Error, NormalisedController};
+use farsa_lab::{EpisodeId, Error, Intervention, NormalisedController};
 use farsa_nn::{BlockNetwork, Controller as _, Leak};
 
 use crate::double_pole::cart::CartState;
@@ -52,6 +52,11 @@ impl CartEpisode {
     pub fn set_parameters(&mut self, parameters: &[f32]) -> Result<(), Error> {
         let copied = self.network.controller_mut().copy_parameters(parameters);
         copied.map_err(|error| Error::Other(format!("double-pole: {error}")))
+    }
+
+    /// Changes what the network senses and what its neurons do until observations are normalised anew.
+    pub(crate) fn intervene(&mut self, intervention: &Intervention, id: EpisodeId) {
+        self.network.intervene(intervention, id, 0);
     }
 
     /// Begins a trial at a state, with the network at rest.

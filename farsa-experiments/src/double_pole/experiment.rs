@@ -2,9 +2,9 @@
 
 use farsa_body::{BodyId, Pose, Recorder};
 use farsa_lab::{
-    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
-    InWorld, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Rollout, SensorExport, Setting, Settings,
-    Task, mean_of_trials, seconds,
+    Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
+    Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Protocol, Rollout,
+    SensorExport, Setting, Settings, Task, mean_of_trials, seconds,
 };
 use farsa_num::sin_cos;
 use farsa_view::{Channel, Color, Geometry, Links, OKABE_ITO, Role, SceneObject, Schema, View};
@@ -72,6 +72,7 @@ pub fn evaluator(config: Config) -> Result<InWorld<NoWorld, Balancing>, Error> {
 #[derive(Clone, Debug)]
 pub struct Balancing {
     episode: CartEpisode,
+    interventions: Interventions,
 }
 
 impl Balancing {
@@ -82,7 +83,19 @@ impl Balancing {
     pub fn new(config: Config) -> Result<Self, Error> {
         let neurons = config.neurons();
         let parameters = vec![0.0; neurons * (config.inputs() + neurons)];
-        Ok(Self { episode: CartEpisode::new(config, parameters)? })
+        let episode = CartEpisode::new(config, parameters)?;
+        let mut task = Self { episode, interventions: Interventions::default() };
+        task.interventions = task.interventions();
+        Ok(task)
+    }
+
+    /// `lesions`, of each sensor and each hidden neuron, and `noise`.
+    fn interventions(&self) -> Interventions {
+        let Schema { sensors, neurons, .. } = self.schema();
+        let inputs = sensors.len();
+        let sensors = sensors.iter().enumerate().map(|(number, sensor)| (&sensor.name, number..number + 1));
+        let neurons = neurons.iter().enumerate().map(|(number, neuron)| (neuron.name.clone(), inputs + number));
+        Interventions::default().with_lesions(sensors, neurons).with_noise(&Interventions::NOISE)
     }
 
     /// Where the middle of a pole is, and how it is turned, seen from the side.
@@ -161,6 +174,17 @@ impl Task for Balancing {
             view: View::Top,
             ..schema
         }
+    }
+
+    fn protocols(&self) -> Vec<Protocol> {
+        self.interventions.protocols()
+    }
+
+    /// Neurons of the network are counted from its inputs.
+    fn anatomy(&self) -> Option<Anatomy> {
+        let schema = self.schema();
+        let (inputs, neurons) = (schema.sensors.len(), schema.neurons.len());
+        Some(Anatomy::new(&schema, &self.description()).with_first(inputs, inputs + neurons))
     }
 
     fn description(&self) -> Description {
@@ -259,7 +283,11 @@ impl Episode<NoWorld> for Balancing {
 
 impl Rollout for Balancing {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        self.episode.normalise(evaluation.normalisation) && self.episode.set_parameters(evaluation.parameters).is_ok()
+        let change = self.interventions.applied(evaluation);
+        let loaded = self.episode.normalise(evaluation.normalisation)
+            && self.episode.set_parameters(&change.edited(evaluation.parameters)).is_ok();
+        self.episode.intervene(&change, evaluation.id);
+        loaded
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {

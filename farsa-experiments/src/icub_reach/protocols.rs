@@ -1,11 +1,13 @@
 //! The test protocols of `icub-reach`, and what each of their cases asks.
 
-use farsa_lab::{CaseId, Intervention, Interventions, Protocol};
+use std::borrow::Cow;
+
+use farsa_lab::{CaseId, Evaluation, Intervention, Interventions, Protocol};
 use farsa_num::Scalar;
 
-use crate::icub_reach::config::{Config, INPUTS, Volume};
+use crate::icub_reach::config::{Config, Volume};
 use crate::icub_reach::episode::Reaching;
-use crate::icub_reach::network::{HIDDEN, HIDDEN_ONES};
+use crate::icub_reach::network::{HIDDEN, HIDDEN_ONES, weights_on};
 use crate::icub_reach::scene::CONTROLLED;
 
 /// Places of the grid along an axis.
@@ -75,7 +77,10 @@ impl Protocols {
             .map(|(i, name)| (format!("no links from {name}"), Intervention::cut(i..i + 1)));
         let hidden =
             (0..HIDDEN).map(|i| (format!("no hidden neuron {}", i + 1), Intervention::lesion(HIDDEN_ONES.first + i)));
-        let motors = CONTROLLED.map(|name| (format!("no links to {name}"), Intervention::default()));
+        let motors = CONTROLLED
+            .into_iter()
+            .enumerate()
+            .map(|(motor, name)| (format!("no links to {name}"), Intervention::cut_links(weights_on(motor))));
         let interventions = Interventions::default()
             .with_protocol(on_grid, Vec::new())
             .with_protocol(beyond, Vec::new())
@@ -97,9 +102,9 @@ impl Protocols {
         self.interventions.protocols()
     }
 
-    /// What is done to the network in a case.
-    pub(crate) fn intervention(&self, case: Option<CaseId>) -> Option<&Intervention> {
-        self.interventions.of(case)
+    /// What is done to the network in an evaluation.
+    pub(crate) fn applied(&self, evaluation: &Evaluation<'_>) -> Cow<'_, Intervention> {
+        self.interventions.applied(evaluation)
     }
 
     /// What a trial asks in a case.
@@ -114,21 +119,13 @@ impl Protocols {
             _ => plain,
         }
     }
-
-    /// The motor whose links are cut in a case.
-    pub(crate) fn without_motor(&self, case: Option<CaseId>) -> Option<usize> {
-        match self.interventions.named(case) {
-            // After the intact one, three inputs and the hidden neurons.
-            Some(("lesions", case)) => case.checked_sub(1 + INPUTS + HIDDEN),
-            _ => None,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::icub_reach::config::Condition;
+    use farsa_lab::EpisodeId;
 
     #[test]
     fn places_are_within_the_volume_or_beyond_it() {
@@ -174,10 +171,12 @@ mod tests {
         assert_eq!(all.asked(at(2, 1)).jump, Some(100));
         assert!(all.asked(at(3, 1)).locked_torso);
         assert_eq!((all.asked(at(4, 0)), all.asked(at(4, 1)).load), (Reaching::default(), 0.5));
-        let cases: Vec<Option<usize>> = (0..14).map(|case| all.without_motor(at(5, case))).collect();
-        assert_eq!(cases[7..], [None, Some(0), Some(1), Some(2), Some(3), Some(4), Some(5)]);
-        assert_eq!(list[5].cases[8].row, "no links to torso_pitch");
-        assert_eq!(all.intervention(at(5, 4)), Some(&Intervention::lesion(3)));
-        assert_eq!(all.intervention(None), None);
+        let plain = Evaluation::new(&[], EpisodeId::default());
+        let done = |case| all.applied(&Evaluation { case, ..plain }).into_owned();
+        assert_eq!(list[5].cases[9].row, "no links to torso_yaw");
+        // From each of four hidden neurons, after twelve weights of inputs, to the second of six motors.
+        assert_eq!(done(at(5, 9)).parameters, [13, 19, 25, 31].map(|weight| (weight, 0.0)));
+        assert_eq!(done(at(5, 4)), Intervention::lesion(3));
+        assert_eq!(done(None), Intervention::default());
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use farsa_body::{Actuated, ActuatorId, Arrange, Contacts, Handles, Recorder, Robot};
 use farsa_lab::{
-    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, MotorExport,
+    Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, MotorExport,
     NetworkExport, Note, Outcome, Parameter, Protocol, Rollout, SensorExport, Task, mean_of_trials,
 };
 use farsa_nn::{BlockLayoutBuf, Leak};
@@ -12,7 +12,7 @@ use farsa_view::Schema;
 
 use crate::icub_reach::config::{Condition, Config, INPUTS, MOTORS};
 use crate::icub_reach::episode::{ReachEpisode, ReachingWorld};
-use crate::icub_reach::network::{Agent, HIDDEN, LAYOUT, parameters, weights_on};
+use crate::icub_reach::network::{Agent, HIDDEN, HIDDEN_ONES, LAYOUT, parameters};
 use crate::icub_reach::protocols::Protocols;
 use crate::icub_reach::scene::{CONTROLLED, Scene};
 use crate::icub_reach::schema;
@@ -22,7 +22,6 @@ use crate::icub_reach::schema;
 pub struct ReachTask {
     episode: ReachEpisode<Agent>,
     protocols: Arc<Protocols>,
-    loaded: Vec<f32>,
 }
 
 impl ReachTask {
@@ -33,7 +32,7 @@ impl ReachTask {
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let protocols = Arc::new(Protocols::new(&scene.config));
         let episode = ReachEpisode::new(Arc::new(scene), Agent::new()?);
-        Ok(Self { episode, protocols, loaded: vec![0.0; LAYOUT.parameter_count()] })
+        Ok(Self { episode, protocols })
     }
 
     fn config(&self) -> &Config {
@@ -69,20 +68,14 @@ where
 
 impl Rollout for ReachTask {
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        if evaluation.parameters.len() != self.loaded.len() {
-            return false;
-        }
-        self.loaded.copy_from_slice(evaluation.parameters);
-        if let Some(motor) = self.protocols.without_motor(evaluation.case) {
-            weights_on(motor).for_each(|at| self.loaded[at] = 0.0);
-        }
         self.episode.ask(self.protocols.asked(evaluation.case));
         let network = self.episode.reacher_mut().network_mut();
         if !network.load(evaluation.normalisation) {
             return false;
         }
-        network.intervene(self.protocols.intervention(evaluation.case), evaluation.id, 0);
-        network.controller_mut().copy_parameters(&self.loaded).is_ok()
+        let change = self.protocols.applied(evaluation);
+        network.intervene(&change, evaluation.id, 0);
+        network.controller_mut().copy_parameters(&change.edited(evaluation.parameters)).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
@@ -124,6 +117,11 @@ impl Task for ReachTask {
 
     fn protocols(&self) -> Vec<Protocol> {
         self.protocols.list()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        let anatomy = Anatomy::new(&self.schema(), &self.description());
+        Some(anatomy.with_first(HIDDEN_ONES.first, HIDDEN_ONES.end()))
     }
 
     fn observations(&self) -> usize {

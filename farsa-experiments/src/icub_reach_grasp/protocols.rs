@@ -1,6 +1,8 @@
 //! The test protocols of `icub-reach-grasp`, and what each of their cases asks.
 
-use farsa_lab::{CaseId, Intervention, Interventions, Protocol};
+use std::borrow::Cow;
+
+use farsa_lab::{CaseId, Evaluation, Intervention, Interventions, Protocol};
 
 use crate::icub_reach_grasp::config::{Config, SENSORS};
 use crate::icub_reach_grasp::episode::Lifting;
@@ -52,9 +54,9 @@ impl Protocols {
         self.interventions.protocols()
     }
 
-    /// What is done to the network in a case.
-    pub(crate) fn intervention(&self, case: Option<CaseId>) -> Option<&Intervention> {
-        self.interventions.of(case)
+    /// What is done to the network in an evaluation.
+    pub(crate) fn applied(&self, evaluation: &Evaluation<'_>) -> Cow<'_, Intervention> {
+        self.interventions.applied(evaluation)
     }
 
     /// What a trial asks in a case.
@@ -74,6 +76,7 @@ impl Protocols {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use farsa_lab::EpisodeId;
 
     #[test]
     fn each_case_asks_what_its_name_says() {
@@ -86,10 +89,12 @@ mod tests {
         assert_eq!(list[0].cases[6].name(), "x 2 y 3");
         assert_eq!(all.asked(at(0, 6)).cell, Some([[1, 2], CELLS]));
         assert_eq!(list[1].cases[5].row, "no touch of thumb tip");
-        assert_eq!(all.intervention(at(1, 5)), Some(&Intervention::cut(6..7)));
-        assert_eq!(all.intervention(at(1, 14)), Some(&Intervention::lesion(0)));
+        let plain = Evaluation::new(&[], EpisodeId::default());
+        let done = |case| all.applied(&Evaluation { case, ..plain }).into_owned();
+        assert_eq!(done(at(1, 5)), Intervention::cut(6..7));
+        assert_eq!(done(at(1, 14)), Intervention::lesion(0));
         assert_eq!((list[2].cases[2].row.as_str(), all.asked(at(2, 2)).noise), ("0.05", 0.05));
         assert_eq!(all.asked(at(1, 3)), Lifting::default());
-        assert_eq!(all.intervention(None), None);
+        assert_eq!(done(None), Intervention::default());
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use farsa_body::{Actuated, ActuatorId, Arrange, Camera, Handles, Recorder, Robot, Vision};
 use farsa_lab::{
-    Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
+    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
     MotorExport, NetworkExport, Note, NotedBehaviour, Outcome, Parameter, Protocol, Rollout, SensorExport, Task,
     mean_of_trials, network_parameters,
 };
@@ -82,8 +82,9 @@ impl Rollout for GraspTask {
         if !network.load(evaluation.normalisation) {
             return false;
         }
-        network.intervene(self.protocols.intervention(evaluation.case), evaluation.id, 0);
-        network.controller_mut().copy_parameters(evaluation.parameters).is_ok()
+        let change = self.protocols.applied(evaluation);
+        network.intervene(&change, evaluation.id, 0);
+        network.controller_mut().copy_parameters(&change.edited(evaluation.parameters)).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
@@ -130,6 +131,10 @@ impl Task for GraspTask {
 
     fn protocols(&self) -> Vec<Protocol> {
         self.protocols.list()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        Some(Anatomy::new(&self.schema(), &self.description()))
     }
 
     fn observations(&self) -> usize {

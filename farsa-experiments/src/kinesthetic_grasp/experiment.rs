@@ -12,8 +12,8 @@ use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::task::ReachTask;
 use crate::worlds::Engine;
 use farsa_lab::{
-    Description, ENGINE, Error, Evaluation, Evaluator, Experiment, Exports, InLanes, InWorld, Learner, Learning,
-    Outcome, Parameter, Setting, Settings, StrategyDefinition, Task,
+    Anatomy, Description, ENGINE, Error, Evaluation, Evaluator, Experiment, Exports, InLanes, InWorld, Learner,
+    Learning, Outcome, Parameter, Protocol, Setting, Settings, StrategyDefinition, Task,
 };
 use farsa_view::Schema;
 
@@ -162,6 +162,14 @@ impl Task for Trainee {
 
     fn fitness(&self, trials: &[Outcome]) -> f64 {
         self.evaluator.fitness(trials)
+    }
+
+    fn protocols(&self) -> Vec<Protocol> {
+        self.evaluator.protocols()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        self.evaluator.anatomy()
     }
 
     fn exports(&self) -> Option<&dyn Exports> {

@@ -146,7 +146,7 @@ impl AgentEpisode {
     }
 
     /// Changes what the network senses and computes until observations are normalised anew, or nothing.
-    pub(crate) fn intervene(&mut self, intervention: Option<&Intervention>, id: EpisodeId) {
+    pub(crate) fn intervene(&mut self, intervention: &Intervention, id: EpisodeId) {
         self.network.intervene(intervention, id, 0);
     }
 

@@ -10,8 +10,8 @@ use crate::minimal_cognition::episode::AgentEpisode;
 use crate::minimal_cognition::network::{INNER, LAYOUT, LINKED, MOTOR_ONES, MOTORS, NEURONS, RAYS, Wiring};
 use crate::minimal_cognition::object::Object;
 use farsa_lab::{
-    ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment, Exports,
-    InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Protocol, Rollout,
+    Anatomy, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Evaluator, Experiment,
+    Exports, InWorld, Interventions, MotorExport, NetworkExport, NoWorld, Note, Outcome, Parameter, Protocol, Rollout,
     SensorExport, Setting, Settings, Task, mean_of_trials, seconds,
 };
 use farsa_num::{Domain, Stream};
@@ -201,6 +201,11 @@ impl Task for Agent {
         self.interventions.protocols()
     }
 
+    fn anatomy(&self) -> Option<Anatomy> {
+        let anatomy = Anatomy::new(&self.schema(), &self.description());
+        Some(anatomy.with_parameter_order(LAYOUT.parameter_count(), in_schema_order))
+    }
+
     fn schema(&self) -> Schema {
         let Config { width, body, diameter, side, start_height, input_gain, clip, .. } = *self.episode.config();
         let in_group = |group: &'static str| move |name: &str| Channel::new(name).group(group);
@@ -322,9 +327,10 @@ impl Rollout for Agent {
                 let object = if case < PARTS { Object::circle(diameter) } else { Object::diamond(side) };
                 (object, part_of_line(self.episode.config(), case % PARTS))
             });
-        let loaded =
-            self.episode.normalise(evaluation.normalisation) && self.episode.set_parameters(&parameters).is_ok();
-        self.episode.intervene(self.interventions.of(evaluation.case), evaluation.id);
+        let change = self.interventions.applied(evaluation);
+        let loaded = self.episode.normalise(evaluation.normalisation)
+            && self.episode.set_parameters(&change.edited(&parameters)).is_ok();
+        self.episode.intervene(&change, evaluation.id);
         loaded
     }
 

@@ -5,10 +5,10 @@ use farsa_nn::Perceptron;
 
 use crate::infrared::settings::InfraredModel;
 use crate::push_box::episode::{OUTPUTS, PushEpisode};
-use crate::wheeled::{infrared_exports, wheel_exports};
+use crate::wheeled::{applied, infrared_exports, layer_protocols, wheel_exports};
 use farsa_lab::{
-    Behaviour, ChannelGroup, ControllerExport, Description, Error, Evaluation, Exports, NetworkExport,
-    NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Rollout, Task, mean_of_trials,
+    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Error, Evaluation, Exports, NetworkExport,
+    NormalisedController, Note, NotedBehaviour, Outcome, Parameter, Protocol, Rollout, Task, mean_of_trials,
 };
 use farsa_view::{Channel, Geometry, Links, NodeParameters, Role, SceneObject, Schema, screen_color};
 
@@ -101,6 +101,14 @@ impl Task for PushEpisode<Layer> {
         self.config().inputs()
     }
 
+    fn protocols(&self) -> Vec<Protocol> {
+        layer_protocols(&self.schema()).protocols()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        Some(Anatomy::new(&self.schema(), &self.description()))
+    }
+
     fn behaviour(&self) -> Option<&dyn Behaviour> {
         Some(&BEHAVIOUR)
     }
@@ -140,8 +148,10 @@ impl Rollout for PushEpisode<Layer> {
         if evaluation.parameters.len() != Perceptron::parameter_count(inputs, OUTPUTS) {
             return false;
         }
-        let Ok(mut layer) = layer(inputs, evaluation.parameters.to_vec()) else { return false };
+        let change = applied(self, evaluation);
+        let Ok(mut layer) = layer(inputs, change.edited(evaluation.parameters).into_owned()) else { return false };
         let loaded = layer.load(evaluation.normalisation);
+        layer.intervene(&change, evaluation.id, 0);
         self.set_controller(layer);
         loaded
     }

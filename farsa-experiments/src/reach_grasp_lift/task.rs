@@ -13,7 +13,7 @@ use crate::reach_grasp_lift::parameters::Ranges;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::schema::{EpisodeRecorder, NetworkEpisode};
 use farsa_lab::{
-    Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
+    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
     Intervention, Interventions, NetworkExport, NormalisedController, Note, NotedBehaviour, Outcome, Parameter,
     Protocol, Rollout, StartExport, Task, input_ranges,
 };
@@ -108,12 +108,12 @@ impl Rollout for ReachTask {
         let starts =
             named.filter(|(name, _)| *name == "start-positions").map(|(_, case)| [case / TRIALS, case % TRIALS]);
         self.episode.change(starts, named == Some(("labels", 2)));
-        let network = self.episode.controller_mut();
+        let (network, change) = (self.episode.controller_mut(), self.interventions.applied(evaluation));
         if !network.load(evaluation.normalisation) {
             return false;
         }
-        network.intervene(self.interventions.of(evaluation.case), evaluation.id, 0);
-        network.controller_mut().copy_parameters(&parameters).is_ok()
+        network.intervene(&change, evaluation.id, 0);
+        network.controller_mut().copy_parameters(&change.edited(&parameters)).is_ok()
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
@@ -167,6 +167,10 @@ impl Task for ReachTask {
 
     fn protocols(&self) -> Vec<Protocol> {
         self.interventions.protocols()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        Some(Anatomy::new(&self.schema(), &self.description()))
     }
 
     fn observations(&self) -> usize {

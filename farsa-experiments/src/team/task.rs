@@ -12,9 +12,9 @@ use crate::team::eyes::eye_angles;
 use crate::team::robots::OUTPUTS;
 use crate::wheeled::infrared_exports;
 use farsa_lab::{
-    Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports, InWorld,
-    Interventions, MotorExport, NetworkExport, NormalisedController, Outcome, OwnedNetwork, Parameter, PlanarWorld,
-    Protocol, Rollout, SensorExport, Task, mean_of_trials, network_parameters, resting_network, seconds,
+    Anatomy, Behaviour, ChannelGroup, ControllerExport, Description, Episode, EpisodeId, Error, Evaluation, Exports,
+    InWorld, Interventions, MotorExport, NetworkExport, NormalisedController, Outcome, OwnedNetwork, Parameter,
+    PlanarWorld, Protocol, Rollout, SensorExport, Task, mean_of_trials, network_parameters, resting_network, seconds,
 };
 use farsa_view::Schema;
 
@@ -111,6 +111,7 @@ impl<M: Scenario> Rollout for TeamTask<M> {
     /// robot meets copies of its own network.
     fn load(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let Evaluation { parameters, opponents, normalisation, id, case, .. } = *evaluation;
+        let change = self.interventions.applied(evaluation).into_owned();
         let Self { episode, interventions, .. } = self;
         episode.scenario_mut().begin_case(interventions.named(case));
         let scenario = self.episode.scenario();
@@ -122,17 +123,18 @@ impl<M: Scenario> Rollout for TeamTask<M> {
             return false;
         }
         for (robot, network) in networks.iter_mut().enumerate() {
-            network.intervene(self.interventions.of(case), id, robot as u32);
+            network.intervene(&change, id, robot as u32);
         }
         let mut networks = networks.iter_mut().map(NormalisedController::controller_mut);
         if count == 1 {
-            return networks.all(|network| network.copy_parameters(parameters).is_ok());
+            let own = change.edited(parameters);
+            return networks.all(|network| network.copy_parameters(&own).is_ok());
         }
         let mut others = opponents.iter();
         (0..count).zip(networks).all(|(population, network)| {
             let own = population == own;
             let parameters = if own { parameters } else { others.next().copied().unwrap_or(parameters) };
-            network.copy_parameters(parameters).is_ok()
+            network.copy_parameters(&change.edited(parameters)).is_ok()
         })
     }
 
@@ -161,6 +163,10 @@ impl<M: Scenario> Task for TeamTask<M> {
 
     fn protocols(&self) -> Vec<Protocol> {
         self.interventions.protocols()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        Some(Anatomy::new(&self.schema(), &self.description()))
     }
 
     fn terms(&self) -> Vec<String> {

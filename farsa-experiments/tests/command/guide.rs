@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::tool::{farsa, ok, scratch};
+use crate::tool::{Said, command, farsa, scratch};
 
 /// The fenced blocks of a language in a text.
 fn blocks<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
@@ -12,23 +12,37 @@ fn blocks<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
     pieces.filter_map(|piece| piece.split_once("```").map(|(block, _)| block)).collect()
 }
 
+/// The words of a command, as a shell divides them.
+fn words(line: &str) -> Vec<&str> {
+    let quoted = line.split('"').enumerate();
+    let words = quoted.flat_map(|(number, piece)| {
+        if number % 2 == 1 { vec![piece] } else { piece.split(' ').filter(|word| !word.is_empty()).collect() }
+    });
+    words.collect()
+}
+
 #[test]
 fn protocols_print_what_their_guide_shows() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let guide = fs::read_to_string(root.join("docs/guide/protocols.md")).expect("the guide");
-    let [commands] = blocks(&guide, "sh")[..] else { panic!("one block of commands in {guide}") };
     let here = scratch("protocols-guide");
-    let mut printed = String::new();
-    for line in commands.lines() {
-        let words = line.strip_prefix("farsa ").expect("a command of ours");
-        // The reader stands in the clone; what is written here belongs elsewhere.
-        for file in words.split(' ').filter(|word| root.join(word).is_file()) {
-            let copy = here.join(file);
-            fs::create_dir_all(copy.parent().expect("a folder")).expect("a folder");
-            fs::copy(root.join(file), copy).expect("a copy");
+    let shown = blocks(&guide, "text").into_iter().filter(|block| block.starts_with("lesion"));
+    let shown: Vec<&str> = shown.collect();
+    let printed = blocks(&guide, "sh").into_iter().map(|commands| {
+        let mut printed = String::new();
+        for line in commands.lines() {
+            let arguments = words(line.strip_prefix("farsa ").expect("a command of ours"));
+            // The reader stands in the clone; what is written here belongs elsewhere.
+            for file in arguments.iter().filter(|word| root.join(word).is_file()) {
+                let copy = here.join(file);
+                fs::create_dir_all(copy.parent().expect("a folder")).expect("a folder");
+                fs::copy(root.join(file), copy).expect("a copy");
+            }
+            let said: Said = command(farsa(), &here, &arguments).output().expect("the program").into();
+            assert_eq!(said.code, Some(0), "{line}: {said:?}");
+            printed = said.out;
         }
-        printed = ok(farsa(), &here, words);
-    }
-    let shown = blocks(&guide, "text").into_iter().find(|block| block.starts_with("lesions: "));
-    assert_eq!(shown, Some(printed.as_str()));
+        printed
+    });
+    assert_eq!(printed.collect::<Vec<_>>(), shown);
 }

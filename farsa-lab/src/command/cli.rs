@@ -220,19 +220,24 @@ impl<'e> Invocation<'e, '_> {
     }
 
     fn test(&self, args: TestArgs) -> Result<(), Error> {
-        let (TestArgs { directory, trials, protocol, seed, workers, world, json }, quiet) = (args, self.quiet);
+        let (TestArgs { directory, trials, protocol, lesion, seed, workers, world, json }, quiet) = (args, self.quiet);
         let (mut directory, mut plan) = self.existing(&directory)?;
         let other = world_choice::visit(&mut plan, world.name.as_deref())?;
         if let Some(other) = world.name.filter(|_| other) {
             directory.tests_in(&other);
         }
         let (threads, lanes) = (workers.threads(), workers.lanes());
-        if let Some(name) = protocol {
-            let trials = trials.map(|trials| trials as usize);
-            let found = protocols::test::test(&plan, &directory, &name, trials, seed, threads, lanes, quiet)?;
+        let trials = trials.map(|trials| trials as usize);
+        let effort = protocols::test::Effort { trials, seed, threads, lanes, quiet };
+        let found = match protocol.as_deref() {
+            name if !lesion.is_empty() => Some(protocols::test::lesions(&plan, &directory, name, &lesion, effort)?),
+            Some(name) => Some(protocols::test::test(&plan, &directory, name, effort)?),
+            None => None,
+        };
+        if let Some(found) = found {
             return self.summary(json, &found.text(), &|| pretty(&found));
         }
-        let trials = trials.map_or(test::TRIALS, |trials| trials as usize);
+        let trials = trials.unwrap_or(test::TRIALS);
         let found = test::test(&plan, &directory, trials, seed, threads, lanes, quiet)?;
         self.summary(json, &found.text(), &|| pretty(&found))
     }

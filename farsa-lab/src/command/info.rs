@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::experiment::Anatomy;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::definition::Experiment;
 use crate::experiment::outcome::{ChannelGroup, Description};
@@ -13,6 +14,9 @@ use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::{Setting, Source, Value};
 use crate::json::pretty;
 use crate::run::plan::Plan;
+
+/// Most names of a kind that are listed before the last.
+const MOST_NAMES: usize = 12;
 
 /// The experiments, one a line, with their conditions.
 pub(crate) fn list(experiments: &[&dyn Experiment]) -> String {
@@ -74,7 +78,16 @@ struct Info {
     descriptors: Vec<DescriptorInfo>,
     /// What `farsa test --protocol` offers.
     protocols: Vec<ProtocolInfo>,
+    /// What `farsa test --lesion` can change: kinds of changes, and the names that each knows.
+    lesions: Vec<LesionInfo>,
     settings: Vec<SettingInfo>,
+}
+
+/// A kind of change and the parts that it is for.
+#[derive(Serialize)]
+struct LesionInfo {
+    kind: String,
+    names: Vec<String>,
 }
 
 /// A value that describes a behaviour, and its range.
@@ -82,6 +95,16 @@ struct Info {
 struct DescriptorInfo {
     name: String,
     range: [f64; 2],
+}
+
+impl LesionInfo {
+    fn all(anatomy: &Anatomy) -> Vec<Self> {
+        let own = |(kind, names): (&str, Vec<&str>)| Self {
+            kind: kind.into(),
+            names: names.into_iter().map(str::to_owned).collect(),
+        };
+        anatomy.names().into_iter().map(own).collect()
+    }
 }
 
 /// What there is to know of a test protocol.
@@ -169,6 +192,7 @@ impl Info {
             objectives: ["fitness".into()].into_iter().chain(others).collect(),
             descriptors: descriptors.into_iter().map(descriptor).collect(),
             protocols: protocols.into_iter().map(ProtocolInfo::new).collect(),
+            lesions: evaluator.anatomy().map(|anatomy| LesionInfo::all(&anatomy)).unwrap_or_default(),
             settings: settings.collect(),
         })
     }
@@ -228,6 +252,19 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
     for ProtocolInfo { name, summary, cases, trials, .. } in &info.protocols {
         let s = if *cases == 1 { "" } else { "s" };
         let _ = writeln!(text, "  {name:width$}  {summary} ({cases} case{s}, {trials} trials each)");
+    }
+    if !info.lesions.is_empty() {
+        let _ = writeln!(text, "\nparts that `test --lesion` changes:");
+    }
+    let width = info.lesions.iter().map(|lesion| lesion.kind.len()).max().unwrap_or(0);
+    for LesionInfo { kind, names } in &info.lesions {
+        let names = match names.as_slice() {
+            [first @ .., last] if first.len() > MOST_NAMES => {
+                format!("{}, ..., {last}", first[..MOST_NAMES].join(", "))
+            }
+            all => all.join(", "),
+        };
+        let _ = writeln!(text, "  {kind:width$}  {names}");
     }
     let _ = writeln!(text, "\nsettings:");
     for (setting, info) in plan.settings.table().iter().zip(&info.settings) {

@@ -11,6 +11,7 @@ use crate::evaluation::recorded::{self, TableRecord};
 use crate::evaluation::test_table::{Findings, Table, TrialResult};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
+use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::protocol::CaseId;
@@ -209,6 +210,13 @@ pub(crate) struct Tested<'t> {
     pub(crate) normalisation: Option<&'t ObservationStatistics>,
 }
 
+/// What is asked in a trial: a case of a protocol, a change of the controller, both, or nothing.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Asked<'t> {
+    pub(crate) case: Option<CaseId>,
+    pub(crate) intervention: Option<&'t Intervention>,
+}
+
 /// Fresh trials, the same for every case.
 #[derive(Clone, Copy)]
 pub(crate) struct Trials<'t> {
@@ -216,13 +224,13 @@ pub(crate) struct Trials<'t> {
     pub(crate) count: usize,
     pub(crate) seed: u64,
     /// At least one.
-    pub(crate) cases: &'t [Option<CaseId>],
+    pub(crate) cases: &'t [Asked<'t>],
 }
 
 impl Trials<'_> {
     /// Trials of no protocol.
     pub(crate) fn plain(count: usize, seed: u64) -> Self {
-        Self { count, seed, cases: &[None] }
+        Self { count, seed, cases: &[Asked { case: None, intervention: None }] }
     }
 }
 
@@ -240,10 +248,10 @@ pub(crate) fn run_trials(
         (0..champions.len()).map(|own| others_of(own).map(|(_, other)| other.as_slice()).collect()).collect();
     let task = |number: usize| {
         let (population, trial) = (number % count, number / count % trials.count);
-        let case = *trials.cases.get(number / count / trials.count)?;
+        let Asked { case, intervention } = *trials.cases.get(number / count / trials.count)?;
         let id = EpisodeId { individual: (population * size) as u32, ..episode(trial, kinds, trials.seed) };
         let (parameters, opponents) = (champions.get(population)?, others.get(population)?);
-        Some(Evaluation { number, parameters, opponents, normalisation, id, case })
+        Some(Evaluation { number, parameters, opponents, normalisation, id, case, intervention })
     };
     let done = |number: usize, _: Option<&Outcome>| {
         if number.is_multiple_of(count) {

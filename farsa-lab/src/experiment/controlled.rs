@@ -9,6 +9,7 @@ use farsa_physics::arena::{Arena, Batch, World};
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::anatomy::Anatomy;
 use crate::experiment::controller_export::{ControllerExport, MotorDrive, MotorExport, SensorExport, SensorReading};
 use crate::experiment::episode::{Episode, EpisodeId, seconds};
 use crate::experiment::evaluator::{Evaluation, Exports, Task};
@@ -168,6 +169,10 @@ impl<S: Channels + Send, M: Channels + Send, O: Objective> Task for Controlled<S
     /// Those of [`Neurocontroller::protocols`].
     fn protocols(&self) -> Vec<Protocol> {
         self.control.protocols()
+    }
+
+    fn anatomy(&self) -> Option<Anatomy> {
+        Some(self.control.anatomy())
     }
 
     fn exports(&self) -> Option<&dyn Exports> {

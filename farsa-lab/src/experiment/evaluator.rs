@@ -6,9 +6,11 @@ use farsa_models::MjcfOptions;
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::controller_export::{ControllerExport, StartExport};
 use crate::experiment::episode::EpisodeId;
+use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
@@ -86,6 +88,16 @@ pub trait Task: Send {
         Vec::new()
     }
 
+    /// The parts of the controller that `farsa test --lesion` can change; by default none can be.
+    ///
+    /// An evaluator that names them does what [`Evaluation::intervention`] says, as [`Interventions::applied`] brings it together
+    /// with the case.
+    ///
+    /// [`Interventions::applied`]: crate::Interventions::applied
+    fn anatomy(&self) -> Option<Anatomy> {
+        None
+    }
+
     /// What can be exported, if anything can.
     fn exports(&self) -> Option<&dyn Exports> {
         None
@@ -157,12 +169,14 @@ pub struct Evaluation<'p> {
     ///
     /// All cases of a protocol have the same episodes, so that they differ in nothing but the case.
     pub case: Option<CaseId>,
+    /// What else is done to the controller, where a test asks for that \[[`Task::anatomy`]\].
+    pub intervention: Option<&'p Intervention>,
 }
 
 impl<'p> Evaluation<'p> {
-    /// A trial of these parameters, number 0, without opponents, normalised observations or a case.
+    /// A trial of these parameters, number 0, without opponents, normalised observations, a case or an intervention.
     pub fn new(parameters: &'p [f32], id: EpisodeId) -> Self {
-        Self { number: 0, parameters, opponents: &[], normalisation: None, id, case: None }
+        Self { number: 0, parameters, opponents: &[], normalisation: None, id, case: None, intervention: None }
     }
 }
 

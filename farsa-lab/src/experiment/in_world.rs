@@ -4,6 +4,7 @@ use farsa_body::{Recorder, World};
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Task};
@@ -174,6 +175,9 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
     }
     fn protocols(&self) -> Vec<Protocol> {
         self.rollout.protocols()
+    }
+    fn anatomy(&self) -> Option<Anatomy> {
+        self.rollout.anatomy()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.rollout.exports()

@@ -1,23 +1,32 @@
-//! What a test does to a controller: neurons that are silent, inputs that are cut, noise.
+//! What a test does to a controller: neurons that are silent, inputs and links that are cut, noise.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use farsa_nn::Lesion;
 
-use crate::experiment::protocol::{Case, CaseId, Protocol};
+use crate::experiment::outcome::ChannelGroup;
 
-/// What is done to a controller in a case of a test protocol, [`NormalisedController::intervene`].
+/// What a test does to a controller: [`Interventions::applied`](crate::Interventions::applied) says what that is in an
+/// evaluation.
 ///
-/// [`NormalisedController::intervene`]: crate::NormalisedController::intervene
+/// Two steps of [`Rollout::load`](crate::Rollout::load) obey it: [`edited`](Self::edited) for the parameters, and
+/// [`NormalisedController::intervene`](crate::NormalisedController::intervene) for all else.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intervention {
     /// Neurons that are held.
     pub lesions: Vec<Lesion>,
-    /// Inputs that are 0 whatever is sensed; where observations are normalised, 0 is their mean.
-    pub cut: Vec<Range<usize>>,
+    /// Inputs that have this value whatever is sensed; where observations are normalised, 0 is their mean.
+    pub inputs: Vec<(Range<usize>, f32)>,
     /// Each input is changed at every step by a random number between minus and plus this.
     pub noise: f32,
+    /// Parameters that have this value, by their numbers in the network.
+    pub parameters: Vec<(usize, f32)>,
 }
+
+/// Nothing is done.
+pub(crate) static NOTHING: Intervention =
+    Intervention { lesions: Vec::new(), inputs: Vec::new(), noise: 0.0, parameters: Vec::new() };
 
 impl Intervention {
     /// One neuron is silent.
@@ -25,111 +34,50 @@ impl Intervention {
         Self { lesions: vec![Lesion::new(neuron)], ..Self::default() }
     }
 
-    /// These inputs are cut.
+    /// These inputs are 0.
     pub fn cut(inputs: Range<usize>) -> Self {
-        Self { cut: vec![inputs], ..Self::default() }
+        Self { inputs: vec![(inputs, 0.0)], ..Self::default() }
     }
 
     /// Noise up to `level` on every input.
     pub fn noise(level: f32) -> Self {
         Self { noise: level, ..Self::default() }
     }
-}
 
-/// Test protocols of an experiment with what they do to the controller in each case.
-///
-/// ```
-/// use farsa_lab::{CaseId, Intervention, Interventions};
-///
-/// let all = Interventions::default()
-///     .with_lesions([("camera", 0..3), ("touch", 3..4)], [("neuron 1".to_owned(), 0)])
-///     .with_noise(&[0.0, 0.1]);
-/// let protocols = all.protocols();
-/// assert_eq!(protocols[0].cases[1].row, "no camera");
-/// let case = CaseId { protocol: 0, case: 3 };
-/// assert_eq!(all.of(Some(case)), Some(&Intervention::lesion(0)));
-/// assert_eq!(all.of(None), None);
-/// ```
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Interventions {
-    protocols: Vec<(Protocol, Vec<Intervention>)>,
-}
-
-impl Interventions {
-    /// The levels of [`with_noise`](Self::with_noise) for inputs from 0 to 1.
-    pub const NOISE: [f32; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];
-
-    /// The same with another protocol, and what is done in its cases: nothing in those for which there is no intervention.
-    #[must_use]
-    pub fn with_protocol(mut self, protocol: Protocol, interventions: Vec<Intervention>) -> Self {
-        self.protocols.push((protocol, interventions));
-        self
+    /// The links of these weights, by their numbers in the network, are cut.
+    pub fn cut_links(weights: impl IntoIterator<Item = usize>) -> Self {
+        Self { parameters: weights.into_iter().map(|weight| (weight, 0.0)).collect(), ..Self::default() }
     }
 
-    /// The same with the protocol `name` of cases that have an intervention each, after one that is called `intact`.
-    ///
-    /// It is left out where the names of its cases cannot be told apart or shown.
+    /// Both: where both hold a part or add noise, as the other does.
     #[must_use]
-    pub fn with_cases<R: Into<String>>(
-        self,
-        name: &str,
-        summary: &str,
-        cases: impl IntoIterator<Item = (R, Intervention)>,
-    ) -> Self {
-        let (rows, mut interventions): (Vec<String>, Vec<_>) =
-            cases.into_iter().map(|(row, intervention)| (row.into(), intervention)).unzip();
-        interventions.insert(0, Intervention::default());
-        let mut protocol = Protocol::from_list(name, summary, ["intact"]);
-        protocol.cases.extend(rows.into_iter().map(|row| Case::new(row, "")));
-        if Protocol::check(std::slice::from_ref(&protocol)).is_err() {
-            return self;
+    pub fn and(&self, other: &Self) -> Self {
+        let mut both = self.clone();
+        both.lesions.extend_from_slice(&other.lesions);
+        both.inputs.extend_from_slice(&other.inputs);
+        both.parameters.extend_from_slice(&other.parameters);
+        both.noise = if other.noise > 0.0 { other.noise } else { both.noise };
+        both
+    }
+
+    /// The parameters of a network as they are with this; those that it has not are passed over.
+    pub fn edited<'p>(&self, parameters: &'p [f32]) -> Cow<'p, [f32]> {
+        if self.parameters.is_empty() {
+            return Cow::Borrowed(parameters);
         }
-        self.with_protocol(protocol, interventions)
-    }
-
-    /// The same with the protocol `lesions`: each of these groups of inputs is cut, each of these neurons is silent.
-    #[must_use]
-    pub fn with_lesions<G: AsRef<str>>(
-        self,
-        groups: impl IntoIterator<Item = (G, Range<usize>)>,
-        neurons: impl IntoIterator<Item = (String, usize)>,
-    ) -> Self {
-        let groups =
-            groups.into_iter().map(|(name, inputs)| (format!("no {}", name.as_ref()), Intervention::cut(inputs)));
-        let neurons = neurons.into_iter().map(|(name, neuron)| (format!("no {name}"), Intervention::lesion(neuron)));
-        let summary = "one group of inputs is cut, or one neuron is silent";
-        self.with_cases("lesions", summary, groups.chain(neurons))
-    }
-
-    /// The same with the protocol `noise`: every input changes by up to one of these levels.
-    #[must_use]
-    pub fn with_noise(self, levels: &[f32]) -> Self {
-        let summary = "every input changes at every step by a random number up to this";
-        let protocol = Protocol::from_list("noise", summary, levels.iter().map(ToString::to_string));
-        self.with_protocol(protocol, levels.iter().copied().map(Intervention::noise).collect())
-    }
-
-    /// The protocols: what [`Task::protocols`](crate::Task::protocols) returns.
-    pub fn protocols(&self) -> Vec<Protocol> {
-        self.protocols.iter().map(|(protocol, _)| protocol.clone()).collect()
-    }
-
-    /// What is done in a case; none without a case.
-    pub fn of(&self, case: Option<CaseId>) -> Option<&Intervention> {
-        let CaseId { protocol, case } = case?;
-        self.protocols.get(protocol)?.1.get(case)
-    }
-
-    /// The name of a case's protocol, and its number in it: for those that are more than an intervention.
-    pub fn named(&self, case: Option<CaseId>) -> Option<(&str, usize)> {
-        let CaseId { protocol, case } = case?;
-        self.protocols.get(protocol).map(|(protocol, _)| (protocol.name.as_str(), case))
+        let mut own = parameters.to_vec();
+        for (number, value) in &self.parameters {
+            if let Some(parameter) = own.get_mut(*number) {
+                *parameter = *value;
+            }
+        }
+        Cow::Owned(own)
     }
 }
 
 /// Groups of inputs, one after the other, as ranges.
 pub fn input_ranges<'g>(
-    groups: impl IntoIterator<Item = &'g crate::ChannelGroup>,
+    groups: impl IntoIterator<Item = &'g ChannelGroup>,
 ) -> impl Iterator<Item = (String, Range<usize>)> {
     groups.into_iter().scan(0, |first, group| {
         let range = *first..*first + group.count;
@@ -141,26 +89,21 @@ pub fn input_ranges<'g>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::outcome::ChannelGroup;
 
     #[test]
-    fn cases_are_found_and_those_that_cannot_be_named_are_left_out() {
+    fn both_are_done_and_of_the_same_part_the_second() {
         let groups = [ChannelGroup::new("eyes", 3, ""), ChannelGroup::new("skin", 2, "")];
         let ranges: Vec<_> = input_ranges(&groups).collect();
         assert_eq!(ranges, [("eyes".to_owned(), 0..3), ("skin".to_owned(), 3..5)]);
-        let all = Interventions::default()
-            .with_protocol(Protocol::from_list("own", "", ["a", "b"]), Vec::new())
-            .with_lesions(ranges, [])
-            .with_lesions([("same", 0..1), ("same", 1..2)], [])
-            .with_noise(&[0.0, 0.25]);
-        let names: Vec<String> = all.protocols().into_iter().map(|protocol| protocol.name).collect();
-        assert_eq!(names, ["own", "lesions", "noise"]);
-        Protocol::check(&all.protocols()).unwrap();
-        let at = |protocol, case| Some(CaseId { protocol, case });
-        assert_eq!((all.of(at(0, 1)), all.named(at(0, 1))), (None, Some(("own", 1))));
-        assert_eq!(all.of(at(1, 0)), Some(&Intervention::default()));
-        assert_eq!(all.of(at(1, 2)), Some(&Intervention::cut(3..5)));
-        assert_eq!(all.of(at(2, 1)), Some(&Intervention::noise(0.25)));
-        assert_eq!((all.of(at(3, 0)), all.of(at(1, 9)), all.named(None)), (None, None, None));
+        let links = Intervention::cut_links([2, 1]);
+        let both = Intervention::cut(0..3).and(&links).and(&Intervention::lesion(4));
+        let (lesions, inputs) = (vec![Lesion::new(4)], vec![(0..3, 0.0)]);
+        assert_eq!(both, Intervention { lesions, inputs, noise: 0.0, parameters: vec![(2, 0.0), (1, 0.0)] });
+        let noisy = Intervention::noise(0.25);
+        assert_eq!([noisy.and(&links).noise, noisy.and(&Intervention::noise(0.5)).noise], [0.25, 0.5]);
+        // A parameter that there is not changes nothing.
+        let edited = both.and(&Intervention { parameters: vec![(1, 0.5), (9, 1.0)], ..Intervention::default() });
+        assert_eq!(*edited.edited(&[1.0, 2.0, 3.0]), [1.0, 0.5, 0.0]);
+        assert!(matches!(Intervention::lesion(0).edited(&[1.0]), Cow::Borrowed([1.0])));
     }
 }

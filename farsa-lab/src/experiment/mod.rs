@@ -2,6 +2,7 @@
 //!
 //! - `definition`: what an experiment is to the command: a name, a table of settings, and what evaluates it
 //! - `evaluator`: parameters go in, outcomes come out; what only some experiments can do
+//! - `anatomy`: the parts of a controller that a test can change, by name
 //! - `behaviour`: what an experiment says of an individual beside its fitness
 //! - `outcome`: what comes of a trial, and what is told of a robot and its controller
 //! - `parameter`: a number that evolution finds, with its range
@@ -9,7 +10,8 @@
 //! - `episode`: one trial in a world, and the loop that runs it
 //! - `in_lanes`: the loop that runs many episodes side by side, one in each lane of a batch of worlds
 //! - `in_world`: an evaluator made of a world and an episode
-//! - `intervention`: what a test does to a controller: silent neurons, cut inputs, noise
+//! - `intervention`: what a test does to a controller: silent neurons, cut inputs and links, noise
+//! - `interventions`: test protocols that do such things
 //! - `lanes`: how many episodes a thread runs side by side, and by which instructions
 //! - `limited`: an episode that ends at the latest after so many steps
 //! - `genotype`: from genes to the parameters that they stand for
@@ -23,6 +25,7 @@
 //! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
 //! - `value`: values of settings
 
+mod anatomy;
 pub(crate) mod behaviour;
 mod controlled;
 pub(crate) mod controller_export;
@@ -33,6 +36,7 @@ pub(crate) mod genotype;
 mod in_lanes;
 mod in_world;
 pub(crate) mod intervention;
+mod interventions;
 pub(crate) mod lanes;
 mod limited;
 pub(crate) mod network_export;
@@ -46,6 +50,7 @@ mod rescored;
 pub(crate) mod settings;
 mod value;
 
+pub use anatomy::Anatomy;
 pub use behaviour::{Behaviour, NotedBehaviour, mean_of_note};
 pub use controlled::{Controlled, Objective, PlanarWorld, Trials};
 pub use controller_export::{
@@ -58,7 +63,8 @@ pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, 
 pub use genotype::Genotype;
 pub use in_lanes::{Batch, run_in_lanes};
 pub use in_world::{InWorld, Rollout};
-pub use intervention::{Intervention, Interventions, input_ranges};
+pub use intervention::{Intervention, input_ranges};
+pub use interventions::Interventions;
 pub use lanes::Lanes;
 pub use network_export::NetworkExport;
 pub use network_parameters::{OwnedNetwork, network_parameters, resting_network};

@@ -8,8 +8,9 @@ use farsa_nn::{Controller as _, LeakyLayout};
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::anatomy::Anatomy;
 use crate::experiment::evaluator::Evaluation;
-use crate::experiment::intervention::Interventions;
+use crate::experiment::interventions::Interventions;
 use crate::experiment::network_parameters::{OwnedNetwork, network_parameters, resting_network};
 use crate::experiment::normalised_controller::NormalisedController;
 use crate::experiment::outcome::{ChannelGroup, Description};
@@ -109,8 +110,9 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     /// The same with the parameters of an evaluation, and with observations normalised where it says so; false for what is
     /// none of this network.
     pub fn load_evaluation(&mut self, evaluation: &Evaluation<'_>) -> bool {
-        let loaded = self.network.load(evaluation.normalisation) && self.load(evaluation.parameters);
-        self.network.intervene(self.interventions.of(evaluation.case), evaluation.id, 0);
+        let change = self.interventions.applied(evaluation).into_owned();
+        let loaded = self.network.load(evaluation.normalisation) && self.load(&change.edited(evaluation.parameters));
+        self.network.intervene(&change, evaluation.id, 0);
         loaded
     }
 
@@ -119,6 +121,18 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     /// every input has noise up to 0.4.
     pub fn protocols(&self) -> Vec<Protocol> {
         self.interventions.protocols()
+    }
+
+    /// What tests can change by name, which [`load_evaluation`](Self::load_evaluation) obeys: sensors by the groups of the
+    /// [`schema`](Self::schema), too.
+    pub fn anatomy(&self) -> Anatomy {
+        let sensors = groups(&self.schema).into_iter().map(|(group, inputs)| {
+            // One that is in no group has its own name.
+            let own = &self.schema.sensors[inputs.start].name;
+            let name = if group.strip_prefix("sensor ") == Some(own) { own } else { &group };
+            ChannelGroup::new(name, inputs.len(), "")
+        });
+        Anatomy::new(&self.schema, &Description { sensors: sensors.collect(), ..Description::default() })
     }
 
     /// What was sensed since [`load_evaluation`](Self::load_evaluation), where it is normalised: for
@@ -211,8 +225,8 @@ impl<S: Channels, M: Channels> Neurocontroller<S, M> {
     }
 }
 
-/// The protocols of a network with these sensors and so many hidden neurons.
-fn interventions(schema: &Schema, hidden: usize) -> Interventions {
+/// The sensors by their groups, those without one alone.
+fn groups(schema: &Schema) -> Vec<(String, Range<usize>)> {
     let mut groups: Vec<(String, Range<usize>)> = Vec::new();
     for (number, sensor) in schema.sensors.iter().enumerate() {
         let grouped = !sensor.group.is_empty() && sensor.group != "sensor";
@@ -222,8 +236,13 @@ fn interventions(schema: &Schema, hidden: usize) -> Interventions {
             _ => groups.push((format!("sensor {}", sensor.name), number..number + 1)),
         }
     }
+    groups
+}
+
+/// The protocols of a network with these sensors and so many hidden neurons.
+fn interventions(schema: &Schema, hidden: usize) -> Interventions {
     let neurons = (0..hidden).map(|neuron| (format!("neuron {}", neuron + 1), neuron));
-    Interventions::default().with_lesions(groups, neurons).with_noise(&Interventions::NOISE)
+    Interventions::default().with_lesions(groups(schema), neurons).with_noise(&Interventions::NOISE)
 }
 
 #[cfg(test)]

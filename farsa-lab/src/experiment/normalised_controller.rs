@@ -63,17 +63,17 @@ struct Changed<C> {
 type StepAblated<C> = fn(&mut C, &[Lesion], &[f32], &mut [f32]);
 
 impl<C> Changed<C> {
-    /// Senses with noise and without what is cut, `x` being normalised already, and computes without what is silent.
+    /// Senses with noise and holds inputs, `x` being normalised already, and computes with neurons held.
     fn step(&mut self, controller: &mut C, x: &mut [f32], y: &mut [f32]) {
-        let Intervention { lesions, cut, noise } = &self.intervention;
+        let Intervention { lesions, inputs, noise, .. } = &self.intervention;
         if *noise > 0.0 {
             for x in &mut *x {
                 *x += self.noise.range(-*noise, *noise);
             }
         }
-        for inputs in cut {
+        for (inputs, value) in inputs {
             let end = inputs.end.min(x.len());
-            x[inputs.start.min(end)..end].fill(0.0);
+            x[inputs.start.min(end)..end].fill(*value);
         }
         (self.step)(controller, lesions, x, y);
     }
@@ -106,18 +106,19 @@ impl<C: Controller> NormalisedController<C> {
         self.statistics.as_ref().map(|[_, since]| since)
     }
 
-    /// Changes what the controller senses and computes until the next [`load`](Self::load), or nothing.
+    /// Changes what the controller senses and what its neurons do until the next [`load`](Self::load); the parameters of the
+    /// intervention are the caller's to change, [`Intervention::edited`].
     ///
     /// The noise is drawn from the stream of [`Domain::Network`] of the episode and the number of the robot, from 0: the same in
-    /// every case of a protocol. It comes after the observations are normalised, and so does what is cut; what is
+    /// every case of a protocol. It comes after the observations are normalised, and so do inputs that are held; what is
     /// [`observed`](Self::observed) is without.
-    pub fn intervene(&mut self, intervention: Option<&Intervention>, id: EpisodeId, robot: u32)
+    pub fn intervene(&mut self, intervention: &Intervention, id: EpisodeId, robot: u32)
     where
         C: Ablatable,
     {
         let EpisodeId { seed, generation, individual, trial } = id;
-        self.changed = intervention.filter(|wanted| **wanted != Intervention::default()).map(|wanted| Changed {
-            intervention: wanted.clone(),
+        self.changed = (*intervention != Intervention::default()).then(|| Changed {
+            intervention: intervention.clone(),
             noise: Stream::new(seed, Domain::Network, trial, individual.wrapping_add(robot << 16), generation),
             step: C::step_ablated,
         });
@@ -203,28 +204,28 @@ mod tests {
         let id = EpisodeId { seed: 7, trial: 3, ..EpisodeId::default() };
         let intact = response(&mut control, [0.5, 0.9]);
         // A cut input is one that senses nothing.
-        control.intervene(Some(&Intervention::cut(1..2)), id, 0);
+        control.intervene(&Intervention::cut(1..2), id, 0);
         let cut = response(&mut control, [0.5, 0.9]);
-        control.intervene(None, id, 0);
+        control.intervene(&Intervention::default(), id, 0);
         assert_eq!((&response(&mut control, [0.5, 0.0]), &response(&mut control, [0.5, 0.9])), (&cut, &intact));
         assert_ne!(cut, intact);
         // With all hidden neurons silent the output is that of its own sum alone: half of the range, whatever is sensed.
         let silent = Intervention { lesions: vec![Lesion::new(0), Lesion::new(1)], ..Intervention::default() };
-        control.intervene(Some(&silent), id, 0);
+        control.intervene(&silent, id, 0);
         assert_eq!(response(&mut control, [0.5, 0.9]), [0.5; 5]);
-        control.intervene(Some(&Intervention::lesion(0)), id, 0);
+        control.intervene(&Intervention::lesion(0), id, 0);
         let one = response(&mut control, [0.5, 0.9]);
         assert!(one.iter().zip(&intact).all(|(one, all)| *one > 0.5 && one < all), "{one:?} {intact:?}");
         // Noise: the same for the same episode, another for another or another robot, and none of level 0.
         let mut noisy = |level: f32, id: EpisodeId, robot: u32| {
-            control.intervene(Some(&Intervention::noise(level)), id, robot);
+            control.intervene(&Intervention::noise(level), id, robot);
             response(&mut control, [0.5, 0.9])
         };
         let first = noisy(0.3, id, 0);
         assert!(first != intact && first == noisy(0.3, id, 0) && noisy(0.0, id, 0) == intact);
         assert!(first != noisy(0.3, EpisodeId { trial: 4, ..id }, 0) && first != noisy(0.3, id, 1));
         // An input beyond the network's is none; what is loaded anew is intact.
-        control.intervene(Some(&Intervention::cut(1..9)), id, 0);
+        control.intervene(&Intervention::cut(1..9), id, 0);
         assert_eq!(response(&mut control, [0.5, 0.9]), cut);
         assert!(control.load(None));
         assert_eq!(response(&mut control, [0.5, 0.9]), intact);
@@ -237,7 +238,7 @@ mod tests {
         assert!(control.load(Some(&before)));
         let mean = response(&mut control, [2.5, 20.0]);
         assert!(control.load(Some(&before)));
-        control.intervene(Some(&Intervention::cut(1..2)), EpisodeId::default(), 0);
+        control.intervene(&Intervention::cut(1..2), EpisodeId::default(), 0);
         assert_eq!(response(&mut control, [2.5, 35.0]), mean);
         // What was observed is what there was.
         assert_eq!(control.observed().unwrap().mean(), [2.5, 35.0]);

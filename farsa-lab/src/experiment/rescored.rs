@@ -4,6 +4,7 @@ use farsa_body::Recorder;
 use farsa_view::Schema;
 
 use crate::error::Error;
+use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Task};
 use crate::experiment::lanes::Lanes;
@@ -72,6 +73,9 @@ impl Task for Rescored {
     }
     fn protocols(&self) -> Vec<Protocol> {
         self.inner.protocols()
+    }
+    fn anatomy(&self) -> Option<Anatomy> {
+        self.inner.anatomy()
     }
     fn exports(&self) -> Option<&dyn Exports> {
         self.inner.exports()

@@ -197,6 +197,10 @@ pub(crate) struct TestArgs {
     /// Test every case of one of the experiment's test protocols, which `info` lists
     #[arg(long, value_name = "NAME")]
     pub(crate) protocol: Option<String>,
+    /// Change parts of the controller together, such as neuron:3,link:2-5,sensor:touch, and test it beside the whole one; writes no
+    /// file
+    #[arg(long, value_name = "LIST")]
+    pub(crate) lesion: Vec<String>,
     /// Where the test's random numbers come from; never those of a run
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u64).range(..=LARGEST_SEED))]
     pub(crate) seed: u64,

@@ -1,4 +1,4 @@
-//! `farsa test --protocol`: the command.
+//! `farsa test --protocol` and `--lesion`: the command.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,8 @@ use crate::evaluation::protocols::files::{self, ProtocolRecord};
 use crate::evaluation::protocols::found::{self, FoundCase};
 use crate::evaluation::protocols::states::States;
 use crate::evaluation::protocols::table::ProtocolTable;
-use crate::evaluation::test::{Subject, Trials, failure, run_trials, whose};
+use crate::evaluation::test::{Asked, Subject, TRIALS, Trials, failure, run_trials, whose};
+use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Wanted;
 use crate::experiment::protocol::{CaseId, Protocol};
 use crate::run::plan::Plan;
@@ -67,53 +68,41 @@ impl ProtocolRun {
     }
 }
 
+/// How many trials a test has, and how they are run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// Of each case; else as many as the protocol says.
+    pub(crate) trials: Option<usize>,
+    pub(crate) seed: u64,
+    pub(crate) threads: usize,
+    pub(crate) lanes: Wanted,
+    pub(crate) quiet: bool,
+}
+
 /// Runs fresh trials of the champion in every case of a protocol, and writes `protocols/NAME.csv` with its record; and
 /// `protocols/NAME.states.csv` where the protocol records states.
 ///
-/// Trial i of each case is trial i of [`test`](crate::evaluation::test::test), so that cases differ in nothing else. Without a
-/// number of `trials` it is the protocol's own.
+/// Trial i of each case is trial i of [`test`](crate::evaluation::test::test), so that cases differ in nothing else.
 ///
 /// # Errors
 /// Those of [`Protocol::find`], [`Subject::read`] and [`States::record`], [`Error::Usage`] for more than 10^8 trials, [`Error::Io`].
-pub(crate) fn test(
-    plan: &Plan<'_>,
-    directory: &Directory,
-    name: &str,
-    trials: Option<usize>,
-    seed: u64,
-    threads: usize,
-    lanes: Wanted,
-    quiet: bool,
-) -> Result<ProtocolRun, Error> {
-    let mut pool = Pool::new(plan, threads, lanes)?;
-    let mut protocols = pool.evaluator().protocols();
-    let number = Protocol::find(&protocols, name, plan.experiment.name())?;
-    let protocol = protocols.swap_remove(number);
-    let trials = trials.unwrap_or(protocol.trials as usize);
-    let count = protocol.cases.len();
-    let all = trials.checked_mul(count).filter(|all| *all <= MOST_TRIALS).ok_or_else(|| {
-        Error::Usage(format!("{trials} trials of each of {count} cases are more than {MOST_TRIALS} trials"))
-    })?;
+pub(crate) fn test(plan: &Plan<'_>, directory: &Directory, name: &str, effort: Effort) -> Result<ProtocolRun, Error> {
+    let mut pool = Pool::new(plan, effort.threads, effort.lanes)?;
+    let (number, protocol) = protocol(plan, &pool, name)?;
+    let trials = trials_of(&protocol, effort)?;
     let subject = Subject::read(plan, directory, &pool)?;
     // Where nothing can be written, that is said before anything is computed.
     files::make_folder(directory)?;
     drop(Lock::of_tests(directory.path())?);
-    let cases: Vec<Option<CaseId>> = (0..count).map(|case| Some(CaseId { protocol: number, case })).collect();
-    let progress = Progress::new(0, all as u64, quiet);
-    let fresh = Trials { count: trials, seed, cases: &cases };
-    let results = run_trials(&mut pool, subject.tested(), fresh, &progress);
-    drop(progress);
-    let results = results?;
+    let asked = cases(number, None, protocol.cases.len());
+    let (found, table) = run(&mut pool, directory, &subject, (protocol, asked), effort)?;
+    let (protocol, seed) = (&found.protocol, effort.seed);
     let states = if protocol.states.is_empty() {
         None
     } else {
-        Some(States::record(plan, subject.tested(), [number, trials], &protocol, seed)?)
+        Some(States::record(plan, subject.tested(), [number, trials], protocol, seed)?)
     };
-
-    let (terms, names) = (pool.evaluator().terms(), pool.evaluator().populations());
-    let others = names.get(1..subject.count()).unwrap_or(&[]);
-    let table = ProtocolTable::new(&protocol.cases, trials, &terms, others, &results);
-    let Subject { generation, individual, individuals, warning, .. } = subject;
+    let Subject { generation, individual, .. } = subject;
     let record = |table_crc| {
         let protocol = protocol.name.clone();
         ProtocolRecord { protocol, generation, individual, trials, seed, table_crc }
@@ -122,16 +111,100 @@ pub(crate) fn test(
     if let Some(states) = &states {
         states.write(directory, &protocol.name, record)?;
     }
-    Ok(ProtocolRun {
+    Ok(found)
+}
+
+/// Runs the same trials of the champion as it is and with each of some lists of changes, or those of every case of a protocol with
+/// one such list; writes nothing.
+///
+/// # Errors
+/// Those of [`Protocol::find`], [`Subject::read`] and [`Anatomy::intervention`](crate::Anatomy::intervention), [`Error::Usage`]
+/// for an experiment whose controller cannot be changed, several lists with a protocol, and more than 10^8 trials.
+pub(crate) fn lesions(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    name: Option<&str>,
+    lists: &[String],
+    effort: Effort,
+) -> Result<ProtocolRun, Error> {
+    let mut pool = Pool::new(plan, effort.threads, effort.lanes)?;
+    let anatomy = pool.evaluator().anatomy().ok_or_else(|| {
+        let experiment = plan.experiment.name();
+        Error::Usage(format!("--lesion: experiment `{experiment}` has no controller that can be changed"))
+    })?;
+    let changes = lists.iter().map(|list| anatomy.intervention(list)).collect::<Result<Vec<_>, _>>()?;
+    let (protocol, asked) = match (name, changes.as_slice()) {
+        (Some(name), [change]) => {
+            let (number, found) = protocol(plan, &pool, name)?;
+            let cases = cases(number, Some(change), found.cases.len());
+            (Protocol { summary: format!("{}; with {}", found.summary, lists[0]), ..found }, cases)
+        }
+        (Some(name), _) => {
+            let why = format!("--lesion: {} lists where protocol `{name}` takes one", changes.len());
+            return Err(Error::Usage(why));
+        }
+        (None, changes) => {
+            let names = std::iter::once("intact").chain(lists.iter().map(String::as_str));
+            let protocol = Protocol::from_list("lesion", "with these parts of the controller changed", names);
+            let with = |change| Asked { case: None, intervention: Some(change) };
+            let asked = std::iter::once(Asked::default()).chain(changes.iter().map(with)).collect();
+            (protocol.with_trials(TRIALS as u32), asked)
+        }
+    };
+    let subject = Subject::read(plan, directory, &pool)?;
+    Ok(run(&mut pool, directory, &subject, (protocol, asked), effort)?.0)
+}
+
+/// The experiment's protocol of this name, with its number.
+fn protocol(plan: &Plan<'_>, pool: &Pool<'_>, name: &str) -> Result<(usize, Protocol), Error> {
+    let mut protocols = pool.evaluator().protocols();
+    let number = Protocol::find(&protocols, name, plan.experiment.name())?;
+    Ok((number, protocols.swap_remove(number)))
+}
+
+/// All cases of a protocol of this number, with a change.
+fn cases(protocol: usize, intervention: Option<&Intervention>, count: usize) -> Vec<Asked<'_>> {
+    (0..count).map(|case| Asked { case: Some(CaseId { protocol, case }), intervention }).collect()
+}
+
+/// Trials of each case.
+fn trials_of(protocol: &Protocol, effort: Effort) -> Result<usize, Error> {
+    let (trials, count) = (effort.trials.unwrap_or(protocol.trials as usize), protocol.cases.len());
+    if trials.checked_mul(count).is_none_or(|all| all > MOST_TRIALS) {
+        let why = format!("{trials} trials of each of {count} cases are more than {MOST_TRIALS} trials");
+        return Err(Error::Usage(why));
+    }
+    Ok(trials)
+}
+
+/// Runs fresh trials of each of a protocol's cases, in which this is asked.
+fn run(
+    pool: &mut Pool<'_>,
+    directory: &Directory,
+    subject: &Subject,
+    (protocol, asked): (Protocol, Vec<Asked<'_>>),
+    effort: Effort,
+) -> Result<(ProtocolRun, ProtocolTable), Error> {
+    let (trials, seed) = (trials_of(&protocol, effort)?, effort.seed);
+    let progress = Progress::new(0, (trials * asked.len()) as u64, effort.quiet);
+    let fresh = Trials { count: trials, seed, cases: &asked };
+    let results = run_trials(pool, subject.tested(), fresh, &progress);
+    drop(progress);
+    let results = results?;
+    let (terms, names) = (pool.evaluator().terms(), pool.evaluator().populations());
+    let others = names.get(1..subject.count()).unwrap_or(&[]);
+    let table = ProtocolTable::new(&protocol.cases, trials, &terms, others, &results);
+    let found = ProtocolRun {
         directory: directory.path().display().to_string(),
-        generation,
-        individual,
-        individuals,
+        generation: subject.generation,
+        individual: subject.individual,
+        individuals: subject.individuals.clone(),
         seed,
         trials,
         cases: FoundCase::all(&table, &terms),
-        warning,
+        warning: subject.warning.clone(),
         failure: failure(&results, &terms),
         protocol,
-    })
+    };
+    Ok((found, table))
 }

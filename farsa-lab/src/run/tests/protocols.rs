@@ -5,10 +5,11 @@ use std::fs;
 use super::*;
 use crate::evaluation::protocols::files;
 use crate::evaluation::protocols::states::States;
-use crate::evaluation::protocols::test::{ProtocolRun, test};
+use crate::evaluation::protocols::test::{Effort, ProtocolRun, lesions, test};
 use crate::evaluation::test as plain_test;
-use crate::experiment::Rescored;
+use crate::experiment::intervention::Intervention;
 use crate::experiment::protocol::{Case, CaseId, Protocol};
+use crate::experiment::{Anatomy, Rescored};
 
 /// Says in its terms which case it was told and what its random numbers were; `MOVE red` always fails, as does all of `none`.
 #[derive(Clone, Copy)]
@@ -55,7 +56,10 @@ impl Task for Words {
     }
     fn schema(&self) -> Schema {
         let neurons = ["sensory", "inner 1", "inner 2"].map(farsa_view::Channel::new).into();
-        Schema { neurons, ..Schema::from_scalars(["gene"]) }
+        Schema { neurons, ..Schema::from_scalars(["gene"]) }.with_sensors(["ear"])
+    }
+    fn anatomy(&self) -> Option<Anatomy> {
+        Some(Anatomy::new(&self.schema(), &self.description()))
     }
     fn terms(&self) -> Vec<String> {
         vec!["case".into(), "start".into()]
@@ -76,9 +80,10 @@ impl Task for Words {
 
 impl Evaluator for Words {
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome {
-        let Evaluation { id, case, .. } = evaluation;
+        let Evaluation { id, case, intervention, .. } = evaluation;
+        let held = |change: &Intervention| (10 * change.lesions.len() + change.inputs.len()) as f64;
         let case = match case {
-            None => 100.0,
+            None => 100.0 + intervention.map_or(0.0, held),
             Some(CaseId { protocol: 0, case }) => case as f64,
             // At 0 s always, at 2 s in one trial of three, at 4 s never.
             Some(CaseId { protocol: 2, case }) => {
@@ -102,6 +107,8 @@ impl Evaluator for Words {
     }
 }
 
+const EFFORT: Effort = Effort { trials: None, seed: 3, threads: 1, lanes: Wanted::ONE, quiet: true };
+
 fn words_plan(words: &Words) -> Plan<'_> {
     let mut plan = Plan::new(words, None, "").unwrap();
     plan.settings.set("", GENERATIONS_KEY, Value::Whole(2)).unwrap();
@@ -115,7 +122,43 @@ fn evolved(words: &Words, root: &std::path::Path) -> Directory {
 }
 
 fn tested(words: &Words, directory: &Directory, name: &str, threads: usize) -> Result<ProtocolRun, Error> {
-    test(&words_plan(words), directory, name, None, 3, threads, Wanted::ONE, true)
+    test(&words_plan(words), directory, name, Effort { threads, ..EFFORT })
+}
+
+#[test]
+fn a_controller_is_changed_in_every_case_and_nothing_is_written() {
+    let root = scratch("lesions");
+    let directory = evolved(&WORDS, &root);
+    let effort = Effort { trials: Some(3), ..EFFORT };
+    let found = |name, lists: &[&str], effort| {
+        let lists: Vec<String> = lists.iter().map(|&list| list.to_owned()).collect();
+        lesions(&words_plan(&WORDS), &directory, name, &lists, effort)
+    };
+    let text = found(None, &["neuron:inner 1", "sensor:ear=0.25,noise:0.5"], effort).unwrap().text();
+    // The toy says what is done to it: 100, 10 for each neuron that is held, 1 for each input.
+    let rows = text.lines().skip(3).map(|line| line.split_whitespace().rev().nth(3).unwrap_or_default());
+    assert_eq!(rows.collect::<Vec<_>>(), ["case", "100.0", "110.0", "101.0"], "{text}");
+    assert!(text.starts_with("lesion: with these parts of the controller changed\n"), "{text}");
+    let text = found(Some("words"), &["neuron:inner 2"], effort).unwrap().text();
+    assert!(text.starts_with("words: two <words>; with neuron:inner 2\n"), "{text}");
+    assert!(!root.join("protocols").exists());
+    for (name, lists, why) in [
+        (Some("words"), &["neuron:inner 1", "noise:1"][..], "--lesion: 2 lists where protocol `words` takes one"),
+        (Some("word"), &["neuron:inner 1"], "unknown test protocol `word`; the nearest is `words`"),
+        (None, &["neuron:inner"], "unknown neuron `inner`; the nearest is `inner 1`"),
+    ] {
+        let error = found(name, lists, effort).unwrap_err().to_string();
+        assert!(error.contains(why), "{error}");
+    }
+    let many = found(None, &["noise:1"], Effort { trials: Some(50_000_001), ..EFFORT }).unwrap_err().to_string();
+    assert!(many.contains("50000001 trials of each of 2 cases are more than 100000000 trials"), "{many}");
+
+    // What has no controller says so.
+    let plan = plan(&STEADY, 2);
+    let directory = create(&plan, &scratch("lesions-of-none")).unwrap();
+    run(&plan, &directory, 1);
+    let error = lesions(&plan, &directory, None, &["neuron:1".into()], effort).unwrap_err().to_string();
+    assert!(error.contains("has no controller that can be changed"), "{error}");
 }
 
 #[test]
@@ -186,7 +229,7 @@ fn what_cannot_be_tested_is_refused() {
     assert!(!root.join("protocols").exists());
     let error = refused(tested(&Words { wrong: true, ..WORDS }, &directory, "words", 1));
     assert!(error.contains("`words` is there twice"), "{error}");
-    let many = test(&words_plan(&WORDS), &directory, "words", Some(25_000_001), 1, 1, Wanted::ONE, true);
+    let many = test(&words_plan(&WORDS), &directory, "words", Effort { trials: Some(25_000_001), ..EFFORT });
     let error = refused(many);
     assert!(error.contains("25000001 trials of each of 4 cases are more than 100000000"), "{error}");
     // Somebody else's file, or a link that leads elsewhere, is in the way.
@@ -252,7 +295,7 @@ fn the_states_of_the_first_trials_are_recorded_case_by_case() {
     let (_, of_table) = files::read(&directory, "words").unwrap().unwrap();
     assert!(record.unwrap().same_test(&of_table.unwrap()));
     // A test of other trials leaves no states of this one, and a protocol that asks for none has none.
-    test(&words_plan(&WORDS), &directory, "words", Some(1), 4, 1, Wanted::ONE, true).unwrap();
+    test(&words_plan(&WORDS), &directory, "words", Effort { trials: Some(1), seed: 4, ..EFFORT }).unwrap();
     assert_eq!(States::read(&directory, "words").unwrap().unwrap().0.trials.len(), 4);
     tested(&WORDS, &directory, "times", 1).unwrap();
     assert!(!root.join("protocols/times.states.csv").exists());
@@ -278,7 +321,7 @@ fn a_report_shows_what_protocols_found() {
     {
         let mut plan = words_plan(&WORDS);
         plan.seed = seed;
-        test(&plan, &directories[directory], name, None, 3, 1, Wanted::ONE, true).unwrap();
+        test(&plan, &directories[directory], name, EFFORT).unwrap();
     }
     let report = |runs: &[&Directory], name: &str| {
         let plans = runs.iter().zip(11..).map(|(directory, seed)| {

@@ -1,0 +1,136 @@
+//! Test protocols that change what a controller senses and computes.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use crate::experiment::evaluator::Evaluation;
+use crate::experiment::intervention::{Intervention, NOTHING};
+use crate::experiment::protocol::{Case, CaseId, Protocol};
+
+/// Test protocols of an experiment with what they do to the controller in each case.
+///
+/// ```
+/// use farsa_lab::{CaseId, Intervention, Interventions};
+///
+/// let all = Interventions::default()
+///     .with_lesions([("camera", 0..3), ("touch", 3..4)], [("neuron 1".to_owned(), 0)])
+///     .with_noise(&[0.0, 0.1]);
+/// let protocols = all.protocols();
+/// assert_eq!(protocols[0].cases[1].row, "no camera");
+/// let case = CaseId { protocol: 0, case: 3 };
+/// assert_eq!(all.of(Some(case)), Some(&Intervention::lesion(0)));
+/// assert_eq!(all.of(None), None);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Interventions {
+    protocols: Vec<(Protocol, Vec<Intervention>)>,
+}
+
+impl Interventions {
+    /// The levels of [`with_noise`](Self::with_noise) for inputs from 0 to 1.
+    pub const NOISE: [f32; 5] = [0.0, 0.05, 0.1, 0.2, 0.4];
+
+    /// The same with another protocol, and what is done in its cases: nothing in those for which there is no intervention.
+    #[must_use]
+    pub fn with_protocol(mut self, protocol: Protocol, interventions: Vec<Intervention>) -> Self {
+        self.protocols.push((protocol, interventions));
+        self
+    }
+
+    /// The same with the protocol `name` of cases that have an intervention each, after one that is called `intact`.
+    ///
+    /// It is left out where the names of its cases cannot be told apart or shown.
+    #[must_use]
+    pub fn with_cases<R: Into<String>>(
+        self,
+        name: &str,
+        summary: &str,
+        cases: impl IntoIterator<Item = (R, Intervention)>,
+    ) -> Self {
+        let (rows, mut interventions): (Vec<String>, Vec<_>) =
+            cases.into_iter().map(|(row, intervention)| (row.into(), intervention)).unzip();
+        interventions.insert(0, Intervention::default());
+        let mut protocol = Protocol::from_list(name, summary, ["intact"]);
+        protocol.cases.extend(rows.into_iter().map(|row| Case::new(row, "")));
+        if Protocol::check(std::slice::from_ref(&protocol)).is_err() {
+            return self;
+        }
+        self.with_protocol(protocol, interventions)
+    }
+
+    /// The same with the protocol `lesions`: each of these groups of inputs is cut, each of these neurons is silent.
+    #[must_use]
+    pub fn with_lesions<G: AsRef<str>>(
+        self,
+        groups: impl IntoIterator<Item = (G, Range<usize>)>,
+        neurons: impl IntoIterator<Item = (String, usize)>,
+    ) -> Self {
+        let groups =
+            groups.into_iter().map(|(name, inputs)| (format!("no {}", name.as_ref()), Intervention::cut(inputs)));
+        let neurons = neurons.into_iter().map(|(name, neuron)| (format!("no {name}"), Intervention::lesion(neuron)));
+        let summary = "one group of inputs is cut, or one neuron is silent";
+        self.with_cases("lesions", summary, groups.chain(neurons))
+    }
+
+    /// The same with the protocol `noise`: every input changes by up to one of these levels.
+    #[must_use]
+    pub fn with_noise(self, levels: &[f32]) -> Self {
+        let summary = "every input changes at every step by a random number up to this";
+        let protocol = Protocol::from_list("noise", summary, levels.iter().map(ToString::to_string));
+        self.with_protocol(protocol, levels.iter().copied().map(Intervention::noise).collect())
+    }
+
+    /// The protocols: what [`Task::protocols`](crate::Task::protocols) returns.
+    pub fn protocols(&self) -> Vec<Protocol> {
+        self.protocols.iter().map(|(protocol, _)| protocol.clone()).collect()
+    }
+
+    /// What is done to the controller in an evaluation: by its case, and by the test itself.
+    pub fn applied(&self, evaluation: &Evaluation<'_>) -> Cow<'_, Intervention> {
+        let of_case = self.of(evaluation.case).unwrap_or(&NOTHING);
+        evaluation.intervention.map_or(Cow::Borrowed(of_case), |other| Cow::Owned(of_case.and(other)))
+    }
+
+    /// What is done in a case; none without a case.
+    pub fn of(&self, case: Option<CaseId>) -> Option<&Intervention> {
+        let CaseId { protocol, case } = case?;
+        self.protocols.get(protocol)?.1.get(case)
+    }
+
+    /// The name of a case's protocol, and its number in it: for those that are more than an intervention.
+    pub fn named(&self, case: Option<CaseId>) -> Option<(&str, usize)> {
+        let CaseId { protocol, case } = case?;
+        self.protocols.get(protocol).map(|(protocol, _)| (protocol.name.as_str(), case))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cases_are_found_and_those_that_cannot_be_named_are_left_out() {
+        let all = Interventions::default()
+            .with_protocol(Protocol::from_list("own", "", ["a", "b"]), Vec::new())
+            .with_lesions([("eyes", 0..3), ("skin", 3..5)], [])
+            .with_lesions([("same", 0..1), ("same", 1..2)], [])
+            .with_noise(&[0.0, 0.25]);
+        let names: Vec<String> = all.protocols().into_iter().map(|protocol| protocol.name).collect();
+        assert_eq!(names, ["own", "lesions", "noise"]);
+        Protocol::check(&all.protocols()).unwrap();
+        let at = |protocol, case| Some(CaseId { protocol, case });
+        assert_eq!((all.of(at(0, 1)), all.named(at(0, 1))), (None, Some(("own", 1))));
+        assert_eq!(all.of(at(1, 0)), Some(&Intervention::default()));
+        assert_eq!(all.of(at(1, 2)), Some(&Intervention::cut(3..5)));
+        assert_eq!(all.of(at(2, 1)), Some(&Intervention::noise(0.25)));
+        assert_eq!((all.of(at(3, 0)), all.of(at(1, 9)), all.named(None)), (None, None, None));
+
+        // What a test does is added to what its case does.
+        let plain = Evaluation::new(&[], crate::EpisodeId::default());
+        let of_case = Evaluation { case: at(1, 2), ..plain };
+        assert_eq!((&*all.applied(&plain), &*all.applied(&of_case)), (&NOTHING, &Intervention::cut(3..5)));
+        let other = Intervention::lesion(4);
+        let both = Evaluation { intervention: Some(&other), ..of_case };
+        assert_eq!(*all.applied(&both), Intervention::cut(3..5).and(&other));
+    }
+}
