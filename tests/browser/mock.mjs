@@ -7,7 +7,7 @@ import { crc32 } from "node:zlib";
 
 const VIEWER = new URL("../../farsa-view/src/page/viewer/", import.meta.url);
 // In the order in which the page has them.
-export const SCRIPTS = ["data.js", "camera.js", "scene.js", "view.js", "strips.js", "images.js", "network.js", "player.js", "main.js"];
+export const SCRIPTS = ["data.js", "camera.js", "scene.js", "view.js", "strips.js", "images.js", "network.js", "film.js", "player.js", "main.js"];
 export const viewer = (name) => readFileSync(new URL(name, VIEWER), "utf8");
 
 export const crc = (bytes) => {
@@ -231,7 +231,9 @@ export function encode(trial) {
   const headers = channels.map(({ values, ...head }) => {
     const finite = values.filter((x) => !Number.isNaN(x));
     const minimum = Math.min(...finite);
-    const scale = (Math.max(...finite) - minimum) / 65534;
+    // Whole numbers stay exact, as the Rust writer keeps them.
+    const whole = finite.every(Number.isInteger);
+    const scale = whole ? 1 : (Math.max(...finite) - minimum) / 65534;
     return { ...head, minimum, scale };
   });
   block("channels", Uint16Array.from(channels.flatMap(({ values }, c) => values.map((x) => {

@@ -89,7 +89,7 @@ async function silent(browser, name) {
 function files() {
   const template = viewer("page.html");
   const size = [template, viewer("viewer.css"), ...SCRIPTS.map(viewer)].reduce((sum, text) => sum + Buffer.byteLength(text), 0);
-  check(`the viewer has ${size} bytes, at most 70656`, size <= 70656);
+  check(`the viewer has ${size} bytes, at most 81920`, size <= 81920);
   for (const name of ["title", "style", "script", "data"]) {
     check(`page.html has one {{${name}}}`, template.split(`{{${name}}}`).length === 2);
   }
@@ -164,9 +164,9 @@ async function arithmetic(browser) {
   await silent(browser, "invented trials");
 
   await opened(browser, write("arena.html", compose(pageOf([arenaTrial(0)], "top"))));
-  const arena = await browser.run(() => [farsa.view, document.querySelector("#top").ariaPressed, document.querySelector("#trails").ariaPressed, document.querySelector("#forces").hidden, document.querySelector("#network").hidden]);
+  const arena = await browser.run(() => [farsa.view, document.querySelector("#camera").value, document.querySelector("#trails").ariaPressed, document.querySelector("#forces").hidden, document.querySelector("#network").hidden]);
   check("a page without images shows none", await browser.run(() => document.querySelector("#images").hidden));
-  check("an arena is seen from above with trails, without what it has not", arena.join() === "top,true,true,true,true", arena.join());
+  check("an arena is seen from above with trails, without what it has not", arena.join() === "top,top,true,true,true", arena.join());
   await silent(browser, "arena");
 
   // A network whose sensors drive its outputs, without neurons in between.
@@ -333,6 +333,12 @@ async function handled(browser, url, trial) {
   await settled(browser);
   const back = await seen();
   check("c brings the camera back", Math.hypot(back.x - views[0].x, back.y - views[0].y) < 1);
+  await looked(browser, scene);
+  await browser.run(() => farsa.seek(farsa.ticks - 40));
+  await click("#record");
+  check("a film begins", await browser.run(() => farsa.playing && document.querySelector("#record").ariaPressed === "true"));
+  check("at the end it is a file", (await browser.until(() => farsa.filmed)) > 1000);
+  check("and the film is over", await browser.run(() => !farsa.playing && document.querySelector("#record").ariaPressed === "false"));
 
   if (trial.network) {
     const graph = await rectOf(browser, "#graph");
@@ -347,6 +353,88 @@ async function handled(browser, url, trial) {
   await browser.run(() => document.querySelector(".fold").click());
   check("a group folds", await browser.run(() => document.querySelector(".rows").hidden && document.querySelector(".fold").ariaExpanded === "false"));
   await silent(browser, "mouse and keys");
+}
+
+// The camera by name and by what it follows, and the mouse in the scene.
+async function looked(browser, scene) {
+  const middle = { x: (scene.left + scene.right) / 2, y: (scene.top + scene.bottom) / 2 };
+  const at = () => browser.run(() => farsa.project(farsa.pose(0, "sphere").position));
+  const choose = async (id, value) => {
+    await browser.run((id, value) => {
+      const list = document.getElementById(id);
+      list.value = value;
+      list.dispatchEvent(new Event("change"));
+    }, id, value);
+    await settled(browser);
+  };
+  const away = (a, b) => Math.hypot(a.x - b.x, a.y - b.y);
+  const seen = [];
+  for (const name of ["overview", "three-quarter", "front", "side", "top", "close"]) {
+    await choose("camera", name);
+    seen.push(await at());
+    check(`camera ${name}: the page says so`, await browser.run((name) => document.querySelector("#camera").value === name && farsa.view === (name === "top" ? "top" : "free"), name));
+  }
+  check("every camera looks from elsewhere", seen.every((a, i) => seen.every((b, k) => i === k || away(a, b) > 2)), JSON.stringify(seen));
+  await browser.run(() => farsa.seek(0));
+  await choose("camera", "close");
+  check("close: the thing is in the middle", away(await at(), middle) < 3, JSON.stringify([await at(), middle]));
+
+  for (const name of ["overview", "top"]) {
+    await choose("camera", name);
+    // The place under the mouse stays there while it zooms.
+    const place = await at();
+    await browser.wheel(place.x, place.y, -400);
+    await settled(browser);
+    check(`${name}: the wheel zooms to the mouse`, away(await at(), place) < 8, JSON.stringify([await at(), place]));
+    await browser.run((p) => document.querySelector(".scene").dispatchEvent(new MouseEvent("dblclick", { clientX: p.x, clientY: p.y })), place);
+    await settled(browser);
+    check(`${name}: a double click brings it into the middle`, away(await at(), middle) < 40, JSON.stringify([await at(), middle]));
+  }
+
+  await choose("camera", "overview");
+  await choose("follow", "sphere");
+  for (const share of [0, 0.4, 0.99]) {
+    await browser.run((share) => farsa.seek(Math.round(share * (farsa.ticks - 1))), share);
+    await settled(browser);
+    check(`followed, at ${share}: the body stays in the middle`, away(await at(), middle) < 3, JSON.stringify(await at()));
+  }
+  await choose("follow", "");
+  await browser.run(() => farsa.seek(0));
+  await settled(browser);
+  const left = await at();
+  await browser.run(() => farsa.seek(farsa.ticks - 1));
+  await settled(browser);
+  check("left alone it moves in the picture", away(await at(), left) > 10, JSON.stringify([await at(), left]));
+  await choose("camera", "overview");
+}
+
+// Strips of invented values: what is constant lies in the middle, whole numbers are told whole, rounding fills no strip.
+async function scales(browser) {
+  const trial = arenaTrial(0);
+  const ticks = trial.times.length;
+  const add = (name, value, more = {}) => trial.channels.push({ group: "scales", name, unit: "", values: Array.from({ length: ticks }, (_, t) => value(t)), ...more });
+  add("a name longer than others", () => 0.25);
+  add("counted", (t) => t % 4);
+  add("nearly one", (t) => 1 + 1e-7 * (t % 2));
+  add("state", (t) => t % 3, { words: ["waits", "goes", "sleeps"] });
+  await opened(browser, write("scales.html", compose(pageOf([trial], "top"))));
+  await browser.run(() => (farsa.seek(7), document.querySelector("[data-group=scales]").scrollIntoView()));
+  await settled(browser);
+  const rows = await browser.run(() => Object.fromEntries([...document.querySelectorAll("[data-group=scales] .row")].map((row) => {
+    const [name, canvas] = [row.querySelector(".name"), row.querySelector(".plot")];
+    const { width, height } = canvas;
+    const pixels = canvas.getContext("2d").getImageData(0, 0, width, height).data;
+    const used = Array.from({ length: height }, (_, y) => y).filter((y) => pixels[4 * (y * width + (width >> 1)) + 3] > 60);
+    return [row.dataset.name, { text: row.querySelector(".value").textContent, scale: [...row.querySelectorAll(".unit")].at(-1).textContent, clipped: name.scrollWidth > name.clientWidth, middle: (used[0] + used.at(-1)) / 2 / height, tall: (used.at(-1) - used[0]) / height }];
+  })));
+  const constant = rows["a name longer than others"];
+  check("a constant is drawn in the middle, and told once", Math.abs(constant.middle - 0.5) < 0.1 && constant.scale === "0.25", JSON.stringify(constant));
+  check("a long name is shown whole", !constant.clipped);
+  check("whole numbers are told whole", rows.counted.text === "3" && rows.counted.scale === "0 … 3", JSON.stringify(rows.counted));
+  check("rounding does not fill a strip", rows["nearly one"].tall < 0.3, JSON.stringify(rows["nearly one"]));
+  const legend = await browser.run(() => [...document.querySelectorAll("[data-group=scales] .key")].map((key) => [key.textContent, key.firstChild.style.background]));
+  check("bands have a legend", legend.map((key) => key[0]).join() === "waits,goes,sleeps" && new Set(legend.map((key) => key[1])).size === 3, JSON.stringify(legend));
+  await silent(browser, "scales");
 }
 
 async function looks(driver, url, name, size, phone) {
@@ -364,6 +452,10 @@ async function looks(driver, url, name, size, phone) {
       const scene = await rectOf(browser, ".scene");
       const colours = coloursIn(picture, Object.fromEntries(Object.entries(scene).map(([k, v]) => [k, v * ratio])));
       check(`${title}: the scene has ${colours} colours`, colours > 300);
+      // Words in the scene stand beside its middle, which they would hide.
+      const [caption, tools] = [await rectOf(browser, "figcaption"), await rectOf(browser, "#tools")];
+      const free = (caption.top - tools.bottom) / scene.height;
+      check(`${title}: two thirds of the scene are free of words`, free > 0.66, free);
       const strips = await rectOf(browser, "#strips");
       const drawn = coloursIn(picture, { left: 0, right: picture.width, top: strips.top * ratio, bottom: Math.min(strips.bottom, size[1]) * ratio });
       check(`${title}: the strips are drawn, ${drawn} colours`, drawn > 30);
@@ -558,12 +650,13 @@ try {
     await part("arithmetic", () => arithmetic(browser));
     await part("against the table", () => against(browser, url, table, trial));
     await part("mouse and keys", () => handled(browser, url, trial));
+    await part("scales", () => scales(browser));
     await part("two trials", () => compared(browser, html));
     await part("damage", () => damaged(browser, html, "page"));
   } finally {
     await browser.close();
   }
-  for (const [size, phone] of [[[1280, 800], false], [[390, 844], true]]) {
+  for (const [size, phone] of [[[1280, 800], false], [[1920, 1080], false], [[900, 500], false], [[390, 844], true], [[844, 390], true]]) {
     await part("looks", () => looks(driver, url, "page", size, phone));
     await part("looks of an arena", () => looks(driver, write("arena.html", compose(pageOf([arenaTrial(0)], "top"))), "arena", size, phone));
   }

@@ -1,6 +1,10 @@
 // Where a trial is seen from: matrices, bounds of all that is shown, and the camera.
 
 const TAN = 0.3;
+// From the scene to the camera, by the names of `farsa draw`; a trial's own view is found by what moves.
+const VIEWS = {"overview": null, "three-quarter": [0.8, -0.75, 0.62], front: [1, 0, 0.3], side: [0, -1, 0.2], top: null, close: [1, -0.1, 0.34]};
+// How far around a thing `close` looks, in its radii.
+const AROUND = 4.5;
 
 // 1, 2 or 5 times a power of ten, not below x.
 const rounded = (x) => {
@@ -21,8 +25,8 @@ const axesOf = (back) => {
 const boundsOf = (balls) => [[min, -1], [max, 1]].map(([most, sign]) => [0, 1, 2].map((i) => most(...balls.map((b) => b.at[i] + sign*b.radius))));
 const middleOf = ([low, high]) => mul(add(low, high), 0.5);
 
-// Once for each trial.
-function survey(trial) {
+// Once for each trial; where it is seen from above, every body of a robot is a robot.
+function survey(trial, fromAbove) {
 	const {ticks, bodies, shapes} = trial;
 	const step = max(1, floor(ticks/60));
 	const [balls, floors] = [[], []];
@@ -37,43 +41,50 @@ function survey(trial) {
 			const pose = body < 0 ? HOME : trial.pose(t, body);
 			for (const z of new Set([-long, long])) {
 				const at = add(pose.position, turn(pose.rotation, add(position, turn(rotation, [0, 0, z]))));
-				balls.push({at, radius, thing: role === "thing"});
+				balls.push({at, radius, thing: role === "thing", body});
 			}
 		}
 	}
 	if (!balls.length) balls.push({at: [0, 0, 0], radius: 1});
 	// Of a robot of many bodies only the one that goes farthest leaves a trail.
+	const tints = Object.values(WORDS);
 	const moving = bodies.flatMap((name, body) => {
 		const role = shapes.find((s) => s.body === body)?.role;
 		const path = [];
 		if (role) for (let t = 0; t < ticks; t += max(1, floor(ticks/1500))) path.push({t, at: trial.pose(t, body).position});
 		const way = max(...path.map(({at}) => hypot(...sub(at, path[0].at))));
-		return way > 1e-3 ? [{name, path, way, thing: role === "thing"}] : [];
+		return way > 1e-3 ? [{name, body, path, way, top: 2*max(...balls.filter((b) => b.body === body).map((b) => b.radius)), thing: role === "thing", tint: tints[body%tints.length]}] : [];
 	});
 	const robot = moving.filter((m) => !m.thing).sort((a, b) => b.way - a.way);
-	const trails = [...moving.filter((m) => m.thing), ...robot.slice(0, robot.length > 6 ? 1 : 6)];
+	const trails = [...moving.filter((m) => m.thing), ...robot.slice(0, fromAbove ? 24 : robot.length > 6 ? 1 : 6)];
 	const forces = list(ticks, (t) => trial.contacts(t).map((c) => hypot(...c.force))).flat().sort((a, b) => a - b);
 	const has = {forces: forces.length, points: trial.points.length, rays: trial.rayStarts.some((start) => trial.words[start])};
-	Object.assign(trial, {balls, floors, trails, has, force: forces[floor(forces.length*0.95)] || 1});
+	Object.assign(trial, {balls, floors, moving, trails, has, force: forces[floor(forces.length*0.95)] || 1});
 }
 
 // One camera for both views: trials are compared from the same place.
 class Camera {
+	constructor(top) {
+		Object.assign(this, {name: top ? "top" : "overview", top, followed: null, carried: null});
+	}
+
 	axes(top = this.top) {
 		const [level, {yaw, pitch}] = [cos(this.pitch), this];
 		return top ? [[1, 0, 0], [0, 1, 0], [0, 0, 1]] : axesOf([cos(yaw)*level, sin(yaw)*level, sin(pitch)]);
 	}
 
-	// Frames what moves, with the things in front.
-	frame(trials, aspect) {
+	// Frames what moves, with the things in front, or from where the view's name says; `near` is where a thing is at present.
+	frame(trials, aspect, near) {
+		this.top = this.name === "top";
 		const all = trials.flatMap((trial) => trial.balls);
 		const bounds = boundsOf(all);
 		const middle = middleOf(bounds);
 		this.force = max(...trials.map((trial) => trial.force));
 		const things = all.filter((b) => b.thing);
 		const [x, y] = sub(middleOf(boundsOf(things.length ? things : all)), middle);
-		this.yaw = Math.atan2(y, x || 1e-9) - 0.75;
-		this.pitch = 0.42;
+		const named = VIEWS[this.name];
+		this.yaw = named ? Math.atan2(named[1], named[0]) : Math.atan2(y, x || 1e-9) - 0.75;
+		this.pitch = named ? Math.asin(unit(named)[2]) : 0.42;
 		this.radius = max(1e-6, ...all.map((b) => hypot(...sub(b.at, middle)) + b.radius));
 		const [right, up, back] = this.axes(false);
 		this.target = middle;
@@ -83,14 +94,42 @@ class Camera {
 		}
 		this.distance = max(...all.map(({at, radius}) => {
 			const p = sub(at, this.target);
-			return dot(p, back) + max((abs(dot(p, right)) + radius)/aspect, abs(dot(p, up)) + radius)/(TAN*0.8);
+			return dot(p, back) + max((abs(dot(p, right)) + radius)/aspect, abs(dot(p, up)) + radius)/(TAN*0.88);
 		}));
+		if (this.name === "close" && near) {
+			this.target = near;
+			this.distance = AROUND*things[0].radius/(TAN*min(1, aspect));
+		}
 		// Walls and areas are seen from above, unless they are far larger than what moves.
 		const span = ([low, high]) => max(high[0] - low[0], high[1] - low[1]);
 		const wide = boundsOf([...all, ...trials.flatMap((trial) => trial.floors)]);
 		const flat = span(wide) < 4*span(bounds) ? wide : bounds;
 		this.middle = middleOf(flat);
-		this.half = 0.56*max(flat[1][1] - flat[0][1], (flat[1][0] - flat[0][0])/aspect, 1e-6);
+		this.half = 0.54*max(flat[1][1] - flat[0][1], (flat[1][0] - flat[0][0])/aspect, 1e-6);
+		this.carried = null;
+	}
+
+	// Moves along with what is followed, which is at this place; begins by bringing it into the middle, but in a view from above.
+	carry(place) {
+		const way = place && (this.carried ? sub(place, this.carried) : this.top ? [0, 0, 0] : sub(place, this.target));
+		if (way) {
+			this.target = add(this.target, way);
+			this.middle = add(this.middle, [way[0], way[1], 0]);
+		}
+		this.carried = place;
+	}
+
+	// Brings a place into the middle.
+	centre(place) {
+		this[this.top ? "middle" : "target"] = place;
+	}
+
+	// Where a ray begins and its direction, through a place of the picture in half heights from its middle.
+	ray(x, y) {
+		const [right, up, back] = this.axes();
+		const aside = add(mul(right, x), mul(up, y));
+		if (this.top) return [add(add(this.middle, mul(aside, this.half)), mul(back, 100*this.radius)), mul(back, -1)];
+		return [add(this.target, mul(back, this.distance)), unit(sub(mul(aside, TAN), back))];
 	}
 
 	lens(aspect) {
@@ -112,8 +151,12 @@ class Camera {
 		this[what] = add(this[what], mul(sub(mul(up, dy), mul(right, dx)), 2*(this.top ? this.half : TAN*this.distance)));
 	}
 
-	zoom(factor) {
-		this[this.top ? "half" : "distance"] *= factor;
+	// What is seen at a place stays there; x and y are in half heights of the picture from its middle.
+	zoom(factor, x, y) {
+		const [right, up] = this.axes();
+		const [what, size, tan] = this.top ? ["middle", "half", 1] : ["target", "distance", TAN];
+		this[what] = add(this[what], mul(add(mul(right, x), mul(up, y)), tan*this[size]*(1 - factor)));
+		this[size] *= factor;
 	}
 
 	// Round numbers, for the legend.

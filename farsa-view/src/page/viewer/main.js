@@ -3,7 +3,8 @@
 // For the console and for tests there is `farsa`; a trial is given as itself, its index or its name:
 //   ready, error              whether all is up; what is wrong, or null
 //   trials, tick, ticks, time  the trials; the clock's present tick, how many it has, its time [s]
-//   seek(tick), play(), pause(), playing, speed (may be set), show(trial, beside?), setView("top" | "free"), view
+//   seek(tick), play(), pause(), playing, speed (may be set), show(trial, beside?), follow(body or ""), view: "top" or "free",
+//   setView("top" | "free" | "front" ...)
 // and, as recorded at the present tick:
 //   pose(trial, body): {position [m], rotation [x, y, z, w]}, value(trial, channel, group?),
 //   image(trial, name): {columns, rows, colors: red, green, blue, opacity of each pixel, or null},
@@ -42,7 +43,7 @@ function openConsole(player, trials) {
 	});
 	Object.assign(farsa, {
 		trials,
-		seek: (to) => player.seek(to), play: () => player.play(), pause: () => player.pause(), setView: (name) => player.setView(name),
+		seek: (to) => player.seek(to), play: () => player.play(), pause: () => player.pause(), setView: (name) => player.setView(name), follow: (name) => player.follow(name),
 		show: of((trial, other) => player.show(trial, other == null ? null : trialOf(other))),
 		pose: of((trial, body) => trial.pose(player.at(trial), find(trial.bodies, body, (b) => b === body))),
 		value: of((trial, name, group) => trial.channels[find(trial.channels, name, (c) => c.name === name && [c.group, undefined].includes(group))].values[player.at(trial)]),
@@ -66,6 +67,8 @@ function offer(player, trials) {
 	player.setSpeed(1);
 	$("trial").onchange = $("beside").onchange = () => player.show(trials[$("trial").value], trials[$("beside").value]);
 	$("speed").onchange = () => player.setSpeed($("speed").value);
+	$("camera").onchange = () => player.setView($("camera").value);
+	$("follow").onchange = () => player.follow($("follow").value);
 	$("slider").oninput = () => player.go($("slider").value);
 }
 
@@ -77,9 +80,9 @@ function actsOf(player) {
 		Home: [() => player.go(0), "first"], End: [() => player.go(Infinity), "last"],
 		ArrowLeft: [(event) => player.step(event.shiftKey ? -10 : -1), "back"], ArrowRight: [(event) => player.step(event.shiftKey ? 10 : 1), "forward"],
 		"+": [() => player.faster(1)], "-": [() => player.faster(-1)],
-		t: [() => player.setView(player.camera.top ? "free" : "top"), "top"],
+		t: [() => player.setView(player.camera.top ? "overview" : "top")],
 		f: toggle("forces"), y: toggle("rays"), p: toggle("points"), r: toggle("trails"),
-		c: [() => player.frameCamera(), "frame"], d: [() => player.setTheme(theme() === "dark" ? "light" : "dark"), "theme"],
+		c: [() => player.frameCamera(), "frame"], v: [() => player.record(), "record"], d: [() => player.setTheme(theme() === "dark" ? "light" : "dark"), "theme"],
 		"?": [() => $("keys").showModal(), "help"],
 	};
 }
@@ -105,12 +108,13 @@ function listen(acts) {
 function main() {
 	const page = readPage($("data"));
 	const {trials} = page;
-	trials.forEach(survey);
+	trials.forEach((trial) => survey(trial, page.view === "top"));
 	const player = new Player(page);
 	openConsole(player, trials);
 	$("title").textContent = page.title;
 	offer(player, trials);
 	listen(actsOf(player));
+	$("record").hidden = !window.MediaRecorder;
 	const dark = prefers("color-scheme: dark");
 	(dark.onchange = () => player.setTheme(dark.matches ? "dark" : "light"))();
 

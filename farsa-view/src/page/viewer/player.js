@@ -3,9 +3,8 @@
 class Player {
 	constructor({trials, view, made_by: maker}) {
 		Object.assign(this, {maker, shown: [trials[0]], clock: trials[0], tick: 0, speed: 1, asked: false, before: 0, views: []});
-		this.camera = new Camera();
-		this.camera.top = view === "top";
-		this.visible = {forces: true, rays: true, points: true, trails: this.camera.top};
+		this.camera = new Camera(view === "top");
+		this.visible = {forces: true, rays: true, points: false, trails: view === "top"};
 		this.strips = stripsOf((part) => {
 			const {clock} = this;
 			this.go(round(clock.tickAt(clock.times[0] + part*(clock.end - clock.times[0]))));
@@ -42,7 +41,10 @@ class Player {
 			if (this.tick >= clock.ticks - 1) this.pause();
 			this.ask();
 		}
+		const {camera} = this;
+		camera.carry(camera.followed === null ? null : shown[0].between(this.tickOf(shown[0]), camera.followed).position);
 		shown.forEach((trial, i) => this.views[i].draw(trial, this.tickOf(trial), this.visible));
+		this.film?.take();
 		const tick = floor(this.tick);
 		const seconds = `${clock.times[tick].toFixed(2)} s`;
 		$("slider").value = tick;
@@ -67,7 +69,21 @@ class Player {
 		this.marks();
 	}
 
+	// From here to where it is paused, or the trial ends.
+	record() {
+		if (this.film) return this.pause();
+		const {shown, views} = this;
+		this.film = filmOf(() => shown.map((_, i) => views[i]), (blob) => {
+			farsa.filmed = blob.size;
+			save(`${shown[0].name.replace(/[^\w.-]+/g, "-").slice(0, 60)}.webm`, blob);
+		});
+		this.film.start();
+		this.play();
+	}
+
 	pause() {
+		this.film?.stop();
+		this.film = null;
 		// It stands on a tick: what is shown was recorded.
 		this.tick = floor(this.tick);
 		farsa.playing = false;
@@ -96,22 +112,37 @@ class Player {
 		this.marks();
 	}
 
+	// Of `farsa draw`, or `free`: where the camera was.
 	setView(name) {
-		this.camera.top = name === "top";
+		if (name in VIEWS) {
+			this.camera.name = name;
+			this.frameCamera();
+		} else this.camera.top = false;
 		this.marks();
+	}
+
+	// A body by its name, or none for "".
+	follow(name) {
+		const body = this.shown[0].bodies.indexOf(name);
+		Object.assign(this.camera, {followed: body < 0 ? null : body, carried: null});
+		$("follow").value = body < 0 ? "" : name;
+		this.ask();
 	}
 
 	// The buttons say what is on.
 	marks() {
 		$("play").classList.toggle("playing", farsa.playing);
 		$("play").setAttribute("aria-label", farsa.playing ? "Pause" : "Play");
-		for (const [name, on] of Object.entries({top: this.camera.top, ...this.visible})) $(name).setAttribute("aria-pressed", on);
+		for (const [name, on] of Object.entries({...this.visible, record: !!this.film})) $(name).setAttribute("aria-pressed", on);
+		$("camera").value = this.camera.top ? "top" : this.camera.name === "top" ? "overview" : this.camera.name;
 		this.ask();
 	}
 
 	frameCamera() {
 		const {clientWidth: w, clientHeight: h} = this.views[0].element;
-		this.camera.frame(this.shown, w/h || 1.6);
+		const [trial] = this.shown;
+		const thing = trial.shapes.find((shape) => shape.role === "thing");
+		this.camera.frame(this.shown, w/h || 1.6, thing && trial.between(this.tickOf(trial), thing.body).position);
 		this.ask();
 	}
 
@@ -138,12 +169,18 @@ class Player {
 		$("slider").max = this.clock.ticks - 1;
 		$("slider").style.setProperty("--track", `linear-gradient(90deg, ${trackOf(a, this.clock)})`);
 		for (const name of ["forces", "rays", "points"]) $(name).hidden = !shown.some((trial) => trial.has[name]);
+		$("camera").replaceChildren(...options(Object.keys(VIEWS).filter((name) => name !== "close" || a.balls.some((ball) => ball.thing)).map((name) => [name, name])));
+		const moving = [...new Set(a.moving.map((one) => one.name))];
+		$("follow").replaceChildren(...options([["", "follow"], ...moving.map((name) => [name, name])]));
+		$("follow").hidden = !moving.length;
+		this.follow(a.bodies[this.camera.followed] ?? "");
 		this.images.set(shown);
 		this.strips.set(shown, min(...shown.map((l) => l.times[0])), this.clock.end);
 		$("network").hidden = !a.network;
 		if (a.network) this.graph.set(a);
 		$("facts").replaceChildren(...shown.map((trial, i) => factsOf(trial, mark(i))), make("p", "soft", this.maker || ""));
 		this.frameCamera();
+		this.marks();
 	}
 }
 

@@ -115,6 +115,31 @@ function placedAt(trial, tick) {
 	});
 }
 
+// How far along a ray a placed shape is met, or Infinity.
+function metAt({shape: {kind, half, radius: r, half_length: long = 0}, origin, rotation}, from, along) {
+	const back = [...mul(rotation, -1), rotation[3]];
+	const [o, d] = [turn(back, sub(from, origin)), turn(back, along)];
+	if (kind === "plane") return d[2] < 0 ? -o[2]/d[2] : Infinity;
+	if (kind === "box") {
+		const spans = half.map((h, i) => [(-h - o[i])/d[i], (h - o[i])/d[i]].sort((a, b) => a - b));
+		const [near, far] = [max(...spans.map((span) => span[0])), min(...spans.map((span) => span[1]))];
+		return near <= far ? near : Infinity;
+	}
+	// A sphere, or a row of them along a longer shape.
+	return min(...list(long ? 9 : 1, (k) => {
+		const p = sub(o, [0, 0, long*(k/4 - 1) || 0]);
+		const b = dot(p, d);
+		const under = b*b - dot(p, p) + r*r;
+		return under < 0 ? Infinity : -b - Math.sqrt(under);
+	}));
+}
+
+// Where a ray first meets a shape, or null.
+function metBy(placed, from, along) {
+	const far = min(...placed.map((item) => metAt(item, from, along)).filter((t) => t > 0));
+	return far < Infinity ? add(from, mul(along, far)) : null;
+}
+
 class Scene {
 	// Throws where there is no WebGL 2.
 	constructor(canvas, restored) {
@@ -253,12 +278,20 @@ class Scene {
 
 	// The way so far, and faintly the way to come.
 	drawTrails(trails, tick, thick, tint) {
-		for (const {path, thing} of trails) {
+		const {camera} = this;
+		const robots = trails.filter((trail) => !trail.thing);
+		for (const {path, thing, body, top, tint: own} of trails) {
+			// Of many robots each has its colour, and that which is followed stands out.
+			const [...color] = tint(thing ? "thing" : "trail");
+			if (!thing && robots[1]) color.splice(0, 3, ...rgb(own));
+			if (trails.some((trail) => trail.body === camera.followed) && body !== camera.followed) color[3] *= 0.25;
 			path.reduce((last, {t, at}) => {
-				if (hypot(...sub(at, last)) < this.camera.radius*0.01) return last;
-				this.line(last, at, thick, tint(thing ? "thing" : "trail", t <= tick ? 1 : 0.3));
+				if (hypot(...sub(at, last)) < camera.radius*0.01) return last;
+				this.line(last, at, thick, [...color.slice(0, 3), color[3]*(t <= tick ? 1 : 0.3)]);
 				return at;
 			}, path[0].at);
+			// Whose it is.
+			if (!thing && robots[1]) this.ball(add(path.findLast(({t}) => t <= tick).at, [0, 0, top]), 2.5*thick, color);
 		}
 	}
 

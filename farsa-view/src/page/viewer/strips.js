@@ -15,13 +15,21 @@ function heatOf({low, high}, value) {
 	return a.map((c, k) => round(255*(c + (b[k] - c)*(x - i))));
 }
 
-function show({words, low, high}, value) {
+function show({words, low, high, whole}, value) {
 	if (words || Number.isNaN(value)) return words?.[value] ?? "–";
+	if (whole) return value.toFixed(0);
 	const text = value.toFixed(min(6, max(0, Math.ceil(2.5 - Math.log10(high - low || 1)))));
 	return +text ? text : text.replace("-", "");
 }
 
-const bound = (x) => +x.toPrecision(3);
+// An end of a scale: with as many digits as its span wants.
+const bound = (x, span) => +x.toFixed(min(9, max(0, Math.ceil(2 - Math.log10(span)))));
+
+// The scale of values from `low` to `high`: never so small that rounding fills it, with what is constant in its middle.
+function scaleOf(low, high) {
+	const room = max(1e-4*max(abs(low), abs(high)), 1e-9) - (high - low);
+	return room > 0 ? [low - room/2, high + room/2] : [low, high];
+}
 
 // Equal values in a row: [first tick, tick after, colour, value].
 function runs(values) {
@@ -114,6 +122,16 @@ function dragOn(element, box, seek) {
 	element.onpointerup = element.onpointercancel = () => (dragged = false);
 }
 
+// What the colours of a group's bands mean.
+function legendOf(trials, group) {
+	const words = trials.flatMap((trial) => trial.channels).find((channel) => channel.group === group && channel.words)?.words || [];
+	return words.map((word, i) => {
+		const square = make("i");
+		square.style.background = WORDS[i%WORDS.length];
+		return make("span", "key", square, word);
+	});
+}
+
 function stripsOf(seek) {
 	const [groups, closed] = [$("groups"), new Set()];
 	let [rows, trials, from, to, ticks, part] = [[], [], 0, 1];
@@ -133,6 +151,9 @@ function stripsOf(seek) {
 		const names = new Map();
 		for (const {group, name} of trials.flatMap((trial) => trial.channels)) names.set(group, (names.get(group) || new Set()).add(name));
 		groups.replaceChildren(...[...names].map(([group, set]) => section(group, [...set])));
+		// As wide as the longest name, within reason.
+		const wide = [...groups.querySelectorAll(".name")].map((name) => name.scrollWidth);
+		groups.style.setProperty("--n", `${min(210, max(80, ...wide)) + 4}px`);
 		update();
 	}
 
@@ -141,7 +162,7 @@ function stripsOf(seek) {
 		let cut = 0;
 		while (names[1] && names.every((name) => name[cut] && name[cut] === names[0][cut])) cut++;
 		const body = make("div", "rows", ...names.map((name) => row(group, name, cut > 7 ? cut : 0, names.length > 10 ? "heat" : "lines")));
-		const fold = make("button", "fold", make("b", "", group), make("span", "soft", names.length));
+		const fold = make("button", "fold", make("b", "", group), make("span", "soft", names.length), ...legendOf(trials, group));
 		const made = make("section", "", fold, body);
 		made.dataset.group = group;
 		const folded = () => {
@@ -162,15 +183,18 @@ function stripsOf(seek) {
 		const some = channels.filter(Boolean);
 		const {words, unit = "", scale} = some[0];
 		// One scale for both trials.
-		const [low, high] = [min(...some.map((c) => c.low)), max(...some.map((c) => c.high))];
+		const ends = [min(...some.map((c) => c.low)), max(...some.map((c) => c.high))];
+		const [low, high] = scaleOf(...ends);
+		const whole = some.every((c) => c.scale === 1 && Number.isInteger(c.minimum));
+		const told = [...new Set(ends.map((end) => bound(end, high - low)))].join(" … ");
 		const kind = words ? "bands" : mode;
 		const values = channels.map((_, i) => make("span", `value trial-${i}`));
 		const canvas = make("canvas", "plot");
 		const element = make("div", `row ${kind}`, make("span", "name", name.slice(cut)), make("span", "values", ...values), make("span", "unit", unit), canvas,
-			make("span", "unit", words ? "" : `${bound(low)} … ${bound(high)}`));
+			make("span", "unit", words ? "" : told));
 		element.dataset.name = name;
 		element.title = `${group} ${name}${words ? "" : ` within ${(scale/2).toPrecision(2)} ${unit}`}`;
-		const row = element.row = {canvas, channels, kind, values, scale: {words, low, high}};
+		const row = element.row = {canvas, channels, kind, values, scale: {words, low, high, whole}};
 		rows.push(row);
 		watch.observe(element);
 		return element;

@@ -1,8 +1,14 @@
 // A trial in a figure of the page: its picture with labels, and the hands that move the camera.
 
 // Mouse, fingers and wheel turn, move and zoom.
-function steer(canvas, camera, ask) {
+function steer(canvas, camera, ask, centre) {
 	const fingers = new Map();
+	// Half heights from the middle, upwards.
+	const placeOf = ({clientX, clientY}) => {
+		const {left, top, width, height} = canvas.getBoundingClientRect();
+		return [(2*(clientX - left) - width)/height, 1 - 2*(clientY - top)/height];
+	};
+	canvas.ondblclick = (event) => centre(...placeOf(event));
 	canvas.onpointerdown = (event) => {
 		fingers.set(event.pointerId, event);
 		canvas.setPointerCapture(event.pointerId);
@@ -17,7 +23,7 @@ function steer(canvas, camera, ask) {
 		const other = [...fingers.values()].find((f) => f.pointerId !== event.pointerId);
 		if (other) {
 			const gap = (f) => hypot(f.clientX - other.clientX, f.clientY - other.clientY) || 1;
-			camera.zoom(gap(last)/gap(event));
+			camera.zoom(gap(last)/gap(event), ...placeOf({clientX: (event.clientX + other.clientX)/2, clientY: (event.clientY + other.clientY)/2}));
 			// Each finger moves the picture by its half.
 			camera.pan(dx/2/height, dy/2/height);
 		} else if (camera.top || event.shiftKey || event.buttons & 6) camera.pan(dx/height, dy/height);
@@ -27,17 +33,19 @@ function steer(canvas, camera, ask) {
 	};
 	canvas.addEventListener("wheel", (event) => {
 		event.preventDefault();
-		camera.zoom(Math.exp(event.deltaY*(event.deltaMode ? 0.02 : 0.0012)));
+		camera.zoom(Math.exp(event.deltaY*(event.deltaMode ? 0.02 : 0.0012)), ...placeOf(event));
 		ask();
 	}, {passive: false});
 }
+
+const namesOf = (trails) => trails.slice(0, 4).map((trail) => trail.name).join(", ") + (trails[4] ? " ..." : "") || "nothing moves";
 
 // A picture with labels, to be moved with mouse and fingers.
 function viewOf(camera, ask) {
 	const [canvas, labels, caption, note] = [make("canvas", "scene"), make("div", "labels"), make("figcaption"), make("span", "soft")];
 	const element = make("figure", "", canvas, labels, caption);
 	$("views").append(element);
-	let scene;
+	let scene, seen;
 	try {
 		scene = new Scene(canvas, ask);
 	} catch (error) {
@@ -52,13 +60,15 @@ function viewOf(camera, ask) {
 
 	function set(trial, mark) {
 		canvas.setAttribute("aria-label", `Scene of ${trial.name}`);
-		caption.replaceChildren(make("b", mark, trial.name), make("div", "", note, ` ${trial.facts.slice(0, 2).map((fact) => fact.join(" ")).join(" · ")}`));
+		// Of one trial the head of the page says it.
+		caption.replaceChildren(...mark ? [make("b", mark, trial.name)] : [], note);
 		labels.replaceChildren(...trial.points.map((name) => make("span", "", name)));
 		size();
 	}
 
 	function draw(trial, tick, visible) {
 		if (!scene) return;
+		seen = [trial, tick];
 		scene.draw(trial, tick, camera, visible);
 		trial.points.forEach((_, p) => {
 			const at = visible.points && scene.project(trial.point(tick, p));
@@ -68,7 +78,7 @@ function viewOf(camera, ask) {
 		const {long, newtons} = camera.arrow();
 		note.textContent = [
 			trial.has.forces && visible.forces ? `arrow of ${length(long)}: ${short(newtons, "N")}` : "",
-			visible.trails ? `trails: ${trial.trails.map((trail) => trail.name).join(", ") || "nothing moves"}` : "",
+			visible.trails ? `trails: ${namesOf(trial.trails)}` : "",
 			tick >= trial.ticks - 1 ? "ended" : "",
 		].filter(Boolean).join(" · ");
 	}
@@ -79,6 +89,10 @@ function viewOf(camera, ask) {
 		return place && {x: box.left + place[0]*box.width, y: box.top + place[1]*box.height};
 	}
 
-	steer(canvas, camera, ask);
-	return {element, set, draw, project};
+	steer(canvas, camera, ask, (x, y) => {
+		const place = scene && metBy(placedAt(...seen), ...camera.ray(x, y));
+		if (place) camera.centre(place);
+		ask();
+	});
+	return {element, canvas, set, draw, project};
 }

@@ -1,0 +1,38 @@
+// What the views show, recorded as a film in a file of the reader's.
+
+function filmOf(views, done) {
+	const canvas = make("canvas");
+	const c = canvas.getContext("2d");
+	const parts = [];
+	let recorder;
+
+	// The views side by side, as they have just been drawn.
+	function take() {
+		const shown = views().map((view) => view.canvas);
+		const [width, height] = [shown.reduce((sum, one) => sum + one.width, 0), max(...shown.map((one) => one.height))];
+		// Codecs want even sides; a film keeps those that it began with.
+		if (!recorder) Object.assign(canvas, {width: width & ~1, height: height & ~1});
+		let left = 0;
+		for (const one of shown) {
+			c.drawImage(one, left, 0);
+			left += one.width;
+		}
+	}
+
+	function start() {
+		take();
+		recorder = new MediaRecorder(canvas.captureStream(30), {videoBitsPerSecond: 8e6});
+		recorder.ondataavailable = (event) => parts.push(event.data);
+		recorder.onstop = () => done(new Blob(parts, {type: recorder.mimeType}));
+		recorder.start();
+	}
+
+	return {start, take, stop: () => recorder.stop()};
+}
+
+// Gives the reader a file.
+function save(name, blob) {
+	const link = Object.assign(make("a"), {href: URL.createObjectURL(blob), download: name});
+	link.click();
+	setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
