@@ -53,7 +53,6 @@ fn a_case_is_replayed_as_it_was_tested() {
         (farsa(), format!("{chosen} --case 3 --html new.html"), "whose cases are numbered 0 to 2"),
         (farsa(), format!("{chosen} --case {row}s --html new.html"), "the nearest is"),
         (farsa(), format!("{chosen} --out new.csv"), "3 cases of protocol `labels`: steps are written of one"),
-        (farsa(), format!("{chosen} --html cases.html"), "cases.html: there is one already"),
         (farsa(), format!("{chosen} --generation 0 --html new.html"), "cannot be used with"),
         (farsa(), "replay arm --protocol labels --trial best --html new.html".into(), "name the trial by its number"),
         (farsa(), "replay arm --case 1 --html new.html".into(), "--protocol"),

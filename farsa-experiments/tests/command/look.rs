@@ -51,9 +51,12 @@ fn a_page_holds_the_lives_that_were_asked_for() {
     let page = data(&fs::read_to_string(here.join("one.html")).expect("the page"));
     assert_eq!(page["lives"].as_array().map(Vec::len), Some(1));
 
-    let before = fs::read(here.join("one.html")).expect("the page");
+    // A page takes the place of a page, and of nothing else.
+    ok(own(), &here, "replay r1 --trial best --html one.html");
+    assert_eq!(data(&fs::read_to_string(here.join("one.html")).expect("the page")), best);
+    fs::write(here.join("notes.html"), "mine").expect("a file");
     for (arguments, complaint) in [
-        ("replay r1 --html one.html", "there is one already"),
+        ("replay r1 --html notes.html", "there is one already"),
         ("replay r1 --html new.html --compare r3", "there is no such directory"),
         ("replay r1 --trial 3 --html new.html", "trial 3 of 3"),
         ("replay r1 --trial 3 --out new.csv", "trial 3 of 3"),
@@ -63,8 +66,43 @@ fn a_page_holds_the_lives_that_were_asked_for() {
         let said = say(own(), &here, arguments);
         assert!(said.code != Some(0) && said.err.contains(complaint), "{arguments}: {said:?}");
     }
-    assert_eq!(before, fs::read(here.join("one.html")).expect("the page"));
+    assert_eq!(fs::read(here.join("notes.html")).expect("the file"), b"mine");
     assert!(["new.html", "new.csv", "new.svg"].into_iter().all(|name| !here.join(name).exists()));
+}
+
+#[test]
+fn changes_are_shown_beside_the_whole_controller() {
+    let here = scratch("look-lesion");
+    let genes = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/minimal-cognition.gen");
+    fs::copy(genes, here.join("own.gen")).expect("a copy");
+    ok(farsa(), &here, "import own.gen --experiment minimal-cognition --out r --quiet");
+    let line = "replay r --trial 2 --lesion sensor:rays";
+    let told = ok(farsa(), &here, &format!("{line} --html both.html --json"));
+    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    let page = data(&fs::read_to_string(here.join("both.html")).expect("the page"));
+    let names: Vec<&str> = page["lives"].as_array().expect("lives").iter().filter_map(|l| l["name"].as_str()).collect();
+    let [intact, changed] = names[..] else { panic!("{names:?}") };
+    assert!(!intact.contains("with sensor:rays") && changed.contains("; with sensor:rays; "), "{names:?}");
+    assert_eq!((&page["beside"], &told["lesion"]["list"]), (&1.into(), &"sensor:rays".into()));
+    assert_eq!(told["lesion"]["trials"][0]["trial"], 2);
+    let fitness = [&told["fitness"], &told["lesion"]["fitness"]].map(|fitness| fitness.as_f64().expect("a number"));
+    assert!(fitness[0] > fitness[1], "{fitness:?}");
+    let said = told["summary"].as_str().expect("words");
+    assert!(said.lines().nth(1).is_some_and(|line| line.starts_with("with sensor:rays: ")), "{said}");
+
+    // The steps are those with the change, and without it those that they always were.
+    let [plain, with] = ["replay r --trial 2 --quiet", &format!("{line} --quiet")].map(|line| ok(farsa(), &here, line));
+    assert!(plain != with && plain.lines().next() == with.lines().next());
+    let answers = |csv: &str| csv.lines().last().map(str::to_owned);
+    assert_ne!(answers(&plain), answers(&with));
+    for (arguments, complaint) in [
+        ("replay r --lesion neuron:9", "unknown neuron `9`"),
+        ("replay r --lesion neuron:1 --compare r --html x.html", "cannot be used with"),
+        ("replay r --lesion neuron:1 --protocol noise", "cannot be used with"),
+    ] {
+        let said = say(farsa(), &here, arguments);
+        assert!(said.code == Some(2) && said.err.contains(complaint), "{arguments}: {said:?}");
+    }
 }
 
 #[test]

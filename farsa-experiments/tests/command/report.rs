@@ -189,7 +189,6 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
         (farsa(), "draw arm --camera tpo --out new.svg", "nearest is `top`"),
         (farsa(), "draw arm --size 20 --out new.svg", "not of the form 1200x800"),
         (farsa(), "draw arm --time 7 --out new.svg", "from 0.01 to 0.1 s"),
-        (farsa(), "replay arm --html trial.html", "trial.html: there is one already"),
         (farsa(), "replay arm --html new.html --out new.csv", "cannot be used with"),
         (farsa(), "replay arm --compare arm", "--html"),
         (own(), "draw cart --out new.svg", "have no bodies to draw"),

@@ -21,7 +21,7 @@ impl Invocation<'_, '_> {
         world_choice::visit(&mut plan, args.world.name.as_deref())?;
         let other = args.compare.as_deref().map(|path| self.existing(path)).transpose()?;
         let other = other.as_ref().map(|(directory, plan)| (plan, directory));
-        let which = args.which.which();
+        let (which, lesion) = (args.which.which(), args.lesion.as_deref());
         let out = || -> Result<Box<dyn Write>, Error> {
             match &args.out {
                 Some(path) => Ok(Box::new(create_result(path)?)),
@@ -29,8 +29,8 @@ impl Invocation<'_, '_> {
             }
         };
         match (args.choice()?, &args.html) {
-            (None, None) => self.replayed(args, replay::replay(&plan, &directory, which, out)?),
-            (None, Some(path)) => self.replayed(args, replay::page(&plan, &directory, which, other, path)?),
+            (None, None) => self.replayed(args, replay::replay(&plan, &directory, which, lesion, out)?),
+            (None, Some(path)) => self.replayed(args, replay::page(&plan, &directory, which, lesion, other, path)?),
             (Some(choice), None) => self.replayed(args, protocols::replay::replay(&plan, &directory, choice, out)?),
             (Some(choice), Some(path)) => {
                 self.replayed(args, protocols::replay::page(&plan, &directory, choice, other, path)?)

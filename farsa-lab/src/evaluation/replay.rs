@@ -7,13 +7,15 @@ use std::path::Path;
 
 use farsa_body::Recorder;
 use farsa_evo::{Fitness, ObservationStatistics};
-use farsa_view::{Recording, Schema, Table, readable};
+use farsa_view::{Page, Recording, Schema, Table, readable};
 use serde::Serialize;
 
 use crate::error::Error;
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
+use crate::experiment::Anatomy;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
+use crate::experiment::intervention::Intervention;
 use crate::experiment::outcome::{Note, Outcome};
 use crate::figures::significant::significant;
 use crate::run::contained::caught;
@@ -52,6 +54,8 @@ pub(crate) struct Replayable {
     /// For every trial that was asked for.
     opponents: Vec<Vec<Vec<f32>>>,
     normalisation: Option<ObservationStatistics>,
+    /// What is done to the controller.
+    intervention: Option<Intervention>,
     seed: u64,
     pub(crate) generation: u32,
     pub(crate) individual: u32,
@@ -101,7 +105,18 @@ impl Replayable {
         let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
         let normalisation = history.normalisation(generation).cloned();
         let seed = plan.seed;
-        let mut found = Self { evaluator, parameters, opponents, normalisation, seed, generation, individual, trials };
+        let intervention = None;
+        let mut found = Self {
+            evaluator,
+            parameters,
+            opponents,
+            normalisation,
+            intervention,
+            seed,
+            generation,
+            individual,
+            trials,
+        };
         if which.trial == WhichTrial::Best {
             found.keep_best()?;
         }
@@ -126,6 +141,15 @@ impl Replayable {
         Ok(())
     }
 
+    /// Changes the controller in all that is replayed from now on, by a list such as `neuron:3`.
+    ///
+    /// # Errors
+    /// Those of [`parts`] and [`Anatomy::intervention`](crate::Anatomy::intervention).
+    fn change(&mut self, plan: &Plan<'_>, list: &str) -> Result<(), Error> {
+        self.intervention = Some(parts(self.evaluator.as_ref(), plan)?.intervention(list)?);
+        Ok(())
+    }
+
     /// The schema of its recordings.
     pub(crate) fn schema(&self) -> Schema {
         let with = |bodies: &dyn Bodies| bodies.schema_with(&self.parameters);
@@ -144,8 +168,9 @@ impl Replayable {
         let id = EpisodeId { seed: self.seed, generation: self.generation, individual: self.individual, trial };
         let opponents = self.opponents.get((trial - self.trials.start) as usize).map_or(&[][..], Vec::as_slice);
         let opponents: Vec<&[f32]> = opponents.iter().map(Vec::as_slice).collect();
-        let normalisation = self.normalisation.as_ref();
-        let evaluation = Evaluation { opponents: &opponents, normalisation, ..Evaluation::new(&self.parameters, id) };
+        let (normalisation, intervention) = (self.normalisation.as_ref(), self.intervention.as_ref());
+        let plain = Evaluation::new(&self.parameters, id);
+        let evaluation = Evaluation { opponents: &opponents, normalisation, intervention, ..plain };
         let (generation, individual) = (self.generation, self.individual);
         let panicked = |()| Error::TrialPanicked { generation, individual, trial };
         caught(|| self.evaluator.evaluate(evaluation, recorder)).map_err(panicked)
@@ -158,6 +183,23 @@ impl Replayable {
 
     /// The outcomes of the replayed trials, in the order of the requested ones.
     pub(crate) fn summary(&self, plan: &Plan<'_>, directory: &Directory, outcomes: &[Outcome]) -> ReplaySummary {
+        ReplaySummary {
+            directory: directory.path().display().to_string(),
+            experiment: plan.experiment.name().into(),
+            condition: plan.condition.clone(),
+            seed: self.seed,
+            generation: self.generation,
+            individual: self.individual,
+            trials: self.replayed(outcomes),
+            steps: outcomes.iter().map(|outcome| outcome.steps).sum(),
+            fitness: self.fitness(outcomes),
+            success: outcomes.iter().all(|outcome| outcome.success),
+            lesion: None,
+        }
+    }
+
+    /// What came of each of the trials that were asked for.
+    fn replayed(&self, outcomes: &[Outcome]) -> Vec<ReplayedTrial> {
         let terms = self.evaluator.terms();
         let trials = self.trials.clone().zip(outcomes).map(|(trial, outcome)| ReplayedTrial {
             trial,
@@ -166,19 +208,25 @@ impl Replayable {
             success: outcome.success,
             failure: outcome.why_failed(&terms),
         });
-        ReplaySummary {
-            directory: directory.path().display().to_string(),
-            experiment: plan.experiment.name().into(),
-            condition: plan.condition.clone(),
-            seed: self.seed,
-            generation: self.generation,
-            individual: self.individual,
-            trials: trials.collect(),
-            steps: outcomes.iter().map(|outcome| outcome.steps).sum(),
-            fitness: self.fitness(outcomes),
-            success: outcomes.iter().all(|outcome| outcome.success),
-        }
+        trials.collect()
     }
+
+    /// What came of them with these changes.
+    fn lesioned(&self, list: &str, outcomes: &[Outcome]) -> Lesioned {
+        let success = outcomes.iter().all(|outcome| outcome.success);
+        Lesioned { list: list.into(), trials: self.replayed(outcomes), fitness: self.fitness(outcomes), success }
+    }
+}
+
+/// The parts of the controller of a plan's experiment that can be changed.
+///
+/// # Errors
+/// [`Error::Usage`] if none can be.
+pub(crate) fn parts(evaluator: &dyn Evaluator, plan: &Plan<'_>) -> Result<Anatomy, Error> {
+    evaluator.anatomy().ok_or_else(|| {
+        let experiment = plan.experiment.name();
+        Error::Usage(format!("--lesion: experiment `{experiment}` has no controller that can be changed"))
+    })
 }
 
 /// Which trials were replayed and their outcomes. The fitness of a failed trial is no number in JSON.
@@ -197,6 +245,18 @@ pub(crate) struct ReplaySummary {
     pub(crate) fitness: f64,
     /// Whether every trial succeeded.
     success: bool,
+    /// The same trials with parts of the controller changed, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lesion: Option<Lesioned>,
+}
+
+/// The trials with a list of changes.
+#[derive(Debug, Serialize)]
+struct Lesioned {
+    list: String,
+    trials: Vec<ReplayedTrial>,
+    fitness: f64,
+    success: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -212,9 +272,9 @@ struct ReplayedTrial {
 }
 
 impl InWords for ReplaySummary {
-    /// A line.
+    /// A line, and one for the same with changes.
     fn text(&self) -> String {
-        let Self { generation, individual, trials, steps, fitness, .. } = self;
+        let Self { generation, individual, trials, steps, fitness, lesion, .. } = self;
         let what = match trials.as_slice() {
             [ReplayedTrial { trial, .. }] => format!("trial {trial}"),
             trials => format!("{} trials", trials.len()),
@@ -228,18 +288,31 @@ impl InWords for ReplaySummary {
                 let _ = write!(text, "; trial {trial} failed: {why}");
             }
         }
+        if let Some(Lesioned { list, trials, fitness, .. }) = lesion {
+            let (steps, fitness) = (trials.iter().map(|trial| trial.steps).sum::<u32>(), significant(*fitness));
+            let _ = write!(text, "\nwith {list}: {steps} steps, fitness {fitness}");
+        }
         text
     }
 }
 
-/// Writes the trials as CSV, a line per step, to what `out` opens once it is known that there are such trials.
+/// Writes the trials as CSV, a line per step, to what `out` opens once it is known that there are such trials; with a `lesion`, a
+/// list of changes, those with the changes, and the summary says what came of both.
 pub(crate) fn replay<W: Write>(
     plan: &Plan<'_>,
     directory: &Directory,
     which: Which,
+    lesion: Option<&str>,
     out: impl FnOnce() -> Result<W, Error>,
 ) -> Result<Replayed<ReplaySummary>, Error> {
     let mut replayable = Replayable::find(plan, directory, which)?;
+    let mut intact = None;
+    if let Some(list) = lesion {
+        let trials = replayable.trials.clone();
+        let outcomes = trials.map(|trial| replayable.evaluate(trial, None)).collect::<Result<Vec<_>, _>>()?;
+        replayable.change(plan, list)?;
+        intact = Some((list, outcomes));
+    }
     let failed = |source: io::Error| Error::Io { doing: "write", path: "the replay".into(), source };
     let mut table = Table::new(out()?, &replayable.schema()).map_err(failed)?;
     let mut outcomes = Vec::new();
@@ -257,40 +330,78 @@ pub(crate) fn replay<W: Write>(
     // The steps before a panic are worth having.
     table.finish().map_err(failed)?;
     ended?;
-    let replay = replayable.summary(plan, directory, &outcomes);
+    let replay = match intact {
+        None => replayable.summary(plan, directory, &outcomes),
+        Some((list, intact)) => {
+            let lesion = Some(replayable.lesioned(list, &outcomes));
+            ReplaySummary { lesion, ..replayable.summary(plan, directory, &intact) }
+        }
+    };
     Ok(Replayed::new(replay, None))
 }
 
-/// Writes the trials, and those of the same choice in another run, as a page for a browser: of each run the best trial first, and
-/// the best of both beside each other.
+/// Writes the trials, and those of the same choice in another run or with a `lesion`, a list of changes, as a page for a browser: of
+/// each the best trial first, and the best of both beside each other.
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,
     which: Which,
+    lesion: Option<&str>,
     compare: Option<(&Plan<'_>, &Directory)>,
     path: &Path,
 ) -> Result<Replayed<ReplaySummary>, Error> {
     replayed::page((plan, directory), compare, "", path, |page, plan, directory| {
         let mut replayable = Replayable::find(plan, directory, which)?;
-        let (mut outcomes, mut films) = (Vec::new(), Vec::new());
-        for trial in replayable.trials.clone() {
-            let mut recording = Recording::new(replayable.schema());
-            let outcome = replayable.run(trial, &mut recording)?;
-            let Replayable { generation, individual, .. } = replayable;
-            // What distinguishes trials comes first: a narrow screen cuts the rest.
-            let came = came_to(replayable.evaluator.as_ref(), &outcome);
-            let run = format!("{}, generation {generation}, individual {individual}", run_in_words(plan));
-            let facts = facts(replayable.evaluator.as_ref(), &outcome);
-            let fitness = replayable.fitness(std::slice::from_ref(&outcome));
-            films.push((fitness, format!("trial {trial}: {came}; {run}"), facts, recording));
-            outcomes.push(outcome);
+        let run = run_in_words(plan);
+        let (mut films, outcomes) = films(&mut replayable, &run)?;
+        films.sort_by(|one, other| other.fitness.total_cmp(&one.fitness));
+        let order: Vec<u32> = films.iter().map(|film| film.trial).collect();
+        add(page, films);
+        let mut summary = replayable.summary(plan, directory, &outcomes);
+        if let Some(list) = lesion {
+            replayable.change(plan, list)?;
+            let (mut changed, outcomes) = self::films(&mut replayable, &format!("with {list}; {run}"))?;
+            // As they stand intact.
+            changed.sort_by_key(|film| order.iter().position(|trial| *trial == film.trial));
+            page.open_beside(page.episodes());
+            add(page, changed);
+            summary.lesion = Some(replayable.lesioned(list, &outcomes));
         }
-        films.sort_by(|one, other| other.0.total_cmp(&one.0));
-        for (_, name, facts, recording) in films {
-            page.add(&name, facts, recording);
-        }
-        Ok(replayable.summary(plan, directory, &outcomes))
+        Ok(summary)
     })
+}
+
+/// A trial of a page.
+struct FilmedTrial {
+    trial: u32,
+    fitness: f64,
+    name: String,
+    facts: Vec<(String, String)>,
+    recording: Recording,
+}
+
+/// Runs the trials that were asked for and records them; `whose` ends their names.
+fn films(replayable: &mut Replayable, whose: &str) -> Result<(Vec<FilmedTrial>, Vec<Outcome>), Error> {
+    let (mut outcomes, mut films) = (Vec::new(), Vec::new());
+    for trial in replayable.trials.clone() {
+        let mut recording = Recording::new(replayable.schema());
+        let outcome = replayable.run(trial, &mut recording)?;
+        let Replayable { generation, individual, .. } = *replayable;
+        // What distinguishes trials comes first: a narrow screen cuts the rest.
+        let came = came_to(replayable.evaluator.as_ref(), &outcome);
+        let name = format!("trial {trial}: {came}; {whose}, generation {generation}, individual {individual}");
+        let facts = facts(replayable.evaluator.as_ref(), &outcome);
+        let fitness = replayable.fitness(std::slice::from_ref(&outcome));
+        films.push(FilmedTrial { trial, fitness, name, facts, recording });
+        outcomes.push(outcome);
+    }
+    Ok((films, outcomes))
+}
+
+fn add(page: &mut Page, films: Vec<FilmedTrial>) {
+    for FilmedTrial { name, facts, recording, .. } in films {
+        page.add(&name, facts, recording);
+    }
 }
 
 /// The fitness of trials; that of a failed one is the worst.

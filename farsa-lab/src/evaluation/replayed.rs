@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::create_results;
+use crate::store::replace::write_page;
 
 /// What a replay came to, with a summary of each run.
 #[derive(Debug, Serialize)]
@@ -45,7 +45,7 @@ pub(crate) fn run_in_words(plan: &Plan<'_>) -> String {
 /// `what` ends its title.
 ///
 /// # Errors
-/// Those of `add`, and of [`create_results`].
+/// Those of `add`, and of [`write_page`].
 pub(crate) fn page<S: InWords>(
     (plan, directory): (&Plan<'_>, &Directory),
     compare: Option<(&Plan<'_>, &Directory)>,
@@ -61,6 +61,6 @@ pub(crate) fn page<S: InWords>(
     if compared.is_some() {
         page.open_beside(second);
     }
-    create_results(&[(path.to_owned(), page.html())])?;
+    write_page(path, &page.html())?;
     Ok(Replayed::new(replay, compared))
 }

@@ -386,7 +386,7 @@ mod tests {
             log.lines().skip(1).map(|line| line.split(',').nth(5).unwrap().parse::<u64>().unwrap()).sum();
         assert_eq!(failures.lines().count() as u64 - 1, counted);
         let which = Which { generation: Some(2), individual: Some(3), trial: WhichTrial::Number(0) };
-        let error = replay(&plan, &directory, which, || Ok(Vec::new())).unwrap_err();
+        let error = replay(&plan, &directory, which, None, || Ok(Vec::new())).unwrap_err();
         assert_eq!(error.to_string(), "trial 0 of individual 3 of generation 2 panicked");
         fs::remove_dir_all(root).unwrap();
     }
@@ -405,7 +405,7 @@ mod tests {
         let resumed = said(finish(new, &directory).unwrap_err());
         assert!(resumed.contains("checkpoint.bin: ") && resumed.contains(words), "{resumed}");
         let plan = Plan::new(&new, None, "").unwrap();
-        let replayed = said(replay(&plan, &directory, Which::default(), || Ok(Vec::new())).unwrap_err());
+        let replayed = said(replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err());
         assert!(replayed.contains("record.bin: ") && replayed.contains(words), "{replayed}");
         // The champion's genes are what they are; that it may behave otherwise is worth a warning.
         let tested = test::test(&plan, &directory, 3, 1, 1, Wanted::ONE, true).unwrap().text();
@@ -429,7 +429,7 @@ mod tests {
                 .to_string()
                 .contains("no generation is finished")
         );
-        assert!(replay(&plan, &directory, Which::default(), || Ok(Vec::new())).is_err());
+        assert!(replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).is_err());
         plan.settings.set("", GENERATIONS, Value::Whole(2)).unwrap();
         go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap();
         assert_eq!(fs::read_to_string(directory.log()).unwrap().lines().count(), 3);

@@ -35,6 +35,9 @@ pub struct Page {
 }
 
 impl Page {
+    /// What every page has among its first 2000 bytes, and no other file by chance.
+    pub const MARK: &'static str = "Make it again with farsa replay --html.";
+
     /// A page without episodes.
     pub fn new(title: &str) -> Self {
         Self { title: title.into(), ..Self::default() }
@@ -269,6 +272,7 @@ mod tests {
         assert_eq!(page["lives"], json!([]));
         let page = data(&Page::new("empty").with("nothing", Recording::default()).html());
         assert_eq!(page["lives"][0]["ticks"], 0);
+        assert!(Page::new(&"t".repeat(1000)).html()[..2000].contains(Page::MARK));
     }
 
     #[test]

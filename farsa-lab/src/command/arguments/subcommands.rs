@@ -256,10 +256,14 @@ pub(crate) struct ReplayArgs {
     cases: CaseArgs,
     #[command(flatten)]
     pub(crate) world: WorldArgs,
+    /// Change parts of the controller together, such as neuron:3,link:2-5,sensor:touch: the steps are those with the change, and a
+    /// page shows both beside each other
+    #[arg(long, value_name = "LIST", conflicts_with_all = ["compare", "protocol"])]
+    pub(crate) lesion: Option<String>,
     /// A new file for the steps as CSV [default: the standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
-    /// A new file for a self-contained page that shows the trial in a browser
+    /// A file for a self-contained page that shows the trial in a browser; a page that is there already is replaced
     #[arg(long, value_name = "FILE", conflicts_with = "out", value_hint = ValueHint::FilePath)]
     pub(crate) html: Option<PathBuf>,
     /// Another run, whose same trial the page shows beside it

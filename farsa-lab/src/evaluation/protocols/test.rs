@@ -9,6 +9,7 @@ use crate::evaluation::protocols::files::{self, ProtocolRecord};
 use crate::evaluation::protocols::found::{self, FoundCase};
 use crate::evaluation::protocols::states::States;
 use crate::evaluation::protocols::table::ProtocolTable;
+use crate::evaluation::replay::parts;
 use crate::evaluation::test::{Asked, Subject, TRIALS, Trials, failure, run_trials, whose};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Wanted;
@@ -118,8 +119,8 @@ pub(crate) fn test(plan: &Plan<'_>, directory: &Directory, name: &str, effort: E
 /// one such list; writes nothing.
 ///
 /// # Errors
-/// Those of [`Protocol::find`], [`Subject::read`] and [`Anatomy::intervention`](crate::Anatomy::intervention), [`Error::Usage`]
-/// for an experiment whose controller cannot be changed, several lists with a protocol, and more than 10^8 trials.
+/// Those of [`Protocol::find`], [`Subject::read`], [`parts`] and [`Anatomy::intervention`](crate::Anatomy::intervention),
+/// [`Error::Usage`] for several lists with a protocol, and more than 10^8 trials.
 pub(crate) fn lesions(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -128,10 +129,7 @@ pub(crate) fn lesions(
     effort: Effort,
 ) -> Result<ProtocolRun, Error> {
     let mut pool = Pool::new(plan, effort.threads, effort.lanes)?;
-    let anatomy = pool.evaluator().anatomy().ok_or_else(|| {
-        let experiment = plan.experiment.name();
-        Error::Usage(format!("--lesion: experiment `{experiment}` has no controller that can be changed"))
-    })?;
+    let anatomy = parts(pool.evaluator(), plan)?;
     let changes = lists.iter().map(|list| anatomy.intervention(list)).collect::<Result<Vec<_>, _>>()?;
     let (protocol, asked) = match (name, changes.as_slice()) {
         (Some(name), [change]) => {

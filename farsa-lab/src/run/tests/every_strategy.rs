@@ -79,7 +79,7 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     let rows = rows(&whole);
     for generation in [0, 3, 6] {
         let which = Which { generation: Some(generation), ..Which::default() };
-        let replayed = replay(&again, &whole, which, || Ok(Vec::new())).unwrap();
+        let replayed = replay(&again, &whole, which, None, || Ok(Vec::new())).unwrap();
         // One plus one remembers means.
         if numbers.populations == 1 && name != "one-plus-one" {
             assert_eq!(replayed.replay.fitness, rows[generation as usize][1], "{name}: {}", replayed.summary);

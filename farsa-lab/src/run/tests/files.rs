@@ -27,7 +27,7 @@ fn a_run_knows_the_files_that_it_was_made_with() {
         let (five, directory) = (plan(5), Directory::open(&root.join("run")).unwrap());
         let errors = [
             go_on(&five, &directory, pool(&five, 1), &AtomicBool::new(false), "farsa", true).unwrap_err(),
-            replay(&five, &directory, Which::default(), || Ok(Vec::new())).unwrap_err(),
+            replay(&five, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err(),
             test::test(&five, &directory, 1, 1, 1, Wanted::ONE, true).unwrap_err(),
         ];
         for error in errors.map(|error| error.to_string()) {
@@ -79,7 +79,7 @@ fn a_run_of_an_earlier_version_is_refused_by_name() {
     fs::rename(directory.record(), directory.earlier_lineage()).unwrap();
     let plan = plan(&STEADY, 4);
     let resumed = go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap_err();
-    let replayed = replay(&plan, &directory, Which::default(), || Ok(Vec::new())).unwrap_err();
+    let replayed = replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err();
     for error in [resumed, replayed] {
         let said = error.to_string();
         assert!(said.contains("has a lineage.bin of an earlier version") && said.contains("run --config "), "{said}");

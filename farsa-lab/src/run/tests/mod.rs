@@ -260,6 +260,6 @@ fn rows(directory: &Directory) -> Vec<Vec<f64>> {
 
 fn replayed(plan: &Plan<'_>, directory: &Directory, which: Which) -> (String, Replayed<ReplaySummary>) {
     let mut out = Vec::new();
-    let found = replay(plan, directory, which, || Ok(&mut out)).unwrap();
+    let found = replay(plan, directory, which, None, || Ok(&mut out)).unwrap();
     (String::from_utf8(out).unwrap(), found)
 }

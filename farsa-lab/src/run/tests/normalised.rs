@@ -170,7 +170,7 @@ fn a_generation_is_normalised_by_all_before_it() {
         // Each champion is replayed with the fitness that it had.
         for (generation, row) in rows(&whole).iter().enumerate() {
             let which = Which { generation: Some(generation as u32), ..Which::default() };
-            let found = replay(&all, &whole, which, || Ok(Vec::new())).unwrap();
+            let found = replay(&all, &whole, which, None, || Ok(Vec::new())).unwrap();
             assert_eq!(found.replay.fitness, row[1], "{strategy}: {}", found.summary);
         }
         // Stopped twice, on other threads.

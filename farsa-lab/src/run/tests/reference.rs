@@ -68,7 +68,9 @@ fn a_steady_state_keeps_the_better_of_two() {
     let summary = &found.summary;
     assert!(summary.starts_with(&format!("individual {survivor} of generation 119, 3 trials")), "{summary}");
     assert_eq!(csv.lines().nth(1).unwrap(), format!("0,0,0.0,{:?}", f64::from(words(&best[0])[0])));
-    assert!(replay(&plan, &directory, Which { individual: Some(2), ..Which::default() }, || Ok(Vec::new())).is_err());
+    assert!(
+        replay(&plan, &directory, Which { individual: Some(2), ..Which::default() }, None, || Ok(Vec::new())).is_err()
+    );
     let table = test::test(&plan, &directory, 7, 1, 2, Wanted::ONE, true).unwrap().text();
     assert!(table.contains(&format!("individual {survivor} of generation 119")), "{table}");
     // Nothing but the truncation algorithm has a population to set.
