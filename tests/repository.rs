@@ -159,7 +159,9 @@ fn needed(manifest: &str) -> BTreeSet<&str> {
 #[test]
 fn lock_files_of_what_is_no_member_know_what_our_crates_need() {
     let mut checked = 0;
-    for lock in ["farsa-lab-mpi", "benches/bbob", "firmware", "ci-nostd"].map(|folder| format!("{folder}/Cargo.lock")) {
+    for lock in ["farsa-lab-mpi", "farsa-live", "benches/bbob", "firmware", "ci-nostd"]
+        .map(|folder| format!("{folder}/Cargo.lock"))
+    {
         let text = read(&lock);
         for package in text.split("[[package]]\n") {
             let line = |key: &str| package.lines().find_map(|line| line.strip_prefix(key)?.strip_suffix('"'));

@@ -44,7 +44,10 @@ pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 
 /// What the command `farsa` is over: the experiments, all strategies, and files that describe experiments.
 pub fn laboratory() -> farsa_lab::Laboratory<'static> {
-    farsa_lab::Laboratory::new(&all()).with_files(farsa_compose::FILES)
+    let laboratory = farsa_lab::Laboratory::new(&all()).with_files(farsa_compose::FILES);
+    #[cfg(feature = "command")]
+    let laboratory = laboratory.with_live_module(include_bytes!("live.wasm.gz"));
+    laboratory
 }
 
 /// The experiments in the order in which `farsa list` shows them.

@@ -9,15 +9,22 @@ mod error;
 mod escaped;
 mod evaluation;
 mod experiment;
+#[cfg(feature = "command")]
 mod export;
+#[cfg(feature = "command")]
 mod figures;
+#[cfg(feature = "command")]
 mod json;
+mod live;
+#[cfg(feature = "command")]
 mod merge;
 mod ranks;
+#[cfg(feature = "command")]
 mod report;
 mod run;
 mod store;
 mod strategy;
+#[cfg(feature = "command")]
 mod sweep;
 
 #[cfg(feature = "command")]
@@ -33,6 +40,7 @@ pub use experiment::{
     SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials, Value, input_ranges, mean_of_note,
     mean_of_trials, network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
+pub use live::LiveSession;
 pub use ranks::{Alone, Ranks};
 pub use run::{
     BestOfRun, ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, Laboratory, LeftOut, ReadExperiment, Template,

@@ -20,6 +20,8 @@ pub enum Error {
         /// What is wrong with it.
         why: String,
     },
+    /// A text that should be JSON and is not, and why.
+    NotJson(String),
 }
 
 impl Error {
@@ -41,6 +43,7 @@ impl fmt::Display for Error {
                 }
             }
             Self::Size { size: [width, height], why } => write!(f, "a picture of {width} x {height}: {why}"),
+            Self::NotJson(why) => write!(f, "no JSON: {why}"),
         }
     }
 }

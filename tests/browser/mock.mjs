@@ -24,7 +24,7 @@ export const crc = (bytes) => {
 export function compose(data) {
   const json = JSON.stringify(data).replaceAll("<", "\\u003c");
   const title = data.title.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
-  const parts = { title, style: viewer("viewer.css"), script: SCRIPTS.map(viewer).join("\n"), data: json };
+  const parts = { policy: "", title, style: viewer("viewer.css"), script: SCRIPTS.map(viewer).join("\n"), data: json };
   return viewer("page.html").replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]);
 }
 

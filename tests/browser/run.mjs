@@ -1,9 +1,9 @@
 // Tests the page of `farsa replay --html` in a real browser.
 //
-//   node tests/browser/run.mjs [PAGE.html TRIAL.csv [SCREENSHOTS]]
+//   node tests/browser/run.mjs [PAGE.html TRIAL.csv [SCREENSHOTS [LIVE.html LESION.json]]]
 //
 // PAGE.html is a page of a trial, TRIAL.csv what `farsa replay` says of the same trial; without them an invented trial takes
-// their place. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package.
+// their place. LIVE.html is a page of `farsa live`, LESION.json what `farsa test --lesion` says of the same agent without one neuron. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -20,7 +20,7 @@ setTimeout(() => {
   process.exit(1);
 }, 600_000).unref();
 
-const [page, csv, shots] = process.argv.slice(2);
+const [page, csv, shots, livePage, lesionFile] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "farsa-pages-"));
 let failed = 0;
 if (shots) mkdirSync(shots, { recursive: true });
@@ -635,6 +635,56 @@ async function withoutWebGL(driver, url) {
   }
 }
 
+// ---- A page that runs its agent.
+
+async function lives(browser) {
+  await opened(browser, pathToFileURL(resolve(livePage)));
+  check("a live page is up", await browser.run(() => farsa.ready && farsa.error === null && !document.querySelector("#live").hidden));
+  const first = await browser.run(() => farsa.ticks);
+  const press = (text) => browser.run((text) => [...document.querySelectorAll("#live button")].find((one) => one.textContent === text).click(), text);
+  const status = () => browser.run(() => document.querySelector("#live p.soft").textContent);
+  const until = (test) => browser.until(new Function(`return ${test}`));
+  await press("Verify");
+  await until("/Equal to the run|Differs/.test(document.querySelector('#live p.soft').textContent)");
+  check("the trial that it runs is that of the run, to the bit", (await status()).startsWith(`Equal to the run, bit by bit: ${first} ticks`), await status());
+
+  const cases = JSON.parse(readFileSync(lesionFile, "utf8")).cases;
+  const part = cases[1].row;
+  await browser.run((part) => {
+    const list = document.querySelector("#live select[aria-label=Part]");
+    list.value = part;
+    list.dispatchEvent(new Event("change"));
+  }, part);
+  await press("Silence or cut");
+  await until("farsa.trials.length === 2 && farsa.trials[1].name.includes('; with ')");
+  const [names, views] = await browser.run(() => [farsa.trials.map((trial) => trial.name), [...document.querySelectorAll("figure")].filter((figure) => figure.offsetWidth).length]);
+  check("a change runs beside the whole agent", views === 2 && names[1].endsWith(`; with ${part}`), JSON.stringify(names));
+  await press("100 fresh trials");
+  await until("/with the change: \\d+ of 100$/.test(document.querySelector('#live p.soft').previousSibling.textContent)");
+  const earned = await browser.run(() => [...document.querySelector("#live").textContent.matchAll(/(\d+) of 100/g)].map((found) => Number(found[1])));
+  check("fresh trials with the change and without are those of `farsa test --lesion`", earned.join() === cases.map((one) => one.successes).join(), `${earned} ${cases.map((one) => one.successes)}`);
+  if (shots) writeFileSync(join(shots, "live.png"), await browser.screenshot());
+
+  await press("New start");
+  await until("farsa.trials.length === 2 && farsa.trials[0].name.startsWith('fresh trial 0')");
+  await press("Undo all");
+  await until("farsa.trials.length === 1 && farsa.trials[0].name.startsWith('fresh trial 0')");
+  await browser.run(() => farsa.live.set("neuron:nobody", ""));
+  check("a part that there is not is refused by name", /unknown neuron `nobody`; the nearest is/.test(await status()), await status());
+  check("and nothing has changed", await browser.run(() => farsa.trials.length === 1 && document.querySelectorAll("#live .chips button").length === 0));
+  const named = await browser.run(() => {
+    const { nodes } = farsa.trials[0].network;
+    const list = document.querySelector("#node");
+    list.value = nodes.findIndex((node) => node.layer === 1);
+    list.dispatchEvent(new Event("change"));
+    return document.querySelector("#live p b").textContent;
+  });
+  check("a node of the drawing is a part to change", /^neuron:/.test(named), named);
+  const small = await browser.run(() => [...document.querySelectorAll("#live button, #live select, #live input")].filter((one) => one.offsetHeight && one.offsetHeight < 32).length);
+  check("its controls are at least 32 pixels high", small === 0, small);
+  await silent(browser, "live");
+}
+
 const invented = compose(pageOf([armTrial(0)]));
 const html = page ? readFileSync(page, "utf8") : invented;
 const url = page ? pathToFileURL(resolve(page)) : write("page.html", html);
@@ -651,6 +701,7 @@ try {
     await part("against the table", () => against(browser, url, table, trial));
     await part("mouse and keys", () => handled(browser, url, trial));
     await part("scales", () => scales(browser));
+    if (livePage) await part("live", () => lives(browser));
     await part("two trials", () => compared(browser, html));
     await part("damage", () => damaged(browser, html, "page"));
   } finally {

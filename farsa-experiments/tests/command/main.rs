@@ -10,6 +10,7 @@ mod files;
 mod genotypes;
 mod guide;
 mod lines;
+mod live;
 mod look;
 mod manners;
 mod merge;

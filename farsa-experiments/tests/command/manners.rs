@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 17] = [
+const SUBCOMMANDS: [&str; 18] = [
     "strategies",
     "list",
     "info",
@@ -16,6 +16,7 @@ const SUBCOMMANDS: [&str; 17] = [
     "evaluate",
     "import",
     "replay",
+    "live",
     "draw",
     "report",
     "export",

@@ -40,11 +40,7 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
         let lines: Vec<String> = lines.iter().map(|line| format!("  {program} {line}")).collect();
         format!("{}\n{}", if lines.len() == 1 { "Example:" } else { "Examples:" }, lines.join("\n"))
     };
-    let tour = [
-        format!("run {experiment} --generations 20"),
-        format!("replay {run} --html trial.html"),
-        format!("report {run} --html report.html"),
-    ];
+    let tour = [format!("run {experiment} --generations 20"), format!("replay {run} --html trial.html")];
     let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
     let mut command = words(program)
         .name(program.to_owned())
@@ -108,6 +104,10 @@ fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> 
                 format!("replay {run} --protocol NAME --case 3 --html case.html"),
                 format!("replay {run} --generation 0 --individual 7 | head"),
             ],
+        ),
+        (
+            "live",
+            vec![format!("live {run} --html live.html"), format!("live {run} --generations 0,10,19 --html live.html")],
         ),
         (
             "draw",

@@ -11,19 +11,32 @@
 //! - `replay`: `farsa replay`: a trial of the run again, step by step
 //! - `replayed`: what a replay came to, and its page: of one run, or of two beside each other
 //! - `test`: `farsa test`: the champion on starts that it has never met
+//! - `trials`: what a trial of a test is, and what came of one, in numbers and in words
 //! - `test_table`: `test.csv`: a line per trial of a test, and what they say together
 
+#[cfg(feature = "command")]
 pub(crate) mod draw;
+#[cfg(feature = "command")]
 pub(crate) mod evaluate;
 pub(crate) mod genotypes;
+#[cfg(feature = "command")]
 pub(crate) mod import;
+#[cfg(feature = "command")]
 pub(crate) mod lines;
+#[cfg(feature = "command")]
 pub(crate) mod populations;
+#[cfg(feature = "command")]
 pub(crate) mod protocols;
+#[cfg(feature = "command")]
 mod recorded;
+#[cfg(feature = "command")]
 pub(crate) mod replay;
+#[cfg(feature = "command")]
 pub(crate) mod replayed;
+#[cfg(feature = "command")]
 pub(crate) mod test;
+#[cfg(feature = "command")]
 pub(crate) mod test_table;
+pub(crate) mod trials;
 
 pub use genotypes::read_genotypes;

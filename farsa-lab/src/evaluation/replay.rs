@@ -6,17 +6,18 @@ use std::ops::Range;
 use std::path::Path;
 
 use farsa_body::Recorder;
-use farsa_evo::{Fitness, ObservationStatistics};
-use farsa_view::{Page, Recording, Schema, Table, readable};
+use farsa_evo::ObservationStatistics;
+use farsa_view::{Page, Recording, Schema, Table};
 use serde::Serialize;
 
 use crate::error::Error;
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
+use crate::evaluation::trials::{came_to, facts, fitness};
 use crate::experiment::Anatomy;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
-use crate::experiment::outcome::{Note, Outcome};
+use crate::experiment::outcome::Outcome;
 use crate::figures::significant::significant;
 use crate::run::contained::caught;
 use crate::run::plan::Plan;
@@ -50,10 +51,10 @@ pub(crate) struct Which {
 /// An individual of a run, with all that a replay needs.
 pub(crate) struct Replayable {
     pub(crate) evaluator: Box<dyn Evaluator>,
-    parameters: Vec<f32>,
+    pub(crate) parameters: Vec<f32>,
     /// For every trial that was asked for.
-    opponents: Vec<Vec<Vec<f32>>>,
-    normalisation: Option<ObservationStatistics>,
+    pub(crate) opponents: Vec<Vec<Vec<f32>>>,
+    pub(crate) normalisation: Option<ObservationStatistics>,
     /// What is done to the controller.
     intervention: Option<Intervention>,
     seed: u64,
@@ -402,38 +403,6 @@ fn add(page: &mut Page, films: Vec<FilmedTrial>) {
     for FilmedTrial { name, facts, recording, .. } in films {
         page.add(&name, facts, recording);
     }
-}
-
-/// The fitness of trials; that of a failed one is the worst.
-pub(crate) fn fitness(evaluator: &dyn Evaluator, outcomes: &[Outcome]) -> f64 {
-    let finite = outcomes.iter().all(Outcome::is_finite);
-    let fitness = if finite { Fitness::nan_as_failed(evaluator.fitness(outcomes)) } else { Fitness::WORST };
-    fitness.get()
-}
-
-/// Whether a trial succeeded, and what it earned, in words.
-pub(crate) fn came_to(evaluator: &dyn Evaluator, outcome: &Outcome) -> String {
-    let success = if outcome.success { "success" } else { "no success" };
-    format!("{success}, {}", readable(fitness(evaluator, std::slice::from_ref(outcome))))
-}
-
-/// What came of a trial, by name.
-pub(crate) fn facts(evaluator: &dyn Evaluator, outcome: &Outcome) -> Vec<(String, String)> {
-    let fitness = fitness(evaluator, core::slice::from_ref(outcome));
-    let terms = evaluator.terms().into_iter().zip(outcome.terms.iter().map(|term| readable(*term)));
-    let notes = outcome.notes.iter().map(|(name, note)| {
-        let value = match note {
-            Note::Number(x) => readable(*x),
-            Note::Text(text) => text.clone(),
-        };
-        ((*name).to_owned(), value)
-    });
-    let all = [
-        ("fitness of the trial alone".to_owned(), readable(fitness)),
-        ("success".to_owned(), if outcome.success { "yes" } else { "no" }.to_owned()),
-        ("steps".to_owned(), outcome.steps.to_string()),
-    ];
-    all.into_iter().chain(terms).chain(notes).collect()
 }
 
 /// Whether the reader of the output has gone, as after `| head`.

@@ -9,13 +9,14 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::evaluation::recorded::{self, TableRecord};
 use crate::evaluation::test_table::{Findings, Table, TrialResult};
+use crate::evaluation::trials::episode;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Wanted;
 use crate::experiment::outcome::Outcome;
 use crate::experiment::protocol::CaseId;
-use crate::run::plan::{LARGEST_SEED, Plan};
+use crate::run::plan::Plan;
 use crate::run::pool::{Pool, Unfinished};
 use crate::run::progress::Progress;
 use crate::run::records::{Best, Champions};
@@ -191,13 +192,6 @@ impl Subject {
     pub(crate) fn count(&self) -> usize {
         self.parameters.len()
     }
-}
-
-/// The episode of a test's trial, counted through all of them, by the first individual, where there are so many kinds of trials.
-pub(crate) fn episode(trial: usize, kinds: usize, seed: u64) -> EpisodeId {
-    let kinds = kinds.max(1);
-    let (generation, trial) = ((trial / kinds) as u32, (trial % kinds) as u32);
-    EpisodeId { seed: seed | !LARGEST_SEED, generation, individual: 0, trial }
 }
 
 /// An individual that is tested, or one of each population.

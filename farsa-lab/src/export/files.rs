@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::evaluation::populations::Populations;
-use crate::evaluation::{genotypes, test};
+use crate::evaluation::{genotypes, trials};
 use crate::experiment::controller_export::{ControllerExport, StartExport};
 use crate::experiment::evaluator::{Evaluator, Exports};
 use crate::export::controller_formats;
@@ -236,7 +236,7 @@ pub(crate) fn controller(
 pub(crate) fn starts(plan: &Plan<'_>, trials: usize, seed: u64) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
-    let start = |trial| evaluator.exports()?.start(test::episode(trial, evaluator.trials(), seed));
+    let start = |trial| evaluator.exports()?.start(trials::episode(trial, evaluator.trials(), seed));
     let starts: Option<Vec<_>> = (0..trials).map(start).collect();
     let starts = starts.ok_or_else(|| Error::Usage(format!("{name}: its starts cannot be exported")))?;
     pretty(&Trials { format: 1, experiment: name, condition: &plan.condition, seed, starts })

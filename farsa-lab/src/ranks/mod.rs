@@ -8,13 +8,19 @@
 //! - `wire`: the bytes of what they tell
 //! - `facts`: what must be the same on all ranks, compared by name
 
+#[cfg(feature = "command")]
 pub(crate) mod dealing;
+#[cfg(feature = "command")]
 pub(crate) mod exchange;
+#[cfg(feature = "command")]
 pub(crate) mod facts;
+#[cfg(feature = "command")]
 pub(crate) mod numbers;
 mod port;
 #[cfg(test)]
+#[cfg(feature = "command")]
 pub(crate) mod threads;
+#[cfg(feature = "command")]
 mod wire;
 
 pub use port::{Alone, Ranks};

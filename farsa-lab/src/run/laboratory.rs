@@ -26,6 +26,7 @@ pub struct Laboratory<'e> {
     experiments: Vec<&'e dyn Experiment>,
     strategies: Vec<&'static dyn StrategyDefinition>,
     files: Option<ExperimentFiles>,
+    module: Option<&'static [u8]>,
 }
 
 /// Makes an experiment of a text, which is the content of a file of a name; it may name these strategies.
@@ -80,7 +81,7 @@ pub(crate) const MOST_BYTES: u64 = 1_000_000;
 impl<'e> Laboratory<'e> {
     /// These experiments, in the order in which they are listed, with the strategies of this crate.
     pub fn new(experiments: &[&'e dyn Experiment]) -> Self {
-        Self { experiments: experiments.to_vec(), strategies: known::strategies().to_vec(), files: None }
+        Self { experiments: experiments.to_vec(), strategies: known::strategies().to_vec(), files: None, module: None }
     }
 
     /// Adds a strategy for `--strategy NAME`; one of the same name goes.
@@ -95,6 +96,18 @@ impl<'e> Laboratory<'e> {
     #[must_use]
     pub fn with_files(self, files: ExperimentFiles) -> Self {
         Self { files: Some(files), ..self }
+    }
+
+    /// Makes pages that run agents by themselves, too: `farsa live`; `module` is these experiments as WebAssembly, compressed by
+    /// gzip.
+    #[must_use]
+    pub fn with_live_module(self, module: &'static [u8]) -> Self {
+        Self { module: Some(module), ..self }
+    }
+
+    /// The module of live pages, if there is one.
+    pub(crate) fn live_module(&self) -> Option<&'static [u8]> {
+        self.module
     }
 
     /// The experiments.

@@ -26,30 +26,46 @@
 //! - `told`: `record.bin`: what the strategy was told in every generation, and what came of it
 //! - `world_choice`: which world an experiment runs in, where there is a choice
 
+#[cfg(feature = "command")]
 pub(crate) mod begin;
+#[cfg(feature = "command")]
 pub(crate) mod bench;
 mod best_of_run;
+#[cfg(feature = "command")]
 mod collection;
 pub(crate) mod config_file;
 pub(crate) mod contained;
+#[cfg(feature = "command")]
 mod diagnostics;
+#[cfg(feature = "command")]
 pub(crate) mod evolve;
+#[cfg(feature = "command")]
 pub(crate) mod fitness;
+#[cfg(feature = "command")]
 pub(crate) mod following;
 mod imported_file;
 pub(crate) mod laboratory;
+#[cfg(feature = "command")]
 pub(crate) mod leading;
 pub(crate) mod plan;
+#[cfg(feature = "command")]
 pub(crate) mod pool;
+#[cfg(feature = "command")]
 pub(crate) mod progress;
+#[cfg(feature = "command")]
 mod progression;
+#[cfg(feature = "command")]
 pub(crate) mod queue;
 pub(crate) mod records;
+#[cfg(feature = "command")]
 pub(crate) mod replications;
+#[cfg(feature = "command")]
 pub(crate) mod summary;
-#[cfg(test)]
+#[cfg(all(test, feature = "command"))]
 mod tests;
+#[cfg(feature = "command")]
 pub(crate) mod text_table;
+#[cfg(feature = "command")]
 pub(crate) mod told;
 pub(crate) mod world_choice;
 

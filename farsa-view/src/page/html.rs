@@ -23,6 +23,10 @@ const SCRIPTS: &[&str] = &[
     include_str!("viewer/main.js"),
 ];
 
+/// What a live page may do beyond a film: compile its module, in a worker that it makes itself.
+const LIVE_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:";
+const LIVE_SCRIPT: &str = include_str!("viewer/live.js");
+
 /// A page of recorded episodes, to be looked at in a browser: bodies in space, strips of everything that has a value,
 /// and the network, all on one clock.
 ///
@@ -64,40 +68,56 @@ impl Page {
         self.beside = Some(episode);
     }
 
+    /// The data of an episode, as it stands in the page: JSON, docs/replay-format.md.
+    pub fn episode(&self, number: usize) -> Option<String> {
+        self.episodes.get(number).map(|film| film.data().to_string())
+    }
+
     /// The whole file.
     pub fn html(&self) -> String {
         let top = self.episodes.first().is_some_and(|film| film.recording.schema().view == View::Top);
-        let episodes: Vec<Value> = self.episodes.iter().map(Film::data).collect();
-        let mut data = json!({
-            "format": "farsa-replay",
-            "version": 1,
-            "made_by": concat!("farsa ", env!("CARGO_PKG_VERSION")),
-            "title": self.title,
-            "view": if top { "top" } else { "free" },
-            "lives": episodes,
-        });
+        let mut data = data_head(&self.title, top);
+        data["lives"] = self.episodes.iter().map(Film::data).collect();
         if let Some(beside) = self.beside {
             data["beside"] = beside.into();
         }
-        // No text of a recording can end the element that holds it.
-        let data = data.to_string().replace('<', "\\u003c");
-        let parts = [
-            ("{{title}}", escaped(&self.title)),
-            ("{{style}}", STYLE.to_owned()),
-            ("{{script}}", SCRIPTS.concat()),
-            ("{{data}}", data),
-        ];
-        let mut html = String::new();
-        let mut rest = TEMPLATE;
-        for (mark, part) in parts {
-            let Some((before, after)) = rest.split_once(mark) else { continue };
-            html.push_str(before);
-            html.push_str(&part);
-            rest = after;
-        }
-        html.push_str(rest);
-        html
+        composed(&self.title, &data, false)
     }
+}
+
+/// What the data of every page begin with.
+pub(crate) fn data_head(title: &str, from_above: bool) -> Value {
+    json!({
+        "format": "farsa-replay",
+        "version": 1,
+        "made_by": concat!("farsa ", env!("CARGO_PKG_VERSION")),
+        "title": title,
+        "view": if from_above { "top" } else { "free" },
+    })
+}
+
+/// The page of these data; a live one may run WebAssembly in a worker of its own, and a film may not.
+pub(crate) fn composed(title: &str, data: &Value, live: bool) -> String {
+    // No text of a recording can end the element that holds it.
+    let data = data.to_string().replace('<', "\\u003c");
+    let (policy, more) = if live { (LIVE_POLICY, LIVE_SCRIPT) } else { ("", "") };
+    let parts = [
+        ("{{policy}}", policy.to_owned()),
+        ("{{title}}", escaped(title)),
+        ("{{style}}", STYLE.to_owned()),
+        ("{{script}}", SCRIPTS.concat() + more),
+        ("{{data}}", data),
+    ];
+    let mut html = String::new();
+    let mut rest = TEMPLATE;
+    for (mark, part) in parts {
+        let Some((before, after)) = rest.split_once(mark) else { continue };
+        html.push_str(before);
+        html.push_str(&part);
+        rest = after;
+    }
+    html.push_str(rest);
+    html
 }
 
 /// Text as it stands in HTML.
@@ -279,5 +299,6 @@ mod tests {
     fn the_viewer_is_small() {
         let size = TEMPLATE.len() + STYLE.len() + SCRIPTS.iter().map(|script| script.len()).sum::<usize>();
         assert!(size <= 80 * 1024, "{size} bytes");
+        assert!(size + LIVE_SCRIPT.len() <= 100 * 1024, "{size} + {} bytes", LIVE_SCRIPT.len());
     }
 }

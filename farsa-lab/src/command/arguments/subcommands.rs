@@ -60,6 +60,8 @@ pub(crate) enum Command {
     Import(ImportArgs),
     /// Replay a trial of a run, exactly
     Replay(ReplayArgs),
+    /// Write a page in which the agent of a run lives
+    Live(LiveArgs),
     /// Draw a moment of a trial as a picture
     Draw(DrawArgs),
     /// Write a page about one or many runs
@@ -306,6 +308,25 @@ impl CaseArgs {
         };
         Ok(Choice { protocol, cases: &self.cases, trial, seed: self.seed })
     }
+}
+
+#[derive(Args)]
+pub(crate) struct LiveArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// A file for the page; a page that is there already is replaced
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) html: PathBuf,
+    /// Generations whose best individuals are in the page, such as 0,10,100 [default: the last]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) generations: Vec<u32>,
+    /// The experiments as WebAssembly, compressed by gzip, in place of those of this program
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) module: Option<PathBuf>,
+    /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args)]

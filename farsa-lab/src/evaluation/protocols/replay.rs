@@ -9,9 +9,9 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
-use crate::evaluation::replay::{came_to, facts, fitness};
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::test::Subject;
+use crate::evaluation::trials::{came_to, facts, fitness};
 use crate::experiment::outcome::Outcome;
 use crate::figures::significant::significant;
 use crate::run::plan::Plan;

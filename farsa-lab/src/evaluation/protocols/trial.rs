@@ -2,7 +2,8 @@
 
 use farsa_body::Recorder;
 
-use crate::evaluation::test::{Tested, episode};
+use crate::evaluation::test::Tested;
+use crate::evaluation::trials::episode;
 use crate::experiment::evaluator::{Evaluation, Evaluator};
 use crate::experiment::outcome::Outcome;
 use crate::experiment::protocol::CaseId;

@@ -220,7 +220,7 @@ fn the_champion_is_tested_with_the_normalisation_of_its_generation() {
     let expected: Option<&ObservationStatistics> = best.normalisation.as_ref();
     assert_eq!(expected.unwrap().count(), by_hand(GENERATIONS as u32 - 1).0);
     let trial = |trial: usize, normalisation| {
-        let id = test::episode(trial, TRIALS as usize, 1);
+        let id = crate::evaluation::trials::episode(trial, TRIALS as usize, 1);
         let evaluation = Evaluation { normalisation, ..Evaluation::new(&best.parameters[0], id) };
         SCALES.clone().evaluate(evaluation, None).terms[0]
     };

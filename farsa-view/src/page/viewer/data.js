@@ -193,7 +193,7 @@ function readPage(element) {
 	}
 	need(page?.format === "farsa-replay", "its data is not of the format farsa-replay");
 	need(page.version === 1, `its data is of version ${page.version}, this viewer reads version 1`);
-	need(page.lives?.length, "it holds no trial");
+	need(page.lives?.length || page.live, "it holds no trial");
 	try {
 		return {...page, trials: page.lives.map((trial, i) => new Trial(trial, i))};
 	} catch (error) {

@@ -105,10 +105,11 @@ function listen(acts) {
 	};
 }
 
-function main() {
+async function main() {
 	const page = readPage($("data"));
+	page.trials.forEach((trial) => survey(trial, page.view === "top"));
+	const live = page.live && await liveOf(page);
 	const {trials} = page;
-	trials.forEach((trial) => survey(trial, page.view === "top"));
 	const player = new Player(page);
 	openConsole(player, trials);
 	$("title").textContent = page.title;
@@ -121,6 +122,7 @@ function main() {
 	$("app").hidden = false;
 	player.show(trials[0], trials[page.beside]);
 	player.marks();
+	live?.attach(player);
 	$("message").hidden = true;
 	farsa.ready = true;
 	if (!prefers("reduced-motion: reduce").matches) player.play();
@@ -128,9 +130,5 @@ function main() {
 
 window.onerror = (message) => fail(`the viewer failed (${message})`);
 document.addEventListener("DOMContentLoaded", () => {
-	try {
-		main();
-	} catch (error) {
-		fail(error instanceof Damage ? error.message : `the viewer failed (${error.message})`);
-	}
+	main().catch((error) => fail(error instanceof Damage ? error.message : `the viewer failed (${error.message})`));
 });

@@ -1,5 +1,7 @@
 // The network: columns of nodes lit by their channels, links coloured by sign and as strong as their weight.
 
+// Who is told which node or link was chosen.
+let graphChosen = () => {};
 const LABEL = "12px system-ui, sans-serif";
 const signed = (x) => (x < 0 ? "" : "+") + x.toFixed(3);
 
@@ -95,7 +97,9 @@ function paintName(c, {x, y, layer, name}, width, ink) {
 function paintHead(c, column, side) {
 	if (!column[0]) return;
 	c.textAlign = side("right", "center", "left");
-	c.fillText(`${column.length} ${side("sensors", "neurons", "outputs")}`, column[0].x + side(6, 0, -6), max(7, column[0].y - 18));
+	const text = `${column.length} ${side("sensors", "neurons", "outputs")}`;
+	const [wide, canvas] = [c.measureText(text).width, c.canvas.clientWidth];
+	c.fillText(text, side(max(wide, column[0].x + 6), column[0].x, min(canvas - wide, column[0].x - 6)), max(7, column[0].y - 18));
 }
 
 function graphOf() {
@@ -121,7 +125,7 @@ function graphOf() {
 	function choose(a, b) {
 		if (a === over && b === pinned) return;
 		[over, pinned] = [a, b];
-		choice.value = nodes.indexOf(pinned);
+		graphChosen(nodes[choice.value = nodes.indexOf(pinned)]);
 		draw();
 		tell();
 	}

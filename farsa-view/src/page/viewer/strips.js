@@ -18,12 +18,14 @@ function heatOf({low, high}, value) {
 function show({words, low, high, whole}, value) {
 	if (words || Number.isNaN(value)) return words?.[value] ?? "–";
 	if (whole) return value.toFixed(0);
-	const text = value.toFixed(min(6, max(0, Math.ceil(2.5 - Math.log10(high - low || 1)))));
+	// Of what hardly changes not more digits than of what does.
+	const span = max(high - low, 1e-3*max(abs(low), abs(high))) || 1;
+	const text = value.toFixed(min(6, max(0, Math.ceil(2.5 - Math.log10(span)))));
 	return +text ? text : text.replace("-", "");
 }
 
 // An end of a scale: with as many digits as its span wants.
-const bound = (x, span) => +x.toFixed(min(9, max(0, Math.ceil(2 - Math.log10(span)))));
+const bound = (x, span) => +x.toFixed(min(9, max(0, Math.ceil(2 - Math.log10(max(span, 1e-3*abs(x)))))));
 
 // The scale of values from `low` to `high`: never so small that rounding fills it, with what is constant in its middle.
 function scaleOf(low, high) {

@@ -1,0 +1,171 @@
+//! Pages that run an agent: what they hold, and that it does what the command does.
+
+use std::fs;
+use std::path::Path;
+
+use farsa_lab::LiveSession;
+use serde_json::{Value, json};
+
+use crate::tool::{farsa, ok, own, say, scratch};
+
+/// The data of a page.
+fn data(path: &Path) -> Value {
+    let html = fs::read_to_string(path).expect("the page");
+    let (_, rest) = html.rsplit_once("id=\"data\">").expect("the data");
+    let (text, _) = rest.split_once("</script>").expect("their end");
+    serde_json::from_str(text).expect("JSON")
+}
+
+/// The agent of a page, here instead of in a browser.
+fn opened(live: &Value) -> LiveSession {
+    LiveSession::open(&farsa_experiments::laboratory(), &live["script"].to_string()).expect("an agent")
+}
+
+fn asked(session: &mut LiveSession, request: &Value) -> Value {
+    serde_json::from_str(&session.answer(&request.to_string())).expect("JSON")
+}
+
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).expect("JSON")
+}
+
+/// A run of a known agent.
+fn catcher(here: &Path) {
+    let genes = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/minimal-cognition.gen");
+    fs::copy(genes, here.join("own.gen")).expect("a copy");
+    ok(farsa(), here, "import own.gen --experiment minimal-cognition --out catcher --quiet");
+}
+
+#[test]
+fn an_agent_lives_as_it_is_replayed_and_tested() {
+    let here = scratch("live");
+    catcher(&here);
+    let told = parsed(&ok(farsa(), &here, "live catcher --html live.html --json"));
+    assert_eq!((&told["generations"], &told["file"]), (&json!([0]), &"live.html".into()));
+    let page = data(&here.join("live.html"));
+    assert_eq!((&page["lives"], &page["title"]), (&json!([]), &"minimal-cognition-1".into()));
+    let live = &page["live"];
+    assert!(live["module"].as_str().is_some_and(|text| text.len() > 1_000_000));
+    assert!(told["bytes"].as_u64().is_some_and(|bytes| bytes < 2_000_000), "{told}");
+    let mut session = opened(live);
+
+    // A trial is the one of a replay, and so is one with a change.
+    for (lesion, number) in [("", 0), ("sensor:rays", 1)] {
+        let request = json!({ "do": "film", "individual": 0, "trial": { "number": 3 }, "lesion": lesion });
+        let found = asked(&mut session, &request);
+        let line = "replay catcher --trial 3 --lesion sensor:rays --html replay.html --json";
+        let replayed = parsed(&ok(farsa(), &here, line));
+        let film = &data(&here.join("replay.html"))["lives"][number];
+        assert_eq!((&found["film"]["data"], &found["film"]["facts"]), (&film["data"], &film["facts"]));
+        let outcome = if lesion.is_empty() { &replayed["trials"][0] } else { &replayed["lesion"]["trials"][0] };
+        for key in ["steps", "fitness", "success"] {
+            assert_eq!(found[key], outcome[key], "{key}");
+        }
+        let about = &live["about"]["individuals"][0]["trials"][3];
+        let own = found["digests"].as_array().expect("digests");
+        let stride = about["stride"].as_u64().expect("a number") as usize;
+        let kept: Vec<&Value> = own.iter().enumerate().filter(|(t, _)| (t + 1) % stride == 0).map(|(_, x)| x).collect();
+        let run: Vec<&Value> = about["digests"].as_array().expect("digests").iter().take(kept.len()).collect();
+        assert!(kept.len() > 50 && own.len() == found["steps"].as_u64().expect("steps") as usize);
+        assert_eq!(kept == run, lesion.is_empty());
+    }
+
+    // So are fresh trials those of a test, in parts or at once.
+    let tested = parsed(&ok(farsa(), &here, "test catcher --trials 40 --seed 2 --lesion sensor:rays --json"));
+    for (case, lesion) in ["", "sensor:rays"].into_iter().enumerate() {
+        let mut part = |first, count| {
+            let request =
+                json!({ "do": "fresh", "individual": 0, "lesion": lesion, "seed": 2, "first": first, "count": count });
+            asked(&mut session, &request)["successes"].as_u64().expect("a number")
+        };
+        let found = [part(0, 40), part(0, 15) + part(15, 25)];
+        assert_eq!(found.map(Value::from), [tested["cases"][case]["successes"].clone(), found[0].into()], "{lesion}");
+    }
+
+    let names = asked(&mut session, &json!({ "do": "names" }));
+    assert_eq!((&names[0]["kind"], &names[0]["names"][0]), (&"sensor".into(), &"rays".into()));
+    for (request, why) in [
+        (json!({ "do": "film", "individual": 1, "trial": { "number": 0 } }), "individual 1 of 1 (the first is 0)"),
+        (json!({ "do": "film", "individual": 0, "trial": { "number": 24 } }), "trial 24 of 24 (the first is 0)"),
+        (json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "lesion": "ray" }), "is no change such as"),
+        (json!({ "do": "fresh", "individual": 0, "seed": 1, "first": 0, "count": 10_001 }), "10001 trials at once"),
+        (json!({ "do": "fly" }), "unknown variant `fly`"),
+        (json!("no"), "request: "),
+    ] {
+        let error = asked(&mut session, &request)["error"].as_str().expect("an error").to_owned();
+        assert!(error.contains(why), "{request}: {error}");
+    }
+}
+
+#[test]
+fn generations_of_several_populations_live_side_by_side() {
+    let here = scratch("live-populations");
+    ok(
+        farsa(),
+        &here,
+        "run predator-prey --population 4 --set evolution.parents=2 --generations 3 --set trial.steps=40 --out r --quiet",
+    );
+    ok(farsa(), &here, "live r --generations 2,0 --html live.html --quiet");
+    let live = &data(&here.join("live.html"))["live"];
+    let generations = live["about"]["individuals"].as_array().expect("individuals").iter();
+    assert_eq!(generations.map(|one| one["generation"].clone()).collect::<Vec<_>>(), [0, 2].map(Value::from));
+    let mut session = opened(live);
+    for (place, generation) in [0, 2].into_iter().enumerate() {
+        let request = json!({ "do": "film", "individual": place, "trial": { "number": 1 } });
+        let found = asked(&mut session, &request);
+        let line = format!("replay r --generation {generation} --trial 1 --html {generation}.html --json");
+        let replayed = parsed(&ok(farsa(), &here, &line));
+        assert_eq!(found["fitness"], replayed["fitness"]);
+        assert_eq!(found["film"]["data"], data(&here.join(format!("{generation}.html")))["lives"][0]["data"]);
+    }
+}
+
+#[test]
+fn what_cannot_live_is_refused_and_writes_nothing() {
+    let here = scratch("live-refused");
+    catcher(&here);
+    ok(own(), &here, "run cart --generations 1 --out cart --quiet");
+    fs::write(here.join("notes.html"), "mine").expect("a file");
+    fs::write(here.join("module"), "no module").expect("a file");
+    for (program, line, why) in [
+        (own(), "live cart --html new.html", "this program has no module for pages: give one with --module"),
+        (farsa(), "live catcher --html new.html --module module", "the module is not compressed by gzip"),
+        (farsa(), "live catcher --html new.html --module nowhere", "nowhere"),
+        (farsa(), "live catcher --html new.html --generations 3", "generation 3 of 1 finished ones"),
+        (farsa(), "live catcher --html notes.html", "there is one already"),
+        (farsa(), "live nowhere --html new.html", "there is no such directory"),
+        (farsa(), "live catcher", "--html"),
+    ] {
+        let said = say(program, &here, line);
+        assert!(said.code != Some(0) && said.err.contains(why), "{line}: {said:?}");
+    }
+    assert!(!here.join("new.html").exists());
+    assert_eq!(fs::read(here.join("notes.html")).expect("the file"), b"mine");
+    // A module of one's own is taken as it is.
+    fs::write(here.join("module"), [0x1f, 0x8b, 0]).expect("a file");
+    ok(farsa(), &here, "live catcher --html new.html --module module --quiet");
+    assert_eq!(data(&here.join("new.html"))["live"]["module"], "H4sA");
+}
+
+#[test]
+fn scripts_that_are_none_are_refused() {
+    let laboratory = farsa_experiments::laboratory();
+    let individual = r#"{"generation":0,"individual":0,"parameters":[],"opponents":[],"normalisation":null}"#;
+    for (script, why) in [
+        ("", "script: "),
+        (r#"{"config":"experiment = \"aggregation\"","individuals":[]}"#, "it has no individual"),
+        (
+            &format!(r#"{{"config":"experiment = \"agregation\"","individuals":[{individual}]}}"#),
+            "the nearest is `aggregation`",
+        ),
+        (&format!(r#"{{"config":"seed = 1","individuals":[{individual}]}}"#), "names no experiment"),
+    ] {
+        let error = LiveSession::open(&laboratory, script).err().expect("an error").to_string();
+        assert!(error.contains(why), "{script}: {error}");
+    }
+    // Parameters that are none of the experiment's make no network: the trial fails.
+    let script = format!(r#"{{"config":"experiment = \"double-pole\"","individuals":[{individual}]}}"#);
+    let mut session = LiveSession::open(&laboratory, &script).expect("a session");
+    let found = asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 } }));
+    assert_eq!((&found["success"], &found["digests"], &found["fitness"]), (&false.into(), &json!([]), &Value::Null));
+}

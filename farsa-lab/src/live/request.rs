@@ -1,0 +1,67 @@
+//! What is asked of a session and what it answers, as JSON.
+
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+
+/// What is asked.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
+pub(crate) enum Request {
+    /// A trial of an individual, step by step, with changes of its controller: a list, or none.
+    Film {
+        individual: usize,
+        trial: Trial,
+        #[serde(default)]
+        lesion: String,
+    },
+    /// What comes of so many fresh trials, from one of a number on, with changes.
+    Fresh {
+        individual: usize,
+        #[serde(default)]
+        lesion: String,
+        seed: u64,
+        first: usize,
+        count: usize,
+    },
+    /// The names of what can be changed.
+    Names,
+}
+
+/// Which trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Trial {
+    /// One of the run, by its number.
+    Number(u32),
+    /// One of `farsa test`, by its number there.
+    Fresh { number: usize, seed: u64 },
+}
+
+/// A trial that was run.
+#[derive(Debug, Serialize)]
+pub(crate) struct Filmed {
+    /// As a page has it in `lives`.
+    pub(crate) film: Box<RawValue>,
+    /// What the trial was like up to each step.
+    pub(crate) digests: Vec<u32>,
+    pub(crate) steps: u32,
+    /// No number if it failed.
+    pub(crate) fitness: f64,
+    pub(crate) success: bool,
+}
+
+/// What came of fresh trials.
+#[derive(Debug, Default, PartialEq, Serialize)]
+pub(crate) struct Earned {
+    pub(crate) trials: usize,
+    pub(crate) successes: usize,
+    /// Of each trial; no number of one that failed.
+    pub(crate) fitness: Vec<f64>,
+}
+
+/// A kind of change, and the names that it knows.
+#[derive(Debug, Serialize)]
+pub(crate) struct Names {
+    pub(crate) kind: String,
+    pub(crate) names: Vec<String>,
+}

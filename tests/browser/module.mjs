@@ -1,0 +1,51 @@
+// Runs the module of live pages without a browser: every trial of a page must be that of the run, to the bit.
+//
+//   node tests/browser/module.mjs PAGE.html...
+//
+// Prints a line per page and exits with 1 if a trial differs.
+
+import { readFileSync } from "node:fs";
+import { gunzipSync } from "node:zlib";
+
+const mark = '<script type="application/json" id="data">';
+
+function opened(live) {
+  const bytes = gunzipSync(Buffer.from(live.module, "base64"));
+  const own = new WebAssembly.Instance(new WebAssembly.Module(bytes), {}).exports;
+  const said = (length) => new TextDecoder().decode(new Uint8Array(own.memory.buffer, own.output(), length));
+  const give = (text) => {
+    const given = new TextEncoder().encode(text);
+    const at = own.input(given.length);
+    new Uint8Array(own.memory.buffer, at, given.length).set(given);
+  };
+  give(JSON.stringify(live.script));
+  const wrong = said(own.open());
+  if (wrong) throw new Error(wrong);
+  return (request) => {
+    give(JSON.stringify(request));
+    return JSON.parse(said(own.answer()));
+  };
+}
+
+let failed = 0;
+for (const page of process.argv.slice(2)) {
+  const html = readFileSync(page, "utf8");
+  const { title, live } = JSON.parse(html.slice(html.lastIndexOf(mark) + mark.length, html.lastIndexOf("</script>")));
+  const ask = opened(live);
+  let [ticks, differing, took] = [0, 0, 0];
+  live.about.individuals.forEach(({ trials }, individual) => trials.forEach((told, number) => {
+    const before = performance.now();
+    const found = ask({ do: "film", individual, trial: { number }, lesion: "" });
+    took += performance.now() - before;
+    const own = found.digests?.filter((_, t) => (t + 1) % told.stride === 0 || t === found.digests.length - 1);
+    const same = JSON.stringify([found.steps, found.fitness, found.success, own]) === JSON.stringify([told.steps, told.fitness, told.success, told.digests]);
+    if (!same) console.log(`${page}: individual ${individual}, trial ${number} differs: ${found.error ?? `${found.steps} steps, fitness ${found.fitness} for ${told.steps}, ${told.fitness}`}`);
+    differing += !same;
+    ticks += found.digests?.length ?? 0;
+  }));
+  const wrong = ask({ do: "film", individual: 0, trial: { number: 0 }, lesion: "nuron:1" }).error;
+  if (!/nearest is `neuron`|has no controller/.test(wrong)) differing++;
+  failed += differing > 0;
+  console.log(`${differing ? "FAILED" : "ok    "} ${title}: ${ticks} ticks, ${Math.round(ticks / took * 1000)} a second, ${Buffer.byteLength(html)} bytes`);
+}
+process.exit(failed ? 1 : 0);
