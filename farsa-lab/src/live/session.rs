@@ -1,6 +1,7 @@
 //! The agent that a script describes, and its trials.
 
 use farsa_evo::ObservationStatistics;
+use farsa_num::Instructions;
 use farsa_view::{Page, Recording, Schema};
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -11,6 +12,8 @@ use crate::evaluation::trials::{came_to, facts, fitness};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
+use crate::experiment::lanes::Lanes;
+use crate::experiment::outcome::Outcome;
 use crate::live::digest::Digest;
 use crate::live::request::{Earned, Filmed, Names, Request, Trial};
 use crate::live::script::{Evolved, Script};
@@ -20,6 +23,8 @@ use crate::run::plan::Plan;
 
 /// Most fresh trials of a request: a page asks again, and shows how far it has come.
 const MOST_FRESH: usize = 10_000;
+/// Fresh trials side by side.
+const LANES: usize = 8;
 
 /// An agent in memory: it runs trials of an experiment, whole or changed, as `farsa replay` and `farsa test` do, without files
 /// and threads.
@@ -38,6 +43,13 @@ pub struct LiveSession {
 struct Agent {
     own: Evolved,
     normalisation: Option<ObservationStatistics>,
+}
+
+impl Agent {
+    /// Whom it met in a trial, one of each other population.
+    fn met(&self, trial: u32) -> Vec<&[f32]> {
+        self.own.opponents.get(trial as usize).into_iter().flatten().map(Vec::as_slice).collect()
+    }
 }
 
 impl LiveSession {
@@ -104,10 +116,10 @@ impl LiveSession {
             Trial::Fresh { number, seed } => (episode(number, kinds, seed), format!("fresh trial {number}")),
         };
         let mut digest = Digest::new(Recording::new(schema(evaluator.as_ref(), &individual.own)));
-        let outcome = with_opponents(individual, id.trial, |plain| {
-            let evaluation = Evaluation { id, intervention: intervention.as_ref(), ..plain };
-            evaluator.evaluate(evaluation, Some(&mut digest))
-        });
+        let (opponents, normalisation) = (&individual.met(id.trial)[..], individual.normalisation.as_ref());
+        let plain = Evaluation::new(&individual.own.parameters, id);
+        let evaluation = Evaluation { opponents, normalisation, intervention: intervention.as_ref(), ..plain };
+        let outcome = evaluator.evaluate(evaluation, Some(&mut digest));
         let (recording, digests) = digest.into_parts();
         let with = if lesion.is_empty() { String::new() } else { format!("; with {lesion}") };
         let came = came_to(evaluator.as_ref(), &outcome);
@@ -132,18 +144,21 @@ impl LiveSession {
         }
         let intervention = self.intervention(lesion)?;
         let Self { evaluator, individuals, .. } = self;
-        let (individual, kinds) = (one(individuals, individual)?, evaluator.trials());
-        let mut earned = Earned::default();
-        for number in numbers {
-            let id = episode(number, kinds, seed);
-            let outcome = with_opponents(individual, id.trial, |plain| {
-                evaluator.evaluate(Evaluation { id, intervention: intervention.as_ref(), ..plain }, None)
-            });
-            earned.trials += 1;
-            earned.successes += usize::from(outcome.success);
-            earned.fitness.push(fitness(evaluator.as_ref(), std::slice::from_ref(&outcome)));
-        }
-        Ok(earned)
+        let (agent, kinds) = (one(individuals, individual)?, evaluator.trials());
+        let ids: Vec<EpisodeId> = numbers.map(|number| episode(number, kinds, seed)).collect();
+        let met: Vec<Vec<&[f32]>> = ids.iter().map(|id| agent.met(id.trial)).collect();
+        let all = ids.iter().zip(&met).enumerate().map(|(number, (id, opponents))| {
+            let plain = Evaluation::new(&agent.own.parameters, *id);
+            let (normalisation, intervention) = (agent.normalisation.as_ref(), intervention.as_ref());
+            Evaluation { number, opponents, normalisation, intervention, ..plain }
+        });
+        let outcomes = evaluated(evaluator.as_mut(), all.collect());
+        let fitness = outcomes.iter().map(|outcome| fitness(evaluator.as_ref(), std::slice::from_ref(outcome)));
+        Ok(Earned {
+            trials: outcomes.len(),
+            successes: outcomes.iter().filter(|outcome| outcome.success).count(),
+            fitness: fitness.collect(),
+        })
     }
 
     /// What a list of changes says; none of an empty list.
@@ -177,13 +192,18 @@ fn schema(evaluator: &dyn Evaluator, individual: &Evolved) -> Schema {
     evaluator.bodies().map_or_else(|| evaluator.schema(), with)
 }
 
-/// Calls `run` with an evaluation of an individual against those whom it met in a trial.
-fn with_opponents<T>(agent: &Agent, trial: u32, run: impl FnOnce(Evaluation<'_>) -> T) -> T {
-    let Agent { own: Evolved { parameters, opponents, .. }, normalisation } = agent;
-    let met = opponents.get(trial as usize).map_or(&[][..], Vec::as_slice);
-    let met: Vec<&[f32]> = met.iter().map(Vec::as_slice).collect();
-    let plain = Evaluation::new(parameters, EpisodeId::default());
-    run(Evaluation { opponents: &met, normalisation: normalisation.as_ref(), ..plain })
+/// Evaluates these, in lanes where the experiment has them; their numbers are their places.
+fn evaluated(evaluator: &mut dyn Evaluator, all: Vec<Evaluation<'_>>) -> Vec<Outcome> {
+    let lanes = Lanes::new(LANES, Instructions::detect());
+    if let (Some(in_lanes), Ok(lanes)) = (evaluator.in_lanes(), lanes)
+        && in_lanes.use_lanes(lanes).is_ok()
+    {
+        let mut found: Vec<Outcome> = vec![Outcome::failed(); all.len()];
+        let mut rest = all.into_iter();
+        in_lanes.evaluate_all(&mut || rest.next(), &mut |number, outcome| found[number] = outcome);
+        return found;
+    }
+    all.into_iter().map(|evaluation| evaluator.evaluate(evaluation, None)).collect()
 }
 
 /// Anything as JSON for programs.
