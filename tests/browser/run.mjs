@@ -685,6 +685,18 @@ async function lives(browser) {
   await silent(browser, "live");
 }
 
+async function withoutWebAssembly(driver) {
+  const browser = await driver.open();
+  try {
+    await browser.cdp("Page.addScriptToEvaluateOnNewDocument", { source: "delete globalThis.WebAssembly" });
+    await opened(browser, pathToFileURL(resolve(livePage)));
+    const [error, seen] = await browser.run(() => [farsa.error, !document.querySelector("#message").hidden && document.querySelector("#message").textContent]);
+    check("without WebAssembly a live page says so", /no WebAssembly/.test(error) && /no WebAssembly/.test(seen), `${error} ${seen}`);
+  } finally {
+    await browser.close();
+  }
+}
+
 const invented = compose(pageOf([armTrial(0)]));
 const html = page ? readFileSync(page, "utf8") : invented;
 const url = page ? pathToFileURL(resolve(page)) : write("page.html", html);
@@ -712,6 +724,7 @@ try {
     await part("looks of an arena", () => looks(driver, write("arena.html", compose(pageOf([arenaTrial(0)], "top"))), "arena", size, phone));
   }
   await part("without WebGL", () => withoutWebGL(driver, url));
+  if (livePage) await part("without WebAssembly", () => withoutWebAssembly(driver));
 } catch (error) {
   check("the browser runs", false, error.message);
 } finally {
