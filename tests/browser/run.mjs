@@ -683,6 +683,17 @@ async function lives(browser) {
   const small = await browser.run(() => [...document.querySelectorAll("#live button, #live select, #live input")].filter((one) => one.offsetHeight && one.offsetHeight < 32).length);
   check("its controls are at least 32 pixels high", small === 0, small);
   await silent(browser, "live");
+
+  // Names and configurations of strangers are shown as they are and do nothing.
+  const hostile = '<img src=x onerror="window.struck = 1">';
+  const html = readFileSync(livePage, "utf8");
+  const data = dataOf(html);
+  const script = { ...data.live.script, config: `${data.live.script.config}\n# ${hostile}\n` };
+  await opened(browser, write("hostile.html", withData(html, { ...data, title: hostile, live: { ...data.live, script } })));
+  await settled(browser);
+  const [struck, title, config, images] = await browser.run(() => [window.struck, document.querySelector("#title").textContent, document.querySelector("#live pre").textContent, document.querySelectorAll("img").length]);
+  check("hostile names are text", struck == null && title === hostile && config.includes(hostile) && images === 0, `${struck} ${title} ${images}`);
+  await silent(browser, "hostile names");
 }
 
 async function withoutWebAssembly(driver) {
