@@ -351,6 +351,7 @@ async function handled(browser, url, trial) {
     check("a click on a node tells its name and its links", about.includes(node.name) && /strongest in \(\d+\)/.test(about), about);
   }
   await browser.run(() => document.querySelector(".fold").click());
+  await tabbed(browser, "page");
   check("a group folds", await browser.run(() => document.querySelector(".rows").hidden && document.querySelector(".fold").ariaExpanded === "false"));
   await silent(browser, "mouse and keys");
 }
@@ -358,7 +359,7 @@ async function handled(browser, url, trial) {
 // The camera by name and by what it follows, and the mouse in the scene.
 async function looked(browser, scene) {
   const middle = { x: (scene.left + scene.right) / 2, y: (scene.top + scene.bottom) / 2 };
-  const at = () => browser.run(() => farsa.project(farsa.pose(0, "sphere").position));
+  const at = (body = "sphere") => browser.run((body) => farsa.project(farsa.pose(0, body).position), body);
   const choose = async (id, value) => {
     await browser.run((id, value) => {
       const list = document.getElementById(id);
@@ -392,19 +393,20 @@ async function looked(browser, scene) {
   }
 
   await choose("camera", "overview");
-  await choose("follow", "sphere");
+  // The palm always moves; the sphere does where it is touched.
+  await choose("follow", "palm");
   for (const share of [0, 0.4, 0.99]) {
     await browser.run((share) => farsa.seek(Math.round(share * (farsa.ticks - 1))), share);
     await settled(browser);
-    check(`followed, at ${share}: the body stays in the middle`, away(await at(), middle) < 3, JSON.stringify(await at()));
+    check(`followed, at ${share}: the body stays in the middle`, away(await at("palm"), middle) < 3, JSON.stringify(await at("palm")));
   }
   await choose("follow", "");
   await browser.run(() => farsa.seek(0));
   await settled(browser);
-  const left = await at();
+  const left = await at("palm");
   await browser.run(() => farsa.seek(farsa.ticks - 1));
   await settled(browser);
-  check("left alone it moves in the picture", away(await at(), left) > 10, JSON.stringify([await at(), left]));
+  check("left alone it moves in the picture", away(await at("palm"), left) > 10, JSON.stringify([await at("palm"), left]));
   await choose("camera", "overview");
 }
 
@@ -635,6 +637,20 @@ async function withoutWebGL(driver, url) {
   }
 }
 
+// Every control that can be seen is reached by the tab key, and none holds it.
+async function tabbed(browser, name) {
+  const count = await browser.run(() => {
+    document.activeElement.blur();
+    window.reached = new Set();
+    document.addEventListener("focusin", (event) => reached.add(event.target));
+    window.controls = [...document.querySelectorAll("button, select, input, summary")].filter((one) => one.offsetHeight && !one.disabled);
+    return controls.length;
+  });
+  await browser.keys(KEY.tab.repeat(count + 3));
+  const missed = await browser.run(() => controls.filter((one) => !reached.has(one)).map((one) => one.id || one.textContent.slice(0, 20)));
+  check(`${name}: all ${count} controls are reached by keys`, count > 10 && missed.length === 0, missed.join());
+}
+
 // ---- A page that runs its agent.
 
 async function lives(browser) {
@@ -682,6 +698,7 @@ async function lives(browser) {
   check("a node of the drawing is a part to change", /^neuron:/.test(named), named);
   const small = await browser.run(() => [...document.querySelectorAll("#live button, #live select, #live input")].filter((one) => one.offsetHeight && one.offsetHeight < 32).length);
   check("its controls are at least 32 pixels high", small === 0, small);
+  await tabbed(browser, "live");
   await silent(browser, "live");
 
   // Names and configurations of strangers are shown as they are and do nothing.

@@ -155,4 +155,4 @@ export class Browser {
   }
 }
 
-export const KEY = { left: "\uE012", right: "\uE014", home: "\uE011", end: "\uE010", escape: "\uE00C" };
+export const KEY = { left: "\uE012", right: "\uE014", home: "\uE011", tab: "\uE004", end: "\uE010", escape: "\uE00C" };
