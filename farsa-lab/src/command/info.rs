@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::experiment::Anatomy;
+use crate::experiment::PartNames;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::definition::Experiment;
 use crate::experiment::outcome::{ChannelGroup, Description};
@@ -79,15 +79,8 @@ struct Info {
     /// What `farsa test --protocol` offers.
     protocols: Vec<ProtocolInfo>,
     /// What `farsa test --lesion` can change: kinds of changes, and the names that each knows.
-    lesions: Vec<LesionInfo>,
+    lesions: Vec<PartNames>,
     settings: Vec<SettingInfo>,
-}
-
-/// A kind of change and the parts that it is for.
-#[derive(Serialize)]
-struct LesionInfo {
-    kind: String,
-    names: Vec<String>,
 }
 
 /// A value that describes a behaviour, and its range.
@@ -95,16 +88,6 @@ struct LesionInfo {
 struct DescriptorInfo {
     name: String,
     range: [f64; 2],
-}
-
-impl LesionInfo {
-    fn all(anatomy: &Anatomy) -> Vec<Self> {
-        let own = |(kind, names): (&str, Vec<&str>)| Self {
-            kind: kind.into(),
-            names: names.into_iter().map(str::to_owned).collect(),
-        };
-        anatomy.names().into_iter().map(own).collect()
-    }
 }
 
 /// What there is to know of a test protocol.
@@ -192,7 +175,7 @@ impl Info {
             objectives: ["fitness".into()].into_iter().chain(others).collect(),
             descriptors: descriptors.into_iter().map(descriptor).collect(),
             protocols: protocols.into_iter().map(ProtocolInfo::new).collect(),
-            lesions: evaluator.anatomy().map(|anatomy| LesionInfo::all(&anatomy)).unwrap_or_default(),
+            lesions: evaluator.anatomy().map(|anatomy| anatomy.names()).unwrap_or_default(),
             settings: settings.collect(),
         })
     }
@@ -257,7 +240,7 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
         let _ = writeln!(text, "\nparts that `test --lesion` changes:");
     }
     let width = info.lesions.iter().map(|lesion| lesion.kind.len()).max().unwrap_or(0);
-    for LesionInfo { kind, names } in &info.lesions {
+    for PartNames { kind, names } in &info.lesions {
         let names = match names.as_slice() {
             [first @ .., last] if first.len() > MOST_NAMES => {
                 format!("{}, ..., {last}", first[..MOST_NAMES].join(", "))

@@ -56,6 +56,15 @@ pub struct Anatomy {
     order: Option<Vec<usize>>,
 }
 
+/// A kind of change, and the names that it knows.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct PartNames {
+    /// What stands before the colon: `sensor`, `neuron`, `bias`.
+    pub kind: String,
+    /// What may stand behind it.
+    pub names: Vec<String>,
+}
+
 impl Anatomy {
     /// The parts of a network whose nodes, links and parameters a schema names, and whose inputs are grouped as described.
     ///
@@ -94,24 +103,21 @@ impl Anatomy {
     }
 
     /// The kinds of changes that name a part, with the names that each of them knows; a link is named by two nodes.
-    pub fn names(&self) -> Vec<(&str, Vec<&str>)> {
-        fn all(names: &[String]) -> impl Iterator<Item = &str> {
-            names.iter().map(String::as_str)
-        }
-        let groups = self.groups.iter().map(|(group, _)| group.as_str());
-        let single = all(&self.sensors).filter(|&name| self.groups.iter().all(|(group, _)| group != name));
+    pub fn names(&self) -> Vec<PartNames> {
+        let groups = self.groups.iter().map(|(group, _)| group);
+        let single = self.sensors.iter().filter(|&name| self.groups.iter().all(|(group, _)| group != name));
+        let links = if self.links.is_empty() { Vec::new() } else { vec!["FROM-TO".to_owned()] };
         let lists = [
-            ("sensor", groups.chain(single).collect()),
-            ("neuron", all(&self.neurons).collect()),
-            ("output", all(&self.outputs).collect()),
-            ("link", if self.links.is_empty() { Vec::new() } else { vec!["FROM-TO"] }),
+            PartNames { kind: "sensor".into(), names: groups.chain(single).cloned().collect() },
+            PartNames { kind: "neuron".into(), names: self.neurons.clone() },
+            PartNames { kind: "output".into(), names: self.outputs.clone() },
+            PartNames { kind: "link".into(), names: links },
         ];
-        let own = self.node_parameters.iter().map(|parameters| {
-            let nodes = self.sensors.iter().chain(&self.neurons).chain(&self.outputs).map(String::as_str);
-            let [first, end] = parameters.nodes;
-            (parameters.name.as_str(), nodes.skip(first).take(end.saturating_sub(first)).collect())
+        let own = self.node_parameters.iter().map(|NodeParameters { name, nodes: [first, end], .. }| {
+            let nodes = self.sensors.iter().chain(&self.neurons).chain(&self.outputs).skip(*first);
+            PartNames { kind: name.clone(), names: nodes.take(end.saturating_sub(*first)).cloned().collect() }
         });
-        lists.into_iter().chain(own).filter(|(_, names): &(&str, Vec<&str>)| !names.is_empty()).collect()
+        lists.into_iter().chain(own).filter(|part| !part.names.is_empty()).collect()
     }
 
     /// What a list of changes says.
@@ -310,11 +316,12 @@ mod tests {
     fn every_name_that_is_told_is_understood() {
         let anatomy = anatomy();
         let names = anatomy.names();
-        let kinds: Vec<&str> = names.iter().map(|(kind, _)| *kind).collect();
+        let kinds: Vec<&str> = names.iter().map(|part| part.kind.as_str()).collect();
         assert_eq!(kinds, ["sensor", "neuron", "output", "link", "bias", "leak"]);
-        assert_eq!(names[0].1, ["eyes", "skin", "a", "b", "low-left", "1"]);
-        assert_eq!((&names[3].1[..], &names[5].1[..]), (&["FROM-TO"][..], &["1", "2", "3"][..]));
-        for (kind, names) in names.into_iter().filter(|(kind, _)| *kind != "link") {
+        assert_eq!(names[0].names, ["eyes", "skin", "a", "b", "low-left", "1"]);
+        assert_eq!(names[3].names, ["FROM-TO"]);
+        assert_eq!(names[5].names, ["1", "2", "3"]);
+        for PartNames { kind, names } in names.into_iter().filter(|part| part.kind != "link") {
             for name in names {
                 anatomy.intervention(&format!("{kind}:{name}=0.5")).unwrap();
             }

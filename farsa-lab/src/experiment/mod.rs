@@ -50,7 +50,7 @@ mod rescored;
 pub(crate) mod settings;
 mod value;
 
-pub use anatomy::Anatomy;
+pub use anatomy::{Anatomy, PartNames};
 pub use behaviour::{Behaviour, NotedBehaviour, mean_of_note};
 pub use controlled::{Controlled, Objective, PlanarWorld, Trials};
 pub use controller_export::{

@@ -58,10 +58,3 @@ pub(crate) struct Earned {
     /// Of each trial; no number of one that failed.
     pub(crate) fitness: Vec<f64>,
 }
-
-/// A kind of change, and the names that it knows.
-#[derive(Debug, Serialize)]
-pub(crate) struct Names {
-    pub(crate) kind: String,
-    pub(crate) names: Vec<String>,
-}

@@ -9,13 +9,14 @@ use serde_json::value::RawValue;
 use crate::error::Error;
 use crate::evaluation::trials::episode;
 use crate::evaluation::trials::{came_to, facts, fitness};
+use crate::experiment::PartNames;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::Outcome;
 use crate::live::digest::Digest;
-use crate::live::request::{Earned, Filmed, Names, Request, Trial};
+use crate::live::request::{Earned, Filmed, Request, Trial};
 use crate::live::script::{Evolved, Script};
 use crate::run::config_file::ConfigFile;
 use crate::run::laboratory::Laboratory;
@@ -171,12 +172,8 @@ impl LiveSession {
         anatomy.ok_or_else(none)?.intervention(lesion).map(Some)
     }
 
-    fn names(&self) -> Vec<Names> {
-        let own = |(kind, names): (&str, Vec<&str>)| Names {
-            kind: kind.into(),
-            names: names.into_iter().map(str::to_owned).collect(),
-        };
-        self.evaluator.anatomy().map(|anatomy| anatomy.names().into_iter().map(own).collect()).unwrap_or_default()
+    fn names(&self) -> Vec<PartNames> {
+        self.evaluator.anatomy().map(|anatomy| anatomy.names()).unwrap_or_default()
     }
 }
 
