@@ -688,6 +688,10 @@ async function lives(browser) {
   await browser.run(() => farsa.live.set("neuron:nobody", ""));
   check("a part that there is not is refused by name", /unknown neuron `nobody`; the nearest is/.test(await status()), await status());
   check("and nothing has changed", await browser.run(() => farsa.trials.length === 1 && document.querySelectorAll("#live .chips button").length === 0));
+  await browser.run(async () => (await farsa.live.set("neuron:inner 1", "0.5"), await farsa.live.set("neuron:inner 2", ""), farsa.live.set("neuron:inner 1", "much")));
+  const kept = await browser.run(() => [...document.querySelectorAll("#live .chips button")].map((chip) => chip.textContent));
+  check("a value that is none leaves what was there", kept.join() === "neuron:inner 1 = 0.5 ×,neuron:inner 2 ×", kept.join());
+  await browser.run(() => farsa.live.undo());
   const named = await browser.run(() => {
     const { nodes } = farsa.trials[0].network;
     const list = document.querySelector("#node");

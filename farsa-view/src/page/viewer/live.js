@@ -134,7 +134,11 @@ function attach(page, agent, state, first, player) {
 	const {about} = page.live;
 	const counted = new Map();
 	let [answer, turn, chosen] = [first, 0, ""];
-	const set = (name, to) => (state.changes.set(name, to), show());
+	const set = (name, to) => {
+		const before = state.changes;
+		state.changes = new Map(before).set(name, to);
+		return show(before);
+	};
 	const change = (what) => (Object.assign(state, what), show());
 	const undo = () => (state.changes.clear(), show());
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
@@ -160,7 +164,7 @@ function attach(page, agent, state, first, player) {
 	}
 
 	// Runs the trial as it is, and with the changes beside it on one clock.
-	async function show() {
+	async function show(before = state.changes) {
 		const [mine, list] = [++turn, listOf(state)];
 		marks();
 		say("runs ...");
@@ -175,7 +179,7 @@ function attach(page, agent, state, first, player) {
 			say(changed ? `With the change: ${earnedBy(changed)}.` : "");
 		} catch (error) {
 			// A change that is none is taken back.
-			state.changes.delete([...state.changes.keys()].at(-1));
+			state.changes = before;
 			marks();
 			say(error.message);
 		}
