@@ -153,7 +153,10 @@ impl<'a> Frame<'a> {
             *word = reader.word()?;
         }
         let (hash, channels) = (u64::from_le_bytes(reader.array()?), u64::from_le_bytes(reader.array()?));
-        let Some((parameters, checksum)) = reader.bytes.split_last_chunk::<CHECKSUM>() else {
+        // `split_last_chunk` checks twice, and not every compiler sees that the second check holds: a panic would be left.
+        let split = reader.bytes.len().checked_sub(CHECKSUM).and_then(|end| reader.bytes.split_at_checked(end));
+        let Some((parameters, checksum)) = split.and_then(|(rest, last)| Some((rest, last.first_chunk::<CHECKSUM>()?)))
+        else {
             return Err(BytesError::Length { expected: frame_len(0), found: bytes.len() });
         };
         // Nothing of what follows is believed before this.
