@@ -11,9 +11,10 @@ use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::lanes::LanesInfo;
 use crate::experiment::outcome::Outcome;
+use crate::run::evaluations::Unfinished;
 use crate::run::fitness::{Generation, Opponents, evaluate_all};
 use crate::run::plan::Plan;
-use crate::run::pool::{Pool, Unfinished};
+use crate::run::pool::Pool;
 use crate::run::told::history;
 use crate::store::directory::Directory;
 use crate::store::manifest::Machine;
@@ -167,7 +168,8 @@ pub(crate) fn bench(plan: &Plan<'_>, sample: &Sample, mut pool: Pool, seconds: f
                 stop.store(true, Ordering::Relaxed);
             }
         };
-        match evaluate_all(&mut pool, Generation { parameters, opponents, normalisation: None, id }, &stop, done) {
+        let of = Generation { parameters, opponents, normalisation: None, id };
+        match evaluate_all(&mut pool.until(&stop), of, done) {
             Ok(_) => rounds += 1,
             Err(Unfinished::Stopped) => break,
             Err(Unfinished::Error(error)) => return Err(error),

@@ -4,15 +4,18 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
+use farsa_evo::Record;
+
 use crate::error::Error;
 use crate::figures::plot;
 use crate::run::begin::lineage;
 use crate::run::collection::CollectionTable;
 use crate::run::contained::contained;
 use crate::run::diagnostics::DiagnosticsTable;
+use crate::run::evaluations::Unfinished;
 use crate::run::leading::{facts, lead, meet, order};
 use crate::run::plan::Plan;
-use crate::run::pool::{Pool, Unfinished};
+use crate::run::pool::Pool;
 use crate::run::progress::Progress;
 use crate::run::progression::{Evaluated, Progression};
 use crate::run::records::{Champions, Checkpoint, evolved};
@@ -104,6 +107,7 @@ struct Run<'d> {
     names: Vec<String>,
     identity: Identity,
     progression: Progression,
+    record: Record,
     told: ToldFile,
     log: Log,
     /// Where the log that somebody had changed is kept.
@@ -132,7 +136,7 @@ impl<'d> Run<'d> {
         program: &'d str,
     ) -> Result<Self, Error> {
         let mut told = Told::read(plan, directory, &checkpoint)?;
-        let progression = Progression::resume(plan, directory, &checkpoint, &told, pool)?;
+        let progression = Progression::resume(plan, directory, &checkpoint, &told, pool.genotype())?;
         let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
         manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), progression.search.generation()));
         let text = plan.to_toml()?;
@@ -143,8 +147,8 @@ impl<'d> Run<'d> {
         let file = told.file(directory)?;
         let collection = CollectionTable::new(&progression.search, pool.evaluator());
         let lineage = lineage(plan, directory, &checkpoint, &told.record, &progression.search)?;
-        let Told { lines, diagnostics, .. } = told;
-        let (log, kept) = Log::resume(&directory.log(), lines, progression.record.populations())?;
+        let Told { lines, diagnostics, record, .. } = told;
+        let (log, kept) = Log::resume(&directory.log(), lines, record.populations())?;
         Ok(Self {
             directory,
             program,
@@ -152,6 +156,7 @@ impl<'d> Run<'d> {
             names: pool.evaluator().populations(),
             identity: checkpoint.identity,
             progression,
+            record,
             told: file,
             log,
             kept,
@@ -195,11 +200,13 @@ impl<'d> Run<'d> {
     /// Evaluates all individuals of a generation and makes the next.
     fn generation(&mut self, pool: &mut Pool<'_>, stop: &AtomicBool, progress: &Progress) -> Result<(), Unfinished> {
         let generation = self.progression.search.generation();
-        let Evaluated { fitness, failed, statistics, each, best, normalisation } =
-            self.progression.generation(pool, stop, progress)?;
+        let Evaluated { fitness, failed, statistics, each, best, normalisation, .. } =
+            self.progression.generation(&mut pool.until(stop), &|| progress.advance(), |search, judgements| {
+                search.tell(&mut self.record, judgements)
+            })?;
         let search = &self.progression.search;
         let line = Line::new(&statistics, fitness.len(), &each);
-        self.told.append(&self.progression.record, &line, search, self.progression.observed.as_ref())?;
+        self.told.append(&self.record, &line, search, self.progression.observed.as_ref())?;
         self.log.append(line)?;
         self.failures.append(&failed, self.program)?;
         self.diagnostics.push(search);

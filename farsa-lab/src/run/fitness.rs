@@ -1,6 +1,6 @@
 //! What a generation comes to: all trials of all individuals, their fitness and behaviour, and which of them failed.
 
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
 use farsa_evo::{EvoError, JudgementShape, Judgements, ObservationStatistics};
 use farsa_num::Digest;
@@ -10,8 +10,7 @@ use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Evaluation, Evaluator};
 use crate::experiment::outcome::Outcome;
 use crate::run::contained::contained;
-use crate::run::pool::{Pool, Unfinished};
-use crate::run::progress::Progress;
+use crate::run::evaluations::{Evaluations, Unfinished};
 use crate::store::failures::FailedEvaluation;
 
 /// The opponents of a generation's evaluations, in their order, so many for each.
@@ -44,9 +43,6 @@ pub(crate) struct Judged {
     pub(crate) observed: Option<ObservationStatistics>,
 }
 
-/// After so many generations ranks compare again what they evaluate.
-const COMPARED: u32 = 10;
-
 impl Generation<'_> {
     /// A fingerprint of individuals, those that they meet, and what their observations are normalised by.
     fn fingerprint(&self) -> u64 {
@@ -66,29 +62,29 @@ impl Generation<'_> {
 
 impl<'g> Opponents<'g> {
     /// Those of the evaluation with a number.
-    fn get(&self, number: usize) -> &'g [&'g [f32]] {
+    pub(crate) fn get(&self, number: usize) -> &'g [&'g [f32]] {
         self.parameters.get(number * self.each..(number + 1) * self.each).unwrap_or_default()
     }
 }
 
 /// Evaluates all trials of all individuals and says what each comes to, as many numbers as are asked for, and which failed.
+/// `advance` hears of every individual that ends.
 ///
 /// A trial that failed makes its individual the worst, whatever comes of the others.
 pub(crate) fn judgements_of_all(
-    pool: &mut Pool<'_>,
+    by: &mut dyn Evaluations,
     of: Generation<'_>,
     shape: JudgementShape,
-    stop: &AtomicBool,
-    progress: &Progress,
+    advance: &(dyn Fn() + Sync),
 ) -> Result<Judged, Unfinished> {
-    let trials = pool.evaluator().trials();
+    let trials = by.evaluator().trials();
     let ended = AtomicUsize::new(0);
     let done = |_: Option<&Outcome>| {
         if (ended.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(trials) {
-            progress.advance();
+            advance();
         }
     };
-    let individuals = individuals(pool, of, shape, stop, done)?;
+    let individuals = individuals(by, of, shape, done)?;
     let (mut all, mut failed) = (Vec::with_capacity(individuals.len() * shape.width()), Vec::new());
     let empty = |before: &ObservationStatistics| ObservationStatistics::new(before.channels()).map_err(other);
     let mut observed = of.normalisation.map(empty).transpose()?;
@@ -113,15 +109,14 @@ pub(crate) fn judgements_of_all(
 /// Evaluates all trials of all individuals and says what each comes to, by as many numbers as are asked for, with its trials, or
 /// its first trial that failed and why. `done` hears of every trial that ends.
 pub(crate) fn individuals(
-    pool: &mut Pool<'_>,
+    by: &mut dyn Evaluations,
     of: Generation<'_>,
     shape: JudgementShape,
-    stop: &AtomicBool,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Result<Individual, FailedTrial>>, Unfinished> {
     let count = of.parameters.len();
-    let mut outcomes = evaluate_all(pool, of, stop, done)?;
-    let evaluator = pool.evaluator();
+    let mut outcomes = evaluate_all(by, of, done)?;
+    let evaluator = by.evaluator();
     let names = evaluator.terms();
     let row = |outcomes: &[Outcome]| row(evaluator, shape, of.opponents.told_apart, outcomes);
     let one = |individual| judged(outcomes.iter_mut().skip(individual).step_by(count).map(Option::take), &names, &row);
@@ -226,16 +221,13 @@ fn judged(
 /// Episodes side by side cost least when they are alike. What an individual has left after the first of its trials that failed is
 /// left out; those before it never are, so that it is the first on any number of threads.
 pub(crate) fn evaluate_all(
-    pool: &mut Pool<'_>,
+    by: &mut dyn Evaluations,
     of: Generation<'_>,
-    stop: &AtomicBool,
     done: impl Fn(Option<&Outcome>) + Sync,
 ) -> Result<Vec<Option<Outcome>>, Unfinished> {
     let Generation { parameters, opponents, normalisation, id } = of;
-    let (count, trials) = (parameters.len(), pool.evaluator().trials());
-    if !pool.exchange().is_alone() {
-        pool.exchange().compare_first_and_every(id.generation, COMPARED, || of.fingerprint());
-    }
+    let (count, trials) = (parameters.len(), by.evaluator().trials());
+    by.compare(id.generation, &|| of.fingerprint());
     let failed: Vec<AtomicU32> = parameters.iter().map(|_| AtomicU32::new(u32::MAX)).collect();
     let task = |number: usize| {
         let (individual, trial) = (number % count, (number / count) as u32);
@@ -259,5 +251,5 @@ pub(crate) fn evaluate_all(
         }
         done(outcome);
     };
-    pool.evaluate(count * trials, stop, task, heard)
+    by.evaluate(count * trials, &task, &heard)
 }

@@ -3,14 +3,16 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use farsa_evo::Record;
+
 use crate::error::Error;
 use crate::ranks::exchange::{Exchange, Order, Status};
 use crate::run::config_file::ConfigFile;
 use crate::run::contained::contained;
+use crate::run::evaluations::Unfinished;
 use crate::run::leading::{facts, leave, meet};
 use crate::run::plan::Plan;
-use crate::run::pool::{Pool, Unfinished};
-use crate::run::progress::Progress;
+use crate::run::pool::Pool;
 use crate::run::progression::Progression;
 use crate::run::records::Checkpoint;
 use crate::run::told::Told;
@@ -39,9 +41,9 @@ impl Following<'_, '_> {
                     let prepared = contained(|| self.prepare(directory.as_ref(), &config, &checkpoint, record));
                     match prepared.unwrap_or_else(|why| Err(Error::Other(format!("panicked: {why}")))) {
                         Err(error) => drop(exchange.begin(Err(error))),
-                        Ok((plan, pool, progression)) => {
+                        Ok((plan, pool, progression, record)) => {
                             if exchange.begin(facts(&plan)).is_ok() {
-                                self.run(pool, progression)?;
+                                self.run(pool, progression, record)?;
                             }
                         }
                     }
@@ -57,24 +59,26 @@ impl Following<'_, '_> {
         config: &str,
         checkpoint: &[u8],
         record: Vec<u8>,
-    ) -> Result<(Plan<'_>, Pool<'_>, Progression), Error> {
+    ) -> Result<(Plan<'_>, Pool<'_>, Progression, Record), Error> {
         let directory = Directory::at(directory.into());
         let plan = (self.plan)(&ConfigFile::parse(&directory.config().display().to_string(), config)?)?;
         let pool = (self.pool)(&plan)?;
         let checkpoint: Checkpoint =
             sealed::open(checkpoint).map_err(|why| Error::damaged(&directory.checkpoint(), why))?;
         let told = Told::from_content(&plan, &directory, &checkpoint, record)?;
-        let progression = Progression::resume(&plan, &directory, &checkpoint, &told, &pool)?;
-        Ok((plan, pool, progression))
+        let progression = Progression::resume(&plan, &directory, &checkpoint, &told, pool.genotype())?;
+        Ok((plan, pool, progression, told.record))
     }
 
     /// Generation after generation, until rank 0 says that the run is over or somebody has an error.
-    fn run(&self, mut pool: Pool<'_>, mut progression: Progression) -> Result<(), Error> {
+    fn run(&self, mut pool: Pool<'_>, mut progression: Progression, mut record: Record) -> Result<(), Error> {
         let status = loop {
             let generation = progression.search.generation();
             let result = contained(|| {
                 meet(&pool, self.stop)?;
-                progression.generation(&mut pool, self.stop, &Progress::Quiet)
+                progression.generation(&mut pool.until(self.stop), &|| {}, |search, judgements| {
+                    search.tell(&mut record, judgements)
+                })
             });
             match result {
                 Ok(Ok(_)) => {}

@@ -7,6 +7,7 @@
 //! - `config_file`: a configuration file, and the settings of a command line
 //! - `contained`: code of an experiment that panics, caught
 //! - `diagnostics`: what a strategy says of each generation beside the fitness, as a table and a picture
+//! - `evaluations`: who evaluates a generation: the threads and ranks of a run, or the workers of a page
 //! - `evolve`: evolution from the first or any later generation on, with everything kept that is needed to go on
 //! - `fitness`: the fitness of a generation: all trials of all individuals, and which of them failed
 //! - `imported_file`: a file in another format as one that describes an experiment
@@ -37,9 +38,9 @@ pub(crate) mod config_file;
 pub(crate) mod contained;
 #[cfg(feature = "command")]
 mod diagnostics;
+pub(crate) mod evaluations;
 #[cfg(feature = "command")]
 pub(crate) mod evolve;
-#[cfg(feature = "command")]
 pub(crate) mod fitness;
 #[cfg(feature = "command")]
 pub(crate) mod following;
@@ -52,8 +53,7 @@ pub(crate) mod plan;
 pub(crate) mod pool;
 #[cfg(feature = "command")]
 pub(crate) mod progress;
-#[cfg(feature = "command")]
-mod progression;
+pub(crate) mod progression;
 #[cfg(feature = "command")]
 pub(crate) mod queue;
 pub(crate) mod records;

@@ -17,6 +17,7 @@ use crate::ranks::dealing::{give, take};
 use crate::ranks::exchange::{Exchange, Numbered, Status};
 use crate::ranks::numbers::{Given, Numbers};
 use crate::run::contained::contained;
+use crate::run::evaluations::{Evaluations, Heard, TaskOf, Unfinished, round};
 use crate::run::plan::Plan;
 
 /// An experiment made ready for every thread.
@@ -44,30 +45,6 @@ impl Maker<'_> {
             in_lanes.use_lanes(self.lanes)?;
         }
         Ok(evaluator)
-    }
-}
-
-/// Why a round has no results.
-#[derive(Debug)]
-pub(crate) enum Unfinished {
-    /// It was told to stop.
-    Stopped,
-    /// There is no thread, or no evaluator after a panic.
-    Error(Error),
-}
-
-impl From<Error> for Unfinished {
-    fn from(error: Error) -> Self {
-        Self::Error(error)
-    }
-}
-
-impl From<Unfinished> for Error {
-    fn from(reason: Unfinished) -> Self {
-        match reason {
-            Unfinished::Stopped => Self::Other("stopped".into()),
-            Unfinished::Error(error) => error,
-        }
     }
 }
 
@@ -100,6 +77,11 @@ impl<'e> Pool<'e> {
     /// With whom the evaluations are shared.
     pub(crate) fn exchange(&self) -> Rc<Exchange<'e>> {
         self.exchange.clone()
+    }
+
+    /// The pool until `stop` becomes true.
+    pub(crate) fn until<'p>(&'p mut self, stop: &'p AtomicBool) -> Stoppable<'p, 'e> {
+        Stoppable { pool: self, stop }
     }
 
     /// Number of threads.
@@ -211,6 +193,41 @@ impl<'e> Pool<'e> {
     }
 }
 
+/// A pool that evaluates until it is told to stop.
+pub(crate) struct Stoppable<'p, 'e> {
+    pool: &'p mut Pool<'e>,
+    stop: &'p AtomicBool,
+}
+
+/// After so many generations ranks compare again what they evaluate.
+const COMPARED: u32 = 10;
+
+impl Evaluations for Stoppable<'_, '_> {
+    fn evaluator(&self) -> &dyn Evaluator {
+        self.pool.evaluator()
+    }
+
+    fn genotype(&self) -> &Genotype {
+        self.pool.genotype()
+    }
+
+    fn evaluate<'g>(
+        &mut self,
+        count: usize,
+        task: &TaskOf<'_, 'g>,
+        done: &Heard<'_>,
+    ) -> Result<Vec<Option<Outcome>>, Unfinished> {
+        self.pool.evaluate(count, self.stop, task, done)
+    }
+
+    fn compare(&self, generation: u32, fingerprint: &dyn Fn() -> u64) {
+        let exchange = &self.pool.exchange;
+        if !exchange.is_alone() {
+            exchange.compare_first_and_every(generation, COMPARED, fingerprint);
+        }
+    }
+}
+
 /// That the system refused a thread.
 fn no_thread(number: usize, all: usize, source: &io::Error) -> Error {
     let least = number.saturating_sub(1).max(1);
@@ -289,19 +306,5 @@ where
         let old = std::mem::replace(evaluator, made.inspect_err(|_| self.ended.store(true, Ordering::Relaxed))?);
         let _ = contained(|| drop(old));
         Ok(())
-    }
-}
-
-/// Evaluates until `next` has no more, in lanes if there are any.
-fn round<'g>(
-    evaluator: &mut dyn Evaluator,
-    next: &mut dyn FnMut() -> Option<Evaluation<'g>>,
-    end: &mut dyn FnMut(usize, Outcome),
-) {
-    if let Some(lanes) = evaluator.in_lanes() {
-        return lanes.evaluate_all(next, end);
-    }
-    while let Some(evaluation) = next() {
-        end(evaluation.number, evaluator.evaluate(evaluation, None));
     }
 }

@@ -1,20 +1,26 @@
 //! A search in progress: what proposes individuals, what it was told, and whom they meet. Every rank of a run holds the same.
 
-use std::sync::atomic::AtomicBool;
-
-use farsa_evo::{Fitness, ObservationStatistics, Record, Statistics};
+use farsa_evo::{EvoError, Fitness, Judgements, ObservationStatistics, Statistics};
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
+#[cfg(feature = "command")]
+use crate::experiment::genotype::Genotype;
+#[cfg(feature = "command")]
 use crate::run::begin::resumed;
+use crate::run::evaluations::{Evaluations, Unfinished};
 use crate::run::fitness::{Generation, Judged, Opponents, judgements_of_all};
+#[cfg(feature = "command")]
 use crate::run::plan::Plan;
-use crate::run::pool::{Pool, Unfinished};
-use crate::run::progress::Progress;
-use crate::run::records::{Best, Checkpoint};
+use crate::run::records::Best;
+#[cfg(feature = "command")]
+use crate::run::records::Checkpoint;
+#[cfg(feature = "command")]
 use crate::run::told::Told;
+#[cfg(feature = "command")]
 use crate::store::directory::Directory;
 use crate::store::failures::FailedEvaluation;
+#[cfg(feature = "command")]
 use crate::strategy::history::History;
 use crate::strategy::opponents::{Hall, Meeting, chosen};
 use crate::strategy::search::Search;
@@ -22,7 +28,6 @@ use crate::strategy::search::Search;
 /// What a run evolves.
 pub(crate) struct Progression {
     pub(crate) search: Search,
-    pub(crate) record: Record,
     /// Whom several populations still have to meet.
     hall: Hall,
     /// What was observed in all generations so far, where observations are normalised.
@@ -40,49 +45,65 @@ pub(crate) struct Evaluated {
     pub(crate) each: Vec<Statistics>,
     /// The best of each population.
     pub(crate) best: Vec<Best>,
+    /// For each of these, of each trial, the parameters of those it met.
+    pub(crate) met: Vec<Vec<Vec<Vec<f32>>>>,
     /// By what its observations were normalised, where they were.
     pub(crate) normalisation: Option<ObservationStatistics>,
 }
 
 impl Progression {
+    /// A search in progress.
+    pub(crate) fn new(search: Search, hall: Hall, observed: Option<ObservationStatistics>, seed: u64) -> Self {
+        Self { search, hall, observed, seed }
+    }
+
     /// A search as it was when its checkpoint was written.
     ///
     /// # Errors
     /// Those of [`resumed`] and of [`Hall::before`].
+    #[cfg(feature = "command")]
     pub(crate) fn resume(
         plan: &Plan<'_>,
         directory: &Directory,
         checkpoint: &Checkpoint,
         told: &Told,
-        pool: &Pool<'_>,
+        genotype: &Genotype,
     ) -> Result<Self, Error> {
-        let record = told.record.clone();
-        let search = resumed(plan, directory, checkpoint, &record)?;
-        let hall = match record.populations() {
+        let search = resumed(plan, directory, checkpoint, &told.record)?;
+        let hall = match told.record.populations() {
             1 => Hall::default(),
             _ if search.opponents().is_some() => Hall::default(),
-            _ => Hall::before(&History::new(directory.record(), record.clone(), plan.fresh()), pool.genotype())?,
+            _ => Hall::before(&History::new(directory.record(), told.record.clone(), plan.fresh()), genotype)?,
         };
         let observed = told.observed.last().cloned().or(plan.no_observations()?);
-        Ok(Self { search, record, hall, observed, seed: checkpoint.identity.seed })
+        Ok(Self::new(search, hall, observed, checkpoint.identity.seed))
     }
 
-    /// Evaluates all individuals of a generation and tells the strategy, which makes the next.
+    /// The champions that are still met.
+    pub(crate) fn hall(&self) -> &Hall {
+        &self.hall
+    }
+
+    /// Evaluates all individuals of a generation and tells the strategy by `tell`, which makes the next. `advance` hears of every
+    /// individual that ends.
+    ///
+    /// # Errors
+    /// [`Unfinished`]; the search is then as it was.
     pub(crate) fn generation(
         &mut self,
-        pool: &mut Pool<'_>,
-        stop: &AtomicBool,
-        progress: &Progress,
+        by: &mut dyn Evaluations,
+        advance: &(dyn Fn() + Sync),
+        tell: impl FnOnce(&mut Search, &Judgements) -> Result<(), EvoError>,
     ) -> Result<Evaluated, Unfinished> {
         let generation = self.search.generation();
         let individuals = self.search.individuals();
         let (seed, populations) = (self.seed, self.search.populations());
         let lost = |why: &str| Error::Other(format!("generation {generation}: {why}"));
-        let trials = pool.evaluator().trials();
-        let parameters = self.search.parameters(pool.genotype()).ok_or_else(|| lost("genomes of another length"))?;
+        let trials = by.evaluator().trials();
+        let parameters = self.search.parameters(by.genotype()).ok_or_else(|| lost("genomes of another length"))?;
         let meeting = Meeting { generation, populations, size: individuals / populations, trials };
         let told_apart = self.search.opponents();
-        let chosen = told_apart.and_then(|_| chosen(&self.search, pool.genotype(), trials));
+        let chosen = told_apart.and_then(|_| chosen(&self.search, by.genotype(), trials));
         let opponents = match (told_apart, &chosen) {
             (None, _) => self.hall.opponents(meeting, &parameters),
             (Some(_), chosen) => chosen.as_ref().map(|all| all.iter().map(Vec::as_slice).collect()),
@@ -93,7 +114,7 @@ impl Progression {
         let shape = self.search.judged_by();
         let normalisation = self.observed.clone();
         let of = Generation { parameters: &parameters, opponents, normalisation: normalisation.as_ref(), id };
-        let Judged { judgements, failed, observed } = judgements_of_all(pool, of, shape, stop, progress)?;
+        let Judged { judgements, failed, observed } = judgements_of_all(by, of, shape, advance)?;
         let fitness = judgements.fitness();
         let ranked_by = self.search.ranked_by(&fitness);
         let statistics = Statistics::from_fitness(&ranked_by).ok_or_else(|| lost("no individual was evaluated"))?;
@@ -102,9 +123,14 @@ impl Progression {
             Some(Best { individual: best as u32, fitness, genes })
         });
         let best: Vec<Best> = best.collect::<Option<_>>().ok_or_else(|| lost("no individual is the best"))?;
+        let met = best.iter().map(|best| {
+            let met = |trial| opponents.get(trial * individuals + best.individual as usize);
+            (0..trials).map(|trial| met(trial).iter().map(|met| met.to_vec()).collect()).collect()
+        });
+        let met = met.collect();
         let each = ranked_by.chunks(meeting.size.max(1)).filter(|_| populations > 1);
         let each: Vec<Statistics> = each.filter_map(Statistics::from_fitness).collect();
-        let told = self.search.tell(&mut self.record, &judgements);
+        let told = tell(&mut self.search, &judgements);
         told.map_err(|error| lost(&error.to_string()))?;
         if let (Some(all), Some(own)) = (&mut self.observed, &observed) {
             all.merge(own).map_err(|error| lost(&error.to_string()))?;
@@ -112,6 +138,6 @@ impl Progression {
         if told_apart.is_none() {
             self.hall.add(best.iter().filter_map(|best| parameters.get(best.individual as usize).cloned()).collect());
         }
-        Ok(Evaluated { fitness, failed, statistics, each, best, normalisation })
+        Ok(Evaluated { fitness, failed, statistics, each, best, met, normalisation })
     }
 }

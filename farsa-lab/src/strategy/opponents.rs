@@ -124,6 +124,16 @@ impl Hall {
         Ok(hall)
     }
 
+    /// Champions that are known: of every generation the parameters of each population's.
+    pub(crate) fn from_champions(champions: Vec<Vec<Vec<f32>>>) -> Self {
+        Self { champions }
+    }
+
+    /// Of every generation the parameters of each population's champion.
+    pub(crate) fn champions(&self) -> &[Vec<Vec<f32>>] {
+        &self.champions
+    }
+
     /// Adds the champions of the generation that has just been finished.
     pub(crate) fn add(&mut self, champions: Vec<Vec<f32>>) {
         if champions.len() > 1 {

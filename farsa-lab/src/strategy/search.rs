@@ -143,6 +143,14 @@ impl Search {
         })
     }
 
+    /// The same without a record.
+    pub(crate) fn tell_unrecorded(&mut self, judgements: &Judgements) -> Result<(), EvoError> {
+        each!(self, strategy => match judgements.shape() {
+            JudgementShape::FITNESS => strategy.tell(&judgements.fitness()),
+            _ => strategy.tell_judgements(judgements),
+        })
+    }
+
     /// Brings the strategy to a generation of a record.
     pub(crate) fn rebuild(&mut self, record: &Record, generation: u32) -> Result<(), EvoError> {
         each!(self, strategy => record.rebuild(strategy.as_mut(), generation))

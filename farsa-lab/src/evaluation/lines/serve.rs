@@ -91,7 +91,7 @@ fn answer<'w>(line: u64, request: Request, wanted: &'w Wanted, pool: &mut Pool<'
         let individual = (own * wanted.size) as u32 + individual;
         let id = EpisodeId { seed, generation, individual, trial: 0 };
         let of = Generation { parameters: &parameters[own], opponents, normalisation: None, id };
-        let found = individuals(pool, of, shape, &AtomicBool::new(false), |_| {})?;
+        let found = individuals(&mut pool.until(&AtomicBool::new(false)), of, shape, |_| {})?;
         let evaluator = pool.evaluator();
         all.push((name, found.into_iter().map(|found| Judged::new(found, evaluator)).collect()));
     }

@@ -13,8 +13,9 @@ use crate::experiment::lanes::{Lanes, Wanted};
 use crate::experiment::outcome::{Description, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::settings::{Setting, Settings};
+use crate::run::evaluations::Unfinished;
 use crate::run::plan::Plan;
-use crate::run::pool::{Pool, Unfinished};
+use crate::run::pool::Pool;
 
 /// Earns its individual's number and panics from the fifth on, if asked to by its parameter.
 struct Nothing;
