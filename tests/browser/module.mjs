@@ -5,12 +5,12 @@
 // Prints a line per page and exits with 1 if a trial differs.
 
 import { readFileSync } from "node:fs";
-import { gunzipSync } from "node:zlib";
+import { unpacked } from "./packed.mjs";
 
 const mark = '<script type="application/json" id="data">';
 
 function opened(live) {
-  const bytes = gunzipSync(Buffer.from(live.module, "base64"));
+  const bytes = unpacked(live.module);
   const own = new WebAssembly.Instance(new WebAssembly.Module(bytes), {}).exports;
   const said = (length) => new TextDecoder().decode(new Uint8Array(own.memory.buffer, own.output(), length));
   const give = (text) => {

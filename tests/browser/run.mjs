@@ -1,9 +1,11 @@
 // Tests the page of `farsa replay --html` in a real browser.
 //
-//   node tests/browser/run.mjs [PAGE.html TRIAL.csv [SCREENSHOTS [LIVE.html LESION.json]]]
+//   node tests/browser/run.mjs [PAGE.html TRIAL.csv [SCREENSHOTS [LIVE.html LESION.json [EVOLVING.html FITNESS.csv [ADDRESS]]]]]
 //
 // PAGE.html is a page of a trial, TRIAL.csv what `farsa replay` says of the same trial; without them an invented trial takes
-// their place. LIVE.html is a page of `farsa live`, LESION.json what `farsa test --lesion` says of the same agent without one neuron. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package.
+// their place. LIVE.html is a page of `farsa live`, LESION.json what `farsa test --lesion` says of the same agent without one neuron.
+// EVOLVING.html is a page of an unfinished run, FITNESS.csv that of the run three generations later.
+// ADDRESS is where `farsa serve` serves a run that goes on. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -20,7 +22,7 @@ setTimeout(() => {
   process.exit(1);
 }, 600_000).unref();
 
-const [page, csv, shots, livePage, lesionFile] = process.argv.slice(2);
+const [page, csv, shots, livePage, lesionFile, evolvingPage, evolvedLog, servedPage] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "farsa-pages-"));
 let failed = 0;
 if (shots) mkdirSync(shots, { recursive: true });
@@ -717,6 +719,48 @@ async function lives(browser) {
   await silent(browser, "hostile names");
 }
 
+// Evolution in the page is the command's, number for number.
+async function evolves(browser) {
+  await opened(browser, pathToFileURL(resolve(evolvingPage)));
+  const log = readFileSync(evolvedLog, "utf8").trim().split("\n").slice(1).map((row) => row.split(",").map(Number));
+  const known = await browser.run(() => farsa.live.rows.length);
+  const press = (text) => browser.run((text) => [...document.querySelectorAll("#evolution button")].find((one) => one.textContent === text).click(), text);
+  const bred = await browser.run(async (count) => (await farsa.live.evolve(count)).map(({ generation, line }) => [generation, ...line.row, line.evaluations, line.failed, ...line.each.flat()]), log.length - known);
+  check("evolution in the page is that of `farsa run --resume`", known > 0 && log.length - known === 3 && JSON.stringify(bred) === JSON.stringify(log.slice(known)), `${JSON.stringify(bred)} ${JSON.stringify(log.slice(known))}`);
+  const [said, points] = await browser.run(() => [document.querySelector("#evolution p").textContent, [...document.querySelectorAll("#evolution polyline")].map((line) => line.getAttribute("points").split(" ").length)]);
+  check("its fitness is told and drawn", said.startsWith(`Generation ${log.length - 1}: best `) && points.join() === `${log.length},${log.length}`, `${said} ${points}`);
+  await press("Show its champion");
+  await browser.until(new Function(`return document.querySelector("#live select").selectedOptions[0]?.textContent.startsWith("generation ${log.length - 1}, evolved here") && document.querySelector("#live p.soft").textContent === ""`));
+  const champion = await browser.run(() => [farsa.trials.length, document.querySelectorAll("#live select")[0].options.length]);
+  check("its champions are there to be looked at", champion[0] === 1 && champion[1] > 1, champion.join());
+  if (shots) writeFileSync(join(shots, "evolution.png"), await browser.screenshot());
+  await press("Evolve on");
+  await browser.until(new Function(`return farsa.live.rows.length > ${log.length}`));
+  await press("Stop");
+  await browser.until(new Function(`return [...document.querySelectorAll("#evolution button")].some((one) => one.textContent === "Evolve on" && !one.disabled)`));
+  const stopped = await browser.run(() => farsa.live.rows.length);
+  await new Promise((done) => setTimeout(done, 300));
+  check("it stops", (await browser.run(() => farsa.live.rows.length)) === stopped);
+  await tabbed(browser, "evolution");
+  await silent(browser, "evolution");
+}
+
+// A run that goes on is seen in the page that is served.
+async function serves(browser) {
+  await opened(browser, new URL(servedPage));
+  const first = await browser.run(() => farsa.live.rows.at(-1)[0]);
+  await browser.until(new Function(`return farsa.live.rows.at(-1)[0] > ${first + 2} && !document.querySelectorAll("#evolution button")[1].disabled`));
+  const rows = await browser.run(() => farsa.live.rows.map(([number]) => number));
+  const added = rows.slice(rows.indexOf(first));
+  check("a served page sees its run go on, generation after generation", added.length > 2 && added.every((number, i) => number === first + i), added.join());
+  check("it does not go on by itself", await browser.run(() => document.querySelector("#evolution button").hidden));
+  await browser.run(() => document.querySelectorAll("#evolution button")[1].click());
+  await browser.until(new Function(`return document.querySelector("#live select").selectedOptions[0]?.textContent.includes("found since") && document.querySelector("#live p.soft").textContent === ""`));
+  check("it shows the champion that the run has come to", await browser.run(() => farsa.error === null && farsa.ticks > 1));
+  if (shots) writeFileSync(join(shots, "served.png"), await browser.screenshot());
+  await silent(browser, "served");
+}
+
 async function withoutWebAssembly(driver) {
   const browser = await driver.open();
   try {
@@ -746,6 +790,8 @@ try {
     await part("mouse and keys", () => handled(browser, url, trial));
     await part("scales", () => scales(browser));
     if (livePage) await part("live", () => lives(browser));
+    if (evolvingPage) await part("evolution", () => evolves(browser));
+    if (servedPage) await part("served", () => serves(browser));
     await part("two trials", () => compared(browser, html));
     await part("damage", () => damaged(browser, html, "page"));
   } finally {

@@ -1,9 +1,11 @@
 //! Pages that run an agent: what they hold, and that it does what the command does.
 
 use std::fs;
+use std::io::Read as _;
 use std::path::Path;
 
 use farsa_lab::LiveSession;
+use flate2::read::GzDecoder;
 use serde_json::{Value, json};
 
 use crate::tool::{farsa, ok, own, say, scratch};
@@ -16,9 +18,32 @@ fn data(path: &Path) -> Value {
     serde_json::from_str(text).expect("JSON")
 }
 
+/// What is packed in a page: compressed bytes, four of them as five letters from `(` on, of which two stand for others.
+fn unpacked(packed: &Value) -> Vec<u8> {
+    let text = packed["gzip"].as_str().expect("text").replace('}', "<").replace('~', "\\");
+    let words = text.as_bytes().chunks(5).map(|five| five.iter().fold(0, |word, x| 85 * word + u64::from(x - b'(')));
+    let mut bytes: Vec<u8> = words.flat_map(|word| u32::try_from(word).expect("a word").to_be_bytes()).collect();
+    bytes.truncate(packed["bytes"].as_u64().expect("a number") as usize);
+    let mut found = Vec::new();
+    GzDecoder::new(&bytes[..]).read_to_end(&mut found).expect("what was compressed");
+    found
+}
+
 /// The agent of a page, here instead of in a browser.
 fn opened(live: &Value) -> LiveSession {
     LiveSession::open(&farsa_experiments::laboratory(), &live["script"].to_string()).expect("an agent")
+}
+
+/// The script of a page whose evolution goes on.
+fn standing(live: &Value) -> Value {
+    let mut script = live["script"].clone();
+    script["standing"] = serde_json::from_slice(&unpacked(&live["standing"])).expect("JSON");
+    script
+}
+
+/// A session that goes on with evolution.
+fn evolving(live: &Value) -> LiveSession {
+    LiveSession::open(&farsa_experiments::laboratory(), &standing(live).to_string()).expect("an agent")
 }
 
 fn asked(session: &mut LiveSession, request: &Value) -> Value {
@@ -45,7 +70,7 @@ fn an_agent_lives_as_it_is_replayed_and_tested() {
     let page = data(&here.join("live.html"));
     assert_eq!((&page["lives"], &page["title"]), (&json!([]), &"minimal-cognition-1".into()));
     let live = &page["live"];
-    assert!(live["module"].as_str().is_some_and(|text| text.len() > 1_000_000));
+    assert!(unpacked(&live["module"]).starts_with(b"\0asm"));
     assert!(told["bytes"].as_u64().is_some_and(|bytes| bytes < 2_000_000), "{told}");
     let mut session = opened(live);
 
@@ -144,7 +169,8 @@ fn what_cannot_live_is_refused_and_writes_nothing() {
     // A module of one's own is taken as it is.
     fs::write(here.join("module"), [0x1f, 0x8b, 0]).expect("a file");
     ok(farsa(), &here, "live catcher --html new.html --module module --quiet");
-    assert_eq!(data(&here.join("new.html"))["live"]["module"], "H4sA");
+    let live = &data(&here.join("new.html"))["live"];
+    assert_eq!(live["module"], json!({ "gzip": "23e2(", "bytes": 3 }));
 }
 
 #[test]
@@ -163,9 +189,123 @@ fn scripts_that_are_none_are_refused() {
         let error = LiveSession::open(&laboratory, script).err().expect("an error").to_string();
         assert!(error.contains(why), "{script}: {error}");
     }
-    // Parameters that are none of the experiment's make no network: the trial fails.
     let script = format!(r#"{{"config":"experiment = \"double-pole\"","individuals":[{individual}]}}"#);
-    let mut session = LiveSession::open(&laboratory, &script).expect("a session");
-    let found = asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 } }));
-    assert_eq!((&found["success"], &found["digests"], &found["fitness"]), (&false.into(), &json!([]), &Value::Null));
+    let error = LiveSession::open(&laboratory, &script).err().expect("an error").to_string();
+    assert!(error.contains("an individual of 0 parameters where 16 are"), "{error}");
+}
+
+/// Goes on with a page's run for some generations, shared by so many sessions.
+fn evolved(live: &Value, generations: usize, parts: usize) -> Vec<Value> {
+    let mut sessions: Vec<LiveSession> = (0..parts).map(|_| evolving(live)).collect();
+    let generation = |_| {
+        let shares = sessions.iter_mut().enumerate().map(|(part, session)| {
+            asked(session, &json!({ "do": "share", "part": part, "parts": parts }))["outcomes"].clone()
+        });
+        let request = json!({ "do": "tell", "outcomes": shares.collect::<Vec<_>>() });
+        let told: Vec<Value> = sessions.iter_mut().map(|session| asked(session, &request)).collect();
+        assert!(told.iter().all(|other| *other == told[0] && other["error"].is_null()), "{told:?}");
+        told[0].clone()
+    };
+    (0..generations).map(generation).collect()
+}
+
+#[test]
+fn evolution_goes_on_in_a_page_as_in_a_run() {
+    let here = scratch("live-evolution");
+    for (name, parts, line) in [
+        ("one", 1, "double-pole --population 10 --set evolution.parents=2"),
+        ("opponents", 3, "predator-prey --population 4 --set evolution.parents=2 --set trial.steps=40"),
+        (
+            "generalist",
+            2,
+            "predator-prey --strategy generalist --population 4 --set strategy.newcomers=2 --set trial.steps=40",
+        ),
+        ("reals", 2, "double-pole --strategy snes"),
+        (
+            "novel",
+            2,
+            "foraging --strategy novelty-search --population 4 --set evolution.parents=2 --set trial.steps=30",
+        ),
+        ("many", 7, "foraging --strategy map-elites --population 5 --set trial.steps=30"),
+        (
+            "normalised",
+            2,
+            "reach-grasp-lift --strategy open-ai-es --set strategy.normalise_observations=true \
+          --population 4 --set trial.steps=20",
+        ),
+    ] {
+        ok(farsa(), &here, &format!("run {line} --generations 2 --out {name} --quiet"));
+        ok(farsa(), &here, &format!("live {name} --html {name}.html --quiet"));
+        let live = &data(&here.join(format!("{name}.html")))["live"];
+        assert_eq!(live["about"]["standstill"], Value::Null, "{name}");
+        let found = evolved(live, 3, parts);
+        ok(farsa(), &here, &format!("run --resume {name} --generations 5 --quiet"));
+        let log = fs::read_to_string(here.join(name).join("fitness.csv")).expect("the log");
+        let rows: Vec<Vec<f64>> = log
+            .lines()
+            .skip(1)
+            .map(|row| row.split(',').map(|cell| cell.parse().expect("a number")).collect())
+            .collect();
+        assert_eq!(live["about"]["history"][1], json!([1, rows[1][1], rows[1][2]]), "{name}");
+        for (row, told) in rows[2..].iter().zip(&found) {
+            let line = &told["line"];
+            let each =
+                line["each"].as_array().expect("populations").iter().flat_map(|one| one.as_array().expect("a row"));
+            let own = [&told["generation"]].into_iter().chain(line["row"].as_array().expect("a row"));
+            let own: Vec<&Value> = own.chain([&line["evaluations"], &line["failed"]]).chain(each).collect();
+            let run: Vec<Option<f64>> = row.iter().map(|x| Some(*x).filter(|x| x.is_finite())).collect();
+            assert_eq!(own.iter().map(|x| x.as_f64()).collect::<Vec<_>>(), run, "{name}");
+        }
+
+        // The champion lives in the page as it is replayed.
+        let mut session = opened(live);
+        let champion = &found[2]["champions"][0];
+        let added = asked(&mut session, &json!({ "do": "add", "individual": champion }));
+        assert_eq!(added, json!({ "individual": 1 }));
+        let film = asked(&mut session, &json!({ "do": "film", "individual": 1, "trial": { "number": 0 } }));
+        ok(farsa(), &here, &format!("replay {name} --trial 0 --html {name}-replay.html --quiet"));
+        assert_eq!(film["film"]["data"], data(&here.join(format!("{name}-replay.html")))["lives"][0]["data"], "{name}");
+    }
+}
+
+#[test]
+fn evolution_that_cannot_go_on_says_why() {
+    let here = scratch("live-standstill");
+    catcher(&here);
+    ok(farsa(), &here, "live catcher --html live.html --quiet");
+    let live = &data(&here.join("live.html"))["live"];
+    assert_eq!(live["about"]["standstill"], "no evolution has made these genotypes");
+    let mut session = opened(live);
+    let mut refused = |request: Value| asked(&mut session, &request)["error"].as_str().expect("an error").to_owned();
+    assert!(refused(json!({ "do": "share", "part": 0, "parts": 1 })).contains("evolution does not go on here"));
+
+    ok(farsa(), &here, "run double-pole --population 10 --set evolution.parents=2 --generations 1 --out r --quiet");
+    ok(farsa(), &here, "live r --html r.html --quiet");
+    let live = &data(&here.join("r.html"))["live"];
+    let mut session = evolving(live);
+    let half = asked(&mut session, &json!({ "do": "share", "part": 1, "parts": 2 }))["outcomes"].clone();
+    for (request, why) in [
+        (json!({ "do": "share", "part": 2, "parts": 2 }), "part 2 of 2"),
+        (json!({ "do": "share", "part": 0, "parts": 0 }), "part 0 of 0"),
+        (json!({ "do": "tell", "outcomes": [] }), "not those of a whole generation"),
+        (json!({ "do": "tell", "outcomes": [half.clone()] }), "not those of a whole generation"),
+        (json!({ "do": "tell", "outcomes": [half.clone(), half] }), "not those of a whole generation"),
+        (json!({ "do": "tell", "outcomes": ["AAEC"] }), "outcomes: "),
+        (json!({ "do": "tell", "outcomes": ["-"] }), "request: "),
+    ] {
+        let error = asked(&mut session, &request)["error"].as_str().expect("an error").to_owned();
+        assert!(error.contains(why), "{request}: {error}");
+    }
+    // What was refused has changed nothing.
+    let first = evolved(live, 1, 1);
+    let whole = asked(&mut session, &json!({ "do": "share", "part": 0, "parts": 1 }))["outcomes"].clone();
+    assert_eq!(asked(&mut session, &json!({ "do": "tell", "outcomes": [whole] })), first[0]);
+    // A state that is none of the strategy's.
+    for (key, to, why) in [("state", "AAAA", "where evolution stands"), ("generation", "", "script: ")] {
+        let mut script = standing(live);
+        script["standing"][key] = to.into();
+        let error = LiveSession::open(&farsa_experiments::laboratory(), &script.to_string()).err();
+        let error = error.expect("an error").to_string();
+        assert!(error.contains(why), "{error}");
+    }
 }

@@ -19,6 +19,7 @@ mod replications;
 mod report;
 mod robot;
 mod same_bytes;
+mod serve;
 mod strangers;
 mod sweep;
 mod tool;

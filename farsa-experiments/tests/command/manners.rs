@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::tool::{command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 18] = [
+const SUBCOMMANDS: [&str; 19] = [
     "strategies",
     "list",
     "info",
@@ -17,6 +17,7 @@ const SUBCOMMANDS: [&str; 18] = [
     "import",
     "replay",
     "live",
+    "serve",
     "draw",
     "report",
     "export",

@@ -172,6 +172,7 @@ impl<'e> Invocation<'e, '_> {
             Command::Import(args) => self.import(&args),
             Command::Replay(args) => self.replay(&args),
             Command::Live(args) => self.live(&args),
+            Command::Serve(args) => self.serve(&args),
             Command::Draw(args) => {
                 let (directory, plan) = self.existing(&args.directory)?;
                 if let Some(wish) = args.sheet()? {

@@ -14,8 +14,7 @@ use crate::run::laboratory::Laboratory;
 use crate::store::replace::create_results;
 
 /// Without headings and spare lines, and the options in one, so that a screen of 24 lines has room for the tour, which follows.
-const TEMPLATE: &str = "{about}\n{usage-heading} {usage}\n{subcommands}\n\
-    Options: -q, --quiet: no progress and no summary; -h, --help; -V, --version\n";
+const TEMPLATE: &str = "{about}\n{usage-heading} {usage}; -q: no progress and no summary\n{subcommands}\n";
 
 /// The words of the command line; those for several ranks are shown by programs that go by such a name.
 fn words(program: &str) -> Command {
@@ -109,6 +108,7 @@ fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> 
             "live",
             vec![format!("live {run} --html live.html"), format!("live {run} --generations 0,10,19 --html live.html")],
         ),
+        ("serve", vec![format!("serve {run}"), format!("serve {run} --port 0")]),
         (
             "draw",
             vec![

@@ -9,6 +9,7 @@
 //! - `info`: `farsa list` and `farsa info`: what there is and what it is made of
 //! - `interrupt`: signals that ask a run to stop, and the exit code that asks a scheduler to start it again
 //! - `invocation`: the command as it was called
+//! - `live`: `farsa live` and `farsa serve`
 //! - `manual`: what the command says about itself: help with examples, completions, and pages of the manual
 //! - `on_ranks`: the command on several ranks: what all do before and around what rank 0 does
 //! - `replay`: `farsa replay`: trials of a run, or of a protocol's cases
@@ -23,6 +24,7 @@ mod import;
 mod info;
 mod interrupt;
 mod invocation;
+mod live;
 mod manual;
 mod on_ranks;
 mod replay;

@@ -1,10 +1,10 @@
-//! `farsa replay`: trials of a run, or of a protocol's cases; and `farsa live`.
+//! `farsa replay`: trials of a run, or of a protocol's cases.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::command::arguments::subcommands::{LiveArgs, ReplayArgs};
+use crate::command::arguments::subcommands::ReplayArgs;
 use crate::command::cli::say;
 use crate::command::invocation::Invocation;
 use crate::error::Error;
@@ -12,15 +12,8 @@ use crate::escaped::escaped;
 use crate::evaluation::replayed::Replayed;
 use crate::evaluation::{protocols, replay};
 use crate::json::pretty;
-use crate::live::page;
 use crate::run::world_choice;
-use crate::store::bounded;
 use crate::store::replace::create_result;
-
-/// The most bytes of a module.
-const MOST_MODULE: u64 = 100_000_000;
-/// What begins a file that is compressed by gzip.
-const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 impl Invocation<'_, '_> {
     pub(super) fn replay(&self, args: &ReplayArgs) -> Result<(), Error> {
@@ -43,22 +36,6 @@ impl Invocation<'_, '_> {
                 self.replayed(args, protocols::replay::page(&plan, &directory, choice, other, path)?)
             }
         }
-    }
-
-    /// Writes a page that runs an agent by itself.
-    pub(super) fn live(&self, args: &LiveArgs) -> Result<(), Error> {
-        let (directory, plan) = self.existing(&args.directory)?;
-        let given = args.module.as_deref().map(|path| bounded::read(path, MOST_MODULE)).transpose()?;
-        let module = given
-            .as_deref()
-            .or_else(|| self.laboratory.live_module())
-            .ok_or_else(|| Error::Usage("this program has no module for pages: give one with --module".into()))?;
-        if !module.starts_with(&GZIP) {
-            return Err(Error::Usage("the module is not compressed by gzip".into()));
-        }
-        let generations = &args.generations;
-        let found = page::page(self.laboratory, (&plan, &directory), generations, module, &args.html)?;
-        self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
     }
 
     /// Says what a replay came to, beside the steps.

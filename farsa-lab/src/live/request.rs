@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
+use crate::live::bytes::Bytes;
+use crate::live::script::Evolved;
+
 /// What is asked.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
@@ -25,6 +28,12 @@ pub(crate) enum Request {
     },
     /// The names of what can be changed.
     Names,
+    /// Another individual, to be asked for by the number that is the answer.
+    Add { individual: Evolved },
+    /// What a part of the generation that evolution has come to earns.
+    Share { part: usize, parts: usize },
+    /// What all parts have come to: the next generation is made.
+    Tell { outcomes: Vec<Bytes> },
 }
 
 /// Which trial.
@@ -48,6 +57,18 @@ pub(crate) struct Filmed {
     /// No number if it failed.
     pub(crate) fitness: f64,
     pub(crate) success: bool,
+}
+
+/// The number by which an individual is asked for.
+#[derive(Debug, Serialize)]
+pub(crate) struct Added {
+    pub(crate) individual: usize,
+}
+
+/// What a part of a generation came to.
+#[derive(Debug, Serialize)]
+pub(crate) struct Shared {
+    pub(crate) outcomes: Bytes,
 }
 
 /// What came of fresh trials.

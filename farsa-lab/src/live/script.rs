@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::live::standing::Standing;
+
 /// A run's configuration and some of its individuals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Script {
@@ -9,6 +11,9 @@ pub(crate) struct Script {
     pub(crate) config: String,
     /// At least one.
     pub(crate) individuals: Vec<Evolved>,
+    /// Where evolution goes on from, if it can.
+    #[serde(default)]
+    pub(crate) standing: Option<Standing>,
 }
 
 /// An individual of a run.

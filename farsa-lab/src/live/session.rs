@@ -16,15 +16,19 @@ use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::Outcome;
 use crate::live::digest::Digest;
-use crate::live::request::{Earned, Filmed, Request, Trial};
+use crate::live::evolution::Evolution;
+use crate::live::request::{Added, Earned, Filmed, Request, Shared, Trial};
 use crate::live::script::{Evolved, Script};
 use crate::run::config_file::ConfigFile;
+use crate::run::evaluations::round;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 
 /// Most fresh trials of a request: a page asks again, and shows how far it has come.
 const MOST_FRESH: usize = 10_000;
-/// Fresh trials side by side.
+/// Most individuals of a session.
+const MOST_INDIVIDUALS: usize = 10_000;
+/// Trials side by side.
 const LANES: usize = 8;
 
 /// An agent in memory: it runs trials of an experiment, whole or changed, as `farsa replay` and `farsa test` do, without files
@@ -38,6 +42,8 @@ pub struct LiveSession {
     name: &'static str,
     seed: u64,
     individuals: Vec<Agent>,
+    /// None where evolution cannot go on here.
+    evolution: Option<Evolution>,
 }
 
 /// An individual, ready to be evaluated.
@@ -47,6 +53,18 @@ struct Agent {
 }
 
 impl Agent {
+    /// # Errors
+    /// [`Error::Other`] for an individual of another experiment.
+    fn new(own: Evolved, evaluator: &dyn Evaluator) -> Result<Self, Error> {
+        let (expected, found) = (evaluator.parameters().len(), own.parameters.len());
+        if expected != found {
+            return Err(Error::Other(format!("script: an individual of {found} parameters where {expected} are")));
+        }
+        let normalisation = own.normalisation.as_deref().map(ObservationStatistics::from_saved).transpose();
+        let normalisation = normalisation.map_err(|error| Error::Other(format!("script: {error}")))?;
+        Ok(Self { own, normalisation })
+    }
+
     /// Whom it met in a trial, one of each other population.
     fn met(&self, trial: u32) -> Vec<&[f32]> {
         self.own.opponents.get(trial as usize).into_iter().flatten().map(Vec::as_slice).collect()
@@ -61,16 +79,15 @@ impl LiveSession {
     pub fn open(laboratory: &Laboratory<'_>, script: &str) -> Result<Self, Error> {
         let script: Script = serde_json::from_str(script).map_err(|error| Error::Other(format!("script: {error}")))?;
         let plan = Plan::from_file(laboratory, &ConfigFile::parse("config.toml", &script.config)?)?;
-        let agent = |own: Evolved| {
-            let normalisation = own.normalisation.as_deref().map(ObservationStatistics::from_saved).transpose();
-            normalisation.map(|normalisation| Agent { own, normalisation })
-        };
-        let individuals = script.individuals.into_iter().map(agent).collect::<Result<Vec<_>, _>>();
-        let individuals = individuals.map_err(|error| Error::Other(format!("script: {error}")))?;
+        let evaluator = plan.evaluator()?;
+        let agent = |own: Evolved| Agent::new(own, evaluator.as_ref());
+        let individuals: Vec<Agent> = script.individuals.into_iter().map(agent).collect::<Result<_, _>>()?;
         if individuals.is_empty() {
             return Err(Error::Other("script: it has no individual".into()));
         }
-        Ok(Self { evaluator: plan.evaluator()?, name: plan.experiment.name(), seed: plan.seed, individuals })
+        let resumed = |standing| Evolution::resume(&plan, evaluator.as_ref(), standing);
+        let evolution = script.standing.map(resumed).transpose()?;
+        Ok(Self { evaluator, name: plan.experiment.name(), seed: plan.seed, individuals, evolution })
     }
 
     /// Answers a request; what is wrong with one is the answer `{"error": ...}`.
@@ -92,15 +109,41 @@ impl LiveSession {
         match request {
             Request::Film { individual, trial, lesion } => json(&self.film(individual, trial, &lesion)?),
             Request::Fresh { individual, lesion, seed, first, count } => {
+                use_lanes(self.evaluator.as_mut())?;
                 json(&self.fresh(individual, &lesion, seed, first..first.saturating_add(count))?)
             }
             Request::Names => json(&self.names()),
+            Request::Add { individual } => json(&self.add(individual)?),
+            Request::Share { part, parts } => {
+                use_lanes(self.evaluator.as_mut())?;
+                let outcomes = going_on(&mut self.evolution)?.share(self.evaluator.as_mut(), part, parts)?;
+                json(&Shared { outcomes })
+            }
+            Request::Tell { outcomes } => {
+                json(&going_on(&mut self.evolution)?.tell(self.evaluator.as_mut(), &outcomes)?)
+            }
         }
+    }
+
+    /// Adds an individual behind the others.
+    fn add(&mut self, individual: Evolved) -> Result<Added, Error> {
+        let place = self.individuals.len();
+        if place >= MOST_INDIVIDUALS {
+            return Err(Error::Usage(format!("a page holds {MOST_INDIVIDUALS} individuals at most")));
+        }
+        self.individuals.push(Agent::new(individual, self.evaluator.as_ref())?);
+        Ok(Added { individual: place })
     }
 
     /// Kinds of trials.
     pub(crate) fn trials(&self) -> usize {
         self.evaluator.trials()
+    }
+
+    /// The names of the populations, where there are several.
+    pub(crate) fn populations(&self) -> Vec<String> {
+        let names = self.evaluator.populations();
+        if names.len() > 1 { names } else { Vec::new() }
     }
 
     /// Runs and records a trial.
@@ -177,6 +220,11 @@ impl LiveSession {
     }
 }
 
+/// The search, if there is one.
+fn going_on(evolution: &mut Option<Evolution>) -> Result<&mut Evolution, Error> {
+    evolution.as_mut().ok_or_else(|| Error::Usage("evolution does not go on here".into()))
+}
+
 /// An individual by its place in the script.
 fn one(individuals: &[Agent], place: usize) -> Result<&Agent, Error> {
     let count = individuals.len();
@@ -191,16 +239,16 @@ fn schema(evaluator: &dyn Evaluator, individual: &Evolved) -> Schema {
 
 /// Evaluates these, in lanes where the experiment has them; their numbers are their places.
 fn evaluated(evaluator: &mut dyn Evaluator, all: Vec<Evaluation<'_>>) -> Vec<Outcome> {
-    let lanes = Lanes::new(LANES, Instructions::detect());
-    if let (Some(in_lanes), Ok(lanes)) = (evaluator.in_lanes(), lanes)
-        && in_lanes.use_lanes(lanes).is_ok()
-    {
-        let mut found: Vec<Outcome> = vec![Outcome::failed(); all.len()];
-        let mut rest = all.into_iter();
-        in_lanes.evaluate_all(&mut || rest.next(), &mut |number, outcome| found[number] = outcome);
-        return found;
-    }
-    all.into_iter().map(|evaluation| evaluator.evaluate(evaluation, None)).collect()
+    let mut found: Vec<Outcome> = vec![Outcome::failed(); all.len()];
+    let mut rest = all.into_iter();
+    round(evaluator, &mut || rest.next(), &mut |number, outcome| found[number] = outcome);
+    found
+}
+
+/// Puts trials side by side where the experiment can.
+fn use_lanes(evaluator: &mut dyn Evaluator) -> Result<(), Error> {
+    let lanes = Lanes::new(LANES, Instructions::detect())?;
+    evaluator.in_lanes().map_or(Ok(()), |in_lanes| in_lanes.use_lanes(lanes))
 }
 
 /// Anything as JSON for programs.

@@ -20,7 +20,6 @@ mod port;
 #[cfg(test)]
 #[cfg(feature = "command")]
 pub(crate) mod threads;
-#[cfg(feature = "command")]
-mod wire;
+pub(crate) mod wire;
 
 pub use port::{Alone, Ranks};

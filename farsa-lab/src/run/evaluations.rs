@@ -22,10 +22,10 @@ pub(crate) trait Evaluations {
     ///
     /// # Errors
     /// [`Unfinished`] where there are fewer: nothing then comes of the generation.
-    fn evaluate<'g>(
+    fn evaluate(
         &mut self,
         count: usize,
-        task: &TaskOf<'_, 'g>,
+        task: &TaskOf<'_, '_>,
         done: &Heard<'_>,
     ) -> Result<Vec<Option<Outcome>>, Unfinished>;
 

@@ -211,10 +211,10 @@ impl Evaluations for Stoppable<'_, '_> {
         self.pool.genotype()
     }
 
-    fn evaluate<'g>(
+    fn evaluate(
         &mut self,
         count: usize,
-        task: &TaskOf<'_, 'g>,
+        task: &TaskOf<'_, '_>,
         done: &Heard<'_>,
     ) -> Result<Vec<Option<Outcome>>, Unfinished> {
         self.pool.evaluate(count, self.stop, task, done)

@@ -25,7 +25,9 @@ const SCRIPTS: &[&str] = &[
 
 /// What a live page may do beyond a film: compile its module, in a worker that it makes itself.
 const LIVE_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:";
-const LIVE_SCRIPT: &str = include_str!("viewer/live.js");
+/// What a page that is served may do besides: ask who serves it.
+const SERVED_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src 'self'";
+const LIVE_SCRIPT: &str = concat!(include_str!("viewer/live.js"), include_str!("viewer/evolve.js"));
 
 /// A page of recorded episodes, to be looked at in a browser: bodies in space, strips of everything that has a value,
 /// and the network, all on one clock.
@@ -81,7 +83,7 @@ impl Page {
         if let Some(beside) = self.beside {
             data["beside"] = beside.into();
         }
-        composed(&self.title, &data, false)
+        composed(&self.title, &data, Kind::Film)
     }
 }
 
@@ -96,11 +98,26 @@ pub(crate) fn data_head(title: &str, from_above: bool) -> Value {
     })
 }
 
-/// The page of these data; a live one may run WebAssembly in a worker of its own, and a film may not.
-pub(crate) fn composed(title: &str, data: &Value, live: bool) -> String {
+/// What a page may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Show what was recorded.
+    Film,
+    /// Run WebAssembly in workers of its own.
+    Live,
+    /// The same, and ask who serves it.
+    Served,
+}
+
+/// The page of these data.
+pub(crate) fn composed(title: &str, data: &Value, kind: Kind) -> String {
     // No text of a recording can end the element that holds it.
     let data = data.to_string().replace('<', "\\u003c");
-    let (policy, more) = if live { (LIVE_POLICY, LIVE_SCRIPT) } else { ("", "") };
+    let (policy, more) = match kind {
+        Kind::Film => ("", ""),
+        Kind::Live => (LIVE_POLICY, LIVE_SCRIPT),
+        Kind::Served => (SERVED_POLICY, LIVE_SCRIPT),
+    };
     let parts = [
         ("{{policy}}", policy.to_owned()),
         ("{{title}}", escaped(title)),

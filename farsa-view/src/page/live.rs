@@ -1,11 +1,14 @@
 //! A page whose trials are run by the page itself.
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
+use std::io::Write as _;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde_json::{Value, json};
 
 use crate::error::Error;
-use crate::page::html::{composed, data_head};
+use crate::page::base85::base85;
+use crate::page::html::{Kind, composed, data_head};
 
 /// A page that runs an agent by itself, by a module of WebAssembly that lies in it.
 ///
@@ -17,10 +20,14 @@ pub struct LivePage {
     pub title: String,
     /// Whether it looks from above.
     pub from_above: bool,
+    /// Whether it is served by a program that tells what a run comes to: at `events`, by server-sent events.
+    pub served: bool,
     /// The module, compressed by gzip.
     pub module: Vec<u8>,
     /// What the module opens: JSON.
     pub script: String,
+    /// What the script is opened with as its `standing` where evolution goes on, if it can: JSON.
+    pub standing: Option<String>,
     /// What the viewer is told of the agent: JSON.
     pub about: String,
 }
@@ -29,16 +36,37 @@ impl LivePage {
     /// The whole file.
     ///
     /// # Errors
-    /// [`Error::NotJson`] where the script or what is told of it is none.
+    /// [`Error::NotJson`] where the script, what is told of it or where evolution stands is none.
     pub fn html(&self) -> Result<String, Error> {
         let parsed =
             |text: &str| serde_json::from_str::<Value>(text).map_err(|error| Error::NotJson(error.to_string()));
         let (script, about) = (parsed(&self.script)?, parsed(&self.about)?);
+        let standing = match &self.standing {
+            Some(text) => parsed(text).map(|_| packed(&compressed(text.as_bytes())))?,
+            None => Value::Null,
+        };
         let mut data = data_head(&self.title, self.from_above);
         data["lives"] = json!([]);
-        data["live"] = json!({ "script": script, "about": about, "module": STANDARD.encode(&self.module) });
-        Ok(composed(&self.title, &data, true))
+        data["live"] = json!({
+            "script": script,
+            "about": about,
+            "module": packed(&self.module),
+            "standing": standing,
+            "served": self.served,
+        });
+        Ok(composed(&self.title, &data, if self.served { Kind::Served } else { Kind::Live }))
     }
+}
+
+/// Compressed bytes as they stand in a page: as text, with their number.
+fn packed(compressed: &[u8]) -> Value {
+    json!({ "gzip": base85(compressed), "bytes": compressed.len() })
+}
+
+fn compressed(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    // Writing into a vector cannot fail.
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -51,8 +79,10 @@ mod tests {
         let page = LivePage {
             title: "a <b>".into(),
             from_above: true,
+            served: false,
             module: vec![1, 2, 3],
             script: r#"{"config":"x = \"</script>\""}"#.into(),
+            standing: None,
             about: "[1]".into(),
         };
         let html = page.html().unwrap();
@@ -61,12 +91,16 @@ mod tests {
         let (text, _) = rest.split_once("</script>").unwrap();
         let data: Value = serde_json::from_str(text).unwrap();
         assert_eq!(
-            (&data["title"], &data["view"], &data["live"]["module"]),
-            (&"a <b>".into(), &"top".into(), &"AQID".into())
+            (&data["title"], &data["view"], &data["live"]["module"], &data["live"]["standing"]),
+            (&"a <b>".into(), &"top".into(), &json!({ "gzip": base85(&[1, 2, 3]), "bytes": 3 }), &Value::Null)
         );
         assert_eq!(data["live"]["script"]["config"], "x = \"</script>\"");
         let film = Page::new("film").html();
         assert!(!film.contains("wasm-unsafe-eval") && !film.contains("DecompressionStream"));
+        // Nothing but a served page may ask anybody for anything.
+        let served = LivePage { served: true, ..page.clone() }.html().unwrap();
+        assert!(served[..2000].contains("wasm-unsafe-eval") && served[..2000].contains("connect-src 'self'"));
+        assert!(!html.contains("connect-src") && !film.contains("connect-src"));
         let wrong = LivePage { script: "{".into(), ..page };
         assert!(matches!(wrong.html(), Err(Error::NotJson(_))));
     }

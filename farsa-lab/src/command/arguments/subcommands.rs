@@ -62,6 +62,8 @@ pub(crate) enum Command {
     Replay(ReplayArgs),
     /// Write a page in which the agent of a run lives
     Live(LiveArgs),
+    /// Serve this page on this machine while a run goes on
+    Serve(ServeArgs),
     /// Draw a moment of a trial as a picture
     Draw(DrawArgs),
     /// Write a page about one or many runs
@@ -325,6 +327,22 @@ pub(crate) struct LiveArgs {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) module: Option<PathBuf>,
     /// Write the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct ServeArgs {
+    /// The run's directory
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
+    /// The port of 127.0.0.1; 0 is any that is free
+    #[arg(long, value_name = "N", default_value_t = 8377)]
+    pub(crate) port: u16,
+    /// The experiments as WebAssembly, compressed by gzip, in place of those of this program
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) module: Option<PathBuf>,
+    /// Write the address as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }

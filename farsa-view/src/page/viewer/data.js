@@ -2,7 +2,7 @@
 // The data of the page, docs/replay-format.md. All is checked before anything is drawn: a page that was cut or changed
 // says so and shows no number that was not recorded.
 
-const {abs, cos, floor, hypot, max, min, round, sin} = Math;
+const {abs, ceil, cos, floor, hypot, max, min, round, sin} = Math;
 
 class Damage extends Error {}
 

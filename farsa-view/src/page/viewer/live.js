@@ -11,9 +11,7 @@ function inWorker() {
 	};
 	const acts = {
 		async open({module, script}) {
-			const packed = Uint8Array.from(atob(module), (c) => c.charCodeAt(0));
-			const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-			own = (await WebAssembly.instantiate(await new Response(stream).arrayBuffer())).instance.exports;
+			own = (await WebAssembly.instantiate(module)).exports;
 			give(script);
 			const wrong = said(own.open());
 			if (wrong) throw new Error(wrong);
@@ -32,8 +30,20 @@ function inWorker() {
 	};
 }
 
-// The agent in its worker; `ask` is answered in the order of asking.
-function agentOf({module, script}) {
+// What is packed in the page, by `read` of a response.
+function unpacked({gzip, bytes}, read) {
+	const words = new DataView(new ArrayBuffer(4*ceil(gzip.length/5)));
+	for (let at = 0; at < gzip.length; at += 5) {
+		// Letters from `(` on; two of them stand for those that JSON and HTML would write longer.
+		const word = list(5, (k) => gzip.charCodeAt(at + k)).reduce((word, c) => 85*word + (c === 125 ? 60 : c === 126 ? 92 : c) - 40, 0);
+		words.setUint32(at/5*4, word);
+	}
+	const stream = new Blob([words.buffer.slice(0, bytes)]).stream().pipeThrough(new DecompressionStream("gzip"));
+	return new Response(stream)[read]();
+}
+
+// An agent in a worker of its own; `ask` is answered in the order of asking.
+async function agentOf(module, script) {
 	const worker = new Worker(URL.createObjectURL(new Blob([`"use strict";(${inWorker})()`], {type: "text/javascript"})));
 	const waiting = new Map();
 	worker.onmessage = ({data: {id, found, error}}) => {
@@ -48,7 +58,8 @@ function agentOf({module, script}) {
 		waiting.set(next, [done, failed]);
 		worker.postMessage({id: next++, act, ...rest});
 	});
-	return {open: () => send("open", {module, script: JSON.stringify(script)}), ask: (request) => send("ask", {request})};
+	await send("open", {module, script: JSON.stringify(script)});
+	return {ask: (request) => send("ask", {request})};
 }
 
 // The trial of an answer, ready for the player.
@@ -62,15 +73,16 @@ function trialOf(page, {film}, index) {
 async function liveOf(page) {
 	need(window.WebAssembly && window.Worker && window.DecompressionStream, "this browser has no WebAssembly");
 	const {live} = page;
-	const agent = agentOf(live);
-	await agent.open();
+	const module = await WebAssembly.compile(await unpacked(live.module, "arrayBuffer"));
+	const agent = await agentOf(module, live.script);
+	const open = (standing) => agentOf(module, {...live.script, standing});
 	// The trial of the run that earned most comes first.
 	const told = live.about.individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
 	const state = {individual: live.about.individuals.length - 1, trial: {number: best}, changes: new Map()};
 	const answer = await agent.ask({do: "film", ...asked(state), lesion: ""});
 	page.trials = [trialOf(page, answer, 0)];
-	return {attach: (player) => attach(page, agent, state, answer, player)};
+	return {attach: (player) => attach(page, agent, state, answer, player, open)};
 }
 
 const asked = ({individual, trial}) => ({individual, trial});
@@ -106,12 +118,11 @@ function pick(label, some, act) {
 }
 
 // The panel with its controls; `acts` are what they do.
-function controlsOf({live: {about, script}}, acts) {
-	const individuals = about.individuals.map(({generation}, i) => [i, `generation ${generation}`]);
+function controlsOf({live: {script}}, acts) {
 	const value = Object.assign(make("input"), {type: "number", step: "any", placeholder: "value"});
 	value.setAttribute("aria-label", "Value");
 	const own = {
-		generation: pick("Generation", individuals, (place) => acts.change({individual: +place})),
+		generation: pick("Generation", [], (place) => acts.change({individual: +place})),
 		trial: pick("Trial that is run", [], (number) => number !== "" && acts.change({trial: {number: +number}})),
 		fresh: button("New start", acts.fresh), value, part: make("b", "", NONE), parts: pick("Part", [["", "part ..."]], acts.choose),
 		apply: button("Change", () => acts.alter(value.value)), cut: button("Silence or cut", () => acts.alter("")),
@@ -124,13 +135,28 @@ function controlsOf({live: {about, script}}, acts) {
 		bar("parts", "value", "apply", "cut"), bar("noise", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
 		make("details", "", make("summary", "", "Configuration"), make("pre", "", script.config)));
 	panel.id = "live";
-	own.generation.hidden = !individuals[1];
 	$("network").before(panel);
 	return own;
 }
 
+// How many of a hundred fresh trials succeed with each list of changes, ten at a time; `counted` keeps what is known.
+async function hundred(agent, individual, lists, counted, say) {
+	const [text, keyOf] = [[], (list) => `${individual} ${list}`];
+	for (const lesion of lists) {
+		const [key, whose] = [keyOf(lesion), lesion ? "with the change" : "whole"];
+		for (let [first, successes] = [0, 0]; !counted.has(key); first += 10) {
+			successes += (await agent.ask({do: "fresh", individual, lesion, seed: 1, first, count: 10})).successes;
+			say([...text, `${whose}: ${successes} of ${first + 10} ...`].join("; "));
+			if (first === 90) counted.set(key, successes);
+		}
+		text.push(`${whose}: ${counted.get(key)} of 100`);
+	}
+	say(text.join("; "));
+	return lists.map((list) => counted.get(keyOf(list)));
+}
+
 // Gives a live page its panel.
-function attach(page, agent, state, first, player) {
+function attach(page, agent, state, first, player, open) {
 	const {about} = page.live;
 	const counted = new Map();
 	let [answer, turn, chosen] = [first, 0, ""];
@@ -153,12 +179,15 @@ function attach(page, agent, state, first, player) {
 
 	// The controls say what is chosen.
 	function marks() {
-		const told = about.individuals[state.individual].trials.map((trial, i) => [i, `trial ${i}: ${earnedBy(trial)}`]);
+		const known = about.individuals[state.individual].trials;
+		const told = list(about.trials, (i) => [i, known[i] ? `trial ${i}: ${earnedBy(known[i])}` : `trial ${i}`]);
 		const {fresh} = state.trial;
+		own.generation.replaceChildren(...options(about.individuals.map(({generation, name}, i) => [i, `generation ${generation}${name ?? ""}`])));
+		own.generation.hidden = !about.individuals[1];
 		own.trial.replaceChildren(...options(fresh ? [["", `fresh start ${fresh.number}`], ...told] : told));
 		own.trial.value = fresh ? "" : state.trial.number;
 		own.generation.value = state.individual;
-		own.verify.disabled = !!fresh;
+		own.verify.disabled = !!fresh || !known.length;
 		own.undo.disabled = !state.changes.size;
 		own.chips.replaceChildren(...[...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show()))));
 	}
@@ -185,32 +214,32 @@ function attach(page, agent, state, first, player) {
 		}
 	}
 
-	// Fresh trials with the changes and without, ten at a time.
+	// Fresh trials with the changes and without.
 	async function test() {
-		const lists = ["", listOf(state)].filter((list, i) => !i || list);
-		const keyOf = (list) => `${state.individual} ${list}`;
 		own.hundred.disabled = true;
-		const text = [];
-		for (const list of lists) {
-			const [key, whose] = [keyOf(list), list ? "with the change" : "whole"];
-			for (let [first, successes] = [0, 0]; !counted.has(key); first += 10) {
-				successes += (await agent.ask({do: "fresh", individual: state.individual, lesion: list, seed: 1, first, count: 10})).successes;
-				own.earned.textContent = [...text, `${whose}: ${successes} of ${first + 10} ...`].join("; ");
-				if (first === 90) counted.set(key, successes);
-			}
-			text.push(`${whose}: ${counted.get(key)} of 100`);
-		}
-		own.earned.textContent = text.join("; ");
+		const lists = ["", listOf(state)].filter((list, i) => !i || list);
+		const found = await hundred(agent, state.individual, lists, counted, (text) => (own.earned.textContent = text));
 		own.hundred.disabled = false;
-		return lists.map((list) => counted.get(keyOf(list)));
+		return found;
 	}
 
 	// Whether the trial is that of the run.
 	async function verify() {
 		const {fresh, number} = state.trial;
-		const found = fresh ? "A fresh start is no trial of the run" : compared(answer, about.individuals[state.individual].trials[number]);
+		const told = about.individuals[state.individual].trials[number];
+		const found = fresh ? "A fresh start is no trial of the run" : told ? compared(answer, told) : "The run has no trial of whom this page has evolved";
 		say(found);
 		return found;
+	}
+
+	// Shows the first of individuals that are not of the page, with a name for each.
+	async function showMore(more, names) {
+		const place = about.individuals.length;
+		for (const [i, individual] of more.entries()) {
+			await agent.ask({do: "add", individual});
+			about.individuals.push({generation: individual.generation, trials: [], name: names[i]});
+		}
+		return change({individual: place, trial: {number: state.trial.number ?? 0}});
 	}
 
 	graphChosen = (node) => node && choose(partOf(node));
@@ -222,5 +251,6 @@ function attach(page, agent, state, first, player) {
 	}, (error) => say(error.message));
 	choose("");
 	marks();
-	farsa.live = {set, undo, start: (trial) => change({trial}), test, verify};
+	const {run, rows} = evolutionOf(page, open, showMore);
+	farsa.live = {evolve: run, rows, set, undo, start: (trial) => change({trial}), test, verify};
 }

@@ -1,0 +1,192 @@
+//! Evolution that goes on in memory, generation after generation, shared by any number of sessions that hold the same search.
+
+use farsa_evo::{ObservationStatistics, Snapshot as _};
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::experiment::evaluator::Evaluator;
+use crate::experiment::genotype::Genotype;
+use crate::experiment::outcome::Outcome;
+use crate::live::bytes::Bytes;
+use crate::live::script::Evolved;
+use crate::live::standing::Standing;
+use crate::ranks::wire::Outcomes;
+use crate::run::evaluations::{Evaluations, Heard, TaskOf, Unfinished, round};
+use crate::run::plan::Plan;
+use crate::run::progression::{Evaluated, Progression};
+use crate::store::log::Line;
+use crate::strategy::opponents::Hall;
+use crate::strategy::search::Search;
+
+/// Sessions that share a generation at most.
+const MOST_PARTS: usize = 1024;
+
+/// What came of a generation.
+#[derive(Debug, Serialize)]
+pub(crate) struct Bred {
+    generation: u32,
+    line: Line,
+    /// The best of each population.
+    champions: Vec<Evolved>,
+}
+
+/// A search that goes on.
+pub(crate) struct Evolution {
+    progression: Progression,
+    genotype: Genotype,
+}
+
+impl Evolution {
+    /// The search of a plan where it stood.
+    ///
+    /// # Errors
+    /// [`Error::Other`] for a state that is none of the plan's strategy.
+    pub(crate) fn resume(plan: &Plan<'_>, evaluator: &dyn Evaluator, standing: Standing) -> Result<Self, Error> {
+        let wrong = |why: &str| Error::Other(format!("script: where evolution stands: {why}"));
+        let mut search = plan.strategy()?;
+        let snapshot = search.snapshot().ok_or_else(|| wrong("the strategy cannot save its state"))?;
+        snapshot.restore(&standing.state.0).map_err(|error| wrong(&error.to_string()))?;
+        if search.generation() != standing.generation {
+            return Err(wrong("it is at another generation"));
+        }
+        let populations = search.populations();
+        let floats = standing.hall.floats();
+        let each = evaluator.parameters().len().max(1);
+        if !floats.len().is_multiple_of(populations * each) {
+            return Err(wrong("its champions are of another length"));
+        }
+        let of_generation = |all: &[f32]| all.chunks(each).map(<[f32]>::to_vec).collect();
+        let hall = Hall::from_champions(floats.chunks(populations * each).map(of_generation).collect());
+        let observed = match standing.observed {
+            Some(bytes) => {
+                Some(ObservationStatistics::from_saved(&bytes.0).map_err(|error| wrong(&error.to_string()))?)
+            }
+            None => None,
+        };
+        let progression = Progression::new(search, hall, observed, plan.seed);
+        Ok(Self { progression, genotype: plan.genotype(evaluator) })
+    }
+
+    /// Evaluates a part of the present generation: of `parts` that are as large, the one with this number.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a part that there is not, and what keeps the generation from being evaluated.
+    pub(crate) fn share(&mut self, evaluator: &mut dyn Evaluator, part: usize, parts: usize) -> Result<Bytes, Error> {
+        if part >= parts || parts > MOST_PARTS {
+            return Err(Error::Usage(format!("part {part} of {parts}; at most {MOST_PARTS}, the first is 0")));
+        }
+        let mut share = Share { evaluator, genotype: &self.genotype, part, parts, found: Vec::new() };
+        match self.progression.generation(&mut share, &|| {}, |_, _| Ok(())) {
+            Err(Unfinished::Error(error)) => Err(error),
+            // A share alone is never a generation.
+            Ok(_) | Err(Unfinished::Stopped) => {
+                let bytes = postcard::to_stdvec(&Outcomes::from_numbered(&share.found));
+                bytes.map(Bytes).map_err(|error| Error::Other(format!("outcomes: {error}")))
+            }
+        }
+    }
+
+    /// Tells the strategy what all parts of the generation came to, which makes the next.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for outcomes that are none, or not all.
+    pub(crate) fn tell(&mut self, evaluator: &mut dyn Evaluator, parts: &[Bytes]) -> Result<Bred, Error> {
+        let wrong = |why: &str| Error::Usage(format!("outcomes: {why}"));
+        let mut all = Vec::new();
+        for bytes in parts {
+            let outcomes: Outcomes = postcard::from_bytes(&bytes.0).map_err(|error| wrong(&error.to_string()))?;
+            all.extend(outcomes.into_numbered().ok_or_else(|| wrong("a name is missing"))?);
+        }
+        all.sort_by_key(|(number, _)| *number);
+        let generation = self.progression.search.generation();
+        let mut gathered = Gathered { evaluator, genotype: &self.genotype, all };
+        let found = self.progression.generation(&mut gathered, &|| {}, Search::tell_unrecorded);
+        let Evaluated { fitness, statistics, each, best, met, normalisation, .. } =
+            found.map_err(|error| match error {
+                Unfinished::Error(error) => error,
+                Unfinished::Stopped => wrong("they are not those of a whole generation"),
+            })?;
+        let normalisation = normalisation.map(|statistics| statistics.save());
+        let champions = best.iter().zip(met).filter_map(|(best, opponents)| {
+            let (individual, parameters) = (best.individual, best.genes.decode(&self.genotype)?);
+            Some(Evolved { generation, individual, parameters, opponents, normalisation: normalisation.clone() })
+        });
+        Ok(Bred { generation, line: Line::new(&statistics, fitness.len(), &each), champions: champions.collect() })
+    }
+}
+
+/// Evaluates every so many, and never all.
+struct Share<'s> {
+    evaluator: &'s mut dyn Evaluator,
+    genotype: &'s Genotype,
+    part: usize,
+    parts: usize,
+    found: Vec<(usize, Option<Outcome>)>,
+}
+
+impl Evaluations for Share<'_> {
+    fn evaluator(&self) -> &dyn Evaluator {
+        self.evaluator
+    }
+
+    fn genotype(&self) -> &Genotype {
+        self.genotype
+    }
+
+    fn evaluate(
+        &mut self,
+        count: usize,
+        task: &TaskOf<'_, '_>,
+        done: &Heard<'_>,
+    ) -> Result<Vec<Option<Outcome>>, Unfinished> {
+        let mut numbers = (self.part..count).step_by(self.parts);
+        let (mut left_out, mut ended) = (Vec::new(), Vec::new());
+        let mut next = || {
+            for number in numbers.by_ref() {
+                match task(number) {
+                    None => left_out.push((number, None)),
+                    evaluation => return evaluation,
+                }
+            }
+            None
+        };
+        let mut end = |number: usize, outcome: Outcome| {
+            done(number, Some(&outcome));
+            ended.push((number, Some(outcome)));
+        };
+        round(self.evaluator, &mut next, &mut end);
+        ended.append(&mut left_out);
+        self.found = ended;
+        Err(Unfinished::Stopped)
+    }
+}
+
+/// Has all outcomes already.
+struct Gathered<'s> {
+    evaluator: &'s mut dyn Evaluator,
+    genotype: &'s Genotype,
+    /// In their order.
+    all: Vec<(usize, Option<Outcome>)>,
+}
+
+impl Evaluations for Gathered<'_> {
+    fn evaluator(&self) -> &dyn Evaluator {
+        self.evaluator
+    }
+
+    fn genotype(&self) -> &Genotype {
+        self.genotype
+    }
+
+    fn evaluate(
+        &mut self,
+        count: usize,
+        _task: &TaskOf<'_, '_>,
+        _done: &Heard<'_>,
+    ) -> Result<Vec<Option<Outcome>>, Unfinished> {
+        if self.all.iter().map(|(number, _)| *number).ne(0..count) {
+            return Err(Unfinished::Stopped);
+        }
+        Ok(std::mem::take(&mut self.all).into_iter().map(|(_, outcome)| outcome).collect())
+    }
+}

@@ -1,0 +1,119 @@
+// Evolution that goes on in the page: workers share each generation, and all tell the strategy the same.
+
+const CURVES = [["best", 1], ["mean", 2]];
+
+// The fitness of generations as two lines, as wide as the panel.
+function paintFitness(svg, rows) {
+	const known = rows.filter((row) => row[1] !== null && row[2] !== null);
+	const [first, last] = [known[0]?.[0], known.at(-1)?.[0]];
+	const values = known.flatMap((row) => [row[1], row[2]]);
+	const [low, high] = [min(...values), max(...values)];
+	const at = (row, of) => `${(300*(row[0] - first)/(last - first || 1)).toFixed(1)},${(58 - 56*(row[of] - low)/(high - low || 1)).toFixed(1)}`;
+	svg.replaceChildren(...CURVES.map(([name, of]) => {
+		const line = document.createElementNS(svg.namespaceURI, "polyline");
+		line.setAttribute("class", name);
+		line.setAttribute("points", known.map((row) => at(row, of)).join(" "));
+		return line;
+	}));
+	svg.setAttribute("aria-label", known.length ? `Fitness of generations ${first} to ${last}, from ${shortest(low)} to ${shortest(high)}` : "No fitness yet");
+}
+
+const shortest = (x) => (x === null ? "failed" : `${+x.toPrecision(4)}`);
+
+// The panel, and how evolution goes on; `open` makes one more agent that stands where it is told, `show` shows individuals under names.
+function evolutionOf({live: {about, standing, served}}, open, show) {
+	const rows = [...about.history];
+	const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+	svg.setAttribute("viewBox", "0 0 300 60");
+	svg.setAttribute("preserveAspectRatio", "none");
+	svg.setAttribute("role", "img");
+	const [said, status] = [make("p"), make("p", "soft")];
+	let [workers, going, latest] = [null, null, null];
+	const own = {go: button("Evolve on", () => toggle()), champion: button("Show its champion", champion)};
+	own.champion.disabled = true;
+	const panel = make("section", "", make("h2", "", "Evolution"), svg, said, make("div", "bar", own.go, own.champion), status);
+	panel.id = "evolution";
+	$("network").before(panel);
+	panel.hidden = !rows.length && !standing;
+	own.go.disabled = !standing;
+	own.go.hidden = served;
+	if (served) hear();
+	else if (about.standstill) status.textContent = `It cannot go on here: ${about.standstill}.`;
+
+	// The best of each population; what is served knows that of the first.
+	function champion() {
+		const names = about.populations.map((name) => `: ${name}`);
+		return show(latest, latest.map((_, i) => `${served ? ", found since" : ", evolved here"}${names[i] ?? ""}`));
+	}
+
+	function tell() {
+		paintFitness(svg, rows);
+		const [number, best, mean] = rows.at(-1) ?? [];
+		if (!rows.length) return said.replaceChildren("No generation is finished.");
+		said.replaceChildren(`Generation ${number}: `, make("b", "best", `best ${shortest(best)}`), ", ", make("b", "mean", `mean ${shortest(mean)}`));
+	}
+
+	// One generation: each worker evaluates its part, then all are told all.
+	async function generation() {
+		if (!workers) {
+			const from = JSON.parse(await unpacked(standing, "text"));
+			workers = await Promise.all(list(max(1, min(8, navigator.hardwareConcurrency || 1)), () => open(from)));
+		}
+		const before = performance.now();
+		const shares = await Promise.all(workers.map(({ask}, part) => ask({do: "share", part, parts: workers.length})));
+		const outcomes = shares.map((share) => share.outcomes);
+		const [bred] = await Promise.all(workers.map(({ask}) => ask({do: "tell", outcomes})));
+		const {generation, line: {row}} = bred;
+		rows.push([generation, row[0], row[1]]);
+		latest = bred.champions;
+		own.champion.disabled = false;
+		tell();
+		status.textContent = `${((performance.now() - before)/1000).toFixed(2)} s a generation on ${workers.length} workers`;
+		return bred;
+	}
+
+	// Goes on for so many generations, or until it is told to stop.
+	async function run(count = Infinity) {
+		const mine = going = {};
+		own.go.textContent = "Stop";
+		const all = [];
+		try {
+			while (going === mine && all.length < count) {
+				all.push(await generation());
+				// What a page shows is bounded.
+				if (count === Infinity) all.length = 0;
+			}
+		} catch (error) {
+			status.textContent = error.message;
+		}
+		if (going === mine) going = null;
+		own.go.textContent = "Evolve on";
+		own.go.disabled = false;
+		return all;
+	}
+
+	// Hears what the run comes to from who serves the page.
+	function hear() {
+		const events = new EventSource(`events?from=${rows.length ? rows.at(-1)[0] + 1 : 0}`);
+		events.onopen = () => (status.textContent = "As the run goes on.");
+		events.onerror = () => (status.textContent = "Nobody serves this page now; it asks again.");
+		events.addEventListener("fitness", ({data}) => {
+			rows.push(...JSON.parse(data).filter(([number]) => number > (rows.at(-1)?.[0] ?? -1)));
+			tell();
+		});
+		events.addEventListener("champion", ({data}) => {
+			latest = [JSON.parse(data)];
+			own.champion.disabled = false;
+		});
+	}
+
+	function toggle() {
+		if (!going) return run();
+		going = null;
+		own.go.disabled = true;
+		own.go.textContent = "Stops after this generation";
+	}
+
+	tell();
+	return {run, rows};
+}
