@@ -227,7 +227,7 @@ impl ComposedExperiment {
             let batch = Batch::new(model.clone(), lanes.count(), lanes.instructions());
             batch.map_err(|error| Error::Other(error.to_string()))
         };
-        Ok(Box::new(InWorld::new(world, Composed(episode)).with_lanes(batch)))
+        Ok(Box::new(InWorld::new(world, Composed(episode)).with_lanes(batch).with_displacements()))
     }
 
     #[cfg(feature = "rapier")]

@@ -1,11 +1,11 @@
 // Tests the page of `farsa replay --html` in a real browser.
 //
-//   node tests/browser/run.mjs [PAGE.html TRIAL.csv [SCREENSHOTS [LIVE.html LESION.json [EVOLVING.html FITNESS.csv [ADDRESS]]]]]
+//   node tests/browser/run.mjs [PAGE.html TRIAL.csv [SCREENSHOTS [LIVE.html LESION.json [EVOLVING.html FITNESS.csv [ADDRESS [ARM.html]]]]]]
 //
 // PAGE.html is a page of a trial, TRIAL.csv what `farsa replay` says of the same trial; without them an invented trial takes
 // their place. LIVE.html is a page of `farsa live`, LESION.json what `farsa test --lesion` says of the same agent without one neuron.
 // EVOLVING.html is a page of an unfinished run, FITNESS.csv that of the run three generations later.
-// ADDRESS is where `farsa serve` serves a run that goes on. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package.
+// ADDRESS is where `farsa serve` serves a run that goes on, ARM.html a live page of `reach-grasp-lift`. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -22,7 +22,7 @@ setTimeout(() => {
   process.exit(1);
 }, 600_000).unref();
 
-const [page, csv, shots, livePage, lesionFile, evolvingPage, evolvedLog, servedPage] = process.argv.slice(2);
+const [page, csv, shots, livePage, lesionFile, evolvingPage, evolvedLog, servedPage, armPage] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "farsa-pages-"));
 let failed = 0;
 if (shots) mkdirSync(shots, { recursive: true });
@@ -761,6 +761,40 @@ async function serves(browser) {
   await silent(browser, "served");
 }
 
+// A body that is dragged is elsewhere in a trial beside the one of the run, and only then.
+async function moves(browser) {
+  await opened(browser, pathToFileURL(resolve(armPage)));
+  const press = (text) => browser.run((text) => [...document.querySelectorAll("#live button")].find((one) => one.textContent === text).click(), text);
+  const poses = () => browser.run(() => farsa.trials.map((trial) => [farsa.tick, farsa.tick + 1].map((tick) => trial.pose(tick, trial.bodies.indexOf("sphere")).position)));
+  const seen = () => browser.run(() => farsa.project(farsa.pose(0, "sphere").position));
+  await browser.run(() => farsa.pause());
+  await browser.run(() => farsa.seek(100));
+  await press("Move bodies");
+  await settled(browser);
+  const [[before]] = await poses();
+  const { x, y } = await seen();
+  await browser.drag([[x, y], [x + 10, y + 4], [x + 40, y + 10]]);
+  await browser.until(() => farsa.trials.length === 2 && document.querySelector("#live p.soft").textContent.startsWith("With the change"));
+  const [[whole], [same, moved]] = await poses();
+  const way = moved.map((at, i) => at - before[i]);
+  // A film of other places has other steps between its numbers.
+  const near = (other) => Math.hypot(...other.map((at, i) => at - before[i])) < 1e-4;
+  check("a body that is dragged is elsewhere from the next step on", near(whole) && near(same) && Math.hypot(way[0], way[1]) > 0.01 && Math.abs(way[2]) < 0.02, JSON.stringify([before, whole, same, moved]));
+  const names = await browser.run(() => [farsa.trials[1].name, document.querySelector("#live .chips").textContent]);
+  check("the page says what was moved and when", names[0].endsWith("; 1 moved") && /^sphere moved at \d\.\d\d s/.test(names[1]), names.join());
+  if (shots) writeFileSync(join(shots, "moved.png"), await browser.screenshot());
+  // The hand hangs on the arm.
+  await browser.run(() => farsa.live.put({ step: 10, body: farsa.trials[0].bodies.indexOf("palm"), position: [0, 0, 1], rotation: [0, 0, 0, 1] }));
+  const said = await browser.run(() => document.querySelector("#live p.soft").textContent);
+  check("a body that hangs on others says so", /palm hangs on something/.test(said), said);
+  await press("Undo all");
+  await browser.until(() => farsa.trials.length === 1);
+  await press("Verify");
+  await browser.until(() => /Equal to the run|Differs/.test(document.querySelector("#live p.soft").textContent));
+  check("without the moves the trial is that of the run again", (await browser.run(() => document.querySelector("#live p.soft").textContent)).startsWith("Equal to the run"));
+  await silent(browser, "moves");
+}
+
 async function withoutWebAssembly(driver) {
   const browser = await driver.open();
   try {
@@ -792,6 +826,7 @@ try {
     if (livePage) await part("live", () => lives(browser));
     if (evolvingPage) await part("evolution", () => evolves(browser));
     if (servedPage) await part("served", () => serves(browser));
+    if (armPage) await part("moves", () => moves(browser));
     await part("two trials", () => compared(browser, html));
     await part("damage", () => damaged(browser, html, "page"));
   } finally {

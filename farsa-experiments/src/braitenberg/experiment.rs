@@ -106,7 +106,7 @@ pub fn evaluator(config: Config) -> Result<InWorld<World, VehicleEpisode>, Error
     let batch = move |lanes: Lanes| {
         Batch::new(&arena, lanes.count(), lanes.instructions()).map_err(|error| Error::Other(error.to_string()))
     };
-    Ok(InWorld::new(world, VehicleEpisode::new(config)?).with_lanes(batch))
+    Ok(InWorld::new(world, VehicleEpisode::new(config)?).with_lanes(batch).with_displacements())
 }
 
 impl Task for VehicleEpisode {

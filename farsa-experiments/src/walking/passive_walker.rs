@@ -205,7 +205,7 @@ impl Experiment for PassiveWalker {
 /// [`Error::Setting`] for a slope without gait, [`Error::Other`] for a body that cannot be.
 pub fn evaluator(config: Config) -> Result<InWorld<World<f64>, PassiveTrial>, Error> {
     let (model, parts) = config.model()?;
-    Ok(InWorld::new(World::new(model), PassiveTrial::new(config, parts)?))
+    Ok(InWorld::new(World::new(model), PassiveTrial::new(config, parts)?).with_displacements())
 }
 
 /// Evaluates a walker under a configuration, in rapier.

@@ -309,3 +309,59 @@ fn evolution_that_cannot_go_on_says_why() {
         assert!(error.contains(why), "{error}");
     }
 }
+
+#[test]
+fn a_body_of_a_page_is_put_elsewhere() {
+    let here = scratch("live-moves");
+    let few = "--population 4 --set evolution.parents=2 --generations 1 --quiet";
+    ok(farsa(), &here, &format!("run reach-grasp-lift {few} --out arm"));
+    ok(farsa(), &here, &format!("run foraging {few} --set trial.steps=30 --out team"));
+    let ids = json!([0, 0, 0, 1]);
+    for (run, name, position, falls) in
+        [("arm", "sphere", json!([0.3, -0.2, 0.4]), true), ("team", "nest", json!([0.5, 0.25, 0.0]), false)]
+    {
+        ok(farsa(), &here, &format!("live {run} --html {run}.html --quiet"));
+        let live = &data(&here.join(format!("{run}.html")))["live"];
+        assert_eq!(live["about"]["displaces"], true);
+        let mut session = opened(live);
+        let mut film = |moves: Value| {
+            asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "moves": moves }))
+        };
+        let whole = film(json!([]));
+        let bodies = whole["film"]["bodies"].as_array().expect("bodies");
+        let body = bodies.iter().position(|body| body == name).expect("the body");
+        let one = |body: usize| json!({ "step": 10, "body": body, "position": position, "rotation": ids });
+        let moved = film(json!([one(body)]));
+        let first = |other: &Value| {
+            let both = |film: &Value, at: usize| film["digests"][at].clone();
+            (0..20).position(|at| both(&whole, at) != both(other, at))
+        };
+        // Whatever comes of it comes from that step on.
+        assert_eq!(first(&moved), Some(10), "{name}");
+        assert_eq!(film(json!([one(body)]))["digests"], moved["digests"]);
+        assert!(!falls || moved["steps"] != whole["steps"] || moved["fitness"] != whole["fitness"]);
+        // After the end nothing is left to move, and a body on joints stays where it is.
+        assert_eq!(
+            film(json!([{ "step": 100_000, "body": body, "position": position, "rotation": ids }]))["digests"],
+            whole["digests"]
+        );
+        if falls {
+            assert_eq!(film(json!([one(0)]))["digests"], whole["digests"]);
+        }
+        for (wrong, why) in [
+            (one(1000), "body 1000 of"),
+            (json!({ "step": 1, "body": 0, "position": [0, 0, 1], "rotation": [0, 0, 0, 0] }), "turned by"),
+            (json!({ "step": 1, "body": 0, "position": [0, 0, 1e39], "rotation": ids }), "a body at"),
+        ] {
+            let error = film(json!([wrong]))["error"].as_str().expect("an error").to_owned();
+            assert!(error.contains(why), "{error}");
+        }
+    }
+    catcher(&here);
+    ok(farsa(), &here, "live catcher --html catcher.html --quiet");
+    let mut session = opened(&data(&here.join("catcher.html"))["live"]);
+    let moves = json!([{ "step": 1, "body": 0, "position": [0, 0, 1], "rotation": ids }]);
+    let refused =
+        asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "moves": moves }));
+    assert!(refused["error"].as_str().expect("an error").contains("has no bodies that can be put elsewhere"));
+}

@@ -246,7 +246,8 @@ pub(crate) fn run_trials(
         let Asked { case, intervention } = *trials.cases.get(number / count / trials.count)?;
         let id = EpisodeId { individual: (population * size) as u32, ..episode(trial, kinds, trials.seed) };
         let (parameters, opponents) = (champions.get(population)?, others.get(population)?);
-        Some(Evaluation { number, parameters, opponents, normalisation, id, case, intervention })
+        let plain = Evaluation::new(parameters, id);
+        Some(Evaluation { number, opponents, normalisation, case, intervention, ..plain })
     };
     let done = |number: usize, _: Option<&Outcome>| {
         if number.is_multiple_of(count) {

@@ -248,6 +248,6 @@ where
             let batch = Batch::new(&arena, lanes.count(), lanes.instructions());
             batch.map_err(|error| Error::Other(error.to_string()))
         };
-        Ok(Self::new(world, rollout).with_lanes::<Batch>(batch))
+        Ok(Self::new(world, rollout).with_lanes::<Batch>(batch).with_displacements())
     }
 }

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::controller_export::{ControllerExport, StartExport};
+use crate::experiment::displacement::Displacement;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
@@ -171,12 +172,23 @@ pub struct Evaluation<'p> {
     pub case: Option<CaseId>,
     /// What else is done to the controller, where a test asks for that \[[`Task::anatomy`]\].
     pub intervention: Option<&'p Intervention>,
+    /// Bodies that are put elsewhere in its course \[[`Evaluator::displaces`]\]; none in a run and in a test.
+    pub displacements: &'p [Displacement],
 }
 
 impl<'p> Evaluation<'p> {
-    /// A trial of these parameters, number 0, without opponents, normalised observations, a case or an intervention.
+    /// A trial of these parameters, number 0, without opponents, normalised observations, a case or anything that is done to it.
     pub fn new(parameters: &'p [f32], id: EpisodeId) -> Self {
-        Self { number: 0, parameters, opponents: &[], normalisation: None, id, case: None, intervention: None }
+        Self {
+            number: 0,
+            parameters,
+            opponents: &[],
+            normalisation: None,
+            id,
+            case: None,
+            intervention: None,
+            displacements: &[],
+        }
     }
 }
 
@@ -194,6 +206,11 @@ pub trait Evaluator: Task {
     /// then dropped and made again. [`InWorld`](crate::InWorld) ends a trial at its [step budget](Task::step_budget); a loop of
     /// one's own has to end by itself.
     fn evaluate(&mut self, evaluation: Evaluation<'_>, recorder: Option<&mut dyn Recorder>) -> Outcome;
+
+    /// Whether bodies are put elsewhere where an evaluation says so; by default they are not.
+    fn displaces(&self) -> bool {
+        false
+    }
 
     /// How trials are evaluated side by side, if they can be.
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {

@@ -1,11 +1,12 @@
 //! An evaluator made of a world and an episode.
 
-use farsa_body::{Recorder, World};
+use farsa_body::{Arrange, BodyId, Handles, Recorder, World};
 use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
+use crate::experiment::displacement::{Displaced, Place, place};
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Task};
 use crate::experiment::in_lanes::{Batch, run_in_lanes};
@@ -105,12 +106,14 @@ pub struct InWorld<W, R> {
     budget: Option<u64>,
     make: Option<Make<R>>,
     lanes: Option<Box<dyn SideBySide<R>>>,
+    /// How bodies are put elsewhere, where they can be.
+    place: Option<Place<W>>,
 }
 
 impl<W, R> InWorld<W, R> {
     /// Evaluates this episode in this world.
     pub fn new(world: W, rollout: R) -> Self {
-        Self { world, rollout, budget: None, make: None, lanes: None }
+        Self { world, rollout, budget: None, make: None, lanes: None, place: None }
     }
 
     /// And side by side in batches that `batch` makes of the world's description.
@@ -128,6 +131,15 @@ impl<W, R> InWorld<W, R> {
             Ok(Box::new(InBatch { batch, episodes }))
         }));
         self
+    }
+
+    /// And where an evaluation says so, bodies are put elsewhere.
+    #[must_use]
+    pub fn with_displacements(self) -> Self
+    where
+        W: Arrange + Handles<Body = BodyId>,
+    {
+        Self { place: Some(place), ..self }
     }
 
     /// The episode.
@@ -201,8 +213,20 @@ where
         }
         let budget = *self.budget.get_or_insert_with(|| self.rollout.step_budget());
         let mut limited = Limited::new(&mut self.rollout, budget);
-        run_episode(&mut limited, &mut self.world, evaluation.id, recorder);
+        match self.place.filter(|_| !evaluation.displacements.is_empty()) {
+            Some(place) => {
+                let mut displaced = Displaced::new(&mut limited, evaluation.displacements, place);
+                run_episode(&mut displaced, &mut self.world, evaluation.id, recorder);
+            }
+            None => {
+                run_episode(&mut limited, &mut self.world, evaluation.id, recorder);
+            }
+        }
         limited.stopped().unwrap_or_else(|| self.rollout.outcome())
+    }
+
+    fn displaces(&self) -> bool {
+        self.place.is_some()
     }
 
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
@@ -229,7 +253,19 @@ where
         done: &mut dyn FnMut(usize, Outcome),
     ) {
         if let Some(lanes) = &mut self.lanes {
-            lanes.evaluate_all(next, done);
+            // In lanes nothing is put elsewhere.
+            let mut alone = Vec::new();
+            let mut plain = || loop {
+                let evaluation = next()?;
+                if evaluation.displacements.is_empty() {
+                    return Some(evaluation);
+                }
+                alone.push(evaluation);
+            };
+            lanes.evaluate_all(&mut plain, done);
+            for evaluation in alone {
+                done(evaluation.number, self.evaluate(evaluation, None));
+            }
             return;
         }
         while let Some(evaluation) = next() {

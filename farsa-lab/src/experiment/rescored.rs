@@ -90,6 +90,10 @@ impl Evaluator for Rescored {
         rescore(&self.score, self.inner.evaluate(evaluation, recorder))
     }
 
+    fn displaces(&self) -> bool {
+        self.inner.displaces()
+    }
+
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
         if self.inner.in_lanes().is_some() { Some(self) } else { None }
     }

@@ -38,6 +38,8 @@ const MOST_STANDING: usize = 400_000;
 struct About {
     /// Kinds of trials.
     trials: usize,
+    /// Whether bodies can be put elsewhere.
+    displaces: bool,
     /// Of several populations, their names.
     populations: Vec<String>,
     individuals: Vec<AboutIndividual>,
@@ -189,6 +191,7 @@ fn about(laboratory: &Laboratory<'_>, script: &Script, text: &str) -> Result<Abo
     let kinds = session.trials();
     let mut told = About {
         trials: kinds,
+        displaces: session.displaces(),
         populations: session.populations(),
         individuals: Vec::new(),
         history: Vec::new(),
@@ -197,7 +200,7 @@ fn about(laboratory: &Laboratory<'_>, script: &Script, text: &str) -> Result<Abo
     for (place, Evolved { generation, individual, .. }) in script.individuals.iter().enumerate() {
         let mut trials = Vec::new();
         for trial in 0..kinds as u32 {
-            let found = session.film(place, Trial::Number(trial), "")?;
+            let found = session.film(place, Trial::Number(trial), "", &[])?;
             let stride = found.digests.len().div_ceil(MOST_DIGESTS).max(1);
             let last = found.digests.len().saturating_sub(1);
             let kept = found.digests.iter().enumerate().filter(|(tick, _)| (tick + 1) % stride == 0 || *tick == last);

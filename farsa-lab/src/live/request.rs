@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
+use crate::experiment::Displacement;
 use crate::live::bytes::Bytes;
 use crate::live::script::Evolved;
 
@@ -10,12 +11,15 @@ use crate::live::script::Evolved;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum Request {
-    /// A trial of an individual, step by step, with changes of its controller: a list, or none.
+    /// A trial of an individual, step by step, with changes of its controller, a list or none, and with bodies that are put
+    /// elsewhere.
     Film {
         individual: usize,
         trial: Trial,
         #[serde(default)]
         lesion: String,
+        #[serde(default)]
+        moves: Vec<Displacement>,
     },
     /// What comes of so many fresh trials, from one of a number on, with changes.
     Fresh {

@@ -1,5 +1,6 @@
 //! The agent that a script describes, and its trials.
 
+use farsa_body::BodyId;
 use farsa_evo::ObservationStatistics;
 use farsa_num::Instructions;
 use farsa_view::{Page, Recording, Schema};
@@ -9,12 +10,12 @@ use serde_json::value::RawValue;
 use crate::error::Error;
 use crate::evaluation::trials::episode;
 use crate::evaluation::trials::{came_to, facts, fitness};
-use crate::experiment::PartNames;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::Outcome;
+use crate::experiment::{Displacement, PartNames};
 use crate::live::digest::Digest;
 use crate::live::evolution::Evolution;
 use crate::live::request::{Added, Earned, Filmed, Request, Shared, Trial};
@@ -28,6 +29,8 @@ use crate::run::plan::Plan;
 const MOST_FRESH: usize = 10_000;
 /// Most individuals of a session.
 const MOST_INDIVIDUALS: usize = 10_000;
+/// Most bodies of a trial that are put elsewhere.
+const MOST_MOVES: usize = 1000;
 /// Trials side by side.
 const LANES: usize = 8;
 
@@ -107,7 +110,7 @@ impl LiveSession {
 
     fn answered(&mut self, request: Request) -> Result<String, Error> {
         match request {
-            Request::Film { individual, trial, lesion } => json(&self.film(individual, trial, &lesion)?),
+            Request::Film { individual, trial, lesion, moves } => json(&self.film(individual, trial, &lesion, &moves)?),
             Request::Fresh { individual, lesion, seed, first, count } => {
                 use_lanes(self.evaluator.as_mut())?;
                 json(&self.fresh(individual, &lesion, seed, first..first.saturating_add(count))?)
@@ -140,6 +143,11 @@ impl LiveSession {
         self.evaluator.trials()
     }
 
+    /// Whether bodies can be put elsewhere.
+    pub(crate) fn displaces(&self) -> bool {
+        self.evaluator.displaces()
+    }
+
     /// The names of the populations, where there are several.
     pub(crate) fn populations(&self) -> Vec<String> {
         let names = self.evaluator.populations();
@@ -147,7 +155,18 @@ impl LiveSession {
     }
 
     /// Runs and records a trial.
-    pub(crate) fn film(&mut self, individual: usize, trial: Trial, lesion: &str) -> Result<Filmed, Error> {
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for what there is not.
+    pub(crate) fn film(
+        &mut self,
+        individual: usize,
+        trial: Trial,
+        lesion: &str,
+        moves: &[Displacement],
+    ) -> Result<Filmed, Error> {
+        let schema = schema(self.evaluator.as_ref(), &one(&self.individuals, individual)?.own);
+        let displacements = &self.displacements(moves, &schema)?;
         let intervention = self.intervention(lesion)?;
         let Self { evaluator, individuals, seed, .. } = self;
         let (individual, kinds) = (one(individuals, individual)?, evaluator.trials());
@@ -159,13 +178,17 @@ impl LiveSession {
             Trial::Number(trial) => return Err(Error::Usage(format!("trial {trial} of {kinds} (the first is 0)"))),
             Trial::Fresh { number, seed } => (episode(number, kinds, seed), format!("fresh trial {number}")),
         };
-        let mut digest = Digest::new(Recording::new(schema(evaluator.as_ref(), &individual.own)));
+        let mut digest = Digest::new(Recording::new(schema));
         let (opponents, normalisation) = (&individual.met(id.trial)[..], individual.normalisation.as_ref());
         let plain = Evaluation::new(&individual.own.parameters, id);
-        let evaluation = Evaluation { opponents, normalisation, intervention: intervention.as_ref(), ..plain };
+        let intervention = intervention.as_ref();
+        let evaluation = Evaluation { opponents, normalisation, intervention, displacements, ..plain };
         let outcome = evaluator.evaluate(evaluation, Some(&mut digest));
         let (recording, digests) = digest.into_parts();
-        let with = if lesion.is_empty() { String::new() } else { format!("; with {lesion}") };
+        let mut with = if lesion.is_empty() { String::new() } else { format!("; with {lesion}") };
+        if !displacements.is_empty() {
+            with += &format!("; {} moved", displacements.len());
+        }
         let came = came_to(evaluator.as_ref(), &outcome);
         let mut page = Page::new("");
         page.add(&format!("{name}: {came}{with}"), facts(evaluator.as_ref(), &outcome), recording);
@@ -203,6 +226,30 @@ impl LiveSession {
             successes: outcomes.iter().filter(|outcome| outcome.success).count(),
             fitness: fitness.collect(),
         })
+    }
+
+    /// Moves of the bodies of a film, as the world has them.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for what cannot be put elsewhere, and too much of it.
+    fn displacements(&self, moves: &[Displacement], schema: &Schema) -> Result<Vec<Displacement>, Error> {
+        if !moves.is_empty() && !self.evaluator.displaces() {
+            return Err(Error::Usage(format!("experiment `{}` has no bodies that can be put elsewhere", self.name)));
+        }
+        if moves.len() > MOST_MOVES {
+            return Err(Error::Usage(format!("{} moves of bodies, at most {MOST_MOVES}", moves.len())));
+        }
+        let seen: Vec<BodyId> = schema.shown().collect();
+        let one = |one: &Displacement| {
+            let Displacement { position, rotation, body, .. } = *one;
+            let length = rotation.iter().map(|x| x * x).sum::<f32>();
+            if !position.iter().all(|x| x.is_finite()) || !(0.5..2.0).contains(&length) {
+                return Err(Error::Usage(format!("a body at {position:?}, turned by {rotation:?}")));
+            }
+            let none = || Error::Usage(format!("body {body} of {} (the first is 0)", seen.len()));
+            Ok(Displacement { body: seen.get(usize::from(body)).ok_or_else(none)?.0, ..*one })
+        };
+        moves.iter().map(one).collect()
     }
 
     /// What a list of changes says; none of an empty list.

@@ -235,15 +235,7 @@ pub(crate) fn evaluate_all(
         let alive = trial < failed[individual].load(Ordering::Relaxed);
         let opponents = opponents.get(number);
         let own = parameters.get(individual).filter(|_| alive);
-        own.map(|parameters| Evaluation {
-            number,
-            parameters,
-            opponents,
-            normalisation,
-            id,
-            case: None,
-            intervention: None,
-        })
+        own.map(|parameters| Evaluation { number, opponents, normalisation, ..Evaluation::new(parameters, id) })
     };
     let heard = |number: usize, outcome: Option<&Outcome>| {
         if outcome.is_some_and(|outcome| !outcome.is_finite()) {

@@ -27,7 +27,8 @@ const SCRIPTS: &[&str] = &[
 const LIVE_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:";
 /// What a page that is served may do besides: ask who serves it.
 const SERVED_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src 'self'";
-const LIVE_SCRIPT: &str = concat!(include_str!("viewer/live.js"), include_str!("viewer/evolve.js"));
+const LIVE_SCRIPT: &str =
+    concat!(include_str!("viewer/live.js"), include_str!("viewer/evolve.js"), include_str!("viewer/move.js"));
 
 /// A page of recorded episodes, to be looked at in a browser: bodies in space, strips of everything that has a value,
 /// and the network, all on one clock.

@@ -79,7 +79,7 @@ async function liveOf(page) {
 	// The trial of the run that earned most comes first.
 	const told = live.about.individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
-	const state = {individual: live.about.individuals.length - 1, trial: {number: best}, changes: new Map()};
+	const state = {individual: live.about.individuals.length - 1, trial: {number: best}, changes: new Map(), moves: []};
 	const answer = await agent.ask({do: "film", ...asked(state), lesion: ""});
 	page.trials = [trialOf(page, answer, 0)];
 	return {attach: (player) => attach(page, agent, state, answer, player, open)};
@@ -127,12 +127,13 @@ function controlsOf({live: {script}}, acts) {
 		fresh: button("New start", acts.fresh), value, part: make("b", "", NONE), parts: pick("Part", [["", "part ..."]], acts.choose),
 		apply: button("Change", () => acts.alter(value.value)), cut: button("Silence or cut", () => acts.alter("")),
 		noise: button("Noise 0.1", () => acts.set("noise:0.1", "")), undo: button("Undo all", acts.undo),
+		move: button("Move bodies", () => own.move.setAttribute("aria-pressed", own.move.getAttribute("aria-pressed") !== "true")),
 		chips: make("p", "chips"), hundred: button("100 fresh trials", acts.test), verify: button("Verify", acts.verify),
 		earned: make("p"), status: make("p", "soft"),
 	};
 	const bar = (...names) => make("div", "bar", ...names.map((name) => own[name]));
 	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "fresh"), make("p", "", "Change: ", own.part),
-		bar("parts", "value", "apply", "cut"), bar("noise", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
+		bar("parts", "value", "apply", "cut"), bar("noise", "move", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
 		make("details", "", make("summary", "", "Configuration"), make("pre", "", script.config)));
 	panel.id = "live";
 	$("network").before(panel);
@@ -161,12 +162,12 @@ function attach(page, agent, state, first, player, open) {
 	const counted = new Map();
 	let [answer, turn, chosen] = [first, 0, ""];
 	const set = (name, to) => {
-		const before = state.changes;
-		state.changes = new Map(before).set(name, to);
+		const before = {...state};
+		state.changes = new Map(before.changes).set(name, to);
 		return show(before);
 	};
 	const change = (what) => (Object.assign(state, what), show());
-	const undo = () => (state.changes.clear(), show());
+	const undo = () => (state.changes.clear(), (state.moves = []), show());
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
 	const own = controlsOf(page, {set, change, undo, fresh, choose, test, verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
@@ -188,18 +189,21 @@ function attach(page, agent, state, first, player, open) {
 		own.trial.value = fresh ? "" : state.trial.number;
 		own.generation.value = state.individual;
 		own.verify.disabled = !!fresh || !known.length;
-		own.undo.disabled = !state.changes.size;
-		own.chips.replaceChildren(...[...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show()))));
+		own.undo.disabled = !state.changes.size && !state.moves.length;
+		const lesions = [...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show())));
+		const moves = state.moves.map((one) => button(`${one.name} moved at ${one.time.toFixed(2)} s ×`, () => (state.moves = state.moves.filter((other) => other !== one), show())));
+		own.chips.replaceChildren(...lesions, ...moves);
 	}
 
 	// Runs the trial as it is, and with the changes beside it on one clock.
-	async function show(before = state.changes) {
+	async function show(before = {...state}) {
 		const [mine, list] = [++turn, listOf(state)];
+		const moves = state.moves.map(({step, body, position, rotation}) => ({step, body, position, rotation}));
 		marks();
 		say("runs ...");
 		try {
 			const intact = await agent.ask({do: "film", ...asked(state), lesion: ""});
-			const changed = list && await agent.ask({do: "film", ...asked(state), lesion: list});
+			const changed = (list || moves[0]) && await agent.ask({do: "film", ...asked(state), lesion: list, moves});
 			if (mine !== turn) return;
 			answer = intact;
 			page.trials.splice(0, 2, ...[intact, changed].filter(Boolean).map((one, i) => trialOf(page, one, i)));
@@ -208,7 +212,7 @@ function attach(page, agent, state, first, player, open) {
 			say(changed ? `With the change: ${earnedBy(changed)}.` : "");
 		} catch (error) {
 			// A change that is none is taken back.
-			state.changes = before;
+			Object.assign(state, before);
 			marks();
 			say(error.message);
 		}
@@ -242,6 +246,19 @@ function attach(page, agent, state, first, player, open) {
 		return change({individual: place, trial: {number: state.trial.number ?? 0}});
 	}
 
+	// A body was put elsewhere: the trial runs anew with that.
+	async function put(move, trial) {
+		state.moves = [...state.moves, {...move, name: trial.bodies[move.body], time: trial.times[move.step - 1]}];
+		await show();
+		const [whole, moved] = page.trials;
+		if (!moved || move.step >= min(whole.ticks, moved.ticks)) return;
+		const [from, to] = [whole, moved].map((one) => one.pose(move.step, move.body).position);
+		if (hypot(...sub(to, from)) < 0.1*hypot(...sub(move.position, from))) say(`${trial.bodies[move.body]} hangs on something and stays where it is.`);
+	}
+
+	own.move.hidden = !about.displaces;
+	carry(player, () => own.move.getAttribute("aria-pressed") === "true", put);
+
 	graphChosen = (node) => node && choose(partOf(node));
 	agent.ask({do: "names"}).then((kinds) => {
 		const some = kinds.filter(({kind}) => kind !== "link").flatMap(({kind, names}) => names.map((name) => [`${kind}:${name}`, `${kind} ${name}`]));
@@ -252,5 +269,5 @@ function attach(page, agent, state, first, player, open) {
 	choose("");
 	marks();
 	const {run, rows} = evolutionOf(page, open, showMore);
-	farsa.live = {evolve: run, rows, set, undo, start: (trial) => change({trial}), test, verify};
+	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), set, undo, start: (trial) => change({trial}), test, verify};
 }

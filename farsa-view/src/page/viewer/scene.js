@@ -105,7 +105,7 @@ function shadowsOf(gl) {
 
 // The shapes of a trial at a tick, each with its place and colour.
 function placedAt(trial, tick) {
-	const poses = trial.bodies.map((_, b) => trial.between(tick, b));
+	const poses = trial.bodies.map((_, b) => (trial.held?.body === b ? trial.held : trial.between(tick, b)));
 	return trial.shapes.map((shape) => {
 		const {position, rotation} = poses[shape.body] || HOME;
 		// Neighbours along a chain differ a little, so that joints are seen, and walls from the floor.
