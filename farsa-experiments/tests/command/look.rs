@@ -123,6 +123,9 @@ fn a_moment_is_drawn_from_a_named_camera() {
         ("draw r --camera frnt --out b.png", "the nearest is `front`"),
         ("draw r --time 0.5 --out b.png", "from 0.01 to 0.4 s"),
         ("draw r --out b.gif", "ends in .svg or .png"),
+        ("draw r --frames 4 --out b.svg", "with --frames its name ends in .png"),
+        ("draw r --frames 0 --out b.png", "'--frames <N>'"),
+        ("draw r --frames 4 --time 0.1 --out b.png", "cannot be used with"),
         ("draw r --size 8x8 --out b.png", "16 to 8192"),
         ("draw r --out a.png", "there is one already"),
     ] {
@@ -130,4 +133,10 @@ fn a_moment_is_drawn_from_a_named_camera() {
         assert!(said.code != Some(0) && said.err.contains(complaint), "{arguments}: {said:?}");
     }
     assert_eq!(bytes, fs::read(here.join("a.png")).expect("the picture"));
+    // Forty steps of 0.01 s as four pictures.
+    let told = ok(farsa(), &here, "draw r --frames 4 --size 60x40 --out film.png --json");
+    assert!(told.contains("\"frames\": 4") && told.contains("0.01 s to 0.40 s, 4 pictures"), "{told}");
+    let film = fs::read(here.join("film.png")).expect("the pictures");
+    let chunks = |name: &[u8]| film.windows(4).filter(|four| *four == name).count();
+    assert_eq!([b"acTL", b"fcTL", b"IDAT", b"fdAT"].map(|name| chunks(name)), [1, 4, 1, 3]);
 }

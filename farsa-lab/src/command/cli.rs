@@ -179,8 +179,9 @@ impl<'e> Invocation<'e, '_> {
                     let found = sheet::draw(&plan, &directory, &wish, &args.out)?;
                     return self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found));
                 }
-                let camera = args.camera.as_deref();
-                let found = draw::draw(&plan, &directory, args.which(), args.time, camera, args.size, &args.out)?;
+                let (which, camera) = (args.which(), args.camera.as_deref());
+                let wish = draw::Wish { which, time: args.time, frames: args.frames, camera, size: args.size };
+                let found = draw::draw(&plan, &directory, wish, &args.out)?;
                 self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
             }
             Command::Report(args) => {

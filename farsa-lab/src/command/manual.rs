@@ -114,6 +114,7 @@ fn examples_of_each(program: &str, experiment: &str, run: &str, other: &str) -> 
             vec![
                 format!("draw {run} --out end.svg"),
                 format!("draw {run} --trial 2 --time 1.5 --camera {} --out moment.png", Camera::NAMES[1]),
+                format!("draw {run} --trial best --frames 60 --out trial.png"),
                 format!("draw {run} --protocol start-positions --trial 2 --out cases.svg"),
             ],
         ),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use farsa_view::{Camera, Recording};
+use farsa_view::{Camera, Picture, Recording};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -13,6 +13,8 @@ use crate::store::replace::create_results;
 
 /// Width and height of a picture where none are asked for.
 const SIZE: (u32, u32) = (1200, 800);
+/// The same of each of several.
+const SIZE_OF_FRAMES: (u32, u32) = (480, 320);
 /// The same for a picture in a report.
 const REPORT_SIZE: [u32; 2] = [600, 400];
 /// Largest width and height.
@@ -42,8 +44,9 @@ pub(crate) struct Drawn {
     /// The whole trial, of which the picture is a moment.
     #[serde(flatten)]
     replay: ReplaySummary,
-    /// The moment [s].
+    /// The moment [s]; of several pictures the first.
     time: f64,
+    frames: usize,
     camera: &'static str,
     width: u32,
     height: u32,
@@ -52,52 +55,83 @@ pub(crate) struct Drawn {
     pub(crate) summary: String,
 }
 
-/// Draws the moment `time` \[s\] of a trial, by default its last, and writes it to a new file.
+/// What a picture is to show, and how.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wish<'w> {
+    pub(crate) which: Which,
+    /// The moment \[s\], by default the last.
+    pub(crate) time: Option<f64>,
+    /// So many moments from the first to the last in its place, one after the other.
+    pub(crate) frames: Option<u32>,
+    pub(crate) camera: Option<&'w str>,
+    /// Width and height \[pixels\].
+    pub(crate) size: Option<(u32, u32)>,
+}
+
+/// Draws a moment of a trial, or several as an animation, and writes it to a new file.
 ///
 /// Of the trials the first is drawn if none is named.
-pub(crate) fn draw(
-    plan: &Plan<'_>,
-    directory: &Directory,
-    which: Which,
-    time: Option<f64>,
-    camera: Option<&str>,
-    size: Option<(u32, u32)>,
-    path: &Path,
-) -> Result<Drawn, Error> {
+///
+/// # Errors
+/// [`Error::Usage`] for what cannot be drawn, those of [`Replayable::find`], [`Error::Io`].
+pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path: &Path) -> Result<Drawn, Error> {
     let format = Format::from_path(path)?;
-    let camera = camera.map(Camera::named).transpose()?;
-    let (width, height) = size.unwrap_or(SIZE);
+    let camera = wish.camera.map(Camera::named).transpose()?;
+    let (width, height) = wish.size.unwrap_or(if wish.frames.is_some() { SIZE_OF_FRAMES } else { SIZE });
     if !(16..=LARGEST).contains(&width) || !(16..=LARGEST).contains(&height) {
         return Err(Error::Usage(format!("a picture of {width}x{height}: each side is 16 to {LARGEST} pixels")));
     }
-    let mut replayable = Replayable::find(plan, directory, which)?;
+    if wish.frames.is_some() && matches!(format, Format::Svg) {
+        return Err(Error::Usage(format!("{}: with --frames its name ends in .png", path.display())));
+    }
+    let mut replayable = Replayable::find(plan, directory, wish.which)?;
     let trial = replayable.trials.start;
     let mut recording = Recording::new(replayable.schema());
     let outcome = replayable.run(trial, &mut recording)?;
-    let tick = tick_at(&recording, time)?;
     let camera = camera.unwrap_or(Camera::for_view(recording.schema().view));
-    let mut picture = recording.picture(tick).ok_or_else(|| {
-        Error::Usage(format!("{}: trials of `{}` have no bodies to draw", directory.path().display(), plan.name()))
-    })?;
-    let seconds = recording.times()[tick];
+    let ticks = match wish.frames {
+        None => vec![tick_at(&recording, wish.time)?],
+        Some(frames) => ticks_of(tick_at(&recording, None)?, frames as usize),
+    };
+    let nothing =
+        || Error::Usage(format!("{}: trials of `{}` have no bodies to draw", directory.path().display(), plan.name()));
+    let pictures = ticks.iter().map(|tick| recording.picture(*tick)).collect::<Option<Vec<_>>>();
+    let mut pictures = pictures.filter(|pictures| !pictures.is_empty()).ok_or_else(nothing)?;
+    let seconds = recording.times()[ticks[0]];
     let Replayable { generation, individual, .. } = replayable;
-    let caption =
+    let mut caption =
         format!("{}, generation {generation}, individual {individual}, trial {trial}, {seconds:.2} s", plan.name());
-    picture.caption = Some(caption.clone());
-    let bytes = match format {
-        Format::Png => picture.png(camera, [width, height])?,
-        Format::Svg => picture.svg(camera, [width, height], "p").into_bytes(),
+    let last = recording.times()[ticks[ticks.len() - 1]];
+    let frames = pictures.len();
+    let bytes = match (wish.frames, format) {
+        (Some(_), _) => {
+            caption = format!("{caption} to {last:.2} s, {frames} pictures");
+            let each = 1000.0 * (last - seconds) / (frames.max(2) - 1) as f64;
+            Picture::animated_png(&pictures, camera, [width, height], each.clamp(10.0, 60_000.0) as u16)?
+        }
+        (None, Format::Png) => pictures[0].png(camera, [width, height])?,
+        (None, Format::Svg) => {
+            pictures[0].caption = Some(caption.clone());
+            pictures[0].svg(camera, [width, height], "p").into_bytes()
+        }
     };
     create_results(&[(path.to_owned(), bytes)])?;
     Ok(Drawn {
         replay: replayable.summary(plan, directory, std::slice::from_ref(&outcome)),
         time: seconds,
+        frames,
         camera: camera.name(),
         width,
         height,
         file: path.display().to_string(),
         summary: format!("{caption}, camera {}: {width}x{height}", camera.name()),
     })
+}
+
+/// So many ticks from the first to the last, as evenly as can be; fewer where there are fewer.
+fn ticks_of(last: usize, count: usize) -> Vec<usize> {
+    let count = count.clamp(1, last + 1);
+    (0..count).map(|frame| frame * last / (count - 1).max(1)).collect()
 }
 
 /// The end of the best trial of a run's champion, as an SVG to stand in a page; `None` if it has no bodies.
@@ -164,5 +198,12 @@ mod tests {
             assert!(error.contains("from 0.01 to 0.1 s"), "{error}");
         }
         assert!(tick_at(&Recording::default(), None).is_err());
+    }
+
+    #[test]
+    fn moments_of_an_animation_lie_evenly() {
+        assert_eq!(ticks_of(9, 4), [0, 3, 6, 9]);
+        assert_eq!(ticks_of(99, 3), [0, 49, 99]);
+        assert_eq!((ticks_of(2, 50), ticks_of(0, 5), ticks_of(9, 1)), (vec![0, 1, 2], vec![0], vec![0]));
     }
 }

@@ -9,8 +9,10 @@
 //! - `draw_order`: which outline hides which
 //! - `svg`, `svg_data`: the picture as SVG
 //! - `png`: the picture as PNG, traced ray by ray
-//! - `render`: the two as methods of a picture
+//! - `animation`: pictures one after the other as an animated PNG
+//! - `render`: these as methods of a picture
 
+mod animation;
 pub(crate) mod camera;
 mod draw_order;
 mod from_recording;

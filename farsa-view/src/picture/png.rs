@@ -28,17 +28,17 @@ pub(crate) fn png(picture: &Picture, camera: Camera, size: [u32; 2]) -> Result<V
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     let mut writer = encoder.write_header().map_err(wrong)?;
-    writer.write_image_data(pixels(picture, camera, size).as_flattened()).map_err(wrong)?;
+    let window = picture.window(camera, size);
+    writer.write_image_data(pixels(picture, &window, size).as_flattened()).map_err(wrong)?;
     writer.finish().map_err(wrong)?;
     Ok(bytes)
 }
 
 /// All pixels, row by row from the upper left corner.
-fn pixels(picture: &Picture, camera: Camera, size: [u32; 2]) -> Vec<Color> {
+pub(super) fn pixels(picture: &Picture, view: &Window, size: [u32; 2]) -> Vec<Color> {
     let [width, height] = size.map(|x| x as usize);
-    let view = picture.window(camera, size);
-    let scene = LitScene::new(picture, &view);
-    let canvas = Canvas { scene: &scene, view: &view, boxes: boxes(&scene, &view) };
+    let scene = LitScene::new(picture, view);
+    let canvas = Canvas { scene: &scene, view, boxes: boxes(&scene, view) };
     let mut pixels = vec![[0; 3]; width * height];
     // Bands of rows go to any free thread; pixels are independent, so the result is the same.
     let threads = thread::available_parallelism().map_or(1, usize::from).min(8);
@@ -57,7 +57,7 @@ fn pixels(picture: &Picture, camera: Camera, size: [u32; 2]) -> Vec<Color> {
         }
         work();
     });
-    for stroke in marks::strokes(picture, &scene, &view) {
+    for stroke in marks::strokes(picture, &scene, view) {
         paint(&mut pixels, size, &stroke);
     }
     pixels
@@ -207,7 +207,7 @@ mod tests {
         for name in Camera::NAMES {
             let camera = Camera::named(name).unwrap();
             let view = picture.window(camera, [90, 60]);
-            let pixels = pixels(&picture, camera, [90, 60]);
+            let pixels = pixels(&picture, &view, [90, 60]);
             let [x, y] = view.project([0.1, -0.2, 0.03]).unwrap();
             let color = pixels[y as usize * 90 + x as usize].map(f64::from);
             // Of the same tone: more red than green, more green than blue, as far apart as in its own colour.
@@ -217,7 +217,7 @@ mod tests {
             assert!((color[1] / own[1] / bright - 1.0).abs() < 0.2 && color[2] < 0.5 * color[0], "{name}: {color:?}");
         }
         let alone = Picture { shapes: vec![ball([0.0; 3])], ..Picture::default() };
-        let pixels = pixels(&alone, Camera::default(), [90, 60]);
+        let pixels = pixels(&alone, &alone.window(Camera::default(), [90, 60]), [90, 60]);
         for corner in [0, 89, 59 * 90, 60 * 90 - 1] {
             assert_eq!(pixels[corner], BACKGROUND);
         }
@@ -233,8 +233,9 @@ mod tests {
         for shapes in [[at(0.5, red), at(-0.5, green)], [at(-0.5, green), at(0.5, red)]] {
             let picture = Picture { shapes: shapes.to_vec(), ..Picture::default() };
             let camera = Camera::named("front").unwrap();
-            let [x, y] = picture.window(camera, [80, 80]).project([0.6, 0.0, 0.0]).unwrap();
-            let [r, g, _] = pixels(&picture, camera, [80, 80])[y as usize * 80 + x as usize];
+            let window = picture.window(camera, [80, 80]);
+            let [x, y] = window.project([0.6, 0.0, 0.0]).unwrap();
+            let [r, g, _] = pixels(&picture, &window, [80, 80])[y as usize * 80 + x as usize];
             assert!(r > 100 && g < 30, "{r} {g}");
         }
     }
@@ -248,7 +249,8 @@ mod tests {
         let mut data = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut data).unwrap();
         assert_eq!([info.width, info.height], [33, 21]);
-        assert_eq!(data, pixels(&picture, Camera::default(), [33, 21]).as_flattened());
+        let window = picture.window(Camera::default(), [33, 21]);
+        assert_eq!(data, pixels(&picture, &window, [33, 21]).as_flattened());
         assert!(png(&picture, Camera::default(), [0, 5]).is_err());
     }
 

@@ -1,6 +1,7 @@
 //! A picture as a file.
 
 use crate::error::Error;
+use crate::picture::animation::animation;
 use crate::picture::camera::Camera;
 use crate::picture::moment::Picture;
 use crate::picture::png::png;
@@ -13,6 +14,20 @@ impl Picture {
     /// [`Error::Size`] for a size that no PNG has.
     pub fn png(&self, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
         png(self, camera, size)
+    }
+
+    /// Pictures one after the other as the bytes of an animated PNG, each of `size` [pixels] and so many milliseconds long, all
+    /// through one window.
+    ///
+    /// # Errors
+    /// [`Error::Size`] for a size that no PNG has, and for no picture or more than a thousand.
+    pub fn animated_png(
+        pictures: &[Self],
+        camera: Camera,
+        size: [u32; 2],
+        milliseconds: u16,
+    ) -> Result<Vec<u8>, Error> {
+        animation(pictures, camera, size, milliseconds)
     }
 
     /// The picture as an SVG document of `size` [pixels].

@@ -365,6 +365,9 @@ pub(crate) struct DrawArgs {
     /// The moment, in seconds of the trial [default: its end]
     #[arg(long, value_name = "S")]
     pub(crate) time: Option<f64>,
+    /// So many moments from the trial's start to its end, as an animated PNG that takes as long as the trial
+    #[arg(long, value_name = "N", conflicts_with_all = ["time", "protocol"], value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: Option<u32>,
     /// The champion at the end of a trial of each case of a test protocol, as a sheet of SVG; `info` lists the protocols
     #[arg(long, value_name = "NAME", conflicts_with_all = ["generation", "individual", "time"])]
     protocol: Option<String>,
@@ -372,7 +375,7 @@ pub(crate) struct DrawArgs {
     cases: CaseArgs,
     #[arg(long, value_name = "NAME", help = camera_help())]
     pub(crate) camera: Option<String>,
-    /// Width and height in pixels [default: 1200x800; of each of a protocol's 320x260]
+    /// Width and height in pixels [default: 1200x800; with --frames 480x320; of each of a protocol's 320x260]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<(u32, u32)>,
     /// A new file, whose name ends in .svg or .png

@@ -1,0 +1,89 @@
+//! Pictures one after the other as an animated PNG.
+
+use crate::error::Error;
+use crate::picture::camera::Camera;
+use crate::picture::moment::Picture;
+use crate::picture::png::pixels;
+
+/// Most pictures of an animation.
+const MOST: usize = 1000;
+
+/// Draws pictures of `size` [pixels] that last so many milliseconds each, for ever again from the first, as the bytes of an
+/// animated PNG: all through one window, which has room for all.
+///
+/// # Errors
+/// [`Error::Size`] for a size that no PNG can have, and for no picture or more than a thousand.
+pub(crate) fn animation(
+    pictures: &[Picture],
+    camera: Camera,
+    size: [u32; 2],
+    milliseconds: u16,
+) -> Result<Vec<u8>, Error> {
+    if pictures.is_empty() || pictures.len() > MOST {
+        return Err(Error::Size { size, why: format!("{} pictures; an animation has 1 to {MOST}", pictures.len()) });
+    }
+    let wrong = |error: png::EncodingError| Error::Size { size, why: error.to_string() };
+    let window = camera.fit(pictures.iter().flat_map(|picture| picture.interest(camera.is_close())).collect(), size);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_animated(pictures.len() as u32, 0).map_err(wrong)?;
+    encoder.set_frame_delay(milliseconds, 1000).map_err(wrong)?;
+    let mut writer = encoder.write_header().map_err(wrong)?;
+    for picture in pictures {
+        writer.write_image_data(pixels(picture, &window, size).as_flattened()).map_err(wrong)?;
+    }
+    writer.finish().map_err(wrong)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::appearance::{Instance, Role};
+    use crate::shape::geometry::Geometry;
+    use farsa_body::Pose;
+
+    #[test]
+    fn all_pictures_are_seen_through_one_window() {
+        let at = |x: f64| {
+            let ball = Instance::new(Geometry::Sphere { radius: 0.1 }, Pose::at([x, 0.0, 0.0]), Role::Object);
+            Picture { shapes: vec![ball], ..Picture::default() }
+        };
+        let pictures = [at(0.0), at(0.5), at(1.0)];
+        let camera = Camera::named("top").unwrap();
+        let bytes = animation(&pictures, camera, [60, 40], 40).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes[..])).read_info().unwrap();
+        assert_eq!(
+            reader.info().animation_control().map(|control| (control.num_frames, control.num_plays)),
+            Some((3, 0))
+        );
+        let mut data = vec![0; reader.output_buffer_size().unwrap()];
+        let mut balls = Vec::new();
+        for _ in 0..3 {
+            reader.next_frame(&mut data).unwrap();
+            let frame = reader.info().frame_control().unwrap();
+            assert_eq!((frame.delay_num, frame.delay_den), (40, 1000));
+            // The ball is redder than the background: how many pixels, and where.
+            let red: Vec<usize> = data
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .enumerate()
+                .filter(|(_, c)| c[0] > c[2].saturating_add(60))
+                .map(|(i, _)| i)
+                .collect();
+            assert!(red.len() > 20, "{}", red.len());
+            let middle = |of: fn(usize) -> usize| red.iter().map(|i| of(*i) as f64).sum::<f64>() / red.len() as f64;
+            balls.push((red.len() as f64, [middle(|i| i % 60), middle(|i| i / 60)]));
+        }
+        // As large in each, and moved by as much.
+        let way = |a: usize| [0, 1].map(|i| balls[a + 1].1[i] - balls[a].1[i]);
+        let length = |[x, y]: [f64; 2]| x.hypot(y);
+        assert!(balls.iter().all(|(count, _)| (count / balls[0].0 - 1.0).abs() < 0.2), "{balls:?}");
+        assert!(length(way(0)) > 8.0 && length([way(0)[0] - way(1)[0], way(0)[1] - way(1)[1]]) < 1.0, "{balls:?}");
+        assert!(animation(&[], camera, [60, 40], 40).is_err());
+        assert!(animation(&vec![at(0.0); MOST + 1], camera, [60, 40], 40).is_err());
+    }
+}
