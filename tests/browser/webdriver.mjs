@@ -1,4 +1,4 @@
-// As much of the W3C WebDriver protocol as the tests need, over fetch to chromedriver.
+// As much of the W3C WebDriver protocol as the tests need, over fetch to chromedriver, or with BROWSER=firefox to geckodriver.
 
 import { spawn } from "node:child_process";
 import { accessSync, constants, mkdtempSync, rmSync } from "node:fs";
@@ -20,7 +20,7 @@ function find(variable, names) {
       }
     }
   }
-  throw new Error(`${names.join(" or ")} not found: install chromium and chromium-driver, or set ${variable}`);
+  throw new Error(`${names.join(" or ")} not found: install a browser and its driver, or set ${variable}`);
 }
 
 function freePort() {
@@ -33,17 +33,28 @@ function freePort() {
 }
 
 async function ask(url, method, body, limit = 60_000) {
-  const answer = await fetch(url, { method, body: body && JSON.stringify(body), signal: AbortSignal.timeout(limit) });
+  const headers = body ? { "Content-Type": "application/json" } : {};
+  const answer = await fetch(url, { method, headers, body: body && JSON.stringify(body), signal: AbortSignal.timeout(limit) });
   const { value } = await answer.json();
   if (value?.error) throw new Error(`${value.error}: ${value.message.split("\n")[0]}`);
   return value;
 }
 
-// Starts chromedriver; `stop` ends it and everything it started.
+export const isFirefox = process.env.BROWSER === "firefox";
+
+// Starts the driver; `stop` ends it and everything it started.
 export async function startDriver() {
   const port = await freePort();
   // A group of its own, so that no browser outlives it.
-  const child = spawn(find("CHROMEDRIVER", ["chromedriver"]), [`--port=${port}`, "--log-level=SEVERE"], { stdio: "ignore", detached: true });
+  const [program, args] = isFirefox
+    ? [find("GECKODRIVER", ["geckodriver"]), [`--port=${port}`, "--log=error"]]
+    : [find("CHROMEDRIVER", ["chromedriver"]), [`--port=${port}`, "--log-level=SEVERE"]];
+  // Without a screen Firefox draws by EGL alone, and by Mesa's software.
+  const env = { ...process.env, MOZ_WEBGL_FORCE_EGL: "1", LIBGL_ALWAYS_SOFTWARE: "1" };
+  const child = spawn(program, args, { env, stdio: isFirefox ? ["ignore", "pipe", "pipe"] : "ignore", detached: true });
+  // Firefox writes its console there, with words of its own parts; what it warns of is its own.
+  const said = [];
+  for (const stream of [child.stdout, child.stderr]) stream?.setEncoding("utf8").on("data", (text) => said.push(...text.split("\n").filter((line) => /^console\.(error|warn)|^JavaScript error: (file|http|blob)/.test(line) && !/resource:|RSLoader/.test(line))));
   const kill = () => {
     try {
       process.kill(-child.pid, "SIGKILL");
@@ -58,11 +69,11 @@ export async function startDriver() {
     try {
       if ((await ask(`${base}/status`, "GET")).ready) break;
     } catch (error) {
-      if (tries > 100) throw new Error(`chromedriver does not answer: ${error.message}`);
+      if (tries > 100) throw new Error(`${program} does not answer: ${error.message}`);
     }
     await sleep(100);
   }
-  return { open: (options) => Browser.open(base, options), stop: kill };
+  return { open: (options) => (isFirefox ? Firefox.open(base, { ...options, said }) : Browser.open(base, options)), stop: kill };
 }
 
 export class Browser {
@@ -152,6 +163,35 @@ export class Browser {
   async close() {
     await ask(this.url, "DELETE").catch(() => {});
     rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
+  }
+}
+
+// Firefox has no emulation of screens and preferences: those of the session stay as they were when it began.
+class Firefox extends Browser {
+  static async open(base, { size = [1280, 800], said }) {
+    const prefs = { "ui.systemUsesDarkTheme": 0, "ui.prefersReducedMotion": 1, "devtools.console.stdout.content": true, "webgl.force-enabled": true,
+      "browser.download.alwaysOpenPanel": false, "browser.download.folderList": 2, "browser.download.dir": tmpdir() };
+    const options = { binary: find("FIREFOX", ["firefox-esr", "firefox"]), args: ["-headless", "--kiosk"], prefs };
+    const capabilities = { alwaysMatch: { browserName: "firefox", "moz:firefoxOptions": options } };
+    const { sessionId } = await ask(`${base}/session`, "POST", { capabilities });
+    const browser = Object.assign(new Firefox(`${base}/session/${sessionId}`, null), { said });
+    await browser.post("timeouts", { script: 20_000, pageLoad: 40_000 });
+    await browser.post("window/rect", { width: size[0], height: size[1] });
+    return browser;
+  }
+
+  cdp() {
+    throw new Error("Firefox has no DevTools protocol of Chromium");
+  }
+
+  async media() {}
+
+  async log() {
+    return this.said.splice(0);
+  }
+
+  async close() {
+    await ask(this.url, "DELETE").catch(() => {});
   }
 }
 
