@@ -25,6 +25,8 @@ pub(crate) struct TeamTask<M> {
     layout: LeakyLayout,
     /// The population whose outcome is asked for.
     own: usize,
+    /// The robot that is recorded.
+    watched: usize,
     /// Bodies whose poses are recorded: robots and what is placed beside them.
     bodies: u16,
     interventions: Interventions,
@@ -60,7 +62,7 @@ pub(crate) fn evaluator<M: Scenario + Clone + 'static>(scenario: M) -> Result<In
         let id = EpisodeId { seed: u64::MAX, trial, ..EpisodeId::default() };
         episode.arrange(&mut world, id).map_err(|error| Error::setting(episode.scenario().crowded(), error))?;
     }
-    InWorld::in_arena(&parked(arena), TeamTask { episode, layout, own: 0, bodies, interventions })
+    InWorld::in_arena(&parked(arena), TeamTask { episode, layout, own: 0, watched: 0, bodies, interventions })
 }
 
 impl<M: Scenario> TeamTask<M> {
@@ -90,16 +92,16 @@ impl<M: Scenario, W: PlanarWorld> Episode<W> for TeamTask<M> {
     }
 
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
-        self.episode.team().record_rays(world, self.own, recorder);
+        self.episode.team().record_rays(world, self.watched, recorder);
     }
 
-    /// Records what the robot of the own population sensed, computed and did before the step, and what that led to.
+    /// Records what the watched robot sensed, computed and did before the step, and what that led to.
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
-        let Self { episode, own, bodies, .. } = self;
+        let Self { episode, watched, bodies, .. } = self;
         let team = episode.team();
-        recorder.sensors(team.sensed(*own));
-        recorder.neurons(team.controllers()[*own].controller().hidden());
-        recorder.outputs(team.done(*own));
+        recorder.sensors(team.sensed(*watched));
+        recorder.neurons(team.controllers()[*watched].controller().hidden());
+        recorder.outputs(team.done(*watched));
         (0..*bodies).map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
         recorder.scalars(&episode.scenario().scalars(episode.moment()));
         recorder.tick(seconds(episode.steps(), episode.scenario().robots().time_step));
@@ -118,6 +120,8 @@ impl<M: Scenario> Rollout for TeamTask<M> {
         let count = scenario.population_names().len();
         let own = id.population(scenario.population_size()).min(count - 1);
         self.own = own;
+        let last = scenario.robots().robots.saturating_sub(1);
+        self.watched = evaluation.watched.map_or(own, |robot| (robot as usize).min(last));
         let networks = self.episode.team_mut().controllers_mut();
         if !networks.iter_mut().all(|network| network.load(normalisation)) {
             return false;
@@ -139,7 +143,7 @@ impl<M: Scenario> Rollout for TeamTask<M> {
     }
 
     fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        recorder.parameters(self.episode.team().controllers()[self.own].controller().parameters());
+        recorder.parameters(self.episode.team().controllers()[self.watched].controller().parameters());
     }
 
     fn outcome(&self) -> Outcome {
@@ -159,6 +163,10 @@ impl<M: Scenario> Task for TeamTask<M> {
 
     fn trials(&self) -> usize {
         self.episode.scenario().robots().trials
+    }
+
+    fn robots(&self) -> Vec<String> {
+        self.schema().bodies.into_iter().take(self.episode.scenario().robots().robots).collect()
     }
 
     fn protocols(&self) -> Vec<Protocol> {
@@ -181,7 +189,7 @@ impl<M: Scenario> Task for TeamTask<M> {
         self.episode.scenario().behaviour()
     }
 
-    /// Sensors, neurons and outputs are those of the first robot, or of the individual's where populations meet.
+    /// Sensors, neurons and outputs are those of the watched robot: by default the first, or the individual's where populations meet.
     fn schema(&self) -> Schema {
         let scenario = self.episode.scenario();
         let [_, outputs] = scenario.shape();

@@ -318,7 +318,7 @@ fn a_body_of_a_page_is_put_elsewhere() {
     ok(farsa(), &here, &format!("run foraging {few} --set trial.steps=30 --out team"));
     let ids = json!([0, 0, 0, 1]);
     for (run, name, position, falls) in
-        [("arm", "sphere", json!([0.3, -0.2, 0.4]), true), ("team", "nest", json!([0.5, 0.25, 0.0]), false)]
+        [("arm", "sphere", json!([0.3, -0.2, 0.4]), true), ("team", "area", json!([0.5, 0.25, 0.0]), false)]
     {
         ok(farsa(), &here, &format!("live {run} --html {run}.html --quiet"));
         let live = &data(&here.join(format!("{run}.html")))["live"];
@@ -364,4 +364,32 @@ fn a_body_of_a_page_is_put_elsewhere() {
     let refused =
         asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "moves": moves }));
     assert!(refused["error"].as_str().expect("an error").contains("has no bodies that can be put elsewhere"));
+}
+
+#[test]
+fn any_robot_of_a_team_is_recorded() {
+    let here = scratch("live-robots");
+    let few = "--population 4 --set evolution.parents=2 --generations 1 --quiet --set trial.steps=30";
+    for (name, robots) in [("foraging", 10), ("predator-prey", 2)] {
+        ok(farsa(), &here, &format!("run {name} {few} --out {name}"));
+        ok(farsa(), &here, &format!("live {name} --html {name}.html --quiet"));
+        let live = &data(&here.join(format!("{name}.html")))["live"];
+        assert_eq!(live["about"]["robots"].as_array().expect("names").len(), robots, "{name}");
+        let mut session = opened(live);
+        let mut film = |watched: Value| {
+            let request = json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "watched": watched });
+            asked(&mut session, &request)
+        };
+        let (plain, first, last) = (film(Value::Null), film(json!(0)), film(json!(robots - 1)));
+        assert_eq!(first["digests"], plain["digests"], "{name}: by default the first");
+        assert_ne!(last["digests"], plain["digests"], "{name}: another robot sees something else");
+        // What is recorded changes nothing of what happens.
+        for other in [&first, &last] {
+            for key in ["steps", "fitness", "success"] {
+                assert_eq!(other[key], plain[key], "{name}: {key}");
+            }
+        }
+        let error = film(json!(robots))["error"].as_str().expect("an error").to_owned();
+        assert_eq!(error, format!("robot {robots} of {robots} (the first is 0)"));
+    }
 }

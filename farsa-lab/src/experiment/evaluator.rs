@@ -69,6 +69,11 @@ pub trait Task: Send {
         vec!["0".into()]
     }
 
+    /// The robots by name, where there are several and the channels of any one of them can be recorded.
+    fn robots(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// How many channels a controller observes, where observations can be normalised: a [`NormalisedController`] does
     /// that, and the [`Outcome`] says what was observed. By default 0: they cannot be.
     ///
@@ -174,6 +179,8 @@ pub struct Evaluation<'p> {
     pub intervention: Option<&'p Intervention>,
     /// Bodies that are put elsewhere in its course \[[`Evaluator::displaces`]\]; none in a run and in a test.
     pub displacements: &'p [Displacement],
+    /// Of several robots the one whose channels are recorded \[[`Task::robots`]\]; by default the individual's first.
+    pub watched: Option<u32>,
 }
 
 impl<'p> Evaluation<'p> {
@@ -188,6 +195,7 @@ impl<'p> Evaluation<'p> {
             case: None,
             intervention: None,
             displacements: &[],
+            watched: None,
         }
     }
 }

@@ -179,6 +179,9 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
     fn populations(&self) -> Vec<String> {
         self.rollout.populations()
     }
+    fn robots(&self) -> Vec<String> {
+        self.rollout.robots()
+    }
     fn observations(&self) -> usize {
         self.rollout.observations()
     }

@@ -65,6 +65,9 @@ impl Task for Rescored {
     fn populations(&self) -> Vec<String> {
         self.inner.populations()
     }
+    fn robots(&self) -> Vec<String> {
+        self.inner.robots()
+    }
     fn observations(&self) -> usize {
         self.inner.observations()
     }

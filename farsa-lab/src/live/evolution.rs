@@ -75,15 +75,15 @@ impl Evolution {
         if part >= parts || parts > MOST_PARTS {
             return Err(Error::Usage(format!("part {part} of {parts}; at most {MOST_PARTS}, the first is 0")));
         }
-        let mut share = Share { evaluator, genotype: &self.genotype, part, parts, found: Vec::new() };
-        match self.progression.generation(&mut share, &|| {}, |_, _| Ok(())) {
-            Err(Unfinished::Error(error)) => Err(error),
-            // A share alone is never a generation.
-            Ok(_) | Err(Unfinished::Stopped) => {
-                let bytes = postcard::to_stdvec(&Outcomes::from_numbered(&share.found));
-                bytes.map(Bytes).map_err(|error| Error::Other(format!("outcomes: {error}")))
-            }
+        let part = Part::Share { part, parts, found: Vec::new() };
+        let mut session = Session { evaluator, genotype: &self.genotype, part };
+        let ended = self.progression.generation(&mut session, &|| {}, |_, _| Ok(()));
+        if let Err(Unfinished::Error(error)) = ended {
+            return Err(error);
         }
+        let Part::Share { found, .. } = &session.part else { return Ok(Bytes::default()) };
+        let bytes = postcard::to_stdvec(&Outcomes::from_numbered(found));
+        bytes.map(Bytes).map_err(|error| Error::Other(format!("outcomes: {error}")))
     }
 
     /// Tells the strategy what all parts of the generation came to, which makes the next.
@@ -99,8 +99,8 @@ impl Evolution {
         }
         all.sort_by_key(|(number, _)| *number);
         let generation = self.progression.search.generation();
-        let mut gathered = Gathered { evaluator, genotype: &self.genotype, all };
-        let found = self.progression.generation(&mut gathered, &|| {}, Search::tell_unrecorded);
+        let mut session = Session { evaluator, genotype: &self.genotype, part: Part::Known(all) };
+        let found = self.progression.generation(&mut session, &|| {}, Search::tell_unrecorded);
         let Evaluated { fitness, statistics, each, best, met, normalisation, .. } =
             found.map_err(|error| match error {
                 Unfinished::Error(error) => error,
@@ -115,16 +115,22 @@ impl Evolution {
     }
 }
 
-/// Evaluates every so many, and never all.
-struct Share<'s> {
-    evaluator: &'s mut dyn Evaluator,
-    genotype: &'s Genotype,
-    part: usize,
-    parts: usize,
-    found: Vec<(usize, Option<Outcome>)>,
+/// What is evaluated of a generation.
+enum Part {
+    /// Every so many, from one of them on; what it came to.
+    Share { part: usize, parts: usize, found: Vec<(usize, Option<Outcome>)> },
+    /// Nothing: all outcomes are known, in their order.
+    Known(Vec<(usize, Option<Outcome>)>),
 }
 
-impl Evaluations for Share<'_> {
+/// Evaluates a part of a generation, or knows what all came to.
+struct Session<'s> {
+    evaluator: &'s mut dyn Evaluator,
+    genotype: &'s Genotype,
+    part: Part,
+}
+
+impl Evaluations for Session<'_> {
     fn evaluator(&self) -> &dyn Evaluator {
         self.evaluator
     }
@@ -139,7 +145,14 @@ impl Evaluations for Share<'_> {
         task: &TaskOf<'_, '_>,
         done: &Heard<'_>,
     ) -> Result<Vec<Option<Outcome>>, Unfinished> {
-        let mut numbers = (self.part..count).step_by(self.parts);
+        let (part, parts, found) = match &mut self.part {
+            Part::Known(all) if all.iter().map(|(number, _)| *number).eq(0..count) => {
+                return Ok(std::mem::take(all).into_iter().map(|(_, outcome)| outcome).collect());
+            }
+            Part::Known(_) => return Err(Unfinished::Stopped),
+            Part::Share { part, parts, found } => (*part, *parts, found),
+        };
+        let mut numbers = (part..count).step_by(parts);
         let (mut left_out, mut ended) = (Vec::new(), Vec::new());
         let mut next = || {
             for number in numbers.by_ref() {
@@ -156,37 +169,8 @@ impl Evaluations for Share<'_> {
         };
         round(self.evaluator, &mut next, &mut end);
         ended.append(&mut left_out);
-        self.found = ended;
+        *found = ended;
+        // A share alone is never a generation.
         Err(Unfinished::Stopped)
-    }
-}
-
-/// Has all outcomes already.
-struct Gathered<'s> {
-    evaluator: &'s mut dyn Evaluator,
-    genotype: &'s Genotype,
-    /// In their order.
-    all: Vec<(usize, Option<Outcome>)>,
-}
-
-impl Evaluations for Gathered<'_> {
-    fn evaluator(&self) -> &dyn Evaluator {
-        self.evaluator
-    }
-
-    fn genotype(&self) -> &Genotype {
-        self.genotype
-    }
-
-    fn evaluate(
-        &mut self,
-        count: usize,
-        _task: &TaskOf<'_, '_>,
-        _done: &Heard<'_>,
-    ) -> Result<Vec<Option<Outcome>>, Unfinished> {
-        if self.all.iter().map(|(number, _)| *number).ne(0..count) {
-            return Err(Unfinished::Stopped);
-        }
-        Ok(std::mem::take(&mut self.all).into_iter().map(|(_, outcome)| outcome).collect())
     }
 }

@@ -8,15 +8,15 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::live::champion::champion;
-use crate::live::request::Trial;
+use crate::live::request::Film;
 use crate::live::row::Row;
 use crate::live::script::{Evolved, Script};
 use crate::live::session::{LiveSession, json};
 use crate::live::standing::Standing;
+use crate::run::begin;
 use crate::run::config_file::MOST_BYTES;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
-use crate::run::progression::Progression;
 use crate::run::records::Checkpoint;
 use crate::run::told::Told;
 use crate::store::bounded;
@@ -40,6 +40,8 @@ struct About {
     trials: usize,
     /// Whether bodies can be put elsewhere.
     displaces: bool,
+    /// The robots of which any can be recorded.
+    robots: Vec<String>,
     /// Of several populations, their names.
     populations: Vec<String>,
     individuals: Vec<AboutIndividual>,
@@ -174,7 +176,7 @@ fn run_so_far(plan: &Plan<'_>, directory: &Directory) -> Result<(Vec<Row>, Resul
     let lines = lines.map(|(at, line)| Row::new(at, line.row)).collect();
     let evaluator = plan.evaluator()?;
     let genotype = plan.genotype(evaluator.as_ref());
-    let mut progression = Progression::resume(plan, directory, &checkpoint, &told, &genotype)?;
+    let mut progression = begin::progression(plan, directory, &checkpoint, &told, &genotype)?;
     let standing = Standing::of(&mut progression).ok_or("the strategy cannot save its state".to_owned());
     let bounded = |standing: Standing| match standing.size() {
         bytes if bytes > MOST_STANDING => {
@@ -192,6 +194,7 @@ fn about(laboratory: &Laboratory<'_>, script: &Script, text: &str) -> Result<Abo
     let mut told = About {
         trials: kinds,
         displaces: session.displaces(),
+        robots: session.robots(),
         populations: session.populations(),
         individuals: Vec::new(),
         history: Vec::new(),
@@ -200,7 +203,7 @@ fn about(laboratory: &Laboratory<'_>, script: &Script, text: &str) -> Result<Abo
     for (place, Evolved { generation, individual, .. }) in script.individuals.iter().enumerate() {
         let mut trials = Vec::new();
         for trial in 0..kinds as u32 {
-            let found = session.film(place, Trial::Number(trial), "", &[])?;
+            let found = session.film(&Film::of_run(place, trial))?;
             let stride = found.digests.len().div_ceil(MOST_DIGESTS).max(1);
             let last = found.digests.len().saturating_sub(1);
             let kept = found.digests.iter().enumerate().filter(|(tick, _)| (tick + 1) % stride == 0 || *tick == last);

@@ -11,16 +11,8 @@ use crate::live::script::Evolved;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum Request {
-    /// A trial of an individual, step by step, with changes of its controller, a list or none, and with bodies that are put
-    /// elsewhere.
-    Film {
-        individual: usize,
-        trial: Trial,
-        #[serde(default)]
-        lesion: String,
-        #[serde(default)]
-        moves: Vec<Displacement>,
-    },
+    /// A trial, step by step.
+    Film(Film),
     /// What comes of so many fresh trials, from one of a number on, with changes.
     Fresh {
         individual: usize,
@@ -38,6 +30,28 @@ pub(crate) enum Request {
     Share { part: usize, parts: usize },
     /// What all parts have come to: the next generation is made.
     Tell { outcomes: Vec<Bytes> },
+}
+
+/// A trial of an individual, with changes of its controller, a list or none, and with bodies that are put elsewhere.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Film {
+    pub(crate) individual: usize,
+    pub(crate) trial: Trial,
+    #[serde(default)]
+    pub(crate) lesion: String,
+    #[serde(default)]
+    pub(crate) moves: Vec<Displacement>,
+    /// Of several robots the one that is recorded.
+    #[serde(default)]
+    pub(crate) watched: Option<u32>,
+}
+
+impl Film {
+    /// The trial as it was in the run.
+    pub(crate) fn of_run(individual: usize, trial: u32) -> Self {
+        Self { individual, trial: Trial::Number(trial), lesion: String::new(), moves: Vec::new(), watched: None }
+    }
 }
 
 /// Which trial.

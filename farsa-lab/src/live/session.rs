@@ -18,7 +18,7 @@ use crate::experiment::outcome::Outcome;
 use crate::experiment::{Displacement, PartNames};
 use crate::live::digest::Digest;
 use crate::live::evolution::Evolution;
-use crate::live::request::{Added, Earned, Filmed, Request, Shared, Trial};
+use crate::live::request::{Added, Earned, Film, Filmed, Request, Shared, Trial};
 use crate::live::script::{Evolved, Script};
 use crate::run::config_file::ConfigFile;
 use crate::run::evaluations::round;
@@ -110,7 +110,7 @@ impl LiveSession {
 
     fn answered(&mut self, request: Request) -> Result<String, Error> {
         match request {
-            Request::Film { individual, trial, lesion, moves } => json(&self.film(individual, trial, &lesion, &moves)?),
+            Request::Film(film) => json(&self.film(&film)?),
             Request::Fresh { individual, lesion, seed, first, count } => {
                 use_lanes(self.evaluator.as_mut())?;
                 json(&self.fresh(individual, &lesion, seed, first..first.saturating_add(count))?)
@@ -148,6 +148,11 @@ impl LiveSession {
         self.evaluator.displaces()
     }
 
+    /// The robots of which any can be recorded.
+    pub(crate) fn robots(&self) -> Vec<String> {
+        self.evaluator.robots()
+    }
+
     /// The names of the populations, where there are several.
     pub(crate) fn populations(&self) -> Vec<String> {
         let names = self.evaluator.populations();
@@ -158,19 +163,18 @@ impl LiveSession {
     ///
     /// # Errors
     /// [`Error::Usage`] for what there is not.
-    pub(crate) fn film(
-        &mut self,
-        individual: usize,
-        trial: Trial,
-        lesion: &str,
-        moves: &[Displacement],
-    ) -> Result<Filmed, Error> {
-        let schema = schema(self.evaluator.as_ref(), &one(&self.individuals, individual)?.own);
+    pub(crate) fn film(&mut self, asked: &Film) -> Result<Filmed, Error> {
+        let Film { individual, trial, lesion, moves, watched } = asked;
+        let schema = schema(self.evaluator.as_ref(), &one(&self.individuals, *individual)?.own);
         let displacements = &self.displacements(moves, &schema)?;
+        let robots = self.evaluator.robots();
+        if let Some(robot) = watched.filter(|robot| *robot as usize >= robots.len()) {
+            return Err(Error::Usage(format!("robot {robot} of {} (the first is 0)", robots.len())));
+        }
         let intervention = self.intervention(lesion)?;
         let Self { evaluator, individuals, seed, .. } = self;
-        let (individual, kinds) = (one(individuals, individual)?, evaluator.trials());
-        let (id, name) = match trial {
+        let (individual, kinds) = (one(individuals, *individual)?, evaluator.trials());
+        let (id, name) = match *trial {
             Trial::Number(trial) if (trial as usize) < kinds => {
                 let Evolved { generation, individual, .. } = individual.own;
                 (EpisodeId { seed: *seed, generation, individual, trial }, format!("trial {trial}"))
@@ -182,16 +186,19 @@ impl LiveSession {
         let (opponents, normalisation) = (&individual.met(id.trial)[..], individual.normalisation.as_ref());
         let plain = Evaluation::new(&individual.own.parameters, id);
         let intervention = intervention.as_ref();
-        let evaluation = Evaluation { opponents, normalisation, intervention, displacements, ..plain };
+        let watched = *watched;
+        let evaluation = Evaluation { opponents, normalisation, intervention, displacements, watched, ..plain };
         let outcome = evaluator.evaluate(evaluation, Some(&mut digest));
         let (recording, digests) = digest.into_parts();
-        let mut with = if lesion.is_empty() { String::new() } else { format!("; with {lesion}") };
-        if !displacements.is_empty() {
-            with += &format!("; {} moved", displacements.len());
-        }
-        let came = came_to(evaluator.as_ref(), &outcome);
+        let said = [
+            Some(came_to(evaluator.as_ref(), &outcome)),
+            (!lesion.is_empty()).then(|| format!("with {lesion}")),
+            (!displacements.is_empty()).then(|| format!("{} moved", displacements.len())),
+            watched.and_then(|robot| robots.get(robot as usize)).map(|robot| format!("{robot} is recorded")),
+        ];
+        let said: Vec<String> = said.into_iter().flatten().collect();
         let mut page = Page::new("");
-        page.add(&format!("{name}: {came}{with}"), facts(evaluator.as_ref(), &outcome), recording);
+        page.add(&format!("{name}: {}", said.join("; ")), facts(evaluator.as_ref(), &outcome), recording);
         let film = page.episode(0).unwrap_or_default();
         let film = RawValue::from_string(film).map_err(|error| Error::Other(error.to_string()))?;
         let fitness = fitness(evaluator.as_ref(), std::slice::from_ref(&outcome));

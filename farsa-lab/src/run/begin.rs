@@ -5,15 +5,19 @@ use std::path::Path;
 use farsa_evo::{EvoError, Record};
 
 use crate::error::Error;
+use crate::experiment::genotype::Genotype;
 use crate::run::plan::Plan;
+use crate::run::progression::Progression;
 use crate::run::records::Checkpoint;
-use crate::run::told::ToldFile;
+use crate::run::told::{Told, ToldFile};
 use crate::store::directory::Directory;
 use crate::store::growing::Mark;
 use crate::store::lineage::{HEADER, Lineage, rows};
 use crate::store::log;
 use crate::store::manifest::Manifest;
 use crate::store::replace::replace;
+use crate::strategy::history::History;
+use crate::strategy::opponents::Hall;
 use crate::strategy::search::Search;
 
 /// Makes the directory of a new run, ready for its first generation.
@@ -60,6 +64,27 @@ pub(crate) fn resumed(
         return Err(Error::damaged(&directory.checkpoint(), why));
     }
     Ok(strategy)
+}
+
+/// The search of a run as it was when its checkpoint was written, with whom it still has to meet.
+///
+/// # Errors
+/// Those of [`resumed`] and of [`Hall::before`].
+pub(crate) fn progression(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    checkpoint: &Checkpoint,
+    told: &Told,
+    genotype: &Genotype,
+) -> Result<Progression, Error> {
+    let search = resumed(plan, directory, checkpoint, &told.record)?;
+    let hall = match told.record.populations() {
+        1 => Hall::default(),
+        _ if search.opponents().is_some() => Hall::default(),
+        _ => Hall::before(&History::new(directory.record(), told.record.clone(), plan.fresh()), genotype)?,
+    };
+    let observed = told.observed.last().cloned().or(plan.no_observations()?);
+    Ok(Progression::new(search, hall, observed, checkpoint.identity.seed))
 }
 
 /// Opens the lineage of a run that goes on, where its strategy has one.

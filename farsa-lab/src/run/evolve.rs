@@ -8,7 +8,7 @@ use farsa_evo::Record;
 
 use crate::error::Error;
 use crate::figures::plot;
-use crate::run::begin::lineage;
+use crate::run::begin::{lineage, progression};
 use crate::run::collection::CollectionTable;
 use crate::run::contained::contained;
 use crate::run::diagnostics::DiagnosticsTable;
@@ -136,7 +136,7 @@ impl<'d> Run<'d> {
         program: &'d str,
     ) -> Result<Self, Error> {
         let mut told = Told::read(plan, directory, &checkpoint)?;
-        let progression = Progression::resume(plan, directory, &checkpoint, &told, pool.genotype())?;
+        let progression = progression(plan, directory, &checkpoint, &told, pool.genotype())?;
         let mut manifest = Manifest::read_or_new(&directory.manifest(), &checkpoint.identity)?;
         manifest.sessions.push(Session::new(pool.threads(), pool.lanes().info(), progression.search.generation()));
         let text = plan.to_toml()?;

@@ -7,6 +7,7 @@ use farsa_evo::Record;
 
 use crate::error::Error;
 use crate::ranks::exchange::{Exchange, Order, Status};
+use crate::run::begin::progression;
 use crate::run::config_file::ConfigFile;
 use crate::run::contained::contained;
 use crate::run::evaluations::Unfinished;
@@ -66,7 +67,7 @@ impl Following<'_, '_> {
         let checkpoint: Checkpoint =
             sealed::open(checkpoint).map_err(|why| Error::damaged(&directory.checkpoint(), why))?;
         let told = Told::from_content(&plan, &directory, &checkpoint, record)?;
-        let progression = Progression::resume(&plan, &directory, &checkpoint, &told, pool.genotype())?;
+        let progression = progression(&plan, &directory, &checkpoint, &told, pool.genotype())?;
         Ok((plan, pool, progression, told.record))
     }
 

@@ -4,24 +4,10 @@ use farsa_evo::{EvoError, Fitness, Judgements, ObservationStatistics, Statistics
 
 use crate::error::Error;
 use crate::experiment::episode::EpisodeId;
-#[cfg(feature = "command")]
-use crate::experiment::genotype::Genotype;
-#[cfg(feature = "command")]
-use crate::run::begin::resumed;
 use crate::run::evaluations::{Evaluations, Unfinished};
 use crate::run::fitness::{Generation, Judged, Opponents, judgements_of_all};
-#[cfg(feature = "command")]
-use crate::run::plan::Plan;
 use crate::run::records::Best;
-#[cfg(feature = "command")]
-use crate::run::records::Checkpoint;
-#[cfg(feature = "command")]
-use crate::run::told::Told;
-#[cfg(feature = "command")]
-use crate::store::directory::Directory;
 use crate::store::failures::FailedEvaluation;
-#[cfg(feature = "command")]
-use crate::strategy::history::History;
 use crate::strategy::opponents::{Hall, Meeting, chosen};
 use crate::strategy::search::Search;
 
@@ -55,28 +41,6 @@ impl Progression {
     /// A search in progress.
     pub(crate) fn new(search: Search, hall: Hall, observed: Option<ObservationStatistics>, seed: u64) -> Self {
         Self { search, hall, observed, seed }
-    }
-
-    /// A search as it was when its checkpoint was written.
-    ///
-    /// # Errors
-    /// Those of [`resumed`] and of [`Hall::before`].
-    #[cfg(feature = "command")]
-    pub(crate) fn resume(
-        plan: &Plan<'_>,
-        directory: &Directory,
-        checkpoint: &Checkpoint,
-        told: &Told,
-        genotype: &Genotype,
-    ) -> Result<Self, Error> {
-        let search = resumed(plan, directory, checkpoint, &told.record)?;
-        let hall = match told.record.populations() {
-            1 => Hall::default(),
-            _ if search.opponents().is_some() => Hall::default(),
-            _ => Hall::before(&History::new(directory.record(), told.record.clone(), plan.fresh()), genotype)?,
-        };
-        let observed = told.observed.last().cloned().or(plan.no_observations()?);
-        Ok(Self::new(search, hall, observed, checkpoint.identity.seed))
     }
 
     /// The champions that are still met.

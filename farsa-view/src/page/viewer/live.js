@@ -79,13 +79,13 @@ async function liveOf(page) {
 	// The trial of the run that earned most comes first.
 	const told = live.about.individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
-	const state = {individual: live.about.individuals.length - 1, trial: {number: best}, changes: new Map(), moves: []};
+	const state = {individual: live.about.individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], watched: null};
 	const answer = await agent.ask({do: "film", ...asked(state), lesion: ""});
 	page.trials = [trialOf(page, answer, 0)];
 	return {attach: (player) => attach(page, agent, state, answer, player, open)};
 }
 
-const asked = ({individual, trial}) => ({individual, trial});
+const asked = ({individual, trial, watched}) => ({individual, trial, watched});
 // As `farsa test --lesion` takes it.
 const listOf = ({changes}) => [...changes].map(([part, value]) => (value === "" ? part : `${part}=${value}`)).join(",");
 const bare = (title) => title.replace(/ \[[^\]]*\]$/, "");
@@ -124,6 +124,7 @@ function controlsOf({live: {script}}, acts) {
 	const own = {
 		generation: pick("Generation", [], (place) => acts.change({individual: +place})),
 		trial: pick("Trial that is run", [], (number) => number !== "" && acts.change({trial: {number: +number}})),
+		robot: pick("Robot that is recorded", [], (robot) => acts.change({watched: robot === "" ? null : +robot})),
 		fresh: button("New start", acts.fresh), value, part: make("b", "", NONE), parts: pick("Part", [["", "part ..."]], acts.choose),
 		apply: button("Change", () => acts.alter(value.value)), cut: button("Silence or cut", () => acts.alter("")),
 		noise: button("Noise 0.1", () => acts.set("noise:0.1", "")), undo: button("Undo all", acts.undo),
@@ -132,7 +133,7 @@ function controlsOf({live: {script}}, acts) {
 		earned: make("p"), status: make("p", "soft"),
 	};
 	const bar = (...names) => make("div", "bar", ...names.map((name) => own[name]));
-	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "fresh"), make("p", "", "Change: ", own.part),
+	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "robot", "fresh"), make("p", "", "Change: ", own.part),
 		bar("parts", "value", "apply", "cut"), bar("noise", "move", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
 		make("details", "", make("summary", "", "Configuration"), make("pre", "", script.config)));
 	panel.id = "live";
@@ -154,6 +155,20 @@ async function hundred(agent, individual, lists, counted, say) {
 	}
 	say(text.join("; "));
 	return lists.map((list) => counted.get(keyOf(list)));
+}
+
+// The parts of a controller; of what has none nothing can be changed.
+function offerParts(own, kinds) {
+	const some = kinds.filter(({kind}) => kind !== "link").flatMap(({kind, names}) => names.map((name) => [`${kind}:${name}`, `${kind} ${name}`]));
+	own.parts.replaceChildren(...options([["", "part ..."], ...some]));
+	for (const one of [own.parts, own.apply, own.cut, own.noise, own.value, own.part.parentNode]) one.hidden = !kinds.length;
+}
+
+// What is changed, each to be taken back.
+function chipsOf(state, show) {
+	const lesions = [...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show())));
+	const moves = state.moves.map((one) => button(`${one.name} moved at ${one.time.toFixed(2)} s ×`, () => (state.moves = state.moves.filter((other) => other !== one), show())));
+	return [...lesions, ...moves];
 }
 
 // Gives a live page its panel.
@@ -188,11 +203,9 @@ function attach(page, agent, state, first, player, open) {
 		own.trial.replaceChildren(...options(fresh ? [["", `fresh start ${fresh.number}`], ...told] : told));
 		own.trial.value = fresh ? "" : state.trial.number;
 		own.generation.value = state.individual;
-		own.verify.disabled = !!fresh || !known.length;
+		own.verify.disabled = !!fresh || !known.length || state.watched !== null;
 		own.undo.disabled = !state.changes.size && !state.moves.length;
-		const lesions = [...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show())));
-		const moves = state.moves.map((one) => button(`${one.name} moved at ${one.time.toFixed(2)} s ×`, () => (state.moves = state.moves.filter((other) => other !== one), show())));
-		own.chips.replaceChildren(...lesions, ...moves);
+		own.chips.replaceChildren(...chipsOf(state, show));
 	}
 
 	// Runs the trial as it is, and with the changes beside it on one clock.
@@ -246,26 +259,12 @@ function attach(page, agent, state, first, player, open) {
 		return change({individual: place, trial: {number: state.trial.number ?? 0}});
 	}
 
-	// A body was put elsewhere: the trial runs anew with that.
-	async function put(move, trial) {
-		state.moves = [...state.moves, {...move, name: trial.bodies[move.body], time: trial.times[move.step - 1]}];
-		await show();
-		const [whole, moved] = page.trials;
-		if (!moved || move.step >= min(whole.ticks, moved.ticks)) return;
-		const [from, to] = [whole, moved].map((one) => one.pose(move.step, move.body).position);
-		if (hypot(...sub(to, from)) < 0.1*hypot(...sub(move.position, from))) say(`${trial.bodies[move.body]} hangs on something and stays where it is.`);
-	}
-
-	own.move.hidden = !about.displaces;
-	carry(player, () => own.move.getAttribute("aria-pressed") === "true", put);
+	own.robot.replaceChildren(...options([["", "robot ..."], ...about.robots.map((name, i) => [i, name])]));
+	own.robot.hidden = !about.robots[1];
+	const put = movable(page, player, state, own.move, show, say);
 
 	graphChosen = (node) => node && choose(partOf(node));
-	agent.ask({do: "names"}).then((kinds) => {
-		const some = kinds.filter(({kind}) => kind !== "link").flatMap(({kind, names}) => names.map((name) => [`${kind}:${name}`, `${kind} ${name}`]));
-		own.parts.replaceChildren(...options([["", "part ..."], ...some]));
-		// Of what has no controller nothing can be changed.
-		for (const one of [own.parts, own.apply, own.cut, own.noise, own.undo, own.value, own.part.parentNode]) one.hidden = !kinds.length;
-	}, (error) => say(error.message));
+	agent.ask({do: "names"}).then((kinds) => offerParts(own, kinds), (error) => say(error.message));
 	choose("");
 	marks();
 	const {run, rows} = evolutionOf(page, open, showMore);

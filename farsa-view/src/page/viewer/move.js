@@ -51,3 +51,21 @@ function carry(player, on, put) {
 
 	for (const [name, act] of [["down", take], ["move", drag], ["up", leave], ["cancel", leave]]) views.addEventListener(`pointer${name}`, act, true);
 }
+
+// Bodies can be dragged while the button is pressed; gives what puts one elsewhere.
+function movable(page, player, state, pressed, show, say) {
+	// The trial runs anew with the body there.
+	async function put(move, trial) {
+		const name = trial.bodies[move.body];
+		state.moves = [...state.moves, {...move, name, time: trial.times[move.step - 1]}];
+		await show();
+		const [whole, moved] = page.trials;
+		if (!moved || move.step >= min(whole.ticks, moved.ticks)) return;
+		const [from, to] = [whole, moved].map((one) => one.pose(move.step, move.body).position);
+		if (hypot(...sub(to, from)) < 0.1*hypot(...sub(move.position, from))) say(`${name} hangs on something and stays where it is.`);
+	}
+
+	pressed.hidden = !page.live.about.displaces;
+	carry(player, () => pressed.getAttribute("aria-pressed") === "true", put);
+	return put;
+}
