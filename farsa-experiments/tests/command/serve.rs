@@ -145,6 +145,16 @@ fn only_pages_of_this_address_are_answered() {
         let (code, text) = server.answer(first, &lines);
         assert_eq!(code, expected, "{first} {lines:?}: {}", text.chars().take(300).collect::<String>());
     }
+    // As many listen at once as there are pages that one opens, and then no more.
+    let mut listening = Vec::new();
+    for _ in 0..64 {
+        let mut stream = server.ask("GET /events?from=0", std::slice::from_ref(&host));
+        assert_eq!(event(&mut stream, "fitness")[0][0], 0);
+        listening.push(stream);
+    }
+    let (code, text) = server.answer("GET /", std::slice::from_ref(&host));
+    assert!(code == 503 && text.ends_with("too many pages are open"), "{text}");
+    drop(listening);
     let said = say(farsa(), &here, &format!("serve r --port {}", server.port));
     assert!(said.code == Some(2) && said.err.contains("--port"), "{said:?}");
     let said = say(farsa(), &here, "serve nowhere");

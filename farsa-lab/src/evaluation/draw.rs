@@ -107,7 +107,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path:
         (Some(_), _) => {
             caption = format!("{caption} to {last:.2} s, {frames} pictures");
             let each = 1000.0 * (last - seconds) / (frames.max(2) - 1) as f64;
-            Picture::animated_png(&pictures, camera, [width, height], each.clamp(10.0, 60_000.0) as u16)?
+            Picture::animated_png(&pictures, camera, [width, height], each.round().clamp(10.0, 60_000.0) as u16)?
         }
         (None, Format::Png) => pictures[0].png(camera, [width, height])?,
         (None, Format::Svg) => {

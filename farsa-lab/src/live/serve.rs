@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
@@ -20,6 +21,8 @@ use crate::store::directory::Directory;
 const LOOK: Duration = Duration::from_millis(500);
 /// After so many looks without news a word is said, so that a browser that has gone is noticed.
 const SILENT: u32 = 20;
+/// Most requests that are answered at once: a page that is open is one.
+const MOST_AT_ONCE: usize = 64;
 
 /// What is served.
 #[derive(Clone, Copy)]
@@ -42,12 +45,24 @@ pub(crate) fn serve(served: Served<'_>, port: u16, begun: impl FnOnce(&str) -> R
     let server = Server::http((Ipv4Addr::LOCALHOST, port)).map_err(taken)?;
     let address = server.server_addr().to_ip().ok_or_else(|| Error::Other("no address".into()))?;
     begun(&format!("http://{address}/"))?;
+    let running = &AtomicUsize::new(0);
     thread::scope(|scope| {
         loop {
             let request = server.recv().map_err(Error::io("hear", address.to_string().as_ref()))?;
+            if running.fetch_add(1, Ordering::Relaxed) >= MOST_AT_ONCE {
+                running.fetch_sub(1, Ordering::Relaxed);
+                // Whether the answer arrives is the browser's business.
+                let _ = respond(request, 503, "text/plain", "too many pages are open");
+                continue;
+            }
             // Who does not read its answer keeps nobody else waiting.
-            let answered = thread::Builder::new().spawn_scoped(scope, move || served.answer(request, address));
-            drop(answered);
+            let begun = thread::Builder::new().spawn_scoped(scope, move || {
+                served.answer(request, address);
+                running.fetch_sub(1, Ordering::Relaxed);
+            });
+            if begun.is_err() {
+                running.fetch_sub(1, Ordering::Relaxed);
+            }
         }
     })
 }
@@ -126,13 +141,17 @@ fn event(to: &mut impl Write, name: &str, number: Option<usize>, data: &impl Ser
 
 /// Whether a request is for this address by its own name, and from its own page or from none.
 fn is_own(request: &Request, address: SocketAddr) -> bool {
-    let own = [format!("127.0.0.1:{}", address.port()), format!("localhost:{}", address.port())];
+    let port = address.port();
+    // A browser leaves out the port that is usual.
+    let usual = |name: &str| (port == 80).then(|| name.to_owned());
+    let names = ["127.0.0.1", "localhost"];
+    let mut own = names.iter().flat_map(|name| [Some(format!("{name}:{port}")), usual(name)]).flatten();
     let header = |name: &'static str| {
         request.headers().iter().find(|header| header.field.equiv(name)).map(|header| header.value.as_str())
     };
     let host = header("Host").unwrap_or_default();
     let from_here = |origin: &str| origin.strip_prefix("http://") == Some(host);
-    own.iter().any(|name| name == host) && header("Origin").is_none_or(from_here)
+    own.any(|name| name == host) && header("Origin").is_none_or(from_here)
 }
 
 /// How many generations a listener knows: since it lost the connection, or as its page says.

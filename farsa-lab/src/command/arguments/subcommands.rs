@@ -365,7 +365,7 @@ pub(crate) struct DrawArgs {
     /// The moment, in seconds of the trial [default: its end]
     #[arg(long, value_name = "S")]
     pub(crate) time: Option<f64>,
-    /// So many moments from the trial's start to its end, as an animated PNG that takes as long as the trial
+    /// So many moments from the trial's start to its end, as an animated PNG as fast as the trial, 100 a second at most
     #[arg(long, value_name = "N", conflicts_with_all = ["time", "protocol"], value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: Option<u32>,
     /// The champion at the end of a trial of each case of a test protocol, as a sheet of SVG; `info` lists the protocols
