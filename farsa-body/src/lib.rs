@@ -41,8 +41,9 @@ pub use motors::{
     VelocityMotor, WheelVelocity,
 };
 pub use ports::{
-    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, Motor,
-    NearbySurface, PairContact, PairId, Planar, PlanarHit, Rays, Seen, Sensor, Sight, Snapshot, Vision, World,
+    Actuated, ActuatorId, Arrange, BodyId, Channels, Contacts, ExternalForces, Handles, Hit, JointId, Joints,
+    Kinematics, Lamp, Motor, NearbySurface, PairContact, PairId, Planar, PlanarHit, Rays, Seen, Sensor, Sight,
+    Snapshot, Vision, World,
 };
 pub use pose::{Pose, Twist};
 pub use recorder::{Recorder, record_world};

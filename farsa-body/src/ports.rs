@@ -92,6 +92,20 @@ pub trait Actuated: Handles {
     fn command(&mut self, actuator: Self::Actuator, value: [f32; 2]);
 }
 
+/// Forces from outside, such as a hand that pushes.
+#[diagnostic::on_unimplemented(
+    message = "nothing can push the bodies of `{Self}` (port `ExternalForces`)",
+    note = "kinematic worlds know no forces"
+)]
+pub trait ExternalForces: Handles {
+    /// Lets a force [N] act on a body at a point [m], both in the world's axes, during the next control step alone.
+    ///
+    /// Force and moment about the centre of mass keep their direction in that step; all that is applied to a body before it adds up.
+    /// Nothing happens to a body that does not move or exist. A snapshot does not hold what waits for the next step, and
+    /// [`Arrange::clear`] and [`Snapshot::restore`] forget it.
+    fn apply_force(&mut self, body: Self::Body, point: [f32; 3], force: [f32; 3]);
+}
+
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | a world that steps | [`check_world`] |
 //! | one that can be set up anew | [`check_arrange`] |
+//! | one whose bodies can be pushed | [`check_external_forces`] |
 //! | one that casts rays | [`check_rays`] |
 //! | one in which is seen | [`check_sight`] |
 //! | a world of the plane | [`check_planar`] |
@@ -30,7 +31,8 @@ mod promise;
 mod trace;
 
 pub use checks::{
-    check_arrange, check_motor, check_planar, check_rays, check_sensor, check_sight, check_vision, check_world,
+    check_arrange, check_external_forces, check_motor, check_planar, check_rays, check_sensor, check_sight,
+    check_vision, check_world,
 };
 pub use plane_world::PlaneWorld;
 pub use point_world::PointWorld;

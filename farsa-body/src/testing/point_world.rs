@@ -5,8 +5,8 @@ use alloc::{vec, vec::Vec};
 use farsa_num::{Scalar, sin_cos};
 
 use crate::ports::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
-    Rays, Seen, Snapshot, Vision, World,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Handles, Hit, JointId, Joints, Kinematics,
+    PairContact, PairId, Rays, Seen, Snapshot, Vision, World,
 };
 use crate::pose::{Pose, Twist};
 
@@ -27,6 +27,8 @@ struct Point {
     height: f32,
     speed: f32,
     command: [f32; 2],
+    /// The force from outside in the next step [N].
+    outside: f32,
 }
 
 /// Words of a snapshot for each point.
@@ -83,9 +85,10 @@ impl Handles for PointWorld {
 impl World for PointWorld {
     fn step(&mut self) {
         for point in &mut self.points {
-            let drive = point.command[0] - point.command[1] - Self::FRICTION * point.speed;
+            let drive = point.command[0] - point.command[1] - Self::FRICTION * point.speed + point.outside;
             point.speed += Self::TIME_STEP * (drive + point.push() - Self::GRAVITY);
             point.height += Self::TIME_STEP * point.speed;
+            point.outside = 0.0;
         }
     }
     fn time_step(&self) -> f32 {
@@ -118,6 +121,14 @@ impl Actuated for PointWorld {
     fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
         if let Some(point) = self.points.get_mut(actuator.index()) {
             point.command = value;
+        }
+    }
+}
+
+impl ExternalForces for PointWorld {
+    fn apply_force(&mut self, body: BodyId, _: [f32; 3], force: [f32; 3]) {
+        if let Some(point) = self.points.get_mut(body.index()) {
+            point.outside += force[2];
         }
     }
 }
@@ -229,7 +240,7 @@ impl Snapshot for PointWorld {
     fn restore(&mut self, from: &[f32]) {
         for (words, point) in from.chunks_exact(WORDS).zip(&mut self.points) {
             if let &[height, speed, agonist, antagonist] = words {
-                *point = Point { height, speed, command: [agonist, antagonist] };
+                *point = Point { height, speed, command: [agonist, antagonist], outside: 0.0 };
             }
         }
     }

@@ -47,6 +47,8 @@ pub enum Promise {
     BodyPlaced,
     /// After the setting up every port reports the truth.
     Arranged,
+    /// A force from outside acts on its body in the next step alone.
+    ForceActs,
     /// A ray meets the nearest surface within its range, and reports how.
     Ray,
     /// What is near in the plane is reported, where it is.

@@ -3,11 +3,13 @@
 use std::cell::Cell;
 
 use farsa_body::testing::{
-    ConformanceError, PointWorld, Probe, Promise, check_arrange, check_motor, check_rays, check_sensor, check_world,
+    ConformanceError, PointWorld, Probe, Promise, check_arrange, check_external_forces, check_motor, check_rays,
+    check_sensor, check_world,
 };
 use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Channels, Contacts, Handles, Hit, JointId, Joints, Kinematics,
-    Motor, Muscles, PairContact, PairId, Pose, Rays, Sensor, Snapshot, Tabletop, TorqueMotor, Twist, World,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Channels, Contacts, ExternalForces, Handles, Hit, JointId,
+    Joints, Kinematics, Motor, Muscles, PairContact, PairId, Pose, Rays, Sensor, Snapshot, Tabletop, TorqueMotor,
+    Twist, World,
 };
 
 const POINTS: usize = 3;
@@ -45,6 +47,10 @@ enum Fault {
     StaleAfterPlacing,
     InwardNormal,
     EndlessRay,
+    DeafBody,
+    LastingForce,
+    LastForceAlone,
+    ForceOnNobody,
 }
 
 /// A point world with a fault, and something that it keeps to itself.
@@ -79,6 +85,11 @@ impl World for Broken {
                 }
             }
             Some(Fault::ForgottenReading) => self.hidden += 1e-4,
+            Some(Fault::LastForceAlone) => self.hidden = 0.0,
+            Some(Fault::LastingForce) => {
+                let force = [0.0, 0.0, self.hidden];
+                (0..POINTS as u16).for_each(|i| self.world.apply_force(BodyId(i), [0.0; 3], force));
+            }
             Some(Fault::ForgottenForce) => self.hidden += 0.1,
             Some(Fault::StaleAfterPlacing) => self.hidden = 0.0,
             _ => {}
@@ -147,6 +158,24 @@ impl Actuated for Broken {
     }
 }
 
+impl ExternalForces for Broken {
+    fn apply_force(&mut self, body: BodyId, point: [f32; 3], force: [f32; 3]) {
+        match self.fault {
+            Some(Fault::DeafBody) if body.0 == 2 => {}
+            Some(Fault::LastForceAlone) => {
+                self.world.apply_force(body, point, [0.0, 0.0, force[2] - self.hidden]);
+                self.hidden = force[2];
+            }
+            Some(Fault::LastingForce) => {
+                self.hidden += force[2];
+                self.world.apply_force(body, point, force);
+            }
+            Some(Fault::ForceOnNobody) if body.index() >= POINTS => self.world.apply_force(BodyId(0), point, force),
+            _ => self.world.apply_force(body, point, force),
+        }
+    }
+}
+
 impl Contacts for Broken {
     fn pairs(&self) -> usize {
         self.world.pairs()
@@ -178,7 +207,7 @@ impl Snapshot for Broken {
         self.world.save(&mut out[..short]);
     }
     fn restore(&mut self, from: &[f32]) {
-        if self.has(Fault::StaleAfterPlacing) {
+        if self.has(Fault::StaleAfterPlacing) || self.has(Fault::LastingForce) {
             self.hidden = 0.0;
         }
         self.world.restore(from);
@@ -224,6 +253,7 @@ fn promise(checked: Result<(), ConformanceError>) -> Option<Promise> {
 fn the_point_world_keeps_every_promise() {
     assert_eq!(check_world(|| PointWorld::new(POINTS), &probe()), Ok(()));
     assert_eq!(check_arrange(|| PointWorld::new(POINTS), &probe()), Ok(()));
+    assert_eq!(check_external_forces(|| PointWorld::new(POINTS), &probe(), &probe().bodies, BodyId(99)), Ok(()));
     let mut world = PointWorld::new(POINTS);
     world.place_joint(JointId(1), 0.05, 0.0);
     assert_eq!(check_rays(&world, &probe().bodies, &[[0.05, 0.0, 0.1], [0.1, 0.0, 0.1]], 1.0), Ok(()));
@@ -300,6 +330,21 @@ fn every_broken_promise_of_setting_up_is_named() {
     // A body said to float that cannot be placed.
     let floating = Probe { floating: vec![BodyId(0)], ..probe() };
     assert_eq!(promise(check_arrange(|| PointWorld::new(POINTS), &floating)), Some(Promise::BodyPlaced));
+}
+
+#[test]
+fn every_broken_promise_of_forces_is_named() {
+    let checked = |fault| check_external_forces(|| Broken::new(fault), &probe(), &probe().bodies, BodyId(99));
+    assert_eq!(checked(None), Ok(()));
+    for (fault, said) in [
+        (Fault::DeafBody, "body 2: pushed, it moves from"),
+        (Fault::LastForceAlone, "body 0: two halves of a force are not the whole"),
+        (Fault::LastingForce, "body 0: a force lasts longer than a step"),
+        (Fault::ForceOnNobody, "a body that does not exist changes what happens"),
+    ] {
+        let error = checked(Some(fault)).unwrap_err();
+        assert!(error.promise == Promise::ForceActs && error.detail.contains(said), "{fault:?}: {error:?}");
+    }
 }
 
 #[test]

@@ -15,6 +15,7 @@
 //! - `stop`: joint stops as one-sided rows
 //! - `solver`: the impulses of contacts and stops, solved together
 //! - `step`: one control step, of one world or of lanes
+//! - `external`: forces from outside
 //! - `view`: answers of the ports, from the words of a state
 //! - `ray`: ray casts
 //! - `world`: one world behind the ports
@@ -32,6 +33,8 @@ mod batch;
 mod collision;
 #[cfg(feature = "alloc")]
 mod contact;
+#[cfg(feature = "alloc")]
+mod external;
 #[cfg(feature = "alloc")]
 mod ground;
 #[cfg(feature = "alloc")]
@@ -75,6 +78,8 @@ mod world;
 
 #[cfg(all(feature = "lanes", not(test)))]
 pub use batch::Batch;
+#[cfg(feature = "alloc")]
+pub use external::Wrenches;
 #[cfg(all(feature = "lanes", not(test)))]
 pub use lane::Lane;
 pub use link::{Link, LinkData};

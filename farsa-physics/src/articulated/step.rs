@@ -7,6 +7,7 @@ use farsa_num::{Mask as _, Real, Scalar};
 
 use crate::articulated::collision::PlacedShape;
 use crate::articulated::contact::place_colliders;
+use crate::articulated::external::{Wrenches, push};
 use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
 use crate::articulated::group::{Sphere, place_spheres};
 use crate::articulated::link::{LinkData, Motion, WORLD};
@@ -87,15 +88,15 @@ impl<S: Scalar> Scratch<S> {
 ///
 /// The step is compiled here, once for each, and not again in every crate that steps a world.
 pub trait Precision: Real {
-    /// [`step`] for one world.
-    fn step(model: &Model<Self>, state: &mut [Self], scratch: &mut Scratch<Self>);
+    /// [`step`] for one world, under forces from outside, which are then forgotten.
+    fn step(model: &Model<Self>, state: &mut [Self], scratch: &mut Scratch<Self>, forces: &mut Wrenches<Self>);
     /// [`Scratch::forward_kinematics`] for one world.
     fn forward_kinematics(model: &Model<Self>, state: &[Self], scratch: &mut Scratch<Self>);
 }
 
 impl Precision for f32 {
-    fn step(model: &Model<f32>, state: &mut [f32], scratch: &mut Scratch<f32>) {
-        step((), model, state, scratch);
+    fn step(model: &Model<f32>, state: &mut [f32], scratch: &mut Scratch<f32>, forces: &mut Wrenches<f32>) {
+        step_one(model, state, scratch, forces);
     }
     fn forward_kinematics(model: &Model<f32>, state: &[f32], scratch: &mut Scratch<f32>) {
         scratch.forward_kinematics((), model, state);
@@ -103,8 +104,8 @@ impl Precision for f32 {
 }
 
 impl Precision for f64 {
-    fn step(model: &Model<f64>, state: &mut [f64], scratch: &mut Scratch<f64>) {
-        step((), model, state, scratch);
+    fn step(model: &Model<f64>, state: &mut [f64], scratch: &mut Scratch<f64>, forces: &mut Wrenches<f64>) {
+        step_one(model, state, scratch, forces);
     }
     fn forward_kinematics(model: &Model<f64>, state: &[f64], scratch: &mut Scratch<f64>) {
         scratch.forward_kinematics((), model, state);
@@ -142,6 +143,23 @@ pub fn step<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s
     }
 }
 
+/// One control step of one world under forces from outside, which act at every dynamics step and are then forgotten.
+#[inline(always)]
+fn step_one<R: Real + Scalar<Real = R, Simd = ()>>(
+    model: &Model<R>,
+    state: &mut [R],
+    scratch: &mut Scratch<R>,
+    forces: &mut Wrenches<R>,
+) {
+    for _ in 0..model.substeps {
+        if forces.any() {
+            push(model, state, scratch, forces);
+        }
+        substep((), model, state, scratch);
+    }
+    forces.clear();
+}
+
 /// The large pieces are functions of their own, which the compiler makes in a fraction of the time that it takes for one
 /// function of everything.
 #[inline(always)]
@@ -152,7 +170,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
     // Velocities without contacts: v += h qdd, with qdd from the articulated bodies, whose factor stays in `links` and
     // `roots` for the contacts.
     efforts(simd, model, state.q, state.v, state.commands, &mut s.tau, &mut s.diagonal);
-    accelerate(simd, model, &s.tau, &s.diagonal, &mut s.links, &mut s.roots, &mut s.qdd);
+    accelerate(simd, model, model.gravity, &s.tau, &s.diagonal, &mut s.links, &mut s.roots, &mut s.qdd);
     for (v, a) in state.v.iter_mut().zip(&s.qdd) {
         *v += h * *a;
     }
@@ -218,7 +236,13 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
 
 /// [`forward_kinematics`] as a function of its own.
 #[inline(never)]
-fn place_links<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &[S], v: &[S], work: &mut [LinkData<S>]) {
+pub(crate) fn place_links<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    q: &[S],
+    v: &[S],
+    work: &mut [LinkData<S>],
+) {
     S::vectorize(
         simd,
         #[inline(always)]
@@ -228,9 +252,10 @@ fn place_links<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &[S], v: &[S
 
 /// [`accelerations`] as a function of its own.
 #[inline(never)]
-fn accelerate<S: Scalar>(
+pub(crate) fn accelerate<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
+    gravity: [S::Real; 3],
     tau: &[S],
     diagonal: &[S],
     work: &mut [LinkData<S>],
@@ -240,7 +265,7 @@ fn accelerate<S: Scalar>(
     S::vectorize(
         simd,
         #[inline(always)]
-        || accelerations(simd, &model.links, model.gravity, tau, diagonal, work, roots, qdd),
+        || accelerations(simd, &model.links, gravity, tau, diagonal, work, roots, qdd),
     );
 }
 

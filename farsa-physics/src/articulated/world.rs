@@ -9,6 +9,7 @@ use farsa_body::{
 };
 use farsa_num::Real;
 
+use crate::articulated::external::Wrenches;
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::ray;
 use crate::articulated::sight;
@@ -25,6 +26,7 @@ pub struct World<R: Precision> {
     model: Model<R>,
     state: Vec<R>,
     scratch: Scratch<R>,
+    forces: Wrenches<R>,
 }
 
 fn f32_of<R: Real>(x: [R; 3]) -> [f32; 3] {
@@ -36,7 +38,8 @@ impl<R: Precision> World<R> {
     pub fn new(model: Model<R>) -> Self {
         let state = model.initial.clone();
         let scratch = Scratch::new((), &model);
-        let mut world = Self { model, state, scratch };
+        let forces = Wrenches::new(&model);
+        let mut world = Self { model, state, scratch, forces };
         world.finish_placement();
         world
     }
@@ -155,7 +158,8 @@ impl<R: Precision> Handles for World<R> {
 
 impl<R: Precision> farsa_body::World for World<R> {
     fn step(&mut self) {
-        R::step(&self.model, &mut self.state, &mut self.scratch);
+        let Self { model, state, scratch, forces } = self;
+        R::step(model, state, scratch, forces);
     }
     fn time_step(&self) -> f32 {
         self.model.time_step.to_f64() as f32
@@ -187,6 +191,14 @@ impl<R: Precision> Joints for World<R> {
 impl<R: Precision> Actuated for World<R> {
     fn command(&mut self, actuator: ActuatorId, value: [f32; 2]) {
         view::command(self, actuator.index(), value);
+    }
+}
+
+impl<R: Precision> farsa_body::ExternalForces for World<R> {
+    fn apply_force(&mut self, body: BodyId, point: [f32; 3], force: [f32; 3]) {
+        let Some(link) = self.model.link_of(body) else { return };
+        let [point, force] = [point, force].map(|a| a.map(|x| R::from_f64(f64::from(x))));
+        self.forces.add(link, self.scratch.links[link].centre, point, force);
     }
 }
 
@@ -252,6 +264,7 @@ impl<R: Precision> Snapshot for World<R> {
         for (x, f) in self.state.iter_mut().zip(from) {
             *x = R::from_f64(f64::from(*f));
         }
+        self.forces.clear();
         self.finish_placement();
     }
 }
@@ -259,6 +272,7 @@ impl<R: Precision> Snapshot for World<R> {
 impl<R: Precision> Arrange for World<R> {
     fn clear(&mut self) {
         self.state.copy_from_slice(&self.model.initial);
+        self.forces.clear();
         self.finish_placement();
     }
 

@@ -1,8 +1,8 @@
 //! The ports of a world of wheeled robots in rapier.
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, Lamp, NearbySurface,
-    PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Handles, Hit, JointId, Joints, Kinematics, Lamp,
+    NearbySurface, PairContact, PairId, Planar, PlanarHit, Pose, Rays, Sight, Snapshot, Twist,
 };
 use farsa_num::Scalar;
 use rapier3d::geometry::Ray;
@@ -42,6 +42,12 @@ impl Kinematics for ArenaWorld {
             return self.robot_velocity(body.index());
         }
         self.block_of(body).map_or_else(Twist::default, |block| self.block_velocity(block))
+    }
+}
+
+impl ExternalForces for ArenaWorld {
+    fn apply_force(&mut self, body: BodyId, point: [f32; 3], force: [f32; 3]) {
+        self.push(body, point, force);
     }
 }
 
@@ -169,6 +175,7 @@ impl Snapshot for ArenaWorld {
     }
     /// Words that are damaged, or were saved by a world of another description, break the world down.
     fn restore(&mut self, from: &[f32]) {
+        self.pushes.clear();
         let (words, pairs) = (self.words.len(), PAIR_WORDS * self.met.len());
         let kept = from.get(words + pairs..).and_then(unpack).filter(|kept| self.fits(&kept.physics));
         if let Some(Kept { physics, lost, moved, .. }) = kept {

@@ -22,6 +22,7 @@ use crate::rapier::arena_scene::ArenaScene;
 use crate::rapier::contact::{pair_contact, touches};
 use crate::rapier::error::RapierError;
 use crate::rapier::model::Touching;
+use crate::rapier::pushes::Pushes;
 use crate::rapier::snapshot::copy;
 use crate::rapier::world::LEAST_STIFFNESS;
 
@@ -57,6 +58,8 @@ pub struct ArenaWorld {
     pub(crate) lost: bool,
     /// Whether something was placed since colliders and neighbours were brought up to date.
     pub(crate) moved: bool,
+    /// Forces from outside that act in the next control step.
+    pub(crate) pushes: Pushes,
 }
 
 /// A place of a world that has broken down.
@@ -86,6 +89,7 @@ impl ArenaWorld {
             slabs: Vec::with_capacity(blocks),
             lost: false,
             moved: true,
+            pushes: Pushes::default(),
         };
         world.settle();
         world.initial = copy(&world.physics);
@@ -179,6 +183,7 @@ impl ArenaWorld {
         }
         self.count();
         self.met.fill((None, PairContact::default()));
+        self.pushes.begin(&mut self.physics);
         for _ in 0..self.plan.substeps {
             if !self.lost {
                 self.drive();
@@ -190,6 +195,7 @@ impl ArenaWorld {
             self.examine();
             self.feel();
         }
+        self.pushes.end(&mut self.physics);
         self.count();
         self.observe();
     }
@@ -339,9 +345,19 @@ impl ArenaWorld {
     /// Back to the start, with everything forgotten.
     pub(crate) fn reset(&mut self) {
         self.physics = copy(&self.initial);
+        self.pushes.clear();
         self.met.fill((None, PairContact::default()));
         (self.lost, self.moved) = (false, false);
         self.observe();
+    }
+
+    /// Lets a force act on a robot or block in the next control step.
+    pub(crate) fn push(&mut self, body: BodyId, point: [f32; 3], force: [f32; 3]) {
+        let robot = self.plan.vehicles.get(body.index()).map(|vehicle| vehicle.body);
+        let block = || self.block_of(body).map(|block| self.plan.parcels[block].body);
+        if let Some(body) = robot.or_else(block) {
+            self.pushes.add(body, point, force);
+        }
     }
 
     /// Puts a wheel somewhere.
@@ -458,6 +474,7 @@ impl Clone for ArenaWorld {
             slabs: self.slabs.clone(),
             lost: self.lost,
             moved: self.moved,
+            pushes: self.pushes.clone(),
         }
     }
 }

@@ -45,6 +45,7 @@
 //! - `world`: one world of rapier
 //! - `ports`: its ports
 //! - `contact`: what rapier's contacts say
+//! - `pushes`: forces from outside
 //! - `snapshot`: rapier's whole state as numbers
 //! - `arena_options`: how a world of wheeled robots is stepped
 //! - `arena_scene`: wheeled robots as rigid bodies, and what they can push, as data
@@ -63,6 +64,7 @@ mod error;
 mod model;
 mod options;
 mod ports;
+mod pushes;
 mod rules;
 mod scene;
 mod snapshot;

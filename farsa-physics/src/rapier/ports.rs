@@ -1,8 +1,8 @@
 //! The ports of a world of rapier.
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, Hit, JointId, Joints, Kinematics, PairContact, PairId,
-    Pose, Rays, Seen, Snapshot, Twist, Vision,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Handles, Hit, JointId, Joints, Kinematics,
+    PairContact, PairId, Pose, Rays, Seen, Snapshot, Twist, Vision,
 };
 use rapier3d::geometry::Ray;
 
@@ -49,6 +49,12 @@ impl Actuated for World {
         if let Some(command) = self.commands.get_mut(actuator.index()) {
             *command = value;
         }
+    }
+}
+
+impl ExternalForces for World {
+    fn apply_force(&mut self, body: BodyId, point: [f32; 3], force: [f32; 3]) {
+        self.push(body, point, force);
     }
 }
 
@@ -134,6 +140,7 @@ impl Snapshot for World {
     }
     /// Words that are damaged, or were saved by a world of another description, break the world down.
     fn restore(&mut self, from: &[f32]) {
+        self.pushes.clear();
         match unpack(from).filter(|kept| self.fits(kept)) {
             Some(Kept { physics, commands, lost, moved }) => {
                 (self.physics, self.commands, self.lost, self.moved) = (physics, commands, lost, moved);

@@ -14,6 +14,7 @@ use crate::rapier::contact::roll;
 use crate::rapier::error::RapierError;
 use crate::rapier::model::{Carrier, RobotPlan, build};
 use crate::rapier::options::Options;
+use crate::rapier::pushes::Pushes;
 use crate::rapier::scene::Scene;
 use crate::rapier::snapshot::copy;
 
@@ -32,6 +33,8 @@ pub struct World {
     pub(crate) lost: bool,
     /// Whether something was placed since links, colliders and neighbours were brought up to date.
     pub(crate) moved: bool,
+    /// Forces from outside that act in the next control step.
+    pub(crate) pushes: Pushes,
 }
 
 impl World {
@@ -51,7 +54,15 @@ impl World {
     pub fn from_scene(scene: &Scene, options: &Options) -> Result<Self, RapierError> {
         let (plan, physics) = build(scene, options)?;
         let commands = vec![[0.0; 2]; plan.actuators];
-        let mut world = Self { plan, initial: copy(&physics), physics, commands, lost: false, moved: true };
+        let mut world = Self {
+            plan,
+            initial: copy(&physics),
+            physics,
+            commands,
+            lost: false,
+            moved: true,
+            pushes: Pushes::default(),
+        };
         world.settle();
         world.initial = copy(&world.physics);
         Ok(world)
@@ -172,16 +183,26 @@ impl World {
 
     /// One control step.
     pub(crate) fn advance(&mut self) {
+        self.pushes.begin(&mut self.physics);
         for _ in 0..self.plan.substeps {
             if !self.lost {
                 self.actuate();
             }
             if self.lost {
-                return;
+                break;
             }
             roll(&mut self.physics, &self.plan);
             self.physics.step_with_events(&self.plan.rules, &());
             self.examine();
+        }
+        self.pushes.end(&mut self.physics);
+    }
+
+    /// Lets a force act on a body in the next control step.
+    pub(crate) fn push(&mut self, body: BodyId, point: [f32; 3], force: [f32; 3]) {
+        if let Some(carrier) = self.carrier(body) {
+            let carrier = carrier.body;
+            self.pushes.add(carrier, point, force);
         }
     }
 
@@ -195,6 +216,7 @@ impl World {
     /// Back to the start, with everything forgotten.
     pub(crate) fn reset(&mut self) {
         self.physics = copy(&self.initial);
+        self.pushes.clear();
         self.commands.fill([0.0; 2]);
         (self.lost, self.moved) = (false, false);
     }
@@ -309,6 +331,7 @@ impl Clone for World {
             commands: self.commands.clone(),
             lost: self.lost,
             moved: self.moved,
+            pushes: self.pushes.clone(),
         }
     }
 }

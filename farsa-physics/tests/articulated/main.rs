@@ -9,6 +9,7 @@ mod common;
 mod conformance;
 mod energy;
 mod floating;
+mod forces;
 mod ground;
 mod honest;
 mod icub;

@@ -3,8 +3,8 @@
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_8};
 
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Joints, Kinematics, MobileParts, MobileRobot, PairId, Pose, Twist,
-    World,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces, Joints, Kinematics, MobileParts, MobileRobot,
+    PairId, Pose, Twist, World,
 };
 use farsa_num::sin_cos;
 use farsa_physics::arena::{self, Arena, Convex, Cylinder, Wall};
@@ -283,6 +283,38 @@ fn a_heavy_block_stays_where_it_is() {
         let range = if strong { [low, 0.8 / (1.0 - 0.8 * 0.3)] } else { [0.495, 0.505] };
         assert!((range[0]..range[1]).contains(&(force / weight)), "{force} N of {weight} N: not in {range:?}");
     }
+}
+
+/// A block that a hand pushes stays below Coulomb's limit, and gains (F / m - mu g) t above it.
+#[test]
+fn a_hand_pushes_a_block_against_friction() {
+    let mut scene = ArenaScene::new(plane(&MobileRobot::khepera()));
+    let [mass, friction] = [0.1, 0.4];
+    scene.add_block(Block { friction, ..Block::new([0.3, 0.0], [0.1, 0.1, 0.02], mass) });
+    let cube = scene.block(0);
+    let mut world = world(&scene);
+    for _ in 0..5 {
+        world.step();
+    }
+    let before = world.pose(cube).position;
+    let pushed = |world: &mut ArenaWorld, force: f32| {
+        let [x, y, z] = world.pose(cube).position;
+        world.apply_force(cube, [x, y, z + 0.002], [force, 0.0, 0.0]);
+        world.step();
+        world.velocity(cube).linear[0]
+    };
+    let limit = (friction * mass * 9.81) as f32;
+    let still = pushed(&mut world, 0.9 * limit);
+    assert!(still.abs() < 1e-3 && (world.pose(cube).position[0] - before[0]).abs() < 1e-4, "{still} m/s");
+    let speed = pushed(&mut world, 2.0 * limit);
+    let expected = limit / mass as f32 * world.time_step();
+    assert!((speed - expected).abs() < 0.03 * expected, "{speed} m/s, {expected} by Coulomb's law");
+    // Let go, it slides on and stops.
+    for _ in 0..10 {
+        world.step();
+    }
+    let way = world.pose(cube).position[0] - before[0];
+    assert!(world.velocity(cube).linear[0].abs() < 1e-3 && way > 0.5 * expected * world.time_step(), "{way} m");
 }
 
 /// A block that lies on another side is seen as it lies.

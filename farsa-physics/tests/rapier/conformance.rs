@@ -2,8 +2,8 @@
 
 use crate::channels::channels_conform;
 use crate::common::{CLOSED, POSES, WRIST, Wrist, hand_and_sphere, scene};
-use farsa_body::testing::{Probe, check_arrange, check_rays, check_vision, check_world};
-use farsa_body::{ArmAndHand, Arrange, JointId, Law, Pose, Tabletop, Twist, World as _};
+use farsa_body::testing::{Probe, check_arrange, check_external_forces, check_rays, check_vision, check_world};
+use farsa_body::{ArmAndHand, Arrange, BodyId, JointId, Law, Pose, Tabletop, Twist, World as _};
 use farsa_physics::rapier::{Options, World};
 
 #[test]
@@ -25,6 +25,7 @@ fn the_whole_scene_conforms() {
         assert_eq!(check_vision(&make(), &probe.bodies, &[[0.1, -0.3, 0.3], [0.3, 0.0, 0.1]], 1.0), Ok(()));
     }
     assert_eq!(check_arrange(|| fresh.clone(), &probe), Ok(()));
+    assert_eq!(check_external_forces(|| fresh.clone(), &probe, &[Tabletop::SPHERE], BodyId(9000)), Ok(()));
 }
 
 #[test]

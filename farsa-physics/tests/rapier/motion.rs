@@ -3,8 +3,8 @@
 
 use crate::common::{CLOSED, POSES, SPHERES, WRIST, Wrist, ghost, hand_and_sphere, scene};
 use farsa_body::{
-    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Contacts, Handles, Joint, JointId, Joints, Kinematics,
-    Law, MassProperties, PairId, Pose, Robot, Segment, Shape, Surface, Tabletop, Twist, World as _,
+    Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, Collider, Contacts, ExternalForces, Handles, Joint, JointId,
+    Joints, Kinematics, Law, MassProperties, PairId, Pose, Robot, Segment, Shape, Surface, Tabletop, Twist, World as _,
 };
 use farsa_num::sin_cos;
 use farsa_physics::articulated;
@@ -63,6 +63,35 @@ fn joints_move_as_ours_do() {
         assert!(one[0] < usual[0] && one[1] < usual[1], "{name}: {one:?}");
         assert!(other[0] < limit[0] && other[1] < limit[1], "{name}: {other:?}");
     }
+}
+
+/// The arm, pushed at its palm and at its elbow for a tenth of a second, moves as ours does.
+#[test]
+fn a_pushed_arm_moves_as_ours_does() {
+    let robot = ghost(&scene());
+    let options = articulated::Options { substeps: 100, ..articulated::Options::default() };
+    let mut ours = articulated::World::new(articulated::Model::<f32>::new(&robot, &options).unwrap());
+    let mut theirs = World::new(&robot, &Options { substeps: 100, ..Options::default() }).unwrap();
+    fn pushed<W>(world: &mut W, pushes: &[(BodyId, [f32; 3])]) -> Vec<f32>
+    where
+        W: farsa_body::World + Arrange + Handles<Body = BodyId, Joint = JointId> + Joints + Kinematics + ExternalForces,
+    {
+        start(world);
+        for _ in 0..10 {
+            for (body, force) in pushes {
+                world.apply_force(*body, world.origin(*body), *force);
+            }
+            world.step();
+        }
+        (0..7).map(|j| world.position(JointId(j))).collect()
+    }
+    let pushes = [(BodyId(6), [2.0, -1.0, 3.0]), (BodyId(3), [0.0, 4.0, 1.0])];
+    let [free, ours] = [&[][..], &pushes].map(|pushes| pushed(&mut ours, pushes));
+    let theirs = pushed(&mut theirs, &pushes);
+    let way = ours.iter().zip(&free).fold(0.0_f32, |most, (a, b)| most.max((a - b).abs()));
+    let apart = ours.iter().zip(&theirs).fold(0.0_f32, |most, (a, b)| most.max((a - b).abs()));
+    println!("pushed by {way} rad, {apart} rad apart");
+    assert!(way > 0.02 && apart < 0.02 * way, "{way} {apart}");
 }
 
 /// Two rods in a row, hinged about the y axis: mass, inertia, from hinge to centre and to the next hinge.

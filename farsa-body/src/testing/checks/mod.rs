@@ -4,6 +4,8 @@
 mod arrange;
 /// Sensors and motors.
 mod channels;
+/// Forces from outside.
+mod forces;
 /// What a world of the plane shows.
 mod planar;
 /// Ray casts.
@@ -15,6 +17,7 @@ mod world;
 
 pub use arrange::check_arrange;
 pub use channels::{check_motor, check_sensor};
+pub use forces::check_external_forces;
 pub use planar::{check_planar, check_sight};
 pub use rays::check_rays;
 pub use vision::check_vision;
