@@ -185,7 +185,7 @@ impl ComposedExperiment {
         let world = ArenaWorld::new(&scene, &ArenaOptions::default());
         let mut world = world.map_err(|error| self.places.wrong("/world", error))?;
         let episode = self.episode(composed, &mut world)?;
-        Ok(Box::new(InWorld::new(world, episode)))
+        Ok(Box::new(InWorld::new(world, episode).with_displacements().with_pushes()))
     }
 
     #[cfg(not(feature = "rapier"))]
@@ -227,7 +227,7 @@ impl ComposedExperiment {
             let batch = Batch::new(model.clone(), lanes.count(), lanes.instructions());
             batch.map_err(|error| Error::Other(error.to_string()))
         };
-        Ok(Box::new(InWorld::new(world, Composed(episode)).with_lanes(batch).with_displacements()))
+        Ok(Box::new(InWorld::new(world, Composed(episode)).with_lanes(batch).with_displacements().with_pushes()))
     }
 
     #[cfg(feature = "rapier")]
@@ -241,7 +241,7 @@ impl ComposedExperiment {
         let articulated::Options { time_step, substeps, gravity, .. } = *options;
         let world = World::new(robot, &Options { time_step, substeps, gravity, ..Options::default() });
         let world = world.map_err(|error| self.places.wrong("/world", error))?;
-        Ok(Box::new(InWorld::new(world, Composed(episode))))
+        Ok(Box::new(InWorld::new(world, Composed(episode)).with_displacements().with_pushes()))
     }
 
     #[cfg(not(feature = "rapier"))]

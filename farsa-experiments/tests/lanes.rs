@@ -9,8 +9,8 @@ use farsa_evo::randomize;
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable, Trial, evaluator};
 use farsa_experiments::{Aggregation, Braitenberg, Discrimination, DiscriminationCylinders, Foraging, PredatorPrey};
 use farsa_lab::{
-    Displacement, Episode, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Settings, Value,
-    run_episode, run_in_lanes,
+    Displacement, Episode, EpisodeId, Evaluation, Evaluator, Experiment, Genotype, Lanes, Outcome, Push, Settings,
+    Value, run_episode, run_in_lanes,
 };
 use farsa_num::{Domain, Instructions, Stream};
 use farsa_physics::articulated::{Batch, LANES, Model, World};
@@ -130,18 +130,22 @@ fn trials_of_networks_in_lanes_are_those_alone() {
     // In every third the sphere is put elsewhere.
     let (position, rotation) = ([0.3, -0.2, 0.4], [0.0, 0.0, 0.0, 1.0]);
     let moved = [Displacement { step: 20, body: Tabletop::SPHERE.0, position, rotation }];
+    // And in every fifth it is pushed.
+    let pushed = [Push { steps: [5, 15], body: Tabletop::SPHERE.0, point: [0.0; 3], force: [2.0, 0.0, 1.0] }];
     let evaluation = |number: usize| {
         let (individual, trial) = (number / TRIALS, number % TRIALS);
         let id = EpisodeId { seed: 3, generation: 1, individual: individual as u32, trial: trial as u32 };
         let displacements = if number.is_multiple_of(3) { &moved[..] } else { &[] };
-        Evaluation { number, displacements, ..Evaluation::new(&parameters[individual], id) }
+        let pushes = if number.is_multiple_of(5) { &pushed[..] } else { &[] };
+        Evaluation { number, displacements, pushes, ..Evaluation::new(&parameters[individual], id) }
     };
     // 39, which is no multiple of the lanes.
     let evaluations: Vec<Evaluation> = (0..10 * TRIALS - 1).map(evaluation).collect();
     let alone = in_lanes_as_alone(&mut evaluator, articulated::Batch::instructions(), &evaluations);
     for (evaluation, outcome) in evaluations.iter().zip(&alone) {
-        let still = evaluator.evaluate(Evaluation { displacements: &[], ..*evaluation }, None);
-        assert_eq!(still == *outcome, evaluation.displacements.is_empty(), "{}", evaluation.number);
+        let still = evaluator.evaluate(Evaluation { displacements: &[], pushes: &[], ..*evaluation }, None);
+        let untouched = evaluation.displacements.is_empty() && evaluation.pushes.is_empty();
+        assert_eq!(still == *outcome, untouched, "{}", evaluation.number);
     }
     println!("steps: {:?}", alone.iter().map(|outcome| outcome.steps).collect::<Vec<_>>());
 }

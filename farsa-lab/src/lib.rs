@@ -36,7 +36,7 @@ pub use experiment::{
     Description, Displacement, Episode, EpisodeId, Evaluation, Evaluator, Experiment, Exports, Failure, Genotype,
     InLanes, InWorld, Intervention, Interventions, Iteration, JudgeExport, Lanes, Learner, MotorDrive, MotorExport,
     NetworkExport, Neurocontroller, NoWorld, NormalisedController, Note, NotedBehaviour, Objective, Outcome,
-    OwnedNetwork, Parameter, PartNames, PlanarWorld, PointExport, Protocol, Rescored, Rollout, SensorExport,
+    OwnedNetwork, Parameter, PartNames, PlanarWorld, PointExport, Protocol, Push, Rescored, Rollout, SensorExport,
     SensorReading, ServoExport, Setting, Settings, SimpleExperiment, Source, StartExport, SurfaceExport, Task, Trials,
     Value, input_ranges, mean_of_note, mean_of_trials, network_parameters, record_row, resting_network, run_episode,
     run_in_lanes, seconds,

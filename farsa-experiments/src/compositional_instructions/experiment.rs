@@ -66,5 +66,5 @@ pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, InstructionTask>,
     let model = Model::new(&scene.robot, &scene.options()).map_err(wrong)?;
     let world = World::new(model.clone());
     let batch = move |lanes: Lanes| Batch::new(model.clone(), lanes.count(), lanes.instructions()).map_err(wrong);
-    Ok(InWorld::new(world, InstructionTask::new(scene)?).with_lanes(batch).with_displacements())
+    Ok(InWorld::new(world, InstructionTask::new(scene)?).with_lanes(batch).with_displacements().with_pushes())
 }

@@ -57,5 +57,5 @@ pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, GraspTask>, Error
     let batch = move |lanes: Lanes| {
         Batch::new(model.clone(), lanes.count(), lanes.instructions()).map_err(|error| wrong(&error))
     };
-    Ok(InWorld::new(world, GraspTask::new(scene)?).with_lanes(batch).with_displacements())
+    Ok(InWorld::new(world, GraspTask::new(scene)?).with_lanes(batch).with_displacements().with_pushes())
 }

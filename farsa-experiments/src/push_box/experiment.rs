@@ -61,5 +61,6 @@ pub(crate) fn evaluator(
 ) -> Result<farsa_lab::InWorld<farsa_physics::rapier::ArenaWorld, PushEpisode<Layer>>, Error> {
     let inputs = config.inputs();
     let layer = layer(inputs, vec![0.0; farsa_nn::Perceptron::parameter_count(inputs, OUTPUTS)])?;
-    Ok(farsa_lab::InWorld::new(config.world()?, PushEpisode::new(config, layer)?))
+    let world = config.world()?;
+    Ok(farsa_lab::InWorld::new(world, PushEpisode::new(config, layer)?).with_displacements().with_pushes())
 }

@@ -66,7 +66,7 @@ pub fn evaluator(config: Config) -> Result<InWorld<World<f32>, ReachTask>, Error
     let batch = move |lanes: Lanes| {
         Batch::new(model.clone(), lanes.count(), lanes.instructions()).map_err(|error| wrong(&error))
     };
-    Ok(InWorld::new(world, ReachTask::new(scene)?).with_lanes(batch).with_displacements())
+    Ok(InWorld::new(world, ReachTask::new(scene)?).with_lanes(batch).with_displacements().with_pushes())
 }
 
 /// Evaluates under a configuration, in rapier.

@@ -205,7 +205,7 @@ impl Experiment for PassiveWalker {
 /// [`Error::Setting`] for a slope without gait, [`Error::Other`] for a body that cannot be.
 pub fn evaluator(config: Config) -> Result<InWorld<World<f64>, PassiveTrial>, Error> {
     let (model, parts) = config.model()?;
-    Ok(InWorld::new(World::new(model), PassiveTrial::new(config, parts)?).with_displacements())
+    Ok(InWorld::new(World::new(model), PassiveTrial::new(config, parts)?).with_displacements().with_pushes())
 }
 
 /// Evaluates a walker under a configuration, in rapier.
@@ -217,7 +217,7 @@ pub fn evaluator_in_rapier(config: Config) -> Result<InWorld<farsa_physics::rapi
     let (robot, parts) = config.walker.robot();
     let world = farsa_physics::rapier::World::new(&robot, &config.rapier_options());
     let world = world.map_err(|error| Error::Other(format!("passive-walker: {error}")))?;
-    Ok(InWorld::new(world, PassiveTrial::new(config, parts)?))
+    Ok(InWorld::new(world, PassiveTrial::new(config, parts)?).with_displacements().with_pushes())
 }
 
 /// A walk on the slope, beside the gait of the simplest walking model.

@@ -367,6 +367,63 @@ fn a_body_of_a_page_is_put_elsewhere() {
 }
 
 #[test]
+fn a_body_of_a_page_is_pushed() {
+    let here = scratch("live-pushes");
+    let few = "--population 4 --set evolution.parents=2 --generations 1 --quiet";
+    ok(farsa(), &here, &format!("run reach-grasp-lift {few} --out arm"));
+    ok(farsa(), &here, "live arm --html arm.html --quiet");
+    let live = &data(&here.join("arm.html"))["live"];
+    assert_eq!(live["about"]["pushes"], true);
+    let mut session = opened(live);
+    let mut film = |pushes: Value| {
+        asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "pushes": pushes }))
+    };
+    let whole = film(json!([]));
+    let bodies = whole["film"]["bodies"].as_array().expect("bodies").clone();
+    let one = |name: &str, steps: [u32; 2], force: f64| {
+        let body = bodies.iter().position(|body| body == name).expect("the body");
+        json!({ "steps": steps, "body": body, "point": [0, 0, 0], "force": [0, 0, force] })
+    };
+    let first = |other: &Value| {
+        let both = |film: &Value, at: usize| film["digests"][at].clone();
+        (0..40).position(|at| both(&whole, at) != both(other, at))
+    };
+    // Whatever comes of it comes from its first step on, and bodies on joints are pushed as well as the sphere.
+    let pushed = film(json!([one("sphere", [10, 20], 5.0)]));
+    assert_eq!(first(&pushed), Some(10));
+    assert!(pushed["film"]["name"].as_str().expect("a name").ends_with("; 1 pushed"));
+    assert_eq!(film(json!([one("sphere", [10, 20], 5.0)]))["digests"], pushed["digests"]);
+    assert_eq!(first(&film(json!([one("palm", [12, 13], 5.0)]))), Some(12));
+    for nothing in [one("sphere", [10, 10], 5.0), one("sphere", [10, 20], 0.0), one("sphere", [100_000, 200_000], 5.0)]
+    {
+        assert_eq!(film(json!([nothing]))["digests"], whole["digests"]);
+    }
+    for (wrong, why) in [
+        (json!({ "steps": [1, 2], "body": 1000, "point": [0, 0, 0], "force": [0, 0, 1] }), "body 1000 of"),
+        (json!({ "steps": [1, 2], "body": 0, "point": [0, 0, 0], "force": [0, 0, 2e5] }), "at most 100000 N"),
+        (json!({ "steps": [1, 2], "body": 0, "point": [0, 0, 1e39], "force": [0, 0, 1] }), "a force of"),
+        (json!({ "steps": [1], "body": 0, "point": [0, 0, 0], "force": [0, 0, 1] }), "request: "),
+    ] {
+        let error = film(json!([wrong]))["error"].as_str().expect("an error").to_owned();
+        assert!(error.contains(why), "{error}");
+    }
+    let many = vec![one("sphere", [1, 2], 1.0); 1001];
+    assert!(
+        film(json!(many))["error"].as_str().expect("an error").contains("1001 bodies that are pushed, at most 1000")
+    );
+    // Wheels of arenas do what they are told: nothing pushes them.
+    ok(farsa(), &here, &format!("run foraging {few} --set trial.steps=30 --out team"));
+    ok(farsa(), &here, "live team --html team.html --quiet");
+    let live = &data(&here.join("team.html"))["live"];
+    assert_eq!(live["about"]["pushes"], false);
+    let pushes = json!([{ "steps": [1, 2], "body": 0, "point": [0, 0, 0], "force": [0, 0, 1] }]);
+    let mut session = opened(live);
+    let refused =
+        asked(&mut session, &json!({ "do": "film", "individual": 0, "trial": { "number": 0 }, "pushes": pushes }));
+    assert!(refused["error"].as_str().expect("an error").contains("has no bodies that can be pushed"));
+}
+
+#[test]
 fn any_robot_of_a_team_is_recorded() {
     let here = scratch("live-robots");
     let few = "--population 4 --set evolution.parents=2 --generations 1 --quiet --set trial.steps=30";

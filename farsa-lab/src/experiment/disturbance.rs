@@ -1,6 +1,6 @@
-//! Bodies that are put elsewhere in the course of an episode.
+//! Bodies that are put elsewhere or pushed in the course of an episode.
 
-use farsa_body::{Arrange, BodyId, Handles, Pose, Recorder, Twist};
+use farsa_body::{Arrange, BodyId, ExternalForces, Handles, Kinematics, Pose, Recorder, Twist};
 use serde::{Deserialize, Serialize};
 
 use crate::experiment::episode::{Episode, EpisodeId};
@@ -19,8 +19,24 @@ pub struct Displacement {
     pub rotation: [f32; 4],
 }
 
+/// A force from outside on a body, over some steps of an episode.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Push {
+    /// The first step in which it acts, from 0, and the one after the last.
+    pub steps: [u32; 2],
+    /// Which body.
+    pub body: u16,
+    /// Where it acts, in the body's frame \[m\].
+    pub point: [f32; 3],
+    /// The force in the world's axes \[N\].
+    pub force: [f32; 3],
+}
+
 /// How a body is put somewhere in a world of type `W`.
 pub(crate) type Place<W> = fn(&mut W, &Displacement);
+/// How a body is pushed in the next step of a world of type `W`.
+pub(crate) type Apply<W> = fn(&mut W, &Push);
 
 /// Puts a body somewhere.
 pub(crate) fn place<W: Arrange + Handles<Body = BodyId>>(world: &mut W, displacement: &Displacement) {
@@ -29,22 +45,56 @@ pub(crate) fn place<W: Arrange + Handles<Body = BodyId>>(world: &mut W, displace
     world.finish_placement();
 }
 
-/// An episode in which bodies are put elsewhere.
-pub(crate) struct Displaced<'d, W, E> {
-    pub(crate) episode: E,
-    pub(crate) displacements: &'d [Displacement],
-    pub(crate) place: Place<W>,
-    step: u32,
+/// Pushes a body.
+pub(crate) fn apply<W: ExternalForces + Kinematics + Handles<Body = BodyId>>(world: &mut W, push: &Push) {
+    let body = BodyId(push.body);
+    let point = world.pose(body).transform(push.point);
+    world.apply_force(body, point, push.force);
 }
 
-impl<'d, W, E> Displaced<'d, W, E> {
-    /// The episode with these, in any order.
-    pub(crate) fn new(episode: E, displacements: &'d [Displacement], place: Place<W>) -> Self {
-        Self { episode, displacements, place, step: 0 }
+/// What is done to the bodies of an episode, in any order, and how in its world.
+pub(crate) struct Disturbances<'d, W> {
+    pub(crate) displacements: &'d [Displacement],
+    pub(crate) pushes: &'d [Push],
+    pub(crate) place: Option<Place<W>>,
+    pub(crate) apply: Option<Apply<W>>,
+}
+
+impl<W> Disturbances<'_, W> {
+    /// Whether anything is done.
+    pub(crate) fn any(&self) -> bool {
+        let placed = self.place.is_some() && !self.displacements.is_empty();
+        placed || self.apply.is_some() && !self.pushes.is_empty()
+    }
+
+    /// What is done before a step: bodies are put elsewhere first.
+    fn before(&self, step: u32, world: &mut W) {
+        if let Some(place) = self.place {
+            let now = self.displacements.iter().filter(|displacement| displacement.step == step);
+            now.for_each(|displacement| place(world, displacement));
+        }
+        if let Some(apply) = self.apply {
+            let now = self.pushes.iter().filter(|push| (push.steps[0]..push.steps[1]).contains(&step));
+            now.for_each(|push| apply(world, push));
+        }
     }
 }
 
-impl<W, E: Episode<W>> Episode<W> for Displaced<'_, W, E> {
+/// An episode in which something is done to bodies.
+pub(crate) struct Disturbed<'d, W, E> {
+    episode: E,
+    disturbances: Disturbances<'d, W>,
+    step: u32,
+}
+
+impl<'d, W, E> Disturbed<'d, W, E> {
+    /// The episode with these.
+    pub(crate) fn new(episode: E, disturbances: Disturbances<'d, W>) -> Self {
+        Self { episode, disturbances, step: 0 }
+    }
+}
+
+impl<W, E: Episode<W>> Episode<W> for Disturbed<'_, W, E> {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         self.step = 0;
         self.episode.start(world, id);
@@ -55,8 +105,7 @@ impl<W, E: Episode<W>> Episode<W> for Displaced<'_, W, E> {
     }
 
     fn act(&mut self, world: &mut W) {
-        let now = self.displacements.iter().filter(|displacement| displacement.step == self.step);
-        now.for_each(|displacement| (self.place)(world, displacement));
+        self.disturbances.before(self.step, world);
         self.step = self.step.saturating_add(1);
         self.episode.act(world);
     }
@@ -78,37 +127,69 @@ impl<W, E: Episode<W>> Episode<W> for Displaced<'_, W, E> {
 mod tests {
     use super::*;
     use crate::experiment::episode::run_episode;
-    use farsa_body::{Kinematics as _, MobileRobot};
-    use farsa_physics::arena::{Arena, World};
+    use farsa_body::{Joint, MassProperties, MobileRobot, Robot, Segment, World as _};
+    use farsa_physics::{arena, articulated};
 
     /// Ten steps in which nothing is done, and where the body is before each.
     struct Ten(Vec<[f32; 3]>);
 
-    impl Episode<World> for Ten {
-        fn start(&mut self, _: &mut World, _: EpisodeId) {
+    impl<W: Kinematics<Body = BodyId>> Episode<W> for Ten {
+        fn start(&mut self, _: &mut W, _: EpisodeId) {
             self.0.clear();
         }
-        fn act(&mut self, world: &mut World) {
+        fn act(&mut self, world: &mut W) {
             self.0.push(world.pose(BodyId(0)).position);
         }
-        fn judge(&mut self, _: &mut World) -> Option<f64> {
+        fn judge(&mut self, _: &mut W) -> Option<f64> {
             (self.0.len() == 10).then_some(0.0)
         }
     }
 
     #[test]
     fn a_body_is_put_somewhere_before_its_step() {
-        let mut arena = Arena::new();
+        let mut arena = arena::Arena::new();
         arena.add_robot(MobileRobot::khepera(), [0.0, 0.0], 0.0);
-        let mut world = World::new(&arena).unwrap();
+        let mut world = arena::World::new(&arena).unwrap();
         let to = |step, x| Displacement { step, body: 0, position: [x, 0.5, 0.0], rotation: [0.0, 0.0, 0.0, 1.0] };
-        let displacements = [to(7, 0.25), to(3, -0.5), to(12, 9.0)];
-        let mut episode = Displaced::new(Ten(Vec::new()), &displacements, place);
+        let displacements = &[to(7, 0.25), to(3, -0.5), to(12, 9.0)];
+        let disturbances = Disturbances { displacements, pushes: &[], place: Some(place), apply: None };
+        assert!(disturbances.any());
+        let mut episode = Disturbed::new(Ten(Vec::new()), disturbances);
         for _ in 0..2 {
             world.clear();
             run_episode(&mut episode, &mut world, EpisodeId::default(), None);
             let xs: Vec<f32> = episode.episode.0.iter().map(|position| position[0]).collect();
             assert_eq!(xs, [0.0, 0.0, 0.0, -0.5, -0.5, -0.5, -0.5, 0.25, 0.25, 0.25]);
         }
+    }
+
+    /// A ball without weight: it gains F t / m in each step of a push, and keeps it.
+    #[test]
+    fn a_body_is_pushed_in_its_steps() {
+        let mut ball = Robot::new("ball");
+        let start = Joint::floating(Pose::identity());
+        ball.add_segment(Segment::new("ball", None, start, MassProperties::sphere(0.5, 0.1)));
+        let options = articulated::Options { gravity: [0.0; 3], ..articulated::Options::default() };
+        let mut world = articulated::World::new(articulated::Model::<f32>::new(&ball, &options).unwrap());
+        let (h, m) = (f64::from(world.time_step()), 0.5);
+        let push = |steps, force| Push { steps, body: 0, point: [0.0; 3], force: [force, 0.0, 0.0] };
+        let pushes = &[push([2, 5], 0.5), push([4, 6], -0.25), push([3, 3], 9.0), push([20, 30], 9.0)];
+        let disturbances = Disturbances { displacements: &[], pushes, place: Some(place), apply: Some(apply) };
+        let mut episode = Disturbed::new(Ten(Vec::new()), disturbances);
+        run_episode(&mut episode, &mut world, EpisodeId::default(), None);
+        let forces = [0.0, 0.0, 0.5, 0.5, 0.25, -0.25, 0.0, 0.0, 0.0, 0.0];
+        let speed: f64 = forces.iter().map(|force| force / m * h).sum();
+        let found = f64::from(world.velocity(BodyId(0)).linear[0]);
+        assert!((found - speed).abs() < 1e-6 * speed, "{found} and {speed}");
+        let places = &episode.episode.0;
+        assert!(places[..3].iter().all(|place| *place == [0.0; 3]) && places[3][0] > 0.0, "{places:?}");
+    }
+
+    #[test]
+    fn what_a_world_cannot_do_is_left_out() {
+        let pushes = &[Push { steps: [0, 9], body: 0, point: [0.0; 3], force: [1.0; 3] }];
+        let disturbances = |place, apply| Disturbances::<arena::World> { displacements: &[], pushes, place, apply };
+        assert!(!disturbances(Some(place), None).any());
+        assert!(disturbances(None, Some(|_, _| ())).any());
     }
 }

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::controller_export::{ControllerExport, StartExport};
-use crate::experiment::displacement::Displacement;
+use crate::experiment::disturbance::{Displacement, Push};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
@@ -179,6 +179,8 @@ pub struct Evaluation<'p> {
     pub intervention: Option<&'p Intervention>,
     /// Bodies that are put elsewhere in its course \[[`Evaluator::displaces`]\]; none in a run and in a test.
     pub displacements: &'p [Displacement],
+    /// Forces on bodies in its course \[[`Evaluator::pushes`]\]; none in a run and in a test.
+    pub pushes: &'p [Push],
     /// Of several robots the one whose channels are recorded \[[`Task::robots`]\]; by default the individual's first.
     pub watched: Option<u32>,
 }
@@ -195,6 +197,7 @@ impl<'p> Evaluation<'p> {
             case: None,
             intervention: None,
             displacements: &[],
+            pushes: &[],
             watched: None,
         }
     }
@@ -217,6 +220,11 @@ pub trait Evaluator: Task {
 
     /// Whether bodies are put elsewhere where an evaluation says so; by default they are not.
     fn displaces(&self) -> bool {
+        false
+    }
+
+    /// Whether bodies are pushed where an evaluation says so; by default they are not.
+    fn pushes(&self) -> bool {
         false
     }
 

@@ -1,12 +1,12 @@
 //! An evaluator made of a world and an episode.
 
-use farsa_body::{Arrange, BodyId, Handles, Recorder, World};
+use farsa_body::{Arrange, BodyId, ExternalForces, Handles, Kinematics, Recorder, World};
 use farsa_view::Schema;
 
 use crate::error::Error;
 use crate::experiment::anatomy::Anatomy;
 use crate::experiment::behaviour::Behaviour;
-use crate::experiment::displacement::{Displaced, Place, place};
+use crate::experiment::disturbance::{Apply, Disturbances, Disturbed, Place, apply, place};
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Task};
 use crate::experiment::in_lanes::{Batch, run_in_lanes};
@@ -108,12 +108,14 @@ pub struct InWorld<W, R> {
     lanes: Option<Box<dyn SideBySide<R>>>,
     /// How bodies are put elsewhere, where they can be.
     place: Option<Place<W>>,
+    /// How bodies are pushed, where they can be.
+    apply: Option<Apply<W>>,
 }
 
 impl<W, R> InWorld<W, R> {
     /// Evaluates this episode in this world.
     pub fn new(world: W, rollout: R) -> Self {
-        Self { world, rollout, budget: None, make: None, lanes: None, place: None }
+        Self { world, rollout, budget: None, make: None, lanes: None, place: None, apply: None }
     }
 
     /// And side by side in batches that `batch` makes of the world's description.
@@ -140,6 +142,15 @@ impl<W, R> InWorld<W, R> {
         W: Arrange + Handles<Body = BodyId>,
     {
         Self { place: Some(place), ..self }
+    }
+
+    /// And where an evaluation says so, bodies are pushed.
+    #[must_use]
+    pub fn with_pushes(self) -> Self
+    where
+        W: ExternalForces + Kinematics + Handles<Body = BodyId>,
+    {
+        Self { apply: Some(apply), ..self }
     }
 
     /// The episode.
@@ -216,20 +227,22 @@ where
         }
         let budget = *self.budget.get_or_insert_with(|| self.rollout.step_budget());
         let mut limited = Limited::new(&mut self.rollout, budget);
-        match self.place.filter(|_| !evaluation.displacements.is_empty()) {
-            Some(place) => {
-                let mut displaced = Displaced::new(&mut limited, evaluation.displacements, place);
-                run_episode(&mut displaced, &mut self.world, evaluation.id, recorder);
-            }
-            None => {
-                run_episode(&mut limited, &mut self.world, evaluation.id, recorder);
-            }
+        let Evaluation { id, displacements, pushes, .. } = evaluation;
+        let disturbances = Disturbances { displacements, pushes, place: self.place, apply: self.apply };
+        if disturbances.any() {
+            run_episode(&mut Disturbed::new(&mut limited, disturbances), &mut self.world, id, recorder);
+        } else {
+            run_episode(&mut limited, &mut self.world, id, recorder);
         }
         limited.stopped().unwrap_or_else(|| self.rollout.outcome())
     }
 
     fn displaces(&self) -> bool {
         self.place.is_some()
+    }
+
+    fn pushes(&self) -> bool {
+        self.apply.is_some()
     }
 
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
@@ -256,11 +269,11 @@ where
         done: &mut dyn FnMut(usize, Outcome),
     ) {
         if let Some(lanes) = &mut self.lanes {
-            // In lanes nothing is put elsewhere.
+            // In lanes nothing is put elsewhere or pushed.
             let mut alone = Vec::new();
             let mut plain = || loop {
                 let evaluation = next()?;
-                if evaluation.displacements.is_empty() {
+                if evaluation.displacements.is_empty() && evaluation.pushes.is_empty() {
                     return Some(evaluation);
                 }
                 alone.push(evaluation);

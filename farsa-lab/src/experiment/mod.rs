@@ -8,7 +8,7 @@
 //! - `parameter`: a number that evolution finds, with its range
 //! - `protocol`: tests of an individual, as tables of cases
 //! - `episode`: one trial in a world, and the loop that runs it
-//! - `displacement`: bodies that are put elsewhere in the course of an episode
+//! - `disturbance`: bodies that are put elsewhere or pushed in the course of an episode
 //! - `in_lanes`: the loop that runs many episodes side by side, one in each lane of a batch of worlds
 //! - `in_world`: an evaluator made of a world and an episode
 //! - `intervention`: what a test does to a controller: silent neurons, cut inputs and links, noise
@@ -31,7 +31,7 @@ pub(crate) mod behaviour;
 mod controlled;
 pub(crate) mod controller_export;
 pub(crate) mod definition;
-pub(crate) mod displacement;
+pub(crate) mod disturbance;
 pub(crate) mod episode;
 pub(crate) mod evaluator;
 pub(crate) mod genotype;
@@ -60,7 +60,7 @@ pub use controller_export::{
     ServoExport, StartExport, SurfaceExport,
 };
 pub use definition::{Experiment, SimpleExperiment};
-pub use displacement::Displacement;
+pub use disturbance::{Displacement, Push};
 pub use episode::{Episode, EpisodeId, NoWorld, record_row, run_episode, seconds};
 pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, Learner, Task};
 pub use genotype::Genotype;

@@ -97,6 +97,10 @@ impl Evaluator for Rescored {
         self.inner.displaces()
     }
 
+    fn pushes(&self) -> bool {
+        self.inner.pushes()
+    }
+
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
         if self.inner.in_lanes().is_some() { Some(self) } else { None }
     }

@@ -9,6 +9,7 @@
 //! - `session`: the agent that a script describes, and its trials
 //! - `request`: what is asked of a session and what it answers, as JSON
 //! - `evolution`: a search that goes on, shared by sessions
+//! - `hands`: what is done to the bodies of a trial
 //! - `standing`: where a run stands
 //! - `bytes`: bytes in JSON
 //! - `digest`: a number for what a trial was like up to each step
@@ -18,6 +19,7 @@ mod bytes;
 mod champion;
 mod digest;
 mod evolution;
+mod hands;
 #[cfg(feature = "command")]
 mod news;
 #[cfg(feature = "command")]

@@ -40,6 +40,7 @@ struct About {
     trials: usize,
     /// Whether bodies can be put elsewhere.
     displaces: bool,
+    pushes: bool,
     /// The robots of which any can be recorded.
     robots: Vec<String>,
     /// Of several populations, their names.
@@ -194,6 +195,7 @@ fn about(laboratory: &Laboratory<'_>, script: &Script, text: &str) -> Result<Abo
     let mut told = About {
         trials: kinds,
         displaces: session.displaces(),
+        pushes: session.pushes(),
         robots: session.robots(),
         populations: session.populations(),
         individuals: Vec::new(),

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
-use crate::experiment::Displacement;
+use crate::experiment::{Displacement, Push};
 use crate::live::bytes::Bytes;
 use crate::live::script::Evolved;
 
@@ -32,7 +32,7 @@ pub(crate) enum Request {
     Tell { outcomes: Vec<Bytes> },
 }
 
-/// A trial of an individual, with changes of its controller, a list or none, and with bodies that are put elsewhere.
+/// A trial of an individual, with changes of its controller, a list or none, and with bodies that are put elsewhere or pushed.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Film {
@@ -42,6 +42,8 @@ pub(crate) struct Film {
     pub(crate) lesion: String,
     #[serde(default)]
     pub(crate) moves: Vec<Displacement>,
+    #[serde(default)]
+    pub(crate) pushes: Vec<Push>,
     /// Of several robots the one that is recorded.
     #[serde(default)]
     pub(crate) watched: Option<u32>,
@@ -50,7 +52,8 @@ pub(crate) struct Film {
 impl Film {
     /// The trial as it was in the run.
     pub(crate) fn of_run(individual: usize, trial: u32) -> Self {
-        Self { individual, trial: Trial::Number(trial), lesion: String::new(), moves: Vec::new(), watched: None }
+        let (trial, lesion) = (Trial::Number(trial), String::new());
+        Self { individual, trial, lesion, moves: Vec::new(), pushes: Vec::new(), watched: None }
     }
 }
 

@@ -1,6 +1,5 @@
 //! The agent that a script describes, and its trials.
 
-use farsa_body::BodyId;
 use farsa_evo::ObservationStatistics;
 use farsa_num::Instructions;
 use farsa_view::{Page, Recording, Schema};
@@ -10,14 +9,15 @@ use serde_json::value::RawValue;
 use crate::error::Error;
 use crate::evaluation::trials::episode;
 use crate::evaluation::trials::{came_to, facts, fitness};
+use crate::experiment::PartNames;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::Outcome;
-use crate::experiment::{Displacement, PartNames};
 use crate::live::digest::Digest;
 use crate::live::evolution::Evolution;
+use crate::live::hands::hands;
 use crate::live::request::{Added, Earned, Film, Filmed, Request, Shared, Trial};
 use crate::live::script::{Evolved, Script};
 use crate::run::config_file::ConfigFile;
@@ -29,8 +29,6 @@ use crate::run::plan::Plan;
 const MOST_FRESH: usize = 10_000;
 /// Most individuals of a session.
 const MOST_INDIVIDUALS: usize = 10_000;
-/// Most bodies of a trial that are put elsewhere.
-const MOST_MOVES: usize = 1000;
 /// Trials side by side.
 const LANES: usize = 8;
 
@@ -148,6 +146,11 @@ impl LiveSession {
         self.evaluator.displaces()
     }
 
+    /// Whether bodies can be pushed.
+    pub(crate) fn pushes(&self) -> bool {
+        self.evaluator.pushes()
+    }
+
     /// The robots of which any can be recorded.
     pub(crate) fn robots(&self) -> Vec<String> {
         self.evaluator.robots()
@@ -164,9 +167,9 @@ impl LiveSession {
     /// # Errors
     /// [`Error::Usage`] for what there is not.
     pub(crate) fn film(&mut self, asked: &Film) -> Result<Filmed, Error> {
-        let Film { individual, trial, lesion, moves, watched } = asked;
+        let Film { individual, trial, lesion, watched, .. } = asked;
         let schema = schema(self.evaluator.as_ref(), &one(&self.individuals, *individual)?.own);
-        let displacements = &self.displacements(moves, &schema)?;
+        let (displacements, pushes) = &hands(self.evaluator.as_ref(), self.name, &schema, asked)?;
         let robots = self.evaluator.robots();
         if let Some(robot) = watched.filter(|robot| *robot as usize >= robots.len()) {
             return Err(Error::Usage(format!("robot {robot} of {} (the first is 0)", robots.len())));
@@ -187,13 +190,14 @@ impl LiveSession {
         let plain = Evaluation::new(&individual.own.parameters, id);
         let intervention = intervention.as_ref();
         let watched = *watched;
-        let evaluation = Evaluation { opponents, normalisation, intervention, displacements, watched, ..plain };
+        let evaluation = Evaluation { opponents, normalisation, intervention, displacements, pushes, watched, ..plain };
         let outcome = evaluator.evaluate(evaluation, Some(&mut digest));
         let (recording, digests) = digest.into_parts();
         let said = [
             Some(came_to(evaluator.as_ref(), &outcome)),
             (!lesion.is_empty()).then(|| format!("with {lesion}")),
             (!displacements.is_empty()).then(|| format!("{} moved", displacements.len())),
+            (!pushes.is_empty()).then(|| format!("{} pushed", pushes.len())),
             watched.and_then(|robot| robots.get(robot as usize)).map(|robot| format!("{robot} is recorded")),
         ];
         let said: Vec<String> = said.into_iter().flatten().collect();
@@ -233,30 +237,6 @@ impl LiveSession {
             successes: outcomes.iter().filter(|outcome| outcome.success).count(),
             fitness: fitness.collect(),
         })
-    }
-
-    /// Moves of the bodies of a film, as the world has them.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] for what cannot be put elsewhere, and too much of it.
-    fn displacements(&self, moves: &[Displacement], schema: &Schema) -> Result<Vec<Displacement>, Error> {
-        if !moves.is_empty() && !self.evaluator.displaces() {
-            return Err(Error::Usage(format!("experiment `{}` has no bodies that can be put elsewhere", self.name)));
-        }
-        if moves.len() > MOST_MOVES {
-            return Err(Error::Usage(format!("{} moves of bodies, at most {MOST_MOVES}", moves.len())));
-        }
-        let seen: Vec<BodyId> = schema.shown().collect();
-        let one = |one: &Displacement| {
-            let Displacement { position, rotation, body, .. } = *one;
-            let length = rotation.iter().map(|x| x * x).sum::<f32>();
-            if !position.iter().all(|x| x.is_finite()) || !(0.5..2.0).contains(&length) {
-                return Err(Error::Usage(format!("a body at {position:?}, turned by {rotation:?}")));
-            }
-            let none = || Error::Usage(format!("body {body} of {} (the first is 0)", seen.len()));
-            Ok(Displacement { body: seen.get(usize::from(body)).ok_or_else(none)?.0, ..*one })
-        };
-        moves.iter().map(one).collect()
     }
 
     /// What a list of changes says; none of an empty list.
