@@ -13,6 +13,46 @@ use crate::robot::mass_properties::MassProperties;
 use crate::robot::validation::RobotError;
 use crate::robots::hand::{Finger, Hand, Wrist, deg};
 
+const JOINT_LABELS: [&str; 27] = [
+    "shoulder adduction",
+    "shoulder flexion",
+    "internal rotation",
+    "elbow extension",
+    "forearm supination",
+    "wrist flexion",
+    "wrist abduction",
+    "thumb opposition",
+    "thumb proximal",
+    "thumb middle",
+    "thumb distal",
+    "index abduction",
+    "index proximal",
+    "index middle",
+    "index distal",
+    "middle abduction",
+    "middle proximal",
+    "middle middle",
+    "middle distal",
+    "ring abduction",
+    "ring proximal",
+    "ring middle",
+    "ring distal",
+    "little abduction",
+    "little proximal",
+    "little middle",
+    "little distal",
+];
+
+const MUSCLE_LABELS: [[&str; 2]; 7] = [
+    ["shoulder abductor", "shoulder adductor"],
+    ["shoulder extensor", "shoulder flexor"],
+    ["external rotator", "internal rotator"],
+    ["elbow flexor", "elbow extensor"],
+    ["forearm pronator", "forearm supinator"],
+    ["wrist extensor", "wrist flexor"],
+    ["wrist adductor", "wrist abductor"],
+];
+
 /// The right arm and hand of [Ferrauto2010] with the sizes of the iCub, every number a field.
 ///
 /// At joint positions 0 the arm points straight forward (+X of the world), horizontal, palm down, thumb to the left
@@ -149,6 +189,24 @@ impl ArmAndHand {
     /// J1 to J27.
     pub fn joints() -> [JointId; 27] {
         core::array::from_fn(|i| JointId(i as u16))
+    }
+
+    /// What J1 to J27 are called in anatomy, all names different.
+    ///
+    /// Those of the arm say what a positive rotation does at joint positions 0: J1 adducts the arm in the horizontal
+    /// plane, J2 flexes the shoulder (up), J3 rotates the humerus inwards, J4 extends the elbow, J5 supinates the
+    /// forearm, J6 flexes the wrist towards the palm and J7 abducts it towards the thumb. Those of the hand name the
+    /// motion, or the phalange that flexes; opposition and flexion are negative, and abduction joints turn towards the
+    /// thumb when positive: index and middle finger abduct, ring and little finger adduct.
+    pub const fn joint_labels() -> [&'static str; 27] {
+        JOINT_LABELS
+    }
+
+    /// What the muscles of J1 to J7 are called in anatomy, each \[agonist, antagonist\]: the agonist turns its joint in
+    /// the negative direction, the antagonist in the positive one, which names the joint in
+    /// [`ArmAndHand::joint_labels`].
+    pub const fn muscle_labels() -> [[&'static str; 2]; 7] {
+        MUSCLE_LABELS
     }
 
     /// The fifteen joints that flex, from the thumb's to the little finger's, each from the palm outwards.

@@ -1,5 +1,7 @@
 //! The arm and hand against the checked figures of the experiment `reach-grasp-lift`: axes, postures, gravity, reach.
 
+use std::collections::BTreeSet;
+
 use farsa_body::{
     ActuatorId, ArmAndHand, BodyId, Finger, Goal, InverseKinematics, JointId, KinematicTree, Law, MuscleVariant,
     Orientation, Pose, Shape, Tabletop,
@@ -209,6 +211,73 @@ fn joints_turn_as_their_names_say() {
     );
     for n in 9..=11 {
         assert!(moved(n, -45.0, Finger::Thumb)[0] > 0.01, "J{n}: towards the fingers");
+    }
+}
+
+#[test]
+fn labels_are_true_in_anatomy() {
+    let (arm, tree) = arm();
+    let labels = ArmAndHand::joint_labels();
+    let distinct: BTreeSet<&str> =
+        labels.into_iter().chain(ArmAndHand::muscle_labels().into_iter().flatten()).collect();
+    assert_eq!(distinct.len(), 27 + 14);
+    let robot = arm.robot().expect("a valid robot");
+    let turned = |start: &[f64], label: &str, degrees: f64| {
+        let mut q = posture(start);
+        q[labels.iter().position(|l| *l == label).expect(label)] += degrees.to_radians();
+        tree.poses(&q)
+    };
+    // How far something of the arm, its palm or a finger gets when the joint of a label turns by 20 degrees.
+    let grows = |start: &[f64], label: &str, measure: &dyn Fn(&[Pose<f64>]) -> f64| {
+        measure(&turned(start, label, 20.0)) - measure(&turned(start, label, 0.0))
+    };
+    let hand = |poses: &[Pose<f64>]| palm(poses).transform(arm.palm_centre);
+    let (middle, tip) = arm.fingertip(Finger::Middle);
+    let of_forearm = |poses: &[Pose<f64>]| poses[4].transform_back(poses[middle.index()].transform(tip));
+    assert!(grows(&[], "shoulder adduction", &|p| hand(p)[1]) > 0.1, "towards the body, which is to the left");
+    assert!(grows(&[], "shoulder flexion", &|p| hand(p)[2]) > 0.1, "up");
+    let bent = [0.0, 0.0, 0.0, -90.0];
+    assert!(grows(&bent, "internal rotation", &|p| hand(p)[2]) < -0.05, "the bent forearm turns down");
+    for elbow in [-120.0, -60.0] {
+        let reach = |p: &[Pose<f64>]| distance(hand(p), arm.shoulder);
+        assert!(grows(&[0.0, 0.0, 0.0, elbow], "elbow extension", &reach) > 0.02, "away from the shoulder");
+    }
+    assert!(grows(&[], "forearm supination", &|p| palm(p).rotate([0.0, 1.0, 0.0])[2]) > 0.3, "the thumb comes up");
+    assert!(grows(&[], "wrist flexion", &|p| of_forearm(p)[2]) < -0.04, "to the palm's side");
+    assert!(grows(&[], "wrist abduction", &|p| of_forearm(p)[1]) > 0.04, "to the thumb's side");
+
+    let named = |finger: Finger, part: &str| format!("{} {part}", format!("{finger:?}").to_lowercase());
+    for (finger, labels) in Finger::ALL.into_iter().zip(labels[7..].chunks_exact(4)) {
+        let tip_of = |poses: &[Pose<f64>], finger: Finger| {
+            let (body, tip) = arm.fingertip(finger);
+            palm(poses).transform_back(poses[body.index()].transform(tip))
+        };
+        let first = if finger == Finger::Thumb { "opposition" } else { "abduction" };
+        assert_eq!(labels[0], named(finger, first));
+        let aside = grows(&[], labels[0], &|p| tip_of(p, finger)[1]);
+        assert!(finger == Finger::Thumb || aside > 0.01, "{}: to the thumb's side", labels[0]);
+        for (label, body) in labels[1..].iter().zip(ArmAndHand::phalanges(finger)) {
+            assert_eq!(*label, robot.segments[body.index()].name.replace('_', " "));
+        }
+    }
+    let opposed = turned(&[], "thumb opposition", -90.0);
+    assert!(palm(&opposed).transform_back(opposed[10].position)[2] < -0.02, "out of the palm");
+}
+
+#[test]
+fn muscles_pull_as_their_labels_say() {
+    let robot = ArmAndHand::default().robot().expect("a valid robot");
+    let opposites = [("adduct", "abduct"), ("flex", "extens"), ("internal", "external"), ("supinat", "pronat")];
+    for (i, [agonist, antagonist]) in ArmAndHand::muscle_labels().into_iter().enumerate() {
+        let Law::MusclePair(muscles) = robot.actuators[i].law else { panic!("no muscles") };
+        let middle = 0.5 * (muscles.lower + muscles.upper);
+        let torque = |command| muscles.effort(middle, 0.0, command).torque;
+        assert!(torque([1.0, 0.0]) < -1.0 && torque([0.0, 1.0]) > 1.0, "J{}", i + 1);
+        let turn = ArmAndHand::joint_labels()[i];
+        let stem = antagonist.strip_suffix("or").expect("a muscle");
+        assert!(turn.starts_with(stem), "{antagonist} beside {turn}");
+        let opposed = opposites.iter().flat_map(|(a, b)| [antagonist.replace(a, b), antagonist.replace(b, a)]);
+        assert!(agonist != antagonist && opposed.into_iter().any(|other| other == agonist), "{agonist}, {antagonist}");
     }
 }
 

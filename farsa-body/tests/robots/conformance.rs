@@ -85,13 +85,12 @@ impl World for Broken {
                 }
             }
             Some(Fault::ForgottenReading) => self.hidden += 1e-4,
-            Some(Fault::LastForceAlone) => self.hidden = 0.0,
             Some(Fault::LastingForce) => {
                 let force = [0.0, 0.0, self.hidden];
                 (0..POINTS as u16).for_each(|i| self.world.apply_force(BodyId(i), [0.0; 3], force));
             }
             Some(Fault::ForgottenForce) => self.hidden += 0.1,
-            Some(Fault::StaleAfterPlacing) => self.hidden = 0.0,
+            Some(Fault::StaleAfterPlacing | Fault::LastForceAlone) => self.hidden = 0.0,
             _ => {}
         }
         if matches!(self.fault, Some(Fault::ForgottenForce | Fault::ForgottenPast | Fault::UnlikeTwin)) {
