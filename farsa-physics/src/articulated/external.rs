@@ -15,7 +15,7 @@ use crate::articulated::tree::jacobian;
 #[derive(Clone, Debug)]
 pub struct Wrenches<R> {
     /// Of each link the moment about its centre of mass and the force, in the world's axes.
-    wrenches: Vec<[R; 6]>,
+    of_links: Vec<[R; 6]>,
     any: bool,
     /// Per degree of freedom: nothing, joint efforts, what is added to the joint-space inertia, accelerations.
     zeros: Vec<R>,
@@ -34,7 +34,7 @@ impl<R: Real> Wrenches<R> {
             diagonal[usize::from(link.dof)] = link.armature;
         }
         Self {
-            wrenches: vec![[zero; 6]; model.links.len()],
+            of_links: vec![[zero; 6]; model.links.len()],
             any: false,
             zeros: vec![zero; model.dofs],
             tau: vec![zero; model.dofs],
@@ -52,8 +52,8 @@ impl<R: Real> Wrenches<R> {
         }
         let moment = cross(sub(point, centre), force);
         for k in 0..3 {
-            self.wrenches[link][k] += moment[k];
-            self.wrenches[link][3 + k] += force[k];
+            self.of_links[link][k] += moment[k];
+            self.of_links[link][3 + k] += force[k];
         }
         self.any = true;
     }
@@ -66,7 +66,7 @@ impl<R: Real> Wrenches<R> {
     /// Forgets all.
     pub(crate) fn clear(&mut self) {
         if self.any {
-            self.wrenches.fill([R::from_f64(0.0); 6]);
+            self.of_links.fill([R::from_f64(0.0); 6]);
             self.any = false;
         }
     }
@@ -84,12 +84,12 @@ pub(crate) fn push<R: Real + Scalar<Real = R, Simd = ()>>(
     forces: &mut Wrenches<R>,
 ) {
     let zero = R::from_f64(0.0);
-    let Wrenches { wrenches, zeros, tau, diagonal, qdd, jacobian: matrix, .. } = forces;
+    let Wrenches { of_links, zeros, tau, diagonal, qdd, jacobian: matrix, .. } = forces;
     let (q, v) = state.split_at_mut(model.positions);
     let (links, roots) = scratch.parts();
     place_links((), model, q, zeros, links);
     tau.fill(zero);
-    for (link, wrench) in wrenches.iter().enumerate() {
+    for (link, wrench) in of_links.iter().enumerate() {
         if wrench.iter().all(|x| *x == zero) {
             continue;
         }

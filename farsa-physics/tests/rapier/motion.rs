@@ -65,6 +65,21 @@ fn joints_move_as_ours_do() {
     }
 }
 
+/// The arm's angles after a tenth of a second from its first start, under these forces on bodies.
+fn pushed<W>(world: &mut W, pushes: &[(BodyId, [f32; 3])]) -> Vec<f32>
+where
+    W: farsa_body::World + Arrange + Handles<Body = BodyId, Joint = JointId> + Joints + Kinematics + ExternalForces,
+{
+    start(world);
+    for _ in 0..10 {
+        for (body, force) in pushes {
+            world.apply_force(*body, world.origin(*body), *force);
+        }
+        world.step();
+    }
+    (0..7).map(|j| world.position(JointId(j))).collect()
+}
+
 /// The arm, pushed at its palm and at its elbow for a tenth of a second, moves as ours does.
 #[test]
 fn a_pushed_arm_moves_as_ours_does() {
@@ -72,19 +87,6 @@ fn a_pushed_arm_moves_as_ours_does() {
     let options = articulated::Options { substeps: 100, ..articulated::Options::default() };
     let mut ours = articulated::World::new(articulated::Model::<f32>::new(&robot, &options).unwrap());
     let mut theirs = World::new(&robot, &Options { substeps: 100, ..Options::default() }).unwrap();
-    fn pushed<W>(world: &mut W, pushes: &[(BodyId, [f32; 3])]) -> Vec<f32>
-    where
-        W: farsa_body::World + Arrange + Handles<Body = BodyId, Joint = JointId> + Joints + Kinematics + ExternalForces,
-    {
-        start(world);
-        for _ in 0..10 {
-            for (body, force) in pushes {
-                world.apply_force(*body, world.origin(*body), *force);
-            }
-            world.step();
-        }
-        (0..7).map(|j| world.position(JointId(j))).collect()
-    }
     let pushes = [(BodyId(6), [2.0, -1.0, 3.0]), (BodyId(3), [0.0, 4.0, 1.0])];
     let [free, ours] = [&[][..], &pushes].map(|pushes| pushed(&mut ours, pushes));
     let theirs = pushed(&mut theirs, &pushes);
