@@ -22,6 +22,14 @@ const axesOf = (back) => {
 	return [right, cross(back, right), back];
 };
 
+// Where a camera's matrix puts a place: right, up, depth, and by what they are to be divided.
+const through = (matrix, p) => list(4, (r) => dot([matrix[r], matrix[r + 4], matrix[r + 8]], p) + matrix[r + 12]);
+// In the picture, from its upper left corner in its widths and heights; null behind the eye.
+const shownAt = (matrix, p) => {
+	const [x, y, , w] = through(matrix, p);
+	return w > 0 ? [0.5 + x/w/2, 0.5 - y/w/2] : null;
+};
+
 const boundsOf = (balls) => [[min, -1], [max, 1]].map(([most, sign]) => [0, 1, 2].map((i) => most(...balls.map((b) => b.at[i] + sign*b.radius))));
 const middleOf = ([low, high]) => mul(add(low, high), 0.5);
 

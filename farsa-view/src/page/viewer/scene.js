@@ -27,12 +27,20 @@ function meshes() {
 }
 
 const SOLID = [`layout(location=0) in vec3 position; layout(location=1) in vec3 normal; layout(location=2) in float end;
-uniform mat4 camera, light; uniform vec4 rotation; uniform vec3 origin, size; uniform float stretch;
+uniform mat4 camera, light; uniform vec4 rotation; uniform vec3 origin, size, eye; uniform float stretch, ribbon;
 out vec3 at, facing, lit;
 vec3 turn(vec3 v) { return v + 2.*cross(rotation.xyz, cross(rotation.xyz, v) + rotation.w*v); }
 void main() {
 	at = turn(position*size + vec3(0, 0, end*stretch)) + origin;
 	facing = turn(normal);
+	if (ribbon > 0.) {
+		// A trail is seen as a tube of that radius: its normal is the way along it, its end the side.
+		vec3 across = cross(normal, eye - position);
+		across /= max(length(across), 1e-9);
+		vec3 front = cross(across, normal)/max(length(normal), 1e-9);
+		at = position + ribbon*(front + end*length(normal)*across);
+		facing = front + 2.*end*across;
+	}
 	lit = (light*vec4(at, 1)).xyz*.5 + .5;
 	gl_Position = camera*vec4(at, 1);
 }`, `precision highp sampler2DShadow;
@@ -77,18 +85,16 @@ function programOf(gl) {
 	return program;
 }
 
-function solidsOf(gl) {
-	return Object.fromEntries(Object.entries(meshes()).map(([name, data]) => {
-		const array = gl.createVertexArray();
-		gl.bindVertexArray(array);
-		gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-		gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(data), gl.STATIC_DRAW);
-		[3, 3, 1].forEach((size, i) => {
-			gl.enableVertexAttribArray(i);
-			gl.vertexAttribPointer(i, size, gl.FLOAT, false, 28, 12*i);
-		});
-		return [name, {array, count: data.length/7}];
-	}));
+function solidOf(gl, data) {
+	const array = gl.createVertexArray();
+	gl.bindVertexArray(array);
+	gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+	gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(data), gl.STATIC_DRAW);
+	[3, 3, 1].forEach((size, i) => {
+		gl.enableVertexAttribArray(i);
+		gl.vertexAttribPointer(i, size, gl.FLOAT, false, 28, 12*i);
+	});
+	return {array, count: data.length/7};
 }
 
 function shadowsOf(gl) {
@@ -103,35 +109,84 @@ function shadowsOf(gl) {
 	return {map, frame};
 }
 
-// The shapes of a trial at a tick, each with its place and colour.
+// A path without pieces that nobody could see in a scene of this radius.
+function thinned(path, radius) {
+	const kept = [path[0]];
+	for (const p of path) if (hypot(...sub(p.at, kept.at(-1).at)) >= radius*0.01) kept.push(p);
+	return kept;
+}
+
+// The opacity of a tube, both of whose sides are seen.
+const twice = (alpha) => alpha*(2 - alpha);
+
+// A ribbon along a path, to be drawn as a strip, and how many of its vertices are there up to each time.
+function ribbonOf(gl, path) {
+	const data = [];
+	const way = (i) => unit(sub((path[i + 1] || path[i]).at, (path[i] || path[i + 1]).at));
+	const counts = path.map(({t, at}, i) => {
+		const [before, after] = [way(max(0, i - 1)), way(min(i, path.length - 2))];
+		const open = dot(before, after);
+		// A bend is mitred; where the path turns back a second pair begins.
+		const ways = open > 0 ? [mul(add(before, after), 1/(1 + open))] : [before, after];
+		for (const along of ways) for (const side of [-1, 1]) data.push(...at, ...along, side);
+		return {t, count: data.length/7};
+	});
+	return {...solidOf(gl, data), counts};
+}
+
+// How each trail of a trial is drawn at a tick: of many robots each has its colour, and that which is followed stands out.
+function trailsAt({trails}, tick, {followed}) {
+	const many = trails.filter((trail) => !trail.thing)[1];
+	const chosen = trails.some((trail) => trail.body === followed);
+	return trails.map(({path, thing, body, top, tint}) => ({
+		path,
+		color: many && !thing ? rgb(tint) : paint(thing ? "thing" : "trail"),
+		part: chosen && body !== followed ? 0.25 : 1,
+		// Whose it is.
+		end: many && !thing && add(path.findLast(({t}) => t <= tick).at, [0, 0, top]),
+	}));
+}
+
+// The shapes of a trial that are shown at a tick and the spots on the ground, each with its place and colour.
 function placedAt(trial, tick) {
 	const poses = trial.bodies.map((_, b) => (trial.held?.body === b ? trial.held : trial.between(tick, b)));
-	return trial.shapes.map((shape) => {
+	const shapes = trial.shapes.filter(({shown}) => {
+		const value = shown && trial.channels[shown[0]].values[floor(tick)];
+		return !shown || value >= shown[1] && value <= shown[2];
+	}).map((shape) => {
 		const {position, rotation} = poses[shape.body] || HOME;
 		// Neighbours along a chain differ a little, so that joints are seen, and walls from the floor.
 		const wall = shape.role === "ground" && shape.position[2] > 0;
 		const color = shape.color ? rgb(shape.color) : mul(paint(shape.role), wall ? 0.7 : shape.role === "robot" && shape.body%2 ? 0.86 : 1);
 		return {shape, wall, color: [...color, 1], origin: add(position, turn(rotation, shape.position)), rotation: join(rotation, shape.rotation)};
 	});
+	return shapes.concat(trial.spots.flatMap(({shape, origin, changes}) => {
+		const color = changes.findLast(([t]) => t <= tick)?.[1];
+		return color ? [{shape, origin, color: [...color, 1], rotation: HOME.rotation}] : [];
+	}));
 }
+
+const casts = ({shape: {role}}) => role === "robot" || role === "thing";
 
 // How far along a ray a placed shape is met, or Infinity.
 function metAt({shape: {kind, half, radius: r, half_length: long = 0}, origin, rotation}, from, along) {
 	const back = [...mul(rotation, -1), rotation[3]];
 	const [o, d] = [turn(back, sub(from, origin)), turn(back, along)];
 	if (kind === "plane") return d[2] < 0 ? -o[2]/d[2] : Infinity;
-	if (kind === "box") {
-		const spans = half.map((h, i) => [(-h - o[i])/d[i], (h - o[i])/d[i]].sort((a, b) => a - b));
+	const slab = (h, i) => [(-h - o[i])/d[i], (h - o[i])/d[i]].sort((a, b) => a - b);
+	// Where the ray is in a ball, or without its z in a cylinder without ends; NaN where it is not.
+	const round = (o, d) => {
+		const [a, b] = [max(dot(d, d), 1e-12), dot(o, d)];
+		const s = Math.sqrt(b*b - a*(dot(o, o) - r*r));
+		return [(-b - s)/a, (s - b)/a];
+	};
+	const both = (...spans) => {
 		const [near, far] = [max(...spans.map((span) => span[0])), min(...spans.map((span) => span[1]))];
 		return near <= far ? near : Infinity;
-	}
-	// A sphere, or a row of them along a longer shape.
-	return min(...list(long ? 9 : 1, (k) => {
-		const p = sub(o, [0, 0, long*(k/4 - 1) || 0]);
-		const b = dot(p, d);
-		const under = b*b - dot(p, p) + r*r;
-		return under < 0 ? Infinity : -b - Math.sqrt(under);
-	}));
+	};
+	if (kind === "box") return both(...half.map(slab));
+	const side = both(round([o[0], o[1], 0], [d[0], d[1], 0]), slab(long, 2));
+	return kind === "cylinder" ? side : min(side, ...[long, -long].map((z) => both(round(sub(o, [0, 0, z]), d))));
 }
 
 // Where a ray first meets a shape, or null.
@@ -141,9 +196,13 @@ function metBy(placed, from, along) {
 }
 
 class Scene {
-	// Throws where there is no WebGL 2.
+	// Throws where there is no context to draw in.
 	constructor(canvas, restored) {
 		this.canvas = canvas;
+		this.open(canvas, restored);
+	}
+
+	open(canvas, restored) {
 		this.gl = canvas.getContext("webgl2", {alpha: false});
 		need(this.gl, "no context");
 		this.build();
@@ -156,7 +215,8 @@ class Scene {
 		this.places = {};
 		this.program = programOf(gl);
 		gl.useProgram(this.program);
-		this.solids = solidsOf(gl);
+		this.solids = Object.fromEntries(Object.entries(meshes()).map(([name, data]) => [name, solidOf(gl, data)]));
+		this.ribbons = new WeakMap();
 		this.shadows = shadowsOf(gl);
 		gl.enable(gl.DEPTH_TEST);
 		gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
@@ -199,21 +259,25 @@ class Scene {
 	}
 
 	draw(trial, tick, camera, visible) {
-		const {width, height} = this.canvas;
 		if (this.gl.isContextLost()) return;
-		this.camera = camera;
-		const {eye, lens} = camera.lens(width/height);
-		this.matrix = lens;
-		const placed = placedAt(trial, tick);
-		const bounds = boundsOf(trial.balls);
-		const middle = middleOf(bounds);
-		const far = 0.58*hypot(...sub(...bounds));
+		this.look(trial, tick, camera);
+		const {eye, middle, reach, placed} = this;
+		const far = 0.58*hypot(...sub(...boundsOf(trial.balls)));
 		const light = product(parallel(far, far, 6*far), viewFrom(add(middle, mul(SUN, 3*far)), axesOf(SUN)));
-		const seen = camera.top ? camera.half : camera.distance*TAN;
-		this.set({camera: light, light, sun: SUN, eye, fog: paint("sky"), middle, reach: max(9*camera.radius, 3*seen), plain: 0, grid: 0});
+		this.set({camera: light, light, sun: SUN, eye, fog: paint("sky"), middle, reach, plain: 0, grid: 0});
 		this.drawShadows(placed);
 		this.drawShapes(placed);
-		this.drawMarks(trial, tick, visible, seen);
+		this.drawMarks(trial, tick, visible);
+	}
+
+	// What is seen and from where; the ground fades out at a reach.
+	look(trial, tick, camera) {
+		const {top, half, distance, radius} = camera;
+		const {eye, lens} = camera.lens(this.canvas.width/this.canvas.height);
+		// Half the height of what is in sight [m].
+		const seen = top ? half : distance*TAN;
+		const middle = middleOf(boundsOf(trial.balls));
+		Object.assign(this, {camera, eye, matrix: lens, middle, reach: max(9*radius, 3*seen), thin: seen*0.005, placed: placedAt(trial, tick)});
 	}
 
 	drawShadows(placed) {
@@ -227,7 +291,7 @@ class Scene {
 		gl.clear(gl.DEPTH_BUFFER_BIT);
 		gl.enable(gl.POLYGON_OFFSET_FILL);
 		gl.polygonOffset(2, 8);
-		for (const item of placed) if (["robot", "thing"].includes(item.shape.role)) this.shape(item);
+		for (const item of placed) if (casts(item)) this.shape(item);
 	}
 
 	drawShapes(placed) {
@@ -247,22 +311,32 @@ class Scene {
 		gl.disable(gl.POLYGON_OFFSET_FILL);
 	}
 
-	// Forces, points, rays and trails; `seen` is half the height of what is in sight [m].
-	drawMarks(trial, tick, visible, seen) {
-		const {gl, camera} = this;
+	drawMarks(trial, tick, visible) {
+		const {gl} = this;
 		gl.enable(gl.BLEND);
 		gl.depthMask(false);
 		this.set({plain: 0.6, grid: 0});
-		const thin = seen*0.005;
 		// What is behind a shape shows through it faintly: contacts always lie between two of them.
 		for (const [order, alpha] of [[gl.GREATER, 0.3], [gl.LEQUAL, 1]]) {
 			gl.depthFunc(order);
-			const tint = (name, part = 1) => [...paint(name), alpha*part];
-			if (visible.forces) this.drawForces(trial.contacts(tick), tint("force"));
-			if (visible.points) trial.points.forEach((_, p) => this.ball(trial.point(tick, p), camera.radius*0.016, tint("point")));
-			if (visible.rays) for (const {from, to, met} of trial.rays(tick)) this.line(from, to, thin, met ? tint("a") : tint("ray", 0.5));
-			if (visible.trails) this.drawTrails(trial.trails, tick, thin*1.4, tint);
+			this.marks(trial, tick, visible, alpha);
 		}
+	}
+
+	// Trails, rays, points and forces.
+	marks(trial, tick, visible, alpha) {
+		const {camera, thin} = this;
+		const tint = (name, part = 1) => [...paint(name), alpha*part];
+		if (visible.trails) {
+			trailsAt(trial, tick, camera).forEach((trail, i) => {
+				const {color, part, end} = trail;
+				this.trail(trial, i, trail, tick, 1.4*thin, alpha*part);
+				if (end) this.ball(end, 3.5*thin, [...color, alpha*part]);
+			});
+		}
+		if (visible.rays) for (const {from, to, met} of trial.rays(tick)) this.line(from, to, thin, met ? tint("a") : tint("ray", 0.5));
+		if (visible.points) trial.points.forEach((_, p) => this.ball(trial.point(tick, p), camera.radius*0.016, tint("point")));
+		if (visible.forces) this.drawForces(trial.contacts(tick), tint("force"));
 	}
 
 	drawForces(contacts, color) {
@@ -277,27 +351,20 @@ class Scene {
 	}
 
 	// The way so far, and faintly the way to come.
-	drawTrails(trails, tick, thick, tint) {
-		const {camera} = this;
-		const robots = trails.filter((trail) => !trail.thing);
-		for (const {path, thing, body, top, tint: own} of trails) {
-			// Of many robots each has its colour, and that which is followed stands out.
-			const [...color] = tint(thing ? "thing" : "trail");
-			if (!thing && robots[1]) color.splice(0, 3, ...rgb(own));
-			if (trails.some((trail) => trail.body === camera.followed) && body !== camera.followed) color[3] *= 0.25;
-			path.reduce((last, {t, at}) => {
-				if (hypot(...sub(at, last)) < camera.radius*0.01) return last;
-				this.line(last, at, thick, [...color.slice(0, 3), color[3]*(t <= tick ? 1 : 0.3)]);
-				return at;
-			}, path[0].at);
-			// Whose it is.
-			if (!thing && robots[1]) this.ball(add(path.findLast(({t}) => t <= tick).at, [0, 0, top]), 2.5*thick, color);
+	trail(trial, i, {color}, tick, thick, alpha) {
+		const {gl, ribbons, camera: {radius}} = this;
+		if (ribbons.get(trial)?.radius !== radius) ribbons.set(trial, {radius, made: trial.trails.map(({path}) => ribbonOf(gl, thinned(path, radius)))});
+		const {array, count, counts} = ribbons.get(trial).made[i];
+		const past = counts.findLast(({t}) => t <= tick).count;
+		gl.bindVertexArray(array);
+		for (const [from, to, much] of [[0, past, 1], [past - 2, count, 0.3]]) {
+			this.set({ribbon: thick, color: [...color, twice(alpha*much)]});
+			gl.drawArrays(gl.TRIANGLE_STRIP, from, to - from);
 		}
+		this.set({ribbon: 0});
 	}
 
 	project(p) {
-		const {matrix} = this;
-		const [x, y, , w] = [0, 1, 2, 3].map((r) => dot([0, 4, 8].map((c) => matrix[c + r]), p) + matrix[12 + r]);
-		return w > 0 ? [0.5 + x/w/2, 0.5 - y/w/2] : null;
+		return shownAt(this.matrix, p);
 	}
 }

@@ -40,17 +40,26 @@ function steer(canvas, camera, ask, centre) {
 
 const namesOf = (trails) => trails.slice(0, 4).map((trail) => trail.name).join(", ") + (trails[4] ? " ..." : "") || "nothing moves";
 
+// A canvas, what draws on it, and what is to be said of that: a page whose address ends with #flat does without WebGL.
+function pictureOf(ask) {
+	const canvas = make("canvas", "scene");
+	const asked = location.hash === "#flat";
+	try {
+		if (!asked) return {canvas, scene: new Scene(canvas, ask)};
+	} catch {
+		// No WebGL 2. The canvas may be bound to it nevertheless.
+	}
+	const other = make("canvas", "scene");
+	return {canvas: other, scene: new Flat(other), flat: asked ? "flat picture" : "flat picture: this browser offers no WebGL 2"};
+}
+
 // A picture with labels, to be moved with mouse and fingers.
 function viewOf(camera, ask) {
-	const [canvas, labels, caption, note] = [make("canvas", "scene"), make("div", "labels"), make("figcaption"), make("span", "soft")];
+	const {canvas, scene, flat} = pictureOf(ask);
+	const [labels, caption, note] = [make("div", "labels"), make("figcaption"), make("span", "soft")];
 	const element = make("figure", "", canvas, labels, caption);
 	$("views").append(element);
-	let scene, seen;
-	try {
-		scene = new Scene(canvas, ask);
-	} catch (error) {
-		element.append(make("p", "none", `No 3D picture: this browser offers no WebGL 2 (${error.message}). All else works.`));
-	}
+	let seen;
 	const size = () => {
 		const [width, height] = [element.clientWidth, element.clientHeight].map((x) => max(1, round(x*min(2, devicePixelRatio))));
 		if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
@@ -67,7 +76,6 @@ function viewOf(camera, ask) {
 	}
 
 	function draw(trial, tick, visible) {
-		if (!scene) return;
 		seen = [trial, tick];
 		scene.draw(trial, tick, camera, visible);
 		trial.points.forEach((_, p) => {
@@ -78,19 +86,20 @@ function viewOf(camera, ask) {
 		const {long, newtons} = camera.arrow();
 		note.textContent = [
 			trial.has.forces && visible.forces ? `arrow of ${length(long)}: ${short(newtons, "N")}` : "",
+			flat,
 			visible.trails ? `trails: ${namesOf(trial.trails)}` : "",
 			tick >= trial.ticks - 1 ? "ended" : "",
 		].filter(Boolean).join(" · ");
 	}
 
 	function project(p) {
-		const place = scene?.project(p);
+		const place = scene.project(p);
 		const box = canvas.getBoundingClientRect();
 		return place && {x: box.left + place[0]*box.width, y: box.top + place[1]*box.height};
 	}
 
 	steer(canvas, camera, ask, (x, y) => {
-		const place = scene && metBy(placedAt(...seen), ...camera.ray(x, y));
+		const place = metBy(placedAt(...seen), ...camera.ray(x, y));
 		if (place) camera.centre(place);
 		ask();
 	});
