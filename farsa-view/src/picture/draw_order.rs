@@ -39,12 +39,14 @@ pub(crate) fn back_to_front(scene: &LitScene, view: &Window, outlines: &[Vec<Poi
     }
     let far = |i: usize| view.depth(scene.solids[i].pose.position);
     let (mut left, mut order) = (shown, Vec::new());
+    let mut drawn = vec![false; outlines.len()];
     while !left.is_empty() {
-        let free = |i: &&usize| before[**i].iter().all(|behind| !left.contains(behind));
+        let free = |i: &&usize| before[**i].iter().all(|behind| drawn[*behind]);
         let farthest = |a: &&usize, b: &&usize| far(**a).total_cmp(&far(**b)).then(b.cmp(a));
         let next = left.iter().filter(free).max_by(farthest).or_else(|| left.iter().max_by(farthest)).copied();
         let Some(next) = next else { break };
         left.retain(|i| *i != next);
+        drawn[next] = true;
         order.push(next);
     }
     order

@@ -7,11 +7,14 @@ use crate::recording::memory::Recording;
 use crate::recording::view::View;
 use crate::shape::appearance::{Color, Instance, OKABE_ITO, Role, as_screens_take_it};
 use crate::shape::geometry::Geometry;
-use crate::shape::scene_object::SceneObject;
+use crate::shape::scene_object::{SceneObject, ShownWhile, screen_color};
 use crate::shape::vector::{Vector, length, sub};
 
 /// How high above the ground trails are drawn [m].
 const TRAIL: f64 = 1e-3;
+/// Radius of the marks of images on the ground, by the side of a pixel, and how high they lie above areas [m].
+const MARK: f64 = 0.15;
+const MARK_ABOVE: f64 = 5e-4;
 /// The colours of trails, by number: those that are seen best on the ground come first.
 const TRAILS: [usize; 6] = [4, 5, 2, 6, 0, 1];
 /// The colour of the ways of points.
@@ -32,7 +35,9 @@ impl Recording {
             picture.add_robot(robot, pose);
         }
         let place = |object: &SceneObject| object.placed(&object.body.map_or_else(Pose::identity, pose));
-        picture.shapes.extend(schema.objects.iter().map(place));
+        let seen = conditions(self, tick);
+        picture.shapes.extend(schema.objects.iter().filter(|object| seen(object)).map(place));
+        picture.shapes.extend(lying(self, tick));
         if schema.view == View::Top {
             picture.trails = trails(self, tick);
             // What stands around belongs into the frame: an arena is seen whole.
@@ -56,6 +61,37 @@ impl Recording {
         picture.points = schema.points.iter().enumerate().filter_map(point).collect();
         Some(picture)
     }
+}
+
+/// Says which objects are seen at a tick.
+fn conditions(recording: &Recording, tick: usize) -> impl Fn(&SceneObject) -> bool {
+    let columns = recording.schema().columns();
+    let values: Vec<f64> = recording.row(tick).collect();
+    move |object| {
+        let Some(ShownWhile { channel, low, high }) = &object.shown else { return true };
+        let value = columns.iter().zip(&values).find(|(column, _)| *column == channel);
+        value.is_some_and(|(_, value)| (low..=high).contains(&value))
+    }
+}
+
+/// The marks of images on the ground at a tick: a disc for each pixel that is not black.
+fn lying(recording: &Recording, tick: usize) -> Vec<Instance> {
+    let mut marks = Vec::new();
+    for (number, image) in recording.schema().images.iter().enumerate() {
+        let (Some([from, to]), [columns, rows]) = (image.ground, image.size) else { continue };
+        let cell = [(to[0] - from[0]) / columns as f64, (to[1] - from[1]) / rows as f64];
+        let geometry = Geometry::Disc { radius: MARK * cell[0].abs().min(cell[1].abs()) };
+        for (pixel, color) in recording.image_at(tick, number).into_iter().flatten().enumerate() {
+            if color == [0.0; 3] {
+                continue;
+            }
+            let at = [pixel % columns, pixel / columns];
+            let [x, y] = [0, 1].map(|k| from[k] + (at[k] as f64 + 0.5) * cell[k]);
+            let mark = Instance::new(geometry, Pose::at([x, y, MARK_ABOVE]), Role::Area);
+            marks.push(mark.with_color(screen_color(color.map(f64::from))));
+        }
+    }
+    marks
 }
 
 /// The ways that robots, things with a colour and points went up to a tick, a little above the ground: those of robots each in the
@@ -104,7 +140,7 @@ mod tests {
     use super::*;
     use crate::page::html::Page;
     use crate::picture::camera::Camera;
-    use crate::recording::schema::Schema;
+    use crate::recording::schema::{ImageChannel, Schema};
     use farsa_body::{ArmAndHand, Recorder};
 
     fn recording(ticks: u32) -> Recording {
@@ -147,6 +183,60 @@ mod tests {
         assert_eq!((way.len(), *color, of_point.len(), *pencil), (3, [255, 0, 128], 3, PENCIL));
         assert!((way[2][0] - 0.2).abs() < 1e-7 && of_point[2] == [0.0, 2.0, TRAIL]);
         assert!(Page::new("ball").with("a", recording).html().contains("\"color\":\"#ff0080\""));
+    }
+
+    #[test]
+    fn what_is_shown_at_times_is_in_the_picture_and_in_the_page_then() {
+        let ball = |name: &str| {
+            SceneObject::new(name, Geometry::Sphere { radius: 0.1 }, Pose::identity(), Role::Robot).on_body(BodyId(0))
+        };
+        let mut schema = Schema::from_scalars(["energy [J]", "load"]).with_sensors(["load"]);
+        schema.bodies = vec!["robot".into()];
+        schema.objects = vec![
+            ball("body"),
+            ball("load").shown_while("load", 1.0, f64::INFINITY),
+            ball("sensed").shown_while("sensor.load", 0.25, 0.5),
+            ball("dead").shown_while("energy [J]", 0.0, 0.0),
+            ball("never").shown_while("loads", f64::NEG_INFINITY, f64::INFINITY),
+        ];
+        let mut recording = Recording::new(schema);
+        for (energy, load, sensed) in [(1.0, 0.0, 0.0), (0.5, 1.0, 0.25), (f64::NAN, 3.0, 0.5), (0.0, f64::NAN, 0.6)] {
+            recording.scalars(&[energy, load]);
+            recording.sensors(&[sensed]);
+            recording.tick(0.0);
+        }
+        let shown = |tick| recording.picture(tick).unwrap().shapes.len();
+        assert_eq!([0, 1, 2, 3].map(shown), [1, 3, 3, 2]);
+        let html = Page::new("p").with("a", recording).html();
+        for part in ["\"shown\":[1,1.0,1.79769", "\"shown\":[2,0.25,0.5]", "\"shown\":[0,0.0,0.0]"] {
+            assert!(html.contains(part), "{part}");
+        }
+        assert!(html.matches("\"shown\":").count() == 3 && !html.contains("\"never\""));
+    }
+
+    #[test]
+    fn pixels_that_are_not_black_are_marks_on_the_ground() {
+        let mut recording = arena();
+        let food = ImageChannel::new("food", [4, 2]).on_ground([-0.2, 0.1], [0.2, -0.1]);
+        let schema = Schema { images: vec![ImageChannel::new("eye", [1, 1]), food], ..recording.schema().clone() };
+        recording = Recording::new(schema);
+        for tick in 0..3 {
+            recording.pixel(0, 0, [1.0; 3]);
+            (0..8).filter(|pixel| *pixel != 5).for_each(|pixel| recording.pixel(1, pixel, [0.0, 1.0, 0.0]));
+            recording.pixel(1, tick, [0.0; 3]);
+            recording.tick(0.0);
+        }
+        let marks = |tick| -> Vec<[f64; 2]> {
+            let picture = recording.picture(tick).unwrap();
+            let green = |shape: &&Instance| shape.color == Some([0, 255, 0]);
+            assert!(picture.shapes.iter().filter(green).all(|shape| shape.role == Role::Area));
+            let at = |shape: &Instance| [0, 1].map(|k| (1e6 * shape.pose.position[k]).round() / 1e6);
+            picture.shapes.iter().filter(green).map(at).collect()
+        };
+        let row = |y: f64, columns: &[f64]| columns.iter().map(|&x| [x, y]).collect::<Vec<_>>();
+        let second = row(-0.05, &[-0.15, 0.05, 0.15]);
+        assert_eq!(marks(0), [row(0.05, &[-0.05, 0.05, 0.15]), second.clone()].concat());
+        assert_eq!(marks(2), [row(0.05, &[-0.15, -0.05, 0.15]), second].concat());
     }
 
     /// A round robot that drove a quarter of a circle between walls, and a post.

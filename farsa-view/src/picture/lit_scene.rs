@@ -66,6 +66,9 @@ pub(crate) struct Seen {
 pub(crate) struct LitScene {
     /// The solids; a plane has become a piece of ground.
     pub(crate) solids: Vec<Solid>,
+    /// The indices of those that can hide the sky, and of those that can hide the lamp.
+    hiders: Vec<usize>,
+    shaders: Vec<usize>,
     /// From the scene to the lamp's middle.
     pub(crate) key: Vector,
     /// Distance of the grid's lines [m].
@@ -189,11 +192,17 @@ impl LitScene {
     pub(crate) fn new(picture: &Picture, view: &Window) -> Self {
         // As many as can be counted, but not so many that they look like a grey.
         let step = STEPS.into_iter().find(|step| view.radius < 20.0 * step).unwrap_or(25.0);
-        let solids = picture.shapes.iter().map(|placed| Solid::new(placed, view, step)).collect();
+        let solids: Vec<Solid> = picture.shapes.iter().map(|placed| Solid::new(placed, view, step)).collect();
+        let with = |wanted: fn(&Solid) -> bool| (0..solids.len()).filter(|i| wanted(&solids[*i])).collect();
+        let shaders = with(|solid| !matches!(solid.geometry, Geometry::Disc { .. } | Geometry::Rectangle { .. }));
+        let hiders = with(|solid| {
+            let flat = matches!(solid.geometry, Geometry::Plane | Geometry::Disc { .. } | Geometry::Rectangle { .. });
+            solid.role != Role::Ground && !flat
+        });
         let (key, lights) = (view.key_light(), view.lights(LIGHTS));
         let narrow = lights.iter().map(|light| dot(*light, key)).fold(1.0, f64::min);
         let cone = [narrow, (1.0 - narrow * narrow).max(0.0).sqrt()];
-        Self { solids, key, step, lights, cone }
+        Self { solids, hiders, shaders, key, step, lights, cone }
     }
 
     /// What a ray meets first of the solids with these indices.
@@ -232,10 +241,8 @@ impl LitScene {
         let [cosine, sine] = self.cone;
         let mut shades: [usize; 64] = [0; 64];
         let mut count = 0;
-        for (i, solid) in self.solids.iter().enumerate() {
-            if matches!(solid.geometry, Geometry::Disc { .. } | Geometry::Rectangle { .. }) {
-                continue;
-            }
+        for &i in &self.shaders {
+            let solid = &self.solids[i];
             let from = sub(solid.pose.position, origin);
             let ahead = dot(from, self.key);
             let square = dot(from, from);
@@ -268,8 +275,8 @@ impl LitScene {
 
     /// The share of the sky over a point that other solids leave free.
     fn sky(&self, own: usize, point: Vector, normal: Vector) -> f64 {
-        let others = self.solids.iter().enumerate().filter(|(i, _)| *i != own);
-        others.map(|(_, solid)| 1.0 - 0.85 * solid.hides(point, normal)).product()
+        let others = self.hiders.iter().filter(|i| **i != own);
+        others.map(|i| 1.0 - 0.85 * self.solids[*i].hides(point, normal)).product()
     }
 
     /// How dark the grid makes the ground at a point that is seen in a direction, where a pixel that faces the eye is

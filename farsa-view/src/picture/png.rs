@@ -96,12 +96,14 @@ struct Sample {
 }
 
 impl Canvas<'_> {
-    fn sample(&self, x: f64, y: f64) -> Sample {
+    /// What is seen at a place, among the solids of its band.
+    fn sample(&self, x: f64, y: f64, solids: &[usize]) -> Sample {
         let (origin, direction) = self.view.ray([x, y]);
-        let here = |(i, [low, high]): (usize, &[[f64; 2]; 2])| {
-            (x >= low[0] && x <= high[0] && y >= low[1] && y <= high[1]).then_some(i)
+        let here = |i: &usize| {
+            let [low, high] = self.boxes[*i];
+            x >= low[0] && x <= high[0] && y >= low[1] && y <= high[1]
         };
-        let seen = self.scene.see(origin, direction, self.boxes.iter().enumerate().filter_map(here));
+        let seen = self.scene.see(origin, direction, solids.iter().copied().filter(here));
         match seen {
             Some(seen) => Sample { solid: Some(seen.solid), light: self.scene.shade(self.view, &seen, true) },
             None => Sample { solid: None, light: linear(BACKGROUND) },
@@ -110,7 +112,11 @@ impl Canvas<'_> {
 
     /// A band of rows from `top` on: a ray through every corner, more where an edge passes between corners.
     fn draw(&self, band: &mut [Color], top: usize, width: usize) {
-        let corners = |y: usize| -> Vec<Sample> { (0..=width).map(|x| self.sample(x as f64, y as f64)).collect() };
+        let [first, last] = [top, top + band.len() / width.max(1)].map(|y| y as f64);
+        let near = |i: &usize| self.boxes[*i][0][1] <= last && self.boxes[*i][1][1] >= first;
+        let solids: Vec<usize> = (0..self.boxes.len()).filter(near).collect();
+        let corners =
+            |y: usize| -> Vec<Sample> { (0..=width).map(|x| self.sample(x as f64, y as f64, &solids)).collect() };
         let mut above = corners(top);
         for (row, pixels) in band.chunks_mut(width.max(1)).enumerate() {
             let y = top + row;
@@ -118,7 +124,7 @@ impl Canvas<'_> {
             for (x, pixel) in pixels.iter_mut().enumerate() {
                 let four = [above[x], above[x + 1], below[x], below[x + 1]];
                 let light = if edge(&four) {
-                    self.fine(x, y)
+                    self.fine(x, y, &solids)
                 } else {
                     scale(four.iter().fold([0.0; 3], |sum, corner| add(sum, clamped(corner.light))), 0.25)
                 };
@@ -128,11 +134,11 @@ impl Canvas<'_> {
         }
     }
 
-    fn fine(&self, x: usize, y: usize) -> Vector {
+    fn fine(&self, x: usize, y: usize, solids: &[usize]) -> Vector {
         let at = |i: usize, k: usize| i as f64 + (k as f64 + 0.5) / FINE as f64;
         let mut sum = [0.0; 3];
         for k in 0..FINE * FINE {
-            sum = add(sum, clamped(self.sample(at(x, k % FINE), at(y, k / FINE)).light));
+            sum = add(sum, clamped(self.sample(at(x, k % FINE), at(y, k / FINE), solids).light));
         }
         scale(sum, 1.0 / (FINE * FINE) as f64)
     }

@@ -6,20 +6,21 @@ use farsa_physics::arena::{Area, AreaShape, Arena, Convex, Cylinder, Wall};
 
 use crate::recording::schema::Schema;
 use crate::recording::view::View;
+use crate::recording::wheeled_look::{self, Part};
 use crate::shape::appearance::{Color, OKABE_ITO, Role};
 use crate::shape::geometry::Geometry;
 use crate::shape::scene_object::{SceneObject, screen_color};
 
 /// Walls that are given no colour: dark, so that ways along them are seen.
 const WALL: Color = [84, 90, 99];
-/// The stripe that shows where a robot looks to.
-const STRIPE: Color = [250, 250, 245];
 /// The ground around a lamp.
 const GLOW: Color = [255, 238, 170];
 /// Thickness of the sides that a convex obstacle is drawn by [m].
 const SIDE: f64 = 2e-3;
 /// How high an area lies above the one under it [m].
 const LAYER: f64 = 1e-4;
+/// Of more robots than this only the hulls are shown.
+const MOST_WITH_PARTS: usize = 50;
 
 /// A frame on the ground, turned about the vertical.
 fn standing([x, y]: [f64; 2], z: f64, heading: f64) -> Pose<f64> {
@@ -110,7 +111,9 @@ fn cylinder(cylinder: &Cylinder) -> SceneObject {
 impl Schema {
     /// The bodies of a planar world, seen from above, by the numbers that they have there: robots, cylinders, areas.
     ///
-    /// A convex obstacle is shown by thin walls along its outline. A lamp stands on a light disc. A robot is its hull with a light stripe that points ahead; it is drawn in its own colour, whatever its LEDs show.
+    /// A convex obstacle is shown by thin walls along its outline. A lamp stands on a light disc. A robot is drawn in its own colour,
+    /// whatever its LEDs show, on its wheels and within its hull, with a light stripe that points ahead: a Khepera, an e-puck and a
+    /// `MarXbot` as they look, others as discs. Of more than 50 robots the hulls are drawn alone.
     ///
     /// ```
     /// use farsa_body::MobileRobot;
@@ -146,16 +149,13 @@ impl Schema {
             }
             objects.push(moving(cylinder(it), body));
         }
+        let look = if arena.robots.len() > MOST_WITH_PARTS { wheeled_look::hull } else { wheeled_look::parts };
         for (number, placed) in arena.robots.iter().enumerate() {
-            let (robot, body) = (&placed.robot, BodyId(number as u16));
-            let up = 0.5 * robot.height;
-            let hull = Geometry::Cylinder { radius: robot.radius, half_length: up };
-            let hull = SceneObject::new("hull", hull, standing([0.0; 2], up, 0.0), Role::Robot);
-            objects.push(moving(hull.with_color(screen_color(robot.color)), body));
-            let half = [0.4 * robot.radius, 0.09 * robot.radius, 0.01 * robot.radius];
-            let at = standing([0.55 * robot.radius, 0.0], robot.height + half[2], 0.0);
-            let stripe = SceneObject::new("", Geometry::Box { half }, at, Role::Robot).with_color(STRIPE);
-            objects.push(SceneObject { name: format!("{} ahead", bodies[number]), ..stripe.on_body(body) });
+            for Part { name, geometry, place, color } in look(&placed.robot) {
+                let name = format!("{} {name}", bodies[number]);
+                let part = SceneObject::new(name.trim_end(), geometry, place, Role::Robot).with_color(color);
+                objects.push(part.on_body(BodyId(number as u16)));
+            }
         }
         Self { bodies, objects, view: View::Top, ..Self::default() }
     }
@@ -181,19 +181,25 @@ mod tests {
         arena.add_area(Area::rectangle([0.1, 0.4], [0.1, 0.05], 0.3, [0.0, 0.0, 1.0]));
         let schema = Schema::from_arena(&arena);
         assert_eq!(schema.bodies, ["Khepera 1", "Khepera 2", "e-puck", "lamp", "cylinder", "area 1", "area 2"]);
-        // The ground, four walls, two areas, two cylinders, a light and twice three robots.
-        assert_eq!(schema.objects.len(), 1 + 4 + 2 + 3 + 6);
+        // The ground, four walls, two areas, two cylinders, a light; two Kheperas and an e-puck with their parts.
+        let parts = |robot: &MobileRobot| wheeled_look::parts(robot).len();
+        let robots = 2 * parts(&MobileRobot::khepera()) + parts(&MobileRobot::e_puck());
+        assert_eq!(schema.objects.len(), 1 + 4 + 2 + 3 + robots);
         let world = World::new(&arena).unwrap();
         assert!(schema.shown().eq((0..7).map(BodyId)));
         for object in schema.objects.iter().filter(|object| object.role != Role::Ground) {
             let body = object.body.unwrap();
-            let ahead = object.name.ends_with(" ahead");
-            assert_eq!(object.name.trim_end_matches(" ahead").trim_end_matches(" light"), schema.bodies[body.index()]);
-            let pose = world.pose(body).cast::<f64>();
-            let at = pose.compose(&object.placement).position;
-            let off = object.placement.position[0];
-            let expected = pose.transform([off, 0.0, object.placement.position[2]]);
-            assert_eq!((off > 0.0, at), (ahead, expected), "{}", object.name);
+            assert!(object.name.starts_with(&schema.bodies[body.index()]), "{}", object.name);
+            let at = world.pose(body).cast::<f64>().compose(&object.placement).position;
+            let placed = arena.robots.get(body.index());
+            let position = world.pose(body).position.map(f64::from);
+            let reach = placed.map_or(0.0, |placed| placed.robot.radius);
+            let off = [0, 1].map(|k| at[k] - position[k]);
+            assert!(off[0].hypot(off[1]) <= reach, "{}", object.name);
+            if let (Some(placed), true) = (placed, object.name.ends_with(" ahead")) {
+                let (sine, cosine) = sin_cos(placed.heading);
+                assert!(off[0] * cosine + off[1] * sine > 0.3 * reach, "{}", object.name);
+            }
         }
         let inner: Vec<f64> = schema.objects[1..5]
             .iter()
@@ -208,6 +214,37 @@ mod tests {
         (0..7).for_each(|body| recording.pose(BodyId(body), world.pose(BodyId(body))));
         recording.tick(0.0);
         assert!(crate::Page::new("x").with("y", recording).html().contains("Khepera 2 ahead"));
+    }
+
+    #[test]
+    fn robots_of_every_kind_are_looked_at() {
+        let mut arena = Arena::walled(0.5, 0.3);
+        let cart = MobileRobot { name: "cart".into(), wheel_radius: 0.02, track: 0.06, ..MobileRobot::khepera() };
+        let painted = MobileRobot { color: [0.85, 0.15, 0.1], ..MobileRobot::e_puck() };
+        let [small, large] = [[0.06, 0.22], [0.4, 0.15]];
+        arena.add_robot(MobileRobot::khepera(), small, 0.5);
+        arena.add_robot(MobileRobot::e_puck(), [0.15, 0.22], 0.5);
+        arena.add_robot(painted, [0.24, 0.22], 0.5);
+        arena.add_robot(MobileRobot { height: 0.06, ..cart }, [0.06, 0.08], 0.5);
+        arena.add_robot(MobileRobot { color: [0.1, 0.25, 0.85], ..MobileRobot::khepera() }, [0.15, 0.08], 2.5);
+        arena.add_robot(MobileRobot::marxbot(), large, 0.5);
+        let world = World::new(&arena).unwrap();
+        let mut recording = Recording::new(Schema::from_arena(&arena));
+        (0..6).for_each(|body| recording.pose(BodyId(body), world.pose(BodyId(body))));
+        recording.tick(0.0);
+        let picture = recording.picture(0).unwrap();
+        assert_eq!(picture.shapes.len(), recording.schema().objects.len());
+        if let Some(path) = std::env::var_os("FARSA_LOOK") {
+            let file = |name: &str| std::path::Path::new(&path).join(name);
+            for camera in ["top", "three-quarter"] {
+                let camera_of = crate::Camera::named(camera).unwrap();
+                std::fs::write(file(&format!("robots-{camera}.png")), picture.png(camera_of, [1000, 700]).unwrap())
+                    .unwrap();
+                std::fs::write(file(&format!("robots-{camera}.svg")), picture.svg(camera_of, [1000, 700], "p"))
+                    .unwrap();
+            }
+            std::fs::write(file("robots.html"), crate::Page::new("robots").with("all", recording).html()).unwrap();
+        }
     }
 
     #[test]
@@ -257,7 +294,13 @@ mod tests {
         let mut arena = Arena::new();
         arena.add_robot(MobileRobot::marxbot(), [0.0, 0.0], 0.0);
         let schema = Schema::from_arena(&arena);
-        assert_eq!((schema.objects.len(), schema.objects[0].geometry), (3, Geometry::Plane));
+        assert_eq!(schema.objects[0].geometry, Geometry::Plane);
         assert_eq!(schema.bodies, ["MarXbot"]);
+        assert_eq!(schema.objects.len(), 1 + wheeled_look::parts(&MobileRobot::marxbot()).len());
+        // A hull and a stripe each.
+        for _ in 0..50 {
+            arena.add_robot(MobileRobot::marxbot(), [0.0, 0.0], 0.0);
+        }
+        assert_eq!(Schema::from_arena(&arena).objects.len(), 1 + 2 * 51);
     }
 }

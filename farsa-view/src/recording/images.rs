@@ -37,9 +37,10 @@ impl Images {
         let ranges: Vec<Range<usize>> = channels
             .iter()
             .map(|channel| {
-                // An image that is larger than all that is kept is never kept.
+                // An image that is larger than all that is kept is never kept; those on the ground are kept elsewhere.
                 let begin = end;
-                end += Some(channel.pixels()).filter(|pixels| *pixels <= MOST_PIXELS).unwrap_or(0);
+                let kept = |pixels: &usize| channel.ground.is_none() && *pixels <= MOST_PIXELS;
+                end += Some(channel.pixels()).filter(kept).unwrap_or(0);
                 begin..end
             })
             .collect();
@@ -103,12 +104,12 @@ impl Images {
 }
 
 /// A colour as counts in 5, 6 and 5 bits; NaN is 0.
-fn packed(color: [f32; 3]) -> u16 {
+pub(super) fn packed(color: [f32; 3]) -> u16 {
     let counts = iter::zip(color, LARGEST).map(|(shade, largest)| (shade * largest).round().clamp(0.0, largest) as u16);
     iter::zip(counts, SHIFT).fold(0, |pixel, (count, shift)| pixel | count << shift)
 }
 
-fn unpacked(pixel: u16) -> [f32; 3] {
+pub(super) fn unpacked(pixel: u16) -> [f32; 3] {
     core::array::from_fn(|k| f32::from((pixel >> SHIFT[k]) & LARGEST[k] as u16) / LARGEST[k])
 }
 

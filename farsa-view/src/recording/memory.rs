@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use farsa_body::{BodyId, Contacts, Kinematics, PairContact, PairId, Pose, Recorder, record_world};
 
+use crate::recording::ground_images::GroundImages;
 use crate::recording::images::Images;
 use crate::recording::schema::Schema;
 
@@ -80,13 +81,14 @@ pub struct Recording {
     rays: Vec<CastRay>,
     ray_ends: Vec<usize>,
     images: Images,
+    grounds: GroundImages,
 }
 
 impl Recording {
     /// A recording of nothing yet.
     pub fn new(schema: Schema) -> Self {
-        let images = Images::new(&schema.images);
-        let mut recording = Self { schema, images, ..Self::default() };
+        let (images, grounds) = (Images::new(&schema.images), GroundImages::new(&schema.images));
+        let mut recording = Self { schema, images, grounds, ..Self::default() };
         let widest = [POSE * recording.bodies(), 3 * recording.schema.points.len(), recording.width()];
         recording.blank = vec![f32::NAN; widest.into_iter().max().unwrap_or(0)];
         // Most episodes are shorter; a longer one makes room by itself.
@@ -172,12 +174,21 @@ impl Recording {
     }
 
     /// What an image showed at a tick, red, green and blue of the upper left pixel first, within 1/62; `None` if it was not recorded,
-    /// and for ticks after 2^22 pixels were kept. An image like the one before takes no room.
+    /// and for ticks after 2^22 pixels were kept. An image like the one before takes no room. One on the ground is as it was recorded
+    /// last.
     pub fn image_at(&self, tick: usize, image: usize) -> Option<impl Iterator<Item = [f32; 3]> + '_> {
-        self.images.at(tick, image)
+        let of_camera = self.images.at(tick, image);
+        let of_ground = self.grounds.at(tick, image);
+        let seen = of_camera.is_some() || of_ground.is_some();
+        seen.then(|| of_camera.into_iter().flatten().chain(of_ground.into_iter().flatten()))
     }
 
-    /// What was kept of all images.
+    /// What was kept of all images on the ground.
+    pub(crate) fn grounds(&self) -> &GroundImages {
+        &self.grounds
+    }
+
+    /// What was kept of all images of cameras.
     pub(crate) fn images(&self) -> &Images {
         &self.images
     }
@@ -238,6 +249,7 @@ impl Recorder for Recording {
 
     fn pixel(&mut self, image: usize, pixel: usize, color: [f32; 3]) {
         self.images.pixel(image, pixel, color);
+        self.grounds.pixel(image, pixel, color);
     }
 
     fn sensors(&mut self, x: &[f32]) {
@@ -265,6 +277,7 @@ impl Recorder for Recording {
         self.contact_ends.push(self.contacts.len());
         self.ray_ends.push(self.rays.len());
         self.images.tick();
+        self.grounds.tick();
         self.open();
     }
 }

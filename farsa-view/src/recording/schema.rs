@@ -11,6 +11,8 @@ use crate::shape::scene_object::SceneObject;
 pub struct Channel {
     /// What it is called.
     pub name: String,
+    /// What pages show in place of the name; empty for the name itself.
+    pub label: String,
     /// Its unit; empty if it has none.
     pub unit: String,
     /// What stands together: `phase`, `fitness`, `sensor`, `neuron`, `output`, `joint`, `actuator`, `force` or a word of
@@ -30,6 +32,11 @@ impl Channel {
             None => (name, ""),
         };
         Self { name: name.into(), unit: unit.into(), ..Self::default() }
+    }
+
+    /// The same channel with a label, which pages show in place of its name.
+    pub fn labelled(self, label: &str) -> Self {
+        Self { label: label.into(), ..self }
     }
 
     /// The same channel in a group.
@@ -53,19 +60,29 @@ impl Channel {
     }
 }
 
-/// The image of a camera, as pages name it.
-#[derive(Clone, Debug, PartialEq, Eq, Default)]
+/// An image, as pages name it: what a camera sees, or what lies on the ground.
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct ImageChannel {
     /// What it is called.
     pub name: String,
     /// Columns and rows.
     pub size: [usize; 2],
+    /// Where it lies on the ground, if it does: the corner of its first pixel and that of its last one [m].
+    pub ground: Option<[[f64; 2]; 2]>,
 }
 
 impl ImageChannel {
     /// An image of so many columns and rows.
     pub fn new(name: &str, size: [usize; 2]) -> Self {
-        Self { name: name.into(), size }
+        Self { name: name.into(), size, ground: None }
+    }
+
+    /// The same image on the ground, from the corner of its first pixel to that of its last one [m]: columns run along x.
+    ///
+    /// Each pixel that is not black is a mark on the ground in its colour. What changes is kept, so that an image which
+    /// changes little takes little room; a tick without pixels leaves it as it was. Images of more than 65535 pixels are not kept.
+    pub fn on_ground(self, from: [f64; 2], to: [f64; 2]) -> Self {
+        Self { ground: Some([from, to]), ..self }
     }
 
     /// Number of pixels.
@@ -127,7 +144,7 @@ pub struct Schema {
     pub scalars: Vec<Channel>,
     /// The points worth seeing, by number.
     pub points: Vec<String>,
-    /// The images that cameras see, by number.
+    /// The images that cameras see, and those on the ground, by number.
     pub images: Vec<ImageChannel>,
     /// How the nodes are linked, for a picture of the network.
     pub links: Vec<Links>,
@@ -165,6 +182,35 @@ impl Schema {
     /// With these values of one's own.
     pub fn with_scalars<N: AsRef<str>>(self, names: impl IntoIterator<Item = N>) -> Self {
         Self { scalars: channels(names, "value"), ..self }
+    }
+
+    /// With labels for the channels that are there by now, as pairs of a name and a label.
+    ///
+    /// A pair fits a channel that has the name, and one whose name begins with it and a space: `("J4", "elbow")` makes
+    /// `J4 torque` an `elbow torque`. Of several pairs that fit, the first counts.
+    ///
+    /// ```
+    /// use farsa_view::Schema;
+    ///
+    /// let schema = Schema::from_scalars(["J4 [rad]", "J4 agonist length", "J4 torque [N m]", "J40"]);
+    /// let schema = schema.with_labels(&[("J4 agonist", "elbow flexor"), ("J4", "elbow extension")]);
+    /// let labels: Vec<&str> = schema.scalars.iter().map(|channel| channel.label.as_str()).collect();
+    /// assert_eq!(labels, ["elbow extension", "elbow flexor length", "elbow extension torque", ""]);
+    /// ```
+    pub fn with_labels<N: AsRef<str>, L: AsRef<str>>(mut self, labels: &[(N, L)]) -> Self {
+        let label_of = |channel: &str| {
+            labels.iter().find_map(|(name, label)| {
+                let rest = channel.strip_prefix(name.as_ref())?;
+                (rest.is_empty() || rest.starts_with(' ')).then(|| format!("{}{rest}", label.as_ref()))
+            })
+        };
+        let Self { sensors, neurons, outputs, scalars, .. } = &mut self;
+        for channel in [sensors, neurons, outputs, scalars].into_iter().flatten() {
+            if let Some(label) = label_of(&channel.name) {
+                channel.label = label;
+            }
+        }
+        self
     }
 
     /// With another image.
@@ -251,6 +297,23 @@ mod tests {
             assert_eq!((channel.name.as_str(), channel.unit.as_str()), (name, unit));
         }
         assert_eq!(Channel::new("force on sphere.palm [N]").title(), "force on sphere.palm [N]");
+    }
+
+    #[test]
+    fn labels_change_what_is_shown_and_no_name() {
+        let layout = LeakyLayout::new(2, 1, 3);
+        let plain = Schema::from_scalars(["J1 [rad]", "J12 [rad]", "J1 torque [N m]", "time"])
+            .with_sensors(["J1", "touch J1"])
+            .with_outputs(["J1 J2", "J1 J2 J3", "J1-J3"])
+            .with_network(&layout);
+        let schema = plain.clone().with_labels(&[("J1 J2", "both"), ("J1", "elbow"), ("J1", "never"), ("1", "first")]);
+        let labels: Vec<&str> = schema.channels().map(|(_, channel)| channel.label.as_str()).collect();
+        assert_eq!(labels, ["elbow", "", "elbow torque", "", "elbow", "", "first", "both", "both J3", ""]);
+        assert_eq!(schema.columns(), plain.columns());
+        // Others stay as they are.
+        let labelled = Channel::new("x [m]").labelled("place");
+        let schema = Schema { scalars: vec![labelled], ..Schema::default() }.with_labels(&[("y", "height")]);
+        assert_eq!((schema.scalars[0].label.as_str(), schema.columns()), ("place", vec![String::from("x [m]")]));
     }
 
     #[test]

@@ -12,4 +12,4 @@ pub(crate) mod vector;
 
 pub use appearance::{Color, Instance, OKABE_ITO, Role};
 pub use geometry::Geometry;
-pub use scene_object::{SceneObject, screen_color};
+pub use scene_object::{SceneObject, ShownWhile, screen_color};

@@ -20,12 +20,25 @@ pub struct SceneObject {
     pub role: Role,
     /// Its colour; `None` for that of its role.
     pub color: Option<Color>,
+    /// When it is seen; `None` for always.
+    pub shown: Option<ShownWhile>,
+}
+
+/// The condition on which a shape is seen: while a channel has a value from `low` to `high`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownWhile {
+    /// The channel as [`Schema::columns`](crate::Schema::columns) names it; with another name the shape is never seen.
+    pub channel: String,
+    /// The least value.
+    pub low: f64,
+    /// The greatest value.
+    pub high: f64,
 }
 
 impl SceneObject {
     /// A standing shape in its role's colour.
     pub fn new(name: &str, geometry: Geometry, placement: Pose<f64>, role: Role) -> Self {
-        Self { name: name.into(), body: None, geometry, placement, role, color: None }
+        Self { name: name.into(), body: None, geometry, placement, role, color: None, shown: None }
     }
 
     /// The same shape, moving with a body.
@@ -36,6 +49,14 @@ impl SceneObject {
     /// The same shape in this colour.
     pub fn with_color(self, color: Color) -> Self {
         Self { color: Some(color), ..self }
+    }
+
+    /// The same shape, seen while a channel, as [`Schema::columns`](crate::Schema::columns) names it, has a value from `low` to
+    /// `high`.
+    ///
+    /// Pages keep 65535 values of a channel between its least and its greatest: bounds are best between values that it has.
+    pub fn shown_while(self, channel: &str, low: f64, high: f64) -> Self {
+        Self { shown: Some(ShownWhile { channel: channel.into(), low, high }), ..self }
     }
 
     /// The shape in its place, when its body is at `pose`.

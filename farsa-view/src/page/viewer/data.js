@@ -31,6 +31,9 @@ const join = (a, b) => [...add(cross(a, b), add(mul(b, a[3]), mul(a, b[3]))), a[
 const turn = (q, v) => add(v, mul(cross(q, add(cross(q, v), mul(v, q[3]))), 2));
 const HOME = {position: [0, 0, 0], rotation: [0, 0, 0, 1]};
 
+// Red, green and blue of a pixel.
+const shadesOf = (p) => [(p >> 11)/31, (p >> 5 & 63)/63, (p & 31)/31];
+
 class Trial {
 	constructor(json, index) {
 		Object.assign(this, json, {index, json, name: String(json.name)});
@@ -57,6 +60,7 @@ class Trial {
 		this.signed = new Int16Array(words.buffer, 0, words.length);
 		this.times = block("times", ticks, 4);
 		this.end = this.times[ticks - 1];
+		this.pushes = [];
 		this.poses = block("poses", 7*ticks*bodies.length, 2);
 		this.marks = block("points", 3*ticks*points.length, 2);
 		// Where each tick begins: they differ in length.
@@ -79,6 +83,7 @@ class Trial {
 			return {...channel, values, low, high};
 		});
 		this.images = (json.images || []).map((image, i) => this.readImage(image, i, json.images.length, block, of));
+		this.spots = this.readGround(json.ground_images || [], block, of);
 		if (json.network) this.network = this.readNetwork(json.network, block);
 	}
 
@@ -94,8 +99,24 @@ class Trial {
 		return {name, columns, rows, starts};
 	}
 
+	// The pixels of images on the ground, each with the ticks at which it changes and to what.
+	readGround(images, block, of) {
+		const {ticks, words} = this;
+		let word = images[0] && block("ground_pixels", 0, 2);
+		return images.flatMap(({size: [columns, rows], ground: [x, y, u, v]}) => {
+			const [wide, deep] = [(u - x)/columns, (v - y)/rows];
+			const shape = {body: -1, role: "area", kind: "cylinder", radius: 0.15*min(abs(wide), abs(deep)), half_length: 0};
+			const spots = list(columns*rows, (k) => ({shape, origin: [x + (k%columns + 0.5)*wide, y + (floor(k/columns) + 0.5)*deep, 0.0005], changes: []}));
+			for (let t = 0; t < ticks; t++) {
+				for (let n = words[word++]; n; n--, word += 2) spots[words[word]].changes.push([t, words[word + 1] && shadesOf(words[word + 1])]);
+			}
+			need(word <= words.length, `block ground_pixels ${of} is out of range`);
+			return spots;
+		});
+	}
+
 	readNetwork({nodes, links, values}, block) {
-		nodes = nodes.map((node) => ({...node, values: [], links: []}));
+		nodes = nodes.map((node) => ({...node, label: this.channels[node.channel].label || node.name, values: [], links: []}));
 		const size = ([a, b]) => b - a;
 		const ends = [...links.map((l) => l.first + size(l.from)*size(l.to)), ...values.map((v) => v.first + size(v.nodes))];
 		const weights = block("weights", max(0, ...ends), 4);
@@ -145,9 +166,15 @@ class Trial {
 		return list(this.words[start], (i) => read(start + 1 + 7*i));
 	}
 
+	// Where pairs touch, and what pushes from outside.
 	contacts(tick) {
-		return this.each(this.contactStarts[floor(tick)], (word) =>
+		const touching = this.each(this.contactStarts[floor(tick)], (word) =>
 			({pair: this.pairs[this.words[word]], point: this.place(word + 1), force: mul(this.signed.subarray(word + 4), this.force_unit)}));
+		const pushes = this.pushes.filter(({steps: [first, end]}) => tick >= first && floor(tick) < end).map(({body, point, force}) => {
+			const {position, rotation} = this.pose(floor(tick), body);
+			return {pair: [this.bodies[body], "outside"], point: add(position, turn(rotation, point)), force};
+		});
+		return [...touching, ...pushes, ...this.pull ? [this.pull] : []];
 	}
 
 	rays(tick) {
@@ -160,7 +187,7 @@ class Trial {
 		const start = starts[floor(tick)];
 		if (Number.isNaN(start)) return null;
 		const colors = new Uint8ClampedArray(4*columns*rows);
-		this.words.subarray(start, start + columns*rows).forEach((p, k) => colors.set([(p >> 11)*255/31, (p >> 5 & 63)*255/63, (p & 31)*255/31, 255], 4*k));
+		this.words.subarray(start, start + columns*rows).forEach((p, k) => colors.set([...mul(shadesOf(p), 255), 255], 4*k));
 		return colors;
 	}
 

@@ -63,8 +63,8 @@ async function agentOf(module, script) {
 }
 
 // The trial of an answer, ready for the player.
-function trialOf(page, {film}, index) {
-	const trial = new Trial(film, index);
+function trialOf(page, {film}, index, pushes = []) {
+	const trial = Object.assign(new Trial(film, index), {pushes, changed: index > 0});
 	survey(trial, page.view === "top");
 	return trial;
 }
@@ -72,6 +72,9 @@ function trialOf(page, {film}, index) {
 // Fills a live page with the first trial that it runs; what it gives is then attached to the player.
 async function liveOf(page) {
 	need(window.WebAssembly && window.Worker && window.DecompressionStream, "this browser has no WebAssembly");
+	// A function that returns a vector.
+	const vectors = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
+	need(WebAssembly.validate(new Uint8Array(vectors)), "this browser's WebAssembly has no SIMD, as all have since 2023");
 	const {live} = page;
 	const module = await WebAssembly.compile(await unpacked(live.module, "arrayBuffer"));
 	const agent = await agentOf(module, live.script);
@@ -79,7 +82,7 @@ async function liveOf(page) {
 	// The trial of the run that earned most comes first.
 	const told = live.about.individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
-	const state = {individual: live.about.individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], watched: null};
+	const state = {individual: live.about.individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
 	const answer = await agent.ask({do: "film", ...asked(state), lesion: ""});
 	page.trials = [trialOf(page, answer, 0)];
 	return {attach: (player) => attach(page, agent, state, answer, player, open)};
@@ -106,7 +109,7 @@ function compared({digests}, {stride, digests: run}) {
 }
 
 const NONE = "a node or link of the network";
-const button = (text, act) => Object.assign(make("button", "", text), {onclick: act});
+const button = (text, act = null) => Object.assign(make("button", "", text), {onclick: act});
 const earnedBy = ({fitness, success}) => `${success ? "success" : "no success"}, ${fitness === null ? "failed" : +fitness.toPrecision(4)}`;
 
 function pick(label, some, act) {
@@ -128,13 +131,13 @@ function controlsOf({live: {script}}, acts) {
 		fresh: button("New start", acts.fresh), value, part: make("b", "", NONE), parts: pick("Part", [["", "part ..."]], acts.choose),
 		apply: button("Change", () => acts.alter(value.value)), cut: button("Silence or cut", () => acts.alter("")),
 		noise: button("Noise 0.1", () => acts.set("noise:0.1", "")), undo: button("Undo all", acts.undo),
-		move: button("Move bodies", () => own.move.setAttribute("aria-pressed", own.move.getAttribute("aria-pressed") !== "true")),
+		move: button("Move bodies"), push: button("Push bodies"),
 		chips: make("p", "chips"), hundred: button("100 fresh trials", acts.test), verify: button("Verify", acts.verify),
 		earned: make("p"), status: make("p", "soft"),
 	};
 	const bar = (...names) => make("div", "bar", ...names.map((name) => own[name]));
 	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "robot", "fresh"), make("p", "", "Change: ", own.part),
-		bar("parts", "value", "apply", "cut"), bar("noise", "move", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
+		bar("parts", "value", "apply", "cut"), bar("noise", "move", "push", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
 		make("details", "", make("summary", "", "Configuration"), make("pre", "", script.config)));
 	panel.id = "live";
 	$("network").before(panel);
@@ -167,8 +170,8 @@ function offerParts(own, kinds) {
 // What is changed, each to be taken back.
 function chipsOf(state, show) {
 	const lesions = [...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show())));
-	const moves = state.moves.map((one) => button(`${one.name} moved at ${one.time.toFixed(2)} s ×`, () => (state.moves = state.moves.filter((other) => other !== one), show())));
-	return [...lesions, ...moves];
+	const hands = ["moves", "pushes"].flatMap((kind) => state[kind].map((one) => button(`${one.what} at ${one.time.toFixed(2)} s ×`, () => (state[kind] = state[kind].filter((other) => other !== one), show()))));
+	return [...lesions, ...hands];
 }
 
 // Gives a live page its panel.
@@ -182,7 +185,7 @@ function attach(page, agent, state, first, player, open) {
 		return show(before);
 	};
 	const change = (what) => (Object.assign(state, what), show());
-	const undo = () => (state.changes.clear(), (state.moves = []), show());
+	const undo = () => (state.changes.clear(), (state.moves = []), (state.pushes = []), show());
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
 	const own = controlsOf(page, {set, change, undo, fresh, choose, test, verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
@@ -204,7 +207,7 @@ function attach(page, agent, state, first, player, open) {
 		own.trial.value = fresh ? "" : state.trial.number;
 		own.generation.value = state.individual;
 		own.verify.disabled = !!fresh || !known.length || state.watched !== null;
-		own.undo.disabled = !state.changes.size && !state.moves.length;
+		own.undo.disabled = !state.changes.size && !state.moves[0] && !state.pushes[0];
 		own.chips.replaceChildren(...chipsOf(state, show));
 	}
 
@@ -212,14 +215,15 @@ function attach(page, agent, state, first, player, open) {
 	async function show(before = {...state}) {
 		const [mine, list] = [++turn, listOf(state)];
 		const moves = state.moves.map(({step, body, position, rotation}) => ({step, body, position, rotation}));
+		const pushes = state.pushes.map(({steps, body, point, force}) => ({steps, body, point, force}));
 		marks();
 		say("runs ...");
 		try {
 			const intact = await agent.ask({do: "film", ...asked(state), lesion: ""});
-			const changed = (list || moves[0]) && await agent.ask({do: "film", ...asked(state), lesion: list, moves});
+			const changed = (list || moves[0] || pushes[0]) && await agent.ask({do: "film", ...asked(state), lesion: list, moves, pushes});
 			if (mine !== turn) return;
 			answer = intact;
-			page.trials.splice(0, 2, ...[intact, changed].filter(Boolean).map((one, i) => trialOf(page, one, i)));
+			page.trials.splice(0, 2, ...[intact, changed].filter(Boolean).map((one, i) => trialOf(page, one, i, i ? pushes : [])));
 			player.show(page.trials[0], page.trials[1]);
 			player.ask();
 			say(changed ? `With the change: ${earnedBy(changed)}.` : "");
@@ -261,12 +265,12 @@ function attach(page, agent, state, first, player, open) {
 
 	own.robot.replaceChildren(...options([["", "robot ..."], ...about.robots.map((name, i) => [i, name])]));
 	own.robot.hidden = !about.robots[1];
-	const put = movable(page, player, state, own.move, show, say);
+	const {put, push} = movable(page, player, state, own, show, say);
 
 	graphChosen = (node) => node && choose(partOf(node));
 	agent.ask({do: "names"}).then((kinds) => offerParts(own, kinds), (error) => say(error.message));
 	choose("");
 	marks();
 	const {run, rows} = evolutionOf(page, open, showMore);
-	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), set, undo, start: (trial) => change({trial}), test, verify};
+	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), test, verify};
 }

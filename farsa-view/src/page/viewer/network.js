@@ -34,20 +34,23 @@ function nearestLink(links, x, y) {
 	return found;
 }
 
+// A node's name, where its label stands for it.
+const nameOf = ({name, label}) => (name === label ? "" : `${name} `);
+
 // The numbers of a node or a link; `say` is a node's value at present.
 function aboutOf(chosen, links, say) {
 	if (!chosen) return [make("p", "soft", "Point at a node or a link, or tap it, for its numbers.")];
 	if (!chosen.links) {
 		const {from, to, weight} = chosen;
-		return [make("h3", "", `${from.name} → ${to.name}`, make("b", "", signed(weight))), make("p", "", `source ${say(from)}, target ${say(to)}`)];
+		return [make("h3", "", `${from.label} → ${to.label}`, make("b", "", signed(weight))), make("p", "", `source ${nameOf(from)}${say(from)}, target ${nameOf(to)}${say(to)}`)];
 	}
 	const table = (head, here, there) => {
 		const some = links.filter((l) => l[here] === chosen).reverse();
-		const rows = some.slice(0, 6).map((l) => make("tr", "", make("td", "", l[there].name), make("td", "", signed(l.weight))));
+		const rows = some.slice(0, 6).map((l) => make("tr", "", make("td", "", l[there].label), make("td", "", signed(l.weight))));
 		return make("table", "", make("caption", "", `${head} (${some.length})`), ...rows);
 	};
 	return [
-		make("h3", "", chosen.name, make("b", "", say(chosen))), make("p", "", chosen.values.map(([name, x]) => `${name} ${signed(x)}`).join(", ")),
+		make("h3", "", chosen.label, make("b", "", say(chosen))), make("p", "", nameOf(chosen), chosen.values.map(([name, x]) => `${name} ${signed(x)}`).join(", ")),
 		make("div", "tables", table("strongest in", "to", "from"), table("strongest out", "from", "to")),
 	];
 }
@@ -86,8 +89,7 @@ function paintNode(c, {x, y}, lit, fill) {
 }
 
 // Writes a node's name beside it: of the first column to the left, of others to the right.
-function paintName(c, {x, y, layer, name}, width, ink) {
-	let text = name;
+function paintName(c, {x, y, layer, label: text}, width, ink) {
 	while (text.length > 2 && c.measureText(text).width > (layer ? width - x : x) - 12) text = `${text.slice(0, -2)}…`;
 	Object.assign(c, {lineWidth: 4, strokeStyle: colorOf("--panel"), fillStyle: ink, textAlign: layer ? "left" : "right"});
 	for (const way of ["strokeText", "fillText"]) c[way](text, x + (layer ? 11 : -11), y + 0.5);
@@ -118,7 +120,7 @@ function graphOf() {
 		({nodes, links} = trial.network);
 		last = max(...nodes.map((n) => n.layer));
 		over = pinned = null;
-		choice.replaceChildren(...options([[-1, "node …"], ...nodes.map((n, i) => [i, n.name])]));
+		choice.replaceChildren(...options([[-1, "node …"], ...nodes.map((n, i) => [i, n.label])]));
 		layout();
 	}
 
@@ -143,7 +145,7 @@ function graphOf() {
 		canvas.style.height = `${height}px`;
 		Object.assign(canvas, {width: round(width*ratio), height: round(height*ratio)});
 		c.font = LABEL;
-		const room = (column) => min(width*0.27, max(...column.map((n) => c.measureText(n.name).width))) + 16;
+		const room = (column) => min(width*0.31, max(...column.map((n) => c.measureText(n.label).width))) + 16;
 		const left = room(columns[0]);
 		const right = last ? width - room(columns[last]) : left;
 		columns.forEach((column, layer) => {

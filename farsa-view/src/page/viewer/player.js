@@ -142,7 +142,8 @@ class Player {
 		const {clientWidth: w, clientHeight: h} = this.views[0].element;
 		const [trial] = this.shown;
 		const thing = trial.shapes.find((shape) => shape.role === "thing");
-		this.camera.frame(this.shown, w/h || 1.6, thing && trial.between(this.tickOf(trial), thing.body).position);
+		// What flies away in a changed trial does not take the camera along.
+		this.camera.frame(this.shown.filter((one) => !one.changed), w/h || 1.6, thing && trial.between(this.tickOf(trial), thing.body).position);
 		this.ask();
 	}
 

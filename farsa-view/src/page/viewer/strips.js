@@ -151,8 +151,8 @@ function stripsOf(seek) {
 		[trials, from, to, rows] = [some, first, last, []];
 		watch.disconnect();
 		const names = new Map();
-		for (const {group, name} of trials.flatMap((trial) => trial.channels)) names.set(group, (names.get(group) || new Set()).add(name));
-		groups.replaceChildren(...[...names].map(([group, set]) => section(group, [...set])));
+		for (const {group, name, label} of trials.flatMap((trial) => trial.channels)) names.set(group, (names.get(group) || new Map()).set(name, label || name));
+		groups.replaceChildren(...[...names].map(([group, some]) => section(group, [...some])));
 		// As wide as the longest name, within reason.
 		const wide = [...groups.querySelectorAll(".name")].map((name) => name.scrollWidth);
 		groups.style.setProperty("--n", `${min(210, max(80, ...wide)) + 4}px`);
@@ -162,8 +162,8 @@ function stripsOf(seek) {
 	function section(group, names) {
 		// What all names begin with, as "force on sphere.", takes the room of what differs.
 		let cut = 0;
-		while (names[1] && names.every((name) => name[cut] && name[cut] === names[0][cut])) cut++;
-		const body = make("div", "rows", ...names.map((name) => row(group, name, cut > 7 ? cut : 0, names.length > 10 ? "heat" : "lines")));
+		while (names[1] && names.every(([, label]) => label[cut] && label[cut] === names[0][1][cut])) cut++;
+		const body = make("div", "rows", ...names.map(([name, label]) => row(group, name, label.slice(cut > 7 ? cut : 0), names.length > 10 ? "heat" : "lines")));
 		const fold = make("button", "fold", make("b", "", group), make("span", "soft", names.length), ...legendOf(trials, group));
 		const made = make("section", "", fold, body);
 		made.dataset.group = group;
@@ -180,7 +180,7 @@ function stripsOf(seek) {
 		return made;
 	}
 
-	function row(group, name, cut, mode) {
+	function row(group, name, label, mode) {
 		const channels = trials.map((trial) => trial.channels.find((c) => c.name === name && c.group === group));
 		const some = channels.filter(Boolean);
 		const {words, unit = "", scale} = some[0];
@@ -192,7 +192,7 @@ function stripsOf(seek) {
 		const kind = words ? "bands" : mode;
 		const values = channels.map((_, i) => make("span", `value trial-${i}`));
 		const canvas = make("canvas", "plot");
-		const element = make("div", `row ${kind}`, make("span", "name", name.slice(cut)), make("span", "values", ...values), make("span", "unit", unit), canvas,
+		const element = make("div", `row ${kind}`, make("span", "name", label), make("span", "values", ...values), make("span", "unit", unit), canvas,
 			make("span", "unit", words ? "" : told));
 		element.dataset.name = name;
 		element.title = `${group} ${name}${words ? "" : ` within ${(scale/2).toPrecision(2)} ${unit}`}`;
