@@ -179,6 +179,8 @@ fn the_book_of_food_is_what_the_robots_ways_tell() {
                     grave[robot] = Some(pose.position);
                 }
             }
+            let food: Vec<bool> = recording.image_at(tick, 0).unwrap().map(|color| color != [0.0; 3]).collect();
+            assert_eq!(food, left.as_flattened(), "{number} {tick}");
             let row: Vec<f64> = recording.row(tick).collect();
             assert_eq!([row[column("collected")], row[column("lost")]], [paid, lost]);
             for robot in 0..10 {

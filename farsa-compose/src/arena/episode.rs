@@ -167,12 +167,19 @@ impl Embodied for ArenaEpisode {
     }
 
     fn bodies(&self) -> Schema {
-        let scene = &self.composition.scene;
-        Schema::from_arena(&farsa_physics::arena::Arena { size: Some(scene.size), ..scene.arena.clone() })
+        let Composition { scene, foraging, .. } = &self.composition;
+        let schema = Schema::from_arena(&farsa_physics::arena::Arena { size: Some(scene.size), ..scene.arena.clone() });
+        match foraging {
+            Some((_, field)) => field.shown_in(schema, &scene.robots.iter().collect::<Vec<_>>()),
+            None => schema,
+        }
     }
 
+    /// The pose of the robot that is recorded and, where there is food, the energy and the load of each.
     fn places(&self) -> Vec<Channel> {
-        ["x [m]", "y [m]", "heading [rad]"].map(|name| Channel::new(name).group("place")).into()
+        let foragers = self.composition.foraging.iter().flat_map(|(_, field)| field.channels());
+        let pose = ["x [m]", "y [m]", "heading [rad]"].map(|name| Channel::new(name).group("place"));
+        pose.into_iter().chain(foragers).collect()
     }
 
     fn robot(&self) -> Robot {
@@ -272,6 +279,10 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
         let pose = world.pose(self.composition.members[*shown].parts.body);
         let [x, y, _] = pose.position.map(f64::from);
         let mut scalars = vec![x, y, f64::from(pose.heading())];
+        if let Some((_, field)) = &self.composition.foraging {
+            scalars.extend(field.scalars());
+            field.record(0, recorder);
+        }
         let tallies = ledger.tallies.iter().enumerate();
         scalars.extend(tallies.map(
             |(number, tally)| {

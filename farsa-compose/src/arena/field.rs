@@ -86,6 +86,21 @@ impl Field {
         &self.robots
     }
 
+    /// Whether each cell still has its food, row by row from the origin, along x.
+    pub fn food(&self) -> &[bool] {
+        &self.food
+    }
+
+    /// Width and depth [m].
+    pub(crate) fn size(&self) -> [f64; 2] {
+        self.size
+    }
+
+    /// Cells along each side.
+    pub(crate) fn cells(&self) -> usize {
+        self.cells
+    }
+
     /// Food that was carried to the nest.
     pub fn collected(&self) -> u32 {
         self.collected

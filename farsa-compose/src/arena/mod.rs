@@ -6,6 +6,7 @@
 //! - `driving`: any motor, with what is wrapped around it
 //! - `felt`: what a robot feels of itself
 //! - `field`: food on a field, and the robots that feed on it
+//! - `field_view`: how food and foragers are recorded and seen
 //! - `starting`: where a trial puts things
 //! - `measure`: what terms measure of robots
 //! - `term`: a term with the thing that it is about
@@ -17,6 +18,7 @@ pub(crate) mod driving;
 pub(crate) mod episode;
 pub(crate) mod felt;
 pub(crate) mod field;
+mod field_view;
 mod meaning;
 pub(crate) mod measure;
 pub(crate) mod scene;

@@ -1,6 +1,6 @@
 //! An episode of `foraging`: robots carry food from a field to their nest, and must return to survive.
 
-use farsa_body::{BodyId, ColorBand, Pose, Twist};
+use farsa_body::{BodyId, ColorBand, Pose, Recorder, Twist};
 use farsa_compose::Field;
 use farsa_nn::Controller;
 use farsa_num::{Domain, Stream};
@@ -16,7 +16,7 @@ use farsa_lab::{
     Behaviour, ChannelGroup, EpisodeId, Error, Intervention, Interventions, Note, NotedBehaviour, Outcome, PlanarWorld,
     Protocol, input_ranges,
 };
-use farsa_view::Channel;
+use farsa_view::{Channel, Schema};
 
 /// Robots that forage, with a controller each, and the record of their food and energy.
 ///
@@ -199,18 +199,22 @@ impl Scenario for ForagingScenario {
     }
 
     fn channels(&self) -> Vec<Channel> {
-        let of_robot = |number: usize| {
-            let energy = Channel::new(&format!("energy {number}")).group("energy").range(0.0, 1.0);
-            [energy, Channel::new(&format!("carried {number}")).group("food")]
-        };
         let food = ["collected", "lost", "left"].map(|name| Channel::new(name).group("fitness"));
-        (1..=self.config.team.robots).flat_map(of_robot).chain(food).collect()
+        self.field.channels().into_iter().chain(food).collect()
     }
 
     fn scalars(&self, _: Moment<'_>) -> Vec<f64> {
         let field = &self.field;
-        let of_robots = field.robots().iter().flat_map(|forager| [forager.energy, f64::from(forager.carried)]);
         let food = [f64::from(field.collected()), f64::from(field.lost()), field.left() as f64];
-        of_robots.chain(food).collect()
+        field.scalars().chain(food).collect()
+    }
+
+    fn shown_in(&self, schema: Schema) -> Schema {
+        let arena = self.arena();
+        self.field.shown_in(schema, &arena.robots.iter().map(|placed| &placed.robot).collect::<Vec<_>>())
+    }
+
+    fn record(&self, recorder: &mut dyn Recorder) {
+        self.field.record(0, recorder);
     }
 }

@@ -35,6 +35,25 @@ fn on_sphere(scene: &Scene) -> impl Iterator<Item = PairId> {
     scene.sphere_on_phalanges.into_iter().chain([scene.sphere_on_palm, scene.sphere_on_table])
 }
 
+/// What pages call the groups of servos that follow one output.
+const GROUP_LABELS: [(&str, &str); 5] = [
+    ("J10 J11", "thumb outer"),
+    ("J14 J15", "index outer"),
+    ("J18 J19", "middle outer"),
+    ("J12 J16 J20 J24", "finger abduction"),
+    ("J21-J23 J25-J27", "ring and little"),
+];
+
+/// What pages call the channels of joints, muscles and groups of servos.
+fn labels() -> Vec<(String, &'static str)> {
+    let groups = GROUP_LABELS.map(|(name, label)| (name.into(), label)).into_iter();
+    let muscles = (1..).zip(ArmAndHand::muscle_labels()).flat_map(|(n, [agonist, antagonist])| {
+        [(format!("J{n} agonist"), agonist), (format!("J{n} antagonist"), antagonist)]
+    });
+    let joints = (1..).zip(ArmAndHand::joint_labels()).map(|(n, label)| (format!("J{n}"), label));
+    groups.chain(muscles).chain(joints).collect()
+}
+
 /// Records the steps of an episode, and names what it records.
 pub(crate) struct EpisodeRecorder {
     /// The arm's muscles, for their lengths and torques.
@@ -90,11 +109,12 @@ impl EpisodeRecorder {
             .with_outputs(episode.motors().names())
             .with_network(&scene.config.layout());
         schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
-        Schema {
+        let schema = Schema {
             scalars,
             points: ["palm's target", "palm's centre", "centre of the grasp"].map(String::from).into(),
             ..schema
-        }
+        };
+        schema.with_labels(&labels())
     }
 
     /// Records what was sensed, computed and done before the step that has just been judged, and what it led to.
@@ -150,5 +170,39 @@ impl EpisodeRecorder {
         recorder.scalars(&scalars);
         // Rounded to the nanosecond: 201 steps of 0.01 s print as 2.01.
         recorder.tick((f64::from(trial.steps) * scene.config.time_step * 1e9).round() / 1e9);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use farsa_lab::Task as _;
+
+    use crate::reach_grasp_lift::config::Config;
+    use crate::reach_grasp_lift::experiment::evaluator;
+
+    #[test]
+    fn joints_muscles_and_servos_have_labels_and_nothing_else() {
+        let schema = evaluator(Config::default()).unwrap().schema();
+        let all = [&schema.scalars, &schema.sensors, &schema.neurons, &schema.outputs].into_iter().flatten();
+        let mut shown = BTreeSet::new();
+        let mut labelled = 0;
+        for channel in all {
+            let numbered =
+                channel.name.strip_prefix('J').is_some_and(|rest| rest.starts_with(|c: char| c.is_numeric()));
+            assert_eq!(numbered, !channel.label.is_empty(), "{channel:?}");
+            assert!(!channel.label.contains(char::is_numeric), "{channel:?}");
+            let text = if numbered { &channel.label } else { &channel.name };
+            assert!(shown.insert((&channel.group, text)), "{channel:?} is in its group twice");
+            labelled += usize::from(numbered);
+        }
+        // Joints and speeds; lengths and torques; sensors; outputs.
+        assert_eq!(labelled, 2 * 27 + 21 + 17 + 23);
+        let label = |name: &str| schema.outputs.iter().find(|output| output.name == name).unwrap().label.as_str();
+        assert_eq!(
+            [label("J4 agonist"), label("J10 J11"), label("J13")],
+            ["elbow flexor", "thumb outer", "index proximal"]
+        );
     }
 }

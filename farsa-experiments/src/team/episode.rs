@@ -1,13 +1,13 @@
 //! An episode of a team: robots with a controller each, and a scenario that says what they are to do.
 
-use farsa_body::ColorBand;
+use farsa_body::{ColorBand, Recorder};
 use farsa_nn::Controller;
 use farsa_physics::arena::{Arena, ArenaError};
 
 use crate::team::config::TeamConfig;
 use crate::team::robots::Team;
 use farsa_lab::{Behaviour, ChannelGroup, Episode, EpisodeId, Error, Interventions, Outcome, PlanarWorld};
-use farsa_view::Channel;
+use farsa_view::{Channel, Schema};
 
 /// Where the robots of a team are, and since when.
 #[derive(Clone, Copy, Debug)]
@@ -102,6 +102,16 @@ pub trait Scenario: Send {
 
     /// What is recorded at every step beside robots and poses.
     fn scalars(&self, moment: Moment<'_>) -> Vec<f64>;
+
+    /// A schema of the arena and the channels with what else is to be seen.
+    fn shown_in(&self, schema: Schema) -> Schema {
+        schema
+    }
+
+    /// Records what [`shown_in`](Self::shown_in) added.
+    fn record(&self, recorder: &mut dyn Recorder) {
+        let _ = recorder;
+    }
 }
 
 /// Robots in a scenario, with a controller each.

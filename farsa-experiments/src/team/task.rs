@@ -104,6 +104,7 @@ impl<M: Scenario, W: PlanarWorld> Episode<W> for TeamTask<M> {
         recorder.outputs(team.done(*watched));
         (0..*bodies).map(BodyId).for_each(|body| recorder.pose(body, world.pose(body)));
         recorder.scalars(&episode.scenario().scalars(episode.moment()));
+        episode.scenario().record(recorder);
         recorder.tick(seconds(episode.steps(), episode.scenario().robots().time_step));
     }
 }
@@ -196,7 +197,7 @@ impl<M: Scenario> Task for TeamTask<M> {
         let schema = Schema::from_arena(&scenario.arena()).with_sensors(scenario.input_names());
         let mut schema = schema.with_outputs(MOTORS.into_iter().take(outputs)).with_network(&self.layout);
         schema.outputs.iter_mut().chain(&mut schema.sensors).for_each(|channel| channel.range = Some([0.0, 1.0]));
-        Schema { scalars: scenario.channels(), ..schema }
+        scenario.shown_in(Schema { scalars: scenario.channels(), ..schema })
     }
 
     fn description(&self) -> Description {

@@ -150,10 +150,13 @@ fn what_cannot_live_is_refused_and_writes_nothing() {
     let here = scratch("live-refused");
     catcher(&here);
     ok(own(), &here, "run cart --generations 1 --out cart --quiet");
+    ok(farsa(), &here, "run passive-walker --world rapier --out foreign --quiet");
     fs::write(here.join("notes.html"), "mine").expect("a file");
     fs::write(here.join("module"), "no module").expect("a file");
     for (program, line, why) in [
         (own(), "live cart --html new.html", "this program has no module for pages: give one with --module"),
+        (farsa(), "live foreign --html new.html", "world `rapier`: pages that run an agent are without it"),
+        (farsa(), "serve foreign --port 0", "world `rapier`: pages that run an agent are without it"),
         (farsa(), "live catcher --html new.html --module module", "the module is not compressed by gzip"),
         (farsa(), "live catcher --html new.html --module nowhere", "nowhere"),
         (farsa(), "live catcher --html new.html --generations 3", "generation 3 of 1 finished ones"),

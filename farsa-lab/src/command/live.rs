@@ -12,6 +12,8 @@ use crate::error::Error;
 use crate::json::pretty;
 use crate::live::page;
 use crate::live::serve::{self, Served};
+use crate::run::ENGINE;
+use crate::run::plan::Plan;
 use crate::store::bounded;
 
 /// The most bytes of a module.
@@ -29,7 +31,7 @@ impl Invocation<'_, '_> {
     /// Writes a page that runs an agent by itself.
     pub(super) fn live(&self, args: &LiveArgs) -> Result<(), Error> {
         let (directory, plan) = self.existing(&args.directory)?;
-        let module = self.live_module(args.module.as_deref())?;
+        let module = self.live_module(args.module.as_deref(), &plan)?;
         let generations = &args.generations;
         let found = page::page(self.laboratory, (&plan, &directory), generations, &module, &args.html)?;
         self.summary(args.json, &format!("{}\n", found.summary), &|| pretty(&found))
@@ -38,25 +40,30 @@ impl Invocation<'_, '_> {
     /// Serves this page while the run goes on.
     pub(super) fn serve(&self, args: &ServeArgs) -> Result<(), Error> {
         let (directory, plan) = self.existing(&args.directory)?;
-        let module = self.live_module(args.module.as_deref())?;
+        let module = self.live_module(args.module.as_deref(), &plan)?;
         let (laboratory, plan, directory, module) = (self.laboratory, &plan, &directory, &module);
         serve::serve(Served { laboratory, plan, directory, module }, args.port, |address| {
             if args.json { say(&pretty(&Address { address })?) } else { tell(&format!("{address}\n")) }
         })
     }
 
-    /// The module of a file, or that of this program.
-    fn live_module(&self, given: Option<&Path>) -> Result<Cow<'_, [u8]>, Error> {
-        let module =
-            match given {
-                Some(path) => Cow::Owned(bounded::read(path, MOST_MODULE)?),
-                None => Cow::Borrowed(self.laboratory.live_module().ok_or_else(|| {
-                    Error::Usage("this program has no module for pages: give one with --module".into())
-                })?),
+    /// The module of a file, or that of this program, which may lack the plan's world.
+    fn live_module(&self, given: Option<&Path>, plan: &Plan<'_>) -> Result<Cow<'_, [u8]>, Error> {
+        let Some(path) = given else {
+            let none = || Error::Usage("this program has no module for pages: give one with --module".into());
+            let (module, lacking) = self.laboratory.live_module().ok_or_else(none)?;
+            let world = plan.settings.word(ENGINE).ok();
+            return match lacking.iter().find(|lacks| world == Some(**lacks)) {
+                Some(world) => Err(Error::Usage(format!(
+                    "world `{world}`: pages that run an agent are without it; `farsa replay --html` shows recorded trials"
+                ))),
+                None => Ok(Cow::Borrowed(module)),
             };
+        };
+        let module = bounded::read(path, MOST_MODULE)?;
         if !module.starts_with(&GZIP) {
             return Err(Error::Usage("the module is not compressed by gzip".into()));
         }
-        Ok(module)
+        Ok(Cow::Owned(module))
     }
 }

@@ -26,7 +26,7 @@ pub struct Laboratory<'e> {
     experiments: Vec<&'e dyn Experiment>,
     strategies: Vec<&'static dyn StrategyDefinition>,
     files: Option<ExperimentFiles>,
-    module: Option<&'static [u8]>,
+    module: Option<(&'static [u8], &'static [&'static str])>,
 }
 
 /// Makes an experiment of a text, which is the content of a file of a name; it may name these strategies.
@@ -99,14 +99,14 @@ impl<'e> Laboratory<'e> {
     }
 
     /// Makes pages that run agents by themselves, too: `farsa live`; `module` is these experiments as WebAssembly, compressed by
-    /// gzip.
+    /// gzip, and `lacking` names the worlds ([`ENGINE`](crate::ENGINE)) that it is built without.
     #[must_use]
-    pub fn with_live_module(self, module: &'static [u8]) -> Self {
-        Self { module: Some(module), ..self }
+    pub fn with_live_module(self, module: &'static [u8], lacking: &'static [&'static str]) -> Self {
+        Self { module: Some((module, lacking)), ..self }
     }
 
-    /// The module of live pages, if there is one.
-    pub(crate) fn live_module(&self) -> Option<&'static [u8]> {
+    /// The module of live pages and the worlds that it lacks, if there is one.
+    pub(crate) fn live_module(&self) -> Option<(&'static [u8], &'static [&'static str])> {
         self.module
     }
 

@@ -1,0 +1,159 @@
+//! How food and foragers are recorded and seen.
+
+use farsa_body::{BodyId, MobileRobot, Pose, Recorder};
+use farsa_view::{Channel, Color, Geometry, ImageChannel, OKABE_ITO, Role, SceneObject, Schema};
+
+use crate::arena::field::Field;
+
+/// Fields of more cells along a side are not shown: nobody can tell their food apart.
+const MOST_CELLS: usize = 64;
+/// Of more robots it is not shown which are dead or carry food.
+const MOST_ROBOTS: usize = 50;
+/// Food, on the ground and on robots.
+const FOOD: Color = OKABE_ITO[2];
+/// What covers a dead robot, and the bar across it.
+const COVER: Color = [22, 22, 25];
+const BAR: Color = [235, 235, 230];
+/// How much wider and higher than the robot the cover is.
+const AROUND: f64 = 1.02;
+
+fn energy(robot: usize) -> String {
+    format!("energy {}", robot + 1)
+}
+
+fn carried(robot: usize) -> String {
+    format!("carried {}", robot + 1)
+}
+
+impl Field {
+    /// The channels of [`scalars`](Self::scalars): the energy of each robot, `energy 1`..., and its food, `carried 1`...
+    pub fn channels(&self) -> Vec<Channel> {
+        let of_robot = |robot| {
+            [Channel::new(&energy(robot)).group("energy").range(0.0, 1.0), Channel::new(&carried(robot)).group("food")]
+        };
+        (0..self.robots().len()).flat_map(of_robot).collect()
+    }
+
+    /// The energy of each robot and the food that it carries.
+    pub fn scalars(&self) -> impl Iterator<Item = f64> + '_ {
+        self.robots().iter().flat_map(|forager| [forager.energy, f64::from(forager.carried)])
+    }
+
+    /// A schema that has [`channels`](Self::channels), or is to have them, with the food as an image on the ground, its last image,
+    /// and with what shows that a robot carries food or is dead: a ball on it, or a dark cover with a bar across.
+    ///
+    /// `robots` are the first bodies. Fields of more than 64 cells along a side are not shown, nor are these marks of more than 50
+    /// robots.
+    #[must_use]
+    pub fn shown_in(&self, mut schema: Schema, robots: &[&MobileRobot]) -> Schema {
+        if let Some(cells) = self.shown_cells() {
+            schema.images.push(ImageChannel::new("food", [cells; 2]).on_ground([0.0; 2], self.size()));
+        }
+        if robots.len() <= MOST_ROBOTS {
+            for (number, robot) in robots.iter().enumerate() {
+                let name = schema.bodies.get(number).cloned().unwrap_or_default();
+                schema.objects.extend(marks(number, robot, &name));
+            }
+        }
+        schema
+    }
+
+    /// Records the food as the image of this number, which [`shown_in`](Self::shown_in) added to the schema.
+    pub fn record(&self, image: usize, recorder: &mut dyn Recorder) {
+        if self.shown_cells().is_none() {
+            return;
+        }
+        let color = FOOD.map(|shade| f32::from(shade) / 255.0);
+        for (cell, food) in self.food().iter().enumerate() {
+            recorder.pixel(image, cell, if *food { color } else { [0.0; 3] });
+        }
+    }
+
+    /// Cells along a side, where they are shown.
+    fn shown_cells(&self) -> Option<usize> {
+        Some(self.cells()).filter(|cells| (1..=MOST_CELLS).contains(cells))
+    }
+}
+
+/// What is seen of a robot's load and death.
+fn marks(number: usize, robot: &MobileRobot, name: &str) -> Vec<SceneObject> {
+    let (body, above) = (BodyId(number as u16), AROUND * robot.height);
+    let on = |what: &str, geometry, placement, color| {
+        let mark = SceneObject::new(&format!("{name} {what}"), geometry, placement, Role::Robot);
+        mark.on_body(body).with_color(color)
+    };
+    let ball = 0.35 * robot.radius;
+    let load = on("load", Geometry::Sphere { radius: ball }, Pose::at([0.0, 0.0, robot.height + ball]), FOOD);
+    let cover = Geometry::Cylinder { radius: AROUND * robot.radius, half_length: 0.5 * above };
+    let thick = 0.01 * robot.height;
+    let bar = Geometry::Box { half: [0.16 * robot.radius, 0.75 * robot.radius, thick] };
+    let dead = [
+        on("dead", cover, Pose::at([0.0, 0.0, 0.5 * above]), COVER),
+        on("dead", bar, Pose::at([0.0, 0.0, above + thick]), BAR),
+    ];
+    let dead = dead.map(|mark| mark.shown_while(&energy(number), 0.0, 0.0));
+    [load.shown_while(&carried(number), 1.0, 1e9)].into_iter().chain(dead).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_view::Recording;
+
+    #[test]
+    fn food_loads_and_deaths_are_seen_when_they_are_there() {
+        let robot = MobileRobot::e_puck();
+        let mut field = Field::new([2.0, 1.0], 4, 0.25, 0.1, 2);
+        field.begin([0.1, 0.1]);
+        let bodies = vec!["e-puck 1".into(), "e-puck 2".into()];
+        let schema = Schema { bodies, scalars: field.channels(), ..Schema::default() };
+        let mut recording = Recording::new(field.shown_in(schema, &[&robot, &robot]));
+        // The first robot takes food, and more, and dies with it; the second brings it home.
+        for (number, places) in [[[0.6, 0.4], [1.9, 0.9]], [[0.7, 0.4], [1.9, 0.9]], [[1.2, 0.4], [0.1, 0.1]]]
+            .into_iter()
+            .chain([[[1.2, 0.4], [0.1, 0.1]]])
+            .enumerate()
+        {
+            for (robot, at) in places.into_iter().enumerate() {
+                field.step(robot, at);
+                recording.pose(BodyId(robot as u16), Pose::planar(at.map(|x| x as f32), 0.3));
+            }
+            field.record(0, &mut recording);
+            recording.scalars(&field.scalars().collect::<Vec<_>>());
+            recording.tick(number as f64);
+        }
+        let lit = |tick| recording.image_at(tick, 0).unwrap().filter(|color| color[1] > 0.5).count();
+        assert_eq!([0, 1, 2, 3].map(lit), [14, 14, 12, 12]);
+        let cell = recording.image_at(0, 0).unwrap().position(|color| color == [0.0; 3]);
+        assert_eq!(cell, Some(1 + 4));
+        // Balls and bars on the robots at each tick.
+        let seen = |tick: usize, robot: usize, what: fn(&Geometry) -> bool| {
+            let at = recording.pose_at(tick, BodyId(robot as u16)).unwrap().position;
+            let picture = recording.picture(tick).unwrap();
+            let here = |of: &[f64; 3]| [0, 1].iter().all(|&k| (of[k] - f64::from(at[k])).abs() < 1e-6);
+            picture.shapes.iter().filter(|shape| here(&shape.pose.position) && what(&shape.geometry)).count()
+        };
+        let is_load = |geometry: &Geometry| matches!(geometry, Geometry::Sphere { .. });
+        let is_bar = |geometry: &Geometry| matches!(geometry, Geometry::Box { .. });
+        assert_eq!([0, 1, 2, 3].map(|tick| seen(tick, 0, is_load)), [1, 1, 1, 0]);
+        assert_eq!([0, 1, 2, 3].map(|tick| seen(tick, 1, is_load)), [1, 1, 0, 0]);
+        assert_eq!([0, 1, 2, 3].map(|tick| seen(tick, 0, is_bar)), [0, 0, 0, 1]);
+        assert_eq!([0, 1, 2, 3].map(|tick| seen(tick, 1, is_bar)), [0; 4]);
+    }
+
+    #[test]
+    fn what_nobody_could_tell_apart_is_not_shown() {
+        let robot = MobileRobot::khepera();
+        let shown = |cells, robots: usize| {
+            let field = Field::new([1.0; 2], cells, 0.01, 0.1, robots);
+            let schema = field.shown_in(Schema::default(), &vec![&robot; robots]);
+            let mut recording = Recording::new(schema.clone());
+            field.record(0, &mut recording);
+            recording.tick(0.0);
+            (schema.images.len(), recording.image_at(0, 0).is_some(), schema.objects.len())
+        };
+        assert_eq!(shown(64, 50), (1, true, 150));
+        assert_eq!(shown(65, 51), (0, false, 0));
+        assert_eq!(shown(0, 1), (0, false, 3));
+    }
+}
