@@ -2,8 +2,8 @@
 
 use crate::sliding::{FRICTION, GRAVITY, MASS, arm};
 use farsa_body::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Ground, JointId, JointKind, Joints, Law, MassProperties, Pose,
-    Robot, Torque, World as _,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, ExternalForces as _, Ground, JointId, JointKind, Joints,
+    Kinematics as _, Law, MassProperties, Pose, Robot, Torque, World as _,
 };
 use farsa_num::{Domain, Stream, sin_cos};
 use farsa_physics::articulated::{Model, Options, Precision, World};
@@ -72,19 +72,26 @@ fn a_puck_that_turns_comes_to_rest_by_its_radius() {
     assert_eq!([0, 1].map(|joint| world.position(JointId(joint))), [0.0; 2]);
 }
 
-/// A push below the limit moves nothing, one beyond it accelerates by what is left over.
+/// A push below the limit moves nothing, one beyond it accelerates by what is left over: of the puck's motors, and of a hand.
 #[test]
 fn a_push_moves_what_it_overcomes() {
     let limit = FRICTION * MASS * GRAVITY;
+    let robot = puck(0.04);
+    let body = BodyId(robot.segments.len() as u16 - 1);
     for (part, moves) in [(0.8, false), (0.999, false), (1.001, true), (1.5, true), (3.0, true)] {
-        for direction in [0.0, 0.5, 0.79, 2.0, 4.0] {
+        for (direction, by_hand) in [0.0, 0.5, 0.79, 2.0, 4.0].into_iter().flat_map(|x| [(x, false), (x, true)]) {
             let (sine, cosine) = sin_cos(direction);
-            let mut world = world::<f32>(&puck(0.04), 0.01);
+            let mut world = world::<f32>(&robot, 0.01);
             let push = part * limit;
-            for (motor, way) in [(0, cosine), (1, sine)] {
-                world.command(ActuatorId(motor), [(push * way) as f32, 0.0]);
+            let force = [cosine, sine].map(|way| (push * way) as f32);
+            for _ in 0..500 {
+                if by_hand {
+                    world.apply_force(body, world.origin(body), [force[0], force[1], 0.0]);
+                } else {
+                    (0..2).for_each(|motor| world.command(ActuatorId(motor), [force[usize::from(motor)], 0.0]));
+                }
+                world.step();
             }
-            (0..500).for_each(|_| world.step());
             let speeds = [0, 1].map(|joint| f64::from(world.speed(JointId(joint))));
             let speed = speeds[0] * cosine + speeds[1] * sine;
             if moves {
