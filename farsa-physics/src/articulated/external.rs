@@ -5,10 +5,9 @@ use alloc::vec::Vec;
 
 use farsa_num::{Real, Scalar};
 
-use crate::articulated::link::Motion;
+use crate::articulated::link::{LinkData, Motion};
 use crate::articulated::model::Model;
 use crate::articulated::spatial::{Vector, cross, sub};
-use crate::articulated::step::{Scratch, accelerate, place_links};
 use crate::articulated::tree::jacobian;
 
 /// The forces of a control step, and what turns them into changes of velocity.
@@ -18,10 +17,10 @@ pub struct Wrenches<R> {
     of_links: Vec<[R; 6]>,
     any: bool,
     /// Per degree of freedom: nothing, joint efforts, what is added to the joint-space inertia, accelerations.
-    zeros: Vec<R>,
-    tau: Vec<R>,
-    diagonal: Vec<R>,
-    qdd: Vec<R>,
+    pub(crate) zeros: Vec<R>,
+    pub(crate) tau: Vec<R>,
+    pub(crate) diagonal: Vec<R>,
+    pub(crate) qdd: Vec<R>,
     jacobian: Vec<R>,
 }
 
@@ -70,39 +69,25 @@ impl<R: Real> Wrenches<R> {
             self.any = false;
         }
     }
-}
 
-/// Adds to the velocities what the forces do in one dynamics step: `v += h M^-1 J^T f`.
-///
-/// Source: own (articulated bodies [Featherstone2008] table 7.1 without gravity and velocities, under the efforts `J^T f`).
-/// The links of `scratch` must be placed, and are afterwards.
-#[inline(never)]
-pub(crate) fn push<R: Real + Scalar<Real = R, Simd = ()>>(
-    model: &Model<R>,
-    state: &mut [R],
-    scratch: &mut Scratch<R>,
-    forces: &mut Wrenches<R>,
-) {
-    let zero = R::from_f64(0.0);
-    let Wrenches { of_links, zeros, tau, diagonal, qdd, jacobian: matrix, .. } = forces;
-    let (q, v) = state.split_at_mut(model.positions);
-    let (links, roots) = scratch.parts();
-    place_links((), model, q, zeros, links);
-    tau.fill(zero);
-    for (link, wrench) in of_links.iter().enumerate() {
-        if wrench.iter().all(|x| *x == zero) {
-            continue;
-        }
-        jacobian((), &model.links, links, link, links[link].centre, matrix);
-        for (row, x) in matrix.chunks_exact(model.dofs).zip(wrench) {
-            for (tau, column) in tau.iter_mut().zip(row) {
-                *tau += *column * *x;
+    /// The joint efforts `J^T f` of the forces \[dofs\]; `links` must be placed.
+    pub(crate) fn efforts(&mut self, model: &Model<R>, links: &[LinkData<R>])
+    where
+        R: Scalar<Real = R, Simd = ()>,
+    {
+        let zero = R::from_f64(0.0);
+        let Self { of_links, tau, jacobian: matrix, .. } = self;
+        tau.fill(zero);
+        for (link, wrench) in of_links.iter().enumerate() {
+            if wrench.iter().all(|x| *x == zero) {
+                continue;
+            }
+            jacobian((), &model.links, links, link, links[link].centre, matrix);
+            for (row, x) in matrix.chunks_exact(model.dofs).zip(wrench) {
+                for (tau, column) in tau.iter_mut().zip(row) {
+                    *tau += *column * *x;
+                }
             }
         }
     }
-    accelerate((), model, [zero; 3], tau, diagonal, links, roots, qdd);
-    for (v, a) in v.iter_mut().zip(qdd) {
-        *v += model.h * *a;
-    }
-    place_links((), model, q, v, links);
 }

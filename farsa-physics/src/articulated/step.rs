@@ -7,7 +7,7 @@ use farsa_num::{Mask as _, Real, Scalar};
 
 use crate::articulated::collision::PlacedShape;
 use crate::articulated::contact::place_colliders;
-use crate::articulated::external::{Wrenches, push};
+use crate::articulated::external::Wrenches;
 use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
 use crate::articulated::group::{Sphere, place_spheres};
 use crate::articulated::link::{LinkData, Motion, WORLD};
@@ -160,6 +160,29 @@ fn step_one<R: Real + Scalar<Real = R, Simd = ()>>(
     forces.clear();
 }
 
+/// Adds to the velocities what the forces do in one dynamics step: `v += h M^-1 J^T f`.
+///
+/// Source: own (articulated bodies [Featherstone2008] table 7.1 without gravity and velocities, under the efforts `J^T f`).
+/// The links of `scratch` must be placed, and are afterwards.
+#[inline(never)]
+fn push<R: Real + Scalar<Real = R, Simd = ()>>(
+    model: &Model<R>,
+    state: &mut [R],
+    scratch: &mut Scratch<R>,
+    forces: &mut Wrenches<R>,
+) {
+    let (q, v) = state.split_at_mut(model.positions);
+    let (links, roots) = scratch.parts();
+    place_links((), model, q, &forces.zeros, links);
+    forces.efforts(model, links);
+    let Wrenches { tau, diagonal, qdd, .. } = forces;
+    accelerate((), model, [R::from_f64(0.0); 3], tau, diagonal, links, roots, qdd);
+    for (v, a) in v.iter_mut().zip(qdd) {
+        *v += model.h * *a;
+    }
+    place_links((), model, q, v, links);
+}
+
 /// The large pieces are functions of their own, which the compiler makes in a fraction of the time that it takes for one
 /// function of everything.
 #[inline(always)]
@@ -236,13 +259,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
 
 /// [`forward_kinematics`] as a function of its own.
 #[inline(never)]
-pub(crate) fn place_links<S: Scalar>(
-    simd: S::Simd,
-    model: &Model<S::Real>,
-    q: &[S],
-    v: &[S],
-    work: &mut [LinkData<S>],
-) {
+fn place_links<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &[S], v: &[S], work: &mut [LinkData<S>]) {
     S::vectorize(
         simd,
         #[inline(always)]
@@ -252,7 +269,7 @@ pub(crate) fn place_links<S: Scalar>(
 
 /// [`accelerations`] as a function of its own.
 #[inline(never)]
-pub(crate) fn accelerate<S: Scalar>(
+fn accelerate<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     gravity: [S::Real; 3],
