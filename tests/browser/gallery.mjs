@@ -1,8 +1,8 @@
 // Tests the pages of a gallery in a real browser.
 //
-//   node tests/browser/gallery.mjs FOLDER [SCREENSHOTS]
+//   farsa list --json | node tests/browser/gallery.mjs FOLDER [SCREENSHOTS]
 //
-// FOLDER is what docs/gallery/make made. Every page has to be small, to be up, and to run the trial that it shows as the run did, to
+// FOLDER is what docs/gallery/make made; there has to be a page of every experiment that is listed. Every page has to be small, to be up, and to run the trial that it shows as the run did, to
 // the bit. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, or with BROWSER=firefox the other two.
 
 import { mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
@@ -51,7 +51,6 @@ async function index(browser, pages) {
 }
 
 const pages = readdirSync(folder).filter((name) => name.endsWith(".html") && name !== "index.html").sort();
-// One for every experiment, as `farsa list --json` names them.
 const experiments = JSON.parse(readFileSync(0, "utf8")).map(({ name }) => `${name}.html`).sort();
 check(`there is a page of each of ${experiments.length} experiments`, experiments.length > 0 && pages.join() === experiments.join(), pages.join());
 let driver;

@@ -25,8 +25,8 @@ pub struct Wrenches<R> {
 }
 
 impl<R: Real> Wrenches<R> {
-    /// None yet, of one model.
-    pub(crate) fn new(model: &Model<R>) -> Self {
+    /// None yet, for one model; what [`Precision::step`](crate::articulated::Precision::step) asks for.
+    pub fn new(model: &Model<R>) -> Self {
         let zero = R::from_f64(0.0);
         let mut diagonal = vec![zero; model.dofs];
         for link in model.links.iter().filter(|link| link.motion != Motion::Floating) {
