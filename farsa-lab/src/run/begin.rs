@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use farsa_evo::{EvoError, Record};
+use farsa_evo::{EvoError, Fitness, Record};
 
 use crate::error::Error;
 use crate::experiment::genotype::Genotype;
 use crate::run::plan::Plan;
 use crate::run::progression::Progression;
-use crate::run::records::Checkpoint;
+use crate::run::records::{Best, Champions, Checkpoint};
 use crate::run::told::{Told, ToldFile};
 use crate::store::directory::Directory;
 use crate::store::growing::Mark;
@@ -108,4 +108,38 @@ pub(crate) fn lineage(
         Ok(())
     };
     Lineage::resume(&directory.lineage(), checkpoint.lineage, again).map(Some)
+}
+
+/// The champions of the last generation that a checkpoint speaks of, where `champion.bin` has not got them: it is written before the
+/// checkpoint, and a process that is killed between the two leaves those of a later generation.
+///
+/// # Errors
+/// Those of [`History::genomes`].
+pub(crate) fn champions(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    checkpoint: &Checkpoint,
+    told: &Told,
+) -> Result<Option<Champions>, Error> {
+    let Some(generation) = checkpoint.generation.checked_sub(1) else { return Ok(None) };
+    // What cannot be read is made again, too.
+    if Champions::read(plan, directory).is_ok_and(|champions| champions.generation == generation) {
+        return Ok(None);
+    }
+    let missing = || Error::damaged(&directory.record(), format!("has no champion of generation {generation}"));
+    let individuals = (0..told.record.populations()).map(|population| told.record.champion(population, generation));
+    let individuals: Vec<usize> = individuals.collect::<Option<_>>().ok_or_else(missing)?;
+    let wanted: Vec<(u32, usize)> = individuals.iter().map(|&individual| (generation, individual)).collect();
+    let genomes = History::new(directory.record(), told.record.clone(), plan.fresh()).genomes(&wanted)?;
+    let line = told.lines.last().ok_or_else(missing)?;
+    // Of a single population there is nothing but the whole.
+    let rows = if line.each.is_empty() { std::slice::from_ref(&line.row) } else { &line.each };
+    let best = individuals.into_iter().zip(genomes).zip(rows).map(|((individual, genes), [best, ..])| Best {
+        individual: individual as u32,
+        fitness: Fitness::nan_as_failed(*best),
+        genes,
+    });
+    let before = told.observed.len().checked_sub(2).and_then(|before| told.observed.get(before)).cloned();
+    let normalisation = if told.observed.is_empty() { None } else { before.or(plan.no_observations()?) };
+    Ok(Some(Champions { identity: checkpoint.identity.clone(), generation, best: best.collect(), normalisation }))
 }

@@ -8,7 +8,7 @@ use farsa_evo::Record;
 
 use crate::error::Error;
 use crate::figures::plot;
-use crate::run::begin::{lineage, progression};
+use crate::run::begin::{champions, lineage, progression};
 use crate::run::collection::CollectionTable;
 use crate::run::contained::contained;
 use crate::run::diagnostics::DiagnosticsTable;
@@ -147,6 +147,9 @@ impl<'d> Run<'d> {
         let file = told.file(directory)?;
         let collection = CollectionTable::new(&progression.search, pool.evaluator());
         let lineage = lineage(plan, directory, &checkpoint, &told.record, &progression.search)?;
+        if let Some(champions) = champions(plan, directory, &checkpoint, &told)? {
+            champions.write(&directory.champion())?;
+        }
         let Told { lines, diagnostics, record, .. } = told;
         let (log, kept) = Log::resume(&directory.log(), lines, record.populations())?;
         Ok(Self {

@@ -71,6 +71,11 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
         let read = |run: &str| fs::read(root.join(run).join(&file)).ok();
         assert!(read("whole") == read("parts"), "{name}: {}", file.display());
     }
+    // Champions that are gone are made again.
+    let champions = fs::read(parts.champion()).unwrap();
+    fs::remove_file(parts.champion()).unwrap();
+    run(&plan(numbers, strategy, GENERATIONS), &parts, 1);
+    assert!(fs::read(parts.champion()).unwrap() == champions, "{name}");
     // The configuration alone says all.
     let file = ConfigFile::read(&whole.config()).unwrap();
     let again = Plan::from_file(&Laboratory::new(&[numbers]), &file).unwrap();

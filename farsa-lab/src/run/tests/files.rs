@@ -154,6 +154,30 @@ fn what_is_lost_is_written_again() {
 }
 
 #[test]
+fn champions_of_a_generation_that_was_not_saved_are_forgotten() {
+    let root = scratch("between");
+    for (name, numbers) in [("steady", STEADY), ("learner", LEARNER), ("chase", CHASE)] {
+        let [five, eight] = [5, 8].map(|generations| {
+            let plan = plan(&numbers, generations);
+            let directory = create(&plan, &root.join(format!("{name}-{generations}"))).unwrap();
+            run(&plan, &directory, 1);
+            directory
+        });
+        let whole = fs::read(five.champion()).unwrap();
+        assert_ne!(fs::read(eight.champion()).unwrap(), whole, "{name}");
+        // What a process leaves that is killed between the two files: the champions of generation 7, and a checkpoint at 5.
+        fs::copy(eight.champion(), five.champion()).unwrap();
+        let said = run(&plan(&numbers, 5), &five, 1);
+        assert!(said.contains("all 5 generations are finished already"), "{name}: {said}");
+        assert!(fs::read(five.champion()).unwrap() == whole, "{name}");
+        fs::remove_file(five.champion()).unwrap();
+        run(&plan(&numbers, 5), &five, 1);
+        assert!(fs::read(five.champion()).unwrap() == whole, "{name}: one that is gone is written again");
+    }
+    fs::remove_dir_all(root).unwrap();
+}
+
+#[test]
 fn a_manifest_of_another_format_is_refused_and_kept() {
     let root = scratch("format");
     let directory = create(&plan(&STEADY, 2), &root).unwrap();

@@ -179,6 +179,15 @@ fn a_generation_is_normalised_by_all_before_it() {
             run(&plan(&scales, generations), &parts, threads);
         }
         same(parts.path(), whole.path());
+        // Champions that are gone are made again, with what normalised their generation; those of the first, too.
+        let first = create(&plan(&scales, 1), &root.join(strategy).join("first")).unwrap();
+        run(&plan(&scales, 1), &first, 1);
+        for (generations, directory) in [(GENERATIONS, &whole), (1, &first)] {
+            let champions = fs::read(directory.champion()).unwrap();
+            fs::remove_file(directory.champion()).unwrap();
+            run(&plan(&scales, generations), directory, 1);
+            assert!(fs::read(directory.champion()).unwrap() == champions, "{strategy}: generation {generations}");
+        }
     }
     fs::remove_dir_all(root).unwrap();
 }
