@@ -28,7 +28,8 @@ async function live(browser, name, file) {
   await browser.go(pathToFileURL(resolve(file)));
   await browser.until(() => window.farsa && (farsa.ready || farsa.error));
   const error = await browser.run(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(farsa.error)))));
-  check(`${name} is up after ${Math.round(performance.now() - begin)} ms`, error === null, error);
+  const first = await browser.run(() => farsa.first);
+  check(`${name} shows its first picture after ${Math.round(first)} ms and is up after ${Math.round(performance.now() - begin)} ms`, error === null && first > 0, error);
   await browser.run(() => farsa.pause());
   // In rapier there is a recording alone.
   const found = await browser.run(() => farsa.live?.verify() ?? `a recording of ${farsa.ticks} ticks`);

@@ -45,6 +45,13 @@ for (const page of process.argv.slice(2)) {
   }));
   const wrong = ask({ do: "film", individual: 0, trial: { number: 0 }, lesion: "nuron:1" }).error;
   if (!/nearest is `neuron`|has no controller/.test(wrong)) differing++;
+  // Fresh trials side by side earn what each earns alone, as it is run when hands are on bodies.
+  const few = ask({ do: "fresh", individual: 0, seed: 1, first: 3, count: 9 });
+  const alone = few.fitness.map((_, k) => ask({ do: "film", individual: 0, trial: { fresh: { number: 3 + k, seed: 1 } } }));
+  if (JSON.stringify(few.fitness) !== JSON.stringify(alone.map(({ fitness }) => fitness)) || few.successes !== alone.filter(({ success }) => success).length) {
+    console.log(`${page}: fresh trials side by side earn ${few.fitness}, alone ${alone.map(({ fitness, error }) => error ?? fitness)}`);
+    differing++;
+  }
   failed += differing > 0;
   // Trials a second, in parts as a page asks for them.
   let [trials, since] = [0, performance.now()];

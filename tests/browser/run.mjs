@@ -453,7 +453,7 @@ async function labelled(browser) {
   await opened(browser, write("labels.html", compose(pageOf(trials))));
   const rows = () => browser.run(() => [...document.querySelectorAll(".row")].map((row) => {
     const name = row.querySelector(".name");
-    return { group: row.parentNode.parentNode.dataset.group, name: row.dataset.name, text: name.textContent, title: row.title, clipped: name.scrollWidth > name.clientWidth };
+    return { group: row.parentNode.parentNode.dataset.group, name: row.dataset.name, text: name.title || name.textContent, title: row.title, clipped: name.scrollWidth > name.clientWidth };
   }));
   for (const other of [null, 1]) {
     await browser.run((other) => farsa.show(0, other), other);
@@ -491,6 +491,53 @@ async function labelled(browser) {
   const [struck, images] = await browser.run(() => [window.struck, document.querySelectorAll("img").length]);
   check("a hostile label is text", struck == null && images === 0, `${struck} ${images}`);
   await silent(browser, "labels");
+}
+
+// Names that anatomy gives are long: on low screens, too, they are read in strips and network, if not whole then from both ends.
+async function lettered(driver) {
+  const labels = { J1: "shoulder adduction", J3: "internal rotation", J5: "forearm supination", "J1.agonist": "shoulder abductor", "J1.antagonist": "shoulder adductor",
+    "J5.agonist": "forearm supinator", "torque J1": "shoulder adduction torque", "torque J5": "forearm supination torque", "torque J7": "shoulder extensor length" };
+  const trials = [armTrial(0), armTrial(1)];
+  for (const channel of trials.flatMap((trial) => trial.channels)) if (channel.name in labels) channel.label = labels[channel.name];
+  const url = write("lettered.html", compose(pageOf(trials)));
+  for (const [size, phone] of [[[900, 500], false], [[844, 390], true]]) {
+    const browser = await driver.open({ size, phone });
+    try {
+      await opened(browser, url);
+      for (const other of [null, 1]) {
+        const what = `names at ${size.join("x")}, ${other === null ? "a trial" : "two trials"}`;
+        await browser.run((other) => farsa.show(0, other), other);
+        await settled(browser);
+        const rows = await browser.run(() => [...document.querySelectorAll(".row")].map((row) => {
+          const name = row.querySelector(".name");
+          return { name: row.dataset.name, text: name.textContent, title: name.title, clipped: name.scrollWidth > name.clientWidth };
+        }));
+        const wrong = rows.filter(({ name, text, title, clipped }) => {
+          const whole = labels[name] ?? (title || text);
+          const [begin, end] = text.split("…");
+          return clipped || (end === undefined ? text !== whole : title !== whole || begin.length < 2 || end.length < 2 || !whole.startsWith(begin) || !whole.endsWith(end));
+        });
+        check(`${what}: no strip's is cut off, and the pointer has what is not shown whole`, rows.length > 90 && wrong.length === 0, JSON.stringify(wrong.slice(0, 4)));
+        check(`${what}: most are shown whole`, rows.filter(({ title }) => !title).length > (other === null ? 0.97 : 0.85) * rows.length, rows.filter(({ title }) => title).map(({ text }) => text).join());
+      }
+      const drawn = await browser.run(() => new Promise((done) => {
+        const own = document.querySelector("#graph").getContext("2d");
+        const texts = [];
+        own.fillText = (...all) => (texts.push(all[0]), CanvasRenderingContext2D.prototype.fillText.apply(own, all));
+        farsa.seek(farsa.tick + 5);
+        requestAnimationFrame(() => requestAnimationFrame(() => (delete own.fillText, done(texts))));
+      }));
+      const wanted = Object.entries(labels).filter(([name]) => !name.startsWith("torque")).map(([, label]) => label);
+      const missing = wanted.filter((label) => !drawn.includes(label));
+      check(`names at ${size.join("x")}: the network's are whole`, drawn.length > 50 && missing.length === 0, `${missing} of ${drawn}`);
+      await browser.run(() => document.querySelector("[data-group=actuator]").scrollIntoView());
+      await settled(browser);
+      if (shots) writeFileSync(join(shots, `names-${size.join("x")}.png`), await browser.screenshot());
+      await silent(browser, `names at ${size.join("x")}`);
+    } finally {
+      await browser.close();
+    }
+  }
 }
 
 // What lies on the ground and what is shown at times are seen when they are there, and only then.
@@ -1043,9 +1090,98 @@ async function pushes(browser, { press, seen }) {
   await browser.until(() => farsa.trials.length === 1);
 }
 
+// What can be done to bodies with the pointer is done by keys.
+async function keyed(browser, { press }) {
+  const said = () => browser.run(() => document.querySelector("#live p.soft").textContent);
+  const chips = () => browser.run(() => document.querySelector("#live .chips").textContent);
+  const changed = () => browser.until(() => farsa.trials.length === 2 && document.querySelector("#live p.soft").textContent.startsWith("With the change"));
+  // The hand is far from the sphere then.
+  await browser.run(() => (farsa.setView("overview"), farsa.seek(2)));
+  await press("Move bodies");
+  const choice = () => browser.run(() => {
+    const list = document.querySelector("#live select[aria-label='Body that keys move or push']");
+    return [list.offsetHeight > 0, list.selectedOptions[0].textContent].join();
+  });
+  check("keys: a thing is what is moved first", (await choice()) === "true,sphere", await choice());
+  await browser.keys("]");
+  check("keys: ] chooses another body and says so", (await choice()) === `true,${await said()}` && (await said()) !== "sphere", await choice());
+  await browser.keys("[" + KEY.right.repeat(3));
+  check("keys: arrows move it, and the page says how far", /^sphere, [\d.]+ (mm|cm): Enter does it/.test(await said()), await said());
+  await browser.keys(KEY.escape);
+  await settled(browser);
+  check("keys: escape leaves it", (await browser.run(() => farsa.trials.length === 1 && !farsa.trials[0].held)) && (await chips()) === "");
+  check("keys: and time stands still", (await browser.run(() => farsa.tick)) === 2);
+
+  await browser.keys(KEY.right.repeat(3) + KEY.pageUp);
+  const far = await browser.run(() => farsa.trials[0].held.way);
+  await browser.keys(KEY.enter);
+  await changed();
+  const [name, [before, same, moved]] = await browser.run(() => {
+    const [whole, other] = farsa.trials;
+    const at = (trial, tick) => trial.pose(tick, trial.bodies.indexOf("sphere")).position;
+    return [other.name, [at(whole, farsa.tick), at(other, farsa.tick), at(other, farsa.tick + 1)]];
+  });
+  const off = moved.map((x, k) => x - before[k] - far[k]);
+  check("keys: the body is moved as by dragging, from the next step on", Math.hypot(...far) > 0.01 && far[2] > 0 && Math.hypot(...same.map((x, k) => x - before[k])) < 1e-4 && Math.hypot(...off) < 1e-3,
+    JSON.stringify([far, before, same, moved]));
+  check("keys: the page says what was moved and when", name.endsWith("; 1 moved") && /^sphere moved at \d\.\d\d s/.test(await chips()), `${name} ${await chips()}`);
+  await press("Undo all");
+  await browser.until(() => farsa.trials.length === 1);
+
+  await press("Push bodies");
+  await browser.keys(KEY.left.repeat(5));
+  const pull = await browser.run(() => farsa.trials[0].contacts(farsa.tick).filter(({ pair }) => pair.join() === "sphere,outside").length);
+  check("keys: what pulls is shown as a force", pull === 1 && /^sphere, [\d.]+ N: Enter does it/.test(await said()), `${pull} ${await said()}`);
+  await browser.keys(KEY.enter);
+  await changed();
+  const found = await browser.run(() => {
+    const [whole, pushed] = farsa.trials;
+    const at = (trial) => trial.pose(farsa.tick + 13, trial.bodies.indexOf("sphere")).position;
+    return { force: pushed.pushes[0].force, way: at(pushed).map((x, k) => x - at(whole)[k]), name: pushed.name };
+  });
+  const along = found.way.reduce((sum, w, k) => sum + w * found.force[k], 0) / Math.hypot(...found.force);
+  check("keys: the body is pushed as by pulling at it", found.name.endsWith("; 1 pushed") && found.force[2] === 0 && along > 0.002 && /^sphere pushed by [\d.]+ N at/.test(await chips()), `${JSON.stringify(found)} ${await chips()}`);
+
+  // Every one of the fresh trials meets the push.
+  await browser.run(() => {
+    const send = Worker.prototype.postMessage;
+    window.sent = [];
+    Worker.prototype.postMessage = function (message) {
+      sent.push(message);
+      return send.apply(this, arguments);
+    };
+  });
+  await press("100 fresh trials");
+  await browser.until(() => /with the change: \d+ of ([5-9]|\d\d) /.test(document.querySelector("#live p.soft").previousSibling.textContent));
+  const asked = await browser.run(() => window.sent.map(({ act, request }) => [act, request.do, request.trial?.fresh.number ?? request.first, request.pushes?.length ?? 0].join(" ")));
+  const wanted = [...Array.from({ length: 10 }, (_, k) => `ask fresh ${10 * k} 0`), ...Array.from({ length: asked.length - 10 }, (_, k) => `earned film ${k} 1`)];
+  check("fresh trials with a push are pushed, those without are not", asked.length > 14 && asked.join() === wanted.join(), asked.join());
+}
+
+// The first step is shown before the trial has run, and is that of the trial.
+async function begins(browser) {
+  if (isFirefox) return opened(browser, pathToFileURL(resolve(armPage)));
+  const source = `(() => {
+    const watch = () => {
+      if (!window.farsa?.trials?.length) return requestAnimationFrame(watch);
+      const [trial] = farsa.trials;
+      window.begun = { ticks: farsa.ticks, ready: farsa.ready, name: trial.name, shown: !document.querySelector("#app").hidden, places: trial.bodies.map((body) => farsa.pose(0, body).position) };
+    };
+    requestAnimationFrame(watch);
+  })()`;
+  const { identifier } = await browser.cdp("Page.addScriptToEvaluateOnNewDocument", { source });
+  await opened(browser, pathToFileURL(resolve(armPage)));
+  await browser.cdp("Page.removeScriptToEvaluateOnNewDocument", { identifier });
+  const [begun, places, ticks, first, unit] = await browser.run(() => [window.begun, farsa.trials[0].bodies.map((body) => farsa.pose(0, body).position), farsa.ticks, farsa.first, farsa.trials[0].position_unit]);
+  check(`a live page shows the first of ${ticks} steps before they have run, seen after ${Math.round(first)} ms`, begun.ticks === 1 && begun.ready === false && begun.shown && ticks > 1 && first > 0, JSON.stringify(begun).slice(0, 200));
+  const off = Math.max(...places.map((place, i) => Math.hypot(...place.map((x, k) => x - begun.places[i][k]))));
+  // In that of one step numbers have steps of their own.
+  check("it is the trial's own", places.length === begun.places.length && off < 2 * unit, off);
+}
+
 // A body that is dragged is elsewhere in a trial beside the one of the run, and only then.
 async function moves(browser) {
-  await opened(browser, pathToFileURL(resolve(armPage)));
+  await begins(browser);
   const press = (text) => browser.run((text) => [...document.querySelectorAll("#live button")].find((one) => one.textContent === text).click(), text);
   const poses = () => browser.run(() => farsa.trials.map((trial) => [farsa.tick, farsa.tick + 1].map((tick) => trial.pose(tick, trial.bodies.indexOf("sphere")).position)));
   const seen = () => browser.run(() => farsa.project(farsa.pose(0, "sphere").position));
@@ -1082,6 +1218,7 @@ async function moves(browser) {
   await browser.until(() => /Equal to the run|Differs/.test(document.querySelector("#live p.soft").textContent));
   check("without the moves the trial is that of the run again", (await browser.run(() => document.querySelector("#live p.soft").textContent)).startsWith("Equal to the run"));
   await pushes(browser, { press, seen });
+  await keyed(browser, { press });
   await silent(browser, "moves");
 }
 
@@ -1133,6 +1270,7 @@ try {
     await part("looks", () => looks(driver, url, "page", size, phone));
     await part("looks of an arena", () => looks(driver, write("arena.html", compose(pageOf([arenaTrial(0)], "top"))), "arena", size, phone));
   }
+  if (!isFirefox) await part("names on low screens", () => lettered(driver));
   if (!isFirefox) await part("without WebGL", () => withoutWebGL(driver, url));
   if (livePage && !isFirefox) await part("without WebAssembly", () => withoutWebAssembly(driver));
 } catch (error) {

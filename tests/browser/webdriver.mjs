@@ -195,4 +195,4 @@ class Firefox extends Browser {
   }
 }
 
-export const KEY = { left: "\uE012", right: "\uE014", home: "\uE011", tab: "\uE004", end: "\uE010", escape: "\uE00C" };
+export const KEY = { enter: "\uE007", pageUp: "\uE00E", left: "\uE012", right: "\uE014", home: "\uE011", tab: "\uE004", end: "\uE010", escape: "\uE00C" };

@@ -10,14 +10,17 @@ function need(ok, text) {
 	if (!ok) throw new Damage(text);
 }
 
+const whole = (x) => Number.isInteger(x) && x >= 0;
 const list = (n, make) => Array.from({length: n}, (_, i) => make(i));
 
 function crc32(bytes) {
-	const table = list(256, (c) => {
+	const table = Int32Array.from(list(256, (c) => {
 		for (let k = 0; k < 8; k++) c = c & 1 ? (c >>> 1) ^ 0xedb88320 : c >>> 1;
 		return c;
-	});
-	return ~bytes.reduce((crc, byte) => (crc >>> 8) ^ table[(crc ^ byte) & 255], ~0) >>> 0;
+	}));
+	let crc = ~0;
+	for (let i = 0; i < bytes.length; i++) crc = (crc >>> 8) ^ table[(crc ^ bytes[i]) & 255];
+	return ~crc >>> 0;
 }
 
 const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -39,11 +42,13 @@ class Trial {
 		Object.assign(this, json, {index, json, name: String(json.name)});
 		const {ticks, bodies, points, blocks} = json;
 		const of = `of trial ${index}`;
-		const whole = (x) => Number.isInteger(x) && x >= 0;
 		need(whole(ticks) && ticks, `there are no ticks ${of}`);
+		need([bodies, points, json.pairs, json.position_origin].every(Array.isArray), `a list ${of} is none`);
 		let bytes;
 		try {
-			bytes = Uint8Array.from(atob(json.data), (c) => c.charCodeAt(0));
+			const text = atob(json.data);
+			bytes = new Uint8Array(text.length);
+			for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
 		} catch {
 			need(false, `the data ${of} is not base64`);
 		}
@@ -75,16 +80,22 @@ class Trial {
 		});
 		const first = block("channels", ticks*json.channels.length, 2);
 		this.channels = json.channels.map((channel, c) => {
-			const values = Float64Array.from(words.subarray(first + c*ticks, first + (c + 1)*ticks), (count) =>
-				count === 65535 ? NaN : channel.minimum + channel.scale*count);
-			let [low, high] = channel.words ? [0, channel.words.length - 1] : channel.range || [Infinity, -Infinity];
-			if (low > high) for (const value of values) if (value === value) [low, high] = [min(low, value), max(high, value)];
-			if (low > high) [low, high] = [0, 1];
+			const {minimum, scale} = channel;
+			const values = new Float64Array(ticks);
+			let [low, high] = [Infinity, -Infinity];
+			for (let t = 0, at = first + c*ticks; t < ticks; t++, at++) {
+				const value = values[t] = words[at] === 65535 ? NaN : minimum + scale*words[at];
+				if (value < low) low = value;
+				if (value > high) high = value;
+			}
+			const [least, most] = channel.words ? [0, channel.words.length - 1] : channel.range || [1, 0];
+			if (least <= most) [low, high] = [least, most];
+			else if (low > high) [low, high] = [0, 1];
 			return {...channel, values, low, high};
 		});
 		this.images = (json.images || []).map((image, i) => this.readImage(image, i, json.images.length, block, of));
 		this.spots = this.readGround(json.ground_images || [], block, of);
-		if (json.network) this.network = this.readNetwork(json.network, block);
+		if (json.network) this.network = this.readNetwork(json.network, block, of);
 	}
 
 	// Where an image's pixels begin at each tick, in words; NaN if there are none.
@@ -93,7 +104,7 @@ class Trial {
 		const [from, first] = [block("image_starts", 2*ticks*count, 2) + 2*i*ticks, block("pixels", 0, 2)];
 		const starts = list(ticks, (t) => {
 			const start = words[from + 2*t] + 65536*words[from + 2*t + 1];
-			need(columns > 0 && rows > 0 && (start === 0xffffffff || first + start + columns*rows <= words.length), `image ${name} ${of} is out of range`);
+			need(whole(columns) && whole(rows) && columns*rows && (start === 0xffffffff || first + start + columns*rows <= words.length), `image ${name} ${of} is out of range`);
 			return start === 0xffffffff ? NaN : first + start;
 		});
 		return {name, columns, rows, starts};
@@ -103,6 +114,8 @@ class Trial {
 	readGround(images, block, of) {
 		const {ticks, words} = this;
 		let word = images[0] && block("ground_pixels", 0, 2);
+		let pixels = 0;
+		need(images.every(({size: [a, b]}) => whole(a*b) && (pixels += a*b) <= 1e6), `the ground ${of} is too large`);
 		return images.flatMap(({size: [columns, rows], ground: [x, y, u, v]}) => {
 			const [wide, deep] = [(u - x)/columns, (v - y)/rows];
 			const shape = {body: -1, role: "area", kind: "cylinder", radius: 0.15*min(abs(wide), abs(deep)), half_length: 0};
@@ -115,11 +128,17 @@ class Trial {
 		});
 	}
 
-	readNetwork({nodes, links, values}, block) {
+	readNetwork({nodes, links, values}, block, of) {
 		nodes = nodes.map((node) => ({...node, label: this.channels[node.channel].label || node.name, values: [], links: []}));
-		const size = ([a, b]) => b - a;
-		const ends = [...links.map((l) => l.first + size(l.from)*size(l.to)), ...values.map((v) => v.first + size(v.nodes))];
-		const weights = block("weights", max(0, ...ends), 4);
+		const size = ([a, b]) => (whole(a) && a <= b && b <= nodes.length ? b - a : NaN);
+		let [end, sum] = [0, 0];
+		for (const [first, count] of [...links.map((l) => [l.first, size(l.from)*size(l.to)]), ...values.map((v) => [v.first, size(v.nodes)])]) {
+			end = max(end, first + count);
+			sum += whole(first) ? count : NaN;
+		}
+		// Nothing is read more often than it could have been written.
+		need(sum <= this.words.length, `the network ${of} is out of range`);
+		const weights = block("weights", end, 4);
 		const made = [];
 		for (const {from, to, first} of links) {
 			for (let a = from[0], i = first; a < from[1]; a++) {

@@ -56,7 +56,7 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 	// One generation: each worker evaluates its part, then all are told all.
 	async function generation() {
 		if (!workers) {
-			const from = JSON.parse(await unpacked(standing, "text"));
+			const from = await new Response(unpacked(standing)).json();
 			workers = await Promise.all(list(max(1, min(8, navigator.hardwareConcurrency || 1)), () => open(from)));
 		}
 		const before = performance.now();

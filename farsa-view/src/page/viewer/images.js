@@ -22,7 +22,7 @@ function imagesOf() {
 			if (image.tick === tick) continue;
 			image.tick = tick;
 			const colors = trial.image(tick, number);
-			const c = canvas.getContext("2d", {willReadFrequently: true});
+			const c = plain(canvas);
 			c.clearRect(0, 0, canvas.width, canvas.height);
 			if (colors) c.putImageData(new ImageData(colors, canvas.width), 0, 0);
 			note.textContent = colors ? text : "not recorded";

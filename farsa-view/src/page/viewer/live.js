@@ -1,50 +1,64 @@
 // An agent that lives in the page: its trials are run by a module of WebAssembly in a worker, whole and with changes.
 
-// What the worker does. It is handed over as text and knows nothing of this file.
+// What the worker does, request after request. It is handed over as text and knows of this file no more than `unpacked`.
 function inWorker() {
-	let own;
-	const said = (length) => new TextDecoder().decode(new Uint8Array(own.memory.buffer, own.output(), length));
-	const give = (text) => {
-		const bytes = new TextEncoder().encode(text);
-		const at = own.input(bytes.length);
-		new Uint8Array(own.memory.buffer, at, bytes.length).set(bytes);
+	let [module, last] = [null, Promise.resolve()];
+	// A session of a script, as what it answers to requests.
+	const opened = (script) => {
+		const own = new WebAssembly.Instance(module, {}).exports;
+		const said = (length) => new TextDecoder().decode(new Uint8Array(own.memory.buffer, own.output(), length));
+		const give = (text) => {
+			const bytes = new TextEncoder().encode(text);
+			const at = own.input(bytes.length);
+			new Uint8Array(own.memory.buffer, at, bytes.length).set(bytes);
+		};
+		give(JSON.stringify(script));
+		const wrong = said(own.open());
+		if (wrong) throw new Error(wrong);
+		return (request) => (give(JSON.stringify(request)), JSON.parse(said(own.answer())));
 	};
 	const acts = {
-		async open({module, script}) {
-			own = (await WebAssembly.instantiate(module)).exports;
-			give(script);
-			const wrong = said(own.open());
-			if (wrong) throw new Error(wrong);
+		async compile({packed}) {
+			return module = await WebAssembly.compileStreaming(new Response(unpacked(packed), {headers: {"Content-Type": "application/wasm"}}));
 		},
-		ask({request}) {
-			give(JSON.stringify(request));
-			return JSON.parse(said(own.answer()));
+		take: (rest) => void ({module} = rest),
+		open: ({script}) => void (acts.session = opened(script)),
+		// Of a session that is not kept.
+		once: ({script, request}) => opened(script)(request),
+		ask: ({request}) => acts.session(request),
+		// Without the recording.
+		earned({request}) {
+			const {success, error} = acts.session(request);
+			return {success, error};
 		},
 	};
-	onmessage = async ({data: {id, act, ...rest}}) => {
-		try {
-			postMessage({id, found: await acts[act](rest)});
-		} catch (error) {
-			postMessage({id, error: error.message});
+	onmessage = ({data: {id, act, ...rest}}) => {
+		last = last.then(() => acts[act](rest)).then((found) => postMessage({id, found}), (error) => postMessage({id, error: error.message}));
+	};
+}
+
+// What is packed in the page: a stream of its bytes.
+function unpacked({gzip, bytes}) {
+	const words = new DataView(new ArrayBuffer(4*Math.ceil(gzip.length/5)));
+	for (let at = 0, to = 0; at < gzip.length; to += 4) {
+		let word = 0;
+		for (const end = at + 5; at < end; at++) {
+			// Letters from `(` on; two of them stand for those that JSON and HTML would write longer.
+			const c = gzip.charCodeAt(at);
+			word = 85*word + (c === 125 ? 60 : c === 126 ? 92 : c) - 40;
 		}
-	};
-}
-
-// What is packed in the page, by `read` of a response.
-function unpacked({gzip, bytes}, read) {
-	const words = new DataView(new ArrayBuffer(4*ceil(gzip.length/5)));
-	for (let at = 0; at < gzip.length; at += 5) {
-		// Letters from `(` on; two of them stand for those that JSON and HTML would write longer.
-		const word = list(5, (k) => gzip.charCodeAt(at + k)).reduce((word, c) => 85*word + (c === 125 ? 60 : c === 126 ? 92 : c) - 40, 0);
-		words.setUint32(at/5*4, word);
+		words.setUint32(to, word);
 	}
-	const stream = new Blob([words.buffer.slice(0, bytes)]).stream().pipeThrough(new DecompressionStream("gzip"));
-	return new Response(stream)[read]();
+	const {writable, readable} = new DecompressionStream("gzip");
+	const writer = writable.getWriter();
+	// What goes wrong is heard of where the bytes are read.
+	for (const done of [writer.write(new Uint8Array(words.buffer, 0, bytes)), writer.close()]) done.catch(() => {});
+	return readable;
 }
 
-// An agent in a worker of its own; `ask` is answered in the order of asking.
-async function agentOf(module, script) {
-	const worker = new Worker(URL.createObjectURL(new Blob([`"use strict";(${inWorker})()`], {type: "text/javascript"})));
+// A worker; `send` gives what it answers, in the order of sending.
+function worker() {
+	const worker = new Worker(URL.createObjectURL(new Blob([`"use strict";${unpacked}(${inWorker})()`], {type: "text/javascript"})));
 	const waiting = new Map();
 	worker.onmessage = ({data: {id, found, error}}) => {
 		const [done, failed] = waiting.get(id);
@@ -54,13 +68,26 @@ async function agentOf(module, script) {
 		else done(found);
 	};
 	let next = 0;
-	const send = (act, rest) => new Promise((done, failed) => {
+	return (act, rest) => new Promise((done, failed) => {
 		waiting.set(next, [done, failed]);
 		worker.postMessage({id: next++, act, ...rest});
 	});
-	await send("open", {module, script: JSON.stringify(script)});
+}
+
+// The first worker begins while the page's data are still being read.
+const capable = window.WebAssembly && window.Worker && window.DecompressionStream;
+const firstWorker = capable && worker();
+
+// An agent in a worker of its own.
+async function agentOf(module, script) {
+	const send = worker();
+	send("take", {module});
+	await send("open", {script});
 	return {ask: (request) => send("ask", {request})};
 }
+
+// What the first worker answers; `act` is "earned" where no recording is wanted.
+const answerOf = (request, act = "ask") => firstWorker(act, {request});
 
 // The trial of an answer, ready for the player.
 function trialOf(page, {film}, index, pushes = []) {
@@ -69,23 +96,33 @@ function trialOf(page, {film}, index, pushes = []) {
 	return trial;
 }
 
-// Fills a live page with the first trial that it runs; what it gives is then attached to the player.
+// The same script for a trial of one step, or null where it is not said how many a trial has.
+function shortened(script) {
+	const config = script.config.replace(/(\n\[trial\]\n(?:[^[].*\n)*?steps = )\d+/, (_, before) => `${before}1`);
+	return config === script.config ? null : {...script, config};
+}
+
+// Fills a live page with the first trial that it runs: with its first step before it has run, where that can be had. What it gives
+// is attached to the player, and then shows all of it.
 async function liveOf(page) {
-	need(window.WebAssembly && window.Worker && window.DecompressionStream, "this browser has no WebAssembly");
+	need(capable, "this browser has no WebAssembly");
 	// A function that returns a vector.
 	const vectors = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
 	need(WebAssembly.validate(new Uint8Array(vectors)), "this browser's WebAssembly has no SIMD, as all have since 2023");
-	const {live} = page;
-	const module = await WebAssembly.compile(await unpacked(live.module, "arrayBuffer"));
-	const agent = await agentOf(module, live.script);
-	const open = (standing) => agentOf(module, {...live.script, standing});
+	const {live: {module: packed, script, about: {individuals}}} = page;
 	// The trial of the run that earned most comes first.
-	const told = live.about.individuals.at(-1).trials;
+	const told = individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
-	const state = {individual: live.about.individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
-	const answer = await agent.ask({do: "film", ...asked(state), lesion: ""});
-	page.trials = [trialOf(page, answer, 0)];
-	return {attach: (player) => attach(page, agent, state, answer, player, open)};
+	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
+	const request = {do: "film", ...asked(state), lesion: ""};
+	const [module, short] = [firstWorker("compile", {packed}), shortened(script)];
+	const begun = short && firstWorker("once", {script: short, request}).catch(() => null);
+	const opened = Promise.all([module, firstWorker("open", {script})]);
+	let answer = null;
+	const whole = () => answer ??= opened.then(() => answerOf(request));
+	page.trials.push(trialOf(page, await begun ?? await whole(), 0));
+	const open = async (standing) => agentOf(await module, {...script, standing});
+	return (player) => attach(page, state, whole, player, open);
 }
 
 const asked = ({individual, trial, watched}) => ({individual, trial, watched});
@@ -131,33 +168,40 @@ function controlsOf({live: {script}}, acts) {
 		fresh: button("New start", acts.fresh), value, part: make("b", "", NONE), parts: pick("Part", [["", "part ..."]], acts.choose),
 		apply: button("Change", () => acts.alter(value.value)), cut: button("Silence or cut", () => acts.alter("")),
 		noise: button("Noise 0.1", () => acts.set("noise:0.1", "")), undo: button("Undo all", acts.undo),
-		move: button("Move bodies"), push: button("Push bodies"),
+		move: Object.assign(button("Move bodies"), {disabled: true}), push: Object.assign(button("Push bodies"), {disabled: true}), body: pick("Body that keys move or push", [], null),
 		chips: make("p", "chips"), hundred: button("100 fresh trials", acts.test), verify: button("Verify", acts.verify),
 		earned: make("p"), status: make("p", "soft"),
 	};
 	const bar = (...names) => make("div", "bar", ...names.map((name) => own[name]));
 	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "robot", "fresh"), make("p", "", "Change: ", own.part),
-		bar("parts", "value", "apply", "cut"), bar("noise", "move", "push", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
+		bar("parts", "value", "apply", "cut"), bar("noise", "move", "push", "body", "undo"), own.chips, bar("hundred", "verify"), own.earned, own.status,
 		make("details", "", make("summary", "", "Configuration"), make("pre", "", script.config)));
 	panel.id = "live";
+	own.status.setAttribute("role", "status");
 	$("network").before(panel);
 	return own;
 }
 
-// How many of a hundred fresh trials succeed with each list of changes, ten at a time; `counted` keeps what is known.
-async function hundred(agent, individual, lists, counted, say) {
-	const [text, keyOf] = [[], (list) => `${individual} ${list}`];
-	for (const lesion of lists) {
-		const [key, whose] = [keyOf(lesion), lesion ? "with the change" : "whole"];
-		for (let [first, successes] = [0, 0]; !counted.has(key); first += 10) {
-			successes += (await agent.ask({do: "fresh", individual, lesion, seed: 1, first, count: 10})).successes;
-			say([...text, `${whose}: ${successes} of ${first + 10} ...`].join("; "));
-			if (first === 90) counted.set(key, successes);
+// How many of a hundred fresh trials succeed whole, and as `changed` says; `counted` keeps what is known. Ten are run at a time, side by
+// side, but with hands on bodies each alone.
+async function hundred(individual, changed, counted, say) {
+	const found = [];
+	const text = [];
+	for (const change of changed ? [{lesion: ""}, changed] : [{lesion: ""}]) {
+		const {lesion, moves, pushes} = change;
+		const [key, whose] = [`${individual} ${JSON.stringify(change)}`, change === changed ? "with the change" : "whole"];
+		const by = moves?.[0] || pushes?.[0] ? 1 : 10;
+		for (let [first, successes] = [0, 0]; !counted.has(key); first += by) {
+			successes += by > 1 ? (await answerOf({do: "fresh", individual, lesion, seed: 1, first, count: by})).successes
+				: +(await answerOf({do: "film", individual, trial: {fresh: {number: first, seed: 1}}, ...change}, "earned")).success;
+			say([...text, `${whose}: ${successes} of ${first + by} ...`].join("; "));
+			if (first + by === 100) counted.set(key, successes);
 		}
+		found.push(counted.get(key));
 		text.push(`${whose}: ${counted.get(key)} of 100`);
 	}
 	say(text.join("; "));
-	return lists.map((list) => counted.get(keyOf(list)));
+	return found;
 }
 
 // The parts of a controller; of what has none nothing can be changed.
@@ -174,11 +218,33 @@ function chipsOf(state, show) {
 	return [...lesions, ...hands];
 }
 
-// Gives a live page its panel.
-function attach(page, agent, state, first, player, open) {
+// The changes as a request has them, or none.
+function changesOf(state) {
+	const moves = state.moves.map(({step, body, position, rotation}) => ({step, body, position, rotation}));
+	const pushes = state.pushes.map(({steps, body, point, force}) => ({steps, body, point, force}));
+	const lesion = listOf(state);
+	return lesion || moves[0] || pushes[0] ? {lesion, moves, pushes} : null;
+}
+
+// The controls say what is chosen.
+function tellControls(own, state, about) {
+	const known = about.individuals[state.individual].trials;
+	const told = list(about.trials, (i) => [i, known[i] ? `trial ${i}: ${earnedBy(known[i])}` : `trial ${i}`]);
+	const {fresh} = state.trial;
+	own.generation.replaceChildren(...options(about.individuals.map(({generation, name}, i) => [i, `generation ${generation}${name ?? ""}`])));
+	own.generation.hidden = !about.individuals[1];
+	own.trial.replaceChildren(...options(fresh ? [["", `fresh start ${fresh.number}`], ...told] : told));
+	own.trial.value = fresh ? "" : state.trial.number;
+	own.generation.value = state.individual;
+	own.verify.disabled = !!fresh || !known.length || state.watched !== null;
+	own.undo.disabled = !changesOf(state);
+}
+
+// Gives a live page its panel; what it gives shows the whole trial.
+function attach(page, state, whole, player, open) {
 	const {about} = page.live;
 	const counted = new Map();
-	let [answer, turn, chosen] = [first, 0, ""];
+	let [answer, turn, chosen] = [null, 0, ""];
 	const set = (name, to) => {
 		const before = {...state};
 		state.changes = new Map(before.changes).set(name, to);
@@ -196,31 +262,19 @@ function attach(page, agent, state, first, player, open) {
 		for (const one of ["apply", "cut", "value"]) own[one].disabled = !name;
 	}
 
-	// The controls say what is chosen.
 	function marks() {
-		const known = about.individuals[state.individual].trials;
-		const told = list(about.trials, (i) => [i, known[i] ? `trial ${i}: ${earnedBy(known[i])}` : `trial ${i}`]);
-		const {fresh} = state.trial;
-		own.generation.replaceChildren(...options(about.individuals.map(({generation, name}, i) => [i, `generation ${generation}${name ?? ""}`])));
-		own.generation.hidden = !about.individuals[1];
-		own.trial.replaceChildren(...options(fresh ? [["", `fresh start ${fresh.number}`], ...told] : told));
-		own.trial.value = fresh ? "" : state.trial.number;
-		own.generation.value = state.individual;
-		own.verify.disabled = !!fresh || !known.length || state.watched !== null;
-		own.undo.disabled = !state.changes.size && !state.moves[0] && !state.pushes[0];
+		tellControls(own, state, about);
 		own.chips.replaceChildren(...chipsOf(state, show));
 	}
 
 	// Runs the trial as it is, and with the changes beside it on one clock.
 	async function show(before = {...state}) {
-		const [mine, list] = [++turn, listOf(state)];
-		const moves = state.moves.map(({step, body, position, rotation}) => ({step, body, position, rotation}));
-		const pushes = state.pushes.map(({steps, body, point, force}) => ({steps, body, point, force}));
+		const [mine, changes, {pushes}] = [++turn, changesOf(state), state];
 		marks();
 		say("runs ...");
 		try {
-			const intact = await agent.ask({do: "film", ...asked(state), lesion: ""});
-			const changed = (list || moves[0] || pushes[0]) && await agent.ask({do: "film", ...asked(state), lesion: list, moves, pushes});
+			const intact = await answerOf({do: "film", ...asked(state), lesion: ""});
+			const changed = changes && await answerOf({do: "film", ...asked(state), ...changes});
 			if (mine !== turn) return;
 			answer = intact;
 			page.trials.splice(0, 2, ...[intact, changed].filter(Boolean).map((one, i) => trialOf(page, one, i, i ? pushes : [])));
@@ -235,11 +289,22 @@ function attach(page, agent, state, first, player, open) {
 		}
 	}
 
+	// All of the first trial, unless another one has been asked for since.
+	async function begin() {
+		say("runs ...");
+		const found = answer = await whole();
+		own.move.disabled = own.push.disabled = false;
+		if (turn) return;
+		page.trials[0] = trialOf(page, found, 0);
+		player.show(page.trials[0]);
+		say("");
+	}
+
 	// Fresh trials with the changes and without.
 	async function test() {
+		const tell = (text) => (own.earned.textContent = text);
 		own.hundred.disabled = true;
-		const lists = ["", listOf(state)].filter((list, i) => !i || list);
-		const found = await hundred(agent, state.individual, lists, counted, (text) => (own.earned.textContent = text));
+		const found = await hundred(state.individual, changesOf(state), counted, tell).catch((error) => tell(error.message));
 		own.hundred.disabled = false;
 		return found;
 	}
@@ -247,6 +312,7 @@ function attach(page, agent, state, first, player, open) {
 	// Whether the trial is that of the run.
 	async function verify() {
 		const {fresh, number} = state.trial;
+		await whole();
 		const told = about.individuals[state.individual].trials[number];
 		const found = fresh ? "A fresh start is no trial of the run" : told ? compared(answer, told) : "The run has no trial of whom this page has evolved";
 		say(found);
@@ -257,7 +323,7 @@ function attach(page, agent, state, first, player, open) {
 	async function showMore(more, names) {
 		const place = about.individuals.length;
 		for (const [i, individual] of more.entries()) {
-			await agent.ask({do: "add", individual});
+			await answerOf({do: "add", individual});
 			about.individuals.push({generation: individual.generation, trials: [], name: names[i]});
 		}
 		return change({individual: place, trial: {number: state.trial.number ?? 0}});
@@ -268,9 +334,10 @@ function attach(page, agent, state, first, player, open) {
 	const {put, push} = movable(page, player, state, own, show, say);
 
 	graphChosen = (node) => node && choose(partOf(node));
-	agent.ask({do: "names"}).then((kinds) => offerParts(own, kinds), (error) => say(error.message));
+	answerOf({do: "names"}).then((kinds) => offerParts(own, kinds), (error) => say(error.message));
 	choose("");
 	marks();
 	const {run, rows} = evolutionOf(page, open, showMore);
 	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), test, verify};
+	return begin;
 }

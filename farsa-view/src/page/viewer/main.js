@@ -2,6 +2,7 @@
 //
 // For the console and for tests there is `farsa`; a trial is given as itself, its index or its name:
 //   ready, error              whether all is up; what is wrong, or null
+//   first                     when its first picture was seen, after it was opened [ms]
 //   trials, tick, ticks, time  the trials; the clock's present tick, how many it has, its time [s]
 //   seek(tick), play(), pause(), playing, speed (may be set), show(trial, beside?), follow(body or ""), view: "top" or "free",
 //   setView("top" | "free" | "front" ...)
@@ -24,6 +25,7 @@ const options = (some) => some.map(([value, text]) => Object.assign(make("option
 
 function fail(text) {
 	farsa.error = text;
+	$("app").hidden ||= !farsa.ready;
 	$("message").hidden = false;
 	$("message").textContent = `This page cannot be shown: ${text}. Make it again with farsa replay --html.`;
 }
@@ -105,25 +107,39 @@ function listen(acts) {
 	};
 }
 
+// Until a picture is seen: it is drawn for the next frame, and on the screen by the third. Nothing is drawn for a page that is not
+// looked at.
+const seen = () => new Promise((done) => {
+	const frames = (n) => (n && !document.hidden ? requestAnimationFrame(() => frames(n - 1)) : done());
+	frames(3);
+});
+
 async function main() {
 	const page = readPage($("data"));
-	page.trials.forEach((trial) => survey(trial, page.view === "top"));
-	const live = page.live && await liveOf(page);
 	const {trials} = page;
+	trials.forEach((trial) => survey(trial, page.view === "top"));
+	const begun = page.live && liveOf(page);
 	const player = new Player(page);
 	openConsole(player, trials);
 	$("title").textContent = page.title;
-	offer(player, trials);
-	listen(actsOf(player));
 	$("record").hidden = !window.MediaRecorder;
 	const dark = prefers("color-scheme: dark");
 	(dark.onchange = () => player.setTheme(dark.matches ? "dark" : "light"))();
-
 	$("app").hidden = false;
-	player.show(trials[0], trials[page.beside]);
-	player.marks();
-	live?.attach(player);
+	// While the worker begins.
+	player.open(1);
+
+	const attach = await begun;
+	offer(player, trials);
+	listen(actsOf(player));
+	player.place(trials[0], trials[page.beside]);
+	const whole = attach?.(player);
 	$("message").hidden = true;
+	await seen();
+	// What is below the scene comes after it.
+	farsa.first = performance.now();
+	if (whole) await whole();
+	else player.fill();
 	farsa.ready = true;
 	if (!prefers("reduced-motion: reduce").matches) player.play();
 }

@@ -14,8 +14,8 @@ function weightOf({shapes}, body) {
 }
 
 // While `grip()` is "move" or "push", a body that is taken in a view follows the pointer in the plane in which it was taken, or is
-// pulled towards it; `put` and `push` hear what came of it.
-function carry(player, grip, put, push) {
+// pulled towards it; by keys that is `own.body`. `put` and `push` hear what came of it.
+function carry(player, grip, own, {put, push, say}) {
 	const views = $("views");
 	let held = null;
 
@@ -25,9 +25,39 @@ function carry(player, grip, put, push) {
 		return player.camera.ray((2*(clientX - left) - width)/height, 1 - 2*(clientY - top)/height);
 	}
 
+	// Takes a body at a point.
+	function hold(trial, body, point, more) {
+		player.pause();
+		const pose = trial.between(player.tickOf(trial), body);
+		held = {trial, body, ...pose, point, offset: sub(pose.position, point), pushes: grip() === "push", ...more};
+	}
+
+	// Brings it so far, or pulls at it so much.
+	function bring(way) {
+		const {trial, body, point, offset, pushes} = held;
+		if (pushes) {
+			// As much as moves what weighs so much there in half the time that a push lasts; the arrow reaches to the pointer.
+			const {long, newtons} = player.camera.arrow();
+			held.force = mul(way, weightOf(trial, body)*4/PUSH**2);
+			trial.pull = {pair: [trial.bodies[body], "outside"], point, force: mul(way, newtons/long)};
+		} else trial.held = Object.assign(held, {position: add(add(point, way), offset)});
+		player.ask();
+	}
+
+	function leave(done) {
+		if (!held) return;
+		const {trial, body, position, rotation, offset, force} = held;
+		const [moved, pull, step] = [trial.held, trial.pull, player.at(trial) + 1];
+		trial.held = trial.pull = held = null;
+		if (done && moved) put({step, body, position, rotation}, trial);
+		if (done && pull) push({step, body, point: turn([...mul(rotation, -1).slice(0, 3), rotation[3]], mul(offset, -1)), force}, trial);
+		player.ask();
+	}
+
 	function take(event) {
 		const at = player.views.findIndex(({canvas}) => canvas === event.target);
 		const trial = player.shown[at];
+		leave(false);
 		if (!grip() || !trial) return;
 		player.pause();
 		const [from, along] = rayOf(event, event.target);
@@ -36,49 +66,78 @@ function carry(player, grip, put, push) {
 		if (!(body >= 0) || !(near < Infinity)) return;
 		event.stopPropagation();
 		event.target.setPointerCapture(event.pointerId);
-		const pose = trial.between(player.tickOf(trial), body);
-		const point = add(from, mul(along, near));
 		// Bodies are moved level with the ground, and pushed in the plane of the picture.
-		held = {trial, body, ...pose, point, canvas: event.target, offset: sub(pose.position, point), pushes: grip() === "push", normal: grip() === "push" ? along : [0, 0, 1]};
+		hold(trial, body, add(from, mul(along, near)), {canvas: event.target, normal: grip() === "push" ? along : [0, 0, 1]});
 	}
 
 	function drag(event) {
-		if (!held) return;
+		if (!held?.canvas) return;
 		event.stopPropagation();
-		const {trial, point, normal} = held;
 		const [from, along] = rayOf(event, held.canvas);
-		const far = dot(sub(point, from), normal)/dot(along, normal);
-		if (!(far > 0 && far < 1e4)) return;
-		const to = add(from, mul(along, far));
-		if (held.pushes) {
-			// As much as moves what weighs so much there in half the time that a push lasts; the arrow reaches to the pointer.
-			const [way, {long, newtons}] = [sub(to, point), player.camera.arrow()];
-			held.force = mul(way, weightOf(trial, held.body)*4/PUSH**2);
-			trial.pull = {pair: [trial.bodies[held.body], "outside"], point, force: mul(way, newtons/long)};
-		} else trial.held = Object.assign(held, {position: add(to, held.offset)});
-		player.ask();
+		const far = dot(sub(held.point, from), held.normal)/dot(along, held.normal);
+		if (far > 0 && far < 1e4) bring(sub(add(from, mul(along, far)), held.point));
 	}
 
-	function leave(event) {
-		if (!held) return;
+	const release = (done) => (event) => {
+		if (!held?.canvas) return;
 		event.stopPropagation();
-		const {trial, body, position, rotation, offset, force} = held;
-		const [moved, pull, step] = [trial.held, trial.pull, player.at(trial) + 1];
-		trial.held = trial.pull = held = null;
-		if (event.type === "pointerup" && moved) put({step, body, position, rotation}, trial);
-		if (event.type === "pointerup" && pull) push({step, body, point: turn([...mul(rotation, -1).slice(0, 3), rotation[3]], mul(offset, -1)), force}, trial);
-		player.ask();
+		leave(done);
+	};
+
+	// Along the picture's sides, but level with the ground, and up.
+	function press(event) {
+		const {key, target, shiftKey} = event;
+		const [[right], up] = [player.camera.axes(), [0, 0, 1]];
+		const ahead = cross(up, right);
+		const way = {ArrowLeft: mul(right, -1), ArrowRight: right, ArrowUp: ahead, ArrowDown: mul(ahead, -1), PageUp: up, PageDown: [0, 0, -1]}[key];
+		const other = {"[": -1, "]": 1}[key];
+		const known = way || other || held && ["Enter", "Escape"].includes(key);
+		if (!known || !grip() || target.matches("select, input") || $("keys").open || event.ctrlKey || event.metaKey || event.altKey) return;
+		event.preventDefault();
+		event.stopPropagation();
+		if (!way) leave(key === "Enter");
+		const {body: {options, selectedIndex: at}} = own;
+		if (other) say(options[own.body.selectedIndex = (at + other + options.length)%options.length].textContent);
+		if (!way) return;
+		const [trial, body] = [player.shown[0], +own.body.value];
+		if (!held) hold(trial, body, placedAt(trial, player.tickOf(trial)).find(({shape}) => shape.body === body).origin, {way: [0, 0, 0]});
+		held.way = add(held.way, mul(way, rounded(player.camera.radius*0.02)*(shiftKey ? 10 : 1)));
+		bring(held.way);
+		say(`${trial.bodies[body]}, ${held.pushes ? short(hypot(...held.force), "N") : length(hypot(...held.way))}: Enter does it, Escape leaves it.`);
 	}
 
-	for (const [name, act] of [["down", take], ["move", drag], ["up", leave], ["cancel", leave]]) views.addEventListener(`pointer${name}`, act, true);
+	for (const [name, act] of [["down", take], ["move", drag], ["up", release(true)], ["cancel", release(false)]]) views.addEventListener(`pointer${name}`, act, true);
+	window.addEventListener("keydown", press, true);
+	own.body.onchange = () => leave(false);
+	return leave;
 }
 
+const HANDS = `
+while bodies of the first trial are moved or pushed
+[ ]         another body
+arrows      it goes, or is pulled, along the ground
+Page \u2191 \u2193    up, down; ten times as far with shift
+Enter Esc   does it; leaves it
+`;
+
 // Bodies can be dragged or pushed while its button is pressed; gives what does either.
-function movable(page, player, state, {move: moving, push: pushing}, show, say) {
-	const {about} = page.live;
+function movable(page, player, state, own, show, say) {
+	const [{about}, {move: moving, push: pushing}] = [page.live, own];
 	const on = (one) => one.getAttribute("aria-pressed") === "true";
+	const grip = () => (on(moving) ? "move" : on(pushing) ? "push" : "");
+	// What is nearest to be taken: a thing, else a robot.
+	const {bodies, shapes} = page.trials[0];
+	const some = ["thing", "robot"].flatMap((role) => shapes.filter((shape) => shape.role === role && shape.body >= 0).map((shape) => shape.body));
+	own.body.replaceChildren(...options([...new Set(some)].map((body) => [body, bodies[body]])));
+	const leave = carry(player, grip, own, {put, push, say});
 	for (const [one, other] of [[moving, pushing], [pushing, moving]]) {
-		one.onclick = () => (one.setAttribute("aria-pressed", !on(one)), other.setAttribute("aria-pressed", false));
+		one.onclick = () => {
+			leave(false);
+			one.setAttribute("aria-pressed", !on(one));
+			other.setAttribute("aria-pressed", false);
+			own.body.hidden = !grip();
+			say(grip() ? "Drag a body, or press arrows and then Enter." : "");
+		};
 	}
 	const timeOf = (trial, step) => trial.times[min(step, trial.ticks) - 1];
 
@@ -104,6 +163,7 @@ function movable(page, player, state, {move: moving, push: pushing}, show, say) 
 
 	moving.hidden = !about.displaces;
 	pushing.hidden = !about.pushes;
-	carry(player, () => (on(moving) ? "move" : on(pushing) ? "push" : ""), put, push);
+	own.body.hidden = true;
+	if (about.displaces || about.pushes) $("keys").querySelector("pre").append(HANDS);
 	return {put, push};
 }

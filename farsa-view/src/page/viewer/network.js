@@ -90,7 +90,7 @@ function paintNode(c, {x, y}, lit, fill) {
 
 // Writes a node's name beside it: of the first column to the left, of others to the right.
 function paintName(c, {x, y, layer, label: text}, width, ink) {
-	while (text.length > 2 && c.measureText(text).width > (layer ? width - x : x) - 12) text = `${text.slice(0, -2)}…`;
+	text = fitted(c, text, (layer ? width - x : x) - 12);
 	Object.assign(c, {lineWidth: 4, strokeStyle: colorOf("--panel"), fillStyle: ink, textAlign: layer ? "left" : "right"});
 	for (const way of ["strokeText", "fillText"]) c[way](text, x + (layer ? 11 : -11), y + 0.5);
 }
@@ -99,14 +99,15 @@ function paintName(c, {x, y, layer, label: text}, width, ink) {
 function paintHead(c, column, side) {
 	if (!column[0]) return;
 	c.textAlign = side("right", "center", "left");
-	const text = `${column.length} ${side("sensors", "neurons", "outputs")}`;
-	const [wide, canvas] = [c.measureText(text).width, c.canvas.clientWidth];
+	const canvas = c.canvas.clientWidth;
+	const text = `${column.length} ${side("sensors", canvas < 400 ? "" : "neurons", "outputs")}`;
+	const wide = c.measureText(text).width;
 	c.fillText(text, side(max(wide, column[0].x + 6), column[0].x, min(canvas - wide, column[0].x - 6)), max(7, column[0].y - 18));
 }
 
 function graphOf() {
 	const [canvas, choice] = [$("graph"), $("node")];
-	const c = canvas.getContext("2d");
+	const c = plain(canvas);
 	let trial, nodes, links, last, width, ratio, back, tick = 0, over, pinned;
 	new ResizeObserver(() => layout()).observe(canvas);
 	canvas.onpointermove = (event) => event.pointerType === "mouse" && choose(hit(event), pinned);
@@ -126,7 +127,7 @@ function graphOf() {
 
 	function choose(a, b) {
 		if (a === over && b === pinned) return;
-		[over, pinned] = [a, b];
+		[over, pinned, canvas.title] = [a, b, a?.label ?? ""];
 		graphChosen(nodes[choice.value = nodes.indexOf(pinned)]);
 		draw();
 		tell();
@@ -145,7 +146,7 @@ function graphOf() {
 		canvas.style.height = `${height}px`;
 		Object.assign(canvas, {width: round(width*ratio), height: round(height*ratio)});
 		c.font = LABEL;
-		const room = (column) => min(width*0.31, max(...column.map((n) => c.measureText(n.label).width))) + 16;
+		const room = (column) => min(width*0.37, max(...column.map((n) => c.measureText(n.label).width))) + 16;
 		const left = room(columns[0]);
 		const right = last ? width - room(columns[last]) : left;
 		columns.forEach((column, layer) => {
@@ -158,7 +159,7 @@ function graphOf() {
 		});
 		for (const link of links) link.curve = curveOf(link);
 		back = Object.assign(make("canvas"), {width: canvas.width, height: canvas.height});
-		const hidden = back.getContext("2d");
+		const hidden = plain(back);
 		hidden.setTransform(ratio, 0, 0, ratio, 0, 0);
 		paintLinks(hidden, links, links, (part) => 0.03 + 0.72*part**2.5);
 		draw();

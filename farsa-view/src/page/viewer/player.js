@@ -34,6 +34,7 @@ class Player {
 	frame(time) {
 		const {clock, shown} = this;
 		this.asked = false;
+		if (!clock) return;
 		if (farsa.playing) {
 			// A page that was hidden goes on where it was.
 			this.tick = clock.tickAt(this.now + min(100, max(0, time - this.before))/1000*this.speed);
@@ -155,7 +156,18 @@ class Player {
 		this.ask();
 	}
 
+	// Makes the first views, so many.
+	open(count) {
+		while (this.views.length < count) this.views.push(viewOf(this.camera, () => this.ask()));
+	}
+
 	show(a, b) {
+		this.place(a, b);
+		this.fill();
+	}
+
+	// Trials in the views, with what moves them.
+	place(a, b) {
 		this.shown = [...new Set([a, b || a])];
 		const {shown} = this;
 		const two = shown.length > 1;
@@ -163,7 +175,8 @@ class Player {
 		this.clock = shown.reduce((x, y) => (y.end > x.end ? y : x));
 		this.tick = min(this.tick, this.clock.ticks - 1);
 		$("app").classList.toggle("two", two);
-		shown.forEach((trial, i) => (this.views[i] ??= viewOf(this.camera, () => this.ask())).set(trial, mark(i)));
+		this.open(shown.length);
+		shown.forEach((trial, i) => this.views[i].set(trial, mark(i)));
 		if (this.views[1]) this.views[1].element.hidden = !two;
 		$("trial").value = a.index;
 		$("beside").value = two ? b.index : "";
@@ -175,13 +188,19 @@ class Player {
 		$("follow").replaceChildren(...options([["", "follow"], ...moving.map((name) => [name, name])]));
 		$("follow").hidden = !moving.length;
 		this.follow(a.bodies[this.camera.followed] ?? "");
-		this.images.set(shown);
-		this.strips.set(shown, min(...shown.map((l) => l.times[0])), this.clock.end);
 		$("network").hidden = !a.network;
-		if (a.network) this.graph.set(a);
-		$("facts").replaceChildren(...shown.map((trial, i) => factsOf(trial, mark(i))), make("p", "soft", this.maker || ""));
 		this.frameCamera();
 		this.marks();
+	}
+
+	// Their strips, images, network and facts.
+	fill() {
+		const {shown, clock} = this;
+		this.images.set(shown);
+		this.strips.set(shown, min(...shown.map((l) => l.times[0])), clock.end);
+		if (shown[0].network) this.graph.set(shown[0]);
+		$("facts").replaceChildren(...shown.map((trial, i) => factsOf(trial, shown[1] ? `trial-${i}` : "")), make("p", "soft", this.maker || ""));
+		this.ask();
 	}
 }
 

@@ -5,19 +5,21 @@ const SUN = unit([0.35, -0.45, 1.3]);
 const paint = (name) => rgb(colorOf(`--${name}`));
 const rgb = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16)/255);
 // Vertices of position 3, normal 3, and 1 for the end of a capsule on which they are: -1, 1.
-function meshes() {
+// Those of fewer corners around, `n`, serve for what is small in the picture.
+function meshes(n) {
 	const vertex = ([r, z, nr, nz, end], j, n) => {
 		const [c, s] = [cos(2*Math.PI*(j + 0.5)/n), sin(2*Math.PI*(j + 0.5)/n)];
 		return [r*c, r*s, z, nr*c, nr*s, nz, end];
 	};
 	// Rows: radius, z, normal's radius, normal's z, end.
-	const around = (rows, n = 32) => rows.slice(1).flatMap((row, i) => list(n, (j) => {
-		const [a, b, c, d] = [vertex(rows[i], j, n), vertex(rows[i], j + 1, n), vertex(row, j, n), vertex(row, j + 1, n)];
+	const around = (rows, m = n) => rows.slice(1).flatMap((row, i) => list(m, (j) => {
+		const [a, b, c, d] = [vertex(rows[i], j, m), vertex(rows[i], j + 1, m), vertex(row, j, m), vertex(row, j + 1, m)];
 		return [a, b, d, a, d, c].flat();
 	}).flat());
-	const arc = list(18, (k) => {
-		const a = (k - (k < 9 ? 8 : 9))*Math.PI/16;
-		return [cos(a), sin(a), cos(a), sin(a), k < 9 ? -1 : 1];
+	const quarter = n/4;
+	const arc = list(2*quarter + 2, (k) => {
+		const a = (k - (k <= quarter ? quarter : quarter + 1))*Math.PI/2/quarter;
+		return [cos(a), sin(a), cos(a), sin(a), k <= quarter ? -1 : 1];
 	});
 	return {
 		// Without normals: the shader finds those of flat faces.
@@ -215,7 +217,7 @@ class Scene {
 		this.places = {};
 		this.program = programOf(gl);
 		gl.useProgram(this.program);
-		this.solids = Object.fromEntries(Object.entries(meshes()).map(([name, data]) => [name, solidOf(gl, data)]));
+		this.solids = [16, 32].map((n) => Object.fromEntries(Object.entries(meshes(n)).map(([name, data]) => [name, solidOf(gl, data)])));
 		this.ribbons = new WeakMap();
 		this.shadows = shadowsOf(gl);
 		gl.enable(gl.DEPTH_TEST);
@@ -233,7 +235,7 @@ class Scene {
 
 	mesh(kind, origin, rotation, size, color, stretch = 0) {
 		const {gl} = this;
-		const {array, count} = this.solids[kind];
+		const {array, count} = this.solids[+(size[0] > this.coarse)][kind];
 		this.set({origin, rotation, size, color, stretch});
 		gl.bindVertexArray(array);
 		gl.drawArrays(gl.TRIANGLES, 0, count);
@@ -277,6 +279,8 @@ class Scene {
 		// Half the height of what is in sight [m].
 		const seen = top ? half : distance*TAN;
 		const middle = middleOf(boundsOf(trial.balls));
+		// Up to 20 pixels in radius a coarse mesh is off by less than half a pixel.
+		this.coarse = 40*seen/this.canvas.height;
 		Object.assign(this, {camera, eye, matrix: lens, middle, reach: max(9*radius, 3*seen), thin: seen*0.005, placed: placedAt(trial, tick)});
 	}
 

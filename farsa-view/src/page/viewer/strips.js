@@ -49,6 +49,16 @@ function make(tag, className = "", ...children) {
 	return made;
 }
 
+// What draws on a plain canvas, at once: where the scene is drawn without a graphics processor, other contexts would queue with it.
+const plain = (canvas) => canvas.getContext("2d", {willReadFrequently: true});
+
+// A text without its middle, where there is no room for all of it.
+function fitted(c, text, room) {
+	let short = text;
+	for (let kept = text.length - 1; kept > 3 && c.measureText(short).width > room; kept--) short = `${text.slice(0, (kept + 1) >> 1)}…${text.slice(-(kept >> 1))}`;
+	return short;
+}
+
 // What is drawn in a strip: bands for words, heat for large groups, else a line. `x` is where a tick stands, `tall` and `top`
 // are the height of the trial's part of the field and where it begins, all in pixels; `ratio` is that of a CSS pixel.
 function paintBands(c, {values}, {words}, {x, tall, top, ratio}) {
@@ -69,7 +79,7 @@ function paintHeat(c, {values}, {low, high}, {x, tall, top, ratio, width}) {
 	const table = list(256, (k) => [...heatOf({low, high}, low + span*k/255), 255]);
 	values.forEach((value, t) => image.data.set(table[min(255, max(0, round((value - low)/span*255)))] || [], 4*t));
 	const line = Object.assign(make("canvas"), {width: values.length, height: 1});
-	line.getContext("2d").putImageData(image, 0, 0);
+	plain(line).putImageData(image, 0, 0);
 	c.imageSmoothingEnabled = values.length > width;
 	c.drawImage(line, x(0), top, x(values.length - 1) - x(0) + 1, tall - ratio/2);
 }
@@ -94,7 +104,7 @@ function paintStrip(row, trials, from, to) {
 	if (row.painted === painted || !width) return;
 	row.painted = painted;
 	Object.assign(canvas, {width, height});
-	const c = canvas.getContext("2d");
+	const c = plain(canvas);
 	const shown = channels.filter(Boolean);
 	channels.forEach((channel, i) => {
 		if (!channel) return;
@@ -134,6 +144,14 @@ function legendOf(trials, group) {
 	});
 }
 
+const ruler = document.createElement("canvas").getContext("2d");
+
+// How wide the widest text of a size is.
+function wide(size, texts) {
+	ruler.font = `${size}px system-ui, sans-serif`;
+	return ceil(max(...texts.map((text) => ruler.measureText(text).width)));
+}
+
 function stripsOf(seek) {
 	const [groups, closed] = [$("groups"), new Set()];
 	let [rows, trials, from, to, ticks, part] = [[], [], 0, 1];
@@ -154,9 +172,8 @@ function stripsOf(seek) {
 		for (const {group, name, label} of trials.flatMap((trial) => trial.channels)) names.set(group, (names.get(group) || new Map()).set(name, label || name));
 		groups.replaceChildren(...[...names].map(([group, some]) => section(group, [...some])));
 		// As wide as the longest name, within reason.
-		const wide = [...groups.querySelectorAll(".name")].map((name) => name.scrollWidth);
-		groups.style.setProperty("--n", `${min(210, max(80, ...wide)) + 4}px`);
-		update();
+		groups.style.setProperty("--n", `${min(210, max(80, wide(13, rows.map(({label}) => label)))) + 4}px`);
+		resize();
 	}
 
 	function section(group, names) {
@@ -166,6 +183,11 @@ function stripsOf(seek) {
 		const body = make("div", "rows", ...names.map(([name, label]) => row(group, name, label.slice(cut > 7 ? cut : 0), names.length > 10 ? "heat" : "lines")));
 		const fold = make("button", "fold", make("b", "", group), make("span", "soft", names.length), ...legendOf(trials, group));
 		const made = make("section", "", fold, body);
+		// Columns of a narrow page are as wide as what stands in them.
+		const own = rows.slice(-names.length);
+		const values = own.flatMap(({scale}) => scale.words || [scale.low, scale.high].map((end) => show(scale, end)));
+		const columns = {w: trials.length*(wide(13, values) + 14) - 14, u: wide(12, own.map(({unit}) => unit)), s: min(106, wide(12, own.map(({told}) => told)))};
+		for (const [name, width] of Object.entries(columns)) made.style.setProperty(`--${name}`, `${width}px`);
 		made.dataset.group = group;
 		const folded = () => {
 			body.hidden = closed.has(group);
@@ -188,21 +210,28 @@ function stripsOf(seek) {
 		const ends = [min(...some.map((c) => c.low)), max(...some.map((c) => c.high))];
 		const [low, high] = scaleOf(...ends);
 		const whole = some.every((c) => c.scale === 1 && Number.isInteger(c.minimum));
-		const told = [...new Set(ends.map((end) => bound(end, high - low)))].join(" … ");
+		const told = words ? "" : [...new Set(ends.map((end) => bound(end, high - low)))].join(" … ");
 		const kind = words ? "bands" : mode;
 		const values = channels.map((_, i) => make("span", `value trial-${i}`));
 		const canvas = make("canvas", "plot");
-		const element = make("div", `row ${kind}`, make("span", "name", label), make("span", "values", ...values), make("span", "unit", unit), canvas,
-			make("span", "unit", words ? "" : told));
+		const title = make("span", "name", label);
+		const element = make("div", `row ${kind}`, title, make("span", "values", ...values), make("span", "unit", unit), canvas, make("span", "unit", told));
 		element.dataset.name = name;
 		element.title = `${group} ${name}${words ? "" : ` within ${(scale/2).toPrecision(2)} ${unit}`}`;
-		const row = element.row = {canvas, channels, kind, values, scale: {words, low, high, whole}};
+		const row = element.row = {canvas, channels, kind, values, title, label, unit, told, scale: {words, low, high, whole}};
 		rows.push(row);
 		watch.observe(element);
 		return element;
 	}
 
 	function resize() {
+		wide(13, []);
+		const rooms = rows.map(({title}) => title.clientWidth);
+		rows.forEach(({title, label}, i) => {
+			const text = rooms[i] ? fitted(ruler, label, rooms[i]) : label;
+			if (title.textContent !== text) title.textContent = text;
+			title.title = text === label ? "" : label;
+		});
 		for (const row of rows) if (row.near) paintStrip(row, trials, from, to);
 		update();
 	}

@@ -88,7 +88,7 @@ function viewOf(camera, ask) {
 			trial.has.forces && visible.forces ? `arrow of ${length(long)}: ${short(newtons, "N")}` : "",
 			flat,
 			visible.trails ? `trails: ${namesOf(trial.trails)}` : "",
-			tick >= trial.ticks - 1 ? "ended" : "",
+			farsa.ready && tick >= trial.ticks - 1 ? "ended" : "",
 		].filter(Boolean).join(" · ");
 	}
 
