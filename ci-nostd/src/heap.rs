@@ -15,6 +15,11 @@ struct Heap {
 #[global_allocator]
 static HEAP: Heap = Heap { block: UnsafeCell::new([0; SIZE]), used: AtomicUsize::new(0) };
 
+/// How many bytes were handed out.
+pub fn used() -> usize {
+    HEAP.used.load(Ordering::Relaxed)
+}
+
 // SAFETY: the block is reached only through `alloc`, which gives every byte away once.
 unsafe impl Sync for Heap {}
 

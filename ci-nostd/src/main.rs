@@ -9,6 +9,11 @@
 #![no_main]
 
 #[cfg(feature = "alloc")]
+extern crate alloc;
+
+#[cfg(feature = "alloc")]
+mod allocations;
+#[cfg(feature = "alloc")]
 mod heap;
 #[cfg(feature = "alloc")]
 mod whole;
@@ -149,7 +154,7 @@ extern "C" fn main() -> i32 {
         return what;
     }
     #[cfg(feature = "alloc")]
-    if let Err(what) = whole::runs() {
+    if let Err(what) = whole::runs().and_then(|()| allocations::steps_take_none()) {
         return what;
     }
     0

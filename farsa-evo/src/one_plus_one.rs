@@ -231,7 +231,11 @@ mod tests {
     }
 
     fn tell(search: &mut OnePlusOne, parent: f64, mutant: f64) -> bool {
-        search.tell(&[parent, mutant].map(Fitness::nan_as_failed)).unwrap();
+        let told = [parent, mutant].map(Fitness::nan_as_failed);
+        let champions = search.champions(&search.ranked_by(&told));
+        search.tell(&told).unwrap();
+        // Who is champion lives on.
+        assert_eq!(champions, [usize::from(search.replaced())]);
         search.replaced()
     }
 

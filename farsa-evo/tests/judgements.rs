@@ -172,6 +172,14 @@ fn other_shapes_are_refused_everywhere() {
 }
 
 #[test]
+fn judgements_are_counted_by_rows() {
+    for individuals in [0, 1, 5] {
+        let told = Judgements::new(SHAPE, vec![0.0; 3 * individuals]).unwrap();
+        assert_eq!((told.len(), told.is_empty()), (individuals, individuals == 0));
+    }
+}
+
+#[test]
 fn evolve_names_the_best_by_the_first_objective() {
     let mut strategy = Extremes::new(false).unwrap();
     let mut best = f64::NEG_INFINITY;

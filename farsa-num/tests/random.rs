@@ -153,6 +153,18 @@ proptest! {
 }
 
 #[test]
+fn a_range_is_the_uniform_number_stretched_and_moved() {
+    let mut stream = stream();
+    for _ in 0..1000 {
+        let mut same = stream;
+        // A range of 8: the product is exact.
+        assert_eq!(stream.range(-2.0, 6.0), 8.0 * same.uniform() - 2.0);
+        assert_eq!(stream.range_f64(-2.0, 6.0), 8.0 * same.uniform_f64() - 2.0);
+        assert_eq!(stream, same);
+    }
+}
+
+#[test]
 fn a_range_one_number_wide_gives_that_number() {
     let mut stream = stream();
     for _ in 0..1000 {

@@ -1,6 +1,6 @@
 //! What the scalar trait promises of one lane: powers of two, rounding, and where a NaN goes.
 
-use farsa_num::{Real, Scalar};
+use farsa_num::{Mask, Real, Scalar};
 use proptest::prelude::*;
 
 #[test]
@@ -54,6 +54,13 @@ fn equal_zeros_give_the_right_one() {
     assert_eq!(Scalar::min(-0.0_f32, 0.0).to_bits(), 0);
     assert_eq!(Scalar::max(-0.0_f32, 0.0).to_bits(), 0);
     assert_eq!(Scalar::max(0.0_f32, -0.0).to_bits(), (-0.0_f32).to_bits());
+}
+
+#[test]
+fn the_mask_of_one_lane_is_its_bool() {
+    for mask in [false, true] {
+        assert_eq!([Mask::any(mask), Mask::all(mask), mask.lane(0), mask.lane(1)], [mask, mask, mask, false]);
+    }
 }
 
 #[test]

@@ -14,7 +14,8 @@ pub(crate) fn settings() -> String {
     let profile = manifest.find("[profile.dev]").zip(manifest.find("[profile.release]"));
     let profile =
         profile.and_then(|(from, to)| manifest.get(from..to)).expect("the profile of tests, and then another");
-    let crates = ["-num", "-body", "-models", "-physics", "-nn", "-evo", "-view", "-lab", "-experiments", ""];
+    let crates =
+        ["-num", "-body", "-models", "-physics", "-nn", "-evo", "-view", "-lab", "-compose", "-experiments", ""];
     let ours = crates.map(|name| format!("farsa{name} = {{ opt-level = 2 }}\n")).concat();
     profile.trim_end().to_owned() + "\n" + &ours
 }

@@ -309,10 +309,15 @@ mod tests {
 
     /// Two links of 0.3 and 0.2 m that turn about z.
     fn planar(range: [f64; 2]) -> KinematicTree {
+        planar_within([range; 2])
+    }
+
+    /// The same with a range for each joint.
+    fn planar_within(ranges: [[f64; 2]; 2]) -> KinematicTree {
         let mut robot = Robot::new("planar");
         let body = MassProperties::sphere(1.0, 0.1);
         let mut parent = None;
-        for (name, at) in [("shoulder", 0.0), ("elbow", 0.3)] {
+        for (name, at, range) in [("shoulder", 0.0, ranges[0]), ("elbow", 0.3, ranges[1])] {
             let joint = Joint::revolute(name, [0.0, 0.0, 1.0], Pose::at([at, 0.0, 0.0]), range);
             parent = Some(robot.add_segment(Segment::new(name, parent, joint, body)));
         }
@@ -350,6 +355,46 @@ mod tests {
             panic!("in reach")
         };
         assert_eq!(closest.joints, [0.1, 0.1]);
+    }
+
+    /// With one start, and with fewer steps than it takes where the damping does not fall.
+    fn at_the_first_attempt(tree: &KinematicTree, goals: &[[f64; 2]]) {
+        let solver = InverseKinematics { attempts: 1, iterations: 25, ..InverseKinematics::default() };
+        for [x, y] in goals {
+            let found = solver.solve(tree, &tip([*x, *y, 0.0]), &[0.1, 0.1]).unwrap_or_else(|e| panic!("{x} {y}: {e}"));
+            let [shoulder, both] = [found.joints[0], found.joints[0] + found.joints[1]].map(farsa_num::sin_cos);
+            let at = [0.3 * shoulder.1 + 0.2 * both.1, 0.3 * shoulder.0 + 0.2 * both.0];
+            assert!((at[0] - x).abs() < 1e-6 && (at[1] - y).abs() < 1e-6, "{at:?} for {x} {y}");
+        }
+    }
+
+    #[test]
+    fn goals_behind_a_stretched_arm_are_reached() {
+        // Full steps of Gauss and Newton miss them: long ones are shortened, and those that do not help are taken back.
+        at_the_first_attempt(&planar([-3.0, 3.0]), &[[-0.3, 0.3], [-0.25, 0.4], [-0.2, 0.25], [-0.2, 0.35]]);
+    }
+
+    #[test]
+    fn a_joint_at_its_limit_leaves_the_way_to_the_others() {
+        let tree = planar_within([[-0.5, 0.5], [-3.0, 3.0]]);
+        at_the_first_attempt(&tree, &[[0.15, -0.3], [0.2, -0.25], [0.25, -0.25], [0.3, -0.2]]);
+    }
+
+    #[test]
+    fn metres_are_weighed_against_radians() {
+        // A link of length l that is asked for another angle a than its end is: l^2 (2 - 2 cos q) + (w (a - q))^2 is least.
+        let (length, wanted, tree) = (0.2, 1.0, planar([-3.0, 3.0]));
+        let (sine, cosine) = farsa_num::sin_cos(wanted / 2.0);
+        let orientation = Orientation::Full([0.0, 0.0, sine, cosine]);
+        let goal = Goal { body: BodyId(0), point: [length, 0.0, 0.0], position: [length, 0.0, 0.0], orientation };
+        let usual = InverseKinematics { attempts: 1, ..InverseKinematics::default() };
+        for (weight, solver) in [(0.1, usual), (0.4, InverseKinematics { angle_weight: 0.4, ..usual })] {
+            let error = solver.solve(&tree, &goal, &[0.0; 2]);
+            let Err(InverseKinematicsError::NotReached { closest }) = error else { panic!("{error:?}") };
+            let q = closest.joints[0];
+            let slope = length * length * farsa_num::sin_cos(q).0 - weight * weight * (wanted - q);
+            assert!(slope.abs() < 1e-9, "{weight}: {slope} at {q}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use farsa_body::{
     ActuatorId, ArmAndHand, BodyId, Finger, Goal, InverseKinematics, JointId, KinematicTree, Law, MuscleVariant,
-    Orientation, Pose, Shape, Tabletop,
+    Orientation, Pose, Shape, Surface, Tabletop,
 };
 
 const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
@@ -104,6 +104,23 @@ fn joint_damping_is_a_choice() {
     assert!(damping(ArmAndHand::default()).iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15));
     let off = damping(ArmAndHand { damping_per_torque: 0.0, ..ArmAndHand::default() });
     assert_eq!(off, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.002]);
+}
+
+#[test]
+fn fingers_push_and_touch_by_their_numbers() {
+    let robot = ArmAndHand::default().robot().expect("a valid robot");
+    for (actuator, segment) in robot.actuators.iter().zip(&robot.segments).skip(7) {
+        // 1 N m/rad and 0.04 N m s/rad, up to what a tendon of 300 N pulls at 1 mm.
+        let torque = |q: f64, speed: f64| actuator.law.effort(q, speed, [0.0; 2]).torque;
+        for (found, expected) in
+            [(torque(-0.1, 0.0), 0.1), (torque(0.0, 1.0), -0.04), (torque(-1.0, 0.0), 300.0 * 0.001)]
+        {
+            assert!((found - expected).abs() < 1e-12, "{}: {found} N m where {expected} are expected", actuator.name);
+        }
+        assert_eq!([segment.joint.armature, segment.joint.damping], [5e-4, 0.002], "{}", actuator.name);
+    }
+    let surface = Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 2e5, damping: 100.0 };
+    assert!(robot.pairs.iter().all(|pair| pair.surface == surface), "{:?}", robot.pairs);
 }
 
 #[test]

@@ -195,6 +195,32 @@ fn wheels_turn_as_they_are_told() {
 }
 
 #[test]
+fn robots_are_as_large_and_as_fast_as_the_originals() {
+    // Radii of hull and wheels and distance of the wheels [mm], and the largest speed [mm/s].
+    let known =
+        [[35.0, 15.0, 55.0, 1.1 * 2.0 * PI * 15.0], [35.0, 20.5, 53.0, 144.0], [85.0, 27.0, 126.5, 10.0 * 27.0]];
+    for (robot, [hull, wheel, track, fastest]) in robots().iter().zip(known) {
+        let sizes = [robot.radius, robot.wheel_radius, robot.track].map(|x| (1e6 * x).round() as f32 / 1e3);
+        assert_eq!(sizes, [hull, wheel, track], "{}", robot.name);
+        // A second of full speed ahead, then a step of turning on the spot.
+        let mut world = PlaneWorld::new();
+        let parts = world.add_robot(robot, [0.0, 0.0], 0.0);
+        let mut run = |commands: [f32; 2], steps: usize| {
+            parts.motors.iter().zip(commands).for_each(|(motor, speed)| world.command(*motor, [speed, 0.0]));
+            (0..steps).for_each(|_| world.step());
+            world.pose(parts.body)
+        };
+        let way = 1000.0 * run([1e3; 2], 20).position[0];
+        assert!((way - fastest).abs() < 0.01, "{}: {way} mm", robot.name);
+        let [_, _, sine, _] = run([-1e3, 1e3], 1).rotation;
+        let turn = 2.0 * fastest / track * PlaneWorld::TIME_STEP;
+        assert!((sine - farsa_num::sin_cos(0.5 * turn).0).abs() < 1e-5, "{}: {sine}", robot.name);
+    }
+    // The attachment device of the MarXbot reaches 20 mm.
+    assert_eq!(robots().map(|robot| robot.attachment), [None, None, Some(0.02)]);
+}
+
+#[test]
 fn the_felt_wheel_is_the_driven_wheel() {
     let mut world = PlaneWorld::new();
     let parts = world.add_robot(&MobileRobot::khepera(), [0.0, 0.0], 0.0);

@@ -13,6 +13,7 @@ mod lines;
 mod live;
 mod look;
 mod manners;
+mod memory;
 mod merge;
 mod own;
 mod replications;

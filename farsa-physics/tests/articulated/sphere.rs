@@ -2,7 +2,7 @@
 
 use farsa_body::{
     Arrange, BodyId, Collider, Contacts, Joint, JointKind, Kinematics, Pair, PairId, Pose, Robot, Segment, Shape,
-    Surface, Twist, World as _,
+    Surface, Tabletop, Twist, World as _,
 };
 use farsa_num::sin_cos;
 use farsa_physics::articulated::{Model, Options, World};
@@ -142,10 +142,41 @@ fn on_a_slope_the_contact_slips_if_and_only_if_the_slope_is_steeper_than_frictio
 }
 
 #[test]
+fn a_ball_on_a_slope_slips_if_and_only_if_the_slope_is_steeper_than_seven_halves_of_friction() {
+    for (mu, angle) in [(0.1_f64, 17.0_f64), (0.1, 21.5), (0.2, 33.0), (0.2, 37.0), (0.4, 52.0), (0.4, 57.0)] {
+        let ((sin, cos), (half_sin, half_cos)) = (sin_cos(angle.to_radians()), sin_cos(angle.to_radians() / 2.0));
+        let tilt = [0.0, half_sin, 0.0, half_cos];
+        let robot = ball_on(Shape::Plane, Pose { position: [0.0; 3], rotation: tilt }, surface(mu, 0.0));
+        let mut w = world(&robot, 5);
+        w.place_body(BodyId(0), Pose::at([sin * RADIUS, 0.0, cos * RADIUS]).cast(), Twist::default());
+        w.finish_placement();
+        for _ in 0..50 {
+            w.step();
+        }
+        let v = w.velocity_of(BodyId(0));
+        let speeds = [length(v.linear[0], v.linear[2]), v.angular[1] * RADIUS];
+        // Half a second: rolling falls by 5/7 g sin; slipping by g (sin - mu cos), turned by the moment of mu g cos.
+        let slips = sin > 3.5 * mu * cos;
+        let rolling = 5.0 / 7.0 * 9.81 * sin * 0.5;
+        let slipping = [9.81 * (sin - mu * cos) * 0.5, 2.5 * mu * 9.81 * cos * 0.5];
+        let expected = if slips { slipping } else { [rolling; 2] };
+        println!("mu {mu}, {angle} deg: {speeds:.4?} m/s where {expected:.4?} are expected");
+        for (speed, expected) in speeds.into_iter().zip(expected) {
+            assert!((speed / expected - 1.0).abs() < 0.01, "mu {mu} angle {angle}: {speed} {expected}");
+        }
+        assert_eq!((speeds[0] - speeds[1]).abs() > 1e-3, slips, "mu {mu} angle {angle}: {speeds:?}");
+    }
+}
+
+#[test]
 fn a_ball_at_rest_stays_where_it_is() {
     let table = Shape::Box { half: [0.235, 0.4, 0.15] };
-    let robot = ball_on(table, Pose::at([0.265, -0.15, -0.15]), surface(1.0, 5e-4));
-    for substeps in [2, 4, 5, 10] {
+    // The surface of these tests, and the stiffer and less damped one of the experiment.
+    let surfaces = [surface(1.0, 5e-4), Tabletop::default().sphere_on_table];
+    for (surface, substeps) in
+        surfaces.into_iter().flat_map(|surface| [2, 4, 5, 10].map(|substeps| (surface, substeps)))
+    {
+        let robot = ball_on(table, Pose::at([0.265, -0.15, -0.15]), surface);
         let mut w = world(&robot, substeps);
         w.place_body(BodyId(0), Pose::at([0.26, -0.18, RADIUS as f32]), Twist::default());
         w.finish_placement();
