@@ -74,6 +74,9 @@ impl Replayable {
         let (identity, history, path) = history(plan, directory)?;
         identity.same_values(&plan.identity()?, &path)?;
         let finished = history.finished();
+        if finished == 0 {
+            return Err(Error::damaged(&path, "no generation is finished yet"));
+        }
         let generation = which.generation.unwrap_or(finished.saturating_sub(1));
         let Some(best) = history.champion(0, generation) else {
             return Err(Error::Usage(format!(

@@ -439,7 +439,8 @@ mod tests {
                 .to_string()
                 .contains("no generation is finished")
         );
-        assert!(replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).is_err());
+        let replayed = replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err();
+        assert!(replayed.to_string().contains("record.bin: no generation is finished"), "{replayed}");
         plan.settings.set("", GENERATIONS, Value::Whole(2)).unwrap();
         go_on(&plan, &directory, pool(&plan, 1), &AtomicBool::new(false), "farsa", true).unwrap();
         assert_eq!(fs::read_to_string(directory.log()).unwrap().lines().count(), 3);

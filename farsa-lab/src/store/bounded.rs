@@ -49,6 +49,17 @@ pub(crate) fn read_own(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     bytes(&mut file, path, Bounds { size, limit, patience: Duration::ZERO, writer: true })
 }
 
+/// The same of a file that a run can do without: nothing where there is no file, or another thing in its place.
+///
+/// # Errors
+/// [`Error::Io`] for a regular file that cannot be read: what it holds may still be wanted.
+pub(crate) fn read_own_if_any(path: &Path, limit: u64) -> Result<Option<Vec<u8>>, Error> {
+    match read_own(path, limit) {
+        Err(error @ Error::Io { .. }) if path.symlink_metadata().is_ok_and(|found| found.is_file()) => Err(error),
+        read => Ok(read.ok()),
+    }
+}
+
 /// The same as text.
 ///
 /// # Errors
@@ -190,6 +201,20 @@ mod tests {
     impl Drop for Place {
         fn drop(&mut self) {
             let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_not_taken_for_lost() {
+        let place = Place::new("any");
+        let file = place.file("some", b"abc");
+        assert_eq!(read_own_if_any(&file, 3).unwrap(), Some(b"abc".into()));
+        assert_eq!(read_own_if_any(&place.0.join("none"), 3).unwrap(), None);
+        assert_eq!(read_own_if_any(&place.0, 3).unwrap(), None);
+        // A regular file by its kind, whose first byte nothing can read.
+        if cfg!(target_os = "linux") {
+            let unread = read_own_if_any(Path::new("/proc/self/mem"), 3).unwrap_err();
+            assert!(unread.to_string().starts_with("cannot read "), "{unread}");
         }
     }
 

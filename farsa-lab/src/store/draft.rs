@@ -159,7 +159,13 @@ fn remove_directory(path: &Path) {
         return;
     }
     match abandoned(&path.join(RUN_LOCK)) {
-        Some(_lock) => drop(fs::remove_dir_all(path)),
+        Some(_lock) => {
+            // The lock last: without it nobody would know whose the rest is if this process is killed meanwhile.
+            for (other, _) in entries(path).filter(|(_, name)| name != RUN_LOCK) {
+                drop(fs::remove_file(&other).or_else(|_| fs::remove_dir_all(&other)));
+            }
+            drop(fs::remove_dir_all(path));
+        }
         // Without a lock nothing else is in it; if there is, it is not ours.
         None => drop(fs::remove_dir(path)),
     }

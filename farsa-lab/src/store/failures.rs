@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::store::bounded::read_own;
+use crate::store::bounded::read_own_if_any;
 use crate::store::growing::{Growing, Mark};
 
 const HEADER: &str = "generation,individual,trial,why,command\n";
@@ -54,7 +54,7 @@ impl Failures {
     ///
     /// Nothing else says what they were: a file that somebody has changed stays as it is, and grows.
     pub(crate) fn resume(path: &Path, mark: Mark) -> Result<Self, Error> {
-        let content = read_own(path, LARGEST).unwrap_or_default();
+        let content = read_own_if_any(path, LARGEST)?.unwrap_or_default();
         let file = match mark.within(&content) {
             Some([]) if content.is_empty() || content.starts_with(HEADER.as_bytes()) => {
                 Growing::remove(path)?;

@@ -8,7 +8,7 @@ use farsa_evo::Statistics;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::store::bounded::read_own;
+use crate::store::bounded::read_own_if_any;
 use crate::store::growing::Growing;
 
 /// The first line where there is one population.
@@ -76,7 +76,7 @@ impl Log {
         let mut text = header(populations);
         lines.iter().enumerate().for_each(|(generation, line)| text.push_str(&line.text(generation)));
         let kept =
-            if fs::symlink_metadata(path).is_ok() && !says_the_same(path, &text) { Some(keep(path)?) } else { None };
+            if fs::symlink_metadata(path).is_ok() && !says_the_same(path, &text)? { Some(keep(path)?) } else { None };
         Ok((Self { file: Growing::new(path, text.as_bytes())?, lines }, kept))
     }
 
@@ -108,17 +108,20 @@ impl Log {
 
 /// Whether a file holds this text, or a part of it, or the lines of later generations after it: what a process that was killed
 /// leaves.
-fn says_the_same(path: &Path, text: &str) -> bool {
-    let Ok(bytes) = read_own(path, LARGEST) else { return false };
+///
+/// # Errors
+/// [`Error::Io`].
+fn says_the_same(path: &Path, text: &str) -> Result<bool, Error> {
+    let Some(bytes) = read_own_if_any(path, LARGEST)? else { return Ok(false) };
     // A cut may fall into the middle of anything; from there on it is none of ours.
     let found = String::from_utf8_lossy(&bytes);
     let found = found.strip_prefix('\u{feff}').unwrap_or(&found).replace("\r\n", "\n").replace('\r', "\n");
-    let Some(more) = found.strip_prefix(text) else { return text.starts_with(&found) };
+    let Some(more) = found.strip_prefix(text) else { return Ok(text.starts_with(&found)) };
     let later = more.lines().zip(text.lines().count().saturating_sub(1)..);
-    later.into_iter().all(|(line, generation)| {
+    Ok(later.into_iter().all(|(line, generation)| {
         let start = format!("{generation},");
         line.starts_with(&start) || start.starts_with(line)
-    })
+    }))
 }
 
 /// Gives a file another name, one that nothing has.

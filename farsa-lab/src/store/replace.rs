@@ -95,7 +95,11 @@ pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<
 /// # Errors
 /// As [`create_results`].
 pub(crate) fn write_page(path: &Path, html: &str) -> Result<(), Error> {
-    if is_page(path) { replace(path, html.as_bytes()) } else { create_results(&[(path.to_owned(), html)]) }
+    if !is_page(path) {
+        return create_results(&[(path.to_owned(), html)]);
+    }
+    draft::sweep_of(path);
+    replace(path, html.as_bytes())
 }
 
 /// Whether a file is a page that a command of ours has made.
@@ -120,6 +124,10 @@ mod tests {
         write_page(&path("page.html"), &page("first")).unwrap();
         write_page(&path("page.html"), &page("second")).unwrap();
         assert_eq!(fs::read_to_string(path("page.html")).unwrap(), page("second"));
+        // What a process left that was killed meanwhile.
+        fs::write(path(".page.html.0123456789ab.new"), "<p>").unwrap();
+        write_page(&path("page.html"), &page("third")).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
         fs::write(path("notes.html"), "<p>mine</p>").unwrap();
         let error = write_page(&path("notes.html"), &page("third")).unwrap_err();
         assert!(error.to_string().ends_with("there is one already"), "{error}");
