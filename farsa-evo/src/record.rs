@@ -51,6 +51,9 @@ pub struct Record {
     frames: Vec<u8>,
     /// Saved states, the earliest first.
     keyframes: Vec<Keyframe>,
+    /// Their bytes, one after the other's: an allocation for each of them, small and kept for ever, would lie between those of a
+    /// generation and leave more memory unused than it takes.
+    states: Vec<u8>,
     /// The number of bytes of frames from which the next state is saved.
     next_keyframe: usize,
 }
@@ -65,11 +68,11 @@ pub struct RecordEntry<'r> {
 }
 
 /// The state of a strategy at a generation.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Keyframe {
     generation: u32,
-    state: Vec<u8>,
+    /// Where its bytes end.
+    end: usize,
 }
 
 impl Record {
@@ -91,9 +94,23 @@ impl Record {
     }
 
     fn empty(shape: Shape) -> Self {
-        let mut record = Self { shape, frames: Vec::new(), keyframes: Vec::new(), next_keyframe: 0 };
+        let mut record =
+            Self { shape, frames: Vec::new(), keyframes: Vec::new(), states: Vec::new(), next_keyframe: 0 };
         record.wait(0);
         record
+    }
+
+    /// The saved state in this place among them.
+    fn state(&self, place: usize) -> Option<&[u8]> {
+        let start = place.checked_sub(1).map_or(Some(0), |before| Some(self.keyframes.get(before)?.end))?;
+        self.states.get(start..self.keyframes.get(place)?.end)
+    }
+
+    /// Keeps the state of a strategy as it is now, and waits with the next.
+    fn keep_state(&mut self, state: &[u8]) {
+        self.states.extend_from_slice(state);
+        self.keyframes.push(Keyframe { generation: self.generations(), end: self.states.len() });
+        self.wait(state.len());
     }
 
     /// Waits with the next state until as many bytes of frames have been added as it is likely to take.
@@ -170,9 +187,7 @@ impl Record {
         let due = |strategy: &&mut dyn Snapshot| enough || since >= strategy.generations_between_states();
         let kept = self.shape.recorded != Kept::Genomes;
         if let Some(strategy) = strategy.snapshot().filter(|strategy| kept && due(strategy)) {
-            let state = strategy.save();
-            self.wait(state.len());
-            self.keyframes.push(Keyframe { generation: self.generations(), state });
+            self.keep_state(&strategy.save());
         }
         Ok(())
     }
@@ -216,7 +231,7 @@ impl Record {
 
     /// Bytes of what was recorded, saved states included.
     pub fn bytes(&self) -> usize {
-        self.frames.len() + self.keyframes.iter().map(|keyframe| keyframe.state.len()).sum::<usize>()
+        self.frames.len() + self.states.len()
     }
 
     /// The champions of a generation and what was recorded of it.
@@ -274,11 +289,12 @@ impl Record {
         if generation > latest || generation < strategy.generation() {
             return Err(EvoError::NoSuchGeneration { generation, latest });
         }
-        let usable = |keyframe: &&Keyframe| keyframe.generation <= generation;
-        let keyframe = self.keyframes.iter().rev().find(usable);
-        let keyframe = keyframe.filter(|keyframe| keyframe.generation > strategy.generation());
-        if let (Some(keyframe), Some(snapshot)) = (keyframe, strategy.snapshot()) {
-            snapshot.restore(&keyframe.state)?;
+        let usable = |keyframe: &Keyframe| keyframe.generation <= generation;
+        let keyframe = self.keyframes.iter().enumerate().rev().find(|(_, keyframe)| usable(keyframe));
+        let keyframe = keyframe.filter(|(_, keyframe)| keyframe.generation > strategy.generation());
+        let keyframe = keyframe.and_then(|(place, keyframe)| Some((keyframe, self.state(place)?)));
+        if let (Some((keyframe, state)), Some(snapshot)) = (keyframe, strategy.snapshot()) {
+            snapshot.restore(state)?;
             let found = strategy.generation();
             if found != keyframe.generation {
                 return Err(EvoError::StateContent { what: "the generation of a saved state", found: found.into() });
@@ -322,8 +338,7 @@ impl Record {
     pub fn entry(&self, generation: u32) -> Option<RecordEntry<'_>> {
         let frame = self.frames.chunks_exact(self.shape.frame().max(1)).nth(generation as usize)?;
         let place = self.keyframes.binary_search_by_key(&(generation + 1), |keyframe| keyframe.generation);
-        let state = place.ok().and_then(|place| self.keyframes.get(place));
-        Some(RecordEntry { frame, state: state.map(|keyframe| keyframe.state.as_slice()) })
+        Some(RecordEntry { frame, state: place.ok().and_then(|place| self.state(place)) })
     }
 
     /// Adds a generation as [`entry`](Self::entry) gave it, after those that there are; a strategy is told nothing.
@@ -336,12 +351,11 @@ impl Record {
         if found != expected {
             return Err(EvoError::StateLength { expected, found });
         }
-        let generation = self.generations().checked_add(1).ok_or(EvoError::LastGeneration)?;
+        self.generations().checked_add(1).ok_or(EvoError::LastGeneration)?;
         self.believe(entry.frame)?;
         self.frames.extend_from_slice(entry.frame);
         if let Some(state) = entry.state {
-            self.keyframes.push(Keyframe { generation, state: state.into() });
-            self.wait(state.len());
+            self.keep_state(state);
         }
         Ok(())
     }
@@ -382,7 +396,9 @@ impl Record {
         self.keyframes.retain(|keyframe| keyframe.generation <= generations);
         // The place of the next state follows from those before, so that a record that goes on is that of a search that
         // was never interrupted.
-        let last = self.keyframes.last().map(|keyframe| (keyframe.generation as usize, keyframe.state.len()));
+        self.states.truncate(self.keyframes.last().map_or(0, |keyframe| keyframe.end));
+        let state = self.keyframes.len().checked_sub(1).and_then(|last| self.state(last)).map_or(0, <[u8]>::len);
+        let last = self.keyframes.last().map(|keyframe| (keyframe.generation as usize, state));
         let (told, state) = last.unwrap_or_default();
         let genomes = self.shape.gene_bytes * self.shape.individuals * self.shape.genes;
         self.next_keyframe = told * self.shape.frame() + genomes.max(state);
@@ -419,13 +435,25 @@ fn order(fitness: &[Fitness]) -> Vec<usize> {
 struct RawRecord {
     shape: Shape,
     frames: Vec<u8>,
-    keyframes: Vec<Keyframe>,
+    keyframes: Vec<RawKeyframe>,
+}
+
+/// The state of a strategy at a generation, with its bytes.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "Keyframe")]
+struct RawKeyframe {
+    generation: u32,
+    state: Vec<u8>,
 }
 
 #[cfg(feature = "serde")]
 impl From<Record> for RawRecord {
-    fn from(Record { shape, frames, keyframes, .. }: Record) -> Self {
-        Self { shape, frames, keyframes }
+    fn from(record: Record) -> Self {
+        let states = (0..).map_while(|place| record.state(place).map(Vec::from));
+        let keyframes = record.keyframes.iter().zip(states);
+        let keyframes = keyframes.map(|(&Keyframe { generation, .. }, state)| RawKeyframe { generation, state });
+        Self { shape: record.shape, keyframes: keyframes.collect(), frames: record.frames }
     }
 }
 
@@ -436,7 +464,11 @@ impl TryFrom<RawRecord> for Record {
     fn try_from(raw: RawRecord) -> Result<Self, EvoError> {
         let RawRecord { shape, frames, keyframes } = raw;
         shape.check_read()?;
-        let mut record = Self { keyframes, ..Self::empty(shape) };
+        let mut record = Self::empty(shape);
+        for RawKeyframe { generation, state } in keyframes {
+            record.states.extend(state);
+            record.keyframes.push(Keyframe { generation, end: record.states.len() });
+        }
         let whole = frames.len().is_multiple_of(shape.frame());
         if !whole || u32::try_from(frames.len() / shape.frame()).is_err() {
             return Err(EvoError::StateLength { expected: shape.frame(), found: frames.len() });
