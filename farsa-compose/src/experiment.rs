@@ -14,7 +14,7 @@ use crate::arena::composition::Composition;
 use crate::arena::episode::ArenaEpisode;
 use crate::check::embed::embedded;
 use crate::check::places::Places;
-use crate::check::schema::{scene_schema, schema};
+use crate::check::schema::{SCHEMA, scene_schema};
 use crate::check::settings::{Entry, apply, entries};
 use crate::check::walk;
 use crate::composed::Composed;
@@ -96,14 +96,14 @@ impl ComposedExperiment {
         folder: Option<&Path>,
         strategies: &[&'static dyn StrategyDefinition],
     ) -> Result<Self, Error> {
-        let schema = schema();
-        let (value, mut places) = walk::read(file, text, &schema)?;
+        let schema = &*SCHEMA;
+        let (value, mut places) = walk::read(file, text, schema)?;
         let mut document: Document =
             serde_json::from_value(value).map_err(|error| Error::Usage(format!("{file}: {error}")))?;
         if let Some(text) = embedded(file, text, folder, &document, &places)? {
             return Self::read(file, &text, None, strategies);
         }
-        add_scene(&mut document, &schema, &mut places)?;
+        add_scene(&mut document, schema, &mut places)?;
         let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         if !is_name(stem) {
             let why = "is the name of the experiment: 1 to 40 lower-case letters, digits, - and _, the first no sign";
@@ -120,7 +120,7 @@ impl ComposedExperiment {
         };
         let gene_bits = document.genome.bits;
         let value = serde_json::to_value(&document).map_err(|error| Error::Other(error.to_string()))?;
-        let entries = entries(&value, &schema);
+        let entries = entries(&value, schema);
         let searched = searched(&document, own, &places)?;
         let names: Vec<&'static str> = document.conditions.iter().map(|condition| leaked(&condition.name)).collect();
         if let Some(index) = (1..names.len()).find(|index| names[..*index].contains(&names[*index])) {

@@ -13,6 +13,9 @@ mod experiment;
 mod export;
 #[cfg(feature = "command")]
 mod figures;
+#[cfg(feature = "fuzzing")]
+#[doc(hidden)]
+pub mod fuzzing;
 #[cfg(feature = "command")]
 mod json;
 mod live;

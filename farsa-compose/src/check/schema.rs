@@ -1,5 +1,7 @@
 //! What a schema says of one value.
 
+use std::sync::LazyLock;
+
 use serde_json::{Map, Value};
 
 use crate::document::Document;
@@ -11,6 +13,9 @@ pub fn schema() -> Value {
     close(&mut schema);
     schema
 }
+
+/// The same for readers, made once: that takes a megabyte, whatever is read.
+pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(schema);
 
 /// The schema of a file that has objects only.
 pub(crate) fn scene_schema(schema: &Value) -> Value {

@@ -1,5 +1,6 @@
 //! The command: `main` for any set of experiments.
 
+use std::ffi::OsString;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -73,8 +74,7 @@ fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
     let program = program();
     let exchange = Rc::new(Exchange::new(ranks));
     let sharing = exchange.sharing().unwrap_or(1);
-    let parsed = manual::command(&program, laboratory).try_get_matches();
-    let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
+    let cli = match read(&program, laboratory, std::env::args_os()) {
         Ok(cli) => cli,
         Err(error) => {
             let text = error.to_string();
@@ -96,6 +96,18 @@ fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
     let code = invocation.told(result);
     let dismissed = if followed { invocation.dismiss(code) } else { Ok(()) };
     ExitCode::from(dismissed.map_or_else(|error| invocation.told(Err(error)), |()| code))
+}
+
+/// Reads a command line, whose first word is the program's.
+///
+/// # Errors
+/// What is wrong with it; help and version, which are printed instead, as well.
+pub(crate) fn read(
+    program: &str,
+    laboratory: &Laboratory<'_>,
+    words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+) -> Result<Cli, clap::Error> {
+    Cli::from_arg_matches(&manual::command(program, laboratory).try_get_matches_from(words)?)
 }
 
 /// What the user calls this program.

@@ -145,7 +145,7 @@ impl States {
         recorded::write(directory.path(), (&path, &bytes), &json, record)
     }
 
-    fn csv(&self, path: &Path) -> Result<Vec<u8>, Error> {
+    pub(crate) fn csv(&self, path: &Path) -> Result<Vec<u8>, Error> {
         let wrong = |error: csv::Error| Error::io("write", path)(error.into());
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(HEAD.into_iter().chain(self.neurons.iter().map(String::as_str))).map_err(wrong)?;
@@ -159,7 +159,7 @@ impl States {
         writer.into_inner().map_err(|error| Error::io("write", path)(error.into_error()))
     }
 
-    fn from_text(text: &str) -> Result<Self, String> {
+    pub(crate) fn from_text(text: &str) -> Result<Self, String> {
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let head = reader.headers().map_err(|error| error.to_string())?;
         if !head.iter().take(HEAD.len()).eq(HEAD) || !text.ends_with('\n') {

@@ -1,0 +1,255 @@
+//! The readers of a run's files, of configurations and of command lines, one call each: for the fuzz targets in `fuzz/`.
+//!
+//! Why they are here: the one public way to them is [`Laboratory::main`], which takes the arguments of the process, starts threads,
+//! writes the files of a run and waits for the disk. A target calls a reader ten million times. This is no part of the
+//! interface: it is hidden, behind a feature that nothing else asks for, and may change with any version.
+
+use std::fs;
+use std::path::Path;
+
+use farsa_evo::{EvoError, Judgements};
+
+use crate::command::cli;
+use crate::error::Error;
+use crate::evaluation::protocols::files::ProtocolRecord;
+use crate::evaluation::protocols::found::FoundCase;
+use crate::evaluation::protocols::states::States;
+use crate::evaluation::protocols::table::ProtocolTable;
+use crate::evaluation::test::Record as TestRecord;
+use crate::evaluation::test_table::Table;
+use crate::experiment::evaluator::Evaluator;
+use crate::experiment::genotype::Genotype;
+use crate::run::config_file::ConfigFile;
+use crate::run::laboratory::Laboratory;
+use crate::run::plan::Plan;
+use crate::run::records::{Champions, Checkpoint, imported, write_imported};
+use crate::run::told::Told;
+use crate::store::directory::Directory;
+use crate::store::failures::Failures;
+use crate::store::growing::Mark;
+use crate::store::lineage::{HEADER, Lineage};
+use crate::store::log::{Log, header};
+use crate::store::manifest::Manifest;
+use crate::store::sealed;
+use crate::strategy::search::Search;
+use crate::sweep::SweepFile;
+
+/// Reads a command line, and does nothing of what it asks for.
+///
+/// # Errors
+/// What the command prints.
+pub fn read_command_line(laboratory: &Laboratory<'_>, words: &[&str]) -> Result<(), String> {
+    cli::read("farsa", laboratory, words).map(drop).map_err(|error| error.to_string())
+}
+
+/// Reads a configuration, and writes it as a run keeps it.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn read_configuration(laboratory: &Laboratory<'_>, text: &str) -> Result<String, Error> {
+    Plan::from_file(laboratory, &ConfigFile::parse("config.toml", text)?)?.to_toml()
+}
+
+/// Reads the file of a sweep.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn read_sweep(text: &str) -> Result<(), Error> {
+    SweepFile::parse("sweep.toml", text).map(drop)
+}
+
+/// Reads a table of trials and writes it again.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn read_trials(text: &str, terms: &[String]) -> Result<Vec<u8>, Error> {
+    let path = Path::new("test.csv");
+    let table = Table::from_text(path, text)?;
+    let (findings, _) = (table.findings(terms).text(), table.aligned());
+    drop(findings);
+    table.csv(path)
+}
+
+/// Reads the table of a protocol and writes it again.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn read_cases(text: &str, terms: &[String]) -> Result<Vec<u8>, Error> {
+    let path = Path::new("cases.csv");
+    let table = ProtocolTable::from_text(path, text)?;
+    for found in FoundCase::all(&table, terms) {
+        drop(found.case());
+    }
+    table.csv(path)
+}
+
+/// Reads the states of neurons and writes them again.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn read_states(text: &str) -> Result<Vec<u8>, Error> {
+    let path = Path::new("states.csv");
+    States::from_text(text).map_err(|why| Error::damaged(path, why))?.csv(path)
+}
+
+/// Reads the records of a test and of a protocol's, and writes the one that it is.
+///
+/// # Errors
+/// That it is neither.
+pub fn read_test_record(text: &str) -> Result<String, Error> {
+    let written = match serde_json::from_str::<TestRecord>(text) {
+        Ok(record) => serde_json::to_string(&record),
+        Err(_) => serde_json::from_str::<ProtocolRecord>(text).and_then(|record| serde_json::to_string(&record)),
+    };
+    written.map_err(|error| Error::damaged(Path::new("test.json"), error))
+}
+
+/// Reads the manifest in a file, and writes it there again.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn read_manifest(path: &Path) -> Result<(), Error> {
+    let manifest = Manifest::read(path)?;
+    manifest.sessions.iter().for_each(|session| drop((session.machine.cores(), session.machine.describe())));
+    manifest.write(path)
+}
+
+/// What the files of one run are read by.
+pub struct RunReader<'l> {
+    plan: Plan<'l>,
+    evaluator: Box<dyn Evaluator>,
+    genotype: Genotype,
+}
+
+impl<'l> RunReader<'l> {
+    /// A reader of runs of this configuration.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn new(laboratory: &Laboratory<'l>, configuration: &str) -> Result<Self, Error> {
+        let plan = Plan::from_file(laboratory, &ConfigFile::parse("config.toml", configuration)?)?;
+        let evaluator = plan.evaluator()?;
+        let genotype = plan.genotype(evaluator.as_ref());
+        Ok(Self { plan, evaluator, genotype })
+    }
+
+    /// The head of the record of a run that has no generation yet.
+    ///
+    /// # Errors
+    /// What keeps it from being written.
+    pub fn record_head(&self) -> Result<Vec<u8>, Error> {
+        let strategy = self.plan.definition().name().to_owned();
+        let head = crate::run::records::RecordHead { identity: self.plan.identity()?, strategy };
+        sealed::to_bytes(Path::new("record.bin"), &head)
+    }
+
+    /// Reads a checkpoint, goes on from its state for a generation, and writes it.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    ///
+    /// # Panics
+    /// When a state that was restored is saved as another.
+    pub fn checkpoint(&self, bytes: &[u8]) -> Result<Vec<u8>, Error> {
+        let path = Path::new("checkpoint.bin");
+        let damaged = |error: EvoError| Error::damaged(path, error);
+        let checkpoint: Checkpoint = sealed::open(bytes).map_err(|why| Error::damaged(path, why))?;
+        self.plan.same_run(&checkpoint.identity, Path::new("."))?;
+        let written = sealed::to_bytes(path, &checkpoint)?;
+        let mut search = self.plan.strategy()?;
+        if let (Some(state), Some(strategy)) = (&checkpoint.state, search.snapshot()) {
+            strategy.restore(state).map_err(damaged)?;
+            let saved = strategy.save();
+            strategy.restore(&saved).map_err(damaged)?;
+            assert!(strategy.save() == saved, "a state that was restored is saved as another");
+            self.go_on(&mut search).map_err(damaged)?;
+        }
+        Ok(written)
+    }
+
+    /// Reads a record of so many generations, and rebuilds the genomes of each.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    ///
+    /// # Panics
+    /// When an entry that was read is written as another.
+    pub fn record(&self, content: &[u8], generation: u32) -> Result<(), Error> {
+        let (directory, nothing) = (Directory::at(".".into()), Mark::default());
+        let record = Mark::of(content);
+        let identity = self.plan.identity()?;
+        let checkpoint = Checkpoint { identity, generation, record, lineage: nothing, failures: nothing, state: None };
+        let told = Told::from_content(&self.plan, &directory, &checkpoint, content.into())?;
+        let damaged = |error: EvoError| Error::damaged(&directory.record(), error);
+        let mut search = self.plan.strategy()?;
+        let mut again = self.plan.strategy()?.record().map_err(damaged)?;
+        for number in 0..generation {
+            search.genomes(&told.record, number).map_err(damaged)?;
+            let entry = told.record.entry(number).ok_or_else(|| Error::damaged(&directory.record(), "has no entry"))?;
+            again.push(entry).map_err(damaged)?;
+            assert!(again.entry(number) == Some(entry), "an entry that was read is written as another");
+        }
+        search.rebuild(&told.record, generation).map_err(damaged)?;
+        self.go_on(&mut search).map_err(damaged)
+    }
+
+    /// Reads `champion.bin` of a directory, and writes it there again.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn champions(&self, path: &Path) -> Result<(), Error> {
+        let directory = Directory::at(path.into());
+        let champions = Champions::read(&self.plan, &directory)?;
+        champions.write(&directory.champion())?;
+        let again = Champions::read_checked(&self.plan, &directory, self.evaluator.as_ref())?;
+        for best in &again.best {
+            if best.genes.decode(&self.genotype).is_none() {
+                return Err(Error::damaged(&directory.champion(), "its genome is no individual"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads `genotypes.bin` of a directory, and writes it there again.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn genotypes(&self, path: &Path) -> Result<(), Error> {
+        let directory = Directory::at(path.into());
+        let (identity, genomes, populations) = imported(&self.plan, &directory)?;
+        write_imported(&directory.genotypes(), identity, genomes, populations)
+    }
+
+    /// Takes up the logs of a directory where a run without a generation left them: what is in `fitness.csv`, `lineage.csv` and
+    /// `failures.csv`. Returns whether the log was kept under another name.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    ///
+    /// # Panics
+    /// When a log that was taken up says something else than the run.
+    pub fn logs(&self, path: &Path) -> Result<bool, Error> {
+        let directory = Directory::at(path.into());
+        let populations = self.evaluator.populations().len();
+        let (_, kept) = Log::resume(&directory.log(), Vec::new(), populations)?;
+        let written = fs::read(directory.log()).map_err(Error::io("read", &directory.log()))?;
+        assert!(written == header(populations).as_bytes(), "a log that was taken up says something else");
+        let lineage = Mark::of(HEADER.as_bytes());
+        Lineage::resume(&directory.lineage(), lineage, |_| Ok(()))?;
+        Failures::resume(&directory.failures(), lineage)?;
+        if let Some(kept) = &kept {
+            fs::remove_file(kept).map_err(Error::io("remove", kept))?;
+        }
+        Ok(kept.is_some())
+    }
+
+    /// Tells a generation some fitness, as a run that goes on does.
+    fn go_on(&self, search: &mut Search) -> Result<(), EvoError> {
+        // What cannot be decoded ends a run with an error.
+        let _ = search.parameters(&self.genotype);
+        let shape = search.judged_by();
+        let numbers = search.individuals().saturating_mul(shape.width());
+        let values = (0..numbers).map(|number| (number * 7 % 11) as f64).collect();
+        search.tell_unrecorded(&Judgements::new(shape, values)?)
+    }
+}

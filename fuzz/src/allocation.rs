@@ -1,0 +1,90 @@
+//! How much memory a reader takes at once: an allocator that counts.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::Once;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+/// Bytes that any reader may take, however short its input.
+const SPARE: usize = 1 << 20;
+/// Bytes that it may take for each byte of its input.
+const EACH: usize = 16;
+
+struct Counting;
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+static NOW: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+/// What was taken by the reader that came nearest to what is allowed: bytes, bytes of the input, and that per thousand.
+static MOST: [AtomicUsize; 3] = [const { AtomicUsize::new(0) }; 3];
+static AT_EXIT: Once = Once::new();
+
+fn grown(bytes: usize) {
+    let now = NOW.fetch_add(bytes, Relaxed).wrapping_add(bytes);
+    PEAK.fetch_max(now, Relaxed);
+}
+
+// SAFETY: all is left to the system's allocator; beside it only numbers are changed.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        grown(layout.size());
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        grown(layout.size());
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        NOW.fetch_sub(layout.size(), Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(place, layout) }
+    }
+
+    unsafe fn realloc(&self, place: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        if size >= layout.size() {
+            grown(size - layout.size());
+        } else {
+            NOW.fetch_sub(layout.size() - size, Relaxed);
+        }
+        // SAFETY: as the caller promises.
+        unsafe { System.realloc(place, layout, size) }
+    }
+}
+
+unsafe extern "C" {
+    safe fn atexit(done: extern "C" fn()) -> i32;
+}
+
+extern "C" fn tell() {
+    let [used, input, share] = MOST.each_ref().map(|number| number.load(Relaxed));
+    let share = share as f64 / 10.0;
+    eprintln!("most memory: {used} bytes at once for an input of {input} bytes, {share} % of what is allowed");
+}
+
+/// Runs a reader of an input of so many bytes.
+///
+/// # Panics
+/// When it takes more than 16 times as many bytes at once, and 1 MiB.
+pub fn bounded<T>(input: usize, read: impl FnOnce() -> T) -> T {
+    AT_EXIT.call_once(|| {
+        atexit(tell);
+    });
+    let before = NOW.load(Relaxed);
+    PEAK.store(before, Relaxed);
+    let result = read();
+    let used = PEAK.load(Relaxed).saturating_sub(before);
+    let allowed = input.saturating_mul(EACH).saturating_add(SPARE);
+    let share = used.saturating_mul(1000) / allowed;
+    if share > MOST[2].load(Relaxed) {
+        for (most, number) in MOST.iter().zip([used, input, share]) {
+            most.store(number, Relaxed);
+        }
+    }
+    assert!(used <= allowed, "an input of {input} bytes took {used} bytes at once, where {allowed} are allowed");
+    result
+}

@@ -1,0 +1,24 @@
+//! What the fuzz targets share.
+
+/// How much memory a reader takes at once.
+mod allocation;
+/// The experiment whose runs the targets read.
+mod experiment;
+/// Models of robots that are the same.
+mod models;
+/// How the fuzzer changes texts.
+mod mutation;
+/// Readers of runs by each strategy.
+mod runs;
+/// Directories in memory.
+mod scratch;
+/// Lengths, hashes and checksums that are right.
+mod seal;
+
+pub use allocation::bounded;
+pub use experiment::{TUNE, laboratory};
+pub use models::same_model;
+pub use mutation::mutated;
+pub use runs::{configurations, selected, with_run};
+pub use scratch::Scratch;
+pub use seal::{sealed_controller, sealed_file, sealed_head};

@@ -1,0 +1,53 @@
+//! Readers of runs by each strategy.
+
+use farsa_lab::fuzzing::RunReader;
+use farsa_lab::strategies;
+
+thread_local! {
+    /// Of all strategies alone, in the order in which they are listed; then of those that have opponents.
+    static READERS: Vec<RunReader<'static>> = readers();
+}
+
+fn readers() -> Vec<RunReader<'static>> {
+    let laboratory = crate::laboratory();
+    let read = |(name, text): (String, String)| {
+        RunReader::new(&laboratory, &text).unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
+    configurations().into_iter().map(read).collect()
+}
+
+/// The configurations of the readers, each with a name.
+pub fn configurations() -> Vec<(String, String)> {
+    let mut all = Vec::new();
+    for (condition, without) in [("alone", &["generalist"][..]), ("chase", &["one-plus-one", "learning"])] {
+        for strategy in strategies().iter().map(|strategy| strategy.name()).filter(|name| !without.contains(name)) {
+            all.push((format!("{condition}-{strategy}"), configuration(condition, strategy)));
+        }
+    }
+    all
+}
+
+/// Calls `read` with the reader of runs of a strategy, which a byte of the input selects.
+pub fn with_run<T>(byte: u8, read: impl FnOnce(&RunReader<'static>) -> T) -> T {
+    READERS.with(|readers| read(&readers[usize::from(byte) % readers.len()]))
+}
+
+fn configuration(condition: &str, strategy: &str) -> String {
+    let head =
+        format!("experiment = \"tune\"\ncondition = \"{condition}\"\nstrategy.name = \"{strategy}\"\nseed = 1\n");
+    // Beside the population, which the trials of several count by.
+    let more = match (condition, strategy) {
+        ("alone", _) => return format!("{head}evolution.generations = 2\n"),
+        (_, "truncation" | "novelty-search") => "evolution.parents = 2\n",
+        (_, "evolution-strategy") => "strategy.parents = 2\n",
+        (_, "generalist") => "strategy.newcomers = 5\nstrategy.iterations = 2\n",
+        (_, "cma-me") => "strategy.emitters = 2\n",
+        _ => "",
+    };
+    format!("{head}evolution.generations = 2\nevolution.population = 10\n{more}")
+}
+
+/// The first bytes of an input, which select, and the rest; none where there are fewer.
+pub fn selected<const N: usize>(input: &[u8]) -> Option<([u8; N], &[u8])> {
+    input.split_first_chunk().map(|(first, rest)| (*first, rest))
+}
