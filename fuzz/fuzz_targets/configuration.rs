@@ -2,7 +2,7 @@
 #![no_main]
 
 use farsa_compose::ComposedExperiment;
-use farsa_fuzz::{bounded, laboratory};
+use farsa_fuzz::{bounded_toml, laboratory};
 use farsa_lab::fuzzing::{read_configuration, read_sweep};
 use libfuzzer_sys::fuzz_target;
 
@@ -11,9 +11,9 @@ farsa_fuzz::text!();
 // The schema is made once, and is no part of what an input takes.
 fuzz_target!(init: drop(ComposedExperiment::from_text("warm.toml", "", farsa_lab::strategies())), |input: &[u8]| {
     let Ok(text) = std::str::from_utf8(input) else { return };
-    let _ = bounded(input.len(), || read_sweep(text));
+    let _ = bounded_toml(input.len(), || read_sweep(text));
     let laboratory = laboratory();
-    if let Ok(written) = bounded(input.len(), || read_configuration(&laboratory, text)) {
+    if let Ok(written) = bounded_toml(input.len(), || read_configuration(&laboratory, text)) {
         let again = read_configuration(&laboratory, &written).expect("what was written is read");
         assert_eq!(again, written);
     }

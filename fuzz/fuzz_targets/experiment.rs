@@ -2,7 +2,7 @@
 #![no_main]
 
 use farsa_compose::ComposedExperiment;
-use farsa_fuzz::bounded;
+use farsa_fuzz::bounded_toml;
 use farsa_lab::Experiment as _;
 use libfuzzer_sys::fuzz_target;
 
@@ -15,7 +15,7 @@ farsa_fuzz::text!();
 // The schema is made once, and is no part of what an input takes.
 fuzz_target!(init: drop(read("")), |input: &[u8]| {
     let Ok(text) = std::str::from_utf8(input) else { return };
-    let Some(experiment) = bounded(input.len(), || read(text)) else { return };
+    let Some(experiment) = bounded_toml(input.len(), || read(text)) else { return };
     let kept = experiment.definition().expect("the text that a run keeps");
     let again = read(kept).expect("what a run keeps is read");
     assert_eq!(again.definition(), Some(kept));

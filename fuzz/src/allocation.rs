@@ -8,6 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 const SPARE: usize = 1 << 20;
 /// Bytes that it may take for each byte of its input.
 const EACH: usize = 16;
+/// The same for TOML: its document is a tree that has some hundred bytes for an element of two, such as `1,`.
+const EACH_OF_TOML: usize = 128;
 
 struct Counting;
 
@@ -71,6 +73,18 @@ extern "C" fn tell() {
 /// # Panics
 /// When it takes more than 16 times as many bytes at once, and 1 MiB.
 pub fn bounded<T>(input: usize, read: impl FnOnce() -> T) -> T {
+    bounded_by(EACH, input, read)
+}
+
+/// The same of a reader of TOML.
+///
+/// # Panics
+/// When it takes more than 128 times as many bytes at once, and 1 MiB.
+pub fn bounded_toml<T>(input: usize, read: impl FnOnce() -> T) -> T {
+    bounded_by(EACH_OF_TOML, input, read)
+}
+
+fn bounded_by<T>(each: usize, input: usize, read: impl FnOnce() -> T) -> T {
     AT_EXIT.call_once(|| {
         atexit(tell);
     });
@@ -78,7 +92,7 @@ pub fn bounded<T>(input: usize, read: impl FnOnce() -> T) -> T {
     PEAK.store(before, Relaxed);
     let result = read();
     let used = PEAK.load(Relaxed).saturating_sub(before);
-    let allowed = input.saturating_mul(EACH).saturating_add(SPARE);
+    let allowed = input.saturating_mul(each).saturating_add(SPARE);
     let share = used.saturating_mul(1000) / allowed;
     if share > MOST[2].load(Relaxed) {
         for (most, number) in MOST.iter().zip([used, input, share]) {

@@ -15,7 +15,7 @@ mod scratch;
 /// Lengths, hashes and checksums that are right.
 mod seal;
 
-pub use allocation::bounded;
+pub use allocation::{bounded, bounded_toml};
 pub use experiment::{TUNE, laboratory};
 pub use models::same_model;
 pub use mutation::mutated;
