@@ -2,12 +2,23 @@
 
 import json
 import shutil
+from contextlib import contextmanager
 
 from content import copy, forget_tests, nothing_but, same_run
 from program import Lost
 
 # What a reader may say of a run that has not come to its first save.
 EARLY = ("no generation is finished yet", "there is no such directory", "there is none")
+
+
+@contextmanager
+def after(result):
+    """What is lost within names this command, too, as the one that came before."""
+    try:
+        yield
+    except Lost as lost:
+        lost.command = f"{result.command}\n  then:    {lost.command}"
+        raise
 
 
 def read(program, here, experiment, finished=False):

@@ -1,10 +1,9 @@
 """Errors of the operating system, injected into every call that changes files."""
 
-from aftermath import complete, read, whole
+from aftermath import after, complete, read, whole
 from calls import FAILED
 from content import copy
 from phases import phases
-from program import Lost
 
 ERRORS = ["ENOSPC", "EIO", "EACCES", "EROFS", "EDQUOT", "EMFILE"]
 
@@ -35,14 +34,11 @@ def fail(campaign, experiment, before, arguments, fault):
         result = farsa.run(here, arguments, inject=inject, clock="slow")
         # It cannot say what is wrong if that very call fails.
         result.check(silent=name == "write")
-        try:
+        with after(result):
             if result.code == 0:
                 whole(here, reference, result)
             read(farsa, here, experiment)
             complete(farsa, here, experiment, reference)
-        except Lost as lost:
-            lost.command = f"{result.command}\n  then:    {lost.command}"
-            raise
 
     return try_it
 

@@ -1,6 +1,6 @@
 """Kills at every system call of a run, as it begins and as it is gone on with."""
 
-from aftermath import as_saved, complete, read
+from aftermath import after, as_saved, complete, read
 from calls import KILLED
 from content import copy
 from phases import phases
@@ -18,14 +18,11 @@ def kill(campaign, experiment, before, arguments, call):
         result = farsa.run(here, arguments, inject=inject, clock="slow")
         if result.code != -9:
             raise Lost(f"was not killed but ended with {result.code}: {result.said()}", result)
-        try:
+        with after(result):
             read(farsa, here, experiment)
             as_saved(campaign, here, experiment)
             complete(farsa, here, experiment, reference)
             read(farsa, here, experiment, finished=True)
-        except Lost as lost:
-            lost.command = f"{result.command}\n  then:    {lost.command}"
-            raise
 
     return try_it
 

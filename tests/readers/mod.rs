@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The settings of cargo that the readers' projects are built with: the profile of the workspace in place of their own, so that
-/// they share with its tests what those have compiled. In `./ci long` there are none, and each project has its own profile.
+/// they share with its tests what those have compiled of others' crates. In `./ci long` there are none, and each project has its own profile.
 pub(crate) fn settings() -> String {
     if std::env::var_os("FARSA_LONG").is_some() {
         return String::new();
