@@ -9,7 +9,7 @@ from program import Lost, Program
 
 # What a generation may leave in memory [byte], and how many generations of these runs there are for
 # one of the first; docs/command.md says what it is.
-SHARES = [(ONE, 160, 1), (SEVERAL, 2000, 25), (COLLECTION, 1000, 50)]
+SHARES = [(ONE, 160, 1), (SEVERAL, 2600, 25), (COLLECTION, 1000, 50)]
 # What a run may take beside that [byte].
 BASE = 24 << 20
 # The same of the 20 individuals of the soak.
