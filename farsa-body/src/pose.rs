@@ -153,6 +153,14 @@ mod tests {
         }
 
         #[test]
+        fn a_heading_is_that_of_the_x_axis_seen_from_above(a in pose()) {
+            let [x, y, _] = a.rotate([1.0, 0.0, 0.0]);
+            let (sine, cosine) = farsa_num::sin_cos(a.heading());
+            let length = norm(&[x, y]);
+            prop_assert!((length * cosine - x).abs() < 1e-13 && (length * sine - y).abs() < 1e-13, "{:?}", a);
+        }
+
+        #[test]
         fn cast_rounds_once(a in pose()) {
             let narrow: Pose = a.cast();
             prop_assert_eq!(narrow.position, a.position.map(|x| x as f32));

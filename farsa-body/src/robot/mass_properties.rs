@@ -109,8 +109,9 @@ impl MassProperties {
             return true;
         }
         let trace = xx + yy + zz;
-        // Flat and thin bodies lie on the border of what is possible: rounding may have pushed them over it.
-        let slack = 1e-9 * trace.abs();
+        // Flat and thin bodies lie on the border of what is possible: rounding may have pushed them over it. Of a rod that lies
+        // obliquely two moments are as small as the slack, whose square has to be larger than rounding.
+        let slack = 1e-7 * trace.abs();
         let floor = if moving { 0.0 } else { slack };
         // Half the trace less the inertia is the second moment of the mass, which has no negative eigenvalue.
         let half = trace / 2.0 + slack;
@@ -201,6 +202,21 @@ mod tests {
         assert!(both.centre.iter().all(|x| x.abs() < 1e-15));
         let nothing = MassProperties { mass: 0.0, centre: [1.0; 3], inertia: [0.0; 6] };
         assert_eq!(nothing.with(&nothing).centre, [1.0; 3]);
+    }
+
+    #[test]
+    fn rods_may_be_thin_in_any_direction() {
+        for k in 0..500 {
+            let angle = 0.37 * f64::from(k);
+            let q = Quaternion::new(0.4, angle.fract() - 0.5, (1.7 * angle).fract() - 0.5, (2.3 * angle).fract() - 0.5);
+            let q = UnitQuaternion::from_quaternion(q).coords;
+            let placement = Pose { position: [1.0, -0.5, 0.3], rotation: [q.x, q.y, q.z, q.w] };
+            for radius in [0.0, 1e-9, 1e-6, 1e-3] {
+                let rod = MassProperties::cylinder(0.5, radius, 0.5).placed(&placement);
+                assert!(rod.is_physical(false), "{k}: {radius} m");
+                assert!(rod.is_physical(true) || radius < 1e-3, "{k}: {radius} m");
+            }
+        }
     }
 
     #[test]

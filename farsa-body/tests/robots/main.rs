@@ -8,9 +8,13 @@ mod cameras;
 #[cfg(feature = "alloc")]
 mod conformance;
 #[cfg(feature = "alloc")]
+mod descriptions;
+#[cfg(feature = "alloc")]
 mod eyes;
 #[cfg(feature = "alloc")]
 mod icub;
+#[cfg(feature = "alloc")]
+mod inverse_kinematics;
 mod lanes;
 #[cfg(feature = "alloc")]
 mod mobile;
@@ -19,7 +23,13 @@ mod planar_conformance;
 #[cfg(feature = "alloc")]
 mod planar_sensors;
 #[cfg(feature = "alloc")]
+mod rays_left_out;
+#[cfg(feature = "alloc")]
 mod sensors_and_motors;
 mod serialised;
+#[cfg(feature = "alloc")]
+mod turned_scenes;
+#[cfg(feature = "alloc")]
+mod vehicles;
 #[cfg(feature = "alloc")]
 mod wrappers;

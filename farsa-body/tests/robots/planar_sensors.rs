@@ -193,6 +193,11 @@ fn measured_readings_are_looked_up_and_added() {
     let mut world = PlaneWorld::new();
     let parts = world.add_robot(&robot, [0.5, 0.5], PI / 4.0);
     let tables = tables();
+    // Three distances of 2 mm each from 5 mm on.
+    assert!((tables.range() - 0.011).abs() < 1e-6 && tables.sensors() == 8);
+    let far = InfraredTable::parse("8 1 1 5 30\nTURN 0\n0 0 0 0 0 0 0 0\nEND").unwrap();
+    let farther = InfraredTables::new(table(8, 0), vec![(0.01, far), (0.02, table(8, 0))]).unwrap();
+    assert!((farther.range() - 0.035).abs() < 1e-6, "of several the farthest");
     let mut sensor = SampledInfrared::new(parts.body, 0.035, &tables).unwrap();
     let expect = |rows: &[usize]| -> Vec<f32> {
         (0..8).map(|s| rows.iter().map(|row| (row + s) as f32 / 1024.0).sum::<f32>().min(1.0)).collect()

@@ -173,6 +173,14 @@ fn places_are_read_in_either_axes() {
     let way = read(&mut TargetPosition::new(target, own, Axes::Body, 1.0).unwrap(), &world);
     assert!(near(&way, &[0.0, 0.0, rise - 0.2]), "{way:?}");
     assert!(near(&read(&mut Height::new(own), &world), &[0.5 - rise + 0.2]));
+    // The way leads from the one point to the other, wherever they are.
+    let (from, to) = (Point { body: BodyId(0), at: [0.3, -0.1, 0.2] }, Point { body: BodyId(1), at: [-0.2, 0.5, 0.1] });
+    let (here, there) = (world.pose(BodyId(0)), world.pose(BodyId(1)).transform(to.at));
+    let way = read(&mut TargetPosition::new(to, from, Axes::World, 1.0).unwrap(), &world);
+    let at = here.transform(from.at);
+    assert!(near(&[0, 1, 2].map(|i| at[i] + way[i]), &there), "{way:?}");
+    let way = read(&mut TargetPosition::new(to, from, Axes::Body, 1.0).unwrap(), &world);
+    assert!(near(&here.transform([0, 1, 2].map(|i| from.at[i] + way[i])), &there), "{way:?}");
     let h = FRAC_1_SQRT_2;
     assert!(near(&read(&mut BodyPose::new(BodyId(0)), &world), &[0.0, 0.0, 0.5 - rise, 0.0, 0.0, h, h]));
     let turn = 0.3 * PointWorld::TURN;

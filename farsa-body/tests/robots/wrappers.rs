@@ -181,6 +181,25 @@ fn normal_noise_has_its_moments() {
 }
 
 #[test]
+fn a_threshold_is_passed_above_it() {
+    let ticks = [[0.5, 0.500_1, 0.499_9]];
+    assert_eq!(sensed!(Thresholded::new(signal(), 0.5).unwrap(), &ticks), [[0.0, 1.0, 0.0]]);
+}
+
+#[test]
+fn uniform_noise_fills_its_range_evenly() {
+    let ticks = vec![[2.0; N]; 20_000];
+    let noise = sensed!(Noisy::new(signal(), Noise::Uniform(0.5), stream(0)).unwrap(), &ticks);
+    let mut parts = [0_u32; 10];
+    for x in noise.into_iter().flatten() {
+        parts[((x - 1.5) * 10.0).clamp(0.0, 9.0) as usize] += 1;
+    }
+    // A tenth of the values in each tenth of the range, within five standard errors.
+    let (each, error) = (6000.0, (60_000.0_f64 * 0.1 * 0.9).sqrt());
+    assert!(parts.iter().all(|&count| (f64::from(count) - each).abs() < 5.0 * error), "{parts:?}");
+}
+
+#[test]
 fn a_channel_can_be_made_to_stick_in_the_middle_of_a_life() {
     let mut sensor = Stuck::new(signal(), 0..1, StuckAt::Last, u32::MAX).unwrap();
     let set = |s: &mut Stuck<Signal<N>, Vec<f32>>, values| s.inner_mut().set(values);

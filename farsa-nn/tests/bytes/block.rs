@@ -230,6 +230,10 @@ fn nothing_is_written_that_would_not_be_read() {
     blocks[3] = Block::connect(H, H).delayed(usize::MAX);
     let delayed = BlockLayout::new(3, 1, &GROUPS, &blocks);
     assert_eq!(write(delayed, &wrong), BytesError::Description { word: 9 + 6 * 3 + 5, found: u32::MAX });
+    let huge = Group { neurons: 1 << 40, bias: false, gain: false, leak: false, ..GROUPS[0] };
+    let groups = [&GROUPS[..], &[huge]].concat();
+    let larger = BlockLayout::new(3, 1, &groups, &BLOCKS);
+    assert_eq!(write(larger, &wrong), BytesError::Description { word: 3 * GROUPS.len(), found: u32::MAX });
     wrong[2] = f32::NAN;
     assert_eq!(write(LAYOUT, &wrong), BytesError::Parameters(Error::NotFinite { index: 2 }));
 }

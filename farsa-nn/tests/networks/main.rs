@@ -9,4 +9,5 @@ mod gradient;
 mod leaky_network;
 mod perceptron;
 mod saved;
+mod sizes;
 mod symmetry;

@@ -43,7 +43,8 @@ impl InfraredDrawing {
     /// they cannot be divided so.
     pub fn for_robot(robot: &MobileRobot, groups: usize) -> Self {
         let angles = &robot.infrared.angles;
-        let size = angles.len().checked_div(groups).unwrap_or(1).max(1);
+        let divided = groups > 0 && angles.len().is_multiple_of(groups);
+        let size = if divided { (angles.len() / groups).max(1) } else { 1 };
         Self {
             rays: angles.iter().step_by(size).map(|angle| Beam::in_cone(robot.radius, *angle, 0.0, 0, 1)).collect(),
             range: robot.infrared.range as f32,

@@ -41,6 +41,10 @@ const ROOM: usize = 64;
 /// For rounding [m].
 const HAIR: f32 = 1e-4;
 
+/// Of a round body whose nearest point is closer to the robot's middle, and so lies within the robot, the middle cannot be
+/// told [m].
+const CLOSE: f32 = 0.01;
+
 impl Obstacle {
     /// Whether some of it may lie on a way from one place to another; sometimes also if none does.
     fn meets(&self, from: [f32; 2], to: [f32; 2]) -> bool {
@@ -113,6 +117,7 @@ where
             }
             let found = match near.body {
                 Some(_) if near.radius > 0.0 => {
+                    crowded |= near.distance < CLOSE;
                     let far = near.distance + near.radius;
                     Obstacle::Round { centre: [x + far * out[0], y + far * out[1]], radius: near.radius }
                 }
@@ -123,7 +128,7 @@ where
                 obstacles.push(found);
             }
         });
-        if obstacles.is_empty() {
+        if obstacles.is_empty() && !crowded {
             // What the rays would read, too: nothing is within their range.
             ring.fill(0.0);
         } else {
