@@ -1,8 +1,10 @@
 // Runs the module of live pages without a browser: every trial of a page must be that of the run, to the bit.
 //
 //   node tests/browser/module.mjs PAGE.html...
+//   node tests/browser/module.mjs --ticks 100000 PAGE.html...
 //
-// Prints a line per page and exits with 1 if a trial differs.
+// Prints a line per page and exits with 1 if a trial differs, or if with `--ticks` the trials of a page are fewer ticks than that. Then
+// no fresh trials are run, which would be as long.
 
 import { readFileSync } from "node:fs";
 import { unpacked } from "./packed.mjs";
@@ -28,7 +30,8 @@ function opened(live) {
 }
 
 let failed = 0;
-for (const page of process.argv.slice(2)) {
+const least = process.argv[2] === "--ticks" ? Number(process.argv[3]) : 0;
+for (const page of process.argv.slice(least ? 4 : 2)) {
   const html = readFileSync(page, "utf8");
   const { title, live } = JSON.parse(html.slice(html.lastIndexOf(mark) + mark.length, html.lastIndexOf("</script>")));
   const ask = opened(live);
@@ -45,6 +48,12 @@ for (const page of process.argv.slice(2)) {
   }));
   const wrong = ask({ do: "film", individual: 0, trial: { number: 0 }, lesion: "nuron:1" }).error;
   if (!/nearest is `neuron`|has no controller/.test(wrong)) differing++;
+  if (least) {
+    differing += ticks < least;
+    failed += differing > 0;
+    console.log(`${differing ? "FAILED" : "ok    "} ${title}: ${ticks} ticks, ${least} asked`);
+    continue;
+  }
   // Fresh trials side by side earn what each earns alone, as it is run when hands are on bodies.
   const few = ask({ do: "fresh", individual: 0, seed: 1, first: 3, count: 9 });
   const alone = few.fitness.map((_, k) => ask({ do: "film", individual: 0, trial: { fresh: { number: 3 + k, seed: 1 } } }));
