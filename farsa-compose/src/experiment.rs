@@ -14,7 +14,7 @@ use crate::arena::composition::Composition;
 use crate::arena::episode::ArenaEpisode;
 use crate::check::embed::embedded;
 use crate::check::places::Places;
-use crate::check::schema::{SCHEMA, scene_schema};
+use crate::check::schema::{SCENE_SCHEMA, SCHEMA};
 use crate::check::settings::{Entry, apply, entries};
 use crate::check::walk;
 use crate::composed::Composed;
@@ -103,7 +103,7 @@ impl ComposedExperiment {
         if let Some(text) = embedded(file, text, folder, &document, &places)? {
             return Self::read(file, &text, None, strategies);
         }
-        add_scene(&mut document, schema, &mut places)?;
+        add_scene(&mut document, &mut places)?;
         let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         if !is_name(stem) {
             let why = "is the name of the experiment: 1 to 40 lower-case letters, digits, - and _, the first no sign";
@@ -269,10 +269,10 @@ fn start_of(trial: u32) -> EpisodeId {
 }
 
 /// Adds the objects of the scene's file, if there is one, to those of a document.
-fn add_scene(document: &mut Document, schema: &Value, places: &mut Places) -> Result<(), Error> {
+fn add_scene(document: &mut Document, places: &mut Places) -> Result<(), Error> {
     let Some(name) = &document.world.scene else { return Ok(()) };
     let Some(text) = document.files.get(name) else { return Ok(()) };
-    let (mut value, lines) = walk::read(name, text, &scene_schema(schema))?;
+    let (mut value, lines) = walk::read(name, text, &SCENE_SCHEMA)?;
     let objects = value.get_mut("objects").map(Value::take).unwrap_or_default();
     let objects: Vec<Object> =
         serde_json::from_value(objects).map_err(|error| Error::Usage(format!("{name}: {error}")))?;

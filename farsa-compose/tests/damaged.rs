@@ -167,6 +167,20 @@ fn parts_that_do_not_go_together_are_refused() {
 
 /// Every file with a byte changed, a line left out or cut off is a file or is refused; none panics.
 #[test]
+fn files_of_more_than_anybody_writes_are_refused() {
+    let most = 200_000;
+    let read = "at most 200000 are read of TOML";
+    // Each name of a table takes 1.1 kB.
+    let tables = format!("{RIGHT}[a{}]\n", ".a".repeat(most / 2));
+    assert!(error(&tables).starts_with("look.toml: has 200"));
+    assert!(error(&tables).ends_with(read));
+    // A scene is a file of its own.
+    let scene = format!("files = {{ 's.toml' = '{}' }}\n{RIGHT}", "1,".repeat(most / 2 + 1));
+    let scene = scene.replacen("[world]", "[world]\nscene = 's.toml'", 1);
+    assert_eq!(error(&scene), format!("s.toml: has 200002 names, values, signs and gaps; {read}"));
+}
+
+#[test]
 fn no_damage_panics() {
     let mut refused = 0;
     let lines: Vec<&str> = RIGHT.lines().collect();

@@ -9,8 +9,9 @@ use std::path::Path;
 
 use farsa_evo::{EvoError, Judgements};
 
-use crate::command::cli;
+use crate::command::{cli, manual};
 use crate::error::Error;
+use crate::evaluation::genotypes::{Shape, written, written_reals};
 use crate::evaluation::protocols::files::ProtocolRecord;
 use crate::evaluation::protocols::found::FoundCase;
 use crate::evaluation::protocols::states::States;
@@ -31,15 +32,26 @@ use crate::store::lineage::{HEADER, Lineage};
 use crate::store::log::{Log, header};
 use crate::store::manifest::Manifest;
 use crate::store::sealed;
-use crate::strategy::search::Search;
+use crate::store::toml_tokens::toml_tokens;
+use crate::strategy::search::{Genome, Search};
 use crate::sweep::SweepFile;
 
-/// Reads a command line, and does nothing of what it asks for.
-///
-/// # Errors
-/// What the command prints.
-pub fn read_command_line(laboratory: &Laboratory<'_>, words: &[&str]) -> Result<(), String> {
-    cli::read("farsa", laboratory, words).map(drop).map_err(|error| error.to_string())
+/// What command lines are read by: making it takes a hundred times as long as reading one.
+pub struct CommandLineReader(clap::Command);
+
+impl CommandLineReader {
+    /// That of the command over a laboratory.
+    pub fn new(laboratory: &Laboratory<'_>) -> Self {
+        Self(manual::command("farsa", laboratory))
+    }
+
+    /// Reads a command line, and does nothing of what it asks for.
+    ///
+    /// # Errors
+    /// What the command prints.
+    pub fn read(&mut self, words: &[&str]) -> Result<(), String> {
+        cli::read_by(&mut self.0, words).map(drop).map_err(|error| error.to_string())
+    }
 }
 
 /// Reads a configuration, and writes it as a run keeps it.
@@ -48,6 +60,11 @@ pub fn read_command_line(laboratory: &Laboratory<'_>, words: &[&str]) -> Result<
 /// What is wrong with it.
 pub fn read_configuration(laboratory: &Laboratory<'_>, text: &str) -> Result<String, Error> {
     Plan::from_file(laboratory, &ConfigFile::parse("config.toml", text)?)?.to_toml()
+}
+
+/// The tokens of a text, as they are counted before it is read as TOML.
+pub fn count_toml_tokens(text: &str) -> usize {
+    toml_tokens(text)
 }
 
 /// Reads the file of a sweep.
@@ -104,14 +121,28 @@ pub fn read_test_record(text: &str) -> Result<String, Error> {
     written.map_err(|error| Error::damaged(Path::new("test.json"), error))
 }
 
-/// Reads the manifest in a file, and writes it there again.
+/// Reads a manifest and writes it again.
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn read_manifest(path: &Path) -> Result<(), Error> {
-    let manifest = Manifest::read(path)?;
+pub fn read_manifest(text: &str) -> Result<String, Error> {
+    let path = Path::new("manifest.json");
+    let manifest = Manifest::from_text(path, text)?;
     manifest.sessions.iter().for_each(|session| drop((session.machine.cores(), session.machine.describe())));
-    manifest.write(path)
+    manifest.text(path)
+}
+
+/// Reads genotypes of three genes of eight bits, or a list of three reals, and writes them again.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn read_genotypes(text: &str) -> Result<String, Error> {
+    let genomes = Shape::new(3, 8).genomes(Path::new("genotypes.gen"), text)?;
+    let texts = genomes.iter().map(|genome| match genome {
+        Genome::Words(genes) => written("s", genes),
+        Genome::Reals(genes) => written_reals(genes),
+    });
+    Ok(texts.collect())
 }
 
 /// What the files of one run are read by.

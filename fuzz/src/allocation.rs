@@ -4,12 +4,17 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Once;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
+use toml_parser::Source;
+use toml_parser::lexer::TokenKind;
+
 /// Bytes that any reader may take, however short its input.
 const SPARE: usize = 1 << 20;
 /// Bytes that it may take for each byte of its input.
 const EACH: usize = 16;
-/// The same for TOML: its document is a tree that has some hundred bytes for an element of two, such as `1,`.
-const EACH_OF_TOML: usize = 128;
+/// Bytes that it may take for each token of TOML beside that, whose tree the crate `toml` makes: see [`bounded_toml`].
+const EACH_TOKEN: usize = 128;
+/// The same for a point and for `=`, which begin a table: its first key comes with room for eleven.
+const EACH_OF_TABLES: usize = 1200;
 
 struct Counting;
 
@@ -75,18 +80,25 @@ extern "C" fn tell() {
 /// # Panics
 /// When it takes more than 16 times as many bytes at once, and 1 MiB.
 pub fn bounded<T>(input: usize, read: impl FnOnce() -> T) -> T {
-    bounded_by(EACH, input, read)
+    bounded_by(input, || 0, read)
 }
 
-/// The same of a reader of TOML.
+/// The same of a reader of TOML, whose tokens are limited in number ([`farsa_lab::limit_toml_tokens`]).
 ///
 /// # Panics
-/// When it takes more than 128 times as many bytes at once, and 1 MiB.
-pub fn bounded_toml<T>(input: usize, read: impl FnOnce() -> T) -> T {
-    bounded_by(EACH_OF_TOML, input, read)
+/// When it takes more than that, 128 bytes for each token and 1200 for one that can begin a table.
+pub fn bounded_toml<T>(text: &str, read: impl FnOnce() -> T) -> T {
+    let tree = || {
+        let tokens = Source::new(text).lex().map(|token| match token.kind() {
+            TokenKind::Dot | TokenKind::Equals => EACH_OF_TABLES,
+            _ => EACH_TOKEN,
+        });
+        tokens.sum()
+    };
+    bounded_by(text.len(), tree, read)
 }
 
-fn bounded_by<T>(each: usize, input: usize, read: impl FnOnce() -> T) -> T {
+fn bounded_by<T>(input: usize, more: impl FnOnce() -> usize, read: impl FnOnce() -> T) -> T {
     AT_EXIT.call_once(|| {
         atexit(tell);
     });
@@ -94,7 +106,10 @@ fn bounded_by<T>(each: usize, input: usize, read: impl FnOnce() -> T) -> T {
     PEAK.store(before, Relaxed);
     let result = read();
     let used = PEAK.load(Relaxed).saturating_sub(before);
-    let allowed = input.saturating_mul(each).saturating_add(SPARE);
+    let mut allowed = input.saturating_mul(EACH).saturating_add(SPARE);
+    if used > allowed {
+        allowed = allowed.saturating_add(more());
+    }
     let share = used.saturating_mul(1000) / allowed;
     if share > MOST[2].load(Relaxed) {
         for (most, number) in MOST.iter().zip([used, input, share]) {

@@ -17,8 +17,10 @@ pub fn schema() -> Value {
 /// The same for readers, made once: that takes a megabyte, whatever is read.
 pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(schema);
 
-/// The schema of a file that has objects only.
-pub(crate) fn scene_schema(schema: &Value) -> Value {
+/// The schema of a file that has objects only, made once.
+pub(crate) static SCENE_SCHEMA: LazyLock<Value> = LazyLock::new(|| scene_schema(&SCHEMA));
+
+fn scene_schema(schema: &Value) -> Value {
     let objects = schema.pointer("/properties/objects").cloned().unwrap_or_default();
     serde_json::json!({
         "type": "object",
@@ -83,8 +85,8 @@ impl<'s> Part<'s> {
 
     /// What it refers to, if it does.
     fn referred(self) -> Option<Self> {
-        let name = self.own.get("$ref")?.as_str()?.strip_prefix('#')?;
-        self.at(self.root.pointer(name)?)
+        let name = self.own.get("$ref")?.as_str()?.strip_prefix("#/$defs/")?;
+        self.at(self.root.get("$defs")?.get(name)?)
     }
 
     /// A word of it, or of what it refers to.

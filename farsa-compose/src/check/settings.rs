@@ -1,5 +1,7 @@
 //! The numbers and words of a document as settings, so that `--set`, sweeps and conditions can change them.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use farsa_lab::{Error, Setting, Settings, Value as Given};
 use serde_json::{Map, Value};
 
@@ -87,19 +89,25 @@ fn list(part: Part<'_>, items: &[Value], [key, path]: [&str; 2], found: &mut Vec
 
 /// What the parts of a list are called: by their name or else their kind, with a number where several have the same.
 pub(crate) fn names(items: &[Value]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for (index, item) in items.iter().enumerate() {
+    let mut taken = BTreeSet::new();
+    // The number by which a name is tried next: what was taken stays so.
+    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+    let one = |(index, item): (usize, &Value)| {
         let own = ["name", "kind", "place", "term"].iter().find_map(|key| item.get(key)?.as_str());
         let own = own.map_or_else(|| (index + 1).to_string(), str::to_owned);
-        let mut name = own.clone();
-        let mut number = 2;
-        while names.contains(&name) {
-            name = format!("{own}-{number}");
-            number += 1;
+        if taken.insert(own.clone()) {
+            return own;
         }
-        names.push(name);
-    }
-    names
+        let number = numbers.entry(own.clone()).or_insert(2);
+        loop {
+            let name = format!("{own}-{number}");
+            *number += 1;
+            if taken.insert(name.clone()) {
+                return name;
+            }
+        }
+    };
+    items.iter().enumerate().map(one).collect()
 }
 
 /// A description without the unit that it ends with, and the unit.
@@ -128,4 +136,53 @@ pub(crate) fn apply(document: &Value, entries: &[Entry], settings: &Settings) ->
         }
     }
     Ok(document)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// As the names are described, one number after the other.
+    fn one_by_one(items: &[Value]) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for (index, item) in items.iter().enumerate() {
+            let own = item["name"].as_str().or(item["kind"].as_str());
+            let own = own.map_or_else(|| (index + 1).to_string(), str::to_owned);
+            let numbered = (2..).map(|number| format!("{own}-{number}"));
+            let mut all = std::iter::once(own.clone()).chain(numbered);
+            names.extend(all.find(|name| !names.contains(name)));
+        }
+        names
+    }
+
+    #[test]
+    fn parts_of_one_name_are_numbered() {
+        let named = |name: &str| json!({ "name": name, "kind": "b" });
+        let of_a_kind = |kind: &str| json!({ "kind": kind });
+        let items = [
+            named("a"),
+            of_a_kind("a"),
+            named("a-2"),
+            named("a"),
+            of_a_kind("a-2"),
+            json!({}),
+            named("6"),
+            json!(7),
+            of_a_kind("a-2-2"),
+            named("a"),
+            named("a-3"),
+            of_a_kind("b"),
+            of_a_kind("b"),
+        ];
+        assert_eq!(names(&items), one_by_one(&items));
+        assert_eq!(names(&items)[..4], ["a", "a-2", "a-2-2", "a-3"]);
+    }
+
+    #[test]
+    fn many_parts_of_one_name_take_no_more_than_their_number() {
+        let found = names(&vec![json!({ "kind": "wall" }); 100_000]);
+        assert_eq!(found.last().map(String::as_str), Some("wall-100000"));
+    }
 }

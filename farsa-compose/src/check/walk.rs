@@ -1,6 +1,6 @@
 //! A text, checked value by value.
 
-use farsa_lab::Error;
+use farsa_lab::{Error, limit_toml_tokens};
 use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -18,6 +18,7 @@ const MOST_PARTS: usize = 1000;
 /// [`Error::Usage`] for a text that is no TOML, [`Error::Unknown`] with the nearest key or word, [`Error::Setting`] with
 /// what is wrong with a value; all with file, line and key.
 pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Places), Error> {
+    limit_toml_tokens(file, text)?;
     let lines = Lines::new(text);
     let mut places = Places::new(file);
     let table = DeTable::parse(text).map_err(|error| {

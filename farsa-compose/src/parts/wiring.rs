@@ -4,7 +4,7 @@ use farsa_lab::Error;
 use serde_json::Value;
 
 use crate::check::places::Places;
-use crate::check::schema::{Part, schema};
+use crate::check::schema::{Part, SCHEMA};
 use crate::check::settings::names;
 use crate::document::{Document, Motor, MotorKind};
 use crate::parts::ends::Ends;
@@ -77,8 +77,8 @@ fn absent(document: &Document) -> Result<Vec<String>, Error> {
 
 /// What the schema says of each sensor and motor that is there.
 fn about(document: &Document) -> Result<Vec<String>, Error> {
-    let schema = schema();
-    let Some(part) = Part::root(&schema) else { return Ok(Vec::new()) };
+    let schema = &*SCHEMA;
+    let Some(part) = Part::root(schema) else { return Ok(Vec::new()) };
     let [sensors, motors] = [json(&document.sensors)?, json(&document.motors)?];
     let lists = [("sensors", sensors), ("motors", motors)];
     let enabled = |part: &Value| part["enabled"] == true;

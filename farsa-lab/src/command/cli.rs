@@ -107,7 +107,15 @@ pub(crate) fn read(
     laboratory: &Laboratory<'_>,
     words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
 ) -> Result<Cli, clap::Error> {
-    Cli::from_arg_matches(&manual::command(program, laboratory).try_get_matches_from(words)?)
+    read_by(&mut manual::command(program, laboratory), words)
+}
+
+/// The same by what the command says of itself.
+pub(crate) fn read_by(
+    command: &mut clap::Command,
+    words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+) -> Result<Cli, clap::Error> {
+    Cli::from_arg_matches(&command.try_get_matches_from_mut(words)?)
 }
 
 /// What the user calls this program.

@@ -25,7 +25,7 @@ mod info;
 mod interrupt;
 mod invocation;
 mod live;
-mod manual;
+pub(crate) mod manual;
 mod on_ranks;
 mod replay;
 mod strategies;

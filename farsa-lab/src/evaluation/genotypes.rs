@@ -70,7 +70,7 @@ impl Shape {
         Self::new(genotype.genes(), genotype.bits())
     }
 
-    fn new(genes: usize, gene_bits: u32) -> Self {
+    pub(crate) fn new(genes: usize, gene_bits: u32) -> Self {
         Self { genes, largest: u16::MAX.checked_shr(u16::BITS.saturating_sub(gene_bits)).unwrap_or(0) }
     }
 
@@ -141,11 +141,15 @@ impl Shape {
     /// # Errors
     /// As [`read`](Self::read).
     pub(crate) fn read_genomes(self, path: &Path) -> Result<Vec<Genome>, Error> {
-        let text = bounded::read_text(path, MOST_BYTES)?;
-        if are_reals(&text) {
-            return Ok(vec![Genome::Reals(self.reals(&text).map_err(|error| Error::damaged(path, error))?)]);
+        self.genomes(path, &bounded::read_text(path, MOST_BYTES)?)
+    }
+
+    /// The genomes in the text of a file.
+    pub(crate) fn genomes(self, path: &Path, text: &str) -> Result<Vec<Genome>, Error> {
+        if are_reals(text) {
+            return Ok(vec![Genome::Reals(self.reals(text).map_err(|error| Error::damaged(path, error))?)]);
         }
-        Ok(self.words(path, &text)?.into_iter().map(Genome::Words).collect())
+        Ok(self.words(path, text)?.into_iter().map(Genome::Words).collect())
     }
 
     /// The genome in a list of genes, words or reals.

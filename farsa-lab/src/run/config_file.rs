@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::error::Error;
 use crate::escaped::{CUT, MOST_SHOWN, OneLine, Quoted, shortened};
 use crate::experiment::settings::Value;
-use crate::store::bounded;
+use crate::store::{bounded, limit_toml_tokens};
 use crate::strategy::settings::STRATEGY;
 
 /// The most bytes that are read of a configuration.
@@ -81,6 +81,7 @@ impl ConfigFile {
         text: &str,
         take: &mut dyn FnMut(&Found<'_>) -> Result<bool, Error>,
     ) -> Result<Self, Error> {
+        limit_toml_tokens(name, text)?;
         let lines = Lines::new(text);
         let place = |offset: usize| format!("{} line {}", OneLine(name), lines.line(offset));
         let table = DeTable::parse(text).map_err(|error| {
@@ -387,6 +388,20 @@ mod tests {
         assert_eq!(file.entries.len(), MOST_KEYS);
         assert!(file.entries.iter().all(|(key, _)| key.len() == MOST_SHOWN + CUT.len()));
         assert_eq!(file.beyond.as_deref(), Some("my.toml line 10002"));
+    }
+
+    #[test]
+    fn configurations_of_more_than_anybody_writes_are_refused() {
+        use std::fmt::Write as _;
+        let wrong = |text: &str| ConfigFile::parse("my.toml", text).map(|_| ()).unwrap_err().to_string();
+        let why = "my.toml: has 200001 names, values, signs and gaps; at most 200000 are read of TOML";
+        assert_eq!(wrong(&"[a.a.a]\n".repeat(25_001)[..200_001]), why);
+        // As many as a configuration has keys, each with a value, a unit of blanks and a comment, are read.
+        let mut keys = String::new();
+        for number in 0..MOST_KEYS {
+            writeln!(keys, "k{number} = 0.5  # [m]").unwrap();
+        }
+        assert_eq!(ConfigFile::parse("my.toml", &keys).unwrap().entries.len(), MOST_KEYS);
     }
 
     #[test]

@@ -90,17 +90,21 @@ impl Manifest {
     /// # Errors
     /// [`Error::Io`]; [`Error::Damaged`] for another format or none.
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
+        Self::from_text(path, &read_own_text(path, LARGEST)?)
+    }
+
+    /// The manifest in the text of a file.
+    pub(crate) fn from_text(path: &Path, text: &str) -> Result<Self, Error> {
         #[derive(Deserialize)]
         struct Format {
             format: u32,
         }
-        let text = read_own_text(path, LARGEST)?;
         let damaged = |error: serde_json::Error| Error::damaged(path, error);
-        let Format { format } = serde_json::from_str(&text).map_err(damaged)?;
+        let Format { format } = serde_json::from_str(text).map_err(damaged)?;
         if format != FORMAT {
             return Err(Error::damaged(path, format!("has format {format}, this program reads format {FORMAT}")));
         }
-        serde_json::from_str(&text).map_err(damaged)
+        serde_json::from_str(text).map_err(damaged)
     }
 
     /// The file of a run, or a new one where it is lost: no result depends on it.
@@ -116,13 +120,18 @@ impl Manifest {
 
     /// Writes the file.
     pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
+        replace(path, self.text(path)?.as_bytes())
+    }
+
+    /// The text of the file.
+    pub(crate) fn text(&self, path: &Path) -> Result<String, Error> {
         let mut text = serde_json::to_string_pretty(self).map_err(|error| Error::Io {
             doing: "write",
             path: path.into(),
             source: io::Error::other(error),
         })?;
         text.push('\n');
-        replace(path, text.as_bytes())
+        Ok(text)
     }
 }
 

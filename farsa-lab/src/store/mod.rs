@@ -12,6 +12,7 @@
 //! - `manifest`: `manifest.json`: what made a run, when and how fast; nothing in it changes a result
 //! - `replace`: how files are written without ever being half written
 //! - `sealed`: Files that tell whether they are whole: a kind, a format version, a length, the content and a checksum
+//! - `toml_tokens`: how many tokens a TOML text has, and how many are read
 
 pub(crate) mod bounded;
 pub(crate) mod directory;
@@ -25,6 +26,8 @@ pub(crate) mod log;
 pub(crate) mod manifest;
 pub(crate) mod replace;
 pub(crate) mod sealed;
+pub(crate) mod toml_tokens;
 
 pub use bounded::read_text_file;
 pub use identity::VALUES_VERSION;
+pub use toml_tokens::limit_toml_tokens;

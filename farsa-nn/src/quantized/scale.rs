@@ -205,7 +205,9 @@ impl QuantizedScale {
                 + largest(part(LeakyParameter::RecurrentWeight), i, h, activation)
                 + largest(part(LeakyParameter::Bias), i, h, activation)
         });
-        let outputs = (0..o).map(|i| largest(part(LeakyParameter::OutputWeight), i, o, activation));
+        // Without hidden neurons outputs have no weights, and bytes of strangers may have any number of them.
+        let weights = part(LeakyParameter::OutputWeight);
+        let outputs = (0..o.min(weights.len())).map(|i| largest(weights, i, o, activation));
         let limit = i32::MAX as u64;
         match hidden.chain(outputs).enumerate().find(|(_, sum)| *sum > limit) {
             Some((target, largest)) => Err(Error::SumRange { target, largest, limit }),

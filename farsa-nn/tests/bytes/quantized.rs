@@ -149,6 +149,18 @@ fn sums_that_could_overflow_are_refused() {
 }
 
 #[test]
+fn outputs_without_weights_take_no_time() {
+    const MANY: LeakyLayout = LeakyLayout::new(3, 0, 0x7FFF_FFFF);
+    // Without hidden neurons there is nothing to weight. To look at each output would take a century.
+    let none = LeakyLayout::new(3, 0, usize::MAX >> 4);
+    assert!(QuantizedScale::quantize(&none, 9, &[], &mut []).is_ok());
+    let mut bytes = Aligned([0; QuantizedNetworkBytes::byte_count(MANY)]);
+    let scale = QuantizedScale::quantize(&MANY, 9, &[], &mut []).expect("fits");
+    QuantizedNetworkBytes::write(MANY, Leak::TwoTap, scale, 7, &[], &mut bytes.0).expect("valid");
+    assert_eq!(QuantizedNetworkBytes::read(&bytes.0).expect("a network").layout(), MANY);
+}
+
+#[test]
 fn another_controller_is_told_apart() {
     let bytes = champion();
     let read = QuantizedNetworkBytes::read(&bytes.0).expect("a network");
