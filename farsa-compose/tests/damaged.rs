@@ -165,7 +165,6 @@ fn parts_that_do_not_go_together_are_refused() {
     }
 }
 
-/// Every file with a byte changed, a line left out or cut off is a file or is refused; none panics.
 #[test]
 fn files_of_more_than_anybody_writes_are_refused() {
     let most = 200_000;
@@ -178,8 +177,14 @@ fn files_of_more_than_anybody_writes_are_refused() {
     let scene = format!("files = {{ 's.toml' = '{}' }}\n{RIGHT}", "1,".repeat(most / 2 + 1));
     let scene = scene.replacen("[world]", "[world]\nscene = 's.toml'", 1);
     assert_eq!(error(&scene), format!("s.toml: has 200002 names, values, signs and gaps; {read}"));
+    // Each is checked as an experiment of its own.
+    let conditions = |count| -> String { (0..count).map(|n| format!("[[conditions]]\nname = \"c{n}\"\n")).collect() };
+    assert_eq!(error(&format!("{RIGHT}{}", conditions(100))), "nothing is wrong");
+    let found = error(&format!("{RIGHT}{}", conditions(101)));
+    assert_eq!(plain(&found), "look.toml line 37: conditions: has 101 values where 0 to 100 are wanted");
 }
 
+/// Every file with a byte changed, a line left out or cut off is a file or is refused; none panics.
 #[test]
 fn no_damage_panics() {
     let mut refused = 0;

@@ -30,8 +30,10 @@ function opened(live) {
 }
 
 let failed = 0;
-const least = process.argv[2] === "--ticks" ? Number(process.argv[3]) : 0;
-for (const page of process.argv.slice(least ? 4 : 2)) {
+const long = process.argv[2] === "--ticks";
+const least = long ? Number(process.argv[3]) : 0;
+if (long && !(least > 0)) throw new Error("--ticks wants a number above 0");
+for (const page of process.argv.slice(long ? 4 : 2)) {
   const html = readFileSync(page, "utf8");
   const { title, live } = JSON.parse(html.slice(html.lastIndexOf(mark) + mark.length, html.lastIndexOf("</script>")));
   const ask = opened(live);
@@ -48,7 +50,7 @@ for (const page of process.argv.slice(least ? 4 : 2)) {
   }));
   const wrong = ask({ do: "film", individual: 0, trial: { number: 0 }, lesion: "nuron:1" }).error;
   if (!/nearest is `neuron`|has no controller/.test(wrong)) differing++;
-  if (least) {
+  if (long) {
     differing += ticks < least;
     failed += differing > 0;
     console.log(`${differing ? "FAILED" : "ok    "} ${title}: ${ticks} ticks, ${least} asked`);

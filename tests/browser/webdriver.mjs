@@ -92,7 +92,7 @@ export class Browser {
     const capabilities = { alwaysMatch: { browserName: "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": { browser: "ALL" } } };
     const { sessionId } = await ask(`${base}/session`, "POST", { capabilities });
     const browser = new Browser(`${base}/session/${sessionId}`, profile);
-    await browser.post("timeouts", { script: 20_000, pageLoad: 40_000 });
+    await browser.post("timeouts", { script: 60_000, pageLoad: 120_000 });
     if (!phone) await browser.cdp("Emulation.setDeviceMetricsOverride", { width: size[0], height: size[1], deviceScaleFactor: 1, mobile: false });
     return browser;
   }
@@ -175,7 +175,7 @@ class Firefox extends Browser {
     const capabilities = { alwaysMatch: { browserName: "firefox", "moz:firefoxOptions": options } };
     const { sessionId } = await ask(`${base}/session`, "POST", { capabilities });
     const browser = Object.assign(new Firefox(`${base}/session/${sessionId}`, null), { said });
-    await browser.post("timeouts", { script: 20_000, pageLoad: 40_000 });
+    await browser.post("timeouts", { script: 60_000, pageLoad: 120_000 });
     await browser.post("window/rect", { width: size[0], height: size[1] });
     return browser;
   }

@@ -96,7 +96,7 @@ impl MassProperties {
     }
 
     /// Whether mass and inertia can be those of a body: finite, mass >= 0, no principal moment negative or larger than
-    /// the sum of the other two.
+    /// the sum of the other two. Moments may miss by 1e-7 of their sum.
     ///
     /// With `moving`, mass and all principal moments must be > 0, so that forces give finite accelerations.
     pub fn is_physical(&self, moving: bool) -> bool {

@@ -2,25 +2,10 @@
 
 use core::f32::consts::PI;
 
+use crate::shared::{BLUE, GREEN, RED, bands, read};
 use farsa_body::testing::PlaneWorld;
-use farsa_body::{
-    Beam, BodyId, Channels, ColorBand, Kinematics as _, LightSensors, LinearCamera, MobileRobot, Sensor, Sight,
-};
+use farsa_body::{Beam, BodyId, Kinematics as _, LightSensors, LinearCamera, MobileRobot, Sight};
 use proptest::prelude::*;
-
-const RED: [f32; 3] = [1.0, 0.0, 0.0];
-const GREEN: [f32; 3] = [0.0, 1.0, 0.0];
-const BLUE: [f32; 3] = [0.0, 0.0, 1.0];
-
-fn bands() -> [ColorBand; 2] {
-    [RED, BLUE].map(|color| ColorBand::around(color, 0.25))
-}
-
-fn read<W: ?Sized>(sensor: &mut (impl Sensor<W> + ?Sized), world: &W) -> Vec<f32> {
-    let mut out = vec![f32::NAN; sensor.channels()];
-    sensor.read(world, &mut out);
-    out
-}
 
 #[test]
 fn a_camera_tells_sides_and_colours_and_hides_what_is_behind() {

@@ -55,7 +55,9 @@ proptest! {
 
     /// Two halves of a cylinder and of a box make the whole, however they lie.
     #[test]
-    fn halves_make_the_whole(pose in pose(), mass in 0.1_f64..5.0, radius in 0.05_f64..0.5, half in prop::array::uniform3(0.05_f64..0.5)) {
+    fn halves_make_the_whole(
+        pose in pose(), mass in 0.1_f64..5.0, radius in 0.05_f64..0.5, half in prop::array::uniform3(0.05_f64..0.5),
+    ) {
         let length = half[2];
         let at = |z: f64| pose.compose(&Pose::at([0.0, 0.0, z]));
         let disc = MassProperties::cylinder(mass, radius, length);
@@ -228,7 +230,9 @@ proptest! {
 
     /// Wherever the iCub's root is, all of it is moved along.
     #[test]
-    fn an_icub_stands_where_its_root_is(root in prop::array::uniform3(-2.0_f64..2.0), share in prop::collection::vec(0.0_f64..1.0, 60)) {
+    fn an_icub_stands_where_its_root_is(
+        root in prop::array::uniform3(-2.0_f64..2.0), share in prop::collection::vec(0.0_f64..1.0, 60),
+    ) {
         let tree = |root| KinematicTree::new(&Icub { root, ..Icub::default() }.robot().unwrap()).unwrap();
         let (here, there) = (tree([0.0; 3]), tree(root));
         let q: Vec<f64> = here.ranges().iter().zip(share).map(|([low, high], x)| low + x * (high - low)).collect();
@@ -250,7 +254,7 @@ fn axis(shape: &Shape, placement: &Pose<f64>) -> ([[f64; 3]; 2], f64) {
     ([-half, half].map(|z| placement.transform([0.0, 0.0, z])), radius)
 }
 
-/// The distance of a point from the line through two others, and from what lies of it between them.
+/// The distance of a point from a line, and from the segment between its two ends.
 fn beside(point: [f64; 3], [a, b]: [[f64; 3]; 2]) -> [f64; 2] {
     let [point, a, b] = [point, a, b].map(Vector3::from);
     let share = (point - a).dot(&(b - a)) / (b - a).norm_squared();

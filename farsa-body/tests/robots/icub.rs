@@ -1,5 +1,6 @@
 //! The iCub against Pinocchio's reading of its file (fixtures/icub.py), its mirror image, its chains and its errors.
 
+use crate::shared::apart;
 use farsa_body::{
     ActuatorId, BodyId, Chain, Collider, Finger, Icub, IcubError, IcubPosture, JointControl, JointId, JointKind,
     KinematicTree, Law, Pose, Robot, Shape, Side,
@@ -59,11 +60,6 @@ fn with_hands(q: &[f64]) -> Vec<f64> {
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |most, (x, y)| most.max((x - y).abs()))
-}
-
-/// The length of the way between two points.
-fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
 /// The largest difference of quaternions of either sign.

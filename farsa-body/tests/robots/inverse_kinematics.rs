@@ -1,7 +1,8 @@
-//! Where inverse kinematics begin, and which of several attempts they keep.
+//! Where inverse kinematics begins, and which of several attempts it keeps.
 
 use std::f64::consts::PI;
 
+use crate::shared::apart;
 use farsa_body::{
     BodyId, Goal, InverseKinematics, InverseKinematicsError, Joint, KinematicTree, MassProperties, Orientation, Pose,
     Robot, Segment,
@@ -17,10 +18,6 @@ fn slides(ranges: &[[f64; 2]]) -> (KinematicTree, BodyId) {
         parent = Some(robot.add_segment(Segment::new(name, parent, joint, MassProperties::sphere(1.0, 0.1))));
     }
     (KinematicTree::new(&robot).unwrap(), parent.unwrap())
-}
-
-fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
 fn goal(body: BodyId, position: [f64; 3]) -> Goal {

@@ -28,6 +28,8 @@ mod rays_left_out;
 mod sensors_and_motors;
 mod serialised;
 #[cfg(feature = "alloc")]
+mod shared;
+#[cfg(feature = "alloc")]
 mod turned_scenes;
 #[cfg(feature = "alloc")]
 mod vehicles;

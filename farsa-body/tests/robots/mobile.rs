@@ -2,6 +2,7 @@
 
 use core::f32::consts::PI;
 
+use crate::shared::{read, robots};
 use farsa_body::testing::{PlaneWorld, check_motor, check_sensor};
 use farsa_body::{
     Actuated, Beam, BodyId, ChannelError, Channels, Handles, Hit, InfraredAnalytic, InfraredRays, JointId, Joints,
@@ -10,16 +11,6 @@ use farsa_body::{
 };
 use farsa_body::{ActuatorId, Motor};
 use proptest::prelude::*;
-
-fn read<W: ?Sized>(sensor: &mut (impl Sensor<W> + ?Sized), world: &W) -> Vec<f32> {
-    let mut out = vec![f32::NAN; sensor.channels()];
-    sensor.read(world, &mut out);
-    out
-}
-
-fn robots() -> [MobileRobot; 3] {
-    [MobileRobot::khepera(), MobileRobot::e_puck(), MobileRobot::marxbot()]
-}
 
 /// A robot of this kind among walls and discs.
 fn scene(robot: &MobileRobot) -> (PlaneWorld, MobileParts) {

@@ -3,27 +3,15 @@
 use core::f32::consts::PI;
 use std::path::{Path, PathBuf};
 
+use crate::shared::{RED, bands, read};
 use farsa_body::testing::{PlaneWorld, check_motor, check_sensor};
 use farsa_body::{
-    Actuated, ActuatorId, AttachmentMotor, AttachmentSensor, Beam, BodyId, ChannelError, Channels, ColorBand,
-    GroundColor, Handles, InfraredAnalytic, InfraredTable, InfraredTables, JointId, Kinematics, Lamp, Leds,
-    LightSensors, LinearCamera, MobileParts, MobileRobot, Motor, NearbySurface, Planar, PlanarHit, Pose,
-    SampledInfrared, Sensor, Sight, SignalMotor, SignalSensor, Twist,
+    Actuated, ActuatorId, AttachmentMotor, AttachmentSensor, Beam, BodyId, ChannelError, ColorBand, GroundColor,
+    Handles, InfraredAnalytic, InfraredTable, InfraredTables, JointId, Kinematics, Lamp, Leds, LightSensors,
+    LinearCamera, MobileParts, MobileRobot, Motor, NearbySurface, Planar, PlanarHit, Pose, SampledInfrared, Sensor,
+    Sight, SignalMotor, SignalSensor, Twist,
 };
 use proptest::prelude::*;
-
-const RED: [f32; 3] = [1.0, 0.0, 0.0];
-const BLUE: [f32; 3] = [0.0, 0.0, 1.0];
-
-fn bands() -> [ColorBand; 2] {
-    [RED, BLUE].map(|color| ColorBand::around(color, 0.25))
-}
-
-fn read<W: ?Sized>(sensor: &mut (impl Sensor<W> + ?Sized), world: &W) -> Vec<f32> {
-    let mut out = vec![f32::NAN; sensor.channels()];
-    sensor.read(world, &mut out);
-    out
-}
 
 /// A `MarXbot` that looks along x, with things around it.
 fn scene() -> (PlaneWorld, MobileParts) {

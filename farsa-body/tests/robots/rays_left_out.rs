@@ -3,39 +3,37 @@
 use core::cell::{Cell, RefCell};
 use core::f32::consts::PI;
 
+use crate::shared::{GREEN, RED, read, robots};
 use farsa_body::testing::PlaneWorld;
 use farsa_body::{
-    ActuatorId, Beam, BodyId, Channels, ColorBand, Handles, Hit, InfraredGroups, InfraredRays, JointId, Kinematics,
-    LinearCamera, MobileParts, MobileRobot, NearbySurface, PlanarHit, Pose, Rays, Sensor, Sight, Twist,
+    ActuatorId, Beam, BodyId, ColorBand, Handles, Hit, InfraredGroups, InfraredRays, JointId, Kinematics, LinearCamera,
+    MobileParts, MobileRobot, NearbySurface, PlanarHit, Pose, Rays, Sensor, Sight, Twist,
 };
 use proptest::prelude::*;
-
-const RED: [f32; 3] = [1.0, 0.0, 0.0];
-const GREEN: [f32; 3] = [0.0, 1.0, 0.0];
-
-fn read<W: ?Sized>(sensor: &mut (impl Sensor<W> + ?Sized), world: &W) -> Vec<f32> {
-    let mut out = vec![f32::NAN; sensor.channels()];
-    sensor.read(world, &mut out);
-    out
-}
 
 /// Start and direction of a ray.
 type Line = [[f32; 2]; 2];
 
-/// A world that keeps the rays that are cast in it, and may tell of a red wall that is not there.
+/// A world that keeps the rays that are cast in it, and may report a red wall that is not there.
 struct Watched<'a> {
     world: &'a PlaneWorld,
     cast: RefCell<Vec<Line>>,
     /// The height of the last ray that was cast in space [m].
     height: Cell<f32>,
-    rumour: bool,
+    phantom_wall: bool,
     /// Whether discs are told of as bodies of another form, whose radius is 0.
-    formless: bool,
+    without_radius: bool,
 }
 
 impl<'a> Watched<'a> {
     fn new(world: &'a PlaneWorld) -> Self {
-        Self { world, cast: RefCell::default(), height: Cell::new(f32::NAN), rumour: false, formless: false }
+        Self {
+            world,
+            cast: RefCell::default(),
+            height: Cell::new(f32::NAN),
+            phantom_wall: false,
+            without_radius: false,
+        }
     }
 
     /// What a sensor reads, and which rays it cast for that.
@@ -67,9 +65,9 @@ impl Rays for Watched<'_> {
 }
 impl Sight for Watched<'_> {
     fn query_near(&self, from: [f32; 2], range: f32, tell: &mut dyn FnMut(NearbySurface<BodyId>)) {
-        let radius = |radius| if self.formless { 0.0 } else { radius };
+        let radius = |radius| if self.without_radius { 0.0 } else { radius };
         self.world.query_near(from, range, &mut |near| tell(NearbySurface { radius: radius(near.radius), ..near }));
-        if self.rumour {
+        if self.phantom_wall {
             tell(NearbySurface { body: None, point: from, distance: 0.0, radius: 0.0, color: RED, signal: None });
         }
     }
@@ -83,10 +81,6 @@ impl Sight for Watched<'_> {
         self.cast.borrow_mut().push([from, direction]);
         self.world.cast_planar(from, direction, range, but)
     }
-}
-
-fn robots() -> [MobileRobot; 3] {
-    [MobileRobot::khepera(), MobileRobot::e_puck(), MobileRobot::marxbot()]
 }
 
 /// Where one gets from a place by a bearing and a distance.
@@ -156,8 +150,8 @@ proptest! {
                 expected[group] = expected[group].max(*value);
             }
             prop_assert_eq!(&values, &expected, "{} groups of {:?}", count, all);
-            let formless = Watched { formless: true, ..Watched::new(&world) };
-            prop_assert_eq!(&formless.read(&mut groups).0, &expected, "{} groups of bodies of any form", count);
+            let without_radius = Watched { without_radius: true, ..Watched::new(&world) };
+            prop_assert_eq!(&without_radius.read(&mut groups).0, &expected, "{} groups of bodies of any form", count);
         }
     }
 
@@ -219,21 +213,33 @@ fn of_many_things_the_last_is_read_too() {
     }
 }
 
-/// Bodies may be put where a robot is, before the first step moves them apart: of one that reaches over the robot's middle
-/// rays are met that leave the robot beside it.
+/// Bodies may be put where a robot is, before the first step moves them apart: of a body or wall that reaches over the
+/// robot's middle rays are met that leave the robot beside it.
 #[test]
 fn what_lies_over_the_middle_of_the_robot_is_read_as_well() {
     let robot = MobileRobot::marxbot();
     let mut seen = 0;
-    for depth in [-0.02, -1e-3, -1e-4, 0.0, 1e-6, 1e-4, 1e-3, 0.02] {
+    for depth in [-0.02, -1e-3, -1e-4, 0.0, 1e-6, 1e-5, 1e-4, 1e-3, 0.02] {
         for turn in 0_u8..60 {
-            let mut world = PlaneWorld::new();
-            let body = world.add_robot(&robot, [0.7, -0.3], 0.2).body;
-            world.add_disc(from([0.7, -0.3], 0.105 * f32::from(turn), 1.0 - depth), 1.0, RED);
-            let all = read(&mut InfraredRays::for_robot(&robot, body).unwrap(), &world);
-            let mut groups = InfraredGroups::for_robot(&robot, body, 24).unwrap();
-            assert_eq!(read(&mut groups, &world), all, "{depth} m, {turn}");
-            seen += usize::from(depth > 0.0 && all.iter().any(|x| *x > 0.5));
+            let (middle, bearing) = ([0.7, -0.3], 0.105 * f32::from(turn));
+            for wall in [false, true] {
+                let mut world = PlaneWorld::new();
+                let body = world.add_robot(&robot, middle, 0.2).body;
+                if wall {
+                    let foot = from(middle, bearing, depth);
+                    world.add_wall([-1.0, 1.0].map(|way| from(foot, bearing + 0.5 * PI, way)), RED);
+                } else {
+                    world.add_disc(from(middle, bearing, 1.0 - depth), 1.0, RED);
+                }
+                let all = read(&mut InfraredRays::for_robot(&robot, body).unwrap(), &world);
+                let mut groups = InfraredGroups::for_robot(&robot, body, 24).unwrap();
+                assert_eq!(read(&mut groups, &world), all, "{depth} m, {turn}, wall {wall}");
+                let mut watched = Watched::new(&world);
+                watched.without_radius = true;
+                let mut groups = InfraredGroups::for_robot(&robot, body, 24).unwrap();
+                assert_eq!(watched.read(&mut groups).0, all, "{depth} m, {turn}, wall {wall}, without a radius");
+                seen += usize::from(depth > 0.0 && all.iter().any(|x| *x > 0.5));
+            }
         }
     }
     assert!(seen > 0, "nothing is met beside the robot");
@@ -297,10 +303,10 @@ proptest! {
         let (world, parts) = among(1.0, stance, &discs);
         let mut camera = eye(1.0, parts.body, aside, field);
         let (values, cast) = Watched::new(&world).read(&mut camera);
-        let (expected, all) = Watched { rumour: true, ..Watched::new(&world) }.read(&mut camera);
+        let (expected, all) = Watched { phantom_wall: true, ..Watched::new(&world) }.read(&mut camera);
         prop_assert_eq!(all.len(), 60);
         prop_assert_eq!(&values, &expected);
-        prop_assert_eq!(&Watched { formless: true, ..Watched::new(&world) }.read(&mut camera).0, &expected);
+        prop_assert_eq!(&Watched { without_radius: true, ..Watched::new(&world) }.read(&mut camera).0, &expected);
         prop_assert!(discs.iter().any(|disc| disc.3) || cast.is_empty(), "nothing red, but {} rays", cast.len());
     }
 
@@ -332,7 +338,7 @@ proptest! {
         let (world, parts) = among(1.0, stance, &discs);
         let mut camera = eye(1.0, parts.body, aside, 1.0);
         let (_, cast) = Watched::new(&world).read(&mut camera);
-        let (_, all) = Watched { rumour: true, ..Watched::new(&world) }.read(&mut camera);
+        let (_, all) = Watched { phantom_wall: true, ..Watched::new(&world) }.read(&mut camera);
         let (bearing, distance, radius, _) = discs[behind];
         let centre = from(at, bearing, distance + radius);
         for (ray, is_cast) in all.iter().zip(which(&all, &cast)) {
@@ -354,7 +360,7 @@ fn a_camera_sees_small_things_to_their_edges() {
             let field = f64::from(4.0 * radius / (distance + behind));
             let mut camera = eye(1.0, parts.body, [f64::from(-behind), 0.0], field);
             let (values, cast) = Watched::new(&world).read(&mut camera);
-            let (expected, _) = Watched { rumour: true, ..Watched::new(&world) }.read(&mut camera);
+            let (expected, _) = Watched { phantom_wall: true, ..Watched::new(&world) }.read(&mut camera);
             // Half of the field is filled.
             let share: f32 = expected.iter().sum::<f32>() / 3.0;
             assert!((share - 0.5).abs() < 0.05 && cast.len() >= 28, "{distance} {radius}: {expected:?}");

@@ -2,6 +2,7 @@
 
 use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
+use crate::shared::read;
 use farsa_body::testing::{PointWorld, check_motor, check_sensor};
 use farsa_body::{
     Actuated, ActuatorId, Arrange, Axes, BodyId, BodyPose, BodyVelocity, ChannelError, Channels, ContactForce,
@@ -51,12 +52,6 @@ impl Contacts for Lane<'_> {
     fn pair_contact(&self, pair: PairId) -> PairContact {
         self.0.pair_contact(pair)
     }
-}
-
-fn read<W: ?Sized>(sensor: &mut (impl Sensor<W> + ?Sized), world: &W) -> Vec<f32> {
-    let mut out = vec![f32::NAN; sensor.channels()];
-    sensor.read(world, &mut out);
-    out
 }
 
 /// Points at heights 0.1, 0.2, 0.3 m; the last sinks into the floor.

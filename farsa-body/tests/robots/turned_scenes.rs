@@ -3,23 +3,15 @@
 use core::f32::consts::PI;
 use std::sync::OnceLock;
 
+use crate::shared::{BLUE, RED, bands, read};
 use farsa_body::testing::PlaneWorld;
 use farsa_body::{
-    Actuated, ActuatorId, BodyId, Channels, ColorBand, GroundColor, Handles, InfraredAnalytic, InfraredGroups,
-    InfraredRays, InfraredTable, InfraredTables, JointId, Kinematics, Lamp, LaserDistance, LightSensors, LinearCamera,
-    MobileRobot, NearbySurface, Planar, PlanarHit, Pose, SampledInfrared, Sensor, Sight, SignalSensor, Twist,
+    Actuated, ActuatorId, BodyId, GroundColor, Handles, InfraredAnalytic, InfraredGroups, InfraredRays, InfraredTable,
+    InfraredTables, JointId, Kinematics, Lamp, LaserDistance, LightSensors, LinearCamera, MobileRobot, NearbySurface,
+    Planar, PlanarHit, Pose, SampledInfrared, Sensor, Sight, SignalSensor, Twist,
 };
 use farsa_num::sin_cos;
 use proptest::prelude::*;
-
-const RED: [f32; 3] = [1.0, 0.0, 0.0];
-const BLUE: [f32; 3] = [0.0, 0.0, 1.0];
-
-fn read<W: ?Sized>(sensor: &mut (impl Sensor<W> + ?Sized), world: &W) -> Vec<f32> {
-    let mut out = vec![f32::NAN; sensor.channels()];
-    sensor.read(world, &mut out);
-    out
-}
 
 /// A `MarXbot` among things of every kind, moved and turned as one; by the scene's own axes it stands at (0.1, 0.2) and looks
 /// to 0.5 rad.
@@ -42,10 +34,6 @@ fn scene([dx, dy]: [f32; 2], turn: f32) -> (PlaneWorld, BodyId) {
         world.command(other.leds.unwrap()[0], [1.0, 0.0]);
     }
     (world, body)
-}
-
-fn bands() -> [ColorBand; 2] {
-    [RED, BLUE].map(|color| ColorBand::around(color, 0.25))
 }
 
 /// A table whose readings fall with the distance and are largest where the surface is ahead of the sensor.

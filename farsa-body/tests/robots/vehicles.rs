@@ -2,15 +2,12 @@
 
 use std::f64::consts::PI;
 
+use crate::shared::robots;
 use farsa_body::testing::PlaneWorld;
 use farsa_body::{
     Beam, Channels as _, Collider, InfraredDrawing, InfraredRays, JointKind, KinematicTree, Kinematics as _, Law,
     MobileRobot, Pose, Recorder, Robot, Sensor as _, Shape,
 };
-
-fn robots() -> [MobileRobot; 3] {
-    [MobileRobot::khepera(), MobileRobot::e_puck(), MobileRobot::marxbot()]
-}
 
 fn near(value: f64, expected: f64) -> bool {
     (value - expected).abs() <= 1e-6 * expected.abs().max(1e-3)
@@ -20,10 +17,10 @@ fn collider<'a>(robot: &'a Robot, name: &str) -> &'a Collider {
     &robot.colliders[robot.collider(name).unwrap()]
 }
 
-/// By hand from the radius, height and radius of the wheels that the robots are documented with and 750 kg/m3: mass of all,
+/// Computed outside this crate from the radius, height and radius of the wheels that the robots are documented with and 750 kg/m3: mass of all,
 /// inertia of the hull across and about its axis, of a wheel across and about its axle, largest torque of a wheel's motor.
 #[test]
-fn masses_and_torques_are_as_computed_by_hand() {
+fn masses_and_torques_are_those_of_discs_and_cylinders() {
     let known = [
         [0.086_590_147_5, 2.971_124_4e-5, 4.773_281_9e-5, 2.638_293_6e-7, 4.870_695_8e-7, 3.185_435_1e-3],
         [0.144_316_912_5, 6.683_677_0e-5, 7.955_469_8e-5, 8.212_910_1e-7, 1.516_229_6e-6, 7.255_713_2e-3],
@@ -109,6 +106,7 @@ fn hulls_reach_from_half_a_wheel_to_the_top() {
             assert_eq!(side.placement.position[..2], [0.0, 0.0]);
             // Corners lie on the circle, sixteen at equal angles.
             let corner = half[0].hypot(half[1]);
+            // tan 11.25 deg.
             assert!(near(corner, mobile.radius) && near(half[1] / half[0], 0.198_912_367), "{half:?}");
             let heading = side.placement.heading();
             assert!((heading - PI * number as f64 / 8.0).abs() < 1e-12, "{number}: {heading}");
@@ -164,6 +162,7 @@ fn sensors_of_the_robots_look_where_the_documentation_has_them() {
     let apart = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
     let (within, around) = ground.split_at(4);
     assert_eq!(around.len(), 8);
+    // sin 22.5 deg.
     for (ring, side) in [(within, 0.03 * 2.0_f64.sqrt()), (around, 0.16 * 0.382_683_432)] {
         for (place, next) in ring.iter().zip(ring.iter().cycle().skip(1)) {
             assert!(near(apart(*place, *next), side), "{ring:?}");

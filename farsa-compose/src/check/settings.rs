@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn many_parts_of_one_name_take_no_more_than_their_number() {
+    fn a_hundred_thousand_parts_of_one_name_are_numbered() {
         let found = names(&vec![json!({ "kind": "wall" }); 100_000]);
         assert_eq!(found.last().map(String::as_str), Some("wall-100000"));
     }

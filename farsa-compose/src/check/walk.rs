@@ -15,7 +15,7 @@ const MOST_PARTS: usize = 1000;
 /// The values of a text that fits a schema, and where they stand.
 ///
 /// # Errors
-/// [`Error::Usage`] for a text that is no TOML, [`Error::Unknown`] with the nearest key or word, [`Error::Setting`] with
+/// [`Error::Usage`] for a text that is no TOML or has too many tokens, [`Error::Unknown`] with the nearest key or word, [`Error::Setting`] with
 /// what is wrong with a value; all with file, line and key.
 pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Places), Error> {
     limit_toml_tokens(file, text)?;

@@ -99,8 +99,9 @@ pub struct Document {
     /// Contents of the files that others keys name, by their names. The text of a run has them, so that it needs no other file.
     #[serde(default)]
     pub files: BTreeMap<String, String>,
-    /// Conditions that are compared, the default one first.
+    /// Conditions that are compared, the default one first: at most a hundred, each of which is checked as an experiment.
     #[serde(default)]
+    #[schemars(length(max = 100))]
     pub conditions: Vec<ConditionOfRuns>,
     /// The strategy by its `name`, and its settings of the section `strategy`.
     #[serde(default)]

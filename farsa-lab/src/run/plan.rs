@@ -423,10 +423,10 @@ mod tests {
     #[test]
     fn many_unknown_keys_are_refused_at_the_first() {
         // In the order of the alphabet the first would be k0. Lines counted from the top for each take minutes.
-        let keys: Vec<String> = (0..200_000).rev().map(|number| format!("k{number}=1\n")).collect();
+        let keys: Vec<String> = (0..45_000).rev().map(|number| format!("k{number}=1\n")).collect();
         let file = ConfigFile::parse("my.toml", &format!("{}experiment=\"toy\"\n", keys.concat())).unwrap();
         let error = Plan::from_file(&Laboratory::new(&[&Toy]), &file).map(|_| ()).unwrap_err().to_string();
-        assert_eq!(error, "my.toml line 1: unknown key `k199999`; the nearest is `world.map`");
+        assert_eq!(error, "my.toml line 1: unknown key `k44999`; the nearest is `world.map`");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! How many tokens a TOML text has, so that one that would take much memory is refused before its tree is built.
 //!
-//! The tree of the crate `toml` takes up to 600 bytes for a token of one byte: each name of `[a.a.a]` is a table of its own.
+//! The tree of the crate `toml` takes up to 600 bytes for each token: each name of `[a.a.a]` is a table of its own.
 
 use crate::error::Error;
 use crate::escaped::OneLine;

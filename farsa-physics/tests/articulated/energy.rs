@@ -55,6 +55,36 @@ fn halving_the_step_halves_the_drift_of_energy() {
 }
 
 #[test]
+fn efforts_against_gravity_are_the_slope_of_the_potential_energy() {
+    let mut w = world(&pendulum(3), 1e-3, 9.81);
+    let (angles, speeds, h) = ([0.7, -1.9, 2.6], [3.0, -5.0, 8.0], 1e-5);
+    let place = |w: &mut World<f64>, angles: [f64; 3]| {
+        w.state_mut()[..3].copy_from_slice(&angles);
+        w.state_mut()[3..6].copy_from_slice(&speeds);
+        w.finish_placement();
+    };
+    let slope = |w: &mut World<f64>, joint: usize| {
+        let [above, below] = [h, -h].map(|by| {
+            let mut moved = angles;
+            moved[joint] += by;
+            place(w, moved);
+            w.energy()[1]
+        });
+        (above - below) / (2.0 * h)
+    };
+    let slopes = [0, 1, 2].map(|joint| slope(&mut w, joint));
+    place(&mut w, angles);
+    let before = (w.state().to_vec(), w.energy(), w.momentum());
+    let mut efforts = [f64::NAN; 3];
+    w.gravity_efforts(&mut efforts);
+    // Speeds have no part in it, and are as before.
+    for (effort, slope) in efforts.iter().zip(slopes) {
+        assert!((effort - slope).abs() < 1e-8 && slope.abs() > 0.05, "{efforts:?} and {slopes:?} N m");
+    }
+    assert_eq!((w.state().to_vec(), w.energy(), w.momentum()), before);
+}
+
+#[test]
 fn a_free_body_keeps_its_momentum() {
     let inertia = [2e-4, 5e-4, 6e-4, 3e-5, -2e-5, 1e-5];
     let body = MassProperties { mass: 0.4, centre: [0.02, -0.01, 0.03], inertia };

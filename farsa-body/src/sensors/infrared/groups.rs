@@ -41,8 +41,8 @@ const ROOM: usize = 64;
 /// For rounding [m].
 const HAIR: f32 = 1e-4;
 
-/// Of a round body whose nearest point is closer to the robot's middle, and so lies within the robot, the middle cannot be
-/// told [m].
+/// Where the nearest point of a body or wall is closer to the robot's middle than this, its direction is not known, and all rays
+/// are cast [m].
 const CLOSE: f32 = 0.01;
 
 impl Obstacle {
@@ -115,9 +115,9 @@ where
             if near.body == Some(*body) {
                 return;
             }
+            crowded |= near.distance < CLOSE;
             let found = match near.body {
                 Some(_) if near.radius > 0.0 => {
-                    crowded |= near.distance < CLOSE;
                     let far = near.distance + near.radius;
                     Obstacle::Round { centre: [x + far * out[0], y + far * out[1]], radius: near.radius }
                 }
