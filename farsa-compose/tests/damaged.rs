@@ -178,7 +178,8 @@ fn files_of_more_than_anybody_writes_are_refused() {
     let scene = scene.replacen("[world]", "[world]\nscene = 's.toml'", 1);
     assert_eq!(error(&scene), format!("s.toml: has 200002 names, values, signs and gaps; {read}"));
     // Each is checked as an experiment of its own.
-    let conditions = |count| -> String { (0..count).map(|n| format!("[[conditions]]\nname = \"c{n}\"\n")).collect() };
+    let conditions =
+        |count| (0..count).map(|n| format!("[[conditions]]\nname = \"c{n}\"\n")).collect::<Vec<_>>().concat();
     assert_eq!(error(&format!("{RIGHT}{}", conditions(100))), "nothing is wrong");
     let found = error(&format!("{RIGHT}{}", conditions(101)));
     assert_eq!(plain(&found), "look.toml line 37: conditions: has 101 values where 0 to 100 are wanted");
