@@ -17,8 +17,8 @@ fn collider<'a>(robot: &'a Robot, name: &str) -> &'a Collider {
     &robot.colliders[robot.collider(name).unwrap()]
 }
 
-/// Computed outside this crate from the radius, height and radius of the wheels that the robots are documented with and 750 kg/m3: mass of all,
-/// inertia of the hull across and about its axis, of a wheel across and about its axle, largest torque of a wheel's motor.
+/// Computed outside this crate from the radius, height and radius of the wheels that the robots are documented with and
+/// 750 kg/m3: mass of all, inertia of the hull across and about its axis, of a wheel across and about its axle, largest torque of a wheel's motor.
 #[test]
 fn masses_and_torques_are_those_of_discs_and_cylinders() {
     let known = [

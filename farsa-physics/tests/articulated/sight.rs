@@ -265,6 +265,47 @@ fn the_kit_finds_the_world_in_order() {
     assert!(checked > 100, "{checked}");
 }
 
+#[test]
+fn the_nearest_point_of_a_plane_lies_on_it_along_its_normal() {
+    let mut stream = Stream::new(11, Domain::General, 0, 0, 0);
+    let mut checked = 0;
+    for _ in 0..500 {
+        let position = [stream.range_f64(-0.5, 0.5), stream.range_f64(-0.5, 0.5), stream.range_f64(-0.2, 0.4)];
+        let at = Pose { position, rotation: turned(&mut stream) };
+        let mut robot = Robot::new("plane");
+        robot.add_segment(Segment::new(
+            "eye",
+            None,
+            Joint::floating(Pose::identity()),
+            MassProperties::sphere(0.1, 0.02),
+        ));
+        robot.add_collider(Collider::new("plane", None, Shape::Plane, at).with_color(COLORS[2]));
+        let world = world(&robot);
+        let from = [stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
+        let normal = at.rotate([0.0, 0.0, 1.0]);
+        let steep = normal[0].hypot(normal[1]);
+        let height = |[x, y]: [f64; 2]| {
+            let from = [x - position[0], y - position[1], HEIGHT - position[2]];
+            (0..3).map(|k| normal[k] * from[k]).sum::<f64>()
+        };
+        // In the plane of sight it is a line, this far away.
+        let expected = height(from) / steep;
+        if steep < 0.2 || !(0.01..2.9).contains(&expected) {
+            continue;
+        }
+        let mut found = Vec::new();
+        world.query_near(from.map(|x| x as f32), 3.0, &mut |near| {
+            found.push((near.point.map(f64::from), near.distance))
+        });
+        let [([x, y], distance)] = found[..] else { panic!("{found:?} in {at:?}") };
+        let way = [x - from[0], y - from[1]];
+        assert!(height([x, y]).abs() < 1e-5 && (f64::from(distance) - expected).abs() < 1e-5, "{x}, {y} on {at:?}");
+        assert!((way[0] * normal[1] - way[1] * normal[0]).abs() < 1e-5, "{way:?} to {at:?}");
+        checked += 1;
+    }
+    assert!(checked > 100, "{checked}");
+}
+
 #[cfg(feature = "lanes")]
 #[test]
 fn lanes_show_what_worlds_show() {
