@@ -295,7 +295,7 @@ fn the_nearest_point_of_a_plane_lies_on_it_along_its_normal() {
         }
         let mut found = Vec::new();
         world.query_near(from.map(|x| x as f32), 3.0, &mut |near| {
-            found.push((near.point.map(f64::from), near.distance))
+            found.push((near.point.map(f64::from), near.distance));
         });
         let [([x, y], distance)] = found[..] else { panic!("{found:?} in {at:?}") };
         let way = [x - from[0], y - from[1]];
