@@ -12,7 +12,7 @@ use crate::fitness::Fitness;
 use crate::gene::Gene;
 use crate::judgement::Judgements;
 use crate::judgement_shape::JudgementShape;
-use crate::record::Record;
+use crate::recording::{Record, RecordWriter};
 use crate::strategy::{Recorded, Strategy};
 
 /// Checks that the strategy that `fresh` makes, always with the same configuration and seed, keeps to what [`Strategy`] says,
@@ -43,6 +43,7 @@ where
     let made = || fresh().map_err(|error| format!("cannot be made: {error}"));
     let (mut strategy, mut again) = (made()?, made()?);
     let mut record = Record::new(&mut strategy).map_err(|error| format!("no record: {error}"))?;
+    let mut writer = RecordWriter::new(&mut again).map_err(|error| format!("no record elsewhere: {error}"))?;
     let mut asked: Vec<u64> = Vec::new();
     let mut history: Vec<Judgements> = Vec::new();
     for generation in 0..generations {
@@ -75,12 +76,15 @@ where
             _ => fitness.clone(),
         };
         let (told, told_again) = if shape == JudgementShape::FITNESS {
-            (record.tell(&mut strategy, &fitness), again.tell(&other))
+            (record.tell(&mut strategy, &fitness), writer.tell(&mut again, &other))
         } else {
-            (record.tell_judgements(&mut strategy, &judgements), again.tell_judgements(&judgements))
+            (record.tell_judgements(&mut strategy, &judgements), writer.tell_judgements(&mut again, &judgements))
         };
         told.map_err(|error| wrong(&format!("cannot be told: {error}")))?;
         told_again.map_err(|error| wrong(&format!("cannot be told by value: {error}")))?;
+        if writer.entry() != record.entry(generation) {
+            return Err(wrong("is recorded otherwise the second time"));
+        }
         saved(&mut strategy, made()?).map_err(|what| wrong(&what))?;
         history.push(judgements);
         if let Some(collection) = strategy.collection() {

@@ -27,8 +27,7 @@ mod pareto;
 mod population;
 mod random_search;
 mod real;
-mod record;
-mod record_shape;
+mod recording;
 #[cfg(feature = "serde")]
 mod saved;
 mod side_by_side;
@@ -75,7 +74,7 @@ pub use real::{
     Crossover, EvolutionStrategy, EvolutionStrategyConfig, RealGa, RealGaConfig, RealMutation, Recombination,
     Selection, SteadyState, SteadyStateConfig, StepSizes, Survival,
 };
-pub use record::{Record, RecordEntry};
+pub use recording::{Record, RecordEntry, RecordWriter};
 pub use side_by_side::SideBySide;
 pub use snapshot::Snapshot;
 pub use statistics::Statistics;

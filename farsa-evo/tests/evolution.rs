@@ -465,6 +465,23 @@ fn states_are_kept_as_often_as_a_slow_strategy_asks() {
     }
     let kept: Vec<u32> = (0..10).filter(|generation| record.entry(*generation).unwrap().state.is_some()).collect();
     assert_eq!(kept, [2, 5, 8]);
+    // A writer takes down what a record keeps, from the start and from any generation on.
+    for first in 0..10 {
+        let (mut before, mut strategy) = (record.clone(), fresh());
+        before.truncate(first);
+        before.rebuild(&mut strategy, first).unwrap();
+        let mut writer = before.writer();
+        assert_eq!((writer.generations(), writer.populations(), writer.entry()), (first, 1, None));
+        assert!(writer.tell(&mut fresh(), &values(0)).is_err() == (first > 0), "another generation");
+        let mut writer = before.writer();
+        for generation in first..10 {
+            writer.tell(&mut strategy, &values(generation)).unwrap();
+            assert_eq!(writer.entry(), record.entry(generation), "{generation} from {first} on");
+        }
+        assert_eq!(writer.generations(), 10);
+        assert!(writer.tell(&mut strategy, &values(0)[1..]).is_err());
+        assert_eq!(writer.entry(), record.entry(9), "what is refused changes nothing");
+    }
     // A record that was cut and went on is the same, and so is one that is read entry by entry.
     let (mut cut, mut again) = (record.clone(), fresh());
     cut.truncate(4);

@@ -2,7 +2,6 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
-use core::cmp::Reverse;
 
 use crate::error::EvoError;
 use crate::fitness::Fitness;
@@ -10,8 +9,10 @@ use crate::gene::Gene;
 use crate::judgement::Judgements;
 use crate::judgement_shape::JudgementShape;
 use crate::population::Population;
-use crate::record_shape::{Kept, Shape};
-use crate::snapshot::Snapshot;
+use crate::recording::entry::RecordEntry;
+use crate::recording::progress::{Progress, Taken, next, order};
+use crate::recording::shape::{Kept, Shape};
+use crate::recording::writer::RecordWriter;
 use crate::strategy::Strategy;
 
 /// What a strategy was told in every generation, in the form that it depends on.
@@ -54,17 +55,6 @@ pub struct Record {
     /// Their bytes, one after the other's: an allocation for each of them, small and kept for ever, would lie between those of a
     /// generation and leave more memory unused than it takes.
     states: Vec<u8>,
-    /// The number of bytes of frames from which the next state is saved.
-    next_keyframe: usize,
-}
-
-/// What stands in a [`Record`] for one generation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RecordEntry<'r> {
-    /// The champion of each population, then what was recorded.
-    pub frame: &'r [u8],
-    /// The state that the strategy was in afterwards, where it was saved.
-    pub state: Option<&'r [u8]>,
 }
 
 /// The state of a strategy at a generation.
@@ -82,22 +72,23 @@ impl Record {
     /// [`EvoError::AlreadyTold`]; [`EvoError::UnevenPopulations`]; [`EvoError::NoSnapshot`] for a strategy of which genomes
     /// are recorded and that cannot save its state: nothing could make it go on.
     pub fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
-        if strategy.generation() != 0 {
-            return Err(EvoError::AlreadyTold { generation: strategy.generation() });
-        }
-        let shape = Shape::from_strategy(strategy);
-        shape.check()?;
-        if shape.recorded == Kept::Genomes && strategy.snapshot().is_none() {
-            return Err(EvoError::NoSnapshot);
-        }
-        Ok(Self::empty(shape))
+        Progress::new(strategy).map(|progress| Self::empty(progress.shape))
     }
 
     fn empty(shape: Shape) -> Self {
-        let mut record =
-            Self { shape, frames: Vec::new(), keyframes: Vec::new(), states: Vec::new(), next_keyframe: 0 };
-        record.wait(0);
-        record
+        Self { shape, frames: Vec::new(), keyframes: Vec::new(), states: Vec::new() }
+    }
+
+    /// How far it has come.
+    fn progress(&self) -> Progress {
+        let state = self.keyframes.len().checked_sub(1).and_then(|last| self.state(last)).map_or(0, <[u8]>::len);
+        let saved = self.keyframes.last().map_or(0, |keyframe| keyframe.generation);
+        Progress { shape: self.shape, generations: self.generations(), saved, state }
+    }
+
+    /// Records the same search from here on, for a record that goes on elsewhere.
+    pub fn writer(&self) -> RecordWriter {
+        RecordWriter::going_on(self.progress())
     }
 
     /// The saved state in this place among them.
@@ -106,17 +97,10 @@ impl Record {
         self.states.get(start..self.keyframes.get(place)?.end)
     }
 
-    /// Keeps the state of a strategy as it is now, and waits with the next.
+    /// Keeps the state of a strategy as it is now.
     fn keep_state(&mut self, state: &[u8]) {
         self.states.extend_from_slice(state);
         self.keyframes.push(Keyframe { generation: self.generations(), end: self.states.len() });
-        self.wait(state.len());
-    }
-
-    /// Waits with the next state until as many bytes of frames have been added as it is likely to take.
-    fn wait(&mut self, state: usize) {
-        let genomes = self.shape.gene_bytes * self.shape.individuals * self.shape.genes;
-        self.next_keyframe = self.frames.len() + genomes.max(state);
     }
 
     /// Tells a strategy the fitness \[individuals\] of its generation, and records it.
@@ -130,8 +114,9 @@ impl Record {
         strategy: &mut (impl Strategy<G> + ?Sized),
         fitness: &[Fitness],
     ) -> Result<(), EvoError> {
-        strategy.judged_by().check(JudgementShape::FITNESS)?;
-        self.keep(strategy, fitness, fitness.iter().map(|fitness| fitness.get()), |strategy| strategy.tell(fitness))
+        let taken = self.progress().fitness(strategy, fitness)?;
+        self.keep(&taken);
+        Ok(())
     }
 
     /// Tells a strategy the judgements of its generation, and records them.
@@ -143,53 +128,17 @@ impl Record {
         strategy: &mut (impl Strategy<G> + ?Sized),
         judgements: &Judgements,
     ) -> Result<(), EvoError> {
-        strategy.judged_by().check(judgements.shape())?;
-        let (fitness, values) = (judgements.fitness(), judgements.values().iter().copied());
-        self.keep(strategy, &fitness, values, |strategy| strategy.tell_judgements(judgements))
+        let taken = self.progress().judgements(strategy, judgements)?;
+        self.keep(&taken);
+        Ok(())
     }
 
-    /// Tells a strategy, and records what it was told.
-    fn keep<G: Gene, S: Strategy<G> + ?Sized>(
-        &mut self,
-        strategy: &mut S,
-        fitness: &[Fitness],
-        values: impl Iterator<Item = f64>,
-        told: impl FnOnce(&mut S) -> Result<(), EvoError>,
-    ) -> Result<(), EvoError> {
-        self.check(strategy)?;
-        if strategy.generation() != self.generations() {
-            return Err(EvoError::OtherRecord { what: "generations", recorded: self.generations() as usize });
+    /// Keeps a generation.
+    fn keep(&mut self, (frame, state): &Taken) {
+        self.frames.extend_from_slice(frame);
+        if let Some(state) = state {
+            self.keep_state(state);
         }
-        let (expected, found) = (self.shape.individuals, fitness.len());
-        if found != expected {
-            return Err(EvoError::FitnessCount { expected, found });
-        }
-        let mut frame = Vec::with_capacity(self.shape.frame());
-        let champions = strategy.champions(&strategy.ranked_by(fitness));
-        if champions.len() != self.shape.populations {
-            return Err(EvoError::OtherRecord { what: "champions", recorded: self.shape.populations });
-        }
-        for (population, champion) in champions.into_iter().enumerate() {
-            if !self.shape.has(population, champion) {
-                return Err(EvoError::NoSuchIndividual { individual: champion, population: self.shape.individuals });
-            }
-            self.shape.push_index(&mut frame, champion);
-        }
-        match self.shape.recorded {
-            Kept::Order => order(fitness).into_iter().for_each(|index| self.shape.push_index(&mut frame, index)),
-            Kept::Values | Kept::Judgements(_) => frame.extend(values.flat_map(f64::to_le_bytes)),
-            Kept::Genomes => strategy.ask().as_slice().iter().for_each(|gene| gene.push_bytes(&mut frame)),
-        }
-        next(strategy, told)?;
-        self.frames.extend(frame);
-        let since = self.generations() - self.keyframes.last().map_or(0, |keyframe| keyframe.generation);
-        let enough = self.frames.len() >= self.next_keyframe;
-        let due = |strategy: &&mut dyn Snapshot| enough || since >= strategy.generations_between_states();
-        let kept = self.shape.recorded != Kept::Genomes;
-        if let Some(strategy) = strategy.snapshot().filter(|strategy| kept && due(strategy)) {
-            self.keep_state(&strategy.save());
-        }
-        Ok(())
     }
 
     /// Whether this is a record for a strategy like this one.
@@ -197,21 +146,7 @@ impl Record {
     /// # Errors
     /// [`EvoError::OtherRecord`].
     pub fn check<G: Gene>(&self, strategy: &(impl Strategy<G> + ?Sized)) -> Result<(), EvoError> {
-        let (ours, theirs) = (self.shape, Shape::from_strategy(strategy));
-        let other = |what, recorded| Err(EvoError::OtherRecord { what, recorded });
-        if ours.populations != theirs.populations {
-            other("populations", ours.populations)
-        } else if ours.individuals != theirs.individuals {
-            other("individuals", ours.individuals)
-        } else if ours.genes != theirs.genes {
-            other("genes", ours.genes)
-        } else if ours.gene_bytes != theirs.gene_bytes {
-            other("bytes of a gene", ours.gene_bytes)
-        } else if ours.recorded != theirs.recorded {
-            other("bytes of another kind", ours.frame())
-        } else {
-            Ok(())
-        }
+        self.shape.check_strategy(strategy)
     }
 
     /// Number of generations that were told, which is that of the generation that waits for its fitness.
@@ -394,38 +329,13 @@ impl Record {
     pub fn truncate(&mut self, generations: u32) {
         self.frames.truncate((generations as usize).saturating_mul(self.shape.frame()));
         self.keyframes.retain(|keyframe| keyframe.generation <= generations);
-        // The place of the next state follows from those before, so that a record that goes on is that of a search that
-        // was never interrupted.
         self.states.truncate(self.keyframes.last().map_or(0, |keyframe| keyframe.end));
-        let state = self.keyframes.len().checked_sub(1).and_then(|last| self.state(last)).map_or(0, <[u8]>::len);
-        let last = self.keyframes.last().map(|keyframe| (keyframe.generation as usize, state));
-        let (told, state) = last.unwrap_or_default();
-        let genomes = self.shape.gene_bytes * self.shape.individuals * self.shape.genes;
-        self.next_keyframe = told * self.shape.frame() + genomes.max(state);
     }
 }
 
 /// Numbers as they are saved.
 fn reals(bytes: &[u8]) -> impl Iterator<Item = f64> + '_ {
     bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes))
-}
-
-/// Tells a strategy, which must then be at the next generation: else it could be told for ever.
-fn next<G: Gene, S: Strategy<G> + ?Sized>(
-    strategy: &mut S,
-    told: impl FnOnce(&mut S) -> Result<(), EvoError>,
-) -> Result<(), EvoError> {
-    let generation = strategy.generation();
-    told(strategy)?;
-    let found = strategy.generation();
-    if generation.checked_add(1) == Some(found) { Ok(()) } else { Err(EvoError::Stuck { generation, found }) }
-}
-
-/// The individuals, best first, equals by index.
-fn order(fitness: &[Fitness]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..fitness.len()).collect();
-    order.sort_by_key(|&individual| Reverse(fitness.get(individual)));
-    order
 }
 
 /// A record as it is read, before anything in it is believed.
@@ -480,7 +390,6 @@ impl TryFrom<RawRecord> for Record {
         if !rising || last > record.generations() {
             return Err(EvoError::StateContent { what: "the generation of a saved state", found: last.into() });
         }
-        record.truncate(record.generations());
         Ok(record)
     }
 }

@@ -74,6 +74,28 @@ impl Shape {
         self.check()
     }
 
+    /// Whether a record of this shape is one for a strategy like this one.
+    ///
+    /// # Errors
+    /// [`EvoError::OtherRecord`].
+    pub(crate) fn check_strategy<G: Gene>(self, strategy: &(impl Strategy<G> + ?Sized)) -> Result<(), EvoError> {
+        let (ours, theirs) = (self, Self::from_strategy(strategy));
+        let other = |what, recorded| Err(EvoError::OtherRecord { what, recorded });
+        if ours.populations != theirs.populations {
+            other("populations", ours.populations)
+        } else if ours.individuals != theirs.individuals {
+            other("individuals", ours.individuals)
+        } else if ours.genes != theirs.genes {
+            other("genes", ours.genes)
+        } else if ours.gene_bytes != theirs.gene_bytes {
+            other("bytes of a gene", ours.gene_bytes)
+        } else if ours.recorded != theirs.recorded {
+            other("bytes of another kind", ours.frame())
+        } else {
+            Ok(())
+        }
+    }
+
     /// Whether this is the number of an individual of a population.
     pub(crate) fn has(self, population: usize, individual: usize) -> bool {
         individual < self.individuals && individual / (self.individuals / self.populations) == population

@@ -1,0 +1,145 @@
+//! How far a record has come, and what it takes of the next generation.
+
+use alloc::vec::Vec;
+use core::cmp::Reverse;
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::gene::Gene;
+use crate::judgement::Judgements;
+use crate::judgement_shape::JudgementShape;
+use crate::recording::shape::{Kept, Shape};
+use crate::snapshot::Snapshot;
+use crate::strategy::Strategy;
+
+/// The bytes of a generation, and the state to be saved after it, if one is due.
+pub(crate) type Taken = (Vec<u8>, Option<Vec<u8>>);
+
+/// How far a record has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Progress {
+    pub(crate) shape: Shape,
+    pub(crate) generations: u32,
+    /// The generation of the last saved state, 0 without one.
+    pub(crate) saved: u32,
+    /// The bytes of that state.
+    pub(crate) state: usize,
+}
+
+impl Progress {
+    /// Of a strategy that has not been told anything.
+    ///
+    /// # Errors
+    /// Those of [`Record::new`](crate::Record::new).
+    pub(crate) fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
+        if strategy.generation() != 0 {
+            return Err(EvoError::AlreadyTold { generation: strategy.generation() });
+        }
+        let shape = Shape::from_strategy(strategy);
+        shape.check()?;
+        if shape.recorded == Kept::Genomes && strategy.snapshot().is_none() {
+            return Err(EvoError::NoSnapshot);
+        }
+        Ok(Self { shape, generations: 0, saved: 0, state: 0 })
+    }
+
+    /// Counts a generation, and the state that was saved after it.
+    pub(crate) fn count(&mut self, state: Option<usize>) {
+        self.generations += 1;
+        if let Some(state) = state {
+            (self.saved, self.state) = (self.generations, state);
+        }
+    }
+
+    /// Tells a strategy the fitness of its generation, and takes it down.
+    ///
+    /// # Errors
+    /// Those of [`Record::tell`](crate::Record::tell).
+    pub(crate) fn fitness<G: Gene>(
+        self,
+        strategy: &mut (impl Strategy<G> + ?Sized),
+        fitness: &[Fitness],
+    ) -> Result<Taken, EvoError> {
+        strategy.judged_by().check(JudgementShape::FITNESS)?;
+        self.take(strategy, fitness, fitness.iter().map(|fitness| fitness.get()), |strategy| strategy.tell(fitness))
+    }
+
+    /// Tells a strategy the judgements of its generation, and takes them down.
+    ///
+    /// # Errors
+    /// Those of [`Record::tell_judgements`](crate::Record::tell_judgements).
+    pub(crate) fn judgements<G: Gene>(
+        self,
+        strategy: &mut (impl Strategy<G> + ?Sized),
+        judgements: &Judgements,
+    ) -> Result<Taken, EvoError> {
+        strategy.judged_by().check(judgements.shape())?;
+        let (fitness, values) = (judgements.fitness(), judgements.values().iter().copied());
+        self.take(strategy, &fitness, values, |strategy| strategy.tell_judgements(judgements))
+    }
+
+    fn take<G: Gene, S: Strategy<G> + ?Sized>(
+        self,
+        strategy: &mut S,
+        fitness: &[Fitness],
+        values: impl Iterator<Item = f64>,
+        told: impl FnOnce(&mut S) -> Result<(), EvoError>,
+    ) -> Result<Taken, EvoError> {
+        let Self { shape, generations, .. } = self;
+        shape.check_strategy(strategy)?;
+        if strategy.generation() != generations {
+            return Err(EvoError::OtherRecord { what: "generations", recorded: generations as usize });
+        }
+        let (expected, found) = (shape.individuals, fitness.len());
+        if found != expected {
+            return Err(EvoError::FitnessCount { expected, found });
+        }
+        let mut frame = Vec::with_capacity(shape.frame());
+        let champions = strategy.champions(&strategy.ranked_by(fitness));
+        if champions.len() != shape.populations {
+            return Err(EvoError::OtherRecord { what: "champions", recorded: shape.populations });
+        }
+        for (population, champion) in champions.into_iter().enumerate() {
+            if !shape.has(population, champion) {
+                return Err(EvoError::NoSuchIndividual { individual: champion, population: shape.individuals });
+            }
+            shape.push_index(&mut frame, champion);
+        }
+        match shape.recorded {
+            Kept::Order => order(fitness).into_iter().for_each(|index| shape.push_index(&mut frame, index)),
+            Kept::Values | Kept::Judgements(_) => frame.extend(values.flat_map(f64::to_le_bytes)),
+            Kept::Genomes => strategy.ask().as_slice().iter().for_each(|gene| gene.push_bytes(&mut frame)),
+        }
+        next(strategy, told)?;
+        let due = self.due();
+        let since = generations + 1 - self.saved;
+        let due = |strategy: &&mut dyn Snapshot| due || since >= strategy.generations_between_states();
+        let kept = shape.recorded != Kept::Genomes;
+        Ok((frame, strategy.snapshot().filter(|strategy| kept && due(strategy)).map(|strategy| strategy.save())))
+    }
+
+    /// Whether as many bytes of frames have been added since the last state, with the next, as a state is likely to take.
+    fn due(self) -> bool {
+        let Self { shape, generations, saved, state } = self;
+        let since = (generations - saved) as usize + 1;
+        since.saturating_mul(shape.frame()) >= (shape.gene_bytes * shape.individuals * shape.genes).max(state)
+    }
+}
+
+/// Tells a strategy, which must then be at the next generation: else it could be told for ever.
+pub(crate) fn next<G: Gene, S: Strategy<G> + ?Sized>(
+    strategy: &mut S,
+    told: impl FnOnce(&mut S) -> Result<(), EvoError>,
+) -> Result<(), EvoError> {
+    let generation = strategy.generation();
+    told(strategy)?;
+    let found = strategy.generation();
+    if generation.checked_add(1) == Some(found) { Ok(()) } else { Err(EvoError::Stuck { generation, found }) }
+}
+
+/// The individuals, best first, equals by index.
+pub(crate) fn order(fitness: &[Fitness]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..fitness.len()).collect();
+    order.sort_by_key(|&individual| Reverse(fitness.get(individual)));
+    order
+}

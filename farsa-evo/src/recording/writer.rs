@@ -1,0 +1,99 @@
+//! Records of searches that are written elsewhere.
+
+use alloc::vec::Vec;
+
+use crate::error::EvoError;
+use crate::fitness::Fitness;
+use crate::gene::Gene;
+use crate::judgement::Judgements;
+use crate::recording::entry::RecordEntry;
+use crate::recording::progress::{Progress, Taken};
+use crate::strategy::Strategy;
+
+/// Records a search of which each generation is written elsewhere, such as to a file that grows: it takes the same memory
+/// however many generations there are.
+///
+/// Its entries are those that a [`Record`](crate::Record) of the same search would keep; [`Record::push`](crate::Record::push)
+/// puts them together again, and [`Record::writer`](crate::Record::writer) goes on from there.
+///
+/// ```
+/// use farsa_evo::{Fitness, GaConfig, Record, RecordWriter, Strategy, TruncationGa};
+///
+/// let mut evolution = TruncationGa::new(GaConfig { population: 6, parents: 2, ..GaConfig::new(3) }, 5)?;
+/// let mut record = Record::new(&mut evolution)?;
+/// let mut writer = RecordWriter::new(&mut evolution)?;
+/// let fitness = [0.0, 3.0, 1.0, 9.0, 2.0, 2.0].map(Fitness::nan_as_failed);
+/// writer.tell(&mut evolution, &fitness)?;
+/// record.push(writer.entry().ok_or("nothing was told")?)?;
+/// assert_eq!(record.order(0), Some(vec![3, 1, 4, 5, 2, 0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordWriter {
+    progress: Progress,
+    last: Option<Taken>,
+}
+
+impl RecordWriter {
+    /// For a strategy that has not been told anything.
+    ///
+    /// # Errors
+    /// Those of [`Record::new`](crate::Record::new).
+    pub fn new<G: Gene>(strategy: &mut (impl Strategy<G> + ?Sized)) -> Result<Self, EvoError> {
+        Progress::new(strategy).map(Self::going_on)
+    }
+
+    /// For a strategy that has come so far.
+    pub(crate) fn going_on(progress: Progress) -> Self {
+        Self { progress, last: None }
+    }
+
+    /// Tells a strategy the fitness \[individuals\] of its generation, and records it.
+    ///
+    /// # Errors
+    /// Those of [`Record::tell`](crate::Record::tell). Nothing is recorded then.
+    pub fn tell<G: Gene>(
+        &mut self,
+        strategy: &mut (impl Strategy<G> + ?Sized),
+        fitness: &[Fitness],
+    ) -> Result<(), EvoError> {
+        let taken = self.progress.fitness(strategy, fitness)?;
+        self.keep(taken);
+        Ok(())
+    }
+
+    /// Tells a strategy the judgements of its generation, and records them.
+    ///
+    /// # Errors
+    /// Those of [`Record::tell_judgements`](crate::Record::tell_judgements). Nothing is recorded then.
+    pub fn tell_judgements<G: Gene>(
+        &mut self,
+        strategy: &mut (impl Strategy<G> + ?Sized),
+        judgements: &Judgements,
+    ) -> Result<(), EvoError> {
+        let taken = self.progress.judgements(strategy, judgements)?;
+        self.keep(taken);
+        Ok(())
+    }
+
+    fn keep(&mut self, taken: Taken) {
+        self.progress.count(taken.1.as_ref().map(Vec::len));
+        self.last = Some(taken);
+    }
+
+    /// The generation that was told last; none before the first.
+    pub fn entry(&self) -> Option<RecordEntry<'_>> {
+        let (frame, state) = self.last.as_ref()?;
+        Some(RecordEntry { frame, state: state.as_deref() })
+    }
+
+    /// Number of generations that were told, those before this writer included.
+    pub fn generations(&self) -> u32 {
+        self.progress.generations
+    }
+
+    /// Number of populations.
+    pub fn populations(&self) -> usize {
+        self.progress.shape.populations
+    }
+}
