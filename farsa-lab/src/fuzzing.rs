@@ -262,7 +262,7 @@ impl<'l> RunReader<'l> {
     pub fn logs(&self, path: &Path) -> Result<bool, Error> {
         let directory = Directory::at(path.into());
         let populations = self.evaluator.populations().len();
-        let (_, kept) = Log::resume(&directory.log(), Vec::new(), populations)?;
+        let (_, kept) = Log::resume(&directory.log(), &[], populations)?;
         let written = fs::read(directory.log()).map_err(Error::io("read", &directory.log()))?;
         assert!(written == header(populations).as_bytes(), "a log that was taken up says something else");
         let lineage = Mark::of(HEADER.as_bytes());

@@ -3,7 +3,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use crate::store::log::{Line, Row};
+use crate::figures::series::{Series, thinned};
 
 /// Small, so that its letters can be read on a telephone too.
 const WIDTH: i32 = 640;
@@ -30,9 +30,6 @@ const COLORS: [RGBColor; 6] = [
     RGBColor(0xE6, 0x9F, 0x00),
     RGBColor(0x56, 0xB4, 0xE9),
 ];
-
-/// More points than these are not seen; every k-th is drawn then.
-const MOST_POINTS: usize = 1500;
 
 /// Larger values are drawn as this part of themselves, so that neither their range nor what plotters computes from it
 /// overflows: it would look for places of labels for ever. A power of two changes no digit.
@@ -64,38 +61,9 @@ pub(crate) struct Curve {
     /// What the legend says; curves without a name are drawn thin and pale, below the others.
     pub(crate) name: Option<String>,
     pub(crate) color: usize,
-    pub(crate) values: Vec<f64>,
+    pub(crate) values: Series,
     /// Lower and upper end of a band around it, a pair per generation; may be empty.
     pub(crate) band: Vec<[f64; 2]>,
-}
-
-/// Draws the log of a run: a chart for each population of these names, one below the other.
-///
-/// # Errors
-/// The backend's words, should it refuse.
-pub(crate) fn draw(title: &str, lines: &[Line], populations: &[String]) -> Result<String, String> {
-    stack(&charts(title, lines, populations))
-}
-
-/// The log of a run as a chart, or of several populations as one for each, with its name.
-pub(crate) fn charts(title: &str, lines: &[Line], populations: &[String]) -> Vec<Chart> {
-    let chart = |title: String, row: &dyn Fn(&Line) -> Row| {
-        let curve = |(color, name): (usize, &str)| Curve {
-            name: Some(name.into()),
-            color,
-            values: lines.iter().map(|line| row(line)[color]).collect(),
-            band: Vec::new(),
-        };
-        let curves = ["best", "mean", "worst"].into_iter().enumerate().map(curve).collect();
-        Chart { title, axis: "fitness", curves, ..Chart::default() }
-    };
-    if populations.len() < 2 {
-        return vec![chart(title.into(), &|line| line.row)];
-    }
-    let of_each = populations.iter().enumerate().map(|(population, name)| {
-        chart(format!("{title}: {name}"), &|line| line.each.get(population).copied().unwrap_or([f64::NAN; 3]))
-    });
-    of_each.collect()
 }
 
 /// Draws charts one below the other.
@@ -176,7 +144,7 @@ impl Chart {
         // The first curve comes last, on top of the others.
         for curve in named.iter().rev() {
             let color = COLORS[curve.color % COLORS.len()];
-            for run in parts(&curve.band, |pair| pair.iter().all(|x| x.is_finite())) {
+            for run in parts(thinned(&curve.band), |pair: [f64; 2]| pair.iter().all(|x| x.is_finite())) {
                 let there = run.iter().map(|&(x, [low, _])| (x, low * part));
                 let back = run.iter().rev().map(|&(x, [_, high])| (x, high * part));
                 chart.draw_series([Polygon::new(there.chain(back).collect::<Vec<_>>(), color.mix(0.22))])?;
@@ -185,7 +153,7 @@ impl Chart {
         let thin = nameless.iter().map(|curve| (curve, COLORS[curve.color % COLORS.len()].mix(0.45).stroke_width(1)));
         let thick = named.iter().rev().map(|curve| (curve, COLORS[curve.color % COLORS.len()].stroke_width(2)));
         for (curve, style) in thin.chain(thick) {
-            for run in parts(&curve.values, f64::is_finite) {
+            for run in parts(curve.values.points(), f64::is_finite) {
                 let points: Vec<(usize, f64)> = run.into_iter().map(|(x, y)| (x, y * part)).collect();
                 // A line of one point is not seen.
                 let dot =
@@ -227,8 +195,8 @@ impl Chart {
     }
 
     fn limits(&self) -> Limits {
-        let values = self.curves.iter().flat_map(|curve| curve.values.iter().chain(curve.band.iter().flatten()));
-        Limits::of(values.copied())
+        let band = |curve: &Curve| curve.band.iter().flatten().copied().collect::<Series>().ends();
+        Limits::of(self.curves.iter().flat_map(|curve| [curve.values.ends(), band(curve)]).flatten())
     }
 }
 
@@ -262,22 +230,16 @@ pub(crate) fn label(y: f64) -> String {
     if y.abs() < 1e15 { ((y * 1e6).round() / 1e6 + 0.0).to_string() } else { format!("{y:e}") }
 }
 
-/// Every how many generations a point is drawn.
-fn stride(points: usize) -> usize {
-    points.div_ceil(MOST_POINTS).max(1)
-}
-
-/// The points with their places, thinned out, divided where one cannot be drawn.
-fn parts<T: Copy>(values: &[T], drawable: impl Fn(T) -> bool) -> Vec<Vec<(usize, T)>> {
-    let (stride, last) = (stride(values.len()), values.len().saturating_sub(1));
-    let points: Vec<(usize, T)> =
-        values.iter().copied().enumerate().filter(|(index, _)| index % stride == 0 || *index == last).collect();
+/// Points with their places, divided where one cannot be drawn.
+fn parts<T: Copy>(points: impl Iterator<Item = (usize, T)>, drawable: impl Fn(T) -> bool) -> Vec<Vec<(usize, T)>> {
+    let points: Vec<(usize, T)> = points.collect();
     points.split(|(_, value)| !drawable(*value)).filter(|part| !part.is_empty()).map(<[_]>::to_vec).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::series::MOST_POINTS;
     use proptest::prelude::*;
 
     #[test]
@@ -322,7 +284,7 @@ mod tests {
     fn drawn(values: &[f64]) -> String {
         let curve = |values: &[f64], band: &[f64]| Curve {
             name: Some("c".into()),
-            values: values.into(),
+            values: values.iter().copied().collect(),
             band: band.windows(2).map(|pair| [pair[0], pair[1]]).collect(),
             ..Curve::default()
         };
@@ -349,54 +311,11 @@ mod tests {
     }
 
     #[test]
-    fn every_log_can_be_drawn() {
-        let failed = [f64::NEG_INFINITY; 3];
-        for rows in [
-            vec![],
-            vec![[1.0, 0.5, 0.0]],
-            vec![[0.0; 3]; 3],
-            vec![[1e9; 3]; 3],
-            vec![failed, failed],
-            vec![[3.0, 2.0, 1.0], failed, [4.0, 3.0, 2.0]],
-        ] {
-            let lines: Vec<Line> = rows.iter().map(|row| line(*row, &[])).collect();
-            let svg = draw("a title", &lines, &["0".into()]).unwrap();
-            for label in ["a title", "generation", "fitness", "best", "mean", "worst", "</svg>", PAPER, INK, GRID] {
-                assert!(svg.contains(label), "{rows:?}: no {label}");
-            }
-            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{rows:?}");
-        }
-    }
-
-    fn line(row: Row, each: &[Row]) -> Line {
-        Line { row, each: each.into(), evaluations: 20, failed: 0 }
-    }
-
-    #[test]
-    fn each_of_several_populations_has_a_chart_of_its_own() {
-        let lines = [line([9.0, 1.0, 0.0], &[[1.0, 0.5, 0.0], [9.0, 8.0, 7.0]]), line([8.0; 3], &[[2.0; 3], [8.0; 3]])];
-        let names = ["fox", "hare"].map(String::from);
-        let charts = charts("run", &lines, &names);
-        let of =
-            |chart: &Chart| (chart.title.clone(), chart.curves.iter().map(|c| c.values.clone()).collect::<Vec<_>>());
-        assert_eq!(of(&charts[0]), ("run: fox".into(), vec![vec![1.0, 2.0], vec![0.5, 2.0], vec![0.0, 2.0]]));
-        assert_eq!(of(&charts[1]), ("run: hare".into(), vec![vec![9.0, 8.0], vec![8.0, 8.0], vec![7.0, 8.0]]));
-        let both = draw("run", &lines, &names).unwrap();
-        for title in ["run: fox", "run: hare"] {
-            assert_eq!(both.matches(title).count(), 1, "{both}");
-        }
-        let one = draw("run", &lines, &names[..1]).unwrap();
-        let height =
-            |svg: &str| svg.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<u32>().unwrap();
-        assert_eq!(height(&both), 2 * height(&one));
-        assert!(one.contains(">\nrun\n<") && both.matches("generation").count() == 2, "{one}");
-    }
-
-    #[test]
     fn gaps_divide_and_many_points_are_thinned_out() {
-        let found = parts(&[1.0, f64::NAN, 3.0, 4.0], f64::is_finite);
+        let found = parts([1.0, f64::NAN, 3.0, 4.0].into_iter().enumerate(), f64::is_finite);
         assert_eq!(found, vec![vec![(0, 1.0)], vec![(2, 3.0), (3, 4.0)]]);
-        let found = parts(&vec![0.0; 10 * MOST_POINTS + 3], f64::is_finite).concat();
+        let long: Series = (0..10 * MOST_POINTS + 3).map(|_| 0.0).collect();
+        let found = parts(long.points(), f64::is_finite).concat();
         assert!(found.len() <= MOST_POINTS + 1 && found.last().is_some_and(|point| point.0 == 10 * MOST_POINTS + 2));
     }
 
@@ -404,7 +323,7 @@ mod tests {
     fn a_band_lies_around_its_curve() {
         let curve = Curve {
             name: Some("<labels> & co".into()),
-            values: vec![1.0, 2.0, f64::NEG_INFINITY],
+            values: [1.0, 2.0, f64::NEG_INFINITY].into_iter().collect(),
             band: vec![[0.5, 1.5], [1.0, 3.0], [f64::NEG_INFINITY; 2]],
             ..Curve::default()
         };

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::error::Error;
-use crate::figures::plot::{self, Across, Chart, Curve};
+use crate::figures::log_curves::LogCurves;
+use crate::figures::plot::{Across, Chart, Curve};
 use crate::figures::statistics::Quartiles;
 use crate::report::moment::{Moment, generation_at, length};
 use crate::report::page::Figure;
@@ -18,7 +19,8 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
     if let [Group { runs, .. }] = groups
         && let [run] = runs.as_slice()
     {
-        let charts = plot::charts(&run.plan.name(), &run.lines, &run.populations);
+        let curves = LogCurves::from_lines(&run.lines, run.populations.len());
+        let charts = curves.charts(&run.plan.name(), &run.populations);
         let of_each = charts.iter().zip(run.populations()).map(|(chart, (_, name))| {
             let whose =
                 if name.is_empty() { "every generation".into() } else { format!("the {name} of every generation") };

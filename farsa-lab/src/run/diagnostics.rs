@@ -1,71 +1,101 @@
 //! What a strategy says of each generation beside the fitness, as a table and a picture.
 
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 use crate::error::Error;
 use crate::figures::plot;
 use crate::figures::plot::{Chart, Curve};
+use crate::figures::series::Series;
 use crate::store::directory::Directory;
+use crate::store::growing::Growing;
 use crate::store::replace::replace;
 use crate::strategy::definition::Diagnostics;
 use crate::strategy::search::Search;
 
-/// The rows of a run's strategy so far.
-pub(crate) struct DiagnosticsTable {
-    diagnostics: Option<Diagnostics>,
-    rows: Vec<Vec<f64>>,
+/// What a run's strategy has said so far: a table that grows at its end, and its curves.
+pub(crate) struct DiagnosticsTable(Option<Table>);
+
+struct Table {
+    diagnostics: Diagnostics,
+    file: Growing,
+    picture: PathBuf,
+    generations: usize,
+    /// A curve for each column.
+    curves: Vec<Series>,
 }
 
 impl DiagnosticsTable {
-    /// The table with the rows of the generations before.
-    pub(crate) fn new(diagnostics: Option<Diagnostics>, rows: Vec<Vec<f64>>) -> Self {
-        Self { diagnostics, rows }
+    /// Writes the table of a run that goes on anew, from the rows so far, where its strategy says something.
+    pub(crate) fn resume(
+        diagnostics: Option<Diagnostics>,
+        directory: &Directory,
+        rows: &[Vec<f64>],
+    ) -> Result<Self, Error> {
+        let Some(diagnostics) = diagnostics else { return Ok(Self(None)) };
+        let [table, picture] = directory.diagnostics(diagnostics.file);
+        let mut text = String::from("generation");
+        let columns = diagnostics.charts.iter().flat_map(|chart| chart.curves);
+        let mut curves = Vec::new();
+        for (column, _) in columns {
+            text = text + "," + column;
+            curves.push(Series::default());
+        }
+        text.push('\n');
+        for (generation, row) in rows.iter().enumerate() {
+            text.push_str(&line(generation, row, &mut curves));
+        }
+        let file = Growing::new(&table, text.as_bytes())?;
+        Ok(Self(Some(Table { diagnostics, file, picture, generations: rows.len(), curves })))
     }
 
     /// Adds what the strategy says of the generation that it has just been told.
-    pub(crate) fn push(&mut self, strategy: &Search) {
-        if self.diagnostics.is_some() {
-            self.rows.push(strategy.diagnostics());
-        }
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub(crate) fn append(&mut self, strategy: &Search) -> Result<(), Error> {
+        let Some(table) = &mut self.0 else { return Ok(()) };
+        let line = line(table.generations, &strategy.diagnostics(), &mut table.curves);
+        table.generations += 1;
+        table.file.append(line.as_bytes())
     }
 
-    /// Writes both files, where there is something to write.
-    pub(crate) fn write(&self, directory: &Directory, title: &str) -> Result<(), Error> {
-        let Some(diagnostics) = &self.diagnostics else { return Ok(()) };
-        let [csv, svg] = directory.diagnostics(diagnostics.file);
-        replace(&csv, self.csv(diagnostics).as_bytes())?;
-        let plot = self.plot(diagnostics, title).map_err(|why| Error::damaged(&svg, why))?;
-        replace(&svg, plot.as_bytes())
+    /// Brings the table to the disk, and draws its curves.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the table.
+    pub(crate) fn save(&mut self, title: &str) -> Result<(), Error> {
+        let Some(table) = &mut self.0 else { return Ok(()) };
+        table.file.check()?;
+        table.file.sync()?;
+        let plot = table.plot(title).map_err(|why| Error::damaged(&table.picture, why))?;
+        replace(&table.picture, plot.as_bytes())
     }
+}
 
-    fn csv(&self, diagnostics: &Diagnostics) -> String {
-        let mut text = String::from("generation");
-        for (column, _) in diagnostics.charts.iter().flat_map(|chart| chart.curves) {
-            // Writing into a string cannot fail.
-            let _ = write!(text, ",{column}");
+/// The line of a generation, whose numbers are added to the curves.
+fn line(generation: usize, row: &[f64], curves: &mut [Series]) -> String {
+    let mut text = generation.to_string();
+    for (column, curve) in curves.iter_mut().enumerate() {
+        curve.push(row.get(column).copied().unwrap_or(f64::NAN));
+        if let Some(value) = row.get(column) {
+            // The debug form is the shortest that reads back as the same number. Writing into a string cannot fail.
+            let _ = write!(text, ",{value:?}");
         }
-        text.push('\n');
-        let columns = diagnostics.charts.iter().map(|chart| chart.curves.len()).sum();
-        for (generation, row) in self.rows.iter().enumerate() {
-            let _ = write!(text, "{generation}");
-            for value in row.iter().take(columns) {
-                // The debug form is the shortest that reads back as the same number.
-                let _ = write!(text, ",{value:?}");
-            }
-            text.push('\n');
-        }
-        text
     }
+    text + "\n"
+}
 
-    fn plot(&self, diagnostics: &Diagnostics, title: &str) -> Result<String, String> {
-        let mut column = 0;
-        let charts = diagnostics.charts.iter().map(|chart| {
-            let curves = chart.curves.iter().map(|(_, label)| {
-                let color = column;
-                column += 1;
-                let value = |row: &Vec<f64>| row.get(color).copied().unwrap_or(f64::NAN);
-                let values = self.rows.iter().map(value).collect();
-                Curve { name: Some((*label).into()), color, values, band: Vec::new() }
+impl Table {
+    fn plot(&self, title: &str) -> Result<String, String> {
+        let mut curves = self.curves.iter().enumerate();
+        let charts = self.diagnostics.charts.iter().map(|chart| {
+            let named = chart.curves.iter().zip(&mut curves);
+            let curves = named.map(|((_, label), (color, values))| Curve {
+                name: Some((*label).into()),
+                color,
+                values: values.clone(),
+                band: Vec::new(),
             });
             let curves = curves.collect();
             Chart { title: format!("{title}: {}", chart.title), axis: chart.axis, curves, ..Chart::default() }

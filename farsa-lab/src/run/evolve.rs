@@ -4,10 +4,9 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use farsa_evo::Record;
+use farsa_evo::RecordWriter;
 
 use crate::error::Error;
-use crate::figures::plot;
 use crate::run::begin::{champions, lineage, progression};
 use crate::run::collection::CollectionTable;
 use crate::run::contained::contained;
@@ -107,7 +106,7 @@ struct Run<'d> {
     names: Vec<String>,
     identity: Identity,
     progression: Progression,
-    record: Record,
+    record: RecordWriter,
     told: ToldFile,
     log: Log,
     /// Where the log that somebody had changed is kept.
@@ -151,7 +150,7 @@ impl<'d> Run<'d> {
             champions.write(&directory.champion())?;
         }
         let Told { lines, diagnostics, record, .. } = told;
-        let (log, kept) = Log::resume(&directory.log(), lines, record.populations())?;
+        let (log, kept) = Log::resume(&directory.log(), &lines, record.populations())?;
         Ok(Self {
             directory,
             program,
@@ -159,14 +158,14 @@ impl<'d> Run<'d> {
             names: pool.evaluator().populations(),
             identity: checkpoint.identity,
             progression,
-            record,
+            record: record.writer(),
             told: file,
             log,
             kept,
             lineage,
             failures: Failures::resume(&directory.failures(), checkpoint.failures)?,
             failed: (0, None),
-            diagnostics: DiagnosticsTable::new(plan.definition().diagnostics(), diagnostics),
+            diagnostics: DiagnosticsTable::resume(plan.definition().diagnostics(), directory, &diagnostics)?,
             collection,
             manifest,
             champions: None,
@@ -210,9 +209,9 @@ impl<'d> Run<'d> {
         let search = &self.progression.search;
         let line = Line::new(&statistics, fitness.len(), &each);
         self.told.append(&self.record, &line, search, self.progression.observed.as_ref())?;
-        self.log.append(line)?;
+        self.log.append(&line)?;
         self.failures.append(&failed, self.program)?;
-        self.diagnostics.push(search);
+        self.diagnostics.append(search)?;
         if let Some(lineage) = &mut self.lineage {
             lineage.append(&rows(search))?;
         }
@@ -256,7 +255,7 @@ impl<'d> Run<'d> {
         if let Some(champions) = &self.champions {
             champions.write(&directory.champion())?;
         }
-        self.diagnostics.write(directory, &self.title)?;
+        self.diagnostics.save(&self.title)?;
         if let Some(collection) = &self.collection {
             collection.write(&self.progression.search, directory, &self.title)?;
         }
@@ -268,7 +267,7 @@ impl<'d> Run<'d> {
             session.seconds = self.started.elapsed().as_secs_f64();
         }
         self.manifest.write(&directory.manifest())?;
-        let plot = plot::draw(&self.title, self.log.lines(), &self.names);
+        let plot = self.log.curves().draw(&self.title, &self.names);
         let plot = plot.map_err(|why| Error::damaged(&directory.plot(), why))?;
         replace(&directory.plot(), plot.as_bytes())
     }

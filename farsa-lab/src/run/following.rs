@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use farsa_evo::Record;
+use farsa_evo::RecordWriter;
 
 use crate::error::Error;
 use crate::ranks::exchange::{Exchange, Order, Status};
@@ -60,7 +60,7 @@ impl Following<'_, '_> {
         config: &str,
         checkpoint: &[u8],
         record: Vec<u8>,
-    ) -> Result<(Plan<'_>, Pool<'_>, Progression, Record), Error> {
+    ) -> Result<(Plan<'_>, Pool<'_>, Progression, RecordWriter), Error> {
         let directory = Directory::at(directory.into());
         let plan = (self.plan)(&ConfigFile::parse(&directory.config().display().to_string(), config)?)?;
         let pool = (self.pool)(&plan)?;
@@ -68,11 +68,11 @@ impl Following<'_, '_> {
             sealed::open(checkpoint).map_err(|why| Error::damaged(&directory.checkpoint(), why))?;
         let told = Told::from_content(&plan, &directory, &checkpoint, record)?;
         let progression = progression(&plan, &directory, &checkpoint, &told, pool.genotype())?;
-        Ok((plan, pool, progression, told.record))
+        Ok((plan, pool, progression, told.record.writer()))
     }
 
     /// Generation after generation, until rank 0 says that the run is over or somebody has an error.
-    fn run(&self, mut pool: Pool<'_>, mut progression: Progression, mut record: Record) -> Result<(), Error> {
+    fn run(&self, mut pool: Pool<'_>, mut progression: Progression, mut record: RecordWriter) -> Result<(), Error> {
         let status = loop {
             let generation = progression.search.generation();
             let result = contained(|| {

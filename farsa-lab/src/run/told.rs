@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use farsa_evo::{ObservationStatistics, Record, RecordEntry, Snapshot as _};
+use farsa_evo::{ObservationStatistics, Record, RecordEntry, RecordWriter, Snapshot as _};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -169,13 +169,12 @@ impl ToldFile {
     /// Appends the last generation of a run.
     pub(crate) fn append(
         &mut self,
-        record: &Record,
+        record: &RecordWriter,
         line: &Line,
         search: &Search,
         observed: Option<&ObservationStatistics>,
     ) -> Result<(), Error> {
-        let last = record.generations().checked_sub(1).and_then(|last| record.entry(last));
-        let Some(RecordEntry { frame, state }) = last else { return Ok(()) };
+        let Some(RecordEntry { frame, state }) = record.entry() else { return Ok(()) };
         let entry = Entry { frame, state, line: line.clone(), diagnostics: search.diagnostics() };
         let failed = |error| Error::Other(format!("record.bin: {error}"));
         let mut bytes = postcard::to_stdvec(&entry).map_err(failed)?;

@@ -8,6 +8,7 @@ use farsa_evo::Statistics;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::figures::log_curves::LogCurves;
 use crate::store::bounded::read_own_if_any;
 use crate::store::growing::Growing;
 
@@ -61,10 +62,11 @@ impl Line {
     }
 }
 
-/// The log of a running run.
+/// The log of a running run. Its lines are in the file alone: a run may have any number of them.
 pub(crate) struct Log {
     file: Growing,
-    lines: Vec<Line>,
+    generations: usize,
+    curves: LogCurves,
 }
 
 impl Log {
@@ -72,22 +74,24 @@ impl Log {
     ///
     /// A file that says something else than these lines, and lines after them, is kept under another name, which is returned. Other
     /// ends of lines, as programs for tables write them, are nothing else.
-    pub(crate) fn resume(path: &Path, lines: Vec<Line>, populations: usize) -> Result<(Self, Option<PathBuf>), Error> {
+    pub(crate) fn resume(path: &Path, lines: &[Line], populations: usize) -> Result<(Self, Option<PathBuf>), Error> {
         let mut text = header(populations);
         lines.iter().enumerate().for_each(|(generation, line)| text.push_str(&line.text(generation)));
         let kept =
             if fs::symlink_metadata(path).is_ok() && !says_the_same(path, &text)? { Some(keep(path)?) } else { None };
-        Ok((Self { file: Growing::new(path, text.as_bytes())?, lines }, kept))
+        let (generations, curves) = (lines.len(), LogCurves::from_lines(lines, populations));
+        Ok((Self { file: Growing::new(path, text.as_bytes())?, generations, curves }, kept))
     }
 
     /// Appends a generation.
     ///
     /// # Errors
     /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the file.
-    pub(crate) fn append(&mut self, line: Line) -> Result<(), Error> {
+    pub(crate) fn append(&mut self, line: &Line) -> Result<(), Error> {
         self.file.check()?;
-        self.file.append(line.text(self.lines.len()).as_bytes())?;
-        self.lines.push(line);
+        self.file.append(line.text(self.generations).as_bytes())?;
+        self.generations += 1;
+        self.curves.push(line);
         Ok(())
     }
 
@@ -100,9 +104,9 @@ impl Log {
         self.file.sync().map(drop)
     }
 
-    /// The generations so far.
-    pub(crate) fn lines(&self) -> &[Line] {
-        &self.lines
+    /// The curves of the generations so far.
+    pub(crate) fn curves(&self) -> &LogCurves {
+        &self.curves
     }
 }
 
@@ -165,9 +169,9 @@ mod tests {
             if let Some(content) = content {
                 fs::write(&path, content).unwrap();
             }
-            let (mut log, kept) = Log::resume(&path, lines.clone(), 1).unwrap();
+            let (mut log, kept) = Log::resume(&path, &lines, 1).unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
-            log.append(line(3.5)).unwrap();
+            log.append(&line(3.5)).unwrap();
             log.sync().unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), format!("{text}{}", line(3.5).text(2)));
             kept

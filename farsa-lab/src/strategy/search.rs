@@ -3,8 +3,8 @@
 use std::fmt;
 
 use farsa_evo::{
-    Collection, EvoError, Fitness, Genealogy, JudgementShape, Judgements, Meetings, Population, Record, Snapshot,
-    Strategy,
+    Collection, EvoError, Fitness, Genealogy, JudgementShape, Judgements, Meetings, Population, Record, RecordWriter,
+    Snapshot, Strategy,
 };
 
 use crate::experiment::genotype::Genotype;
@@ -136,7 +136,7 @@ impl Search {
     }
 
     /// Tells the judgements of the current generation and records them.
-    pub(crate) fn tell(&mut self, record: &mut Record, judgements: &Judgements) -> Result<(), EvoError> {
+    pub(crate) fn tell(&mut self, record: &mut RecordWriter, judgements: &Judgements) -> Result<(), EvoError> {
         each!(self, strategy => match judgements.shape() {
             JudgementShape::FITNESS => record.tell(strategy.as_mut(), &judgements.fitness()),
             _ => record.tell_judgements(strategy.as_mut(), judgements),
