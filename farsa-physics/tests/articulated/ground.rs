@@ -137,6 +137,58 @@ fn random_pushes_move_it_as_newton_and_coulomb_say() {
     }
 }
 
+/// A puck whose centre of mass lies beside the point that it turns about: what brakes its sliding turns it, and the other way round.
+#[test]
+fn a_lopsided_puck_moves_as_newton_euler_and_coulomb_say() {
+    let (limit, radius, beside) = (FRICTION * MASS * GRAVITY, 0.04, [0.03, -0.015]);
+    let mut robot = puck(radius);
+    let disc = MassProperties::cylinder(MASS, 0.06, 0.05);
+    robot.segments.last_mut().unwrap().centre = [beside[0], beside[1], 0.0];
+    let (inertia, limit_of_turning) = (disc.inertia[2], limit * radius);
+    let mut stream = Stream::new(5, Domain::General, 0, 0, 0);
+    let (mut gone, mut turned) = (0.0_f64, 0.0_f64);
+    for _ in 0..10 {
+        let h = 0.0005;
+        let mut world = world::<f64>(&robot, h);
+        let (mut place, mut velocity) = ([0.0_f64; 3], [0.0_f64; 3]);
+        for _ in 0..10 {
+            let push = [6.0, 6.0, 0.3].map(|most| f64::from(stream.range_f64(-most, most) as f32));
+            for (motor, push) in push.into_iter().enumerate() {
+                world.command(ActuatorId(motor as u16), [push as f32, 0.0]);
+            }
+            (0..100).for_each(|_| world.step());
+            let tiny = h / 20.0;
+            for _ in 0..2000 {
+                let (sine, cosine) = sin_cos(place[2]);
+                let [x, y] = [cosine * beside[0] - sine * beside[1], sine * beside[0] + cosine * beside[1]];
+                let [vx, vy, turning] = velocity;
+                // Coulomb's law without its corner at rest.
+                let brake = limit / (vx * vx + vy * vy + 1e-6).sqrt();
+                let brake_of_turning = limit_of_turning / (turning * turning + 1e-4).sqrt();
+                let force = [
+                    push[0] - brake * vx + MASS * turning * turning * x,
+                    push[1] - brake * vy + MASS * turning * turning * y,
+                    push[2] - brake_of_turning * turning,
+                ];
+                // m (a + alpha k x s) = f and (I + m s^2) alpha + m s x a = t, solved for alpha first.
+                let acceleration = (force[2] - x * force[1] + y * force[0]) / inertia;
+                let change = [force[0] / MASS + y * acceleration, force[1] / MASS - x * acceleration, acceleration];
+                for k in 0..3 {
+                    velocity[k] += tiny * change[k];
+                    place[k] += tiny * velocity[k];
+                }
+            }
+        }
+        let found = [0, 1, 2].map(|joint| f64::from(world.position(JointId(joint))));
+        for (k, room) in [5e-3, 5e-3, 5e-2].into_iter().enumerate() {
+            assert!((found[k] - place[k]).abs() < room, "{found:?} where {place:?} are due");
+        }
+        gone = gone.max(found[0].abs()).max(found[1].abs());
+        turned = turned.max(found[2].abs());
+    }
+    assert!(gone > 0.3 && turned > 3.0, "{gone} m and {turned} rad at most");
+}
+
 /// At any command no ball passes through the arm or another ball, and none is launched.
 #[test]
 fn balls_never_pass_through_the_arm_or_each_other() {

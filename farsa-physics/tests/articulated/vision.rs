@@ -3,10 +3,9 @@
 use crate::common::{POSES, scene as tabletop};
 use crate::sight::{COLORS, Placed, scene, turned};
 use farsa_body::testing::check_vision;
-use farsa_body::{
-    Arrange, BodyId, Camera, CameraImage, Channels, ColorBand, ColorBlobs, JointId, Kinematics, Pose, Rays, Robot,
-    Seen, Sensor, Vision,
-};
+use farsa_body::{Arrange, BodyId, Camera, JointId, Pose, Rays, Robot, Seen, Vision};
+#[cfg(feature = "lanes")]
+use farsa_body::{CameraImage, Channels, ColorBand, ColorBlobs, Kinematics, Sensor};
 #[cfg(feature = "lanes")]
 use farsa_num::Instructions;
 use farsa_num::{Domain, Stream, sin_cos};
