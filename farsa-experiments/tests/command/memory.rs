@@ -34,15 +34,15 @@ fn most(directory: &Path, arguments: &str) -> u64 {
 #[test]
 fn many_generations_take_no_more_memory_than_few() {
     let directory = scratch("generations");
-    for (strategy, generations) in [("one-plus-one", 9000), ("cma-es", 5000), ("map-elites", 3000)] {
+    for (strategy, generations) in [("one-plus-one", 15_000), ("cma-es", 7000), ("map-elites", 3000)] {
         let run = |generations: u32| {
             let settings = "--set trial.count=1 --set trial.steps=1 --threads 1 --quiet --force --out run";
             let more = format!("--strategy {strategy} --generations {generations}");
             most(&directory, &format!("run discrimination {settings} {more}"))
         };
         let [few, many] = [1500, generations].map(run);
-        // A hundred bytes of each generation would be 750 kB.
-        assert!(many < few + 500, "{strategy}: {few} and {many} kB");
+        // A hundred bytes of each generation would be 1300 kB with the first.
+        assert!(many < few + 1000, "{strategy}: {few} and {many} kB");
     }
 }
 

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use farsa_evo::RecordWriter;
 
 use crate::error::Error;
+use crate::figures::log_curves::LogCurves;
 use crate::run::begin::{champions, lineage, progression};
 use crate::run::collection::CollectionTable;
 use crate::run::contained::contained;
@@ -109,6 +110,8 @@ struct Run<'d> {
     record: RecordWriter,
     told: ToldFile,
     log: Log,
+    /// What `fitness.svg` shows of it.
+    curves: LogCurves,
     /// Where the log that somebody had changed is kept.
     kept: Option<PathBuf>,
     /// None for a strategy whose individuals have no parents.
@@ -151,6 +154,7 @@ impl<'d> Run<'d> {
         }
         let Told { lines, diagnostics, record, .. } = told;
         let (log, kept) = Log::resume(&directory.log(), &lines, record.populations())?;
+        let curves = LogCurves::from_lines(&lines, record.populations());
         Ok(Self {
             directory,
             program,
@@ -161,6 +165,7 @@ impl<'d> Run<'d> {
             record: record.writer(),
             told: file,
             log,
+            curves,
             kept,
             lineage,
             failures: Failures::resume(&directory.failures(), checkpoint.failures)?,
@@ -210,6 +215,7 @@ impl<'d> Run<'d> {
         let line = Line::new(&statistics, fitness.len(), &each);
         self.told.append(&self.record, &line, search, self.progression.observed.as_ref())?;
         self.log.append(&line)?;
+        self.curves.push(&line);
         self.failures.append(&failed, self.program)?;
         self.diagnostics.append(search)?;
         if let Some(lineage) = &mut self.lineage {
@@ -267,7 +273,7 @@ impl<'d> Run<'d> {
             session.seconds = self.started.elapsed().as_secs_f64();
         }
         self.manifest.write(&directory.manifest())?;
-        let plot = self.log.curves().draw(&self.title, &self.names);
+        let plot = self.curves.draw(&self.title, &self.names);
         let plot = plot.map_err(|why| Error::damaged(&directory.plot(), why))?;
         replace(&directory.plot(), plot.as_bytes())
     }

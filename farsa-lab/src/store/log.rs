@@ -8,7 +8,6 @@ use farsa_evo::Statistics;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::figures::log_curves::LogCurves;
 use crate::store::bounded::read_own_if_any;
 use crate::store::growing::Growing;
 
@@ -66,7 +65,6 @@ impl Line {
 pub(crate) struct Log {
     file: Growing,
     generations: usize,
-    curves: LogCurves,
 }
 
 impl Log {
@@ -79,8 +77,7 @@ impl Log {
         lines.iter().enumerate().for_each(|(generation, line)| text.push_str(&line.text(generation)));
         let kept =
             if fs::symlink_metadata(path).is_ok() && !says_the_same(path, &text)? { Some(keep(path)?) } else { None };
-        let (generations, curves) = (lines.len(), LogCurves::from_lines(lines, populations));
-        Ok((Self { file: Growing::new(path, text.as_bytes())?, generations, curves }, kept))
+        Ok((Self { file: Growing::new(path, text.as_bytes())?, generations: lines.len() }, kept))
     }
 
     /// Appends a generation.
@@ -91,7 +88,6 @@ impl Log {
         self.file.check()?;
         self.file.append(line.text(self.generations).as_bytes())?;
         self.generations += 1;
-        self.curves.push(line);
         Ok(())
     }
 
@@ -102,11 +98,6 @@ impl Log {
     pub(crate) fn sync(&mut self) -> Result<(), Error> {
         self.file.check()?;
         self.file.sync().map(drop)
-    }
-
-    /// The curves of the generations so far.
-    pub(crate) fn curves(&self) -> &LogCurves {
-        &self.curves
     }
 }
 

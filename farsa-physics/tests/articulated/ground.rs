@@ -189,6 +189,30 @@ fn a_lopsided_puck_moves_as_newton_euler_and_coulomb_say() {
     assert!(gone > 0.3 && turned > 3.0, "{gone} m and {turned} rad at most");
 }
 
+/// The same puck where the ground holds it: it turns about the point that does not slide, and the ground bears what that takes.
+#[test]
+fn a_lopsided_puck_that_is_held_turns_about_the_held_point() {
+    let (limit, radius, beside) = (FRICTION * MASS * GRAVITY, 0.04, [0.03, -0.015]);
+    let mut robot = puck(radius);
+    robot.segments.last_mut().unwrap().centre = [beside[0], beside[1], 0.0];
+    let about =
+        MassProperties::cylinder(MASS, 0.06, 0.05).inertia[2] + MASS * (beside[0] * beside[0] + beside[1] * beside[1]);
+    for direction in [0.3, 1.9, 4.4] {
+        let (sine, cosine) = sin_cos(direction);
+        let (h, steps, more) = (0.001, 400, 0.01);
+        let mut world = world::<f64>(&robot, h);
+        for (motor, push) in [0.5 * limit * cosine, 0.5 * limit * sine, limit * radius + more].into_iter().enumerate() {
+            world.command(ActuatorId(motor as u16), [push as f32, 0.0]);
+        }
+        (0..steps).for_each(|_| world.step());
+        let time = f64::from(steps) * h;
+        let expected = 0.5 * more / about * time * (time + h);
+        let turned = f64::from(world.position(JointId(2)));
+        assert!((turned - expected).abs() < 2e-3 * expected, "{turned} rad where {expected} are due");
+        assert_eq!([0, 1].map(|joint| world.position(JointId(joint))), [0.0; 2]);
+    }
+}
+
 /// At any command no ball passes through the arm or another ball, and none is launched.
 #[test]
 fn balls_never_pass_through_the_arm_or_each_other() {
