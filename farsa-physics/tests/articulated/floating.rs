@@ -1,8 +1,11 @@
 //! Free bodies whose origin is away from their centre of mass, against closed forms.
 
 use crate::common::world;
-use farsa_body::{Arrange, BodyId, Joint, MassProperties, Pose, Robot, Segment, Twist, World as _};
+use farsa_body::{
+    Arrange, BodyId, Collider, Joint, MassProperties, Pose, Robot, Segment, Shape, Surface, Twist, World as _,
+};
 use farsa_num::sin_cos;
+use farsa_physics::articulated::World;
 
 const GRAVITY: f64 = 9.81;
 /// The dynamics step [s].
@@ -76,4 +79,52 @@ fn the_origin_of_a_spinning_body_circles_its_centre_of_mass() {
     println!("off the circle by {worst:.1e} m");
     // A step turns by 2 atan(h w / 2): 43 urad less than w t after a second, 8 um at this radius.
     assert!(worst < 1e-5);
+}
+
+/// Two free balls strike each other beside the line between them, with friction: what one loses the other has.
+#[test]
+fn free_bodies_that_strike_each_other_keep_their_momentum() {
+    let surface = Surface { friction: 0.5, rolling_friction: 0.0, stiffness: 1e5, damping: 20.0 };
+    let balls = [(0.2, 0.03), (0.5, 0.04)];
+    let mut robot = Robot::new("balls");
+    for (name, (mass, radius)) in ["light", "heavy"].into_iter().zip(balls) {
+        let start = Joint::floating(Pose::identity());
+        let body = robot.add_segment(Segment::new(name, None, start, MassProperties::sphere(mass, radius)));
+        robot.add_collider(Collider::new(name, Some(body), Shape::Sphere { radius }, Pose::identity()));
+    }
+    robot.add_pair([0, 1], surface);
+    let mut world = world(&robot, 1e-4, 0.0);
+    world.place_body(
+        BodyId(0),
+        Pose::at([-0.2, 0.02, 0.01]),
+        Twist { linear: [2.0, 0.0, 0.0], angular: [9.0, 3.0, -5.0] },
+    );
+    world.place_body(
+        BodyId(1),
+        Pose::at([0.0, 0.0, 0.0]),
+        Twist { linear: [-0.5, 0.1, 0.0], angular: [0.0, -4.0, 6.0] },
+    );
+    world.finish_placement();
+    // Linear momentum, and angular momentum about the world's origin, of which each ball has the inertia 2/5 m r^2.
+    let momenta = |world: &World<f64>| {
+        let (mut linear, mut angular) = ([0.0; 3], [0.0; 3]);
+        for (i, (mass, radius)) in balls.into_iter().enumerate() {
+            let twist = world.velocity_of(BodyId(i as u16));
+            let place = world.pose_of(BodyId(i as u16)).position;
+            for k in 0..3 {
+                let [a, b] = [(k + 1) % 3, (k + 2) % 3];
+                linear[k] += mass * twist.linear[k];
+                angular[k] += 0.4 * mass * radius * radius * twist.angular[k]
+                    + mass * (place[a] * twist.linear[b] - place[b] * twist.linear[a]);
+            }
+        }
+        (linear, angular)
+    };
+    let (before, energy, free) = (momenta(&world), world.energy()[0], world.velocity_of(BodyId(1)));
+    (0..2000).for_each(|_| world.step());
+    let (after, left, struck) = (momenta(&world), world.energy()[0], world.velocity_of(BodyId(1)));
+    assert!(distance(before.0, after.0) < 1e-9, "{before:?} {after:?}");
+    assert!(distance(before.1, after.1) < 2e-3 * distance(before.1, [0.0; 3]), "{before:?} {after:?}");
+    assert!(left < energy && left > 0.2 * energy, "{left} J of {energy}");
+    assert!(struck.linear[0] > 0.3 && distance(struck.angular, free.angular) > 1.0, "{struck:?}");
 }
