@@ -77,13 +77,17 @@ def wrapper(folder, name, text, farsa):
 
 
 def growing_memory_is_seen():
-    """Whether a process that leaves 300 bytes a generation is one."""
-    samples = [(100 * number, (10 << 20) + 30_000 * number) for number in range(1, 100)]
-    try:
-        flat(samples, None)
-    except Lost:
-        return True
-    return False
+    """Whether a process that leaves 100 bytes a generation is one, and none that leaves two."""
+
+    def grows(each):
+        samples = [(100 * number, (10 << 20) + 100 * each * number) for number in range(1, 100)]
+        try:
+            flat(samples, None, 16)
+        except Lost:
+            return True
+        return False
+
+    return grows(100) and not grows(2)
 
 
 def early_rename_is_seen():
