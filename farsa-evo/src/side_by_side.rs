@@ -301,6 +301,10 @@ mod tests {
         let parents = pair.parents_of(150);
         assert!(!parents.is_empty() && parents.iter().all(|parent| (100..200).contains(parent)), "{parents:?}");
         assert!(pair.parents_of(200).is_empty());
+        // It has parents where its searches do.
+        let said = Strategy::genealogy(&pair).map(|genealogy| genealogy.parents_of(150));
+        assert_eq!(said, Some(parents));
+        assert!(Strategy::genealogy(&searches()).is_none());
     }
 
     #[test]

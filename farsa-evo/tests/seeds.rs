@@ -3,15 +3,19 @@
 #![allow(clippy::unwrap_used)]
 
 use farsa_evo::{
-    CholeskyCmaEs, CmaEs, CmaEsConfig, Coevolution, Cosyne, CosyneConfig, EvolutionStrategy, EvolutionStrategyConfig,
-    GaConfig, GeneralistCoevolution, GeneralistConfig, NoveltyConfig, NoveltySearch, Nsga2, Nsga2Config, OnePlusOne,
-    OnePlusOneConfig, Pgpe, PgpeConfig, RealGa, RealGaConfig, SeparableCmaEs, SeparableCmaEsConfig, Snes, SnesConfig,
-    SteadyState, SteadyStateConfig, TruncationGa, Xnes, XnesConfig,
+    Ars, ArsConfig, CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, Coevolution, Cosyne,
+    CosyneConfig, EvolutionStrategy, EvolutionStrategyConfig, GaConfig, GeneralistCoevolution, GeneralistConfig,
+    GridCells, MapElites, MapElitesConfig, NoveltyConfig, NoveltySearch, Nsga2, Nsga2Config, OnePlusOne,
+    OnePlusOneConfig, OpenAiEs, OpenAiEsConfig, Pgpe, PgpeConfig, RealGa, RealGaConfig, RestartSchedule,
+    SeparableCmaEs, SeparableCmaEsConfig, Snes, SnesConfig, SteadyState, SteadyStateConfig, TruncationGa, Xnes,
+    XnesConfig,
 };
 
 #[test]
 fn the_seed_is_the_one_that_was_given() {
     let (mean, bounds) = (vec![0.0; 3], vec![[-1.0, 1.0]; 3]);
+    let cells = GridCells::new(vec![[0.0, 1.0]], vec![4]).unwrap();
+    let restarts = CmaEsRestartsConfig::new(CmaEsConfig::new(mean.clone(), 0.5), RestartSchedule::Ipop);
     for seed in [0, 7, u64::MAX] {
         let told = [
             TruncationGa::new(GaConfig::new(3), seed).unwrap().seed(),
@@ -29,8 +33,12 @@ fn the_seed_is_the_one_that_was_given() {
             Cosyne::new(CosyneConfig::new(3), seed).unwrap().seed(),
             GeneralistCoevolution::new(GeneralistConfig::new(3), seed).unwrap().seed(),
             Nsga2::new(Nsga2Config::new(bounds.clone(), 2), seed).unwrap().seed(),
+            Ars::new(ArsConfig::new(mean.clone(), 4), seed).unwrap().seed(),
+            OpenAiEs::new(OpenAiEsConfig::new(mean.clone(), 4), seed).unwrap().seed(),
+            MapElites::new(MapElitesConfig::new(bounds.clone()), cells.clone(), seed).unwrap().seed(),
+            CmaEsRestarts::new(restarts.clone(), seed).unwrap().seed(),
         ];
-        assert_eq!(told, [seed; 15]);
+        assert_eq!(told, [seed; 19]);
         let inner = TruncationGa::new(GaConfig::new(3), 5).unwrap();
         assert_eq!(NoveltySearch::new(NoveltyConfig::new(2), inner, seed).unwrap().seed(), seed);
     }

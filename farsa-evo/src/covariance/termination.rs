@@ -139,6 +139,11 @@ mod tests {
         let mut one = distribution(1.0, 1.0);
         one.mean[2] = 1e30;
         assert_eq!(progress(rising()).ends(&one, 1.0), Some(Termination::NoEffectCoord));
+        // The same with small steps, which large ones would hide.
+        assert_eq!(progress(rising()).ends(&distribution(1.0, 1e-18), 1e-18), Some(Termination::NoEffectAxis));
+        let mut one = distribution(0.0, 1e-10);
+        one.mean[2] = 1e8;
+        assert_eq!(progress(rising()).ends(&one, 1e-10), Some(Termination::NoEffectCoord));
         // 10 + 30 n / lambda = 25 generations.
         let flat = |count: usize| progress(rising().chain(core::iter::repeat_n(99.0, count)));
         assert_eq!(flat(24).ends(&distribution(1.0, 1.0), 1.0), None);
@@ -153,6 +158,22 @@ mod tests {
         let rising = |count: u32| progress((0..count).map(f64::from));
         assert_eq!(rising(966).ends(&distribution(1.0, 1.0), 1.0), None);
         assert_eq!(rising(967).ends(&distribution(1.0, 1.0), 1.0), Some(Termination::MaxIter));
+    }
+
+    #[test]
+    fn the_median_is_remembered_beside_the_best() {
+        let one = progress([3.0, 5.0].into_iter());
+        let values = |all: &[Fitness]| all.iter().map(|fitness| fitness.get()).collect::<Vec<_>>();
+        assert_eq!((values(&one.best), values(&one.median)), (vec![3.0, 5.0], vec![-1.0, 1.0]));
+        // The best goes up and down, the median rises: nothing stagnates.
+        let mut rising = Progress::default();
+        for k in 0..200 {
+            let fitness: Vec<Fitness> = (0..8)
+                .map(|i| Fitness::nan_as_failed(if i == 0 { 1000.0 + f64::from(k % 2) } else { f64::from(k) }))
+                .collect();
+            rising.push(&fitness, &ranked(&fitness));
+        }
+        assert_eq!(rising.ends(&distribution(1.0, 1.0), 1.0), None);
     }
 
     #[test]
