@@ -172,6 +172,10 @@ mod tests {
         }
         let fitness = Fitness::nan_as_failed(3.0);
         assert_eq!(search.best(), Some(Found { generation: 1, individual: 0, fitness }));
+        // What a state says of a generation to come is refused with the last one that was.
+        let mut state = search.save();
+        state[4..8].copy_from_slice(&9_u32.to_le_bytes());
+        assert_eq!(search.restore(&state), Err(EvoError::NoSuchGeneration { generation: 9, latest: 2 }));
     }
 
     #[test]

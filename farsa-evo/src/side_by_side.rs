@@ -294,16 +294,21 @@ mod tests {
         let config = GaConfig { population: 10, parents: 5, ..GaConfig::new(4) };
         check_strategy::<u16, _>(|| SideBySide::new(2, 3, |seed| TruncationGa::new(config, seed)), 12).unwrap();
         let config = RealGaConfig::new(vec![[-1.0, 1.0]; 3]);
-        let pair = || SideBySide::new(2, 3, |seed| RealGa::new(config.clone(), seed));
-        check_strategy(pair, 12).unwrap();
-        let mut pair = pair().unwrap();
-        pair.tell(&told(0, 200)).unwrap();
-        let parents = pair.parents_of(150);
-        assert!(!parents.is_empty() && parents.iter().all(|parent| (100..200).contains(parent)), "{parents:?}");
-        assert!(pair.parents_of(200).is_empty());
-        // It has parents where its searches do.
-        let said = Strategy::genealogy(&pair).map(|genealogy| genealogy.parents_of(150));
-        assert_eq!(said, Some(parents));
+        let three = || SideBySide::new(3, 3, |seed| RealGa::new(config.clone(), seed));
+        check_strategy(three, 12).unwrap();
+        let mut three = three().unwrap();
+        three.tell(&told(0, 300)).unwrap();
+        for individual in [0, 99, 150, 200, 250, 299] {
+            let (number, own) = (individual / 100, individual % 100);
+            let parents = three.parents_of(individual);
+            let wanted: Vec<usize> =
+                three.members[number].parents_of(own).into_iter().map(|parent| 100 * number + parent).collect();
+            assert!(!parents.is_empty() && parents == wanted, "{parents:?}");
+            // It has parents where its searches do.
+            let said = Strategy::genealogy(&three).map(|genealogy| genealogy.parents_of(individual));
+            assert_eq!(said, Some(parents));
+        }
+        assert!(three.parents_of(300).is_empty());
         assert!(Strategy::genealogy(&searches()).is_none());
     }
 

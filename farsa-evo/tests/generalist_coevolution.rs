@@ -230,6 +230,7 @@ fn the_best_of_all_encounters_is_the_champion() {
     let config = configs()[0];
     let (mut search, size) = (GeneralistCoevolution::new(config, 3).unwrap(), config.size());
     let mut sums = vec![0.0; 2 * size];
+    assert_eq!(search.diagnostics(), [0.0; 4], "nothing was replaced yet");
     for generation in 0..config.encounters() {
         let fitness = played(&search, |side, own, other| earned(generation, side, own, other)).fitness();
         sums.iter_mut().zip(&fitness).for_each(|(sum, fitness)| *sum += fitness.get());

@@ -223,6 +223,8 @@ fn a_thousand_generations_are_rebuilt() {
     let mut again = fresh();
     record.rebuild(&mut again, 1000).unwrap();
     assert_eq!(again, search);
+    let kept = Strategy::collection(&search).map(|collection| collection.members().len());
+    assert!(kept.is_some_and(|kept| kept > 0), "{kept:?}");
 }
 
 #[test]

@@ -150,6 +150,9 @@ fn generations_are_those_of_a_transcription() {
                 if i < config.elites { ranked[i].clone() } else { child(&config, &ranked, stream) }
             };
             naive = (0..ranked.len()).map(made).collect();
+            let mean = naive.iter().map(|(_, step)| step).sum::<f64>() / naive.len() as f64;
+            let [said] = search.diagnostics()[..] else { panic!("says one number") };
+            assert!((said - mean).abs() <= 1e-12 * mean, "{said} {mean}");
             for (i, (genes, step)) in naive.iter().enumerate() {
                 assert!((search.step_sizes()[i] - step).abs() <= 1e-12 * step);
                 for (got, want) in search.ask().get(i).unwrap().iter().zip(genes) {
