@@ -114,9 +114,10 @@ pub fn read_states(text: &str) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// That it is neither.
 pub fn read_test_record(text: &str) -> Result<String, Error> {
-    let written = match serde_json::from_str::<TestRecord>(text) {
+    // The record of a protocol has all that a test's has, and so is one of a test, too.
+    let written = match serde_json::from_str::<ProtocolRecord>(text) {
         Ok(record) => serde_json::to_string(&record),
-        Err(_) => serde_json::from_str::<ProtocolRecord>(text).and_then(|record| serde_json::to_string(&record)),
+        Err(_) => serde_json::from_str::<TestRecord>(text).and_then(|record| serde_json::to_string(&record)),
     };
     written.map_err(|error| Error::damaged(Path::new("test.json"), error))
 }

@@ -60,7 +60,7 @@ impl ProtocolTable {
                 Some((last, lines)) if *last == case => lines.push(trial),
                 _ => cases.push((case, vec![head.clone(), trial])),
             }
-            if number + 1 != cases.len() {
+            if number.checked_add(1) != Some(cases.len()) {
                 return Err(format!("line {line} is of case {number}, not {}", cases.len().saturating_sub(1)));
             }
         }
@@ -112,6 +112,13 @@ mod tests {
     const CASES: &str = "case,row,column,held_out,index,trial,steps,success,fitness,at\n\
         0,\"TOUCH, softly\",red,false,0,0,6,true,1.5,0.25\n0,\"TOUCH, softly\",red,false,1,1,6,false,0.5,0.5\n\
         1,MOVE,red,true,0,0,6,false,NaN,\n1,MOVE,red,true,1,1,6,true,2.0,1.0\n";
+
+    #[test]
+    fn a_case_of_the_greatest_number_is_refused() {
+        let head = HEAD.join(",");
+        let why = ProtocolTable::parse(&format!("{head},trial\n{},a,b,true,0\n", usize::MAX)).map(drop).unwrap_err();
+        assert_eq!(why, format!("line 2 is of case {}, not 0", usize::MAX));
+    }
 
     #[test]
     fn what_is_written_is_read_back() {
