@@ -8,7 +8,7 @@ from memory import slope, watch
 from program import Lost, Program
 
 # What a generation may leave in memory [byte], and how many generations of these runs there are for
-# one of the first. Nothing, but for what the second moment of looking happens to see; several
+# one of the first. Little but noise: nothing stays of a generation, but that several
 # populations keep the champions that they still meet (docs/command.md).
 SHARES = [(ONE, 16, 1), (SEVERAL, 2000, 25), (COLLECTION, 16, 50)]
 # What a run may take beside that [byte].
