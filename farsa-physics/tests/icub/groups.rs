@@ -4,7 +4,7 @@ use farsa_body::{Contacts as _, Icub, Joints as _, PairId, Robot, World as _};
 use farsa_physics::articulated::{Options, World};
 
 use crate::common::model;
-use crate::random::{Babble, start};
+use crate::random::{Babble, SPEED, start};
 
 const EPISODES: u32 = 24;
 const STEPS: usize = 150;
@@ -23,7 +23,7 @@ fn groups_change_no_motion() {
     for episode in 0..EPISODES {
         start(&icub, &robot, &mut here, episode, 0.1);
         start(&icub, &alone, &mut there, episode, 0.1);
-        let mut babbles = [Babble::new(&robot, 5, episode), Babble::new(&alone, 5, episode)];
+        let mut babbles = [Babble::new(&robot, 5, episode, SPEED), Babble::new(&alone, 5, episode, SPEED)];
         for step in 0..STEPS {
             babbles[0].drive(&mut here);
             babbles[1].drive(&mut there);

@@ -5,7 +5,7 @@ use farsa_num::{Digest, Instructions};
 use farsa_physics::articulated::{Batch, LANES, Model, Options, World};
 
 use crate::common::model;
-use crate::random::{Babble, start};
+use crate::random::{Babble, SPEED, start};
 
 const WORLDS: usize = 16;
 /// Control steps of every lane.
@@ -22,12 +22,12 @@ fn begins(lane: usize, step: usize) -> Option<u32> {
 /// Fingerprints of the states of one lane after every step, and in how many of them something touches.
 fn alone(icub: &Icub, robot: &Robot, model: &Model<f32>, lane: usize) -> (Vec<Digest>, usize) {
     let mut world = World::new(model.clone());
-    let mut babble = Babble::new(robot, 2, 0);
+    let mut babble = Babble::new(robot, 2, 0, SPEED);
     let mut touching = 0;
     let digests = (0..STEPS).map(|step| {
         if let Some(episode) = begins(lane, step) {
             start(icub, robot, &mut world, episode, 0.1);
-            babble = Babble::new(robot, 2, episode);
+            babble = Babble::new(robot, 2, episode, SPEED);
         }
         babble.drive(&mut world);
         world.step();
@@ -45,14 +45,14 @@ fn digest(state: &[f32]) -> Digest {
 
 fn together(icub: &Icub, robot: &Robot, model: &Model<f32>, lanes: usize, level: Instructions, truths: &[Vec<Digest>]) {
     let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
-    let mut babbles = vec![Babble::new(robot, 2, 0); lanes];
+    let mut babbles = vec![Babble::new(robot, 2, 0, SPEED); lanes];
     let mut own = vec![0.0; model.state_len()];
     for step in 0..STEPS {
         for (lane, babble) in babbles.iter_mut().enumerate() {
             let mut world = batch.lane(lane);
             if let Some(episode) = begins(lane, step) {
                 start(icub, robot, &mut world, episode, 0.1);
-                *babble = Babble::new(robot, 2, episode);
+                *babble = Babble::new(robot, 2, episode, SPEED);
             }
             babble.drive(&mut world);
         }

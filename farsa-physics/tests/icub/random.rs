@@ -3,8 +3,8 @@
 use farsa_body::{Actuated, Actuator, ActuatorId, Arrange, Handles, Icub, JointId, Law, Robot};
 use farsa_num::{Domain, Stream};
 
-/// Largest commanded speed of a velocity motor [rad/s].
-const SPEED: f64 = 4.0;
+/// A largest commanded speed of velocity motors [rad/s], beyond what any experiment asks for.
+pub(crate) const SPEED: f64 = 4.0;
 
 /// Places the joints at most this far from the posture [rad], within their limits, and at rest.
 pub(crate) fn start<W>(icub: &Icub, robot: &Robot, world: &mut W, episode: u32, displacement: f64)
@@ -42,12 +42,13 @@ pub(crate) struct Babble {
 }
 
 impl Babble {
-    pub(crate) fn new(robot: &Robot, seed: u64, episode: u32) -> Self {
+    /// `speed` is the largest that is commanded to velocity motors [rad/s].
+    pub(crate) fn new(robot: &Robot, seed: u64, episode: u32, speed: f64) -> Self {
         let range = |actuator: &Actuator| {
             let joint = &robot.segments[actuator.joint.index()].joint;
             let meeting = MEETING.iter().find(|(name, _)| episode / 6 % 2 == 1 && joint.name.ends_with(name));
             match (&actuator.law, meeting) {
-                (Law::Velocity(_), _) => [-SPEED, SPEED],
+                (Law::Velocity(_), _) => [-speed, speed],
                 (_, Some((_, degrees))) => degrees.map(f64::to_radians),
                 _ => joint.range,
             }
