@@ -30,6 +30,11 @@ const EPISODE_STEPS: usize = 600;
 /// The lane that loses a joint, and when.
 const LOST: (usize, usize) = (3, 700);
 
+/// Those of this machine, and none.
+fn all_instructions() -> impl Iterator<Item = Instructions> {
+    Batch::instructions().chain([Instructions::Fallback])
+}
+
 /// What a lane does before step `t`: the number of the episode that begins there, if one does.
 fn begins(lane: usize, t: usize) -> Option<u32> {
     let shifted = t + 37 * lane;
@@ -146,7 +151,7 @@ fn every_lane_has_the_bits_of_the_world_alone() {
     // The lost lane forgets when it is refilled.
     assert!(truths[LOST.0].last.iter().all(|x| x.is_finite()));
     let mut ran = 0;
-    for instructions in Batch::instructions() {
+    for instructions in all_instructions() {
         for lanes in LANES {
             let mut batch = Batch::new(model.clone(), lanes, instructions).unwrap();
             let name = format!("{instructions:?}").split('(').next().unwrap().to_owned();
@@ -205,7 +210,7 @@ fn sliding_balls_have_the_bits_of_the_world_alone() {
             })
             .collect();
         assert!(touches > 150, "{touches} touches");
-        for level in Batch::instructions() {
+        for level in all_instructions() {
             for lanes in LANES {
                 let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
                 let mut streams: Vec<Stream> = (0..lanes).map(of).collect();
@@ -262,7 +267,7 @@ fn a_box_moved_off_an_edge_forgets_how_it_rolled_there() {
     world.finish_placement();
     world.step();
     assert!(edges(world.state()).iter().all(|x| *x == 0.0), "rolling impulses left: {:?}", edges(world.state()));
-    for level in Batch::instructions() {
+    for level in all_instructions() {
         for lanes in LANES {
             let mut batch = Batch::new(model.clone(), lanes, level).unwrap();
             for lane in 0..lanes {

@@ -13,6 +13,7 @@ use farsa_body::{
 
 use crate::arena::description::Arena;
 use crate::arena::error::ArenaError;
+use crate::arena::infrared::ring;
 use crate::arena::lockstep::{self as lockstep, Lockstep};
 use crate::arena::model::Model;
 use crate::arena::step::WORK_WORDS;
@@ -50,11 +51,14 @@ pub struct Batch {
     /// One word of every lane, then the next word of every lane.
     words: Vec<f32>,
     work: Vec<f32>,
-    lockstep: Box<dyn Lockstep>,
+    /// None where there are no vectors: lanes are then stepped one by one.
+    lockstep: Option<Box<dyn Lockstep>>,
+    /// The readings of one lane, where there are no vectors.
+    ring: Vec<f32>,
 }
 
 impl Batch {
-    /// So many worlds, 8 or 16, stepped by these instructions; see [`instructions`](crate::articulated::Batch::instructions).
+    /// So many worlds, 8 or 16, stepped by these instructions; see [`crate::articulated::Batch::new`].
     ///
     /// # Errors
     /// What is wrong with the description, or [`ArenaError::Lanes`] for another number of worlds.
@@ -67,7 +71,9 @@ impl Batch {
         let model = alone.model();
         let words = model.initial.iter().flat_map(|x| core::iter::repeat_n(*x, lanes)).collect();
         let work = vec![0.0; WORK_WORDS * model.robots.len() * lanes];
-        Ok(Self { lanes, words, work, lockstep: lockstep::lockstep(lanes, instructions), alone })
+        let sensors = (0..model.robots.len()).map(|robot| model.kind(robot).infrared.len()).max();
+        let ring = vec![0.0; sensors.unwrap_or(0)];
+        Ok(Self { lanes, words, work, lockstep: lockstep::lockstep(lanes, instructions), ring, alone })
     }
 
     /// The instruction sets of this machine that there are steps for, narrowest first.
@@ -105,25 +111,44 @@ impl Batch {
 
     /// Readings of a robot's ring of analytic infrared sensors in every world: [sensors x lanes], as
     /// [`World::infrared`] gives them in each; a shorter slice gets the first sensors.
-    pub fn infrared(&self, robot: usize, out: &mut [f32]) {
-        let model = self.alone.model();
-        self.lockstep.infrared(model, &self.words, robot.min(model.robots.len() - 1), out);
+    pub fn infrared(&mut self, robot: usize, out: &mut [f32]) {
+        let robot = robot.min(self.alone.model().robots.len() - 1);
+        if let Some(lockstep) = &self.lockstep {
+            lockstep.infrared(self.alone.model(), &self.words, robot, out);
+            return;
+        }
+        let sensors = self.alone.model().kind(robot).infrared.len().min(out.len() / self.lanes);
+        for lane in 0..self.lanes {
+            self.load(lane);
+            let readings = &mut self.ring[..sensors];
+            ring::<f32>((), self.alone.model(), self.alone.words(), robot, readings);
+            out.iter_mut().skip(lane).step_by(self.lanes).zip(readings).for_each(|(to, x)| *to = *x);
+        }
     }
 
     /// Lets one control step pass in every world.
     pub fn step(&mut self) {
-        if self.alone.model().attachments && (0..self.lanes).any(|lane| view::holds(&self.lane(lane))) {
-            for lane in 0..self.lanes {
-                let own = self.words.iter().skip(lane).step_by(self.lanes);
-                self.alone.words_mut().iter_mut().zip(own).for_each(|(x, from)| *x = *from);
-                self.alone.finish_placement();
-                self.alone.step();
-                let own = self.words.iter_mut().skip(lane).step_by(self.lanes);
-                own.zip(self.alone.words()).for_each(|(to, x)| *to = *x);
-            }
-        } else {
-            self.lockstep.step(self.alone.model(), &mut self.words, &mut self.work);
+        let attached = self.alone.model().attachments && (0..self.lanes).any(|lane| view::holds(&self.lane(lane)));
+        match &self.lockstep {
+            Some(lockstep) if !attached => lockstep.step(self.alone.model(), &mut self.words, &mut self.work),
+            _ => self.step_one_by_one(),
         }
+    }
+
+    fn step_one_by_one(&mut self) {
+        for lane in 0..self.lanes {
+            self.load(lane);
+            self.alone.finish_placement();
+            self.alone.step();
+            let own = self.words.iter_mut().skip(lane).step_by(self.lanes);
+            own.zip(self.alone.words()).for_each(|(to, x)| *to = *x);
+        }
+    }
+
+    /// Brings the words of one lane into the world alone.
+    fn load(&mut self, lane: usize) {
+        let own = self.words.iter().skip(lane).step_by(self.lanes);
+        self.alone.words_mut().iter_mut().zip(own).for_each(|(x, from)| *x = *from);
     }
 }
 
@@ -134,7 +159,8 @@ impl Clone for Batch {
             lanes: self.lanes,
             words: self.words.clone(),
             work: self.work.clone(),
-            lockstep: self.lockstep.boxed_clone(),
+            lockstep: self.lockstep.as_ref().map(|one| one.boxed_clone()),
+            ring: self.ring.clone(),
         }
     }
 }

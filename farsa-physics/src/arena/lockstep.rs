@@ -1,4 +1,8 @@
 //! The compiled steps of batches of planar worlds: one for every number of lanes and instruction set.
+#![cfg_attr(
+    all(target_arch = "wasm32", not(target_feature = "simd128")),
+    allow(dead_code, unused_imports, reason = "there are no vectors")
+)]
 
 use alloc::boxed::Box;
 use core::marker::PhantomData;
@@ -53,8 +57,10 @@ where
     }
 }
 
-/// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for.
-pub(crate) fn lockstep(lanes: usize, instructions: Instructions) -> Box<dyn Lockstep> {
+/// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for; none where lanes are
+/// stepped one by one.
+#[cfg(any(not(target_arch = "wasm32"), target_feature = "simd128"))]
+pub(crate) fn lockstep(lanes: usize, instructions: Instructions) -> Option<Box<dyn Lockstep>> {
     fn boxed<S: Simd>(simd: S, lanes: usize) -> Box<dyn Lockstep> {
         if lanes == LANES[0] {
             Box::new(Vectors::<f32x8<S>> { simd, scalar: PhantomData })
@@ -63,17 +69,26 @@ pub(crate) fn lockstep(lanes: usize, instructions: Instructions) -> Box<dyn Lock
         }
     }
     let level = instructions.level();
+    if instructions == Instructions::Fallback || level.is_fallback() {
+        return None;
+    }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if let Some(simd) = level.as_avx512() {
-            return boxed(simd, lanes);
+            return Some(boxed(simd, lanes));
         }
         if let Some(simd) = level.as_avx2() {
-            return boxed(simd, lanes);
+            return Some(boxed(simd, lanes));
         }
         if let Some(simd) = level.as_sse2() {
-            return boxed(simd, lanes);
+            return Some(boxed(simd, lanes));
         }
     }
-    farsa_num::fearless_simd::dispatch!(level, simd => boxed(simd, lanes))
+    Some(farsa_num::fearless_simd::dispatch!(level, simd => boxed(simd, lanes)))
+}
+
+/// WebAssembly for machines without vectors has none.
+#[cfg(all(target_arch = "wasm32", not(target_feature = "simd128")))]
+pub(crate) fn lockstep(_: usize, _: Instructions) -> Option<Box<dyn Lockstep>> {
+    None
 }

@@ -42,7 +42,8 @@ pub struct Batch {
 impl Batch {
     /// So many worlds, one of [`LANES`], stepped by these instructions.
     ///
-    /// For what is none of [`Batch::instructions`] the best below it is taken.
+    /// For what is none of [`Batch::instructions`] the best below it is taken; [`Instructions::Fallback`], one world after the other,
+    /// is there on every machine.
     ///
     /// # Errors
     /// [`ModelError::Lanes`] for another number of worlds.

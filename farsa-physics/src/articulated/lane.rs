@@ -43,17 +43,43 @@ impl Words {
         words
     }
 
+    /// The state of one lane.
+    pub(crate) fn load(&self, lane: usize, state: &mut [f32]) {
+        copy(state, lane_of(&self.state, lane, self.lanes));
+    }
+
+    /// The state of one lane, and where its links are.
+    pub(crate) fn store(&mut self, lane: usize, state: &[f32], links: &[LinkData<f32>]) {
+        for (to, x) in self.state.iter_mut().skip(lane).step_by(self.lanes).zip(state) {
+            *to = *x;
+        }
+        store_links(&mut self.links, lane, self.lanes, links);
+    }
+
     /// Where the links of one lane are, from its state.
     fn place(&mut self, model: &Model<f32>, lane: usize) {
         let (state, scratch) = &mut self.alone;
-        for (x, from) in state.iter_mut().zip(self.state.iter().skip(lane).step_by(self.lanes)) {
-            *x = *from;
-        }
+        copy(state, lane_of(&self.state, lane, self.lanes));
         f32::forward_kinematics(model, state, scratch);
-        let to = self.links.iter_mut().skip(lane).step_by(self.lanes);
-        for (to, x) in to.zip(scratch.links.iter().flat_map(link_words)) {
-            *to = x;
-        }
+        store_links(&mut self.links, lane, self.lanes, &scratch.links);
+    }
+}
+
+/// The words of one lane.
+fn lane_of(words: &[f32], lane: usize, lanes: usize) -> impl Iterator<Item = &f32> {
+    words.iter().skip(lane).step_by(lanes)
+}
+
+fn copy<'a>(to: &mut [f32], from: impl Iterator<Item = &'a f32>) {
+    for (to, x) in to.iter_mut().zip(from) {
+        *to = *x;
+    }
+}
+
+fn store_links(words: &mut [f32], lane: usize, lanes: usize, links: &[LinkData<f32>]) {
+    let to = words.iter_mut().skip(lane).step_by(lanes);
+    for (to, x) in to.zip(links.iter().flat_map(link_words)) {
+        *to = x;
     }
 }
 

@@ -1,6 +1,10 @@
 //! The compiled steps of batches: one for every number of lanes and instruction set, here and nowhere else.
 //!
 //! Each takes the compiler about as long as all the rest of the crate, so the crate's unit tests are built without them.
+#![cfg_attr(
+    all(target_arch = "wasm32", not(target_feature = "simd128")),
+    allow(dead_code, unused_imports, reason = "there are no vectors")
+)]
 
 use alloc::boxed::Box;
 use alloc::vec;
@@ -10,10 +14,11 @@ use core::ops::Range;
 use farsa_num::fearless_simd::{Simd, f32x8, f32x16};
 use farsa_num::{Instructions, Mask as _, Scalar};
 
+use crate::articulated::external::Wrenches;
 use crate::articulated::group::{is_clear, unknown_gap};
 use crate::articulated::lane::{LINK_WORDS, Words};
 use crate::articulated::model::{Model, POINT_WORDS};
-use crate::articulated::step::{Scratch, step};
+use crate::articulated::step::{Precision, Scratch, step};
 
 /// The numbers of worlds that a [`Batch`](crate::articulated::Batch) can have.
 pub const LANES: [usize; 2] = [8, 16];
@@ -110,6 +115,33 @@ where
     }
 }
 
+/// The step of a world alone, for one world after the other: where there are no vectors.
+///
+/// Lanes made of scalars would step alike, and take the compiler more than ten minutes.
+#[derive(Clone)]
+struct OneByOne {
+    state: Vec<f32>,
+    scratch: Scratch<f32>,
+    /// None, which the step asks for.
+    forces: Wrenches<f32>,
+}
+
+impl Lockstep for OneByOne {
+    fn step(&mut self, model: &Model<f32>, words: &mut Words) {
+        for lane in 0..words.lanes {
+            words.load(lane, &mut self.state);
+            <f32 as Precision>::forward_kinematics(model, &self.state, &mut self.scratch);
+            <f32 as Precision>::step(model, &mut self.state, &mut self.scratch, &mut self.forces);
+            words.store(lane, &self.state, &self.scratch.links);
+        }
+        words.arranged = false;
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Lockstep> {
+        Box::new(self.clone())
+    }
+}
+
 /// The instruction sets of this machine that there are steps for, narrowest first.
 pub(crate) fn instructions() -> impl Iterator<Item = Instructions> {
     // SSE4.2 has nothing that the steps use.
@@ -118,6 +150,16 @@ pub(crate) fn instructions() -> impl Iterator<Item = Instructions> {
 
 /// The steps of so many lanes, one of [`LANES`], by the widest of these instructions that there are steps for.
 pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, instructions: Instructions) -> Box<dyn Lockstep> {
+    let vectors = if instructions == Instructions::Fallback { None } else { in_vectors(instructions, model, lanes) };
+    vectors.unwrap_or_else(|| {
+        let (state, scratch) = (model.initial.clone(), Scratch::new((), model));
+        Box::new(OneByOne { state, scratch, forces: Wrenches::new(model) })
+    })
+}
+
+/// The steps in vectors, if there are any.
+#[cfg(any(not(target_arch = "wasm32"), target_feature = "simd128"))]
+fn in_vectors(instructions: Instructions, model: &Model<f32>, lanes: usize) -> Option<Box<dyn Lockstep>> {
     fn boxed<S: Simd>(simd: S, model: &Model<f32>, lanes: usize) -> Box<dyn Lockstep> {
         if lanes == LANES[0] {
             Box::new(Vectors::<f32x8<S>>::new(simd, model))
@@ -126,17 +168,26 @@ pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, instructions: Instructi
         }
     }
     let level = instructions.level();
+    if level.is_fallback() {
+        return None;
+    }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if let Some(simd) = level.as_avx512() {
-            return boxed(simd, model, lanes);
+            return Some(boxed(simd, model, lanes));
         }
         if let Some(simd) = level.as_avx2() {
-            return boxed(simd, model, lanes);
+            return Some(boxed(simd, model, lanes));
         }
         if let Some(simd) = level.as_sse2() {
-            return boxed(simd, model, lanes);
+            return Some(boxed(simd, model, lanes));
         }
     }
-    farsa_num::fearless_simd::dispatch!(level, simd => boxed(simd, model, lanes))
+    Some(farsa_num::fearless_simd::dispatch!(level, simd => boxed(simd, model, lanes)))
+}
+
+/// WebAssembly for machines without vectors has none.
+#[cfg(all(target_arch = "wasm32", not(target_feature = "simd128")))]
+fn in_vectors(_: Instructions, _: &Model<f32>, _: usize) -> Option<Box<dyn Lockstep>> {
+    None
 }

@@ -140,7 +140,7 @@ fn equal(name: &str, arena: &Arena, steps: usize, holds: bool) {
     }
     println!("{name}: {touches} touches, {held} held in {WORLDS} x {steps} steps");
     assert!(touches > steps / 2 && (held > 0) == holds);
-    for instructions in Batch::instructions() {
+    for instructions in Batch::instructions().chain([Instructions::Fallback]) {
         for lanes in [8, 16] {
             let mut batch = Batch::new(arena, lanes, instructions).unwrap();
             let mut scripts: Vec<Script> = (0..lanes).map(|lane| Script::new(arena, lane, holds)).collect();
@@ -420,7 +420,7 @@ const STIRS: usize = 60;
 fn sensors_and_motors_conform_in_a_lane() {
     let arena = lively();
     let (robot, parts) = (&arena.robots[1].robot, arena.parts(1));
-    for instructions in Batch::instructions() {
+    for instructions in Batch::instructions().chain([Instructions::Fallback]) {
         for lanes in [8, 16] {
             let make = || InLane(std::cell::RefCell::new(Batch::new(&arena, lanes, instructions).unwrap()));
             let (mut lane, mut alone) = (make(), World::new(&arena).unwrap());

@@ -82,7 +82,7 @@ fn every_lane_has_the_bits_of_the_world_alone() {
         let (truths, touching): (Vec<_>, Vec<_>) = (0..WORLDS).map(|lane| alone(&icub, &robot, &model, lane)).unzip();
         println!("{actuated:?} {control:?}: steps with contacts {touching:?}");
         assert!(touching.iter().sum::<usize>() > WORLDS * STEPS / 20);
-        for level in Batch::instructions() {
+        for level in Batch::instructions().chain([Instructions::Fallback]) {
             for lanes in LANES {
                 together(&icub, &robot, &model, lanes, level, &truths);
             }

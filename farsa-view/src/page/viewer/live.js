@@ -106,16 +106,19 @@ function shortened(script) {
 // is attached to the player, and then shows all of it.
 async function liveOf(page) {
 	need(capable, "this browser has no WebAssembly");
-	// A function that returns a vector.
-	const vectors = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
-	need(WebAssembly.validate(new Uint8Array(vectors)), "this browser's WebAssembly has no SIMD, as all have since 2023");
 	const {live: {module: packed, script, about: {individuals}}} = page;
 	// The trial of the run that earned most comes first.
 	const told = individuals.at(-1).trials;
 	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
 	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
 	const request = {do: "film", ...asked(state), lesion: ""};
-	const [module, short] = [firstWorker("compile", {packed}), shortened(script)];
+	const module = firstWorker("compile", {packed}).catch((error) => {
+		// A function that returns a vector.
+		const vectors = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
+		need(WebAssembly.validate(new Uint8Array(vectors)), "this browser's WebAssembly has no SIMD, which this page's module wants");
+		throw error;
+	});
+	const short = shortened(script);
 	const begun = short && firstWorker("once", {script: short, request}).catch(() => null);
 	const opened = Promise.all([module, firstWorker("open", {script})]);
 	let answer = null;
