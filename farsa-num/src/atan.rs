@@ -81,7 +81,7 @@ fn excess(z: f64) -> f64 {
 
 /// The square root in two parts, the first with its lower half empty, so that twice its double can be subtracted exactly.
 fn root(z: f64) -> (f64, f64) {
-    let s = libm::sqrt(z);
+    let s = crate::square_root::sqrt(z);
     let high = f64::from_bits(s.to_bits() & 0xFFFF_FFFF_0000_0000);
     let low = if s > 0.0 { (z - high * high) / (s + high) } else { 0.0 };
     (high, low)

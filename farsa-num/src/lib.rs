@@ -1,7 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
-#[cfg(test)]
+#[cfg(any(test, all(target_arch = "wasm32", feature = "std")))]
 extern crate std;
 
 mod atan;
@@ -17,6 +17,7 @@ mod polynomial;
 mod rng;
 mod scalar;
 mod sin_cos;
+mod square_root;
 
 pub use atan::{acos, asin, atan2};
 pub use digest::{Crc32, Digest, crc32};

@@ -214,7 +214,7 @@ impl Stream {
         const UNIT: f64 = 1.0 / 4_294_967_296.0;
         let u = (f64::from(self.next_u32()) + 1.0) * UNIT;
         let angle = f64::from(self.next_u32()) * (UNIT * core::f64::consts::TAU);
-        let radius = libm::sqrt(-2.0 * ln(u));
+        let radius = crate::square_root::sqrt(-2.0 * ln(u));
         let (s, c) = sin_cos(angle);
         [(radius * c) as f32, (radius * s) as f32]
     }
@@ -227,7 +227,7 @@ impl Stream {
         // 1 - u of a uniform in [0, 1) is exact, and above 0.
         let u = 1.0 - self.uniform_f64();
         let angle = self.uniform_f64() * core::f64::consts::TAU;
-        let radius = libm::sqrt(-2.0 * ln(u));
+        let radius = crate::square_root::sqrt(-2.0 * ln(u));
         let (s, c) = sin_cos(angle);
         [radius * c, radius * s]
     }

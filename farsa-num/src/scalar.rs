@@ -250,6 +250,5 @@ macro_rules! real {
     };
 }
 
-// libm's sqrt is the processor's own instruction where there is one, and correctly rounded everywhere.
-real!(f32, u32, libm::sqrtf, 12_582_912.0, 127.0, 23);
-real!(f64, u64, libm::sqrt, 6_755_399_441_055_744.0, 1023.0, 52);
+real!(f32, u32, crate::square_root::sqrtf, 12_582_912.0, 127.0, 23);
+real!(f64, u64, crate::square_root::sqrt, 6_755_399_441_055_744.0, 1023.0, 52);
