@@ -38,7 +38,17 @@ pub(crate) fn step(work: &mut impl Lanes, level: Level) {
         Some(simd) => in_vectors(work, simd),
         None => one_by_one(work),
     }
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    match level.as_wasm_simd128() {
+        Some(simd) => in_vectors(work, simd),
+        None => one_by_one(work),
+    }
+    #[cfg(not(any(
+        target_arch = "x86",
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )))]
     {
         let _ = level;
         one_by_one(work);
@@ -47,7 +57,12 @@ pub(crate) fn step(work: &mut impl Lanes, level: Level) {
 
 /// Eight neurons in a vector, with the instructions of the token; fewer one by one.
 #[cfg_attr(
-    not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
+    not(any(
+        target_arch = "x86",
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )),
     expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
 )]
 #[inline(always)]
@@ -96,7 +111,17 @@ impl Layer<'_> {
             Some(simd) => self.in_vectors(simd, y),
             None => self.one_by_one(y),
         }
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        match level.as_wasm_simd128() {
+            Some(simd) => self.in_vectors(simd, y),
+            None => self.one_by_one(y),
+        }
+        #[cfg(not(any(
+            target_arch = "x86",
+            target_arch = "x86_64",
+            target_arch = "aarch64",
+            all(target_arch = "wasm32", target_feature = "simd128")
+        )))]
         {
             let _ = level;
             self.one_by_one(y);
@@ -105,7 +130,12 @@ impl Layer<'_> {
 
     /// Eight targets in a vector, with the instructions of the token; fewer one by one.
     #[cfg_attr(
-        not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
+        not(any(
+            target_arch = "x86",
+            target_arch = "x86_64",
+            target_arch = "aarch64",
+            all(target_arch = "wasm32", target_feature = "simd128")
+        )),
         expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
     )]
     #[inline(always)]
