@@ -2,14 +2,17 @@
 
 import { gunzipSync } from "node:zlib";
 
-// Five letters are four bytes; two letters stand for others.
-const value = (letter) => ({ "}": "<", "~": "\\" })[letter] ?? letter;
+// Two letters are thirteen bits; two letters stand for others.
+const value = (letter) => ({ "!": "<", "~": "\\" })[letter] ?? letter;
 
 export function unpacked({ gzip, bytes }) {
-  const words = Buffer.alloc(Math.ceil(gzip.length / 5) * 4);
-  for (let at = 0; at < gzip.length; at += 5) {
-    const letters = [...gzip.slice(at, at + 5)].map((letter) => value(letter).charCodeAt(0) - 40);
-    words.writeUInt32BE(letters.reduce((word, letter) => 85 * word + letter, 0), (at / 5) * 4);
+  const found = Buffer.alloc(bytes);
+  const digit = (at) => value(gzip[at]).charCodeAt(0) - 35;
+  let [rest, bits, to] = [0, 0, 0];
+  for (let at = 0; at < gzip.length; at += 2) {
+    rest = (rest << 13) | (91 * digit(at) + digit(at + 1));
+    for (bits += 13; bits >= 8 && to < bytes; ) found[to++] = rest >> (bits -= 8);
+    rest &= (1 << bits) - 1;
   }
-  return gunzipSync(words.subarray(0, bytes));
+  return gunzipSync(found);
 }

@@ -18,12 +18,14 @@ fn data(path: &Path) -> Value {
     serde_json::from_str(text).expect("JSON")
 }
 
-/// What is packed in a page: compressed bytes, four of them as five letters from `(` on, of which two stand for others.
+/// What is packed in a page: compressed bytes, thirteen bits as two letters from `#` on, of which two stand for others.
 fn unpacked(packed: &Value) -> Vec<u8> {
-    let text = packed["gzip"].as_str().expect("text").replace('}', "<").replace('~', "\\");
-    let words = text.as_bytes().chunks(5).map(|five| five.iter().fold(0, |word, x| 85 * word + u64::from(x - b'(')));
-    let mut bytes: Vec<u8> = words.flat_map(|word| u32::try_from(word).expect("a word").to_be_bytes()).collect();
-    bytes.truncate(packed["bytes"].as_u64().expect("a number") as usize);
+    let text = packed["gzip"].as_str().expect("text").replace('!', "<").replace('~', "\\");
+    let words = text.as_bytes().chunks(2).map(|two| two.iter().fold(0, |word, x| 91 * word + u32::from(x - b'#')));
+    let bits: Vec<u8> = words.flat_map(|word| (0..13).rev().map(move |k| (word >> k & 1) as u8)).collect();
+    let length = packed["bytes"].as_u64().expect("a number") as usize;
+    let bytes: Vec<u8> =
+        bits.chunks(8).take(length).map(|byte| byte.iter().fold(0, |all, bit| 2 * all + bit)).collect();
     let mut found = Vec::new();
     GzDecoder::new(&bytes[..]).read_to_end(&mut found).expect("what was compressed");
     found

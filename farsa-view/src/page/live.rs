@@ -7,7 +7,7 @@ use flate2::write::GzEncoder;
 use serde_json::{Value, json};
 
 use crate::error::Error;
-use crate::page::base85::base85;
+use crate::page::base91::base91;
 use crate::page::html::{Kind, composed, data_head};
 
 /// A page that runs an agent by itself, by a module of WebAssembly that lies in it.
@@ -60,7 +60,7 @@ impl LivePage {
 
 /// Compressed bytes as they stand in a page: as text, with their number.
 fn packed(compressed: &[u8]) -> Value {
-    json!({ "gzip": base85(compressed), "bytes": compressed.len() })
+    json!({ "gzip": base91(compressed), "bytes": compressed.len() })
 }
 
 fn compressed(bytes: &[u8]) -> Vec<u8> {
@@ -92,7 +92,7 @@ mod tests {
         let data: Value = serde_json::from_str(text).unwrap();
         assert_eq!(
             (&data["title"], &data["view"], &data["live"]["module"], &data["live"]["standing"]),
-            (&"a <b>".into(), &"top".into(), &json!({ "gzip": base85(&[1, 2, 3]), "bytes": 3 }), &Value::Null)
+            (&"a <b>".into(), &"top".into(), &json!({ "gzip": base91(&[1, 2, 3]), "bytes": 3 }), &Value::Null)
         );
         assert_eq!(data["live"]["script"]["config"], "x = \"</script>\"");
         let film = Page::new("film").html();

@@ -39,20 +39,16 @@ function inWorker() {
 
 // What is packed in the page: a stream of its bytes.
 function unpacked({gzip, bytes}) {
-	const words = new DataView(new ArrayBuffer(4*Math.ceil(gzip.length/5)));
-	for (let at = 0, to = 0; at < gzip.length; to += 4) {
-		let word = 0;
-		for (const end = at + 5; at < end; at++) {
-			// Letters from `(` on; two of them stand for those that JSON and HTML would write longer.
-			const c = gzip.charCodeAt(at);
-			word = 85*word + (c === 125 ? 60 : c === 126 ? 92 : c) - 40;
-		}
-		words.setUint32(to, word);
+	const found = new Uint8Array(bytes);
+	// Letters from `#` on; two of them stand for those that JSON and HTML would write longer.
+	const digit = (c) => (c === 33 ? 60 : c === 126 ? 92 : c) - 35;
+	for (let at = 0, to = 0, rest = 0, bits = 0; to < bytes; found[to++] = rest >> (bits -= 8)) {
+		for (; bits < 8; bits += 13, at += 2) rest = (rest & 127) << 13 | 91*digit(gzip.charCodeAt(at)) + digit(gzip.charCodeAt(at + 1));
 	}
 	const {writable, readable} = new DecompressionStream("gzip");
 	const writer = writable.getWriter();
 	// What goes wrong is heard of where the bytes are read.
-	for (const done of [writer.write(new Uint8Array(words.buffer, 0, bytes)), writer.close()]) done.catch(() => {});
+	for (const done of [writer.write(found), writer.close()]) done.catch(() => {});
 	return readable;
 }
 
