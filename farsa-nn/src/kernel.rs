@@ -15,6 +15,38 @@ pub(crate) fn level() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
 }
 
+/// The first expression with the token of a level's vectors, or the second where a target or a level has none.
+macro_rules! by_instructions {
+    ($level:ident, $simd:ident => $vectors:expr, $single:expr) => {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        match ($level.as_avx2(), $level.as_sse2()) {
+            (Some($simd), _) => $vectors,
+            (_, Some($simd)) => $vectors,
+            _ => $single,
+        }
+        #[cfg(target_arch = "aarch64")]
+        match $level.as_neon() {
+            Some($simd) => $vectors,
+            None => $single,
+        }
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        match $level.as_wasm_simd128() {
+            Some($simd) => $vectors,
+            None => $single,
+        }
+        #[cfg(not(any(
+            target_arch = "x86",
+            target_arch = "x86_64",
+            target_arch = "aarch64",
+            all(target_arch = "wasm32", target_feature = "simd128")
+        )))]
+        {
+            let _ = $level;
+            $single;
+        }
+    };
+}
+
 /// A step over neurons that may lie in lanes.
 pub(crate) trait Lanes {
     /// Number of neurons that are computed side by side.
@@ -27,44 +59,11 @@ pub(crate) trait Lanes {
 // Not inlined, so that a program has each step once for each instruction set, as with layers below.
 #[inline(never)]
 pub(crate) fn step(work: &mut impl Lanes, level: Level) {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    match (level.as_avx2(), level.as_sse2()) {
-        (Some(simd), _) => in_vectors(work, simd),
-        (_, Some(simd)) => in_vectors(work, simd),
-        _ => one_by_one(work),
-    }
-    #[cfg(target_arch = "aarch64")]
-    match level.as_neon() {
-        Some(simd) => in_vectors(work, simd),
-        None => one_by_one(work),
-    }
-    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-    match level.as_wasm_simd128() {
-        Some(simd) => in_vectors(work, simd),
-        None => one_by_one(work),
-    }
-    #[cfg(not(any(
-        target_arch = "x86",
-        target_arch = "x86_64",
-        target_arch = "aarch64",
-        all(target_arch = "wasm32", target_feature = "simd128")
-    )))]
-    {
-        let _ = level;
-        one_by_one(work);
-    }
+    by_instructions!(level, simd => in_vectors(work, simd), one_by_one(work));
 }
 
 /// Eight neurons in a vector, with the instructions of the token; fewer one by one.
-#[cfg_attr(
-    not(any(
-        target_arch = "x86",
-        target_arch = "x86_64",
-        target_arch = "aarch64",
-        all(target_arch = "wasm32", target_feature = "simd128")
-    )),
-    expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
-)]
+#[allow(dead_code, reason = "eight emulated lanes are larger and slower than one")]
 #[inline(always)]
 fn in_vectors<V: Simd>(work: &mut impl Lanes, simd: V) {
     if work.widest() < f32x8::<V>::LANES {
@@ -100,44 +99,11 @@ impl Layer<'_> {
     #[inline(never)]
     pub(crate) fn forward(&self, level: Level, y: &mut [f32]) {
         let y = prefix(y, self.targets);
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        match (level.as_avx2(), level.as_sse2()) {
-            (Some(simd), _) => self.in_vectors(simd, y),
-            (_, Some(simd)) => self.in_vectors(simd, y),
-            _ => self.one_by_one(y),
-        }
-        #[cfg(target_arch = "aarch64")]
-        match level.as_neon() {
-            Some(simd) => self.in_vectors(simd, y),
-            None => self.one_by_one(y),
-        }
-        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        match level.as_wasm_simd128() {
-            Some(simd) => self.in_vectors(simd, y),
-            None => self.one_by_one(y),
-        }
-        #[cfg(not(any(
-            target_arch = "x86",
-            target_arch = "x86_64",
-            target_arch = "aarch64",
-            all(target_arch = "wasm32", target_feature = "simd128")
-        )))]
-        {
-            let _ = level;
-            self.one_by_one(y);
-        }
+        by_instructions!(level, simd => self.in_vectors(simd, y), self.one_by_one(y));
     }
 
     /// Eight targets in a vector, with the instructions of the token; fewer one by one.
-    #[cfg_attr(
-        not(any(
-            target_arch = "x86",
-            target_arch = "x86_64",
-            target_arch = "aarch64",
-            all(target_arch = "wasm32", target_feature = "simd128")
-        )),
-        expect(dead_code, reason = "eight emulated lanes are larger and slower than one")
-    )]
+    #[allow(dead_code, reason = "eight emulated lanes are larger and slower than one")]
     #[inline(always)]
     fn in_vectors<V: Simd>(&self, simd: V, y: &mut [f32]) {
         if y.len() < f32x8::<V>::LANES {

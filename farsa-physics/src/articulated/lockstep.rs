@@ -130,6 +130,7 @@ impl Lockstep for OneByOne {
     fn step(&mut self, model: &Model<f32>, words: &mut Words) {
         for lane in 0..words.lanes {
             words.load(lane, &mut self.state);
+            // One scratch serves all lanes, and has the links of the one before.
             <f32 as Precision>::forward_kinematics(model, &self.state, &mut self.scratch);
             <f32 as Precision>::step(model, &mut self.state, &mut self.scratch, &mut self.forces);
             words.store(lane, &self.state, &self.scratch.links);

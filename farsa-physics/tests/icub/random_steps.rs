@@ -177,7 +177,10 @@ const BOUNDS: Bounds = Bounds { speed: 100.0, beyond: 0.05, gentle: 2e-3, share:
 fn check_bounds(control: JointControl, speed: f64, bounds: &Bounds) {
     let steps = if is_long() { 1_000_000 } else { 50_000 };
     let f = babble(control, speed, steps);
-    f.print(&format!("{control:?}, {speed} rad/s"), steps);
+    f.print(
+        &if control == JointControl::Velocity { format!("speeds up to {speed} rad/s") } else { "positions".into() },
+        steps,
+    );
     assert!(f.touching.iter().all(|touching| *touching > steps / 1000), "{:?}", f.touching);
     assert!(f.speed[0].value < BOUNDS.speed && f.speed[1].value < bounds.speed, "{:?}", f.speed);
     assert!(f.beyond[0].value < BOUNDS.beyond && f.beyond[1].value < bounds.beyond, "{:?}", f.beyond);
