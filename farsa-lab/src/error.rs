@@ -212,11 +212,23 @@ impl From<farsa_view::Error> for Error {
 fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name: String = name.chars().take(MOST_SHOWN).collect();
     let lower = name.to_lowercase();
+    let length = lower.chars().count();
     let distance = strsim::damerau_levenshtein;
-    valid.into_iter().min_by_key(|valid| {
+    let mut best: Option<(usize, &str)> = None;
+    for valid in valid {
         let other = valid.to_lowercase();
-        (distance(&lower, &other), !other.starts_with(&lower), distance(&name, valid))
-    })
+        // Each letter that one has more is one to drop: most names need not be compared.
+        if best.is_some_and(|(least, _)| other.chars().count().abs_diff(length) > least) {
+            continue;
+        }
+        let letters = distance(&lower, &other);
+        let rank = |valid: &str| (!valid.to_lowercase().starts_with(&lower), distance(&name, valid));
+        let better = best.is_none_or(|(least, found)| letters < least || letters == least && rank(valid) < rank(found));
+        if better {
+            best = Some((letters, valid));
+        }
+    }
+    best.map(|(_, found)| found)
 }
 
 impl fmt::Display for Error {
@@ -290,6 +302,9 @@ impl std::error::Error for Error {
 
 #[cfg(test)]
 mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
     use super::*;
 
     #[test]
@@ -305,6 +320,19 @@ mod tests {
         let error = Error::unknown("my.toml line 3", "key", "world.stpe", valid);
         assert_eq!(error.to_string(), "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`");
         assert_eq!(error.exit_code(), 2);
+    }
+
+    proptest! {
+        #[test]
+        fn no_name_that_is_passed_over_is_nearer(name in "[abAB]{0,8}", valid in vec("[abcAB]{0,8}", 0..8)) {
+            let lower = name.to_lowercase();
+            let distance = strsim::damerau_levenshtein;
+            let naive = valid.iter().min_by_key(|valid| {
+                let other = valid.to_lowercase();
+                (distance(&lower, &other), !other.starts_with(&lower), distance(&name, valid))
+            });
+            prop_assert_eq!(nearest(&name, valid.iter().map(String::as_str)), naive.map(String::as_str));
+        }
     }
 
     #[test]

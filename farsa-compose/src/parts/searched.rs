@@ -36,12 +36,14 @@ impl Searched {
     /// [`Error::Unknown`] for a parameter that there is not, [`Error::Setting`] for one that stands twice, and for values
     /// and ranges that do not go together.
     pub(crate) fn new(
-        all: &[Parameter],
+        all: Vec<Parameter>,
         beside: &BTreeMap<String, f64>,
         network: &Network,
         places: &Places,
     ) -> Result<Self, Error> {
-        let numbers: BTreeMap<&str, usize> = all.iter().enumerate().map(|(own, known)| (&*known.name, own)).collect();
+        let named = !network.fixed.is_empty() || !network.shared.is_empty();
+        let numbers: BTreeMap<&str, usize> =
+            all.iter().enumerate().filter(|_| named).map(|(own, known)| (&*known.name, own)).collect();
         let number = |name: &str, path: &str| {
             let found = numbers.get(name).copied();
             let names = all.iter().map(|known| known.name.as_str());
@@ -73,21 +75,26 @@ impl Searched {
                 first[own] = leader;
             }
         }
-        let mut parameters = Vec::new();
+        let mut count = 0;
         let mut places_of: Vec<Option<usize>> = vec![None; all.len()];
+        let mut kept = vec![false; all.len()];
         let sources = (0..all.len()).map(|own| match fixed[own] {
             Some(value) => Source::Fixed(value as f32),
             None => Source::Searched(*places_of[first[own]].get_or_insert_with(|| {
-                parameters.push(all[own].clone());
-                parameters.len() - 1
+                kept[own] = true;
+                count += 1;
+                count - 1
             })),
         });
-        let sources = sources.collect();
+        let sources: Vec<Source> = sources.collect();
+        let own = vec![0.0; all.len()];
+        let mut parameters: Vec<Parameter> =
+            all.into_iter().zip(kept).filter_map(|(known, kept)| kept.then_some(known)).collect();
         if parameters.is_empty() {
             // One that nothing depends on: nothing is searched for.
             parameters.push(Parameter::new("none", [0.0, 1.0]));
         }
-        Ok(Self { parameters, sources, own: vec![0.0; all.len()] })
+        Ok(Self { parameters, sources, own })
     }
 
     /// Whether a network takes what is fixed.
@@ -95,9 +102,12 @@ impl Searched {
     /// # Errors
     /// [`Error::Setting`] if it does not.
     pub(crate) fn check(&self, network: &AnyNetwork, places: &Places) -> Result<(), Error> {
-        let searched: Vec<f32> = self.parameters.iter().map(|parameter| parameter.ends[0] as f32).collect();
-        let (mut own, mut network) = (self.clone(), network.clone());
-        if own.all(&searched).is_some_and(|all| network.load(all)) {
+        let least = self.sources.iter().map(|source| match source {
+            Source::Searched(number) => self.parameters[*number].ends[0] as f32,
+            Source::Fixed(value) => *value,
+        });
+        let least: Vec<f32> = least.collect();
+        if network.clone().load(&least) {
             return Ok(());
         }
         Err(places.wrong(

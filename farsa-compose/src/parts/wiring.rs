@@ -62,7 +62,7 @@ impl Wiring {
         let network = AnyNetwork::new(document, ends, places)?;
         let all = network.parameters(&document.network, ends);
         let given = network.given(&document.network, ends);
-        let searched = Searched::new(&all, &given, &document.network, places)?;
+        let searched = Searched::new(all, &given, &document.network, places)?;
         searched.check(&network, places)?;
         Ok(Self { about: about(document)?, sensors, motors, inputs, outputs, network, searched })
     }
