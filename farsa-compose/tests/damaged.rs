@@ -185,6 +185,29 @@ fn files_of_more_than_anybody_writes_are_refused() {
     assert_eq!(plain(&found), "look.toml line 37: conditions: has 101 values where 0 to 100 are wanted");
 }
 
+#[test]
+fn robots_are_limited_with_all_that_they_carry() {
+    let robots = |count: u32| {
+        let wide = RIGHT.replace("[1.0, 1.0]", "[100.0, 100.0]");
+        wide.replace("kind = \"e-puck\"", &format!("kind = \"e-puck\"\ncount = {count}"))
+    };
+    let sensors = |count: usize| "[[sensors]]\nkind = \"touch\"\n".repeat(count);
+    // Beside these there are a sensor and a motor: a hundred parts each.
+    assert_eq!(error(&format!("{}{}", robots(1000), sensors(98))), "nothing is wrong");
+    let found = plain(&error(&format!("{}{}", robots(1000), sensors(99))));
+    let parts = "sensors: and motors are 101 on each of 1000 robots; at most 100000 in all";
+    assert!(found.starts_with("look.toml") && found.ends_with(parts), "{found}");
+    // Two lasers that alone send out few enough.
+    let lasers = "[[sensors]]\nkind = \"laser-distance\"\nbeams = 200\nfield_of_view = 90\nrange = 1\n".repeat(2);
+    let found = plain(&error(&format!("{}{lasers}", robots(600))));
+    let rays = "sensors.3: and those before it send out 240000 rays from 600 robots; at most 200000 in all";
+    assert!(found.ends_with(rays), "{found}");
+    let groups =
+        (0..600).map(|n| format!("[[robots]]\nname = \"g{n}\"\nkind = \"e-puck\"\ncount = 2\n")).collect::<String>();
+    let found = plain(&error(&RIGHT.replace("[robot]\nkind = \"e-puck\"\n", &groups)));
+    assert!(found.ends_with("robots.501: and those before it are 1002 robots; at most 1000 in all"), "{found}");
+}
+
 /// Every file with a byte changed, a line left out or cut off is a file or is refused; none panics.
 #[test]
 fn no_damage_panics() {

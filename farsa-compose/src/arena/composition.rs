@@ -13,7 +13,7 @@ use crate::arena::term::Term;
 use crate::check::places::Places;
 use crate::document::{Document, Ending, MotorKind, SensorKind};
 use crate::parts::agents::Agents;
-use crate::parts::eye::{MOST_RAYS, rays_of};
+use crate::parts::bounded::bounded_parts;
 use crate::parts::files::Files;
 use crate::parts::ledger::Ledger;
 use crate::parts::wiring::Wiring;
@@ -79,7 +79,7 @@ impl Composition {
     /// [`Error::Setting`] and [`Error::Unknown`] for what does not go together.
     pub(crate) fn new(document: Document, places: &Places) -> Result<(Self, Agents), Error> {
         let scene = Scene::new(&document, places)?;
-        bounded(&document, scene.robots.len(), places)?;
+        bounded_parts(&document, scene.robots.len(), places)?;
         let mut files = Files::new(&document.files);
         let mut members = Vec::new();
         for robot in 0..scene.robots.len() {
@@ -188,16 +188,4 @@ fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Sensing]) -> Vec<(
         _ => None,
     });
     infrared.collect()
-}
-
-/// Refuses what would take a step too long.
-fn bounded(document: &Document, robots: usize, places: &Places) -> Result<(), Error> {
-    for (index, sensor) in document.sensors.iter().enumerate() {
-        let rays = rays_of(&sensor.kind);
-        if rays.saturating_mul(robots) > MOST_RAYS {
-            let why = format!("sends out {rays} rays from each of {robots} robots; at most {MOST_RAYS} in all");
-            return Err(places.wrong(&format!("/sensors/{index}"), why));
-        }
-    }
-    Ok(())
 }

@@ -89,8 +89,8 @@ pub(crate) struct Block {
     pub(crate) color: [f64; 3],
 }
 
-/// The most robots.
-const MOST_ROBOTS: usize = 1000;
+/// The most robots; fewer where readers are fuzzed ([`crate::parts::bounded`]).
+const MOST_ROBOTS: usize = if cfg!(fuzzing) { 100 } else { 1000 };
 /// What is placed by every trial waits so far beyond the arena and from each other [m].
 const BESIDE: f64 = 1.0;
 
@@ -295,11 +295,12 @@ fn robots(document: &Document, places: &Places) -> Result<(Vec<MobileRobot>, Gro
         if !document.robots.is_empty() {
             made.name.clone_from(name);
         }
-        found.extend((0..robot.count).map(|_| made.clone()));
-    }
-    if found.len() > MOST_ROBOTS {
-        let why = format!("are {} in all; at most {MOST_ROBOTS}", found.len());
-        return Err(places.wrong("/robots", why));
+        let count = found.len().saturating_add(robot.count as usize);
+        if count > MOST_ROBOTS {
+            let why = format!("and those before it are {count} robots; at most {MOST_ROBOTS} in all");
+            return Err(places.wrong(&path, why));
+        }
+        found.resize(count, made);
     }
     let groups =
         Groups::new(all.into_iter().map(|(name, _, robot, _)| (name, robot.count as usize)), document.team.coevolution);

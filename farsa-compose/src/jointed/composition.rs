@@ -13,7 +13,7 @@ use crate::jointed::sensing::{Sensing, sensor};
 use crate::jointed::starting::Starting;
 use crate::jointed::term::Term;
 use crate::parts::agents::Agents;
-use crate::parts::eye::{MOST_RAYS, rays_of};
+use crate::parts::bounded::bounded_parts;
 use crate::parts::groups::Groups;
 use crate::parts::ledger::Ledger;
 use crate::parts::wiring::Wiring;
@@ -96,12 +96,8 @@ fn refuse(document: &Document, places: &Places) -> Result<(), Error> {
         let why = "`arena` is for robots on wheels; this one has joints, for `articulated` and `rapier`";
         return Err(places.wrong("/world/engine", why));
     }
+    bounded_parts(document, 1, places)?;
     for (index, sensor) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-        let rays = rays_of(&sensor.kind);
-        if rays > MOST_RAYS {
-            let why = format!("sends out {rays} rays; at most {MOST_RAYS}");
-            return Err(places.wrong(&format!("/sensors/{index}"), why));
-        }
         if document.world.engine == Engine::Rapier && matches!(sensor.kind, SensorKind::Camera(_)) {
             let why = "sees nothing in `rapier`; take the engine `articulated`";
             return Err(places.wrong(&format!("/sensors/{index}"), why));

@@ -1,10 +1,20 @@
-//! The sizes of networks.
+//! The sizes of networks, and how many parts robots have.
+//!
+//! The limits are lower where readers are fuzzed, whose memory is to be bounded by the length of a text: a few letters ask for a
+//! large network, or for many robots.
 
 use farsa_lab::Error;
 
-/// The most parameters of a network, and the most values of its state. Fewer where readers are fuzzed, whose memory is to be
-/// bounded by the length of a text: a few letters ask for a network of this size.
+use crate::check::places::Places;
+use crate::document::Document;
+use crate::parts::eye::rays_of;
+
+/// The most parameters of a network, and the most values of its state.
 const MOST_VALUES: usize = if cfg!(fuzzing) { 2000 } else { 1_000_000 };
+/// The most sensors and motors of all robots together.
+const MOST_PARTS: usize = if cfg!(fuzzing) { 500 } else { 100_000 };
+/// The most rays that they send out in a step.
+const MOST_RAYS: usize = if cfg!(fuzzing) { 4000 } else { 200_000 };
 
 /// Refuses networks that would fill the memory.
 ///
@@ -14,6 +24,29 @@ pub(crate) fn bounded(parameters: usize, state: usize) -> Result<(), Error> {
     for (what, count) in [("parameters", parameters), ("values to remember", state)] {
         if count > MOST_VALUES {
             return Err(Error::Other(format!("has {count} {what}; at most {MOST_VALUES} make a network")));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses sensors and motors that would fill the memory or take a step too long, of so many robots.
+///
+/// # Errors
+/// [`Error::Setting`] with the numbers.
+pub(crate) fn bounded_parts(document: &Document, robots: usize, places: &Places) -> Result<(), Error> {
+    let Document { sensors, motors, .. } = document;
+    let of_each = sensors.iter().filter(|one| one.enabled).count() + motors.iter().filter(|one| one.enabled).count();
+    if of_each.saturating_mul(robots) > MOST_PARTS {
+        let why = format!("and motors are {of_each} on each of {robots} robots; at most {MOST_PARTS} in all");
+        return Err(places.wrong("/sensors", why));
+    }
+    let mut rays = 0_usize;
+    for (index, sensor) in sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
+        rays = rays.saturating_add(rays_of(&sensor.kind).saturating_mul(robots));
+        if rays > MOST_RAYS {
+            let why =
+                format!("and those before it send out {rays} rays from {robots} robots; at most {MOST_RAYS} in all");
+            return Err(places.wrong(&format!("/sensors/{index}"), why));
         }
     }
     Ok(())

@@ -5,9 +5,6 @@ use farsa_body::{Beam, BodyId, ChannelError, ColorBand, LinearCamera};
 use crate::document::{Camera, ColorRange, SensorKind};
 use crate::parts::meaning::Meaning;
 
-/// The most rays that are sent out in a step.
-pub(crate) const MOST_RAYS: usize = 200_000;
-
 /// A camera.
 pub(crate) type Eye = LinearCamera<Vec<Beam>, Vec<ColorBand>>;
 

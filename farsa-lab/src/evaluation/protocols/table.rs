@@ -43,9 +43,8 @@ impl ProtocolTable {
         let mut next = || -> Result<Option<[Vec<String>; 2]>, String> {
             // A line of another length than the first is an error here, and the error says which.
             let Some(record) = records.next().transpose().map_err(|error| error.to_string())? else { return Ok(None) };
-            let mut fields: Vec<String> = record.iter().map(str::to_owned).collect();
-            let rest = fields.split_off(HEAD.len().min(fields.len()));
-            Ok(Some([fields, rest]))
+            let (of_case, rest) = (record.iter().take(HEAD.len()), record.iter().skip(HEAD.len()));
+            Ok(Some([of_case.map(str::to_owned).collect(), rest.map(str::to_owned).collect()]))
         };
         let head = match next()? {
             Some([of_case, head]) if of_case == HEAD => head,
