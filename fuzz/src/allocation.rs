@@ -15,6 +15,8 @@ const EACH: usize = 16;
 const EACH_TOKEN: usize = 128;
 /// The same for a point and for `=`, which begin a table: its first key comes with room for eleven.
 const EACH_OF_TABLES: usize = 1200;
+/// The same for a bracket: `[[sensors]]` is a part of an experiment, with all the settings that such a part has.
+const EACH_BRACKET: usize = 600;
 
 struct Counting;
 
@@ -86,11 +88,12 @@ pub fn bounded<T>(input: usize, read: impl FnOnce() -> T) -> T {
 /// The same of a reader of TOML, whose tokens are limited in number ([`farsa_lab::limit_toml_tokens`]).
 ///
 /// # Panics
-/// When it takes more than that, 128 bytes for each token and 1200 for one that can begin a table.
+/// When it takes more than that, 128 bytes for each token, 1200 for one that can begin a table, and 600 for a bracket.
 pub fn bounded_toml<T>(text: &str, read: impl FnOnce() -> T) -> T {
     let tree = || {
         let tokens = Source::new(text).lex().map(|token| match token.kind() {
             TokenKind::Dot | TokenKind::Equals => EACH_OF_TABLES,
+            TokenKind::LeftSquareBracket => EACH_BRACKET,
             _ => EACH_TOKEN,
         });
         tokens.sum()
