@@ -13,10 +13,9 @@ const SPARE: usize = 1 << 20;
 const EACH: usize = 16;
 /// Bytes that it may take for each token of TOML beside that, whose tree the crate `toml` makes: see [`bounded_toml`].
 const EACH_TOKEN: usize = 128;
-/// The same for a point and for `=`, which begin a table: its first key comes with room for eleven.
+/// The same for a point, `=` and `[`, which begin a table: its first key comes with room for eleven. A part of an experiment
+/// (`[[sensors]]`) takes as much for all the settings that such a part has.
 const EACH_OF_TABLES: usize = 1200;
-/// The same for a bracket: `[[sensors]]` is a part of an experiment, with all the settings that such a part has.
-const EACH_BRACKET: usize = 600;
 
 struct Counting;
 
@@ -88,12 +87,11 @@ pub fn bounded<T>(input: usize, read: impl FnOnce() -> T) -> T {
 /// The same of a reader of TOML, whose tokens are limited in number ([`farsa_lab::limit_toml_tokens`]).
 ///
 /// # Panics
-/// When it takes more than that, 128 bytes for each token, 1200 for one that can begin a table, and 600 for a bracket.
+/// When it takes more than that, 128 bytes for each token and 1200 for one that can begin a table.
 pub fn bounded_toml<T>(text: &str, read: impl FnOnce() -> T) -> T {
     let tree = || {
         let tokens = Source::new(text).lex().map(|token| match token.kind() {
-            TokenKind::Dot | TokenKind::Equals => EACH_OF_TABLES,
-            TokenKind::LeftSquareBracket => EACH_BRACKET,
+            TokenKind::Dot | TokenKind::Equals | TokenKind::LeftSquareBracket => EACH_OF_TABLES,
             _ => EACH_TOKEN,
         });
         tokens.sum()
