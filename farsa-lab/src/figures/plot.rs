@@ -1,6 +1,7 @@
 //! Curves over generations as SVG: `fitness.svg` of a run and the figures of a report.
 
 use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use crate::figures::series::{Series, thinned};
@@ -13,6 +14,8 @@ const TITLE: i32 = 36;
 const NAMES: i32 = 26;
 pub(crate) const MARGIN: i32 = 18;
 pub(crate) const FONT: (&str, u32) = ("sans-serif", 18);
+/// About so many values are written at an axis upwards.
+pub(crate) const LABELS: usize = 7;
 
 /// Three colours that a page may exchange for its own: background, letters with axes, and grid.
 pub(crate) const PAPER: &str = "#FFFFFF";
@@ -112,14 +115,15 @@ impl Chart {
     fn picture<'s>(&self, area: &DrawingArea<SVGBackend<'s>, Shift>) -> Result<(), Box<dyn std::error::Error + 's>> {
         let (head, body) = area.split_vertically(self.head());
         self.legend(&head)?;
-        let Limits { low, high, part } = self.limits();
+        let limits = self.limits();
+        let Limits { low, high, part } = limits;
         let generations = self.curves.iter().map(|curve| curve.values.len()).max().unwrap_or(0);
         let mut chart = ChartBuilder::on(&body)
             .margin_left(8)
             .margin_right(18)
             .margin_bottom(8)
             .x_label_area_size(48)
-            .y_label_area_size(74)
+            .y_label_area_size(limits.room())
             .build_cartesian_2d(0..generations.saturating_sub(1).max(1), low..high)?;
         chart
             .configure_mesh()
@@ -133,7 +137,7 @@ impl Chart {
             })
             .y_desc(self.axis)
             .x_labels(8)
-            .y_labels(7)
+            .y_labels(LABELS)
             .light_line_style(TRANSPARENT)
             .bold_line_style(GRID_COLOR)
             .axis_style(INK_COLOR)
@@ -223,6 +227,13 @@ impl Limits {
         let most = f64::MAX * part;
         Self { low: (low - margin).max(-most), high: (high + margin).min(most), part }
     }
+
+    /// Room for the labels of an axis upwards and its name [pixels]: a label of more than five letters needs more.
+    pub(crate) fn room(&self) -> u32 {
+        let places = RangedCoordf64::from(self.low..self.high).key_points(LABELS);
+        let longest = places.into_iter().map(|y| label(y / self.part).len()).max().unwrap_or(0);
+        74 + 9 * longest.saturating_sub(5).min(15) as u32
+    }
 }
 
 /// A value at the axis: six digits after the point, and no more digits than a value has.
@@ -267,11 +278,12 @@ mod tests {
         ] {
             drawn(&values);
         }
-        // However large, a value is where it belongs.
+        // However large, a value is at the height where it belongs.
         let curve = |scale: f64| {
             let svg = drawn(&[-1e308 * scale, 0.5e308 * scale, 1e308 * scale]);
             let line = svg.lines().find(|line| line.contains("<polyline") && line.contains("stroke-width=\"2\""));
-            line.unwrap().to_owned()
+            let points = line.unwrap().split_once("points=\"").unwrap().1;
+            points.split([' ', ',']).skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>()
         };
         assert_eq!(curve(1.0), curve(1e-308));
         assert_eq!(
@@ -317,6 +329,29 @@ mod tests {
         let long: Series = (0..10 * MOST_POINTS + 3).map(|_| 0.0).collect();
         let found = parts(long.points(), f64::is_finite).concat();
         assert!(found.len() <= MOST_POINTS + 1 && found.last().is_some_and(|point| point.0 == 10 * MOST_POINTS + 2));
+    }
+
+    #[test]
+    fn long_labels_do_not_reach_the_name_of_their_axis() {
+        let edge = |values: [f64; 2]| {
+            let curve = Curve { name: Some("c".into()), values: values.into_iter().collect(), ..Curve::default() };
+            let svg = Chart { axis: "fitness", curves: vec![curve], ..Chart::default() }.draw().unwrap();
+            // Where labels end, and how long the longest is.
+            let labels = svg.split("<text ").filter(|text| text.contains("text-anchor=\"end\""));
+            let of_one = |text: &str| {
+                let x = text.split_once("x=\"")?.1.split_once('"')?.0.parse::<i32>().ok()?;
+                Some((x, text.split_once(">\n")?.1.split_once('\n')?.0.len() as i32))
+            };
+            let found: Vec<(i32, i32)> = labels.filter_map(of_one).collect();
+            assert!(found.len() >= 3, "{svg}");
+            found.into_iter().fold((i32::MAX, 0), |(x, longest), (end, length)| (x.min(end), longest.max(length)))
+        };
+        let (short, letters) = edge([0.0, 2.0]);
+        assert!(letters <= 5, "{letters}");
+        for values in [[0.000_031, 0.000_046], [-1e6, 123_456.5], [1e12, 1.000_001e12]] {
+            let (end, letters) = edge(values);
+            assert!(letters > 5 && end == short + 9 * (letters - 5), "{values:?}: {letters} letters end at {end}");
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use crate::figures::plot::{FONT, GRID_COLOR, INK_COLOR, Limits, MARGIN, SIZE, label};
+use crate::figures::plot::{FONT, GRID_COLOR, INK_COLOR, LABELS, Limits, MARGIN, SIZE, label};
 
 /// More points than these are not told apart; every k-th is drawn then.
 const MOST_POINTS: usize = 5000;
@@ -60,14 +60,14 @@ impl Scatter<'_> {
             .margin_right(18)
             .margin_bottom(8)
             .x_label_area_size(48)
-            .y_label_area_size(74)
+            .y_label_area_size(up.room())
             .build_cartesian_2d(across.low..across.high, up.low..up.high)?;
         chart
             .configure_mesh()
             .x_desc(self.axes[0])
             .y_desc(self.axes[1])
             .x_labels(8)
-            .y_labels(7)
+            .y_labels(LABELS)
             .light_line_style(TRANSPARENT)
             .bold_line_style(GRID_COLOR)
             .axis_style(INK_COLOR)
