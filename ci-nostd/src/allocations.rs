@@ -73,6 +73,7 @@ fn arm_and_hand() -> Result<(), i32> {
     let mut stream = Stream::new(1, Domain::Motor, 0, 0, 0);
     let mut x = vec![0.0; positions.channels().max(speeds.channels())];
     let (mut y, mut z) = (vec![0.0; muscles.channels()], vec![0.0; hand.channels()]);
+    let mut efforts = vec![0.0; world.velocities().len()];
     allocates_nothing(|t| {
         positions.read(&world, &mut x);
         speeds.read(&world, &mut x);
@@ -84,6 +85,7 @@ fn arm_and_hand() -> Result<(), i32> {
         muscles.drive(&y, &mut world);
         hand.drive(&z, &mut world);
         world.step();
+        world.gravity_efforts(&mut efforts);
         // More than the sphere on the table: the hand touches something.
         world.is_finite() && pairs.clone().filter(|pair| world.touches(PairId(*pair))).count() > 1
     })

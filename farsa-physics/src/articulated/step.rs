@@ -24,7 +24,7 @@ pub struct Scratch<S: Scalar> {
     pub(crate) roots: Vec<Root<S>>,
     tau: Vec<S>,
     diagonal: Vec<S>,
-    qdd: Vec<S>,
+    pub(crate) qdd: Vec<S>,
     inverse_sqrt_inertia: Vec<S>,
     response: Vec<S>,
     pub(crate) placed: Vec<PlacedShape<S>>,

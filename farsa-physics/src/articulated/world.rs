@@ -97,11 +97,12 @@ impl<R: Precision> World<R> {
 
     /// Joint efforts that hold the present positions at rest against gravity: recursive Newton-Euler [dofs; N m or N].
     pub fn gravity_efforts(&mut self, tau: &mut [R]) {
-        let zeros = vec![R::from_f64(0.0); self.model.dofs];
         let (model, state) = (&self.model, &self.state);
-        let work = &mut self.scratch.links;
-        forward_kinematics((), &model.links, &state[..model.positions], &zeros, work);
-        inverse_dynamics((), &model.links, model.gravity, &zeros, work, tau);
+        let Scratch { links: work, qdd, .. } = &mut self.scratch;
+        // At rest, and without accelerations; each step writes them anew.
+        qdd.fill(R::from_f64(0.0));
+        forward_kinematics((), &model.links, &state[..model.positions], qdd, work);
+        inverse_dynamics((), &model.links, model.gravity, qdd, work, tau);
         self.finish_placement();
     }
 
