@@ -1,6 +1,5 @@
 //! One articulated world that answers the ports.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
 use farsa_body::{
