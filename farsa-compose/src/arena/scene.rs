@@ -298,7 +298,7 @@ fn robots(document: &Document, places: &Places) -> Result<(Vec<MobileRobot>, Gro
         let count = found.len().saturating_add(robot.count as usize);
         if count > MOST_ROBOTS {
             let why = format!("and those before it are {count} robots; at most {MOST_ROBOTS} in all");
-            return Err(places.wrong(&path, why));
+            return Err(places.wrong(path, why));
         }
         found.resize(count, made);
     }

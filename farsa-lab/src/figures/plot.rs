@@ -340,7 +340,7 @@ mod tests {
             let labels = svg.split("<text ").filter(|text| text.contains("text-anchor=\"end\""));
             let of_one = |text: &str| {
                 let x = text.split_once("x=\"")?.1.split_once('"')?.0.parse::<i32>().ok()?;
-                Some((x, text.split_once(">\n")?.1.split_once('\n')?.0.len() as i32))
+                Some((x, i32::try_from(text.split_once(">\n")?.1.split_once('\n')?.0.len()).ok()?))
             };
             let found: Vec<(i32, i32)> = labels.filter_map(of_one).collect();
             assert!(found.len() >= 3, "{svg}");
