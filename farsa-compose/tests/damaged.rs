@@ -202,8 +202,10 @@ fn robots_are_limited_with_all_that_they_carry() {
     let found = plain(&error(&format!("{}{lasers}", robots(600))));
     let rays = "sensors.3: and those before it send out 240000 rays from 600 robots; at most 200000 in all";
     assert!(found.ends_with(rays), "{found}");
-    let groups =
-        (0..600).map(|n| format!("[[robots]]\nname = \"g{n}\"\nkind = \"e-puck\"\ncount = 2\n")).collect::<String>();
+    let groups = (0..600)
+        .map(|n| format!("[[robots]]\nname = \"g{n}\"\nkind = \"e-puck\"\ncount = 2\n"))
+        .collect::<Vec<_>>()
+        .concat();
     let found = plain(&error(&RIGHT.replace("[robot]\nkind = \"e-puck\"\n", &groups)));
     assert!(found.ends_with("robots.501: and those before it are 1002 robots; at most 1000 in all"), "{found}");
 }
