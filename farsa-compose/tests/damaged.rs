@@ -202,6 +202,12 @@ fn robots_are_limited_with_all_that_they_carry() {
     let found = plain(&error(&format!("{}{lasers}", robots(600))));
     let rays = "sensors.3: and those before it send out 240000 rays from 600 robots; at most 200000 in all";
     assert!(found.ends_with(rays), "{found}");
+    // Eight sensors of five rays.
+    let infrared = "[[sensors]]\nkind = \"infrared\"\nmodel = \"rays\"\n";
+    assert_eq!(error(&format!("{}{}", robots(1000), infrared.repeat(5))), "nothing is wrong");
+    let found = plain(&error(&format!("{}{}", robots(1000), infrared.repeat(6))));
+    let rays = "sensors.7: and those before it send out 240000 rays from 1000 robots; at most 200000 in all";
+    assert!(found.ends_with(rays), "{found}");
     let groups = (0..600)
         .map(|n| format!("[[robots]]\nname = \"g{n}\"\nkind = \"e-puck\"\ncount = 2\n"))
         .collect::<Vec<_>>()

@@ -79,7 +79,8 @@ impl Composition {
     /// [`Error::Setting`] and [`Error::Unknown`] for what does not go together.
     pub(crate) fn new(document: Document, places: &Places) -> Result<(Self, Agents), Error> {
         let scene = Scene::new(&document, places)?;
-        bounded_parts(&document, scene.robots.len(), places)?;
+        let infrared = scene.robots.iter().map(|robot| robot.infrared.angles.len() * robot.infrared.rays).sum();
+        bounded_parts(&document, scene.robots.len(), infrared, places)?;
         let mut files = Files::new(&document.files);
         let mut members = Vec::new();
         for robot in 0..scene.robots.len() {

@@ -96,7 +96,7 @@ fn refuse(document: &Document, places: &Places) -> Result<(), Error> {
         let why = "`arena` is for robots on wheels; this one has joints, for `articulated` and `rapier`";
         return Err(places.wrong("/world/engine", why));
     }
-    bounded_parts(document, 1, places)?;
+    bounded_parts(document, 1, 0, places)?;
     for (index, sensor) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
         if document.world.engine == Engine::Rapier && matches!(sensor.kind, SensorKind::Camera(_)) {
             let why = "sees nothing in `rapier`; take the engine `articulated`";

@@ -6,7 +6,7 @@
 use farsa_lab::Error;
 
 use crate::check::places::Places;
-use crate::document::Document;
+use crate::document::{Document, InfraredModel, SensorKind};
 use crate::parts::eye::rays_of;
 
 /// The most parameters of a network, and the most values of its state.
@@ -29,11 +29,12 @@ pub(crate) fn bounded(parameters: usize, state: usize) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses sensors and motors that would fill the memory or take a step too long, of so many robots.
+/// Refuses sensors and motors that would fill the memory or take a step too long, of so many robots, whose infrared sensors have so
+/// many rays in all.
 ///
 /// # Errors
 /// [`Error::Setting`] with the numbers.
-pub(crate) fn bounded_parts(document: &Document, robots: usize, places: &Places) -> Result<(), Error> {
+pub(crate) fn bounded_parts(document: &Document, robots: usize, infrared: usize, places: &Places) -> Result<(), Error> {
     let Document { sensors, motors, .. } = document;
     let of_each = sensors.iter().filter(|one| one.enabled).count() + motors.iter().filter(|one| one.enabled).count();
     if of_each.saturating_mul(robots) > MOST_PARTS {
@@ -42,7 +43,10 @@ pub(crate) fn bounded_parts(document: &Document, robots: usize, places: &Places)
     }
     let mut rays = 0_usize;
     for (index, sensor) in sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-        rays = rays.saturating_add(rays_of(&sensor.kind).saturating_mul(robots));
+        rays = rays.saturating_add(match sensor.kind {
+            SensorKind::Infrared { model: InfraredModel::Rays, .. } => infrared,
+            _ => rays_of(&sensor.kind).saturating_mul(robots),
+        });
         if rays > MOST_RAYS {
             let why =
                 format!("and those before it send out {rays} rays from {robots} robots; at most {MOST_RAYS} in all");

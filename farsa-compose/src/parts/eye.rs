@@ -28,7 +28,7 @@ pub(crate) fn seen(camera: &Camera, channel: usize) -> Meaning {
     Meaning::new(format!("share of sector {sector} from the left that is {color}"), "1", [0.0, 1.0])
 }
 
-/// How many rays a sensor sends out in a step.
+/// How many rays a sensor sends out in a step, but for infrared sensors, which have those of their robot.
 pub(crate) fn rays_of(kind: &SensorKind) -> usize {
     match kind {
         SensorKind::LaserDistance { beams, .. } => *beams as usize,

@@ -95,6 +95,9 @@ impl<R: Precision> World<R> {
     }
 
     /// Joint efforts that hold the present positions at rest against gravity: recursive Newton-Euler [dofs; N m or N].
+    ///
+    /// # Panics
+    /// When there is not a place for each degree of freedom.
     pub fn gravity_efforts(&mut self, tau: &mut [R]) {
         let (model, state) = (&self.model, &self.state);
         let Scratch { links: work, qdd, .. } = &mut self.scratch;
