@@ -89,14 +89,21 @@ pub fn bounded<T>(input: usize, read: impl FnOnce() -> T) -> T {
 /// # Panics
 /// When it takes more than that, 128 bytes for each token and 1200 for one that can begin a table.
 pub fn bounded_toml<T>(text: &str, read: impl FnOnce() -> T) -> T {
-    let tree = || {
-        let tokens = Source::new(text).lex().map(|token| match token.kind() {
-            TokenKind::Dot | TokenKind::Equals | TokenKind::LeftSquareBracket => EACH_OF_TABLES,
-            _ => EACH_TOKEN,
-        });
-        tokens.sum()
-    };
-    bounded_by(text.len(), tree, read)
+    bounded_by(text.len(), || tree(text), read)
+}
+
+/// Bytes that the tree of a text may take. The definition of an experiment, a string of several lines, is read as a text of its own.
+fn tree(text: &str) -> usize {
+    let tokens = Source::new(text).lex().map(|token| match token.kind() {
+        TokenKind::Dot | TokenKind::Equals | TokenKind::LeftSquareBracket => EACH_OF_TABLES,
+        TokenKind::MlBasicString | TokenKind::MlLiteralString => {
+            let span = token.span();
+            // Neither kind can stand in itself, so this ends.
+            EACH_TOKEN + tree(text[span.start()..span.end()].trim_matches(['"', '\'']))
+        }
+        _ => EACH_TOKEN,
+    });
+    tokens.sum()
 }
 
 fn bounded_by<T>(input: usize, more: impl FnOnce() -> usize, read: impl FnOnce() -> T) -> T {
