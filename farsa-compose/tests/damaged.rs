@@ -121,6 +121,25 @@ fn what_is_wrong_is_named_with_file_line_and_key() {
 }
 
 #[test]
+fn all_that_is_wrong_is_told_by_its_lines() {
+    let wrong = RIGHT
+        .replace("hidden = 2", "neurons = 2")
+        .replace("kind = \"light\"", "kind = \"ligth\"")
+        .replace("steps = 50", "steps = 0");
+    let told = [
+        "look.toml line 12: unknown kind `ligth`; the nearest is `light`",
+        "look.toml line 18: unknown key `neurons`; there are `fixed`, `hidden`, `kind`, `leaks`, `shared`, `slope` and `weights`",
+        "look.toml line 20: `episode.steps`: 0 is outside 1 to 1000000",
+    ];
+    assert_eq!(error(&wrong), told.join("; "));
+    // A key that is needed may be there under a wrong name.
+    let found = error(&RIGHT.replace("size = [1.0, 1.0]", "sizes = [1.0, 1.0]"));
+    assert_eq!(found, "look.toml line 3: unknown key `sizes`; the nearest is `size`");
+    let many = "[[sensors]]\nkind = \"ligth\"\n".repeat(900);
+    assert_eq!(error(&format!("{RIGHT}{many}")).matches("ligth").count(), 20);
+}
+
+#[test]
 fn parts_that_do_not_go_together_are_refused() {
     for (added, message) in [
         (

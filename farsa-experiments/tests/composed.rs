@@ -325,9 +325,12 @@ fn the_guide_shows_what_the_command_writes() {
     bench.succeed("check follow.toml --graph follow.svg -q");
     let shown = std::fs::read_to_string(guide.join("../pictures/follow-graph.svg")).expect("the drawing");
     assert!(shown == bench.read("follow.svg"), "docs/pictures/follow-graph.svg is another drawing");
-    let [line, error] = ["{ kind = \"infrared\" }", "unknown kind `infrard`; the nearest is `infrared`"];
-    std::fs::write(bench.path("follow.toml"), file.replace(line, "{ kind = \"infrard\" }")).expect("a file");
-    assert_eq!(bench.refused("check follow.toml"), format!("error: follow.toml line 7: {error}\n"));
-    std::fs::write(bench.path("follow.toml"), file.replace("hidden = 4", "hidden = 0")).expect("a file");
-    assert!(text.contains(&bench.refused("check follow.toml")), "the guide shows another error");
+    let wrong = file.replace("{ kind = \"infrared\" }", "{ kind = \"infrard\" }").replace("hidden = 4", "hidden = 0");
+    std::fs::write(bench.path("follow.toml"), wrong).expect("a file");
+    let said = bench.refused("check follow.toml");
+    assert!(
+        said.starts_with("error: follow.toml line 7: unknown kind `infrard`; the nearest is `infrared`\n"),
+        "{said}"
+    );
+    assert!(text.contains(&said), "the guide shows other errors than {said}");
 }

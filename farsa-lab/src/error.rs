@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 
 use crate::escaped::{MOST_SHOWN, OneLine, Quoted};
 
+/// The most names that a message lists.
+const MOST_LISTED: usize = 12;
+
 /// What went wrong, with the name of the thing it went wrong with.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -20,12 +23,16 @@ pub enum Error {
         name: String,
         /// The valid name that looks most like it, if there are any.
         nearest: Option<String>,
+        /// All valid names, where they are few and none looks like it.
+        valid: Vec<String>,
     },
+    /// What is wrong with a file, one thing after the other; never empty.
+    Several(Vec<Self>),
     /// A value that a setting cannot have.
     Setting {
         /// Where the value stands, such as `my.toml line 3` or `--set`; empty if that is not known.
         place: String,
-        /// The setting's key.
+        /// The setting's key; empty if it is a file as a whole.
         key: String,
         /// What is wrong with the value.
         why: String,
@@ -135,10 +142,38 @@ impl Error {
         Self::Setting { place: String::new(), key: key.into(), why: why.to_string() }
     }
 
-    /// An unknown name, with the nearest of the valid ones.
+    /// An unknown name, with the nearest of the valid ones, or with all of them where they are few and none is near.
     pub fn unknown<'a>(place: &str, what: &'static str, name: &str, valid: impl IntoIterator<Item = &'a str>) -> Self {
-        let nearest = nearest(name, valid).map(str::to_owned);
-        Self::Unknown { place: place.into(), what, name: name.into(), nearest }
+        let mut few: Vec<&str> = Vec::new();
+        let listed = valid.into_iter().inspect(|one| {
+            if few.len() <= MOST_LISTED && !few.contains(one) {
+                few.push(one);
+            }
+        });
+        let nearest = nearest(name, listed);
+        let near = nearest.is_some_and(|(letters, valid)| is_near(name, valid, letters));
+        if near || few.len() > MOST_LISTED {
+            few.clear();
+        }
+        few.sort_unstable();
+        Self::Unknown {
+            place: place.into(),
+            what,
+            name: name.into(),
+            nearest: nearest.map(|(_, valid)| valid.into()),
+            valid: few.into_iter().map(str::to_owned).collect(),
+        }
+    }
+
+    /// What is wrong with a file; a single thing stays what it is.
+    pub fn several(mut all: Vec<Self>) -> Self {
+        match all.pop() {
+            Some(only) if all.is_empty() => only,
+            last => {
+                all.extend(last);
+                Self::Several(all)
+            }
+        }
     }
 
     /// An error of the operating system, as a function for `map_err`.
@@ -168,6 +203,7 @@ impl Error {
             | Self::TrialPanicked { .. }
             | Self::Other(_) => 1,
             Self::Rank { code, .. } => *code,
+            Self::Several(all) => all.iter().map(Self::exit_code).max().unwrap_or(1),
             Self::Interrupted { .. } => 130,
         }
     }
@@ -199,7 +235,7 @@ impl From<farsa_view::Error> for Error {
     fn from(error: farsa_view::Error) -> Self {
         match error {
             farsa_view::Error::UnknownCamera { name, nearest } => {
-                Self::Unknown { place: String::new(), what: "camera", name, nearest }
+                Self::Unknown { place: String::new(), what: "camera", name, nearest, valid: Vec::new() }
             }
             other => Self::Other(other.to_string()),
         }
@@ -208,8 +244,8 @@ impl From<farsa_view::Error> for Error {
 
 /// The name that takes the fewest changed, added, dropped or swapped letters, of several one that begins like this; letters of
 /// the other case count least. Of a name
-/// longer than any, the beginning is compared.
-fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+/// longer than any, the beginning is compared. With it comes how many letters that are.
+fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<(usize, &'a str)> {
     let name: String = name.chars().take(MOST_SHOWN).collect();
     let lower = name.to_lowercase();
     let length = lower.chars().count();
@@ -228,7 +264,14 @@ fn nearest<'a>(name: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&
             best = Some((letters, valid));
         }
     }
-    best.map(|(_, found)| found)
+    best
+}
+
+/// Whether one may have been meant by the other, so many letters apart: half of the longer one is right, or one is in the other.
+fn is_near(name: &str, valid: &str, letters: usize) -> bool {
+    let [name, valid] = [name, valid].map(|text| text.chars().take(MOST_SHOWN).collect::<String>().to_lowercase());
+    let longest = name.chars().count().max(valid.chars().count());
+    2 * letters <= longest || !name.is_empty() && (valid.contains(&name) || name.contains(&valid))
 }
 
 impl fmt::Display for Error {
@@ -238,17 +281,34 @@ impl fmt::Display for Error {
             if place.is_empty() { Ok(()) } else { write!(f, "{}: ", OneLine(place)) }
         };
         match self {
-            Self::Unknown { place, what, name, nearest } => {
+            Self::Unknown { place, what, name, nearest, valid } => {
                 start(f, place)?;
                 write!(f, "unknown {what} {}", Quoted(name))?;
-                match nearest {
-                    Some(nearest) => write!(f, "; the nearest is {}", Quoted(nearest)),
-                    None => write!(f, "; there is none"),
+                match (nearest, valid.as_slice()) {
+                    (None, []) => write!(f, "; there is none"),
+                    (Some(nearest), []) => write!(f, "; the nearest is {}", Quoted(nearest)),
+                    (_, [only]) => write!(f, "; the only one is {}", Quoted(only)),
+                    (_, [first @ .., last]) => {
+                        write!(f, "; there are ")?;
+                        for (index, name) in first.iter().enumerate() {
+                            write!(f, "{}{}", if index > 0 { ", " } else { "" }, Quoted(name))?;
+                        }
+                        write!(f, " and {}", Quoted(last))
+                    }
                 }
+            }
+            Self::Several(all) => {
+                for (index, error) in all.iter().enumerate() {
+                    write!(f, "{}{error}", if index > 0 { "; " } else { "" })?;
+                }
+                Ok(())
             }
             Self::Setting { place, key, why } => {
                 start(f, place)?;
-                write!(f, "{}: {}", Quoted(key), OneLine(why))
+                if !key.is_empty() {
+                    write!(f, "{}: ", Quoted(key))?;
+                }
+                write!(f, "{}", OneLine(why))
             }
             Self::Usage(why) | Self::Other(why) => f.write_str(why),
             Self::OtherConfiguration { directory, key, run, asked } => write!(
@@ -310,16 +370,43 @@ mod tests {
     #[test]
     fn the_nearest_name_is_offered() {
         let valid = ["evolution.population", "evolution.parents", "world.step"];
-        assert_eq!(nearest("evolution.poplation", valid), Some("evolution.population"));
-        assert_eq!(nearest("step", valid), Some("world.step"));
+        assert_eq!(nearest("evolution.poplation", valid), Some((1, "evolution.population")));
+        assert_eq!(nearest("step", valid), Some((6, "world.step")));
         assert_eq!(nearest("step", []), None);
-        assert_eq!(nearest("World.Step", valid), Some("world.step"));
-        assert_eq!(nearest("WORLD.STEP", ["W", "WORLD.SEED", "world.step"]), Some("world.step"));
-        assert_eq!(nearest("ab", ["aB", "AB", "ab"]), Some("ab"));
-        assert_eq!(nearest(&format!("world.step{}", "x".repeat(1 << 24)), ["world.stop", "y"]), Some("world.stop"));
+        assert_eq!(nearest("World.Step", valid), Some((0, "world.step")));
+        assert_eq!(nearest("WORLD.STEP", ["W", "WORLD.SEED", "world.step"]), Some((0, "world.step")));
+        assert_eq!(nearest("ab", ["aB", "AB", "ab"]), Some((0, "ab")));
+        let long = format!("world.step{}", "x".repeat(1 << 24));
+        assert_eq!(nearest(&long, ["world.stop", "y"]).map(|(_, name)| name), Some("world.stop"));
         let error = Error::unknown("my.toml line 3", "key", "world.stpe", valid);
         assert_eq!(error.to_string(), "my.toml line 3: unknown key `world.stpe`; the nearest is `world.step`");
         assert_eq!(error.exit_code(), 2);
+    }
+
+    #[test]
+    fn few_names_of_which_none_is_near_are_listed() {
+        let said = |name: &str, valid: &[&str]| Error::unknown("", "key", name, valid.iter().copied()).to_string();
+        let keys = ["fixed", "kind", "neurons", "kind"];
+        assert_eq!(said("hidden", &keys), "unknown key `hidden`; there are `fixed`, `kind` and `neurons`");
+        assert_eq!(said("hidden", &["kind"]), "unknown key `hidden`; the only one is `kind`");
+        assert_eq!(said("hidden", &[]), "unknown key `hidden`; there is none");
+        assert_eq!(said("neuron", &keys), "unknown key `neuron`; the nearest is `neurons`");
+        // What begins or ends as a name does is near it.
+        assert_eq!(said("neu", &keys), "unknown key `neu`; the nearest is `neurons`");
+        assert_eq!(said("network.kind", &keys), "unknown key `network.kind`; the nearest is `kind`");
+        let letters: Vec<String> = ('a'..='z').map(|letter| letter.to_string()).collect();
+        let valid: Vec<&str> = letters.iter().map(String::as_str).collect();
+        assert_eq!(said("ö", &valid[..2]), "unknown key `ö`; there are `a` and `b`");
+        assert!(said("ö", &valid[..12]).ends_with(", `k` and `l`"));
+        assert_eq!(said("ö", &valid[..13]), "unknown key `ö`; the nearest is `a`");
+    }
+
+    #[test]
+    fn several_errors_stand_in_their_order() {
+        let one = || Error::setting("a", "is wrong");
+        assert_eq!(Error::several(vec![one()]).to_string(), "`a`: is wrong");
+        let both = Error::several(vec![one(), Error::Other("b".into())]);
+        assert_eq!((both.to_string().as_str(), both.exit_code()), ("`a`: is wrong; b", 2));
     }
 
     proptest! {
@@ -331,7 +418,8 @@ mod tests {
                 let other = valid.to_lowercase();
                 (distance(&lower, &other), !other.starts_with(&lower), distance(&name, valid))
             });
-            prop_assert_eq!(nearest(&name, valid.iter().map(String::as_str)), naive.map(String::as_str));
+            let found = nearest(&name, valid.iter().map(String::as_str)).map(|(_, name)| name);
+            prop_assert_eq!(found, naive.map(String::as_str));
         }
     }
 
@@ -361,7 +449,7 @@ mod tests {
             assert_eq!(error.to_string(), message);
         }
         let long = Error::unknown("", "key", &"k".repeat(1 << 20), ["a"]).to_string();
-        assert_eq!(long, format!("unknown key `{}...`; the nearest is `a`", "k".repeat(MOST_SHOWN)));
+        assert_eq!(long, format!("unknown key `{}...`; the only one is `a`", "k".repeat(MOST_SHOWN)));
     }
 
     #[test]

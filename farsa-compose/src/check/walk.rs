@@ -11,12 +11,14 @@ use crate::name::{NAME, is_name};
 
 /// The most parts of a list.
 const MOST_PARTS: usize = 1000;
+/// The most errors that are told of one text.
+const MOST_ERRORS: usize = 20;
 
 /// The values of a text that fits a schema, and where they stand.
 ///
 /// # Errors
 /// [`Error::Usage`] for a text that is no TOML or has too many tokens, [`Error::Unknown`] with the nearest key or word, [`Error::Setting`] with
-/// what is wrong with a value; all with file, line and key.
+/// what is wrong with a value; all with file, line and key. [`Error::Several`], by their lines, where more than one value is wrong.
 pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Places), Error> {
     limit_toml_tokens(file, text)?;
     let lines = Lines::new(text);
@@ -26,17 +28,38 @@ pub(crate) fn read(file: &str, text: &str, schema: &Value) -> Result<(Value, Pla
         Error::Usage(format!("{place}: {}", error.message()))
     })?;
     let part = Part::root(schema).ok_or_else(|| Error::Other("the schema is no table".into()))?;
-    let mut walk = Walk { lines: &lines, places: &mut places };
-    let value = walk.table(part, table.get_ref(), "", table.span().start)?;
-    Ok((value, places))
+    let mut walk = Walk { lines: &lines, places: &mut places, errors: Vec::new() };
+    let value = walk.table(part, table.get_ref(), "", table.span().start);
+    let mut errors = walk.errors;
+    errors.sort_by_key(|(offset, _)| *offset);
+    let mut errors: Vec<Error> = errors.into_iter().map(|(_, error)| error).collect();
+    match value {
+        Ok(value) if errors.is_empty() => return Ok((value, places)),
+        Ok(_) => {}
+        Err(last) => errors.push(last),
+    }
+    Err(Error::several(errors))
 }
 
 struct Walk<'w> {
     lines: &'w Lines,
     places: &'w mut Places,
+    /// What was wrong so far, and where it stands.
+    errors: Vec<(usize, Error)>,
 }
 
 impl Walk<'_> {
+    /// Keeps what is wrong with a value that stands there, and goes on with the next; no longer when there is enough.
+    fn kept(&mut self, offset: usize, value: Result<Value, Error>) -> Result<Value, Error> {
+        match value {
+            Err(error) if self.errors.len() + 1 < MOST_ERRORS => {
+                self.errors.push((offset, error));
+                Ok(Value::Null)
+            }
+            value => value,
+        }
+    }
+
     fn value(&mut self, part: Part<'_>, value: &Spanned<DeValue<'_>>, path: &str) -> Result<Value, Error> {
         let offset = value.span().start;
         self.places.put(path, self.lines.of(offset));
@@ -104,20 +127,26 @@ impl Walk<'_> {
             let what = if *tag == "at" { "way to place something" } else { "kind" };
             return Err(Error::unknown(&self.places.of_line(line), what, text, words.iter().copied()));
         }
-        let mut found = Map::new();
+        let (mut found, mut misnamed) = (Map::new(), false);
         for (name, value) in table {
-            let (line, name) = (self.lines.of(name.span().start), name.get_ref().as_ref());
+            let (offset, name) = (name.span().start, name.get_ref().as_ref());
+            let line = self.lines.of(offset);
             let path = format!("{path}/{}", name.chars().take(60).collect::<String>());
             let known = keys.named.iter().find(|(key, _)| *key == name).map(|(_, part)| *part);
             let Some(part) = known.or_else(|| part.any_key()) else {
                 let valid = keys.named.iter().map(|(name, _)| *name).chain(keys.tag.as_ref().map(|(tag, _)| *tag));
-                return Err(Error::unknown(&self.places.of_line(line), "key", name, valid));
+                let error = Error::unknown(&self.places.of_line(line), "key", name, valid);
+                self.kept(offset, Err(error))?;
+                misnamed = true;
+                continue;
             };
-            let value = self.value(part, value, &path)?;
+            let value = self.value(part, value, &path);
+            let value = self.kept(offset, value)?;
             self.places.put(&path, line);
             found.insert(name.into(), value);
         }
-        if let Some(missing) = keys.required.iter().find(|name| !found.contains_key(**name)) {
+        // It may be there under a wrong name.
+        if let Some(missing) = keys.required.iter().find(|name| !misnamed && !found.contains_key(**name)) {
             return Err(self.places.wrong(path, format!("lacks the key `{missing}`")));
         }
         Ok(Value::Object(found))
@@ -133,7 +162,8 @@ impl Walk<'_> {
         }
         let of_items = part.items();
         let item = |(index, item): (usize, &Spanned<DeValue<'_>>)| {
-            self.value(of_items.unwrap_or(part), item, &format!("{path}/{index}"))
+            let value = self.value(of_items.unwrap_or(part), item, &format!("{path}/{index}"));
+            self.kept(item.span().start, value)
         };
         items.iter().enumerate().map(item).collect()
     }

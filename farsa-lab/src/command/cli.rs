@@ -135,7 +135,10 @@ impl<'e> Invocation<'e, '_> {
             Err(error) if replay::reader_left(&error) => 0,
             Err(error) => {
                 if !self.exchange.is_follower() {
-                    let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
+                    let one = std::slice::from_ref(&error);
+                    for error in if let Error::Several(all) = &error { all } else { one } {
+                        let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
+                    }
                 }
                 let again = error.exit_code() == INTERRUPTED && under_scheduler();
                 if again { START_AGAIN } else { error.exit_code() }

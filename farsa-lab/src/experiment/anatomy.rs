@@ -348,7 +348,7 @@ mod tests {
             ("neuron 3", "`neuron 3` is no change"),
             ("nuron:3", "unknown kind of change `nuron`; the nearest is `neuron`"),
             ("bia:3=1", "unknown kind of change `bia`; the nearest is `bias`"),
-            ("neuron:4", "unknown neuron `4`; the nearest is"),
+            ("neuron:4", "unknown neuron `4`; there are `1`, `2` and `3`"),
             ("output:upp", "unknown output `upp`; the nearest is `up`"),
             ("sensor:skins", "unknown sensor `skins`; the nearest is `skin`"),
             ("link:a", "link:a is not of the form link:FROM-TO"),
