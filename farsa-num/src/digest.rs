@@ -172,5 +172,9 @@ mod tests {
         assert_ne!(of(0.0, 0.0), of(-0.0, 0.0));
         assert_ne!(of(0.0, 0.0), of(0.0, -0.0));
         assert_eq!(of(f32::NAN, f64::NAN), of(-f32::NAN, f64::from_bits(0x7FF0_0000_0000_0001)));
+        let (mut integer, mut bytes) = (Digest::new(), Digest::new());
+        integer.add_u64(0x0102_0304_0506_0708);
+        bytes.add_bytes(&[8, 7, 6, 5, 4, 3, 2, 1]);
+        assert_eq!(integer.finish(), bytes.finish());
     }
 }

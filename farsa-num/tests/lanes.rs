@@ -182,3 +182,33 @@ fn masks_tell_any_all_and_which() {
     }
     assert!(Mask::lane(true, 0) && !Mask::lane(true, 1) && !Mask::lane(false, 0));
 }
+
+/// Where a wide set is not found, all is computed with the same bits and takes longer.
+#[test]
+#[cfg(all(target_arch = "x86_64", feature = "std"))]
+fn the_instruction_sets_are_those_that_the_processor_tells() {
+    macro_rules! has {
+        ($($feature:tt)*) => { true $(&& std::arch::is_x86_feature_detected!($feature))* };
+    }
+    let v3 = has!("avx2" "bmi1" "bmi2" "cmpxchg16b" "f16c" "fma" "fxsr" "lzcnt" "movbe" "popcnt" "xsave");
+    let vectors =
+        has!("avx512bitalg" "avx512bw" "avx512cd" "avx512dq" "avx512f" "avx512ifma" "avx512vbmi" "avx512vbmi2");
+    let more = has!("avx512vl" "avx512vnni" "avx512vpopcntdq" "gfni" "pclmulqdq" "vaes" "vpclmulqdq" "aes" "sha");
+    let beside = has!("adx" "rdrand" "rdseed" "xsavec" "xsaveopt" "xsaves");
+    let available: Vec<Instructions> = Instructions::available().collect();
+    for (one, there) in [
+        (Instructions::Sse2, true),
+        (Instructions::Sse4_2, has!("sse4.2" "popcnt")),
+        (Instructions::Avx2, v3),
+        (Instructions::Avx512, v3 && vectors && more && beside),
+        (Instructions::Neon, false),
+        (Instructions::WasmSimd128, false),
+    ] {
+        assert_eq!(available.contains(&one), there, "{one}");
+    }
+    assert_eq!(Some(&Instructions::detect()), available.last());
+    assert_eq!(Instructions::default(), Instructions::detect());
+    for one in available {
+        assert!(!one.level().is_fallback(), "{one}");
+    }
+}
