@@ -205,6 +205,29 @@ fn files_of_more_than_anybody_writes_are_refused() {
 }
 
 #[test]
+fn what_lies_beyond_the_walls_is_refused() {
+    let nest = "[[objects]]\nname = \"nest\"\nkind = \"disc\"\nradius = 0.1\ncolor = [0, 0, 0]\n";
+    let disc = |at: &str| format!("{RIGHT}{nest}{at}\n");
+    let start = |at: &str| format!("{RIGHT}[[start]]\nplace = \"robot\"\n{at}\n");
+    let walls = "is outside the walls, which enclose 0 to 1 m and 0 to 1 m";
+    for (text, line, key, at) in [
+        (disc("at = [-0.2, 0.5]"), 42, "objects.2.at", "[-0.2, 0.5]"),
+        (start("at = \"fixed\"\npoint = [0.5, 1.01]"), 40, "start.2.point", "[0.5, 1.01]"),
+        (start("at = \"one-of\"\npoints = [[0.2, 0.2], [2, 0]]"), 40, "start.2.points.2", "[2, 0]"),
+    ] {
+        assert_eq!(plain(&error(&text)), format!("look.toml line {line}: {key}: {at} {walls}"));
+        assert_eq!(error(&text.replace("size = [1.0, 1.0]", "size = [1.0, 1.0]\nwalls = false")), "nothing is wrong");
+    }
+    // A lamp behind a wall is seen.
+    let lamp = RIGHT.replace("lamp = 1.0", "lamp = 1.0\nat = [-0.2, 0.5]");
+    let lamp = lamp.replace("[[start]]\nplace = \"lamp\"\nat = \"anywhere\"\nwalls = 0.1\n", "");
+    assert_eq!(error(&lamp), "nothing is wrong");
+    for inside in ["at = [0.0, 1.0]", "at = [0.5, 0.5]"] {
+        assert_eq!(error(&disc(inside)), "nothing is wrong");
+    }
+}
+
+#[test]
 fn robots_are_limited_with_all_that_they_carry() {
     let robots = |count: u32| {
         let wide = RIGHT.replace("[1.0, 1.0]", "[100.0, 100.0]");

@@ -134,7 +134,11 @@ impl Scene {
             };
             x += BESIDE + reach;
             let at = object.at.as_deref().map(|at| flat(at, &format!("/objects/{index}/at"), places));
-            let at = at.transpose()?.unwrap_or([x, 0.0]);
+            let at = at.transpose()?;
+            if let Some(at) = at.filter(|_| !object.shines()) {
+                within_walls(document, at, &format!("/objects/{index}/at"), places)?;
+            }
+            let at = at.unwrap_or([x, 0.0]);
             x += reach;
             if object.at.is_none() && matches!(object.kind, ObjectKind::Wall { .. }) {
                 return Err(places.wrong(&format!("/objects/{index}"), "lacks the key `at`: no trial places walls"));
@@ -258,6 +262,20 @@ fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]
 pub(crate) fn flat(at: &[f64], path: &str, places: &Places) -> Result<[f64; 2], Error> {
     let why = || format!("has {} values where 2 are wanted: robots on wheels have a plane", at.len());
     at.try_into().map_err(|_| places.wrong(path, why()))
+}
+
+/// Refuses a place beyond the walls, if there are any.
+///
+/// # Errors
+/// [`Error::Setting`] with the place and the walls.
+pub(crate) fn within_walls(document: &Document, at: [f64; 2], path: &str, places: &Places) -> Result<(), Error> {
+    let (world, [x, y]) = (&document.world, at);
+    let [width, depth] = world.size;
+    if !world.walls || (0.0..=width).contains(&x) && (0.0..=depth).contains(&y) {
+        return Ok(());
+    }
+    let why = format!("[{x}, {y}] is outside the walls, which enclose 0 to {width} m and 0 to {depth} m");
+    Err(places.wrong(path, why))
 }
 
 /// The robots of a document, and which of them are alike.

@@ -7,7 +7,7 @@ use farsa_lab::{Error, PlanarWorld};
 use farsa_num::{Scalar, Stream, sin_cos};
 use farsa_physics::arena::{ArenaError, FreePlace};
 
-use crate::arena::scene::{ROBOT, Scene, Thing, flat};
+use crate::arena::scene::{ROBOT, Scene, Thing, flat, within_walls};
 use crate::check::places::Places;
 use crate::document::{Document, Placing};
 
@@ -75,6 +75,14 @@ impl Starting {
         };
         for (index, start) in document.start.iter().enumerate() {
             let path = format!("/start/{index}");
+            let shines = document.objects.iter().any(|object| object.name == start.place && object.shines());
+            let at_point = |point: &[f64], path: &str| {
+                let point = flat(point, path, places)?;
+                if !shines {
+                    within_walls(document, point, path, places)?;
+                }
+                Ok::<_, Error>(point)
+            };
             let how = match &start.how {
                 Placing::Anywhere { walls, apart } => How::Anywhere { walls: *walls, apart: *apart },
                 Placing::Near { of, within, walls, apart } => {
@@ -90,7 +98,7 @@ impl Starting {
                 }
                 Placing::OneOf { points } => {
                     let points = points.iter().enumerate();
-                    let point = |(index, at): (usize, &Vec<f64>)| flat(at, &format!("{path}/points/{index}"), places);
+                    let point = |(index, at): (usize, &Vec<f64>)| at_point(at, &format!("{path}/points/{index}"));
                     let found = points.map(|at| Ok(point(at)?.map(|x| x as f32))).collect::<Result<Vec<_>, Error>>();
                     How::OneOf(found?)
                 }
@@ -98,7 +106,7 @@ impl Starting {
                     return Err(places.wrong(&format!("{path}/at"), "is for robots with joints; this one is on wheels"));
                 }
                 Placing::Fixed { point, heading } => {
-                    let point = flat(point, &format!("{path}/point"), places)?;
+                    let point = at_point(point, &format!("{path}/point"))?;
                     How::Fixed { point, heading: heading.to_radians() }
                 }
             };

@@ -11,7 +11,7 @@ use crate::name::NAME;
 pub struct World {
     /// What moves the robots.
     pub engine: Engine,
-    /// Width and depth of the arena, from the origin on [m]; for robots on wheels.
+    /// Width and depth of the arena, whose lower left corner is the origin [m]; for robots on wheels.
     #[schemars(inner(range(min = 0.05, max = 1000.0)))]
     pub size: [f64; 2],
     /// A file with more `objects`, in the folder of the experiment's file or below it.
@@ -93,6 +93,13 @@ pub struct Object {
     /// What it is.
     #[serde(flatten)]
     pub kind: ObjectKind,
+}
+
+impl Object {
+    /// Whether it is a lamp, which is seen beyond walls, too.
+    pub(crate) fn shines(&self) -> bool {
+        matches!(self.kind, ObjectKind::Cylinder { lamp, .. } if lamp > 0.0)
+    }
 }
 
 /// The kinds of things.

@@ -3,6 +3,8 @@
 /// A number with four significant digits; all of those before the point where there are more, and as a power of ten beyond nine
 /// of these or four zeros behind the point. Files have all digits.
 pub(crate) fn significant(x: f64) -> String {
+    // Nothing, whatever it was weighed with, has no sign.
+    let x = x + 0.0;
     let scientific = format!("{x:.3e}");
     // Of the rounded number: 9.9999 is 10.00.
     let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
@@ -23,6 +25,7 @@ mod tests {
     fn four_digits_say_how_large_it_is() {
         for (x, text) in [
             (0.0, "0.000"),
+            (-0.0, "0.000"),
             (6.366340887909837, "6.366"),
             (-0.5430833333, "-0.5431"),
             (9.9996, "10.00"),
