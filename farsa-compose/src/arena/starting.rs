@@ -75,14 +75,7 @@ impl Starting {
         };
         for (index, start) in document.start.iter().enumerate() {
             let path = format!("/start/{index}");
-            let shines = document.objects.iter().any(|object| object.name == start.place && object.shines());
-            let at_point = |point: &[f64], path: &str| {
-                let point = flat(point, path, places)?;
-                if !shines {
-                    within_walls(document, point, path, places)?;
-                }
-                Ok::<_, Error>(point)
-            };
+            let at_point = |point: &[f64], path: &str| point_of(document, &start.place, point, path, places);
             let how = match &start.how {
                 Placing::Anywhere { walls, apart } => How::Anywhere { walls: *walls, apart: *apart },
                 Placing::Near { of, within, walls, apart } => {
@@ -197,6 +190,18 @@ impl Starting {
         }
         Ok(())
     }
+}
+
+/// A point of a thing or robot, which only a lamp may have beyond the walls.
+///
+/// # Errors
+/// [`Error::Setting`] for one beyond the walls or with three numbers.
+fn point_of(document: &Document, name: &str, at: &[f64], path: &str, places: &Places) -> Result<[f64; 2], Error> {
+    let point = flat(at, path, places)?;
+    if !document.objects.iter().any(|object| object.name == name && object.shines()) {
+        within_walls(document, point, path, places)?;
+    }
+    Ok(point)
 }
 
 /// The number of a robot that is named alone: `robot-2`.
