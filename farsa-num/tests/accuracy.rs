@@ -177,6 +177,8 @@ fn double_precision_beyond_the_last_place() {
     for line in include_str!("fixtures/functions.csv").lines() {
         let [name, x, other, near, rest] = line.split(',').collect::<Vec<_>>().try_into().expect("five values");
         let (x, near) = (number(x).expect("bits"), number(near).expect("bits"));
+        // There the last place is larger than the errors of what is added.
+        let name = if name == "atan2" && near.abs() > 2.0 { "atan2 behind" } else { name };
         let got = match name {
             "exp" => exp(x),
             "logistic" => logistic(x),
@@ -186,15 +188,15 @@ fn double_precision_beyond_the_last_place() {
             "ln" => ln(x),
             "asin" => asin(x),
             "acos" => acos(x),
-            "atan2" => atan2(x, number(other).expect("bits")),
+            "atan2" | "atan2 behind" => atan2(x, number(other).expect("bits")),
             other => panic!("{other} is not known"),
         };
         // Both are near each other, so that their difference is exact.
         let place = 2.0_f64.exp2_i(libm::ilogb(near).max(-1022) - 52).max(f64::from_bits(1));
         let error = ((got - near) / place - rest.parse::<f64>().expect("a number")).abs();
-        match largest.last_mut() {
-            Some((last, most, count)) if *last == name => (*most, *count) = (most.max(error), *count + 1),
-            _ => largest.push((name, error, 1)),
+        match largest.iter_mut().find(|(known, ..)| *known == name) {
+            Some((_, most, count)) => (*most, *count) = (most.max(error), *count + 1),
+            None => largest.push((name, error, 1)),
         }
     }
     let bounds = [
@@ -207,6 +209,8 @@ fn double_precision_beyond_the_last_place() {
         ("asin", 0.78),
         ("acos", 0.78),
         ("atan2", 1.37),
+        // Of these alone, as they are.
+        ("atan2 behind", 0.694),
     ];
     assert_eq!(largest.len(), bounds.len());
     for ((name, most, count), (known, bound)) in largest.into_iter().zip(bounds) {

@@ -205,9 +205,13 @@ fn the_instruction_sets_are_those_that_the_processor_tells() {
         (Instructions::WasmSimd128, false),
     ] {
         assert_eq!(available.contains(&one), there, "{one}");
+        assert_eq!(one.to_string(), one.name());
     }
     assert_eq!(Some(&Instructions::detect()), available.last());
     assert_eq!(Instructions::default(), Instructions::detect());
+    if cfg!(not(target_feature = "sse4.2")) {
+        assert_eq!(Instructions::baseline(), Instructions::Sse2);
+    }
     for one in available {
         assert!(!one.level().is_fallback(), "{one}");
     }
