@@ -87,6 +87,8 @@ fn edges_of_double_precision() {
     assert!(exp(709.782_712_893_384_f64).is_finite() && exp(709.782_712_893_385_f64).is_infinite());
     assert!(exp(-745.133_219_101_941_1_f64) > 0.0 && exp(-745.133_219_101_942_f64) == 0.0);
     assert_eq!(atan2(f64::MAX, f64::MAX), core::f64::consts::FRAC_PI_4);
+    // Their sum overflows.
+    assert!((atan2(f64::MAX, 0.5 * f64::MAX) - atan2(2.0, 1.0)).abs() < 1e-15);
     assert_eq!(atan2(f64::from_bits(1), f64::from_bits(1)), core::f64::consts::FRAC_PI_4);
 }
 
