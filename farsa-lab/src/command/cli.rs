@@ -135,8 +135,11 @@ impl<'e> Invocation<'e, '_> {
             Err(error) if replay::reader_left(&error) => 0,
             Err(error) => {
                 if !self.exchange.is_follower() {
-                    let one = std::slice::from_ref(&error);
-                    for error in if let Error::Several(all) = &error { all } else { one } {
+                    let all = match &error {
+                        Error::Several(all) => all.as_slice(),
+                        one => std::slice::from_ref(one),
+                    };
+                    for error in all {
                         let _ = writeln!(io::stderr(), "error: {}", escaped(&error.to_string()));
                     }
                 }
