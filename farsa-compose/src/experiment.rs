@@ -84,7 +84,8 @@ impl ComposedExperiment {
     ///
     /// # Errors
     /// [`Error::Usage`] for a text that is no TOML, [`Error::Unknown`] for a word that there is not, with the nearest one,
-    /// and [`Error::Setting`] for a value that cannot be; with file, line and key.
+    /// and [`Error::Setting`] for a value that cannot be; with file, line and key. [`Error::Several`] where more than one key, word or
+    /// number is wrong.
     pub fn from_text(file: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
         Self::read(file, text, None, strategies)
     }

@@ -165,7 +165,7 @@ impl Error {
         }
     }
 
-    /// What is wrong with a file; a single thing stays what it is.
+    /// What is wrong with a file, of one error or more; a single one stays what it is.
     pub fn several(mut all: Vec<Self>) -> Self {
         match all.pop() {
             Some(only) if all.is_empty() => only,

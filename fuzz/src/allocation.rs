@@ -98,7 +98,7 @@ fn tree(text: &str) -> usize {
         TokenKind::Dot | TokenKind::Equals | TokenKind::LeftSquareBracket => EACH_OF_TABLES,
         TokenKind::MlBasicString | TokenKind::MlLiteralString => {
             let span = token.span();
-            // Neither kind can stand in itself, so this ends.
+            // What stands within the quotes is shorter, so this ends.
             EACH_TOKEN + tree(text[span.start()..span.end()].trim_matches(['"', '\'']))
         }
         _ => EACH_TOKEN,
