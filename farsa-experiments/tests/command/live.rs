@@ -152,7 +152,11 @@ fn what_cannot_live_is_refused_and_writes_nothing() {
     let here = scratch("live-refused");
     catcher(&here);
     ok(own(), &here, "run cart --generations 1 --out cart --quiet");
-    ok(farsa(), &here, "run passive-walker --world rapier --out foreign --quiet");
+    ok(
+        farsa(),
+        &here,
+        "run passive-walker --world rapier --set trial.count=1 --set trial.steps=10 --out foreign --quiet",
+    );
     fs::write(here.join("notes.html"), "mine").expect("a file");
     fs::write(here.join("module"), "no module").expect("a file");
     for (program, line, why) in [

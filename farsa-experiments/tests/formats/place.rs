@@ -100,7 +100,9 @@ impl Place {
 pub(crate) fn today() -> &'static Place {
     static TODAY: OnceLock<Place> = OnceLock::new();
     TODAY.get_or_init(|| {
-        let place = Place(Path::new(env!("CARGO_TARGET_TMPDIR")).join("formats-today"));
+        // Where each test is a process of its own (cargo-nextest), each makes one.
+        let name = format!("formats-today-{}", std::process::id());
+        let place = Place(Path::new(env!("CARGO_TARGET_TMPDIR")).join(name));
         let _ = fs::remove_dir_all(&place.0);
         fs::create_dir_all(&place.0).expect("a scratch directory");
         place.ok("run braitenberg --set trial.count=1 --set trial.steps=1 --out run --quiet");
