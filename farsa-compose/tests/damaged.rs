@@ -369,3 +369,31 @@ fn drawn_files_are_refused_with_line_and_key() {
     }
     assert!(counts.iter().all(|count| *count >= 10), "{counts:?}");
 }
+
+#[test]
+fn a_choice_follows_an_earlier_one_of_as_many_points() {
+    let areas = ["a", "b"]
+        .map(|name| format!("[[objects]]\nname = \"{name}\"\nkind = \"disc\"\nradius = 0.1\ncolor = [0, 0, 0]\n"));
+    let start = |place: &str, points: &str, like: &str| {
+        format!("[[start]]\nplace = \"{place}\"\nat = \"one-of\"\npoints = {points}\n{like}")
+    };
+    let two = "[[0.2, 0.2], [0.8, 0.2]]";
+    let text = |first: &str, like: &str| {
+        [RIGHT, &areas.concat(), &start("a", first, ""), &start("b", two, &format!("like = \"{like}\"\n"))].concat()
+    };
+    assert_eq!(error(&text(two, "a")), "nothing is wrong");
+    let before = |name: &str| format!("start.3.like: {name} has to be placed before, on one of some points");
+    let counts = "start.3.like: a is placed on one of 1 points, and here are 2";
+    for (text, why) in [
+        (text("[[0.5, 0.5]]", "a"), counts.to_owned()),
+        (text(two, "lamp"), before("lamp")),
+        (text(two, "b"), before("b")),
+        (text(two, "c"), before("c")),
+    ] {
+        let said = plain(&error(&text));
+        assert!(said.starts_with("look.toml line ") && said.ends_with(&why), "{said}");
+    }
+    let robots = RIGHT.replace("kind = \"e-puck\"", "kind = \"e-puck\"\ncount = 2");
+    let both = [robots.as_str(), &areas[0], &start("a", two, ""), &start("robot", two, "like = \"a\"\n")].concat();
+    assert!(plain(&error(&both)).ends_with("start.3: puts 2 robots on one point"), "{}", error(&both));
+}

@@ -190,3 +190,43 @@ fn what_is_wrong_is_said() {
         assert!(found.contains(why) && found.starts_with("team.toml"), "{found}\nwhere\n{why}\nis wanted of\n{text}");
     }
 }
+
+/// A sign and a goal on one of three points each: the goal as much further up as makes three square metres.
+#[test]
+fn a_thing_follows_the_choice_of_another() {
+    let thing =
+        |name: &str| format!("[[objects]]\nname = \"{name}\"\nkind = \"disc\"\nradius = 0.1\ncolor = [0, 0, 0]\n");
+    let start = |name: &str, y: f64, like: &str| {
+        format!("[[start]]\nplace = \"{name}\"\nat = \"one-of\"\npoints = [[1.0, {y}], [2.0, {y}], [3.0, {y}]]\n{like}")
+    };
+    let reward = |name: &str| {
+        format!("[[reward]]\nname = \"{name}\"\nkind = \"distance\"\nobject = \"{name}\"\nover = \"end\"\n")
+    };
+    let rest = "[[start]]\nplace = \"robot\"\nat = \"fixed\"\npoint = [0.5, 1.0]\n[robot]\nkind = \"khepera\"\n\
+                [[sensors]]\nkind = \"constant\"\nvalue = 1.0\n[[motors]]\nkind = \"wheels\"\n\
+                [network]\nkind = \"perceptron\"\n[world]\nsize = [4.0, 4.0]\n[episode]\nsteps = 1\ntrials = 1\n";
+    let text = |like: &str| {
+        let things = [thing("sign"), thing("goal"), start("sign", 2.0, ""), start("goal", 3.0, like)].concat();
+        things + &reward("sign") + &reward("goal") + rest
+    };
+    let apart = |like: &str| -> Vec<[i64; 2]> {
+        let mut evaluator = evaluator(&text(like));
+        let still = vec![0.0; evaluator.parameters().len()];
+        let trial = |trial| {
+            let id = EpisodeId { seed: 1, trial, ..EpisodeId::default() };
+            let terms = evaluator.evaluate(Evaluation::new(&still, id), None).terms;
+            // Where each stands, from 0, by how far it is from the robot.
+            let number = |squared: f64| ((squared.sqrt() - 0.5) as f32).round() as i64;
+            [number(terms[0] * terms[0] - 1.0), number(terms[1] * terms[1] - 4.0)]
+        };
+        (0..60).map(trial).collect()
+    };
+    let (alone, together) = (apart(""), apart("like = \"sign\"\n"));
+    for number in 0..3 {
+        assert!(together.contains(&[number, number]), "{together:?}");
+    }
+    assert!(together.iter().all(|[sign, goal]| sign == goal), "{together:?}");
+    assert!(alone.iter().any(|[sign, goal]| sign != goal), "{alone:?}");
+    // What it follows is drawn as before.
+    assert!(alone.iter().zip(&together).all(|(alone, together)| alone[0] == together[0]));
+}

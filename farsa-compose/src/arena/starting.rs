@@ -10,6 +10,7 @@ use farsa_physics::arena::{ArenaError, FreePlace};
 use crate::arena::scene::{ROBOT, Scene, Thing, flat, within_walls};
 use crate::check::places::Places;
 use crate::document::{Document, Placing};
+use crate::parts::choice::Choice;
 
 /// A rule of the start with what it is about.
 #[derive(Clone, Debug)]
@@ -28,8 +29,19 @@ enum How {
     Anywhere { walls: f64, apart: f64 },
     Near { of: BodyId, within: f64, walls: f64, apart: f64 },
     Around { of: BodyId, distance: [f64; 2] },
-    OneOf(Vec<[f32; 2]>),
+    OneOf(Choice<2>),
     Fixed { point: [f64; 2], heading: f64 },
+}
+
+impl How {
+    /// Whether all bodies come to the same point.
+    fn is_one_point(&self) -> bool {
+        match self {
+            Self::Fixed { .. } => true,
+            Self::OneOf(choice) => !choice.is_drawn(),
+            _ => false,
+        }
+    }
 }
 
 /// The start of a trial.
@@ -40,6 +52,8 @@ pub(crate) struct Starting {
     /// What stands somewhere from the beginning.
     standing: Vec<BodyId>,
     before: Before,
+    /// The numbers of the points that rules have taken.
+    chosen: Vec<usize>,
 }
 
 /// What was placed before: room for all.
@@ -49,6 +63,14 @@ struct Before {
     others: Vec<(BodyId, f32)>,
     /// Areas, with their radius [m].
     areas: Vec<(BodyId, f64)>,
+}
+
+impl Before {
+    /// Whether anything was put exactly there.
+    fn is_at<W: PlanarWorld>(&self, world: &W, point: [f32; 2]) -> bool {
+        let others = self.others.iter().map(|(body, _)| body).chain(self.areas.iter().map(|(body, _)| body));
+        others.map(|body| world.pose(*body).position).any(|[x, y, _]| [x, y] == point)
+    }
 }
 
 impl Starting {
@@ -89,11 +111,11 @@ impl Starting {
                     }
                     How::Around { of, distance: *distance }
                 }
-                Placing::OneOf { points } => {
+                Placing::OneOf { points, like } => {
                     let points = points.iter().enumerate();
                     let point = |(index, at): (usize, &Vec<f64>)| at_point(at, &format!("{path}/points/{index}"));
                     let found = points.map(|at| Ok(point(at)?.map(|x| x as f32))).collect::<Result<Vec<_>, Error>>();
-                    How::OneOf(found?)
+                    How::OneOf(Choice::new(found?, like.as_ref(), document, index, places)?)
                 }
                 Placing::InBox { .. } | Placing::Turned { .. } => {
                     return Err(places.wrong(&format!("{path}/at"), "is for robots with joints; this one is on wheels"));
@@ -104,12 +126,12 @@ impl Starting {
                 }
             };
             let rule = if start.place == ROBOT {
-                if let (How::Fixed { .. }, true) = (&how, scene.robots.len() > 1) {
+                if how.is_one_point() && scene.robots.len() > 1 {
                     return Err(places.wrong(&path, format!("puts {} robots on one point", scene.robots.len())));
                 }
                 of_robots(robots.clone(), how)
             } else if let Some([first, end]) = scene.groups.named(&start.place) {
-                if let (How::Fixed { .. }, true) = (&how, end - first > 1) {
+                if how.is_one_point() && end - first > 1 {
                     return Err(places.wrong(&path, format!("puts {} robots on one point", end - first)));
                 }
                 of_robots(robots[first..end].to_vec(), how)
@@ -151,7 +173,8 @@ impl Starting {
             scene.standing(document).map(|(body, _)| body).filter(|body| !moved(body)).collect();
         let most = standing.len() + rules.iter().map(|rule| rule.bodies.len()).sum::<usize>();
         let before = Before { others: Vec::with_capacity(most), areas: Vec::with_capacity(most) };
-        Ok(Self { rules, size: scene.size, standing, before })
+        let chosen = vec![0; rules.len()];
+        Ok(Self { rules, size: scene.size, standing, before, chosen })
     }
 
     /// Puts all in its place, by draws of the stream in the order of the rules.
@@ -160,11 +183,11 @@ impl Starting {
     /// [`ArenaError::NoFreePlace`] after a thousand tries.
     pub(crate) fn arrange<W: PlanarWorld>(&mut self, world: &mut W, stream: &mut Stream) -> Result<(), ArenaError> {
         world.clear();
-        let Self { rules, size, standing, before } = self;
+        let Self { rules, size, standing, before, chosen } = self;
         before.others.clear();
         before.areas.clear();
         before.others.extend(standing.iter().map(|body| (*body, 0.0)));
-        for rule in rules {
+        for (number, rule) in rules.iter().enumerate() {
             for &body in &rule.bodies {
                 let apart = match rule.how {
                     How::Anywhere { apart, .. } | How::Near { apart, .. } => apart,
@@ -173,7 +196,7 @@ impl Starting {
                 for (_, far) in &mut before.others {
                     *far = apart as f32;
                 }
-                let at = place(rule, *size, world, before, stream)?;
+                let at = place(rule, number, chosen, *size, world, before, stream)?;
                 let heading = match (rule.turned, &rule.how) {
                     (_, How::Fixed { heading, .. }) => *heading as f32,
                     (true, _) => stream.range(-PI, PI),
@@ -209,9 +232,11 @@ fn numbered(name: &str) -> Option<usize> {
     name.strip_prefix(ROBOT)?.strip_prefix('-')?.parse().ok()
 }
 
-/// A place for one body of a rule, which keeps from other bodies, or an area from other areas.
+/// A place for one body of the rule of a number, which keeps from other bodies, or an area from other areas.
 fn place<W: PlanarWorld>(
     rule: &Rule,
+    number: usize,
+    chosen: &mut [usize],
     size: [f64; 2],
     world: &W,
     before: &Before,
@@ -219,21 +244,11 @@ fn place<W: PlanarWorld>(
 ) -> Result<[f32; 2], ArenaError> {
     let (walls, apart, near) = match &rule.how {
         How::Fixed { point, .. } => return Ok(point.map(|x| x as f32)),
-        How::OneOf(points) => {
-            // Where nothing was put before, which is exactly there.
-            let is_at = |body: BodyId, point: &[f32; 2]| {
-                let [x, y, _] = world.pose(body).position;
-                [x, y] == *point
-            };
-            let taken = |point: &[f32; 2]| {
-                before.others.iter().any(|(body, _)| is_at(*body, point))
-                    || before.areas.iter().any(|(body, _)| is_at(*body, point))
-            };
-            let free = points.iter().filter(|point| !taken(point));
-            let count = free.clone().count();
-            let none = ArenaError::NoFreePlace { tries: points.len() as u32, radius: rule.radius as f32, short: 0.0 };
-            let chosen = if count == 0 { return Err(none) } else { stream.below(count as u32) as usize };
-            return free.clone().nth(chosen).copied().ok_or(none);
+        How::OneOf(choice) => {
+            let found = choice.take(chosen, |point| before.is_at(world, *point), |count| stream.below(count));
+            let (tries, radius) = (choice.points.len() as u32, rule.radius as f32);
+            chosen[number] = found.ok_or(ArenaError::NoFreePlace { tries, radius, short: 0.0 })?;
+            return Ok(choice.points[chosen[number]]);
         }
         How::Around { of, distance: [near, far] } => {
             let distance = stream.range(*near as f32, *far as f32);

@@ -9,6 +9,7 @@ use crate::document::{Document, Placing};
 use crate::jointed::SpatialWorld;
 use crate::jointed::scene::{ROBOT, Scene};
 use crate::jointed::things::What;
+use crate::parts::choice::Choice;
 
 /// A rule of the start.
 #[derive(Clone, Debug)]
@@ -30,7 +31,7 @@ enum Placed {
 #[derive(Clone, Debug)]
 enum How {
     Within { low: [f64; 3], high: [f64; 3], apart: f64 },
-    OneOf(Vec<[f32; 3]>),
+    OneOf(Choice<3>),
     Turned { low: f64, high: f64 },
     Fixed(Pose),
 }
@@ -43,6 +44,8 @@ pub(crate) struct Starting {
     markers: Vec<[f32; 3]>,
     /// What was placed before, with its reach [m].
     before: Vec<([f32; 3], f64)>,
+    /// The numbers of the points that rules have taken.
+    chosen: Vec<usize>,
 }
 
 /// Places that are tried at most.
@@ -58,7 +61,7 @@ impl Starting {
         for (index, start) in document.start.iter().enumerate() {
             let path = format!("/start/{index}");
             let (what, reach) = named(&start.place, scene, &path, places)?;
-            let how = how(&start.how, what, &path, places)?;
+            let how = how(document, index, what, &path, places)?;
             if rules.iter().any(|other| other.what == what) {
                 return Err(places.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
             }
@@ -79,8 +82,8 @@ impl Starting {
             }
         }
         let markers = scene.markers.iter().map(|marker| marker.at.map(|x| x as f32)).collect();
-        let before = Vec::with_capacity(rules.len());
-        Ok(Self { rules, markers, before })
+        let (before, chosen) = (Vec::with_capacity(rules.len()), vec![0; rules.len()]);
+        Ok(Self { rules, markers, before, chosen })
     }
 
     /// Puts all in its place, by draws of the stream in the order of the rules; false if something finds no place.
@@ -90,11 +93,11 @@ impl Starting {
         markers: &mut [[f32; 3]],
         stream: &mut Stream,
     ) -> bool {
-        let Self { rules, markers: resting, before } = self;
+        let Self { rules, markers: resting, before, chosen } = self;
         world.clear();
         markers.copy_from_slice(resting);
         before.clear();
-        for Rule { what, reach, how } in rules {
+        for (number, Rule { what, reach, how }) in rules.iter().enumerate() {
             let pose = match how {
                 How::Turned { low, high } => {
                     if let Placed::Joint(joint) = what {
@@ -103,9 +106,11 @@ impl Starting {
                     continue;
                 }
                 How::Fixed(pose) => *pose,
-                How::OneOf(points) => {
-                    let Some(at) = free(points, before, stream) else { return false };
-                    Pose::at(at)
+                How::OneOf(choice) => {
+                    let taken = |point: &[f32; 3]| before.iter().any(|(other, _)| other == point);
+                    let Some(point) = choice.take(chosen, taken, |count| stream.below(count)) else { return false };
+                    chosen[number] = point;
+                    Pose::at(choice.points[point])
                 }
                 How::Within { low, high, apart } => {
                     let Some(at) = within(low, high, *reach + *apart, before, stream) else { return false };
@@ -122,14 +127,6 @@ impl Starting {
         world.finish_placement();
         true
     }
-}
-
-/// One of some points, of those on which nothing was put.
-fn free(points: &[[f32; 3]], before: &[([f32; 3], f64)], stream: &mut Stream) -> Option<[f32; 3]> {
-    let taken = |point: &[f32; 3]| before.iter().any(|(other, _)| other == point);
-    let count = points.iter().filter(|point| !taken(point)).count();
-    let chosen = if count == 0 { return None } else { stream.below(count as u32) as usize };
-    points.iter().filter(|point| !taken(point)).nth(chosen).copied()
 }
 
 /// A place in a box, so far from what was placed before.
@@ -174,9 +171,10 @@ fn named(name: &String, scene: &Scene, path: &str, places: &Places) -> Result<(P
     Ok((Placed::Joint(joint), 0.0))
 }
 
-fn how(placing: &Placing, what: Placed, path: &str, places: &Places) -> Result<How, Error> {
+/// How the rule of a number places what it is about.
+fn how(document: &Document, rule: usize, what: Placed, path: &str, places: &Places) -> Result<How, Error> {
     let joint = matches!(what, Placed::Joint(_));
-    match placing {
+    match &document.start[rule].how {
         Placing::Turned { low, high } if joint => {
             if low > high {
                 return Err(places.wrong(path, format!("from {low} to {high} runs backwards")));
@@ -191,7 +189,7 @@ fn how(placing: &Placing, what: Placed, path: &str, places: &Places) -> Result<H
             }
             Ok(How::Within { low: *low, high: *high, apart: *apart })
         }
-        Placing::OneOf { points } => {
+        Placing::OneOf { points, like } => {
             let point = |(index, point): (usize, &Vec<f64>)| {
                 let why = || format!("has {} values where 3 are wanted: x, y and z", point.len());
                 let found = <[f64; 3]>::try_from(point.as_slice());
@@ -199,7 +197,8 @@ fn how(placing: &Placing, what: Placed, path: &str, places: &Places) -> Result<H
                     .map(|point| point.map(|x| x as f32))
                     .map_err(|_| places.wrong(&format!("{path}/points/{index}"), why()))
             };
-            Ok(How::OneOf(points.iter().enumerate().map(point).collect::<Result<_, _>>()?))
+            let points = points.iter().enumerate().map(point).collect::<Result<_, _>>()?;
+            Ok(How::OneOf(Choice::new(points, like.as_ref(), document, rule, places)?))
         }
         Placing::Fixed { point, heading } => {
             let Ok(point) = <[f64; 3]>::try_from(point.as_slice()) else {

@@ -15,6 +15,7 @@
 //! - `blocks`: networks of clusters and links
 //! - `interventions`: what the test protocols do to a network
 //! - `bounded`: the sizes of networks
+//! - `choice`: choices among points, of which one may follow another
 //! - `eye`: a camera of the document as the sensor that it is
 //! - `evonet`: the network of the original, with genes in its order
 //! - `kept`: layouts of networks of blocks, which borrow theirs
@@ -25,6 +26,7 @@ pub(crate) mod agents;
 pub(crate) mod behaviour;
 pub(crate) mod blocks;
 pub(crate) mod bounded;
+pub(crate) mod choice;
 pub(crate) mod ends;
 pub(crate) mod evonet;
 pub(crate) mod eye;

@@ -351,3 +351,27 @@ fn what_is_wrong_is_said() {
     );
     assert!(refused(&file("", motor, &two)).contains("finds no free place after a thousand tries"));
 }
+
+#[test]
+fn a_marker_follows_the_choice_of_another() {
+    let marker = |name: &str, z: f64, like: &str| {
+        format!(
+            "[[objects]]\nname = \"{name}\"\nkind = \"marker\"\n[[start]]\nplace = \"{name}\"\nat = \"one-of\"\n\
+             points = [[1, 0, {z}], [2, 0, {z}], [3, 0, {z}]]\n{like}[[reward]]\nname = \"{name}\"\nkind = \"distance\"\n\
+             object = \"{name}\"\nover = \"end\"\n"
+        )
+    };
+    let motor = "kind = \"joint-torque\"";
+    let text = file("", motor, &[marker("sign", 1.0, ""), marker("goal", 2.0, "like = \"sign\"\n")].concat());
+    let mut evaluator = made(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let still = vec![0.0; evaluator.parameters().len()];
+    let mut seen = [false; 3];
+    for trial in 0..40 {
+        let id = EpisodeId { seed: 1, trial, ..EpisodeId::default() };
+        let terms = evaluator.evaluate(Evaluation::new(&still, id), None).terms;
+        let [sign, goal] = [terms[0] * terms[0] - 1.0, terms[1] * terms[1] - 4.0];
+        assert!((sign - goal).abs() < 1e-4, "{terms:?}");
+        seen[sign.sqrt().round() as usize - 1] = true;
+    }
+    assert_eq!(seen, [true; 3]);
+}
