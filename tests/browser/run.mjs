@@ -976,7 +976,7 @@ async function lives(browser) {
   await press("Undo all");
   await until("farsa.trials.length === 1 && farsa.trials[0].name.startsWith('fresh trial 0')");
   await browser.run(() => farsa.live.set("neuron:nobody", ""));
-  check("a part that there is not is refused by name", /unknown neuron `nobody`; the nearest is/.test(await status()), await status());
+  check("a part that there is not is refused by name", /unknown neuron `nobody`; there are `inner 1`/.test(await status()), await status());
   check("and nothing has changed", await browser.run(() => farsa.trials.length === 1 && document.querySelectorAll("#live .chips button").length === 0));
   await browser.run(async () => (await farsa.live.set("neuron:inner 1", "0.5"), await farsa.live.set("neuron:inner 2", ""), farsa.live.set("neuron:inner 1", "much")));
   const kept = await browser.run(() => [...document.querySelectorAll("#live .chips button")].map((chip) => chip.textContent));
