@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Whether they are built and run as their readers would, each with its own profile: `./ci long`. Else the compiler checks them with
-/// the crates and features that they ask for, which takes a sixth; what they do the same programs show among the workspace's examples.
+/// Whether they are built and run as their readers would, each with its own profile: `./ci long`. Else the compiler only checks them,
+/// with the crates and features that they ask for; what they do is tested on the same programs among the workspace's examples.
 pub(crate) fn whole() -> bool {
     std::env::var_os("FARSA_LONG").is_some()
 }

@@ -102,7 +102,8 @@ pub enum Placing {
         /// x and y of each, and z beside a robot with joints [m].
         #[schemars(length(min = 1, max = 100))]
         points: Vec<Vec<f64>>,
-        /// What was placed `one-of` as many points before: the point of the same number is taken, free or not.
+        /// What was placed `one-of` as many points before: the point of the same number is taken, free or not; of several
+        /// robots, that of the last.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         like: Option<String>,
     },
