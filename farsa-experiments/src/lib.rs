@@ -46,7 +46,7 @@ pub use walking::{ModelGait, ModelStep, SLOPES, SlopeError, WalkingModel};
 pub fn laboratory() -> farsa_lab::Laboratory<'static> {
     let laboratory = farsa_lab::Laboratory::new(&all()).with_files(farsa_compose::FILES);
     #[cfg(feature = "command")]
-    let laboratory = laboratory.with_live_module(include_bytes!("live.wasm.gz"), &["rapier"]);
+    let laboratory = laboratory.with_live_module(include_bytes!("live.wasm.xz"), &["rapier"]);
     laboratory
 }
 

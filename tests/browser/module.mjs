@@ -7,13 +7,12 @@
 // if a trial differs, or if with `--ticks` the trials of a page are fewer ticks than that. Then no fresh trials are run, which would be
 // as long.
 
-import { readFileSync } from "node:fs";
+import { statSync } from "node:fs";
 import { basename } from "node:path";
 import { parseArgs } from "node:util";
-import { unpacked } from "./packed.mjs";
+import { dataOf, unpacked } from "./packed.mjs";
 import { startDriver } from "./webdriver.mjs";
 
-const mark = '<script type="application/json" id="data">';
 const { values: options, positionals: pages } = parseArgs({ allowPositionals: true, options: { ticks: { type: "string" }, browser: { type: "boolean" } } });
 const long = options.ticks !== undefined;
 const least = Number(options.ticks);
@@ -42,8 +41,8 @@ async function openSession(bytes, script) {
 }
 
 // The module of a page, open in Node or in the browser.
-async function opened({ module, script }, browser) {
-  const bytes = unpacked(module);
+async function opened({ module, unpacker, script }, browser) {
+  const bytes = unpacked(module, unpacker);
   if (!browser) {
     await openSession(bytes, script);
     return (request) => globalThis.answer(request);
@@ -80,8 +79,7 @@ async function rate(ask) {
 
 // Whether the trials of a page are those of its run.
 async function check(page, browser) {
-  const html = readFileSync(page, "utf8");
-  const { live } = JSON.parse(html.slice(html.lastIndexOf(mark) + mark.length, html.lastIndexOf("</script>")));
+  const { live } = dataOf(page);
   const name = basename(page, ".html");
   const ask = await opened(live, browser);
   let [ticks, differing, took] = [0, 0, 0];
@@ -105,7 +103,7 @@ async function check(page, browser) {
   } else {
     differing += await freshDiffer(page, ask);
     const second = Math.round(ticks / took * 1000);
-    console.log(`${differing ? "FAILED" : "ok    "} ${name}: ${ticks} ticks, ${second} a second as films; ${await rate(ask)} fresh trials a second; ${Buffer.byteLength(html)} bytes`);
+    console.log(`${differing ? "FAILED" : "ok    "} ${name}: ${ticks} ticks, ${second} a second as films; ${await rate(ask)} fresh trials a second; ${statSync(page).size} bytes`);
   }
   return differing > 0;
 }

@@ -18,16 +18,19 @@ fn data(path: &Path) -> Value {
     serde_json::from_str(text).expect("JSON")
 }
 
-/// What is packed in a page: compressed bytes, thirteen bits as two letters from `#` on, of which two stand for others.
-fn unpacked(packed: &Value) -> Vec<u8> {
-    let text = packed["gzip"].as_str().expect("text").replace('!', "<").replace('~', "\\");
+/// The bytes that letters of a page stand for: thirteen bits are two letters from `#` on, of which two stand for others.
+fn bytes_of(packed: &Value, by: &str) -> Vec<u8> {
+    let text = packed[by].as_str().expect("text").replace('!', "<").replace('~', "\\");
     let words = text.as_bytes().chunks(2).map(|two| two.iter().fold(0, |word, x| 91 * word + u32::from(x - b'#')));
     let bits: Vec<u8> = words.flat_map(|word| (0..13).rev().map(move |k| (word >> k & 1) as u8)).collect();
     let length = packed["bytes"].as_u64().expect("a number") as usize;
-    let bytes: Vec<u8> =
-        bits.chunks(8).take(length).map(|byte| byte.iter().fold(0, |all, bit| 2 * all + bit)).collect();
+    bits.chunks(8).take(length).map(|byte| byte.iter().fold(0, |all, bit| 2 * all + bit)).collect()
+}
+
+/// What is packed in a page by gzip.
+fn unpacked(packed: &Value) -> Vec<u8> {
     let mut found = Vec::new();
-    GzDecoder::new(&bytes[..]).read_to_end(&mut found).expect("what was compressed");
+    GzDecoder::new(&bytes_of(packed, "gzip")[..]).read_to_end(&mut found).expect("what was compressed");
     found
 }
 
@@ -72,7 +75,8 @@ fn an_agent_lives_as_it_is_replayed_and_tested() {
     let page = data(&here.join("live.html"));
     assert_eq!((&page["lives"], &page["title"]), (&json!([]), &"minimal-cognition-1".into()));
     let live = &page["live"];
-    assert!(unpacked(&live["module"]).starts_with(b"\0asm"));
+    assert!(unpacked(&live["unpacker"]).starts_with(b"\0asm"));
+    assert_eq!(bytes_of(&live["module"], "xz"), include_bytes!("../../src/live.wasm.xz"));
     assert!(told["bytes"].as_u64().is_some_and(|bytes| bytes < 2_000_000), "{told}");
     let mut session = opened(live);
 
@@ -163,7 +167,7 @@ fn what_cannot_live_is_refused_and_writes_nothing() {
         (own(), "live cart --html new.html", "this program has no module for pages: give one with --module"),
         (farsa(), "live foreign --html new.html", "world `rapier`: pages that run an agent are without it"),
         (farsa(), "serve foreign --port 0", "world `rapier`: pages that run an agent are without it"),
-        (farsa(), "live catcher --html new.html --module module", "the module is not compressed by gzip"),
+        (farsa(), "live catcher --html new.html --module module", "the module is not compressed by gzip or xz"),
         (farsa(), "live catcher --html new.html --module nowhere", "nowhere"),
         (farsa(), "live catcher --html new.html --generations 3", "generation 3 of 1 finished ones"),
         (farsa(), "live catcher --html notes.html", "there is one already"),
@@ -179,7 +183,7 @@ fn what_cannot_live_is_refused_and_writes_nothing() {
     fs::write(here.join("module"), [0x1f, 0x8b, 0]).expect("a file");
     ok(farsa(), &here, "live catcher --html new.html --module module --quiet");
     let live = &data(&here.join("new.html"))["live"];
-    assert_eq!(live["module"], json!({ "gzip": ".+Dh", "bytes": 3 }));
+    assert_eq!((&live["module"], &live["unpacker"]), (&json!({ "gzip": ".+Dh", "bytes": 3 }), &Value::Null));
 }
 
 #[test]

@@ -18,8 +18,8 @@ use crate::store::bounded;
 
 /// The most bytes of a module.
 const MOST_MODULE: u64 = 100_000_000;
-/// What begins a file that is compressed by gzip.
-const GZIP: [u8; 2] = [0x1f, 0x8b];
+/// What begins a file that is compressed by gzip, and one by xz.
+const COMPRESSED: [&[u8]; 2] = [&[0x1f, 0x8b], b"\xfd7zXZ\0"];
 
 /// Where a page is served.
 #[derive(Serialize)]
@@ -61,8 +61,8 @@ impl Invocation<'_, '_> {
             };
         };
         let module = bounded::read(path, MOST_MODULE)?;
-        if !module.starts_with(&GZIP) {
-            return Err(Error::Usage("the module is not compressed by gzip".into()));
+        if !COMPRESSED.iter().any(|begin| module.starts_with(begin)) {
+            return Err(Error::Usage("the module is not compressed by gzip or xz".into()));
         }
         Ok(Cow::Owned(module))
     }

@@ -99,7 +99,7 @@ impl<'e> Laboratory<'e> {
     }
 
     /// Makes pages that run agents by themselves, too: `farsa live`; `module` is these experiments as WebAssembly, compressed by
-    /// gzip, and `lacking` names the worlds ([`ENGINE`](crate::ENGINE)) that it is built without.
+    /// gzip or xz, and `lacking` names the worlds ([`ENGINE`](crate::ENGINE)) that it is built without.
     #[must_use]
     pub fn with_live_module(self, module: &'static [u8], lacking: &'static [&'static str]) -> Self {
         Self { module: Some((module, lacking)), ..self }

@@ -10,6 +10,11 @@ use crate::error::Error;
 use crate::page::base91::base91;
 use crate::page::html::{Kind, composed, data_head};
 
+/// What begins a file that is compressed by xz.
+const XZ: [u8; 6] = *b"\xfd7zXZ\0";
+/// A module that reads such files, compressed by gzip: browsers do not. `farsa-live/build --unpacker` makes it.
+const UNPACKER: &[u8] = include_bytes!("unpack.wasm.gz");
+
 /// A page that runs an agent by itself, by a module of WebAssembly that lies in it.
 ///
 /// The module has the functions `input`, `open`, `answer` and `output` of the project's `farsa-live`; what the script and the
@@ -22,7 +27,7 @@ pub struct LivePage {
     pub from_above: bool,
     /// Whether it is served by a program that tells what a run comes to: at `events`, by server-sent events.
     pub served: bool,
-    /// The module, compressed by gzip.
+    /// The module, compressed by gzip or by xz.
     pub module: Vec<u8>,
     /// What the module opens: JSON.
     pub script: String,
@@ -51,6 +56,7 @@ impl LivePage {
             "script": script,
             "about": about,
             "module": packed(&self.module),
+            "unpacker": if self.module.starts_with(&XZ) { packed(UNPACKER) } else { Value::Null },
             "standing": standing,
             "served": self.served,
         });
@@ -60,7 +66,8 @@ impl LivePage {
 
 /// Compressed bytes as they stand in a page: as text, with their number.
 fn packed(compressed: &[u8]) -> Value {
-    json!({ "gzip": base91(compressed), "bytes": compressed.len() })
+    let by = if compressed.starts_with(&XZ) { "xz" } else { "gzip" };
+    json!({ by: base91(compressed), "bytes": compressed.len() })
 }
 
 fn compressed(bytes: &[u8]) -> Vec<u8> {
@@ -90,10 +97,10 @@ mod tests {
         let (_, rest) = html.rsplit_once("id=\"data\">").unwrap();
         let (text, _) = rest.split_once("</script>").unwrap();
         let data: Value = serde_json::from_str(text).unwrap();
-        assert_eq!(
-            (&data["title"], &data["view"], &data["live"]["module"], &data["live"]["standing"]),
-            (&"a <b>".into(), &"top".into(), &json!({ "gzip": base91(&[1, 2, 3]), "bytes": 3 }), &Value::Null)
-        );
+        assert_eq!((&data["title"], &data["view"]), (&"a <b>".into(), &"top".into()));
+        let live = &data["live"];
+        assert_eq!(live["module"], json!({ "gzip": base91(&[1, 2, 3]), "bytes": 3 }));
+        assert_eq!((&live["standing"], &live["unpacker"]), (&Value::Null, &Value::Null));
         assert_eq!(data["live"]["script"]["config"], "x = \"</script>\"");
         let film = Page::new("film").html();
         assert!(!film.contains("wasm-unsafe-eval") && !film.contains("DecompressionStream"));
@@ -101,6 +108,11 @@ mod tests {
         let served = LivePage { served: true, ..page.clone() }.html().unwrap();
         assert!(served[..2000].contains("wasm-unsafe-eval") && served[..2000].contains("connect-src 'self'"));
         assert!(!html.contains("connect-src") && !film.contains("connect-src"));
+        // What browsers cannot unpack comes with what can.
+        let module = b"\xfd7zXZ\0\0".to_vec();
+        let html = LivePage { module: module.clone(), ..page.clone() }.html().unwrap();
+        let packed = json!({ "xz": base91(&module), "bytes": 7 }).to_string();
+        assert!(html.contains(&packed[1..packed.len() - 1]) && html.contains(&base91(UNPACKER)));
         let wrong = LivePage { script: "{".into(), ..page };
         assert!(matches!(wrong.html(), Err(Error::NotJson(_))));
     }

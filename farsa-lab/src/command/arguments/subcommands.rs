@@ -323,7 +323,7 @@ pub(crate) struct LiveArgs {
     /// Generations whose best individuals are in the page, such as 0,10,100 [default: the last]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub(crate) generations: Vec<u32>,
-    /// The experiments as WebAssembly, compressed by gzip, in place of those of this program
+    /// The experiments as WebAssembly, compressed by gzip or xz, in place of those of this program
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) module: Option<PathBuf>,
     /// Write the summary as JSON
@@ -339,7 +339,7 @@ pub(crate) struct ServeArgs {
     /// The port of 127.0.0.1; 0 is any that is free
     #[arg(long, value_name = "N", default_value_t = 8377)]
     pub(crate) port: u16,
-    /// The experiments as WebAssembly, compressed by gzip, in place of those of this program
+    /// The experiments as WebAssembly, compressed by gzip or xz, in place of those of this program
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) module: Option<PathBuf>,
     /// Write the address as JSON
