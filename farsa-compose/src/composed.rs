@@ -157,7 +157,8 @@ impl<E: Embodied> Composed<E> {
         let Agents { document, wiring, .. } = self.0.agents();
         let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(&wiring.sensors);
         let meanings = enabled.flat_map(|(sensor, (_, [first, end]))| {
-            (0..end - first).map(|channel| self.0.sensed(&sensor.kind, channel, robot).with_wrappers(&sensor.wrappers))
+            (0..end - first)
+                .map(|channel| self.0.sensed(&sensor.kind, channel, robot).with_wrappers(sensor.wrappers.iter()))
         });
         let channel = |(name, Meaning { quantity, unit, ends: [zero, one], linear }): (&String, Meaning)| {
             SensorExport { name: name.clone(), reads: SensorReading::Quantity { quantity, unit, zero, one, linear } }
@@ -169,7 +170,8 @@ impl<E: Embodied> Composed<E> {
         let Agents { document, wiring, .. } = self.0.agents();
         let enabled = document.motors.iter().filter(|motor| motor.enabled).zip(&wiring.motors);
         let meanings = enabled.flat_map(|(motor, (_, [first, end]))| {
-            (0..end - first).map(|channel| self.0.driven(&motor.kind, channel, robot).with_wrappers(&motor.wrappers))
+            (0..end - first)
+                .map(|channel| self.0.driven(&motor.kind, channel, robot).with_wrappers(motor.wrappers.iter().rev()))
         });
         let channel = |(name, Meaning { quantity, unit, ends: [zero, one], .. }): (&String, Meaning)| MotorExport {
             name: name.clone(),

@@ -145,6 +145,61 @@ fn wires_do_what_they_say() {
     );
 }
 
+/// What wrappers do is told in the order in which they do it, and those without channels change all.
+#[test]
+fn wrappers_are_told_as_they_act() {
+    let rest = format!("{WORLD}{REWARD}[network]\nkind = \"perceptron\"\n[episode]\nsteps = 40\ntrials = 1\n");
+    let text = |sensor: &str, motor: &str| {
+        let sensors = format!("kind = \"infrared\"\nmodel = \"rays\"\ngroups = 8\nwrappers = [{sensor}]");
+        format!("{rest}[[sensors]]\n{sensors}\n[[motors]]\nkind = \"wheels\"\nwrappers = [{motor}]\n")
+    };
+    let told = |sensor: &str, motor: &str| {
+        let found = evaluator(&text(sensor, motor)).description();
+        let after = |meaning: &str| meaning.split_once(" With ").map_or(String::new(), |(_, words)| words.into());
+        [&found.sensors[0].meaning, &found.motors[0].meaning].map(|meaning| after(meaning))
+    };
+    for (wrapper, words) in [
+        ("{ kind = \"uniform-noise\", amplitude = 0.5 }", "noise of at most 0.5"),
+        ("{ kind = \"normal-noise\", deviation = 0.5 }", "normal noise of deviation 0.5"),
+        ("{ kind = \"delay\", steps = 1 }", "a delay of 1 step"),
+        ("{ kind = \"delay\", steps = 3 }", "a delay of 3 steps"),
+        ("{ kind = \"scale\", gain = 2.0 }", "a factor of 2"),
+        ("{ kind = \"scale\", gain = 2.0, offset = -1.0 }", "a factor of 2 and -1 added"),
+        ("{ kind = \"saturate\", low = 0.25, high = 1.0 }", "ends at 0.25 and 1"),
+        ("{ kind = \"threshold\", above = 0.5 }", "1 above 0.5 and 0 elsewhere"),
+        ("{ kind = \"lesion\" }", "0"),
+        ("{ kind = \"lesion\", channels = [1, 1] }", "0 in channel 1"),
+        ("{ kind = \"stuck\", channels = [0, 1], after = 5 }", "no change in channels 0 to 1 after 5 steps"),
+        ("{ kind = \"stuck\", value = 0.5 }", "0.5 after 0 steps"),
+    ] {
+        assert_eq!(told(wrapper, wrapper), [format!("{words}."), format!("{words}.")]);
+    }
+    assert_eq!(told("", ""), ["", ""]);
+    let two = "{ kind = \"scale\", gain = 4.0, offset = 0.5 }, { kind = \"saturate\", low = 0.6, high = 1.0 }";
+    let sensor = format!("{two}, {{ kind = \"stuck\", value = 0.25, after = 30 }}");
+    let order = ["a factor of 4 and 0.5 added", "ends at 0.6 and 1"];
+    assert_eq!(
+        told(&sensor, two),
+        [
+            format!("{}, then {}, then 0.25 after 30 steps.", order[0], order[1]),
+            format!("{}, then {}.", order[1], order[0])
+        ]
+    );
+    let all_of = |sensor: &str| {
+        let mut made = evaluator(&text(sensor, two));
+        let parameters = vec![0.5; made.parameters().len()];
+        recorded(made.as_mut(), &parameters, 3).1.all
+    };
+    let steps = all_of(&sensor);
+    assert_eq!(steps.len(), 40);
+    for (step, [x, _]) in steps.iter().enumerate() {
+        let fits = |x: &f32| if step < 30 { (0.6..=1.0).contains(x) } else { *x == 0.25 };
+        assert!(x.len() == 8 && x.iter().all(fits), "step {step}: {x:?}");
+    }
+    assert_eq!(steps, all_of(&sensor.replace("value = 0.25", "channels = [0, 7], value = 0.25")));
+    assert!(refused(&text("{ kind = \"lesion\", channels = [0, 8] }", "")).contains("wrappers"));
+}
+
 /// Robots start near what they are to start near, and areas apart from each other.
 #[test]
 fn places_are_near_and_apart() {

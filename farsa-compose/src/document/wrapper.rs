@@ -52,15 +52,17 @@ pub enum Wrapper {
     },
     /// Passes on 0 for some channels.
     Lesion {
-        /// The first and the last of them, from 0.
+        /// The first and the last of them, from 0; by default all.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 0, max = 65535)))]
-        channels: [u32; 2],
+        channels: Option<[u32; 2]>,
     },
     /// Keeps some channels where they are after some steps.
     Stuck {
-        /// The first and the last of them, from 0.
+        /// The first and the last of them, from 0; by default all.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 0, max = 65535)))]
-        channels: [u32; 2],
+        channels: Option<[u32; 2]>,
         /// The value that they have then; by default the last one before.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = -1e6, max = 1e6))]

@@ -15,21 +15,39 @@ impl Meaning {
         Self { quantity: quantity.into(), unit, ends, linear: true }
     }
 
-    /// The same with what changes its values on their way.
-    pub(crate) fn with_wrappers(self, wrappers: &[Wrapper]) -> Self {
-        let words = wrappers.iter().map(|wrapper| match wrapper {
-            Wrapper::UniformNoise { .. } | Wrapper::NormalNoise { .. } => "noise",
-            Wrapper::Delay { .. } => "a delay",
-            Wrapper::Scale { .. } => "a scale",
-            Wrapper::Saturate { .. } => "two ends",
-            Wrapper::Threshold { .. } => "a threshold",
-            Wrapper::Lesion { .. } => "a lesion",
-            Wrapper::Stuck { .. } => "a fault",
-        });
-        let words: Vec<&str> = words.collect();
-        if words.is_empty() {
-            return self;
+    /// The same with what changes its values on their way, in that order.
+    pub(crate) fn with_wrappers<'w>(self, wrappers: impl Iterator<Item = &'w Wrapper>) -> Self {
+        match changes(wrappers) {
+            words if words.is_empty() => self,
+            words => Self { quantity: format!("{}, with {words}", self.quantity), ..self },
         }
-        Self { quantity: format!("{}, with {}", self.quantity, words.join(", ")), ..self }
+    }
+}
+
+/// What changes values on their way, in that order; empty if nothing does.
+pub(crate) fn changes<'w>(wrappers: impl Iterator<Item = &'w Wrapper>) -> String {
+    wrappers.map(change).collect::<Vec<_>>().join(", then ")
+}
+
+fn change(wrapper: &Wrapper) -> String {
+    let within = |channels: &Option<[u32; 2]>| match channels {
+        None => String::new(),
+        Some([first, last]) if first == last => format!(" in channel {first}"),
+        Some([first, last]) => format!(" in channels {first} to {last}"),
+    };
+    match wrapper {
+        Wrapper::UniformNoise { amplitude } => format!("noise of at most {amplitude}"),
+        Wrapper::NormalNoise { deviation } => format!("normal noise of deviation {deviation}"),
+        Wrapper::Delay { steps: 1 } => "a delay of 1 step".into(),
+        Wrapper::Delay { steps } => format!("a delay of {steps} steps"),
+        Wrapper::Scale { gain, offset } if *offset == 0.0 => format!("a factor of {gain}"),
+        Wrapper::Scale { gain, offset } => format!("a factor of {gain} and {offset} added"),
+        Wrapper::Saturate { low, high } => format!("ends at {low} and {high}"),
+        Wrapper::Threshold { above } => format!("1 above {above} and 0 elsewhere"),
+        Wrapper::Lesion { channels } => format!("0{}", within(channels)),
+        Wrapper::Stuck { channels, value: Some(value), after } => {
+            format!("{value}{} after {after} steps", within(channels))
+        }
+        Wrapper::Stuck { channels, value: None, after } => format!("no change{} after {after} steps", within(channels)),
     }
 }

@@ -8,6 +8,7 @@ use crate::check::schema::{Part, SCHEMA};
 use crate::check::settings::names;
 use crate::document::{Document, Motor, MotorKind};
 use crate::parts::ends::Ends;
+use crate::parts::meaning::changes;
 use crate::parts::network::AnyNetwork;
 use crate::parts::searched::Searched;
 
@@ -75,18 +76,20 @@ fn absent(document: &Document) -> Result<Vec<String>, Error> {
     Ok(sensors.chain(motors).filter(|(_, enabled)| !enabled).map(|(name, _)| name).collect())
 }
 
-/// What the schema says of each sensor and motor that is there.
+/// What the schema says of each sensor and motor that is there, and what changes its values.
 fn about(document: &Document) -> Result<Vec<String>, Error> {
     let schema = &*SCHEMA;
     let Some(part) = Part::root(schema) else { return Ok(Vec::new()) };
     let [sensors, motors] = [json(&document.sensors)?, json(&document.motors)?];
-    let lists = [("sensors", sensors), ("motors", motors)];
-    let enabled = |part: &Value| part["enabled"] == true;
-    let found = lists.iter().flat_map(|(list, parts)| {
-        let kinds = parts.iter().filter(|part| enabled(part)).map(|part| part["kind"].as_str().unwrap_or_default());
-        kinds.map(|kind| part.about(list, kind).to_owned())
-    });
-    Ok(found.collect())
+    let said = |list: &str, own: &Value, changes: String| {
+        let about = part.about(list, own["kind"].as_str().unwrap_or_default());
+        if changes.is_empty() { about.to_owned() } else { format!("{about} With {changes}.") }
+    };
+    let of_sensors = document.sensors.iter().zip(&sensors).filter(|(sensor, _)| sensor.enabled);
+    let of_sensors = of_sensors.map(|(sensor, own)| said("sensors", own, changes(sensor.wrappers.iter())));
+    let of_motors = document.motors.iter().zip(&motors).filter(|(motor, _)| motor.enabled);
+    let of_motors = of_motors.map(|(motor, own)| said("motors", own, changes(motor.wrappers.iter().rev())));
+    Ok(of_sensors.chain(of_motors).collect())
 }
 
 /// Parts of a document as JSON.

@@ -1,5 +1,7 @@
 //! What is wrapped around sensors and motors alike.
 
+use std::ops::Bound;
+
 use farsa_body::{
     ChannelError, Channels, Delayed, Lesioned, Noise, Noisy, Saturated, Scaled, Stuck, StuckAt, Thresholded,
 };
@@ -31,6 +33,11 @@ impl<T: Channels> Wrapped<T> {
         let inner = Box::new(inner);
         // Another stream is given to it before every episode.
         let stream = Stream::from_seed(0);
+        let chosen = |channels: &Option<[u32; 2]>| {
+            channels.map_or((Bound::Unbounded, Bound::Unbounded), |[first, last]| {
+                (Bound::Included(first as usize), Bound::Included(last as usize))
+            })
+        };
         Ok(match wrapper {
             Wrapper::UniformNoise { amplitude } => {
                 Self::Noisy(Noisy::new(inner, Noise::Uniform(*amplitude as f32), stream)?)
@@ -48,12 +55,10 @@ impl<T: Channels> Wrapped<T> {
             Wrapper::Scale { gain, offset } => Self::Scaled(Scaled::new(inner, *gain as f32, *offset as f32)?),
             Wrapper::Saturate { low, high } => Self::Saturated(Saturated::new(inner, *low as f32, *high as f32)?),
             Wrapper::Threshold { above } => Self::Thresholded(Thresholded::new(inner, *above as f32)?),
-            Wrapper::Lesion { channels: [first, last] } => {
-                Self::Lesioned(Lesioned::new(inner, *first as usize..=*last as usize)?)
-            }
-            Wrapper::Stuck { channels: [first, last], value, after } => {
+            Wrapper::Lesion { channels } => Self::Lesioned(Lesioned::new(inner, chosen(channels))?),
+            Wrapper::Stuck { channels, value, after } => {
                 let at = value.map_or(StuckAt::Last, |value| StuckAt::Value(value as f32));
-                Self::Stuck(Stuck::new(inner, *first as usize..=*last as usize, at, *after)?)
+                Self::Stuck(Stuck::new(inner, chosen(channels), at, *after)?)
             }
         })
     }
