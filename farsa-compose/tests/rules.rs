@@ -65,6 +65,36 @@ fn recorded(evaluator: &mut dyn Evaluator, parameters: &[f32], trial: u32) -> (O
     (outcome, steps)
 }
 
+/// Where a robot ends, along any direction of the plane, is a term like others, and describes what it did.
+#[test]
+fn a_position_is_where_the_robot_is() {
+    let along = |name: &str, along: [f64; 3]| {
+        format!("[[reward]]\nname = \"{name}\"\nkind = \"position\"\nalong = {along:?}\nover = \"end\"\nweight = 0.0\n")
+    };
+    let rest = "[episode]\nsteps = 60\ntrials = 1\n[network]\nkind = \"perceptron\"\n[behaviour]\n\
+        descriptors = [{ term = \"x\", range = [0, 2] }, { term = \"slanting\", range = [0, 2] }]\n";
+    let terms = along("x", [0.2, 0.0, 0.0]) + &along("slanting", [-0.6, 0.8, 1.0]);
+    let text = format!("{WORLD}{PARTS}{REWARD}{terms}{rest}");
+    let mut task = evaluator(&text);
+    let parameters: Vec<f32> = (0..18).map(|number| 0.3 * number as f32 - 2.0).collect();
+    let mut ends = Vec::new();
+    for trial in 0..5 {
+        let (outcome, steps) = recorded(task.as_mut(), &parameters, trial);
+        let robot = steps.poses.last().map(|at| at.map(f64::from)).expect("a robot");
+        assert!(steps.poses.last() != steps.first.last(), "it moves");
+        let [x, y] = robot;
+        let found = task.behaviour().expect("descriptors").describe(&[outcome]);
+        assert_eq!(found[0], x);
+        assert!((found[1] - (0.8 * y - 0.6 * x)).abs() < 1e-12, "{found:?} at {robot:?}");
+        ends.push(x);
+    }
+    assert!(ends.iter().any(|x| *x != ends[0]), "starts differ");
+    let nowhere = text.replace("along = [0.2, 0.0, 0.0]", "along = [0.0, 0.0, 1.0]");
+    assert!(refused(&nowhere).contains("points nowhere in the plane"));
+    let body = text.replace("along = [0.2, 0.0, 0.0]", "along = [1.0, 0.0, 0.0]\nbody = \"hand\"");
+    assert!(refused(&body).contains("a robot on wheels is one body"));
+}
+
 /// A parameter that is fixed or shared does what the same number in its place does.
 #[test]
 fn parameters_are_fixed_and_shared() {

@@ -312,6 +312,38 @@ fn built_in_experiments_are_drawn_too() {
     }
 }
 
+/// Where a robot ends is what an archive keeps, and `check` says so.
+#[test]
+fn a_maze_is_searched_by_where_robots_end() {
+    let bench = Bench::new("maze");
+    std::fs::copy(folder().join("maze.toml"), bench.path("maze.toml")).expect("a copy");
+    let said = bench.succeed("check maze.toml");
+    assert!(said.ends_with("fitness: left, x, y\nbehaviour: x 0.0 to 1.5, y 0.0 to 1.0\n"), "{said}");
+    let said = bench.succeed("check maze.toml --json");
+    let found: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+    assert_eq!(found["descriptors"][1], serde_json::json!({ "name": "y", "range": [0.0, 1.0] }));
+    assert!(bench.succeed("check double-pole").contains("\nfitness: "));
+    let small = "--population 20 --generations 3 --set episode.steps=200 -q";
+    bench.succeed(&format!("run maze.toml --set evolution.parents=4 {small} --out novel"));
+    bench.succeed(&format!("run maze.toml --strategy map-elites {small} --out elites"));
+    let archive = bench.read("elites/archive.csv");
+    let (head, rows) = archive.split_once('\n').expect("a head");
+    let columns: Vec<&str> = head.split(',').collect();
+    let column =
+        |name: &str| columns.iter().position(|known| *known == name).unwrap_or_else(|| panic!("{name}: {head}"));
+    let ends: Vec<[f64; 2]> = rows
+        .lines()
+        .map(|row| {
+            ["x", "y"].map(|name| row.split(',').nth(column(name)).and_then(|x| x.parse().ok()).expect("a number"))
+        })
+        .collect();
+    assert!(ends.len() > 5, "{archive}");
+    // None is beyond a wall of the first room.
+    assert!(ends.iter().all(|[x, y]| (0.0..1.5).contains(x) && (0.0..0.5).contains(y)), "{archive}");
+    let spread = |k: usize| ends.iter().fold([1.0_f64, 0.0], |[low, high], at| [low.min(at[k]), high.max(at[k])]);
+    assert!([0, 1].into_iter().map(spread).all(|[low, high]| high > low + 0.05), "{archive}");
+}
+
 /// The guide shows the template that the command writes, and its pictures are there.
 #[test]
 fn the_guide_shows_what_the_command_writes() {

@@ -23,8 +23,9 @@ pub(crate) enum Measure {
     Moved,
     Speed,
     Forward,
-    /// Along a unit vector of the plane.
+    /// These two along a unit vector of the plane.
     Progress([f64; 2]),
+    Position([f64; 2]),
     WheelSpeed,
     StraightOn,
     /// Channels of the network's inputs.
@@ -91,13 +92,8 @@ impl Measure {
             }
             RewardKind::Speed { .. } => Measure::Speed,
             RewardKind::Forward { .. } => Measure::Forward,
-            RewardKind::Progress { along: [x, y, _], .. } => {
-                let length = Scalar::sqrt(x * x + y * y);
-                if length == 0.0 {
-                    return Err(places.wrong(&format!("{path}/along"), "points nowhere in the plane"));
-                }
-                Measure::Progress([x / length, y / length])
-            }
+            RewardKind::Progress { along, .. } => Measure::Progress(direction(along, path, places)?),
+            RewardKind::Position { along, .. } => Measure::Position(direction(along, path, places)?),
             RewardKind::Height { .. } | RewardKind::Upright { .. } | RewardKind::JointSpeed { .. } => {
                 return Err(places.wrong(path, "is for robots with joints; this one is on wheels"));
             }
@@ -136,12 +132,22 @@ impl Measure {
     }
 }
 
+/// A direction of the world as a unit vector of the plane.
+fn direction([x, y, _]: &[f64; 3], path: &str, places: &Places) -> Result<[f64; 2], Error> {
+    let length = Scalar::sqrt(x * x + y * y);
+    if length == 0.0 {
+        return Err(places.wrong(&format!("{path}/along"), "points nowhere in the plane"));
+    }
+    Ok([x / length, y / length])
+}
+
 /// Refuses what only a robot with joints has.
 fn check(kind: &RewardKind, path: &str, places: &Places) -> Result<(), Error> {
     let (body, bodies, point) = match kind {
         RewardKind::Near { body, point, .. }
         | RewardKind::Distance { body, point, .. }
-        | RewardKind::Approach { body, point, .. } => (body, &[][..], point),
+        | RewardKind::Approach { body, point, .. }
+        | RewardKind::Position { body, point, .. } => (body, &[][..], point),
         RewardKind::Displacement { body }
         | RewardKind::Speed { body }
         | RewardKind::Forward { body }

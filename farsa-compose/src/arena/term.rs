@@ -159,6 +159,7 @@ impl Term {
                 let [x, y] = from(rows.before[robot]);
                 x * u + y * v
             }
+            Measure::Position([u, v]) => at[0] * u + at[1] * v,
             Measure::WheelSpeed => {
                 let [left, right] = wheels();
                 0.5 * (left.abs() + right.abs())

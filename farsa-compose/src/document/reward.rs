@@ -127,6 +127,19 @@ pub enum RewardKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<String>,
     },
+    /// Where a point of the robot is along a direction of the world, from its origin [m]: `[1.0, 0.0, 0.0]` for x.
+    Position {
+        /// The direction, of any length.
+        #[schemars(inner(range(min = -1.0, max = 1.0)))]
+        along: [f64; 3],
+        /// Of which body of a robot with joints; by default its first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        body: Option<String>,
+        /// Of which point of that body [m].
+        #[serde(default)]
+        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
+        point: [f64; 3],
+    },
     /// How high a point of the robot is [m].
     Height {
         /// Of which body of a robot with joints; by default its first.

@@ -23,8 +23,9 @@ enum Measure {
     Moved(Spot),
     Speed(BodyId),
     Forward(BodyId),
-    /// Along a unit vector of the world.
+    /// These two along a unit vector of the world.
     Progress(BodyId, [f64; 3]),
+    Position(Point, [f64; 3]),
     Height(Point),
     Upright(BodyId),
     JointSpeed(Vec<JointId>),
@@ -115,6 +116,10 @@ impl Term {
                 let [x, y, z] = self.way(world, markers);
                 x * u + y * v + z * w
             }
+            Measure::Position(point, [u, v, w]) => {
+                let [x, y, z] = place_of(world, point);
+                x * u + y * v + z * w
+            }
             Measure::Height(point) => place_of(world, point)[2],
             Measure::Upright(body) => f64::from(world.pose(*body).rotate([0.0, 0.0, 1.0])[2]),
             Measure::JointSpeed(joints) => {
@@ -150,6 +155,11 @@ fn measure(
     let spot = |object: &String| scene.spot(object, &format!("{path}/object"), places);
     let point = |body: &Option<String>, at: &[f64; 3]| scene.point(body.as_ref(), *at, path, places);
     let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), places).map(|(body, _)| body);
+    let direction = |along: &[f64; 3]| {
+        let far = length(*along);
+        let points = far != 0.0;
+        points.then(|| along.map(|x| x / far)).ok_or_else(|| places.wrong(&format!("{path}/along"), "points nowhere"))
+    };
     Ok(match kind {
         RewardKind::Near { object, within, body, point: at } => {
             let (spot, reach) = spot(object)?;
@@ -162,13 +172,8 @@ fn measure(
         RewardKind::Moved { object } => Measure::Moved(spot(object)?.0),
         RewardKind::Speed { body: name } => Measure::Speed(body(name)?),
         RewardKind::Forward { body: name } => Measure::Forward(body(name)?),
-        RewardKind::Progress { along, body: name } => {
-            let far = length(*along);
-            if far == 0.0 {
-                return Err(places.wrong(&format!("{path}/along"), "points nowhere"));
-            }
-            Measure::Progress(body(name)?, along.map(|x| x / far))
-        }
+        RewardKind::Progress { along, body: name } => Measure::Progress(body(name)?, direction(along)?),
+        RewardKind::Position { along, body, point: at } => Measure::Position(point(body, at)?, direction(along)?),
         RewardKind::Height { body, point: at } => Measure::Height(point(body, at)?),
         RewardKind::Upright { body: name } => Measure::Upright(body(name)?),
         RewardKind::JointSpeed { joints } => Measure::JointSpeed(scene.joints(joints, |_| true, path, places)?),

@@ -96,6 +96,7 @@ impl Draw {
             format!("kind = \"speed\"\nbody = \"{body}\""),
             format!("kind = \"forward\"\nbody = \"{body}\""),
             format!("kind = \"progress\"\nalong = [1.0, 0.0, 0.0]\nover = \"sum\"\nbody = \"{body}\""),
+            format!("kind = \"position\"\nalong = [0.0, 1.0, 1.0]\nbody = \"{body}\""),
             format!("kind = \"height\"\nbody = \"{body}\"\npoint = [0.0, 0.0, -0.1]"),
             format!("kind = \"upright\"\nbody = \"{body}\""),
             "kind = \"joint-speed\"\nweight = -0.01".into(),

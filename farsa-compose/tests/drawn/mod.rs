@@ -126,6 +126,8 @@ impl Draw {
             "kind = \"energy\"",
             "kind = \"alive\"\nover = \"sum\"",
             "kind = \"moved\"\nobject = \"lamp\"",
+            "kind = \"progress\"\nalong = [1.0, 0.5, 0.0]",
+            "kind = \"position\"\nalong = [0.0, 1.0, 0.0]\nover = \"end\"",
             "kind = \"effort\"",
             "kind = \"steps\"",
         ];

@@ -165,12 +165,17 @@ fn places_and_ways_are_those_of_the_point() {
                 [[start]]\nplace = \"hinge\"\nat = \"turned\"\nlow = 1.0\nhigh = 1.0\n\
                 [[reward]]\nkind = \"distance\"\nobject = \"there\"\nbody = \"rod\"\npoint = [1.0, 0.0, 0.0]\nover = \"end\"\nweight = 0.0\n\
                 [[reward]]\nkind = \"height\"\nbody = \"rod\"\npoint = [0.0, 0.0, 0.25]\nover = \"end\"\nweight = 0.0\n\
+                [[reward]]\nname = \"up\"\nkind = \"position\"\nalong = [0.0, 0.0, 0.5]\nbody = \"rod\"\npoint = [0.0, 0.0, 0.25]\nover = \"end\"\nweight = 0.0\n\
+                [[reward]]\nname = \"slanting\"\nkind = \"position\"\nalong = [0.6, 0.8, 0.0]\nbody = \"rod\"\npoint = [1.0, 0.0, 0.0]\nover = \"end\"\nweight = 0.0\n\
                 [[reward]]\nkind = \"upright\"\nbody = \"rod\"\nover = \"end\"\nweight = 0.0\n\
                 [[reward]]\nkind = \"near\"\nobject = \"there\"\nbody = \"rod\"\npoint = [1.0, 0.0, 0.0]\nwithin = 0.5\nweight = 0.0";
     let still = outcome(&file("", motor, rest), 0.5);
     // The chord of an angle of 1 rad.
     close(measured(&still, "distance"), 2.0 * farsa_num::sin_cos(0.5_f64).0, 1e-4);
     close(measured(&still, "height"), 1.25, 1e-4);
+    assert_eq!(measured(&still, "up"), measured(&still, "height"));
+    let [sine, cosine] = <[f64; 2]>::from(farsa_num::sin_cos(1.0_f64));
+    close(measured(&still, "slanting"), 0.6 * cosine + 0.8 * sine, 1e-4);
     close(measured(&still, "upright"), 1.0, 1e-6);
     assert_eq!(measured(&still, "near"), 0.0);
     // It turns to 0 within two thirds of the time, and stops there at no place: it goes on to -0.5.
@@ -300,6 +305,11 @@ fn what_is_wrong_is_said() {
         (with("kind = \"held\""), "is for robots on wheels; this one has joints"),
         (with("kind = \"joint-speed\"\njoints = [\"hing\"]"), "unknown joint `hing`; the nearest is `hinge`"),
         (with("kind = \"progress\"\nalong = [0.0, 0.0, 0.0]"), "points nowhere"),
+        (with("kind = \"position\"\nalong = [0.0, 0.0, 0.0]"), "points nowhere"),
+        (
+            with("kind = \"position\"\nalong = [1.0, 0.0, 0.0]\nbody = \"rodd\""),
+            "unknown body `rodd`; the nearest is `rod`",
+        ),
         (with("kind = \"touch\"\nbodies = [\"base\"]"), "can touch nothing"),
         (object("name = \"floor\"\nkind = \"marker\"\nat = [0.0, 0.0]"), "`floor` names something else already"),
         (object("name = \"rod\"\nkind = \"marker\"\nat = [0.0, 0.0]"), "`rod` names something else already"),

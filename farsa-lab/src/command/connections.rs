@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use crate::command::behaviour::BehaviourInfo;
 use crate::error::Error;
 use crate::experiment::controller_export::{MotorDrive, SensorReading};
 use crate::experiment::evaluator::Task;
@@ -22,6 +23,8 @@ pub(crate) struct Connections {
     parameters: Vec<Searched>,
     motors: Vec<Group>,
     terms: Vec<String>,
+    #[serde(flatten)]
+    behaviour: BehaviourInfo,
     trials: usize,
     steps: usize,
     step_seconds: f64,
@@ -113,6 +116,7 @@ impl Connections {
             parameters: task.parameters().into_iter().map(|Parameter { name, ends }| Searched { name, ends }).collect(),
             motors: groups(&motors, &names(&schema.outputs), &of_motors),
             terms: task.terms(),
+            behaviour: BehaviourInfo::new(task.behaviour()),
             trials: task.trials(),
             steps,
             step_seconds,
@@ -134,7 +138,7 @@ impl Connections {
         let _ = writeln!(text, "\nnetwork: {}; {} parameters", self.network, self.parameters.len());
         let _ = writeln!(text, "trials: {}, each of at most {} steps ({seconds:?} s)", self.trials, self.steps);
         let _ = writeln!(text, "fitness: {}", self.terms.join(", "));
-        text
+        text + &self.behaviour.text()
     }
 
     /// As a drawing: sensors on the left, the network, motors on the right, and the terms below.

@@ -4,12 +4,11 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use crate::command::behaviour::BehaviourInfo;
 use crate::error::Error;
 use crate::experiment::PartNames;
-use crate::experiment::behaviour::Behaviour;
 use crate::experiment::definition::Experiment;
 use crate::experiment::outcome::{ChannelGroup, Description};
-use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::{Setting, Source, Value};
 use crate::json::pretty;
@@ -72,22 +71,13 @@ struct Info {
     steps: usize,
     step_seconds: f64,
     fitness_terms: Vec<String>,
-    /// For strategies of several objectives, the fitness first.
-    objectives: Vec<String>,
-    /// What behaviour is described by.
-    descriptors: Vec<DescriptorInfo>,
+    #[serde(flatten)]
+    behaviour: BehaviourInfo,
     /// What `farsa test --protocol` offers.
     protocols: Vec<ProtocolInfo>,
     /// What `farsa test --lesion` can change: kinds of changes, and the names that each knows.
     lesions: Vec<PartNames>,
     settings: Vec<SettingInfo>,
-}
-
-/// A value that describes a behaviour, and its range.
-#[derive(Serialize)]
-struct DescriptorInfo {
-    name: String,
-    range: [f64; 2],
 }
 
 /// What there is to know of a test protocol.
@@ -151,10 +141,6 @@ impl Info {
         let protocols = evaluator.protocols();
         Protocol::check(&protocols)?;
         let settings = plan.settings.table().iter().map(SettingInfo::new);
-        let behaviour = evaluator.behaviour();
-        let others = behaviour.map(Behaviour::objectives).unwrap_or_default();
-        let descriptors = behaviour.map(Behaviour::descriptors).unwrap_or_default();
-        let descriptor = |Parameter { name, ends }| DescriptorInfo { name, range: ends };
         Ok(Self {
             experiment: plan.experiment.name().into(),
             summary: plan.experiment.summary().into(),
@@ -172,8 +158,7 @@ impl Info {
             steps,
             step_seconds,
             fitness_terms: evaluator.terms(),
-            objectives: ["fitness".into()].into_iter().chain(others).collect(),
-            descriptors: descriptors.into_iter().map(descriptor).collect(),
+            behaviour: BehaviourInfo::new(evaluator.behaviour()),
             protocols: protocols.into_iter().map(ProtocolInfo::new).collect(),
             lesions: evaluator.anatomy().map(|anatomy| anatomy.names()).unwrap_or_default(),
             settings: settings.collect(),
@@ -218,16 +203,7 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
     let clock = if seconds > 0.0 { format!(" ({seconds:?} s)") } else { String::new() };
     let _ = writeln!(text, "trials: {}, each of at most {} steps{clock}", info.trials, info.steps);
     let _ = writeln!(text, "fitness: {}", info.fitness_terms.join(", "));
-    if info.objectives.len() > 1 {
-        let _ = writeln!(text, "objectives: {}", info.objectives.join(", "));
-    }
-    if !info.descriptors.is_empty() {
-        let named = info
-            .descriptors
-            .iter()
-            .map(|DescriptorInfo { name, range: [low, high] }| format!("{name} {low:?} to {high:?}"));
-        let _ = writeln!(text, "behaviour: {}", named.collect::<Vec<_>>().join(", "));
-    }
+    text += &info.behaviour.text();
     if !info.protocols.is_empty() {
         let _ = writeln!(text, "\nprotocols of `test --protocol`:");
     }

@@ -1,6 +1,7 @@
 //! The command `farsa` for any set of experiments.
 //!
 //! - `arguments`: the words of the command line
+//! - `behaviour`: what is said of an individual beside its fitness
 //! - `cli`: the command: `main` for any set of experiments
 //! - `connections`: what is connected to what: sensors with inputs, outputs with motors, terms with the fitness
 //! - `export`: `farsa export`: of what, and where to
@@ -16,6 +17,7 @@
 //! - `strategies`: `farsa strategies`: what a run can search with
 
 mod arguments;
+mod behaviour;
 pub mod cli;
 mod connections;
 mod export;
