@@ -1234,6 +1234,37 @@ async function withoutWebAssembly(driver) {
   }
 }
 
+// A worker that takes its time, as on a phone, is nothing wrong; a module that is damaged is.
+async function beginning(driver) {
+  const browser = await driver.open();
+  try {
+    const source = `globalThis.Worker = class extends Worker {
+      constructor(...given) {
+        super(...given);
+        this.addEventListener("message", (event) => event.stopImmediatePropagation());
+      }
+    };`;
+    const { identifier } = await browser.cdp("Page.addScriptToEvaluateOnNewDocument", { source });
+    await browser.go(pathToFileURL(resolve(livePage)));
+    await browser.until(() => window.farsa && document.readyState === "complete");
+    // A message waits for half a second.
+    await sleep(1000);
+    const begun = await browser.run(() => [farsa.ready, farsa.error, document.querySelector("#message").hidden, document.querySelector("#app").hidden]);
+    check("a page whose worker still begins does not say that anything is wrong", begun.join() === "false,,true,false", JSON.stringify(begun));
+    await browser.cdp("Page.removeScriptToEvaluateOnNewDocument", { identifier });
+    const live = readFileSync(livePage, "utf8");
+    const data = dataOf(live);
+    const { module } = data.live;
+    const at = module.xz.length >> 1;
+    module.xz = module.xz.slice(0, at) + (module.xz[at] === "A" ? "B" : "A") + module.xz.slice(at + 1);
+    await opened(browser, write("damaged-module.html", withData(live, data)));
+    const [error, seen] = await browser.run(() => [farsa.error, !document.querySelector("#message").hidden && document.querySelector("#message").textContent]);
+    check("a page whose module is damaged says so", /cannot be unpacked/.test(error) && /cannot be unpacked/.test(seen), `${error} ${seen}`);
+  } finally {
+    await browser.close();
+  }
+}
+
 const invented = compose(pageOf([armTrial(0)]));
 const html = page ? readFileSync(page, "utf8") : invented;
 const url = page ? pathToFileURL(resolve(page)) : write("page.html", html);
@@ -1273,6 +1304,7 @@ try {
   if (!isFirefox) await part("names on low screens", () => lettered(driver));
   if (!isFirefox) await part("without WebGL", () => withoutWebGL(driver, url));
   if (livePage && !isFirefox) await part("without WebAssembly", () => withoutWebAssembly(driver));
+  if (livePage && !isFirefox) await part("beginning", () => beginning(driver));
 } catch (error) {
   check("the browser runs", false, error.message);
 } finally {

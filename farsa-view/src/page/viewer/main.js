@@ -126,7 +126,8 @@ async function main() {
 	const dark = prefers("color-scheme: dark");
 	(dark.onchange = () => player.setTheme(dark.matches ? "dark" : "light"))();
 	$("app").hidden = false;
-	// While the worker begins.
+	// The page is whole; while the worker begins, which takes a phone seconds, nothing is wrong.
+	$("message").hidden = true;
 	player.open(1);
 
 	const attach = await begun;
@@ -134,7 +135,6 @@ async function main() {
 	listen(actsOf(player));
 	player.place(trials[0], trials[page.beside]);
 	const whole = attach?.(player);
-	$("message").hidden = true;
 	await seen();
 	// What is below the scene comes after it.
 	farsa.first = performance.now();
