@@ -9,6 +9,7 @@ mod export;
 mod files;
 mod genotypes;
 mod guide;
+mod individuals;
 mod lines;
 mod live;
 mod look;

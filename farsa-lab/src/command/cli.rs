@@ -249,7 +249,8 @@ impl<'e> Invocation<'e, '_> {
     }
 
     fn test(&self, args: TestArgs) -> Result<(), Error> {
-        let (TestArgs { directory, trials, protocol, lesion, seed, workers, world, json }, quiet) = (args, self.quiet);
+        let (which, quiet) = (args.which(), self.quiet);
+        let TestArgs { directory, trials, protocol, lesion, seed, workers, world, json, .. } = args;
         let (mut directory, mut plan) = self.existing(&directory)?;
         let other = world_choice::visit(&mut plan, world.name.as_deref())?;
         if let Some(other) = world.name.filter(|_| other) {
@@ -267,7 +268,10 @@ impl<'e> Invocation<'e, '_> {
             return self.summary(json, &found.text(), &|| pretty(&found));
         }
         let trials = trials.unwrap_or(test::TRIALS);
-        let found = test::test(&plan, &directory, trials, seed, threads, lanes, quiet)?;
+        let found = match which {
+            Some(which) => test::test_individual(&plan, &directory, which, trials, seed, threads, lanes, quiet)?,
+            None => test::test(&plan, &directory, trials, seed, threads, lanes, quiet)?,
+        };
         self.summary(json, &found.text(), &|| pretty(&found))
     }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use farsa_body::Recorder;
 use farsa_evo::ObservationStatistics;
@@ -23,6 +23,7 @@ use crate::run::contained::caught;
 use crate::run::plan::Plan;
 use crate::run::told::history;
 use crate::store::directory::Directory;
+use crate::strategy::history::History;
 use crate::strategy::opponents;
 use crate::strategy::search::Genome;
 
@@ -48,6 +49,47 @@ pub(crate) struct Which {
     pub(crate) trial: WhichTrial,
 }
 
+/// Where an individual of a run is.
+pub(crate) struct Found<'p> {
+    pub(crate) history: History<'p>,
+    /// The file that the history is from.
+    pub(crate) path: PathBuf,
+    pub(crate) generation: u32,
+    /// Counted through all populations.
+    pub(crate) individual: u32,
+}
+
+impl<'p> Found<'p> {
+    /// Looks for an individual of a run.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
+    /// keeps the run of another version from being replayed.
+    pub(crate) fn new(plan: &'p Plan<'_>, directory: &Directory, which: Which) -> Result<Self, Error> {
+        let (identity, history, path) = history(plan, directory)?;
+        identity.same_values(&plan.identity()?, &path)?;
+        let finished = history.finished();
+        if finished == 0 {
+            return Err(Error::damaged(&path, "no generation is finished yet"));
+        }
+        let generation = which.generation.unwrap_or(finished.saturating_sub(1));
+        let Some(best) = history.champion(0, generation) else {
+            return Err(Error::Usage(format!(
+                "{}: generation {generation} of {finished} finished ones (the first is 0)",
+                directory.path().display()
+            )));
+        };
+        let individual = which.individual.unwrap_or(best as u32);
+        let all = history.populations() * history.size();
+        if individual as usize >= all {
+            return Err(Error::Usage(format!(
+                "generation {generation}: individual {individual} of a population of {all}"
+            )));
+        }
+        Ok(Self { history, path, generation, individual })
+    }
+}
+
 /// An individual of a run, with all that a replay needs.
 pub(crate) struct Replayable {
     pub(crate) evaluator: Box<dyn Evaluator>,
@@ -71,26 +113,7 @@ impl Replayable {
     /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
     /// keeps the run of another version from being replayed.
     pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, which: Which) -> Result<Self, Error> {
-        let (identity, history, path) = history(plan, directory)?;
-        identity.same_values(&plan.identity()?, &path)?;
-        let finished = history.finished();
-        if finished == 0 {
-            return Err(Error::damaged(&path, "no generation is finished yet"));
-        }
-        let generation = which.generation.unwrap_or(finished.saturating_sub(1));
-        let Some(best) = history.champion(0, generation) else {
-            return Err(Error::Usage(format!(
-                "{}: generation {generation} of {finished} finished ones (the first is 0)",
-                directory.path().display()
-            )));
-        };
-        let individual = which.individual.unwrap_or(best as u32);
-        let all = history.populations() * history.size();
-        if individual as usize >= all {
-            return Err(Error::Usage(format!(
-                "generation {generation}: individual {individual} of a population of {all}"
-            )));
-        }
+        let Found { history, path, generation, individual } = Found::new(plan, directory, which)?;
         let genes = history.genomes(&[(generation, individual as usize)])?;
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());

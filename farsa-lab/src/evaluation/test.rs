@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::evaluation::recorded::{self, TableRecord};
+use crate::evaluation::replay::{Found, Which};
 use crate::evaluation::test_table::{Findings, Table, TrialResult};
 use crate::evaluation::trials::episode;
 use crate::experiment::episode::EpisodeId;
@@ -110,22 +111,52 @@ pub(crate) fn test(
     let subject = Subject::read(plan, directory, &pool)?;
     // Where nothing can be written, that is said before anything is computed.
     drop(Lock::of_tests(directory.path())?);
+    let found = tested(&mut pool, subject, directory, trials, seed, quiet)?;
+    let TestRun { generation, individual, .. } = found;
+    let path = directory.test();
+    let bytes = found.table.csv(&path)?;
+    let record = |table_crc| Record { generation, individual, trials, seed, table_crc };
+    recorded::write(directory.path(), (&path, &bytes), &directory.test_record(), record)?;
+    Ok(found)
+}
+
+/// The same of any individual of a finished generation, such as one of an archive; writes no file, since those that there are
+/// speak of the champion.
+pub(crate) fn test_individual(
+    plan: &Plan<'_>,
+    directory: &Directory,
+    which: Which,
+    trials: usize,
+    seed: u64,
+    threads: usize,
+    lanes: Wanted,
+    quiet: bool,
+) -> Result<TestRun, Error> {
+    let mut pool = Pool::new(plan, threads, lanes)?;
+    let subject = Subject::find(plan, directory, &pool, which)?;
+    tested(&mut pool, subject, directory, trials, seed, quiet)
+}
+
+/// What fresh trials of a subject find.
+fn tested(
+    pool: &mut Pool<'_>,
+    subject: Subject,
+    directory: &Directory,
+    trials: usize,
+    seed: u64,
+    quiet: bool,
+) -> Result<TestRun, Error> {
     let progress = Progress::new(0, trials as u64, quiet);
-    let results = run_trials(&mut pool, subject.tested(), Trials::plain(trials, seed), &progress);
+    let results = run_trials(pool, subject.tested(), Trials::plain(trials, seed), &progress);
     drop(progress);
     let results = results?;
-
     let terms = pool.evaluator().terms();
     let names = pool.evaluator().populations();
     let failure = failure(&results, &terms);
     let table = Table::new(&terms, names.get(1..subject.count()).unwrap_or(&[]), &results);
     let Subject { generation, individual, individuals, warning, .. } = subject;
-    let path = directory.test();
-    let bytes = table.csv(&path)?;
-    let record = |table_crc| Record { generation, individual, trials, seed, table_crc };
-    recorded::write(directory.path(), (&path, &bytes), &directory.test_record(), record)?;
-    let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
-    Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, failure, table })
+    let (directory, findings) = (directory.path().display().to_string(), table.findings(&terms));
+    Ok(TestRun { directory, generation, individual, individuals, seed, findings, warning, failure, table })
 }
 
 /// Whom a test is about, in words.
@@ -146,7 +177,7 @@ pub(crate) fn failure(results: &[TrialResult], terms: &[String]) -> Option<Strin
     failed.map(|(number, why)| format!("line {number} of the test failed: {why}"))
 }
 
-/// A run's champion, or those of all its populations, ready to be tested.
+/// A run's champion or another individual, or one of each of its populations, ready to be tested.
 pub(crate) struct Subject {
     pub(crate) generation: u32,
     pub(crate) individual: u32,
@@ -182,6 +213,34 @@ impl Subject {
         };
         let individuals = if best.len() > 1 { best.iter().map(|best| best.individual).collect() } else { Vec::new() };
         Ok(Self { generation, individual, individuals, warning, parameters, size, normalisation })
+    }
+
+    /// Finds an individual of a finished generation, by default its best; it meets the best of the other populations.
+    ///
+    /// # Errors
+    /// Those of [`Found::new`], and [`Error::Damaged`].
+    fn find(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>, which: Which) -> Result<Self, Error> {
+        let Found { history, path, generation, individual } = Found::new(plan, directory, which)?;
+        let (size, own) = (history.size(), individual as usize / history.size().max(1));
+        let best = |population| {
+            if population == own { Some(individual as usize) } else { history.champion(population, generation) }
+        };
+        let others = || Error::damaged(&path, "its genomes are not those of the experiment");
+        let all: Vec<usize> = (0..history.populations()).map(best).collect::<Option<_>>().ok_or_else(others)?;
+        let wanted: Vec<(u32, usize)> = all.iter().map(|&individual| (generation, individual)).collect();
+        let genomes = history.genomes(&wanted)?;
+        let parameters: Option<Vec<_>> = genomes.iter().map(|genes| genes.decode(pool.genotype())).collect();
+        let parameters = parameters.filter(|all| all.len() == pool.evaluator().populations().len());
+        let several = all.len() > 1;
+        Ok(Self {
+            generation,
+            individual: all.first().map_or(individual, |&first| first as u32),
+            individuals: if several { all.iter().map(|&individual| individual as u32).collect() } else { Vec::new() },
+            warning: None,
+            parameters: parameters.ok_or_else(others)?,
+            size: if several { size } else { 0 },
+            normalisation: history.normalisation(generation).cloned(),
+        })
     }
 
     /// What is evaluated.

@@ -201,6 +201,12 @@ pub(crate) struct TestArgs {
     /// Test every case of one of the experiment's test protocols, which `info` lists
     #[arg(long, value_name = "NAME")]
     pub(crate) protocol: Option<String>,
+    /// Test the best of this generation, from 0, in place of the last one's; writes no file
+    #[arg(long, value_name = "N", conflicts_with_all = ["protocol", "lesion"])]
+    generation: Option<u32>,
+    /// Test this individual of the generation, from 0, such as one of an archive; writes no file
+    #[arg(long, value_name = "N", conflicts_with_all = ["protocol", "lesion"])]
+    individual: Option<u32>,
     /// Change parts of the controller together, such as neuron:3,link:2-5,sensor:touch, and test it beside the whole one; writes no
     /// file
     #[arg(long, value_name = "LIST")]
@@ -215,6 +221,14 @@ pub(crate) struct TestArgs {
     /// Write what was found as JSON, without the table
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl TestArgs {
+    /// Another individual than the champion, if one is asked for.
+    pub(crate) fn which(&self) -> Option<Which> {
+        let Self { generation, individual, .. } = *self;
+        (generation.is_some() || individual.is_some()).then(|| Which { generation, individual, ..Which::default() })
+    }
 }
 
 /// Which trials of a run.
