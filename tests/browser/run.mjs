@@ -1234,7 +1234,7 @@ async function withoutWebAssembly(driver) {
   }
 }
 
-// A worker that takes its time, as on a phone, is nothing wrong; a module that is damaged is.
+// A worker that takes its time is nothing wrong; a module that is damaged is.
 async function beginning(driver) {
   const browser = await driver.open();
   try {

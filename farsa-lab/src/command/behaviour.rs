@@ -16,6 +16,7 @@ pub(crate) struct BehaviourInfo {
     descriptors: Vec<DescriptorInfo>,
 }
 
+/// A value that describes a behaviour, and its range.
 #[derive(Serialize)]
 struct DescriptorInfo {
     name: String,

@@ -268,10 +268,7 @@ impl<'e> Invocation<'e, '_> {
             return self.summary(json, &found.text(), &|| pretty(&found));
         }
         let trials = trials.unwrap_or(test::TRIALS);
-        let found = match which {
-            Some(which) => test::test_individual(&plan, &directory, which, trials, seed, threads, lanes, quiet)?,
-            None => test::test(&plan, &directory, trials, seed, threads, lanes, quiet)?,
-        };
+        let found = test::test(&plan, &directory, which, trials, seed, threads, lanes, quiet)?;
         self.summary(json, &found.text(), &|| pretty(&found))
     }
 

@@ -94,13 +94,15 @@ impl TestRun {
     }
 }
 
-/// Runs `trials` fresh trials of the champion and writes `test.csv`.
+/// Runs `trials` fresh trials of the champion and writes `test.csv`; or of another individual, such as one of an archive, and
+/// writes no file, since those that there are speak of the champion.
 ///
 /// Trial i of the test is trial i modulo the experiment's number of trials, with random numbers of its own. The champions
 /// of several populations meet each other: each trial is run once for each of them, with the same numbers.
 pub(crate) fn test(
     plan: &Plan<'_>,
     directory: &Directory,
+    other: Option<Which>,
     trials: usize,
     seed: u64,
     threads: usize,
@@ -108,55 +110,32 @@ pub(crate) fn test(
     quiet: bool,
 ) -> Result<TestRun, Error> {
     let mut pool = Pool::new(plan, threads, lanes)?;
-    let subject = Subject::read(plan, directory, &pool)?;
-    // Where nothing can be written, that is said before anything is computed.
-    drop(Lock::of_tests(directory.path())?);
-    let found = tested(&mut pool, subject, directory, trials, seed, quiet)?;
-    let TestRun { generation, individual, .. } = found;
-    let path = directory.test();
-    let bytes = found.table.csv(&path)?;
-    let record = |table_crc| Record { generation, individual, trials, seed, table_crc };
-    recorded::write(directory.path(), (&path, &bytes), &directory.test_record(), record)?;
-    Ok(found)
-}
-
-/// The same of any individual of a finished generation, such as one of an archive; writes no file, since those that there are
-/// speak of the champion.
-pub(crate) fn test_individual(
-    plan: &Plan<'_>,
-    directory: &Directory,
-    which: Which,
-    trials: usize,
-    seed: u64,
-    threads: usize,
-    lanes: Wanted,
-    quiet: bool,
-) -> Result<TestRun, Error> {
-    let mut pool = Pool::new(plan, threads, lanes)?;
-    let subject = Subject::find(plan, directory, &pool, which)?;
-    tested(&mut pool, subject, directory, trials, seed, quiet)
-}
-
-/// What fresh trials of a subject find.
-fn tested(
-    pool: &mut Pool<'_>,
-    subject: Subject,
-    directory: &Directory,
-    trials: usize,
-    seed: u64,
-    quiet: bool,
-) -> Result<TestRun, Error> {
+    let subject = match other {
+        Some(which) => Subject::find(plan, directory, &pool, which)?,
+        None => Subject::read(plan, directory, &pool)?,
+    };
+    if other.is_none() {
+        // Where nothing can be written, that is said before anything is computed.
+        drop(Lock::of_tests(directory.path())?);
+    }
     let progress = Progress::new(0, trials as u64, quiet);
-    let results = run_trials(pool, subject.tested(), Trials::plain(trials, seed), &progress);
+    let results = run_trials(&mut pool, subject.tested(), Trials::plain(trials, seed), &progress);
     drop(progress);
     let results = results?;
+
     let terms = pool.evaluator().terms();
     let names = pool.evaluator().populations();
     let failure = failure(&results, &terms);
     let table = Table::new(&terms, names.get(1..subject.count()).unwrap_or(&[]), &results);
     let Subject { generation, individual, individuals, warning, .. } = subject;
-    let (directory, findings) = (directory.path().display().to_string(), table.findings(&terms));
-    Ok(TestRun { directory, generation, individual, individuals, seed, findings, warning, failure, table })
+    if other.is_none() {
+        let path = directory.test();
+        let bytes = table.csv(&path)?;
+        let record = |table_crc| Record { generation, individual, trials, seed, table_crc };
+        recorded::write(directory.path(), (&path, &bytes), &directory.test_record(), record)?;
+    }
+    let (path, findings) = (directory.path().display().to_string(), table.findings(&terms));
+    Ok(TestRun { directory: path, generation, individual, individuals, seed, findings, warning, failure, table })
 }
 
 /// Whom a test is about, in words.

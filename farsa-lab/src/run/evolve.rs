@@ -423,7 +423,7 @@ mod tests {
         let replayed = said(replay(&plan, &directory, Which::default(), None, || Ok(Vec::new())).unwrap_err());
         assert!(replayed.contains("record.bin: ") && replayed.contains(words), "{replayed}");
         // The champion's genes are what they are; that it may behave otherwise is worth a warning.
-        let tested = test::test(&plan, &directory, 3, 1, 1, Wanted::ONE, true).unwrap().text();
+        let tested = test::test(&plan, &directory, None, 3, 1, 1, Wanted::ONE, true).unwrap().text();
         assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
         fs::remove_dir_all(root).unwrap();
     }
@@ -439,7 +439,7 @@ mod tests {
         assert!(stopped.to_string().contains("`farsa run --resume "), "{stopped}");
         // Nobody is best yet.
         assert!(
-            test::test(&plan, &directory, 1, 1, 1, Wanted::ONE, true)
+            test::test(&plan, &directory, None, 1, 1, 1, Wanted::ONE, true)
                 .unwrap_err()
                 .to_string()
                 .contains("no generation is finished")

@@ -97,7 +97,7 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     let wanted: Vec<(u32, usize)> = champions.best.iter().map(|best| (6, best.individual as usize)).collect();
     let genes: Vec<_> = champions.best.into_iter().map(|best| best.genes).collect();
     assert_eq!(history.genomes(&wanted).unwrap(), genes, "{name}");
-    test::test(&all, &whole, 6, 1, 2, Wanted::ONE, true).unwrap();
+    test::test(&all, &whole, None, 6, 1, 2, Wanted::ONE, true).unwrap();
     drop(pool(&all, 1));
     fs::remove_dir_all(root).unwrap();
 }

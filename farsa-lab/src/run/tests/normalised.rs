@@ -222,7 +222,7 @@ fn the_champion_is_tested_with_the_normalisation_of_its_generation() {
     let plan = plan(&SCALES, GENERATIONS);
     let directory = create(&plan, &root).unwrap();
     run(&plan, &directory, 2);
-    test::test(&plan, &directory, 5, 1, 2, Wanted::ONE, true).unwrap();
+    test::test(&plan, &directory, None, 5, 1, 2, Wanted::ONE, true).unwrap();
     let text = fs::read_to_string(directory.test()).unwrap();
     let found: Vec<f64> = text.lines().skip(1).map(|line| line.split(',').nth(4).unwrap().parse().unwrap()).collect();
     let best = crate::BestOfRun::read_in(&root, &Laboratory::new(&[&SCALES])).unwrap();

@@ -182,7 +182,7 @@ fn every_case_is_told_and_has_the_starts_of_a_plain_test() {
         "case,row,column,held_out,index,trial,steps,success,fitness,case,start,way,population"
     );
     assert_eq!(lines.len(), 1 + 4 * 4);
-    plain_test::test(&words_plan(&WORDS), &directory, 4, 3, 1, Wanted::ONE, true).unwrap();
+    plain_test::test(&words_plan(&WORDS), &directory, None, 4, 3, 1, Wanted::ONE, true).unwrap();
     let plain = read("test.csv");
     let starts: Vec<&str> = plain.lines().skip(1).map(|line| line.split(',').nth(6).unwrap()).collect();
     for (number, line) in lines[1..].iter().enumerate() {

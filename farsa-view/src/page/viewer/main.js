@@ -126,7 +126,7 @@ async function main() {
 	const dark = prefers("color-scheme: dark");
 	(dark.onchange = () => player.setTheme(dark.matches ? "dark" : "light"))();
 	$("app").hidden = false;
-	// The page is whole; while the worker begins, which takes a phone seconds, nothing is wrong.
+	// The page is whole. While the worker begins nothing is wrong.
 	$("message").hidden = true;
 	player.open(1);
 
