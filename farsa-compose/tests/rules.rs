@@ -302,6 +302,29 @@ fn who_has_no_energy_is_dead() {
     assert!(refused(&text.replace("nest = \"nest\"", "nest = \"robot\"")).contains("unknown object `robot`"));
 }
 
+/// What has no weight is measured: it is no term of the fitness, and a product is not 0 because of it.
+#[test]
+fn fitness_is_made_of_terms_with_a_weight() {
+    let text = format!("{WORLD}{FORAGING}[network]\nkind = \"perceptron\"\n[episode]\nsteps = 30\ntrials = 1\n");
+    let lived = |text: &str| {
+        let mut task = evaluator(text);
+        let parameters = vec![0.3; task.parameters().len()];
+        let outcome = recorded(task.as_mut(), &parameters, 0).0;
+        (task.terms(), task.fitness(std::slice::from_ref(&outcome)), outcome)
+    };
+    let (terms, fitness, outcome) = lived(&text);
+    assert_eq!((terms, &outcome.terms[..]), (vec!["food".to_owned()], &[fitness][..]));
+    let notes: Vec<&str> = outcome.notes.iter().map(|(name, _)| *name).collect();
+    assert_eq!(notes, ["measured energy", "measured alive"]);
+    let paid = text.replace("kind = \"alive\"\nover = \"sum\"\nweight = 0.0", "kind = \"alive\"\nover = \"sum\"");
+    let (terms, product, outcome) = lived(&format!("{paid}[fitness]\nproduct = true\n"));
+    assert_eq!(terms, ["food", "alive"]);
+    assert!(product == outcome.terms[0] * outcome.terms[1] && outcome.terms[1] > 1.0, "{outcome:?}");
+    let (terms, fitness, outcome) =
+        lived(&text.replace("over = \"end\"\n[[reward]]", "over = \"end\"\nweight = 0.0\n[[reward]]"));
+    assert_eq!((terms.len(), fitness, outcome.notes.len()), (3, 0.0, 3), "where none has a weight");
+}
+
 /// What archives look at are the means of what terms measure, before their weights.
 #[test]
 fn behaviours_are_measures_of_terms() {

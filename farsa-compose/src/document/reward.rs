@@ -12,7 +12,7 @@ pub struct Reward {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = NAME))]
     pub name: Option<String>,
-    /// What it is multiplied by; below 0 it is a cost.
+    /// What it is multiplied by; below 0 it is a cost, with 0 it is measured and no part of the fitness.
     #[serde(default = "one")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub weight: f64,

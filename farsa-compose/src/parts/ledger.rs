@@ -22,6 +22,8 @@ pub(crate) struct Ledger {
     success: Vec<Wanted>,
     failure: Vec<Wanted>,
     pub(crate) behaviour: Option<TermBehaviour>,
+    /// The terms that fitness is made of: those with a weight, or all where none has one.
+    paid: Vec<usize>,
     /// The terms whose measures are notes of an outcome, with their names.
     notes: Vec<(usize, &'static str)>,
     /// Most steps of a trial.
@@ -62,12 +64,15 @@ impl Ledger {
         let noted = tallies.iter().enumerate().filter(|(_, tally)| {
             tally.is_only_measured() || behaviour.as_ref().is_some_and(|behaviour| behaviour.looks_at(&tally.name))
         });
+        let paid: Vec<usize> = (0..tallies.len()).filter(|number| !tallies[*number].is_only_measured()).collect();
+        let paid = if paid.is_empty() { (0..tallies.len()).collect() } else { paid };
         let notes = noted.map(|(number, tally)| (number, lasting(&note_of(&tally.name)))).collect();
         Ok(Self {
             tallies,
             success,
             failure,
             behaviour,
+            paid,
             notes,
             most_steps: document.episode.steps,
             product: document.fitness.product,
@@ -121,20 +126,24 @@ impl Ledger {
 
     /// What the trial has earned so far.
     pub(crate) fn earned(&self) -> f64 {
-        let terms = self.tallies.iter().map(|tally| tally.earned(self.most_steps));
+        let terms = self.paid().map(|tally| tally.earned(self.most_steps));
         if self.product { terms.product() } else { terms.sum() }
     }
 
-    /// The names of the terms.
+    fn paid(&self) -> impl Iterator<Item = &Tally> {
+        self.paid.iter().filter_map(|number| self.tallies.get(*number))
+    }
+
+    /// The names of the terms that fitness is made of.
     pub(crate) fn names(&self) -> Vec<String> {
-        self.tallies.iter().map(|tally| tally.name.clone()).collect()
+        self.paid().map(|tally| tally.name.clone()).collect()
     }
 
     /// What came of the trial.
     pub(crate) fn outcome(&self) -> Outcome {
         let (steps, tallies) = (self.most_steps, &self.tallies);
         Outcome {
-            terms: tallies.iter().map(|tally| tally.earned(steps)).collect(),
+            terms: self.paid().map(|tally| tally.earned(steps)).collect(),
             steps: self.steps,
             success: self.succeeded,
             notes: self
