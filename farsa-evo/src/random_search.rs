@@ -90,6 +90,10 @@ impl Strategy for RandomSearch {
         Ok(())
     }
 
+    fn keeps_champion(&self) -> bool {
+        true
+    }
+
     fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
         Some(self)
     }

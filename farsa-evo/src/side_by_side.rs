@@ -168,6 +168,11 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for SideBySide<S, G> {
         self.members.first()?.collection().map(|_| self as &dyn Collection)
     }
 
+    /// Never: populations may meet, and what an individual earns depends on whom it met.
+    fn keeps_champion(&self) -> bool {
+        false
+    }
+
     /// Those of one search after the other.
     fn diagnostics(&self) -> Vec<f64> {
         self.members.iter().flat_map(Strategy::diagnostics).collect()

@@ -112,6 +112,14 @@ pub trait Strategy<G: Gene = u16> {
         None
     }
 
+    /// Whether the champion of a search is the best individual of all generations instead of the last one's, as of a strategy
+    /// whose generations are not meant to be better than those before: one that fills an archive, or only guesses.
+    ///
+    /// By default where something is [kept](Strategy::collection).
+    fn keeps_champion(&self) -> bool {
+        self.collection().is_some()
+    }
+
     /// Numbers of its own about the latest generation that it was told, such as a step size; empty if there are none.
     fn diagnostics(&self) -> Vec<f64> {
         Vec::new()

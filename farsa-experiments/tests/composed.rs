@@ -318,7 +318,7 @@ fn a_maze_is_searched_by_where_robots_end() {
     let bench = Bench::new("maze");
     std::fs::copy(folder().join("maze.toml"), bench.path("maze.toml")).expect("a copy");
     let said = bench.succeed("check maze.toml");
-    assert!(said.ends_with("fitness: left, x, y\nbehaviour: x 0.0 to 1.5, y 0.0 to 1.0\n"), "{said}");
+    assert!(said.ends_with("fitness: left\nbehaviour: x 0.0 to 1.5, y 0.0 to 1.0\n"), "{said}");
     let said = bench.succeed("check maze.toml --json");
     let found: serde_json::Value = serde_json::from_str(&said).expect("JSON");
     assert_eq!(found["descriptors"][1], serde_json::json!({ "name": "y", "range": [0.0, 1.0] }));
@@ -342,6 +342,16 @@ fn a_maze_is_searched_by_where_robots_end() {
     assert!(ends.iter().all(|[x, y]| (0.0..1.5).contains(x) && (0.0..0.5).contains(y)), "{archive}");
     let spread = |k: usize| ends.iter().fold([1.0_f64, 0.0], |[low, high], at| [low.min(at[k]), high.max(at[k])]);
     assert!([0, 1].into_iter().map(spread).all(|[low, high]| high > low + 0.05), "{archive}");
+    // A report compares the champions, which are the best of all generations.
+    for run in ["novel", "elites"] {
+        bench.succeed(&format!("test {run} --trials 2 -q"));
+    }
+    bench.succeed("report novel elites --md report.md -q");
+    let report = bench.read("report.md");
+    assert!(report.contains("| fitness | left | left |") && !report.contains("an earlier one"), "{report}");
+    let so_far =
+        "The best so far where the champion is the best of all generations: maze, novelty-search; maze, map-elites.";
+    assert_eq!(report.matches(so_far).count(), 2, "{report}");
 }
 
 /// The guide shows the template that the command writes, and its pictures are there.

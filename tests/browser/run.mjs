@@ -1055,6 +1055,8 @@ async function serves(browser) {
   await browser.run(() => document.querySelectorAll("#evolution button")[1].click());
   await browser.until(new Function(`return document.querySelector("#live select").selectedOptions[0]?.textContent.includes("found since") && document.querySelector("#live p.soft").textContent === ""`));
   check("it shows the champion that the run has come to", await browser.run(() => farsa.error === null && farsa.ticks > 1));
+  const found = await browser.run(() => [...document.querySelectorAll("#live select")[0].options].map((one) => one.textContent).filter((text) => text.includes("found since")));
+  check("of each population", found.length === 2 && ["predator", "prey"].every((name, i) => found[i].endsWith(name)), found.join());
   if (shots) writeFileSync(join(shots, "served.png"), await browser.screenshot());
   await silent(browser, "served");
 }

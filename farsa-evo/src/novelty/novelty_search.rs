@@ -216,6 +216,11 @@ impl<G: Gene, S: Strategy<G> + Snapshot> Strategy<G> for NoveltySearch<S> {
         self.inner.genealogy()
     }
 
+    /// Of one population: the fitness of a generation is nothing that the search improves.
+    fn keeps_champion(&self) -> bool {
+        self.populations() == 1
+    }
+
     /// The behaviours in the archive, the largest novelty of the generation that was told last, and what the strategy that is
     /// driven says.
     fn diagnostics(&self) -> Vec<f64> {

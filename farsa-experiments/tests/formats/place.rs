@@ -94,6 +94,13 @@ impl Place {
         let best = if each.is_empty() { vec![numbers(1).expect("the best")] } else { each };
         Some((log.lines().count() - 1, best))
     }
+
+    /// The largest of the best of all generations.
+    pub(crate) fn highest(&self) -> f64 {
+        let log = self.text("run/fitness.csv");
+        let best = log.lines().skip(1).map(|line| line.split(',').nth(1).and_then(|best| best.parse().ok()));
+        best.map(|best| best.expect("the best")).fold(f64::NEG_INFINITY, f64::max)
+    }
 }
 
 /// A run that this program has made.

@@ -41,7 +41,7 @@ pub(crate) enum WhichTrial {
 /// Which trials to replay; individuals are counted through all populations.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Which {
-    /// The generation; the last finished one if none is named.
+    /// The generation; if none is named that of the champion, with an individual the last finished one.
     pub(crate) generation: Option<u32>,
     /// The individual; the best of the generation, in the first population, if none is named.
     pub(crate) individual: Option<u32>,
@@ -72,7 +72,11 @@ impl<'p> Found<'p> {
         if finished == 0 {
             return Err(Error::damaged(&path, "no generation is finished yet"));
         }
-        let generation = which.generation.unwrap_or(finished.saturating_sub(1));
+        let by_default = match which.individual {
+            None => history.champion_generation(),
+            Some(_) => finished.saturating_sub(1),
+        };
+        let generation = which.generation.unwrap_or(by_default);
         let Some(best) = history.champion(0, generation) else {
             return Err(Error::Usage(format!(
                 "{}: generation {generation} of {finished} finished ones (the first is 0)",
@@ -113,21 +117,43 @@ impl Replayable {
     /// [`Error::Usage`] for one that the run does not have, [`Error::Damaged`], [`Error::OtherConfiguration`] and whatever
     /// keeps the run of another version from being replayed.
     pub(crate) fn find(plan: &Plan<'_>, directory: &Directory, which: Which) -> Result<Self, Error> {
-        let Found { history, path, generation, individual } = Found::new(plan, directory, which)?;
+        Self::rebuilt(plan, &Found::new(plan, directory, which)?, which.trial)
+    }
+
+    /// The champions of a run, one of each population.
+    ///
+    /// # Errors
+    /// Those of [`find`](Self::find).
+    pub(crate) fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<Vec<Self>, Error> {
+        let mut found = Found::new(plan, directory, Which::default())?;
+        let populations = 0..found.history.populations();
+        let best = populations.filter_map(|population| found.history.champion(population, found.generation));
+        let best: Vec<usize> = best.collect();
+        let rebuilt = |individual: usize| {
+            found.individual = individual as u32;
+            Self::rebuilt(plan, &found, WhichTrial::All)
+        };
+        best.into_iter().map(rebuilt).collect()
+    }
+
+    /// Rebuilds the genes of an individual, for some of its trials.
+    fn rebuilt(plan: &Plan<'_>, found: &Found<'_>, trial: WhichTrial) -> Result<Self, Error> {
+        let Found { history, path, generation, individual } = found;
+        let (generation, individual) = (*generation, *individual);
         let genes = history.genomes(&[(generation, individual as usize)])?;
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
-        let others = || Error::damaged(&path, "its genomes are not those of the experiment");
+        let others = || Error::damaged(path, "its genomes are not those of the experiment");
         let parameters = genes.first().and_then(|genes| genes.decode(&genotype)).ok_or_else(others)?;
         let trials = 0..evaluator.trials() as u32;
-        let trials = match which.trial {
+        let trials = match trial {
             WhichTrial::All | WhichTrial::Best => trials,
             WhichTrial::Number(trial) if trials.contains(&trial) => trial..trial + 1,
             WhichTrial::Number(trial) => {
                 return Err(Error::Usage(format!("trial {trial} of {} (the first is 0)", trials.end)));
             }
         };
-        let met = opponents::met(&history, generation, individual as usize, trials.clone(), evaluator.trials())?;
+        let met = opponents::met(history, generation, individual as usize, trials.clone(), evaluator.trials())?;
         let decoded = |genes: &Vec<Genome>| genes.iter().map(|genes| genes.decode(&genotype)).collect::<Option<_>>();
         let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
         let normalisation = history.normalisation(generation).cloned();
@@ -144,7 +170,7 @@ impl Replayable {
             individual,
             trials,
         };
-        if which.trial == WhichTrial::Best {
+        if trial == WhichTrial::Best {
             found.keep_best()?;
         }
         Ok(found)

@@ -1,4 +1,4 @@
-//! The best individual of a run, with all that its trials depend on.
+//! The champion of a run, with all that its trials depend on.
 
 use farsa_evo::Snapshot as _;
 use farsa_view::View;
@@ -9,7 +9,7 @@ use crate::live::script::Evolved;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 
-/// The best individual of a generation, by default the last, and from where it is looked at.
+/// The best individual of a generation, by default the run's champion, and from where it is looked at.
 ///
 /// # Errors
 /// Those of [`Replayable::find`].
@@ -20,7 +20,19 @@ pub(crate) fn champion(
 ) -> Result<(Evolved, View), Error> {
     let found = Replayable::find(plan, directory, Which { generation, ..Which::default() })?;
     let view = found.schema().view;
+    Ok((evolved(found), view))
+}
+
+/// The champions of a run, one of each population.
+///
+/// # Errors
+/// Those of [`Replayable::champions`].
+pub(crate) fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<Vec<Evolved>, Error> {
+    Ok(Replayable::champions(plan, directory)?.into_iter().map(evolved).collect())
+}
+
+fn evolved(found: Replayable) -> Evolved {
     let Replayable { generation, individual, parameters, opponents, normalisation, .. } = found;
     let normalisation = normalisation.map(|statistics| statistics.save());
-    Ok((Evolved { generation, individual, parameters, opponents, normalisation }, view))
+    Evolved { generation, individual, parameters, opponents, normalisation }
 }

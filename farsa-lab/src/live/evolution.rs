@@ -1,6 +1,6 @@
 //! Evolution that goes on in memory, generation after generation, shared by any number of sessions that hold the same search.
 
-use farsa_evo::{ObservationStatistics, Snapshot as _};
+use farsa_evo::{Fitness, ObservationStatistics, Snapshot as _};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -26,7 +26,7 @@ const MOST_PARTS: usize = 1024;
 pub(crate) struct Bred {
     generation: u32,
     line: Line,
-    /// The best of each population.
+    /// The best of each population; by a strategy that keeps its champion the best that was evolved here.
     champions: Vec<Evolved>,
 }
 
@@ -34,6 +34,8 @@ pub(crate) struct Bred {
 pub(crate) struct Evolution {
     progression: Progression,
     genotype: Genotype,
+    /// The champions so far, and what the first of them earned.
+    champions: Option<(Fitness, Vec<Evolved>)>,
 }
 
 impl Evolution {
@@ -64,7 +66,7 @@ impl Evolution {
             None => None,
         };
         let progression = Progression::new(search, hall, observed, plan.seed);
-        Ok(Self { progression, genotype: plan.genotype(evaluator) })
+        Ok(Self { progression, genotype: plan.genotype(evaluator), champions: None })
     }
 
     /// Evaluates a part of the present generation: of `parts` that are as large, the one with this number.
@@ -111,7 +113,13 @@ impl Evolution {
             let (individual, parameters) = (best.individual, best.genes.decode(&self.genotype)?);
             Some(Evolved { generation, individual, parameters, opponents, normalisation: normalisation.clone() })
         });
-        Ok(Bred { generation, line: Line::new(&statistics, fitness.len(), &each), champions: champions.collect() })
+        let earned = best.first().map_or(Fitness::WORST, |best| best.fitness);
+        let champions = match self.champions.take() {
+            Some(known) if self.progression.search.keeps_champion() && earned <= known.0 => known,
+            _ => (earned, champions.collect()),
+        };
+        let line = Line::new(&statistics, fitness.len(), &each);
+        Ok(Bred { generation, line, champions: self.champions.insert(champions).1.clone() })
     }
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::time::SystemTime;
 
 use crate::error::Error;
-use crate::live::champion::champion;
+use crate::live::champion::champions;
 use crate::live::row::Row;
 use crate::live::script::Evolved;
 use crate::run::plan::Plan;
@@ -23,8 +23,8 @@ pub(crate) struct Known {
     log: u64,
     /// Bytes and time of the last checkpoint that was looked at.
     checkpoint: Option<(u64, SystemTime)>,
-    /// The generation of the best that is known.
-    champion: Option<u32>,
+    /// The generation of the champions that are known.
+    champions: Option<u32>,
 }
 
 impl Known {
@@ -59,20 +59,22 @@ impl Known {
         Ok(rows)
     }
 
-    /// The best of the last generation that is saved, if it is another than is known.
+    /// The champions of what is saved, one of each population, if they are others than are known.
     ///
     /// # Errors
-    /// What keeps it from being rebuilt.
-    pub(crate) fn champion(&mut self, plan: &Plan<'_>, directory: &Directory) -> Result<Option<Evolved>, Error> {
+    /// What keeps them from being rebuilt.
+    pub(crate) fn champions(&mut self, plan: &Plan<'_>, directory: &Directory) -> Result<Option<Vec<Evolved>>, Error> {
         let path = directory.checkpoint();
         let found = fs::metadata(&path).map_err(Error::io("read", &path))?;
         let mark = found.modified().ok().map(|time| (found.len(), time));
         if mark.is_some() && mark == self.checkpoint {
             return Ok(None);
         }
-        let (best, _) = champion(plan, directory, None)?;
+        let best = champions(plan, directory)?;
         self.checkpoint = mark;
-        let other = self.champion.replace(best.generation) != Some(best.generation);
+        let generation = best.first().map(|best| best.generation);
+        let other = self.champions != generation;
+        self.champions = generation;
         Ok(other.then_some(best))
     }
 }

@@ -96,7 +96,7 @@ pub(crate) struct Found {
     generations: Vec<u32>,
 }
 
-/// Writes a page in which the best individual of each of some generations, by default of the last, runs by `module`.
+/// Writes a page in which the best individual of each of some generations, by default the champion, runs by `module`.
 ///
 /// # Errors
 /// Those of [`html`], and [`Error::Io`].
@@ -114,7 +114,7 @@ pub(crate) fn page(
     Ok(LiveSummary { directory, file, generations, bytes: html.len(), summary })
 }
 
-/// The page in which the best individual of each of some generations, by default of the last, runs by `module`.
+/// The page in which the best individual of each of some generations, by default the champion, runs by `module`.
 ///
 /// # Errors
 /// Those of [`champion`], [`Error::Usage`] for an experiment that needs files and for too many generations.

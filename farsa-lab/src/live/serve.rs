@@ -108,8 +108,8 @@ impl Served<'_> {
         loop {
             // What is being written at this moment is there at the next look.
             let mut news = false;
-            if let Ok(Some(best)) = known.champion(self.plan, self.directory) {
-                event(&mut to, "champion", None, &best)?;
+            if let Ok(Some(best)) = known.champions(self.plan, self.directory) {
+                event(&mut to, "champions", None, &best)?;
                 news = true;
             }
             match known.rows(self.directory) {

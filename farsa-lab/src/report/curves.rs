@@ -46,7 +46,8 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
             let title = whose(title, &name);
             let curves = curves(groups, population, which, across);
             let chart = Chart { title: title.clone(), axis: "fitness", across, curves };
-            figures.push(figure(chart.draw(), format!("{title}. {lines}"))?);
+            let so_far = if which == 0 { Group::best_so_far(groups) } else { String::new() };
+            figures.push(figure(chart.draw(), format!("{title}.{so_far} {lines}"))?);
         }
     }
     Ok(figures)

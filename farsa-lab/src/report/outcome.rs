@@ -57,7 +57,11 @@ pub(crate) fn outcome(groups: &[Group<'_>], success: Success) -> Vec<Block> {
     let moment = Moment::common(groups);
     let measures = measures(groups, moment);
     let mut blocks = vec![
-        Block::Text(format!("Median and quartiles over the runs, {}; success as tested below.", moment.words())),
+        Block::Text(format!(
+            "Median and quartiles over the runs, {}; success as tested below.{}",
+            moment.words(),
+            Group::best_so_far(groups)
+        )),
         Block::Table(medians(groups, &measures)),
     ];
     if groups.iter().any(|group| group.runs.len() > 1) {

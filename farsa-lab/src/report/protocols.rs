@@ -230,9 +230,7 @@ impl Alike<'_> {
         let champion = |run: &Run<'_>, tested: &TestedProtocol| {
             let generation = match &tested.record {
                 None => "which was not recorded".into(),
-                Some(record) if record.generation as usize == run.last() => {
-                    format!("of generation {}", record.generation)
-                }
+                Some(record) if record.generation == run.champion => format!("of generation {}", record.generation),
                 Some(record) => format!("of generation {}, an earlier one", record.generation),
             };
             format!("{}: the champion {generation}.", run.name())

@@ -25,6 +25,10 @@ pub(crate) struct Run<'e> {
     pub(crate) populations: Vec<String>,
     /// The finished generations, at least one.
     pub(crate) lines: Vec<Line>,
+    /// The generation of the champion.
+    pub(crate) champion: u32,
+    /// The best fitness up to each generation, where the champion is the best of all; else none.
+    best: Vec<f64>,
     pub(crate) test: Option<Tested>,
     /// The test protocols that were run, in the experiment's order.
     pub(crate) protocols: Vec<TestedProtocol>,
@@ -47,18 +51,24 @@ impl<'e> Run<'e> {
     /// configuration was changed by hand; [`Error::Io`].
     pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
         evolved(&directory)?;
-        let Told { identity, lines, .. } = Told::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
-        let manifest = Manifest::read_or_new(&directory.manifest(), &identity)?;
-        if lines.is_empty() {
+        let told = Told::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
+        let manifest = Manifest::read_or_new(&directory.manifest(), &told.identity)?;
+        let Some(champion) = told.champion() else {
             return Err(Error::damaged(&directory.record(), "no generation is finished yet"));
-        }
+        };
+        let so_far = |best: &mut f64, line: &Line| {
+            *best = best.max(line.row[0]);
+            Some(*best)
+        };
+        let best = told.lines.iter().filter(|_| told.keeps_champion).scan(f64::NEG_INFINITY, so_far).collect();
+        let lines = told.lines;
         let evaluator = plan.evaluator()?;
         let (populations, terms) = (evaluator.populations(), evaluator.terms());
         let populations = if populations.len() > 1 { populations } else { Vec::new() };
         let tested = |(table, record): (Table, Option<Record>)| Tested { findings: table.findings(&terms), record };
         let test = test::read(&directory)?.map(tested);
         let (protocols, other_protocols) = TestedProtocol::all(&directory, evaluator.as_ref())?;
-        Ok(Self { directory, plan, manifest, populations, lines, test, protocols, other_protocols })
+        Ok(Self { directory, plan, manifest, populations, lines, champion, best, test, protocols, other_protocols })
     }
 
     /// The directory as the user named it.
@@ -66,8 +76,12 @@ impl<'e> Run<'e> {
         self.directory.path().display().to_string()
     }
 
-    /// Best (0), mean (1) or worst (2) fitness of a generation, of one of several populations or of all together.
+    /// Best (0), mean (1) or worst (2) fitness of a generation, of one of several populations or of all together; where the champion is
+    /// the best of all generations, the best of those up to this one.
     pub(crate) fn fitness(&self, population: Option<usize>, generation: usize, which: usize) -> f64 {
+        if let (0, Some(best)) = (which, self.best.get(generation)) {
+            return *best;
+        }
         let row = |line: &Line| match population {
             None => Some(line.row),
             Some(population) => line.each.get(population).copied(),
@@ -169,6 +183,16 @@ impl<'r> Group<'r> {
         let settings = run.settings().filter(|(key, value)| differs(key, *value));
         own.extend(settings.filter_map(|(key, value)| Some(format!("{}={}", key.rsplit('.').next()?, value?))));
         if own.is_empty() { condition.into() } else { format!("{condition}, {}", own.join(", ")) }
+    }
+
+    /// Where the best is the best so far, in words; nothing where it is nowhere.
+    pub(crate) fn best_so_far(groups: &[Self]) -> String {
+        let keeps = |group: &&Self| group.runs.iter().any(|run| !run.best.is_empty());
+        let labels: Vec<&str> = groups.iter().filter(keeps).map(|group| group.label.as_str()).collect();
+        if labels.is_empty() {
+            return String::new();
+        }
+        format!(" The best so far where the champion is the best of all generations: {}.", labels.join("; "))
     }
 
     /// Whose fitness the runs have: where conditions have different populations, those of the one with the most.

@@ -158,7 +158,7 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
             let findings = &test.findings;
             let champion = match &test.record {
                 None => "not recorded".into(),
-                Some(record) if record.generation as usize == run.last() => format!("generation {}", record.generation),
+                Some(record) if record.generation == run.champion => format!("generation {}", record.generation),
                 Some(record) => format!("generation {}: an earlier one", record.generation),
             };
             let by_trial = findings.by_trial.values();

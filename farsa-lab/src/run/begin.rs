@@ -110,7 +110,7 @@ pub(crate) fn lineage(
     Lineage::resume(&directory.lineage(), checkpoint.lineage, again).map(Some)
 }
 
-/// The champions of the last generation that a checkpoint speaks of, where `champion.bin` has not got them: it is written before the
+/// The champions of the generations that a checkpoint speaks of, where `champion.bin` has not got them: it is written before the
 /// checkpoint, and a process that is killed between the two leaves those of a later generation.
 ///
 /// # Errors
@@ -121,7 +121,7 @@ pub(crate) fn champions(
     checkpoint: &Checkpoint,
     told: &Told,
 ) -> Result<Option<Champions>, Error> {
-    let Some(generation) = checkpoint.generation.checked_sub(1) else { return Ok(None) };
+    let Some(generation) = told.champion() else { return Ok(None) };
     // What cannot be read is made again, too.
     if Champions::read(plan, directory).is_ok_and(|champions| champions.generation == generation) {
         return Ok(None);
@@ -131,7 +131,7 @@ pub(crate) fn champions(
     let individuals: Vec<usize> = individuals.collect::<Option<_>>().ok_or_else(missing)?;
     let wanted: Vec<(u32, usize)> = individuals.iter().map(|&individual| (generation, individual)).collect();
     let genomes = History::new(directory.record(), told.record.clone(), plan.fresh()).genomes(&wanted)?;
-    let line = told.lines.last().ok_or_else(missing)?;
+    let line = told.lines.get(generation as usize).ok_or_else(missing)?;
     // Of a single population there is nothing but the whole.
     let rows = if line.each.is_empty() { std::slice::from_ref(&line.row) } else { &line.each };
     let best = individuals.into_iter().zip(genomes).zip(rows).map(|((individual, genes), [best, ..])| Best {
@@ -139,7 +139,7 @@ pub(crate) fn champions(
         fitness: Fitness::nan_as_failed(*best),
         genes,
     });
-    let before = told.observed.len().checked_sub(2).and_then(|before| told.observed.get(before)).cloned();
+    let before = (generation as usize).checked_sub(1).and_then(|before| told.observed.get(before)).cloned();
     let normalisation = if told.observed.is_empty() { None } else { before.or(plan.no_observations()?) };
     Ok(Some(Champions { identity: checkpoint.identity.clone(), generation, best: best.collect(), normalisation }))
 }

@@ -123,7 +123,7 @@ struct Run<'d> {
     /// None for a strategy that keeps nothing beyond a generation.
     collection: Option<CollectionTable>,
     manifest: Manifest,
-    /// The best of the last generation, once one is finished in this process.
+    /// The champions, once a generation is finished in this process; where they are the best of all generations, from the start.
     champions: Option<Champions>,
     started: Instant,
 }
@@ -149,8 +149,14 @@ impl<'d> Run<'d> {
         let file = told.file(directory)?;
         let collection = CollectionTable::new(&progression.search, pool.evaluator());
         let lineage = lineage(plan, directory, &checkpoint, &told.record, &progression.search)?;
-        if let Some(champions) = champions(plan, directory, &checkpoint, &told)? {
+        let mut champions = champions(plan, directory, &checkpoint, &told)?;
+        if let Some(champions) = &champions {
             champions.write(&directory.champion())?;
+        }
+        if !told.keeps_champion {
+            champions = None;
+        } else if champions.is_none() && told.champion().is_some() {
+            champions = Some(Champions::read(plan, directory)?);
         }
         let Told { lines, diagnostics, record, .. } = told;
         let (log, kept) = Log::resume(&directory.log(), &lines, record.populations())?;
@@ -173,7 +179,7 @@ impl<'d> Run<'d> {
             diagnostics: DiagnosticsTable::resume(plan.definition().diagnostics(), directory, &diagnostics)?,
             collection,
             manifest,
-            champions: None,
+            champions,
             started: Instant::now(),
         })
     }
@@ -221,7 +227,12 @@ impl<'d> Run<'d> {
         if let Some(lineage) = &mut self.lineage {
             lineage.append(&rows(search))?;
         }
-        self.champions = Some(Champions { identity: self.identity.clone(), generation, best, normalisation });
+        let found = Champions { identity: self.identity.clone(), generation, best, normalisation };
+        let keeps = search.keeps_champion();
+        self.champions = Some(match self.champions.take() {
+            Some(known) if keeps && found.fitness() <= known.fitness() => known,
+            _ => found,
+        });
         if let Some(session) = self.manifest.sessions.last_mut() {
             session.generations += 1;
             session.evaluations += fitness.len() as u64;

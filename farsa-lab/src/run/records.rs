@@ -39,7 +39,8 @@ pub(crate) struct RecordHead {
     pub(crate) strategy: String,
 }
 
-/// `champion.bin`: the best individual of the last generation, equals by index, in each population.
+/// `champion.bin`: the best individual of the last generation, equals by index, in each population; or of all generations, the first
+/// of equals, by a strategy that [keeps it](farsa_evo::Strategy::keeps_champion).
 #[derive(Debug)]
 pub(crate) struct Champions {
     pub(crate) identity: Identity,
@@ -239,6 +240,11 @@ pub(crate) fn write_imported(
 }
 
 impl Champions {
+    /// The fitness of the first population's.
+    pub(crate) fn fitness(&self) -> Option<Fitness> {
+        self.best.first().map(|best| best.fitness)
+    }
+
     /// Writes the file.
     pub(crate) fn write(&self, path: &Path) -> Result<(), Error> {
         let Self { identity, generation, best, normalisation } = self;

@@ -6,7 +6,7 @@ use crate::escaped::OneLine;
 use crate::figures::significant::significant;
 use crate::run::records::{Best, Champions};
 
-/// What came of a run; the champion is that of the last generation.
+/// What came of a run.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) directory: String,

@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use farsa_evo::{ObservationStatistics, Record, RecordEntry, RecordWriter, Snapshot as _};
+use farsa_evo::{Fitness, ObservationStatistics, Record, RecordEntry, RecordWriter, Snapshot as _};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -44,6 +44,8 @@ pub(crate) struct Told {
     pub(crate) record: Record,
     /// Their lines in the log.
     pub(crate) lines: Vec<Line>,
+    /// Whether the champion is the best of all generations instead of the last one's.
+    pub(crate) keeps_champion: bool,
     /// What was observed until the end of each, where observations are normalised.
     pub(crate) observed: Vec<ObservationStatistics>,
     /// What the strategy said of each, where it says something.
@@ -83,7 +85,8 @@ impl Told {
             let why = format!("was made by the strategy `{strategy}`, the experiment has `{asked}`");
             return Err(damaged(why));
         }
-        let mut record = plan.strategy()?.record().map_err(|error| damaged(error.to_string()))?;
+        let mut search = plan.strategy()?;
+        let mut record = search.record().map_err(|error| damaged(error.to_string()))?;
         let each = if record.populations() > 1 { record.populations() } else { 0 };
         let (mut lines, mut diagnostics, mut observed) = (Vec::new(), Vec::new(), Vec::new());
         let none = plan.no_observations()?;
@@ -119,7 +122,20 @@ impl Told {
         if found != expected {
             return Err(damaged(format!("{found} generations where checkpoint.bin speaks of {expected}")));
         }
-        Ok(Self { identity, record, lines, observed, diagnostics, content })
+        let keeps_champion = search.keeps_champion();
+        Ok(Self { identity, record, lines, keeps_champion, observed, diagnostics, content })
+    }
+
+    /// The generation whose best is the run's champion, once one is finished; of equals the first.
+    pub(crate) fn champion(&self) -> Option<u32> {
+        let last = self.record.generations().checked_sub(1)?;
+        if !self.keeps_champion {
+            return Some(last);
+        }
+        let best =
+            |generation: &u32| self.lines.get(*generation as usize).map(|line| Fitness::nan_as_failed(line.row[0]));
+        // The last of those that are largest is the first generation.
+        (0..=last).rev().max_by_key(best)
     }
 
     /// What the file holds up to a checkpoint.
@@ -151,9 +167,12 @@ pub(crate) fn history<'p>(
         return Ok((identity, History::from_imported(path.clone(), genomes, populations), path));
     }
     let path = directory.record();
-    let Told { identity, record, observed, .. } = Told::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
-    let history = History::new(path.clone(), record, plan.fresh());
-    Ok((identity, history.with_observations(plan.no_observations()?.into_iter().chain(observed).collect()), path))
+    let told = Told::read(plan, directory, &Checkpoint::read(plan, directory)?)?;
+    let champion = told.champion();
+    let Told { identity, record, observed, .. } = told;
+    let observations = plan.no_observations()?.into_iter().chain(observed).collect();
+    let history = History::new(path.clone(), record, plan.fresh()).with_observations(observations);
+    Ok((identity, history.with_champion(champion), path))
 }
 
 /// The record of a run in progress.

@@ -122,7 +122,7 @@ impl Directory {
     pub(crate) fn plot(&self) -> PathBuf {
         self.path.join("fitness.svg")
     }
-    /// The best individual of the last generation.
+    /// The champion of each population.
     pub(crate) fn champion(&self) -> PathBuf {
         self.path.join("champion.bin")
     }

@@ -17,6 +17,8 @@ pub(crate) struct History<'h> {
     past: Past<'h>,
     /// What was observed before each generation, where observations are normalised.
     observations: Vec<ObservationStatistics>,
+    /// The generation whose best is the run's champion, where that is not the last one's.
+    champion: Option<u32>,
 }
 
 /// What genomes are rebuilt from.
@@ -30,12 +32,22 @@ enum Past<'h> {
 impl<'h> History<'h> {
     /// The generations that a strategy was told of.
     pub(crate) fn new(path: PathBuf, record: Record, fresh: Fresh<'h>) -> Self {
-        Self { path, past: Past::Told { record, fresh }, observations: Vec::new() }
+        Self { path, past: Past::Told { record, fresh }, observations: Vec::new(), champion: None }
     }
 
     /// The same with what was observed before each generation.
     pub(crate) fn with_observations(self, observations: Vec<ObservationStatistics>) -> Self {
         Self { observations, ..self }
+    }
+
+    /// The same, with the generation whose best is the run's champion.
+    pub(crate) fn with_champion(self, champion: Option<u32>) -> Self {
+        Self { champion, ..self }
+    }
+
+    /// The generation whose best is the run's champion, by default the last finished one.
+    pub(crate) fn champion_generation(&self) -> u32 {
+        self.champion.unwrap_or(self.finished().saturating_sub(1))
     }
 
     /// By what observations were normalised in a generation, where they were.
@@ -46,7 +58,7 @@ impl<'h> History<'h> {
     /// Imported genomes, those of one population after the other.
     pub(crate) fn from_imported(path: PathBuf, genomes: Vec<Vec<u16>>, populations: usize) -> Self {
         let past = Past::Imported { genomes, populations: populations.max(1) };
-        Self { path, past, observations: Vec::new() }
+        Self { path, past, observations: Vec::new(), champion: None }
     }
 
     /// Number of finished generations.

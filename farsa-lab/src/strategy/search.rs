@@ -135,6 +135,11 @@ impl Search {
         each!(self, strategy => strategy.collection())
     }
 
+    /// Whether its champion is the best of all generations instead of the last one's.
+    pub(crate) fn keeps_champion(&self) -> bool {
+        each!(self, strategy => strategy.keeps_champion())
+    }
+
     /// Tells the judgements of the current generation and records them.
     pub(crate) fn tell(&mut self, record: &mut RecordWriter, judgements: &Judgements) -> Result<(), EvoError> {
         each!(self, strategy => match judgements.shape() {

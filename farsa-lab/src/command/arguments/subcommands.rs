@@ -201,7 +201,7 @@ pub(crate) struct TestArgs {
     /// Test every case of one of the experiment's test protocols, which `info` lists
     #[arg(long, value_name = "NAME")]
     pub(crate) protocol: Option<String>,
-    /// Test the best of this generation, from 0, in place of the last one's; writes no file
+    /// Test the best of this generation, from 0, in place of the champion; writes no file
     #[arg(long, value_name = "N", conflicts_with_all = ["protocol", "lesion"])]
     generation: Option<u32>,
     /// Test this individual of the generation, from 0, such as one of an archive; writes no file
@@ -234,7 +234,7 @@ impl TestArgs {
 /// Which trials of a run.
 #[derive(Args)]
 pub(crate) struct WhichArgs {
-    /// The generation, from 0 [default: the last]
+    /// The generation, from 0 [default: the champion's; with --individual the last]
     #[arg(long, value_name = "N")]
     generation: Option<u32>,
     /// The individual, from 0 [default: the best of the generation]

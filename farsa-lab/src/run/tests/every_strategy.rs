@@ -3,11 +3,12 @@
 use std::fs;
 
 use farsa_body::Recorder;
+use farsa_evo::Fitness;
 use farsa_view::Schema;
 
 use super::{Numbers, pool, rows, run, scratch};
 use crate::error::Error;
-use crate::evaluation::replay::{Which, replay};
+use crate::evaluation::replay::{Replayable, Which, replay};
 use crate::evaluation::test;
 use crate::experiment::behaviour::Behaviour;
 use crate::experiment::definition::Experiment;
@@ -54,6 +55,14 @@ fn plan<'n>(numbers: &'n Numbers, strategy: &'static dyn StrategyDefinition, gen
     plan
 }
 
+/// The strategies whose champion is the best of all generations.
+const KEEP: [&str; 5] = ["random-search", "novelty-search", "map-elites", "cma-me", "nsga2"];
+
+/// The first generation with the largest of the best.
+fn best_of_all(rows: &[Vec<f64>]) -> usize {
+    (0..rows.len()).fold(0, |found, generation| if rows[generation][1] > rows[found][1] { generation } else { found })
+}
+
 /// A whole run, and one of other threads that was stopped twice.
 fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     let name = strategy.name();
@@ -71,6 +80,13 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
         let read = |run: &str| fs::read(root.join(run).join(&file)).ok();
         assert!(read("whole") == read("parts"), "{name}: {}", file.display());
     }
+    // Champions of generations that were not saved are forgotten.
+    let early = create(&plan(numbers, strategy, 3), &root.join("early")).unwrap();
+    run(&plan(numbers, strategy, 3), &early, 1);
+    let champions = fs::read(early.champion()).unwrap();
+    fs::copy(whole.champion(), early.champion()).unwrap();
+    run(&plan(numbers, strategy, 3), &early, 1);
+    assert!(fs::read(early.champion()).unwrap() == champions, "{name}");
     // Champions that are gone are made again.
     let champions = fs::read(parts.champion()).unwrap();
     fs::remove_file(parts.champion()).unwrap();
@@ -94,9 +110,20 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     let evaluator = all.evaluator().unwrap();
     let champions = Champions::read_checked(&all, &whole, evaluator.as_ref()).unwrap();
     let (_, history, _) = history(&all, &whole).unwrap();
-    let wanted: Vec<(u32, usize)> = champions.best.iter().map(|best| (6, best.individual as usize)).collect();
+    let generation = if numbers.populations == 1 && KEEP.contains(&name) { best_of_all(&rows) } else { 6 };
+    assert_eq!(champions.generation, generation as u32, "{name}");
+    if numbers.populations == 1 {
+        assert_eq!(champions.fitness().map(Fitness::get), Some(rows[generation][1]), "{name}");
+    }
+    let wanted = champions.best.iter().map(|best| (champions.generation, best.individual as usize));
+    let wanted: Vec<(u32, usize)> = wanted.collect();
     let genes: Vec<_> = champions.best.into_iter().map(|best| best.genes).collect();
     assert_eq!(history.genomes(&wanted).unwrap(), genes, "{name}");
+    let found = Replayable::find(&again, &whole, Which::default()).unwrap();
+    assert_eq!((found.generation, found.individual as usize), wanted[0], "{name}");
+    let of_all = Replayable::champions(&again, &whole).unwrap();
+    let of_all: Vec<_> = of_all.iter().map(|found| (found.generation, found.individual as usize)).collect();
+    assert_eq!(of_all, wanted, "{name}");
     test::test(&all, &whole, None, 6, 1, 2, Wanted::ONE, true).unwrap();
     drop(pool(&all, 1));
     fs::remove_dir_all(root).unwrap();

@@ -40,7 +40,7 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 	if (served) hear();
 	else if (about.standstill) status.textContent = `It cannot go on here: ${about.standstill}.`;
 
-	// The best of each population; what is served knows that of the first.
+	// The best of each population.
 	function champion() {
 		const names = about.populations.map((name) => `: ${name}`);
 		return show(latest, latest.map((_, i) => `${served ? ", found since" : ", evolved here"}${names[i] ?? ""}`));
@@ -101,8 +101,8 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 			rows.push(...JSON.parse(data).filter(([number]) => number > (rows.at(-1)?.[0] ?? -1)));
 			tell();
 		});
-		events.addEventListener("champion", ({data}) => {
-			latest = [JSON.parse(data)];
+		events.addEventListener("champions", ({data}) => {
+			latest = JSON.parse(data);
 			own.champion.disabled = false;
 		});
 	}
