@@ -352,6 +352,16 @@ fn a_maze_is_searched_by_where_robots_end() {
     let so_far =
         "The best so far where the champion is the best of all generations: maze, novelty-search; maze, map-elites.";
     assert_eq!(report.matches(so_far).count(), 2, "{report}");
+    // What the strategies say and keep is shown: the archive as it is beside the run.
+    let log = bench.read("elites/strategy.csv");
+    let elites = log.lines().last().and_then(|row| row.split(',').nth(1)).expect("a number of elites");
+    assert_eq!(elites.parse(), Ok(ends.len() as f64));
+    for part in ["### What novelty-search says", "### What map-elites says", "| run | elites | qd score |"] {
+        assert!(report.contains(part), "{part}: {report}");
+    }
+    let row = report.lines().find(|line| line.starts_with(&format!("| elites | {}.", ends.len())));
+    assert!(row.is_some(), "{elites}: {report}");
+    assert_eq!(bench.read("report-archive-1.svg"), bench.read("elites/archive.svg"));
 }
 
 /// The guide shows the template that the command writes, and its pictures are there.

@@ -44,7 +44,7 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
     for (population, name) in Group::populations(groups) {
         for (which, title) in [(0, "Best of the generation"), (1, "Mean of the generation")] {
             let title = whose(title, &name);
-            let curves = curves(groups, population, which, across);
+            let curves = curves(groups, across, &|run, generation| run.fitness(population, generation, which));
             let chart = Chart { title: title.clone(), axis: "fitness", across, curves };
             let so_far = if which == 0 { Group::best_so_far(groups) } else { String::new() };
             figures.push(figure(chart.draw(), format!("{title}.{so_far} {lines}"))?);
@@ -53,9 +53,10 @@ pub(crate) fn figures(groups: &[Group<'_>]) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
-fn curves(groups: &[Group<'_>], population: Option<usize>, which: usize, across: Across) -> Vec<Curve> {
+/// What `value` says of the generations of each run: of a group of several the median, with a band and the single runs.
+pub(crate) fn curves(groups: &[Group<'_>], across: Across, value: &dyn Fn(&Run<'_>, usize) -> f64) -> Vec<Curve> {
     let at = |run: &Run<'_>, place: usize| {
-        generation_at(run, across, place).map_or(f64::NAN, |generation| run.fitness(population, generation, which))
+        generation_at(run, across, place).map_or(f64::NAN, |generation| value(run, generation))
     };
     let mut curves = Vec::new();
     for (color, group) in groups.iter().enumerate() {

@@ -10,6 +10,7 @@
 //! - `section`: what a report says about the runs of one experiment
 //! - `settings`: the configurations of the runs in a report: what differs, everything, and the commands that say it again
 //! - `states`: the internal states of a test protocol on their first two principal components
+//! - `strategies`: what strategies say of their generations beside the fitness, and what they keep
 //! - `tested_protocol`: a test protocol as a run was tested by it
 //! - `write`: `farsa report`: a page about one or many runs
 
@@ -23,5 +24,6 @@ mod run;
 mod section;
 mod settings;
 mod states;
+mod strategies;
 mod tested_protocol;
 pub(crate) mod write;

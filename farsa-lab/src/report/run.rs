@@ -1,5 +1,6 @@
 //! A run as a report reads it, and runs that differ in their seeds alone.
 
+use std::path::Path;
 use std::time::Duration;
 
 use crate::error::Error;
@@ -8,6 +9,8 @@ use crate::evaluation::test_table::{Findings, Table};
 use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::Value;
 use crate::report::tested_protocol::TestedProtocol;
+use crate::run::begin::resumed;
+use crate::run::collection::CollectionTable;
 use crate::run::plan::Plan;
 use crate::run::records::{Checkpoint, evolved};
 use crate::run::told::Told;
@@ -27,6 +30,10 @@ pub(crate) struct Run<'e> {
     pub(crate) lines: Vec<Line>,
     /// The generation of the champion.
     pub(crate) champion: u32,
+    /// What the strategy said of each generation, where it says something.
+    pub(crate) diagnostics: Vec<Vec<f64>>,
+    /// The picture of what the strategy keeps, where it does.
+    pub(crate) kept: Option<String>,
     /// The best fitness up to each generation, where the champion is the best of all; else none.
     best: Vec<f64>,
     pub(crate) test: Option<Tested>,
@@ -51,7 +58,8 @@ impl<'e> Run<'e> {
     /// configuration was changed by hand; [`Error::Io`].
     pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
         evolved(&directory)?;
-        let told = Told::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
+        let checkpoint = Checkpoint::read(&plan, &directory)?;
+        let told = Told::read(&plan, &directory, &checkpoint)?;
         let manifest = Manifest::read_or_new(&directory.manifest(), &told.identity)?;
         let Some(champion) = told.champion() else {
             return Err(Error::damaged(&directory.record(), "no generation is finished yet"));
@@ -61,14 +69,36 @@ impl<'e> Run<'e> {
             Some(*best)
         };
         let best = told.lines.iter().filter(|_| told.keeps_champion).scan(f64::NEG_INFINITY, so_far).collect();
-        let lines = told.lines;
         let evaluator = plan.evaluator()?;
+        let kept = if plan.strategy()?.collection().is_some() {
+            let search = resumed(&plan, &directory, &checkpoint, &told.record)?;
+            CollectionTable::new(&search, evaluator.as_ref())
+                .map(|table| table.drawn(&search, &plan.name()))
+                .transpose()
+        } else {
+            Ok(None)
+        };
+        let kept = kept.map_err(|why| Error::damaged(Path::new("the picture of what is kept"), why))?;
+        let Told { lines, diagnostics, .. } = told;
         let (populations, terms) = (evaluator.populations(), evaluator.terms());
         let populations = if populations.len() > 1 { populations } else { Vec::new() };
         let tested = |(table, record): (Table, Option<Record>)| Tested { findings: table.findings(&terms), record };
         let test = test::read(&directory)?.map(tested);
         let (protocols, other_protocols) = TestedProtocol::all(&directory, evaluator.as_ref())?;
-        Ok(Self { directory, plan, manifest, populations, lines, champion, best, test, protocols, other_protocols })
+        Ok(Self {
+            directory,
+            plan,
+            manifest,
+            populations,
+            lines,
+            champion,
+            diagnostics,
+            kept,
+            best,
+            test,
+            protocols,
+            other_protocols,
+        })
     }
 
     /// The directory as the user named it.
@@ -125,6 +155,7 @@ impl<'e> Run<'e> {
 }
 
 /// Runs that differ in nothing but their seeds and their lengths.
+#[derive(Clone)]
 pub(crate) struct Group<'r> {
     /// The condition, with the settings that distinguish it from other groups of the same condition.
     pub(crate) label: String,

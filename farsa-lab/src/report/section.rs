@@ -12,6 +12,7 @@ use crate::report::page::{Block, Figure, Table};
 use crate::report::protocols::{command_of, not_run, protocols};
 use crate::report::run::{Group, Run, duration, percent, short, whose};
 use crate::report::settings::{command, complete, differences, shell};
+use crate::report::strategies::strategies;
 use crate::strategy::settings::POPULATION;
 
 /// The section about an experiment's runs, with a heading unless it is alone on its page; `runs` is not empty.
@@ -36,6 +37,7 @@ pub(crate) fn section(runs: &[&Run<'_>], alone: bool, success: Success, program:
     if runs.len() > 1 {
         blocks.extend(outcome(&groups, success));
     }
+    blocks.extend(strategies(&groups)?);
     blocks.push(Block::Subheading("Champions on fresh starts".into()));
     blocks.extend(tests(&groups, program)?);
     blocks.extend(protocols(&groups));

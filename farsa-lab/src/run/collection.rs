@@ -1,6 +1,6 @@
 //! `archive.csv` and its picture: what a strategy keeps beyond a generation, the elites of an archive or a front.
 
-use farsa_evo::{JudgementShape, Member};
+use farsa_evo::{Collection, JudgementShape, Member};
 
 use crate::error::Error;
 use crate::experiment::behaviour::Behaviour;
@@ -37,18 +37,19 @@ impl CollectionTable {
     /// # Errors
     /// [`Error::Io`].
     pub(crate) fn write(&self, search: &Search, directory: &Directory, title: &str) -> Result<(), Error> {
-        let Some(collection) = search.collection() else { return Ok(()) };
-        let mut members = collection.members();
-        members.sort_by(|a, b| {
-            let best = |member: &Member<'_>| member.objectives.first().copied().unwrap_or(f64::NAN);
-            let by_objective = || best(b).total_cmp(&best(a));
-            let by_origin = || (a.generation, a.individual).cmp(&(b.generation, b.individual));
-            a.cell.cmp(&b.cell).then_with(by_objective).then_with(by_origin)
-        });
+        let members = members(search);
         let [csv, svg] = directory.diagnostics("archive");
         replace(&csv, &self.csv(&members).map_err(|why| Error::damaged(&csv, why))?)?;
         let picture = self.picture(&members, title).map_err(|why| Error::damaged(&svg, why))?;
         replace(&svg, picture.as_bytes())
+    }
+
+    /// The picture alone.
+    ///
+    /// # Errors
+    /// The words of what draws, should it refuse.
+    pub(crate) fn drawn(&self, search: &Search, title: &str) -> Result<String, String> {
+        self.picture(&members(search), title)
     }
 
     /// A line for each, with the numbers that `farsa replay` wants.
@@ -82,4 +83,16 @@ impl CollectionTable {
         let (names, ranges) = ([axis(0).0, axis(1).0], [axis(0).1, axis(1).1]);
         Scatter { title: &title, axes: names, ranges, shade: "fitness", points: &points }.draw()
     }
+}
+
+/// What a strategy keeps, by cells, fitness and origin.
+fn members(search: &Search) -> Vec<Member<'_>> {
+    let mut members = search.collection().map_or_else(Vec::new, Collection::members);
+    members.sort_by(|a, b| {
+        let best = |member: &Member<'_>| member.objectives.first().copied().unwrap_or(f64::NAN);
+        let by_objective = || best(b).total_cmp(&best(a));
+        let by_origin = || (a.generation, a.individual).cmp(&(b.generation, b.individual));
+        a.cell.cmp(&b.cell).then_with(by_objective).then_with(by_origin)
+    });
+    members
 }

@@ -33,7 +33,7 @@ pub(crate) mod begin;
 pub(crate) mod bench;
 mod best_of_run;
 #[cfg(feature = "command")]
-mod collection;
+pub(crate) mod collection;
 pub(crate) mod config_file;
 pub(crate) mod contained;
 #[cfg(feature = "command")]
