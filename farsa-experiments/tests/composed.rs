@@ -352,6 +352,13 @@ fn a_maze_is_searched_by_where_robots_end() {
     let so_far =
         "The best so far where the champion is the best of all generations: maze, novelty-search; maze, map-elites.";
     assert_eq!(report.matches(so_far).count(), 2, "{report}");
+    // A test of the last generation's best, as a program of before made it, is about another than the champion.
+    let record: serde_json::Value = serde_json::from_str(&bench.read("novel/test.json")).expect("JSON");
+    let generation = record["generation"].as_u64().expect("a generation");
+    let another = bench.read("novel/test.json").replace(&format!("\"generation\": {generation}"), "\"generation\": 9");
+    std::fs::write(bench.path("novel/test.json"), another).expect("a file");
+    bench.succeed("report novel --md later.md -q");
+    assert!(bench.read("later.md").contains("| generation 9: a later one |"), "{}", bench.read("later.md"));
     // What the strategies say and keep is shown: the archive as it is beside the run.
     let log = bench.read("elites/strategy.csv");
     let elites = log.lines().last().and_then(|row| row.split(',').nth(1)).expect("a number of elites");

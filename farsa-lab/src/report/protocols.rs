@@ -230,8 +230,10 @@ impl Alike<'_> {
         let champion = |run: &Run<'_>, tested: &TestedProtocol| {
             let generation = match &tested.record {
                 None => "which was not recorded".into(),
-                Some(record) if record.generation == run.champion => format!("of generation {}", record.generation),
-                Some(record) => format!("of generation {}, an earlier one", record.generation),
+                Some(record) => {
+                    let other = run.beside_champion(record.generation).map(|other| format!(", {other}"));
+                    format!("of generation {}{}", record.generation, other.unwrap_or_default())
+                }
             };
             format!("{}: the champion {generation}.", run.name())
         };

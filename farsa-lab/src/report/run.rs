@@ -1,5 +1,6 @@
 //! A run as a report reads it, and runs that differ in their seeds alone.
 
+use std::cmp::Ordering;
 use std::path::Path;
 use std::time::Duration;
 
@@ -29,7 +30,7 @@ pub(crate) struct Run<'e> {
     /// The finished generations, at least one.
     pub(crate) lines: Vec<Line>,
     /// The generation of the champion.
-    pub(crate) champion: u32,
+    champion: u32,
     /// What the strategy said of each generation, where it says something.
     pub(crate) diagnostics: Vec<Vec<f64>>,
     /// The picture of what the strategy keeps, where it does.
@@ -130,6 +131,16 @@ impl<'e> Run<'e> {
     /// The last finished generation.
     pub(crate) fn last(&self) -> usize {
         self.lines.len().saturating_sub(1)
+    }
+
+    /// What the best of a generation is beside the champion, where it is another: a run that went on has a new champion, and one of a
+    /// version that named the last generation's best may have an older one.
+    pub(crate) fn beside_champion(&self, generation: u32) -> Option<&'static str> {
+        match generation.cmp(&self.champion) {
+            Ordering::Less => Some("an earlier one"),
+            Ordering::Equal => None,
+            Ordering::Greater => Some("a later one"),
+        }
     }
 
     /// The share of the test's trials that succeeded.

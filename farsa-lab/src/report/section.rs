@@ -160,8 +160,10 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
             let findings = &test.findings;
             let champion = match &test.record {
                 None => "not recorded".into(),
-                Some(record) if record.generation == run.champion => format!("generation {}", record.generation),
-                Some(record) => format!("generation {}: an earlier one", record.generation),
+                Some(record) => {
+                    let other = run.beside_champion(record.generation).map(|other| format!(": {other}"));
+                    format!("generation {}{}", record.generation, other.unwrap_or_default())
+                }
             };
             let by_trial = findings.by_trial.values();
             let by_trial: Vec<String> =
