@@ -16,7 +16,7 @@ use crate::articulated::link::LinkData;
 use crate::articulated::model::{Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
 use crate::articulated::spatial::{Vector, add, dot, scale, select, sub};
-use crate::articulated::stop::{Stop, relax_stop};
+use crate::articulated::stop::{Stop, length_of, relax_stop};
 use crate::articulated::tree::Root;
 
 /// One contact point's block of three rows: normal, two tangents (or spin and two rolling axes).
@@ -378,8 +378,11 @@ impl<S: Scalar> Solver<'_, S> {
                 let (p, index) = self.active[if round % 2 == 0 { k } else { count - 1 - k }];
                 self.relax(simd, model, usize::from(p), usize::from(index));
             }
-            for stop in &mut self.stops[..stops] {
-                relax_stop(simd, model, stop, self.stop_rows, self.response);
+            if stops > 0 {
+                let mut length = length_of(simd, self.response);
+                for stop in &mut self.stops[..stops] {
+                    relax_stop(simd, model, stop, self.stop_rows, self.response, &mut length);
+                }
             }
             for (ground, rubbing) in model.grounds.iter().zip(&mut *self.rubbing) {
                 relax_ground(simd, model, ground, rubbing, self.response);
