@@ -36,11 +36,11 @@ pub(crate) fn place_colliders<S: Scalar>(
     }
 }
 
-/// The distance within which what closes by a relative velocity is looked at [m], and a little more for turning.
+/// The distance within which what closes at a speed is looked at [m], and a little more for turning.
 #[inline(always)]
-pub(crate) fn reach<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, approach: Vector<S>) -> S {
+pub(crate) fn reach<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, approach: S) -> S {
     let h = S::splat(simd, model.h);
-    S::splat(simd, model.margin) + h * (dot(approach, approach).sqrt() + h.constant(TURNING))
+    S::splat(simd, model.margin) + h * (approach + h.constant(TURNING))
 }
 
 /// Distance between a pair's bounds [m]; nothing can touch while it is positive.

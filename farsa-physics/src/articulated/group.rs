@@ -12,18 +12,18 @@ use crate::articulated::contact::reach;
 use crate::articulated::model::{Cluster, Geometry, Group, Model, POINT_WORDS, Pair};
 use crate::articulated::spatial::{Vector, add, dot, scale, sub};
 
-/// A sphere around a cluster that holds its colliders' bounds, also at the end of a step.
+/// A sphere around a cluster that holds its colliders' bounds, and the largest of their speeds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sphere<S> {
     centre: Vector<S>,
-    velocity: Vector<S>,
     radius: S,
+    speed: S,
 }
 
 impl<S: Scalar> Sphere<S> {
     pub(crate) fn new(simd: S::Simd) -> Self {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
-        Self { centre: [zero; 3], velocity: [zero; 3], radius: zero }
+        Self { centre: [zero; 3], radius: zero, speed: zero }
     }
 }
 
@@ -66,32 +66,36 @@ pub(crate) fn place_spheres<S: Scalar>(
     placed: &[PlacedShape<S>],
     out: &mut [Sphere<S>],
 ) {
-    let (zero, h) = (S::splat(simd, S::Real::from_f64(0.0)), S::splat(simd, model.h));
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
     for (cluster, o) in model.clusters.iter().zip(out) {
-        let share = S::splat(simd, cluster.share);
-        let members = cluster.colliders.iter().map(|index| &placed[*index]);
-        let sum =
-            |of: fn(&PlacedShape<S>) -> Vector<S>| members.clone().fold([zero; 3], |sum, shape| add(sum, of(shape)));
-        let (centre, velocity) = (scale(sum(|shape| shape.position), share), scale(sum(|shape| shape.velocity), share));
-        // A collider may move by h |v| more than the centre does.
-        let mut radius = zero;
-        for (index, shape) in cluster.colliders.iter().zip(members.clone()) {
-            let (apart, moves) = (sub(shape.position, centre), sub(shape.velocity, velocity));
-            let bound = S::splat(simd, model.colliders[*index].bound);
-            radius = radius.max(dot(apart, apart).sqrt() + h * dot(moves, moves).sqrt() + bound);
+        if let [index] = cluster.colliders[..] {
+            let (shape, radius) = (&placed[index], S::splat(simd, model.colliders[index].bound));
+            *o = Sphere { centre: shape.position, radius, speed: dot(shape.velocity, shape.velocity).sqrt() };
+            continue;
         }
-        *o = Sphere { centre, velocity, radius };
+        let members = cluster.colliders.iter().map(|index| &placed[*index]);
+        let sum = members.clone().fold([zero; 3], |sum, shape| add(sum, shape.position));
+        let centre = scale(sum, S::splat(simd, cluster.share));
+        // The farthest and the largest need not be one: then the sphere is larger than it has to be.
+        let [mut apart, mut speed, mut bound] = [zero; 3];
+        for (index, shape) in cluster.colliders.iter().zip(members) {
+            let from = sub(shape.position, centre);
+            apart = apart.max(dot(from, from));
+            speed = speed.max(dot(shape.velocity, shape.velocity));
+            bound = bound.max(S::splat(simd, model.colliders[*index].bound));
+        }
+        *o = Sphere { centre, radius: apart.sqrt() + bound, speed: speed.sqrt() };
     }
 }
 
 /// In which lanes two spheres are so near that a pair of what they hold may have to be looked at.
 ///
-/// Where a pair's own bounds are near ([`crate::articulated::solver`]), so are the spheres: they are the larger, and what
-/// their members move relative to each other is in the radii and in the relative velocity of the centres.
+/// Where a pair's own bounds are near ([`crate::articulated::solver`]), so are the spheres, which are larger and close no more
+/// slowly.
 #[inline(always)]
 pub(crate) fn spheres_near<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, a: &Sphere<S>, b: &Sphere<S>) -> S::Mask {
-    let (apart, approach) = (sub(a.centre, b.centre), sub(a.velocity, b.velocity));
-    (dot(apart, apart).sqrt() - a.radius - b.radius).le(reach(simd, model, approach))
+    let apart = sub(a.centre, b.centre);
+    (dot(apart, apart).sqrt() - a.radius - b.radius).le(reach(simd, model, a.speed + b.speed))
 }
 
 /// The gap of a point of a group that is far: nothing nearer is known.

@@ -101,7 +101,7 @@ pub(crate) struct Solver<'a, S: Scalar> {
 fn bounds<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Real>, placed: &[PlacedShape<S>]) -> [S; 2] {
     let [a, b] = pair.colliders;
     let approach = sub(placed[a].velocity, placed[b].velocity);
-    [clearance(simd, model, pair, placed), reach(simd, model, approach)]
+    [clearance(simd, model, pair, placed), reach(simd, model, dot(approach, approach).sqrt())]
 }
 
 #[inline(always)]
