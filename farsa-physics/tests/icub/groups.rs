@@ -16,7 +16,8 @@ fn groups_change_no_motion() {
     let mut alone = robot.clone();
     alone.pairs.iter_mut().for_each(|pair| pair.group = None);
     let grouped = robot.pairs.iter().filter(|pair| pair.group.is_some()).count();
-    assert_eq!(grouped, 2 * 15 * 6 + 15 * 15);
+    // Limbs, then fingers with what is not of their hand nor arm, then fingers of both hands.
+    assert_eq!(grouped, 2 * 7 + 8 + 2 * 15 * 6 + 15 * 15);
     let worlds = |robot: &Robot| World::new(model::<f32>(robot, Options::default()));
     let (mut here, mut there) = (worlds(&robot), worlds(&alone));
     let [mut touching, mut far, mut near] = [0; 3];

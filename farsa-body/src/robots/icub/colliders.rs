@@ -95,12 +95,16 @@ pub(super) fn carrier(robot: &Robot, collider: usize) -> Option<BodyId> {
 
 /// Appends the pairs whose colliders can move relative to each other.
 pub(super) fn add_pairs(robot: &mut Robot, hand: &Hand, skin: Surface) {
-    let hands = Side::ALL.into_iter().flat_map(|side| Hand::pairs(arm(side)[2], first_phalange(side)));
-    let limbs = limb_pairs().into_iter().map(|pair| (pair, skin));
     let moves = |robot: &Robot, [a, b]: [usize; 2]| carrier(robot, a) != carrier(robot, b);
-    for (pair, surface) in limbs.chain(hands.map(|pair| (pair, hand.surface))) {
+    for pair in limb_pairs() {
+        // Alone in a group: while they are far, no point of theirs is written, of which two palms have 28.
         if moves(robot, pair) {
-            robot.add_pair(pair, surface);
+            robot.add_pair_group([pair], skin);
+        }
+    }
+    for pair in Side::ALL.into_iter().flat_map(|side| Hand::pairs(arm(side)[2], first_phalange(side))) {
+        if moves(robot, pair) {
+            robot.add_pair(pair, hand.surface);
         }
     }
     for mut pairs in finger_pairs() {
