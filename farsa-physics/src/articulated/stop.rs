@@ -247,7 +247,7 @@ mod tests {
     use alloc::vec::Vec;
 
     use farsa_body::ArmAndHand;
-    use farsa_num::{Domain, Stream};
+    use farsa_num::{Domain, Stream, exp};
     use proptest::prelude::*;
 
     use super::{Stop, length_of, relax_stop};
@@ -260,7 +260,10 @@ mod tests {
     /// The stops of all joints, of rows drawn for bodies of grams and of kilograms, at positions near the limits.
     fn drawn(model: &Model<f32>, stream: &mut Stream) -> (Vec<Stop<f32>>, Vec<f32>) {
         let mut rows = vec![0.0; model.stop_entries];
-        rows.iter_mut().for_each(|y| *y = stream.range(-1.0, 1.0) * 10.0_f32.powf(stream.range(-2.0, 2.0)));
+        for y in &mut rows {
+            let size = exp(stream.range(-4.6, 4.6));
+            *y = stream.range(-1.0, 1.0) * size;
+        }
         let links = (0..model.links.len()).filter(|link| model.stops[*link]);
         let stops = links.map(|link| {
             let (limits, path) = (&model.links[link], &model.stop_paths[link]);
@@ -282,9 +285,11 @@ mod tests {
             let mut every: Vec<Stop<f32>> = stops.iter().map(|stop| Stop { idle: -1.0, ..*stop }).collect();
             let mut response: Vec<f32> = (0..model.dofs).map(|_| stream.range(-0.1, 0.1)).collect();
             let mut other = response.clone();
+            let mut size = 1.0;
             for sweep in 0..60 {
                 // A contact's row, and impulses that become smaller as sweeps go on.
-                let change = stream.range(-1.0, 1.0) * 0.8_f32.powi(sweep);
+                let change = stream.range(-1.0, 1.0) * size;
+                size *= 0.8;
                 for (z, other) in response.iter_mut().zip(&mut other) {
                     let y = stream.range(-1.0, 1.0);
                     *z += y * change;
@@ -327,7 +332,9 @@ mod tests {
                 let mut stop = Stop::from_row(&model, link, true, [position, 0.0], row.len(), square);
                 let size = part * stop.idle / square.sqrt() * if upper { 1.0 } else { -1.0 };
                 let mut response = vec![0.0; model.dofs];
-                path.dofs.iter().zip(row).for_each(|(d, y)| response[usize::from(*d)] = size * y);
+                for (d, y) in path.dofs.iter().zip(row) {
+                    response[usize::from(*d)] = size * y;
+                }
                 stop.idle = -1.0;
                 relax_stop((), &model, &mut stop, &rows, &mut response, &mut 0.0);
                 stop.impulse
