@@ -310,6 +310,31 @@ mod tests {
         assert!(idle > 10_000 && pushing > 10_000, "{idle} idle, {pushing} pushing");
     }
 
+    #[test]
+    fn what_has_pushed_is_looked_at_again() {
+        let model = model();
+        let (stops, rows) = drawn(&model, &mut Stream::new(2, Domain::General, 0, 0, 0));
+        for stop in stops {
+            let (limits, path) = (&model.links[usize::from(stop.link)], &model.stop_paths[usize::from(stop.link)]);
+            let row = &rows[path.row..path.row + path.dofs.len()];
+            let position = limits.upper - 0.01 * (limits.upper - limits.lower);
+            let mut stop =
+                Stop::from_row(&model, usize::from(stop.link), true, [position, 0.0], row.len(), stop.response);
+            // A contact drives the joint a little beyond its limit and then lets go: so must the stop.
+            let contact: Vec<f32> = row.iter().map(|y| 1.02 * stop.idle / stop.length * y).collect();
+            let mut response = vec![0.0; model.dofs];
+            for pushes in [true, false] {
+                for (d, z) in path.dofs.iter().zip(&contact) {
+                    response[usize::from(*d)] += if pushes { *z } else { -z };
+                }
+                let mut length = length_of((), &response);
+                let idle = stop.is_idle(length);
+                relax_stop((), &model, &mut stop, &rows, &mut response, &mut length);
+                assert!(!idle && (stop.impulse < 0.0) == pushes && (stop.impulse == 0.0) != pushes, "{stop:?}");
+            }
+        }
+    }
+
     proptest! {
         /// The worst response is along the row. As long as a stop may be it does nothing, and a little longer it acts.
         #[test]
