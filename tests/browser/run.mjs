@@ -5,8 +5,9 @@
 // PAGE.html is a page of a trial, TRIAL.csv what `farsa replay` says of the same trial; without them an invented trial takes
 // their place. LIVE.html is a page of `farsa live`, LESION.json what `farsa test --lesion` says of the same agent without one neuron.
 // EVOLVING.html is a page of an unfinished run, FITNESS.csv that of the run three generations later.
-// ADDRESS is where `farsa serve` serves a run that goes on, ARM.html a live page of `reach-grasp-lift`. Prints a line per check and exits with 1 if one failed. Needs chromium and
-// chromedriver, no package; with BROWSER=firefox, Firefox and geckodriver, which leave out other screens, damage and missing parts.
+// ADDRESS is where `farsa serve` serves a run that goes on, once the process SERVED_RUN has been told to, ARM.html a live page of
+// `reach-grasp-lift`. Prints a line per check and exits with 1 if one failed. Needs chromium and chromedriver, no package; with
+// BROWSER=firefox, Firefox and geckodriver, which leave out other screens, damage and missing parts.
 
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -1046,6 +1047,9 @@ async function evolves(browser) {
 // A run that goes on is seen in the page that is served.
 async function serves(browser) {
   await opened(browser, new URL(servedPage));
+  // Halted until it is looked at, so that it takes no time from the other checks.
+  const told = (signal) => process.env.SERVED_RUN && process.kill(Number(process.env.SERVED_RUN), signal);
+  told("SIGCONT");
   const first = await browser.run(() => farsa.live.rows.at(-1)[0]);
   await browser.until(new Function(`return farsa.live.rows.at(-1)[0] > ${first + 2} && !document.querySelectorAll("#evolution button")[1].disabled`));
   const rows = await browser.run(() => farsa.live.rows.map(([number]) => number));
@@ -1058,6 +1062,7 @@ async function serves(browser) {
   const found = await browser.run(() => [...document.querySelectorAll("#live select")[0].options].map((one) => one.textContent).filter((text) => text.includes("found since")));
   check("of each population", found.length === 2 && ["predator", "prey"].every((name, i) => found[i].endsWith(name)), found.join());
   if (shots) writeFileSync(join(shots, "served.png"), await browser.screenshot());
+  told("SIGSTOP");
   await silent(browser, "served");
 }
 
