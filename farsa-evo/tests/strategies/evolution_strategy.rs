@@ -1,0 +1,301 @@
+//! Evolution strategies: beside a transcription of their source, on known functions, and their bits.
+
+#![allow(clippy::disallowed_methods)]
+
+use farsa_evo::{
+    EvoError, EvolutionStrategy, EvolutionStrategyConfig, Fitness, Recombination, Record, StepSizes, Strategy,
+    Survival, check_strategy,
+};
+use farsa_num::{Domain, Stream};
+use proptest::prelude::*;
+
+fn sphere(genes: &[f64]) -> f64 {
+    -genes.iter().map(|x| (x - 0.5) * (x - 0.5)).sum::<f64>()
+}
+
+/// Condition 10^4: the last axis is a hundred times as steep as the first.
+fn ellipsoid(genes: &[f64]) -> f64 {
+    let last = genes.len().max(2) - 1;
+    -genes.iter().enumerate().map(|(i, x)| 1e4_f64.powf(i as f64 / last as f64) * x * x).sum::<f64>()
+}
+
+fn rosenbrock(genes: &[f64]) -> f64 {
+    let square = |x: f64| x * x;
+    -genes.windows(2).map(|x| 100.0 * square(x[1] - x[0] * x[0]) + square(1.0 - x[0])).sum::<f64>()
+}
+
+type Mixing = (Recombination, Recombination, usize);
+
+fn config(
+    survival: Survival,
+    (recombination, step_recombination, mixing): Mixing,
+    step_sizes: StepSizes,
+) -> EvolutionStrategyConfig {
+    let base = EvolutionStrategyConfig::new(vec![1.0, -2.0, 0.0, 3.0], 0.5);
+    let (parents, offspring) = (5, 20);
+    EvolutionStrategyConfig {
+        parents,
+        offspring,
+        mixing,
+        survival,
+        recombination,
+        step_recombination,
+        step_sizes,
+        ..base
+    }
+}
+
+/// One of everything, of four genes.
+fn configs() -> [EvolutionStrategyConfig; 5] {
+    use Recombination::{Discrete, Intermediate, None};
+    let (one, each) = (StepSizes::one(4), StepSizes::per_gene(4));
+    [
+        config(Survival::Comma, (Discrete, Intermediate, 5), each),
+        config(Survival::Comma, (Intermediate, Intermediate, 3), one),
+        config(Survival::Plus, (Intermediate, Discrete, 2), each),
+        config(Survival::Plus, (None, None, 1), one),
+        config(Survival::PlusEvaluatedAgain, (Discrete, None, 4), each),
+    ]
+}
+
+#[test]
+fn it_keeps_to_what_a_strategy_is() {
+    for config in configs() {
+        check_strategy(|| EvolutionStrategy::new(config.clone(), 7), 40).unwrap();
+    }
+    let [.., last] = configs();
+    let one = EvolutionStrategyConfig { parents: 1, offspring: 1, mixing: 1, survival: Survival::Plus, ..last };
+    check_strategy(|| EvolutionStrategy::new(one.clone(), 7), 20).unwrap();
+}
+
+#[derive(Clone)]
+struct Naive {
+    genes: Vec<f64>,
+    steps: Vec<f64>,
+    fitness: f64,
+}
+
+/// A row of a child, by the words of the source.
+fn mixed(how: Recombination, rows: &[&Vec<f64>], stream: &mut Stream) -> Vec<f64> {
+    let width = rows[0].len();
+    match how {
+        Recombination::None => rows[0].clone(),
+        Recombination::Discrete => (0..width).map(|i| rows[stream.below(rows.len() as u32) as usize][i]).collect(),
+        Recombination::Intermediate => {
+            (0..width).map(|i| rows.iter().map(|row| row[i]).sum::<f64>() / rows.len() as f64).collect()
+        }
+    }
+}
+
+fn child(config: &EvolutionStrategyConfig, parents: &[Naive], mut stream: Stream) -> Naive {
+    let stream = &mut stream;
+    let mut drawn: Vec<&Naive> = parents.iter().collect();
+    for slot in 0..config.mixing {
+        let other = slot + stream.below((drawn.len() - slot) as u32) as usize;
+        drawn.swap(slot, other);
+    }
+    drawn.truncate(config.mixing);
+    let steps = mixed(config.step_recombination, &drawn.iter().map(|p| &p.steps).collect::<Vec<_>>(), stream);
+    let genes = mixed(config.recombination, &drawn.iter().map(|p| &p.genes).collect::<Vec<_>>(), stream);
+    let n = genes.len();
+    let (steps, normal): (Vec<f64>, Vec<f64>) = match config.step_sizes {
+        StepSizes::One { tau } => {
+            let mut z = vec![0.0; 1 + n];
+            stream.fill_normal(&mut z);
+            (vec![steps[0] * (tau * z[0]).exp()], z[1..].to_vec())
+        }
+        StepSizes::PerGene { tau_0, tau } => {
+            let mut z = vec![0.0; 1 + 2 * n];
+            stream.fill_normal(&mut z);
+            let own = |i: usize| steps[i] * (tau_0 * z[0]).exp() * (tau * z[1 + i]).exp();
+            ((0..n).map(own).collect(), z[1 + n..].to_vec())
+        }
+    };
+    let sigma = |i: usize| steps[if steps.len() == 1 { 0 } else { i }];
+    let genes = (0..n).map(|i| genes[i] + sigma(i) * normal[i]).collect();
+    Naive { genes, steps, fitness: f64::NAN }
+}
+
+#[test]
+fn generations_are_those_of_a_transcription() {
+    for config in configs() {
+        let mut search = EvolutionStrategy::new(config.clone(), 11).unwrap();
+        let width = search.step_sizes().len() / search.ask().len();
+        let mut asked: Vec<Naive> = search
+            .ask()
+            .iter()
+            .map(|genes| Naive { genes: genes.to_vec(), steps: vec![0.5; width], fitness: 0.0 })
+            .collect();
+        let mut parents: Vec<Naive> = Vec::new();
+        for generation in 1..10 {
+            // Another landscape every generation: it shows who is evaluated again.
+            let judge = |genes: &[f64]| sphere(genes) * f64::from(1 + generation % 3);
+            for one in &mut asked {
+                one.fitness = judge(&one.genes);
+            }
+            let told: Vec<f64> = search.ask().iter().map(judge).collect();
+            search.tell_values(&told).unwrap();
+            let mut pool = if config.survival == Survival::Plus { parents } else { Vec::new() };
+            pool.append(&mut asked);
+            pool.sort_by(|a, b| b.fitness.total_cmp(&a.fitness));
+            pool.truncate(config.parents);
+            parents = pool;
+            if config.survival == Survival::PlusEvaluatedAgain {
+                asked.clone_from(&parents);
+            }
+            let stream = |i: u32| Stream::new(11, Domain::Mutation, 0, i, generation);
+            asked.extend((0..20).map(|i| child(&config, &parents, stream(i))));
+            let rows = search.ask().iter().zip(search.step_sizes().chunks(width));
+            assert_eq!(rows.len(), asked.len());
+            for ((genes, steps), naive) in rows.zip(&asked) {
+                for (got, want) in genes.iter().zip(&naive.genes).chain(steps.iter().zip(&naive.steps)) {
+                    assert!((got - want).abs() <= 1e-12 * want.abs().max(1.0), "{generation}: {got} {want}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn parents_that_are_kept_keep_their_fitness() {
+    let [_, _, plus, ..] = configs();
+    let mut search = EvolutionStrategy::new(plus, 3).unwrap();
+    let told: Vec<f64> = (0..20).map(f64::from).collect();
+    search.tell_values(&told).unwrap();
+    let parents = |search: &EvolutionStrategy, i| search.genealogy().unwrap().parents_of(i);
+    assert!((0..20).all(|i| parents(&search, i).len() == 2 && parents(&search, i).iter().all(|&p| p >= 15)));
+    // One child is better than all parents; the others fail.
+    let mut told = [f64::NAN; 20];
+    told[7] = 30.0;
+    search.tell_values(&told).unwrap();
+    let kept: Vec<f64> = search.parent_fitness().into_iter().map(Fitness::get).collect();
+    assert_eq!(kept, [30.0, 19.0, 18.0, 17.0, 16.0]);
+    // The others come from two generations before.
+    assert!((0..20).all(|i| parents(&search, i).is_empty() || parents(&search, i) == [7]));
+    assert!((0..20).any(|i| parents(&search, i) == [7]));
+}
+
+#[test]
+fn a_record_makes_it_again() {
+    for config in configs() {
+        let fresh = || EvolutionStrategy::new(config.clone(), 5).unwrap();
+        let mut search = fresh();
+        let mut record = Record::new(&mut search).unwrap();
+        for _ in 0..30 {
+            let told: Vec<Fitness> = search.ask().iter().map(|genes| Fitness::nan_as_failed(sphere(genes))).collect();
+            record.tell(&mut search, &told).unwrap();
+        }
+        let mut again = fresh();
+        record.rebuild(&mut again, 30).unwrap();
+        assert_eq!(again, search);
+    }
+}
+
+/// Ten genes: 30 000 evaluations for the sphere, 60 000 for the ellipsoid; Rosenbrock of four, 100 000.
+#[test]
+fn it_converges() {
+    let base = |genes| EvolutionStrategyConfig::new(vec![3.0; genes], 1.0);
+    let best = |config, generations, function: fn(&[f64]) -> f64| {
+        EvolutionStrategy::new(config, 5).unwrap().maximize(generations, function).unwrap().fitness.get()
+    };
+    for survival in [Survival::Comma, Survival::Plus, Survival::PlusEvaluatedAgain] {
+        let config = EvolutionStrategyConfig { survival, ..base(10) };
+        let one = EvolutionStrategyConfig { step_sizes: StepSizes::one(10), ..config.clone() };
+        let got = [best(config.clone(), 300, sphere), best(one, 300, sphere), best(config, 600, ellipsoid)];
+        assert!(got.iter().all(|fitness| *fitness > -1e-10), "{survival:?}: {got:?}");
+    }
+    let got = best(base(4), 1000, rosenbrock);
+    // The mean has -10 812; in the valley the steps of single axes stay short.
+    assert!(got > -0.5, "{got}");
+}
+
+#[test]
+fn it_keeps_its_bits() {
+    let got = configs().map(|config| {
+        let mut search = EvolutionStrategy::new(config, 2010).unwrap();
+        search.maximize(50, rosenbrock).unwrap();
+        search.ask().digest()
+    });
+    let want = [
+        0x2065_d9d7_39d5_e566,
+        0xb0bf_e7d7_ff00_38b7,
+        0x5803_4965_dda2_f935,
+        0x71d4_5203_01d2_85c7,
+        0x55d5_a28e_29b7_04ee,
+    ];
+    assert_eq!(got, want, "{got:#018x?}");
+}
+
+#[test]
+fn impossible_configurations_are_refused() {
+    let refused = |change: &dyn Fn(&mut EvolutionStrategyConfig)| {
+        let mut config = EvolutionStrategyConfig::new(vec![0.0; 3], 1.0);
+        change(&mut config);
+        match EvolutionStrategy::new(config, 0).unwrap_err() {
+            EvoError::Setting { name, value, .. } => (name, value),
+            other => panic!("{other}"),
+        }
+    };
+    assert_eq!(refused(&|c| c.parents = 101), ("the number of parents", 101.0));
+    assert_eq!(refused(&|c| c.mixing = 16), ("the mixing number", 16.0));
+    assert_eq!(refused(&|c| c.mixing = 0), ("the mixing number", 0.0));
+    assert_eq!(refused(&|c| c.mean[2] = f64::INFINITY), ("a mean", f64::INFINITY));
+    assert_eq!(refused(&|c| c.initial_step = 0.0), ("the first step size", 0.0));
+    assert_eq!(refused(&|c| c.smallest_step = 0.0), ("the smallest step size", 0.0));
+    assert_eq!(refused(&|c| c.step_sizes = StepSizes::One { tau: -1.0 }), ("tau", -1.0));
+    assert_eq!(refused(&|c| c.step_sizes = StepSizes::PerGene { tau_0: 11.0, tau: 1.0 }), ("tau_0", 11.0));
+    let base = EvolutionStrategyConfig::new(vec![0.0; 3], 1.0);
+    let nobody = EvolutionStrategyConfig { parents: 0, ..base.clone() };
+    assert_eq!(EvolutionStrategy::new(nobody, 0).unwrap_err(), EvoError::NoParents);
+    let many = EvolutionStrategyConfig { offspring: usize::MAX, ..base };
+    assert_eq!(EvolutionStrategy::new(many, 0).unwrap_err(), EvoError::TooLarge { population: usize::MAX, genes: 3 });
+}
+
+#[test]
+fn a_damaged_state_is_refused() {
+    let [_, _, config, ..] = configs();
+    let mut search = EvolutionStrategy::new(config, 3).unwrap();
+    search.tell_values(&[0.0; 20]).unwrap();
+    let before = search.clone();
+    let state = search.snapshot().unwrap().save();
+    let row = 8 * 8;
+    let of_steps = 4 + 5 * (12 + row);
+    // Of an origin, of a fitness, of a parent's step size and gene, of a step size, of a gene.
+    let damages = [(4, 0xee), (8, 0xff), (16, 0xee), (48, 0x7f), (of_steps, 0xff), (state.len() - 8, 0x7e)];
+    for (at, byte) in damages {
+        let mut damaged = state.clone();
+        damaged[at..at + 8].fill(byte);
+        assert!(search.snapshot().unwrap().restore(&damaged).is_err(), "{at}");
+        assert_eq!(search, before);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn genes_stay_finite(
+        seed: u64,
+        which in 0_usize..5,
+        rate in 0.0_f64..10.0,
+        mean in -1e100_f64..1e100,
+        power in -99_i32..=100,
+        told in proptest::collection::vec(proptest::num::f64::ANY, 25),
+    ) {
+        let mut config = configs()[which].clone();
+        config.mean[0] = mean;
+        config.smallest_step = 1e-100;
+        config.initial_step = format!("1e{power}").parse().unwrap();
+        config.step_sizes = match config.step_sizes {
+            StepSizes::One { .. } => StepSizes::One { tau: rate },
+            StepSizes::PerGene { .. } => StepSizes::PerGene { tau_0: rate, tau: rate },
+        };
+        let mut search = EvolutionStrategy::new(config, seed).unwrap();
+        for _ in 0..30 {
+            let count = search.ask().len();
+            search.tell_values(&told[..count]).unwrap();
+            prop_assert!(search.ask().as_slice().iter().chain(search.step_sizes()).all(|x| x.is_finite()));
+            let state = search.snapshot().unwrap().save();
+            prop_assert_eq!(search.snapshot().unwrap().restore(&state), Ok(()));
+        }
+    }
+}

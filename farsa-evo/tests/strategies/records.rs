@@ -1,0 +1,97 @@
+//! Records that keep states, whole, cut, read entry by entry, and written elsewhere.
+
+use farsa_evo::{EvoError, Fitness, GaConfig, Population, Record, Snapshot, Strategy, TruncationGa};
+
+/// A search that asks for its state to be kept every three generations.
+struct Asking(TruncationGa);
+
+impl Strategy for Asking {
+    fn generation(&self) -> u32 {
+        self.0.generation()
+    }
+    fn ask(&self) -> &Population {
+        self.0.ask()
+    }
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        self.0.tell(fitness)
+    }
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+}
+
+impl Snapshot for Asking {
+    fn save(&self) -> Vec<u8> {
+        self.0.save()
+    }
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        self.0.restore(state)
+    }
+    fn generations_between_states(&self) -> u32 {
+        3
+    }
+}
+
+fn fresh() -> Asking {
+    Asking(TruncationGa::new(GaConfig { population: 10, parents: 5, ..GaConfig::new(500) }, 2).unwrap())
+}
+
+/// What a generation is told.
+fn values(generation: u32) -> Vec<Fitness> {
+    (0..10_u32).map(|i| Fitness::nan_as_failed(f64::from((7 * i + generation) % 10))).collect()
+}
+
+/// Ten generations.
+fn recorded() -> Record {
+    let mut slow = fresh();
+    let mut record = Record::new(&mut slow).unwrap();
+    for generation in 0..10 {
+        record.tell(&mut slow, &values(generation)).unwrap();
+    }
+    record
+}
+
+#[test]
+fn states_are_kept_as_often_as_a_slow_strategy_asks() {
+    let record = recorded();
+    let kept: Vec<u32> = (0..10).filter(|generation| record.entry(*generation).unwrap().state.is_some()).collect();
+    assert_eq!(kept, [2, 5, 8]);
+    // A record that was cut and went on is the same, and so is one that is read entry by entry.
+    let (mut cut, mut again) = (record.clone(), fresh());
+    cut.truncate(4);
+    cut.rebuild(&mut again, 4).unwrap();
+    let mut read = Record::new(&mut fresh()).unwrap();
+    for generation in 4..10 {
+        cut.tell(&mut again, &values(generation)).unwrap();
+    }
+    for generation in 0..10 {
+        read.push(record.entry(generation).unwrap()).unwrap();
+    }
+    assert!(cut == record && read == record);
+    for generation in 0..10 {
+        let mut rebuilt = fresh();
+        record.rebuild(&mut rebuilt, generation).unwrap();
+        assert_eq!(rebuilt.ask().digest(), record.genomes(&mut fresh(), generation).unwrap().digest());
+    }
+}
+
+#[test]
+fn a_writer_takes_down_what_a_record_keeps_from_any_generation_on() {
+    let record = recorded();
+    for first in 0..10 {
+        let (mut before, mut strategy) = (record.clone(), fresh());
+        before.truncate(first);
+        before.rebuild(&mut strategy, first).unwrap();
+        let mut writer = before.writer();
+        assert_eq!((writer.generations(), writer.populations(), writer.entry()), (first, 1, None));
+        assert!(writer.tell(&mut fresh(), &values(0)).is_err() == (first > 0), "another generation");
+        let mut writer = before.writer();
+        for generation in first..10 {
+            writer.tell(&mut strategy, &values(generation)).unwrap();
+            assert_eq!(writer.entry(), record.entry(generation), "{generation} from {first} on");
+        }
+        assert_eq!(writer.generations(), 10);
+        assert!(writer.tell(&mut strategy, &values(0)[1..]).is_err());
+        assert_eq!(writer.entry(), record.entry(9), "what is refused changes nothing");
+    }
+}

@@ -1,0 +1,179 @@
+//! Covariance matrix adaptation that begins anew: which runs follow each other, and what they find.
+
+use farsa_evo::{
+    CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, EvoError, Fitness, RestartSchedule, Snapshot, Strategy,
+    check_strategy,
+};
+use farsa_num::{Digest, sin_cos};
+use proptest::prelude::*;
+
+fn config(mean: f64, genes: usize, sigma: f64, schedule: RestartSchedule) -> CmaEsRestartsConfig {
+    CmaEsRestartsConfig::new(CmaEsConfig::new(vec![mean; genes], sigma), schedule)
+}
+
+/// Many optima, the best at 0.
+fn rastrigin(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x - 10.0 * sin_cos(core::f64::consts::TAU * x).1 + 10.0).sum()
+}
+
+fn tell(search: &mut impl Strategy<f64>, function: fn(&[f64]) -> f64) -> f64 {
+    let values: Vec<f64> = search.ask().iter().map(|x| -function(x)).collect();
+    search.tell_values(&values).unwrap();
+    values.into_iter().fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Generations until the function is below 10^-8.
+fn generations(search: &mut impl Strategy<f64>, limit: usize) -> Option<usize> {
+    (0..limit).find(|_| tell(search, rastrigin) > -1e-8)
+}
+
+#[test]
+fn restarts_find_what_one_run_misses() {
+    for seed in 0..5 {
+        let one = CmaEsConfig::new(vec![3.0; 5], 1.0);
+        assert_eq!(generations(&mut CmaEs::new(one, seed).unwrap(), 2000), None);
+        for schedule in [RestartSchedule::Ipop, RestartSchedule::Bipop] {
+            let mut search = CmaEsRestarts::new(config(3.0, 5, 1.0, schedule), seed).unwrap();
+            let found = generations(&mut search, 20_000);
+            assert!(found.is_some() && search.run() > 0, "{schedule:?}, seed {seed}");
+        }
+    }
+}
+
+/// The individuals of each run and the blocks that it evaluated.
+fn runs(schedule: RestartSchedule, generations: u32) -> Vec<(usize, u32)> {
+    let mut search = CmaEsRestarts::new(config(3.0, 4, 1.0, schedule), 1).unwrap();
+    let mut runs = vec![];
+    for _ in 0..generations {
+        if runs.len() <= search.run() as usize {
+            runs.push((search.individuals(), 0));
+        }
+        runs.last_mut().unwrap().1 += 1;
+        tell(&mut search, rastrigin);
+    }
+    runs
+}
+
+#[test]
+fn runs_have_the_sizes_of_their_schedule() {
+    let sizes: Vec<usize> = runs(RestartSchedule::Ipop, 4000).into_iter().map(|(size, _)| size).collect();
+    assert_eq!(sizes[..4], [8, 16, 32, 64]);
+    let runs = runs(RestartSchedule::Bipop, 8000);
+    let (mut large, mut spent, mut latest) = (8, [0, 0], runs[0].1);
+    for (size, blocks) in &runs[1..runs.len() - 1] {
+        let small = spent[1] < spent[0];
+        if small {
+            assert!((8..=(large / 2).max(8)).contains(size), "{runs:?}");
+            // A run ends with the generation in which it has spent half of what the latest large run had.
+            assert!(*blocks < latest / 2 + *size as u32 / 8, "{runs:?}");
+        } else {
+            large *= 2;
+            assert_eq!(*size, large, "{runs:?}");
+            latest = *blocks;
+        }
+        spent[usize::from(small)] += blocks;
+    }
+    assert!(large >= 32 && runs.len() > 8, "{runs:?}");
+}
+
+#[test]
+fn the_first_run_is_that_of_one_alone() {
+    let restarts = config(3.0, 4, 1.0, RestartSchedule::Ipop);
+    let mut alone = CmaEs::new(restarts.first.clone(), 7).unwrap();
+    let mut search = CmaEsRestarts::new(restarts, 7).unwrap();
+    while search.run() == 0 {
+        assert_eq!(search.ask(), alone.ask());
+        tell(&mut alone, rastrigin);
+        tell(&mut search, rastrigin);
+    }
+    assert!((40..1000).contains(&search.generation()), "{}", search.generation());
+    assert_ne!(search.ask(), alone.ask());
+}
+
+#[test]
+fn the_contract_is_kept() {
+    for schedule in [RestartSchedule::Ipop, RestartSchedule::Bipop] {
+        check_strategy(|| CmaEsRestarts::new(config(0.0, 3, 1.0, schedule), 3), 22).unwrap();
+        // Steps so small that a run ends with its first generation: runs of 1, 2, 4 ... blocks.
+        check_strategy(|| CmaEsRestarts::new(config(1e6, 2, 1e-12, schedule), 3), 80).unwrap();
+    }
+}
+
+#[test]
+fn impossible_configurations_are_refused() {
+    let refused = |change: fn(&mut CmaEsRestartsConfig)| {
+        let mut config = config(0.0, 4, 1.0, RestartSchedule::Bipop);
+        change(&mut config);
+        CmaEsRestarts::new(config, 0).unwrap_err()
+    };
+    assert_eq!(refused(|c| c.first.mean.clear()), EvoError::NoGenes);
+    assert_eq!(refused(|c| c.spread = -1.0).to_string(), "spread is -1, where 0 to 1e100 is possible");
+    // The largest run has 512 times as many.
+    let population = 512 * 1_000_000;
+    assert_eq!(refused(|c| c.first.population = 1_000_000), EvoError::TooLarge { population, genes: 4 });
+}
+
+#[test]
+fn states_that_cannot_be_change_nothing() {
+    let mut search = CmaEsRestarts::new(config(1e6, 2, 1e-12, RestartSchedule::Ipop), 3).unwrap();
+    while search.individuals() < 48 {
+        tell(&mut search, rastrigin);
+    }
+    tell(&mut search, rastrigin);
+    let (before, state) = (search.clone(), search.save());
+    // Generation, large, number, blocks, kind, iterations, block, remembered; then sigma of the run.
+    for (place, wrong) in
+        [(4, 3), (4, 1024), (12, 0), (12, 513), (16, 2), (24, 8), (24, u32::MAX), (28, 5), (28, u32::MAX)]
+    {
+        let mut state = state.clone();
+        state[place..place + 4].copy_from_slice(&wrong.to_le_bytes());
+        assert!(matches!(search.restore(&state), Err(EvoError::StateContent { .. })), "{place}: {wrong}");
+        assert_eq!(search, before);
+    }
+    for wrong in [0.0, f64::NAN, -1.0] {
+        let mut state = state.clone();
+        state[72..80].copy_from_slice(&f64::to_le_bytes(wrong));
+        assert!(matches!(search.restore(&state), Err(EvoError::StateContent { .. })), "{wrong}");
+        assert_eq!(search, before);
+    }
+    search.restore(&state).unwrap();
+    assert_eq!(search, before);
+}
+
+#[test]
+fn the_bits_stay_as_they_are() {
+    let mut digests = [0; 2];
+    for (digest, schedule) in digests.iter_mut().zip([RestartSchedule::Ipop, RestartSchedule::Bipop]) {
+        let mut search = CmaEsRestarts::new(config(3.0, 3, 1.0, schedule), 2005).unwrap();
+        let mut all = Digest::new();
+        for _ in 0..1000 {
+            all.add_u64(search.ask().digest());
+            tell(&mut search, rastrigin);
+        }
+        *digest = all.finish();
+    }
+    assert_eq!(digests, [0x96ea_864f_43b0_7c4d, 0xa69a_1894_9be6_0625], "{digests:#018x?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn genes_stay_finite(
+        genes in 1..5_usize, exponent in -99..99_i32, seed: u64, bipop: bool,
+        told in proptest::collection::vec(prop_oneof![any::<f64>(), Just(f64::NAN), -1.0..1.0_f64], 60),
+    ) {
+        let sigma = farsa_num::exp(f64::from(exponent) * core::f64::consts::LN_10);
+        let schedule = if bipop { RestartSchedule::Bipop } else { RestartSchedule::Ipop };
+        let mut search = CmaEsRestarts::new(config(1.0, genes, sigma, schedule), seed).unwrap();
+        for generation in 0..120 {
+            let told = told.iter().cycle().skip(generation).step_by(1 + generation % 7);
+            let fitness: Vec<Fitness> = told.take(search.ask().len()).map(|x| Fitness::nan_as_failed(*x)).collect();
+            search.tell(&fitness).unwrap();
+            prop_assert!(search.ask().as_slice().iter().chain(&search.diagnostics()).all(|x| x.is_finite()));
+            let mut again = search.clone();
+            prop_assert_eq!(again.restore(&search.save()), Ok(()));
+            prop_assert_eq!(&again, &search);
+        }
+    }
+}
