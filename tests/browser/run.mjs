@@ -661,7 +661,10 @@ async function flatHandled(browser) {
   // Wherever the eye is, inside of bodies too, a picture is drawn.
   const wrong = await browser.run(() => {
     const [trial] = farsa.trials;
-    const flat = new Flat(Object.assign(document.createElement("canvas"), { width: 200, height: 120 }));
+    const canvas = Object.assign(document.createElement("canvas"), { width: 200, height: 120 });
+    // Drawn at once: without, minutes of pictures wait behind what is asked of the browser next.
+    canvas.getContext("2d", { willReadFrequently: true });
+    const flat = new Flat(canvas);
     const visible = { forces: true, rays: true, points: true, trails: true };
     const failures = [];
     trial.shapes.push({ ...trial.shapes.find((shape) => shape.kind === "sphere"), kind: "capsule", radius: 0.05, half_length: 0.03 });
