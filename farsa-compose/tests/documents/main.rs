@@ -10,3 +10,4 @@ mod original;
 mod parts;
 mod protocols;
 mod rules;
+mod steps;

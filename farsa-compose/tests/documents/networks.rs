@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use farsa_body::Recorder;
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{EpisodeId, Error, Evaluation, Evaluator, Experiment as _, Settings};
 use farsa_num::{logistic, tanh};
+
+use crate::steps::{Steps, drawn};
 
 /// Line 15 is the first of what follows it.
 const REST: &str = r#"[world]
@@ -45,35 +46,6 @@ fn refused(network: &str) -> String {
 
 fn names(evaluator: &dyn Evaluator) -> Vec<String> {
     evaluator.parameters().into_iter().map(|parameter| parameter.name).collect()
-}
-
-/// Numbers between the ends of each parameter.
-fn drawn(evaluator: &dyn Evaluator) -> Vec<f32> {
-    let own = |(number, parameter): (usize, farsa_lab::Parameter)| {
-        let share = (number * 37 % 101) as f64 / 100.0;
-        (parameter.ends[0] + share * (parameter.ends[1] - parameter.ends[0])) as f32
-    };
-    evaluator.parameters().into_iter().enumerate().map(own).collect()
-}
-
-/// What was sensed and done in each step.
-#[derive(Default)]
-struct Steps {
-    x: Vec<f32>,
-    y: Vec<f32>,
-    all: Vec<[Vec<f32>; 2]>,
-}
-
-impl Recorder for Steps {
-    fn sensors(&mut self, values: &[f32]) {
-        self.x = values.into();
-    }
-    fn outputs(&mut self, values: &[f32]) {
-        self.y = values.into();
-    }
-    fn tick(&mut self, _: f64) {
-        self.all.push([self.x.clone(), self.y.clone()]);
-    }
 }
 
 fn recorded(evaluator: &mut dyn Evaluator, parameters: &[f32], trial: u32) -> Vec<[Vec<f32>; 2]> {

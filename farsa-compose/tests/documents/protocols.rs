@@ -10,6 +10,8 @@ use farsa_lab::{
 use farsa_nn::{Block, BlockNetwork, Controller, Ctrnn, LeakyNetwork, LeakyParameter, Perceptron};
 use farsa_num::{Domain, Instructions, Stream};
 
+use crate::steps::{Steps, drawn};
+
 /// A robot that feels itself move and is told a number, so that every input says something.
 const REST: &str = r#"[world]
 size = [1.0, 1.0]
@@ -84,34 +86,6 @@ fn evaluator(text: &str) -> Box<dyn Evaluator> {
 
 fn of(network: &str) -> Box<dyn Evaluator> {
     evaluator(&format!("{REST}[network]\n{network}"))
-}
-
-/// Numbers between the ends of each parameter.
-fn drawn(evaluator: &dyn Evaluator) -> Vec<f32> {
-    let own = |(number, parameter): (usize, farsa_lab::Parameter)| {
-        let share = (number * 37 % 101) as f64 / 100.0;
-        (parameter.ends[0] + share * (parameter.ends[1] - parameter.ends[0])) as f32
-    };
-    evaluator.parameters().into_iter().enumerate().map(own).collect()
-}
-
-#[derive(Default)]
-struct Steps {
-    x: Vec<f32>,
-    y: Vec<f32>,
-    all: Vec<[Vec<f32>; 2]>,
-}
-
-impl Recorder for Steps {
-    fn sensors(&mut self, values: &[f32]) {
-        self.x = values.into();
-    }
-    fn outputs(&mut self, values: &[f32]) {
-        self.y = values.into();
-    }
-    fn tick(&mut self, _: f64) {
-        self.all.push([self.x.clone(), self.y.clone()]);
-    }
 }
 
 const ID: EpisodeId = EpisodeId { seed: 4, generation: 2, individual: 3, trial: 1 };
