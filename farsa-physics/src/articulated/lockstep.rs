@@ -1,6 +1,7 @@
-//! The compiled steps of batches: one for every number of lanes and instruction set, here and nowhere else.
+//! The compiled steps of batches, one for every instruction set and vector, here and nowhere else.
 //!
-//! Each takes the compiler about as long as all the rest of the crate, so the crate's unit tests are built without them.
+//! Each takes the compiler about as long as all the rest of the crate, so the crate's unit tests are built without them, and sixteen
+//! worlds that fill no vector of the instruction set are two vectors of eight to the same step.
 #![cfg_attr(
     all(target_arch = "wasm32", not(target_feature = "simd128")),
     allow(dead_code, unused_imports, reason = "there are no vectors")
@@ -11,7 +12,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use farsa_num::fearless_simd::{Simd, f32x8, f32x16};
+use farsa_num::fearless_simd::{f32x8, f32x16};
 use farsa_num::{Instructions, Mask as _, Scalar};
 
 use crate::articulated::external::Wrenches;
@@ -31,64 +32,84 @@ pub(crate) trait Lockstep: Send + Sync {
     fn boxed_clone(&self) -> Box<dyn Lockstep>;
 }
 
-/// State and scratch in vectors.
+/// The worlds of a batch, as many at a time as a vector has lanes.
 #[derive(Clone)]
 struct Vectors<S: Scalar> {
     simd: S::Simd,
+    shares: Vec<Share<S>>,
+}
+
+/// State and scratch of the worlds of a batch that one vector holds.
+#[derive(Clone)]
+struct Share<S: Scalar> {
     state: Vec<S>,
     scratch: Scratch<S>,
 }
 
 impl<S: Scalar<Real = f32>> Vectors<S> {
-    fn new(simd: S::Simd, model: &Model<f32>) -> Self {
-        Self { simd, state: vec![S::splat(simd, 0.0); model.state_len()], scratch: Scratch::new(simd, model) }
+    /// For so many worlds, a multiple of [`Scalar::LANES`].
+    fn new(simd: S::Simd, model: &Model<f32>, lanes: usize) -> Self {
+        let share = Share { state: vec![S::splat(simd, 0.0); model.state_len()], scratch: Scratch::new(simd, model) };
+        Self { simd, shares: vec![share; lanes / S::LANES] }
     }
 
     #[inline(always)]
     fn run(&mut self, model: &Model<f32>, words: &mut Words) {
-        let simd = self.simd;
+        for (index, share) in self.shares.iter_mut().enumerate() {
+            share.run(self.simd, model, words, index * S::LANES);
+        }
+        words.arranged = false;
+    }
+}
+
+impl<S: Scalar<Real = f32>> Share<S> {
+    /// Steps the worlds from the one with index `lane` on.
+    #[inline(always)]
+    fn run(&mut self, simd: S::Simd, model: &Model<f32>, words: &mut Words, lane: usize) {
+        let lanes = words.lanes;
+        // One word of these worlds.
+        let own = lane..lane + S::LANES;
         if words.arranged {
-            for (x, from) in self.state.iter_mut().zip(words.state.chunks_exact(S::LANES)) {
-                *x = S::load(simd, from);
+            for (x, from) in self.state.iter_mut().zip(words.state.chunks_exact(lanes)) {
+                *x = S::load(simd, &from[own.clone()]);
             }
             // Untouched lanes come to the bits that they have.
             self.scratch.forward_kinematics(simd, model, &self.state);
-            words.arranged = false;
         } else {
             let commands = model.first_command()..model.first_point();
-            let from = words.state.chunks_exact(S::LANES).skip(commands.start);
+            let from = words.state.chunks_exact(lanes).skip(commands.start);
             for (x, from) in self.state[commands].iter_mut().zip(from) {
-                *x = S::load(simd, from);
+                *x = S::load(simd, &from[own.clone()]);
             }
         }
         step(simd, model, &mut self.state, &mut self.scratch);
-        self.store(model, &mut words.state);
-        for (w, to) in self.scratch.links.iter().zip(words.links.chunks_exact_mut(LINK_WORDS * S::LANES)) {
+        self.store(simd, model, &mut words.state, lanes, lane);
+        for (w, to) in self.scratch.links.iter().zip(words.links.chunks_exact_mut(LINK_WORDS * lanes)) {
             let rotation = w.rotation.as_flattened();
             let velocity = [w.velocity.angular, w.velocity.linear];
             let all = [rotation, &w.position, &w.reference, velocity.as_flattened()];
-            for (x, to) in all.into_iter().flatten().zip(to.chunks_exact_mut(S::LANES)) {
-                x.store(to);
+            for (x, to) in all.into_iter().flatten().zip(to.chunks_exact_mut(lanes)) {
+                x.store(&mut to[own.clone()]);
             }
         }
     }
 
     /// Copies the state, but for the points of groups that are far and were so before: their words are the same.
     #[inline(always)]
-    fn store(&self, model: &Model<f32>, to: &mut [f32]) {
+    fn store(&self, simd: S::Simd, model: &Model<f32>, to: &mut [f32], lanes: usize, lane: usize) {
         let copy = |range: Range<usize>, to: &mut [f32]| {
-            let to = to[S::LANES * range.start..S::LANES * range.end].chunks_exact_mut(S::LANES);
+            let to = to[lanes * range.start..lanes * range.end].chunks_exact_mut(lanes);
             for (x, to) in self.state[range].iter().zip(to) {
-                x.store(to);
+                x.store(&mut to[lane..lane + S::LANES]);
             }
         };
         let first = model.first_point();
         copy(0..first, to);
         for group in &model.groups {
             let at = first + POINT_WORDS * group.points.start;
-            let gap = S::load(self.simd, &to[S::LANES * (at + 7)..S::LANES * (at + 8)]);
-            let was_far = !gap.lt(unknown_gap(self.simd)).any();
-            if !(was_far && is_clear(self.simd, &self.state[first..], group)) {
+            let gap = lanes * (at + 7) + lane;
+            let was_far = !S::load(simd, &to[gap..gap + S::LANES]).lt(unknown_gap(simd)).any();
+            if !(was_far && is_clear(simd, &self.state[first..], group)) {
                 copy(at..first + POINT_WORDS * group.points.end, to);
             }
         }
@@ -161,12 +182,16 @@ pub(crate) fn lockstep(model: &Model<f32>, lanes: usize, instructions: Instructi
 /// The steps in vectors, if there are any.
 #[cfg(any(not(target_arch = "wasm32"), target_feature = "simd128"))]
 fn in_vectors(instructions: Instructions, model: &Model<f32>, lanes: usize) -> Option<Box<dyn Lockstep>> {
-    fn boxed<S: Simd>(simd: S, model: &Model<f32>, lanes: usize) -> Box<dyn Lockstep> {
-        if lanes == LANES[0] {
-            Box::new(Vectors::<f32x8<S>>::new(simd, model))
-        } else {
-            Box::new(Vectors::<f32x16<S>>::new(simd, model))
-        }
+    fn boxed<S: Scalar<Real = f32> + Send + Sync + 'static>(
+        simd: S::Simd,
+        model: &Model<f32>,
+        lanes: usize,
+    ) -> Box<dyn Lockstep>
+    where
+        S::Simd: Send + Sync,
+        S::Mask: Send + Sync,
+    {
+        Box::new(Vectors::<S>::new(simd, model, lanes))
     }
     let level = instructions.level();
     if level.is_fallback() {
@@ -174,17 +199,24 @@ fn in_vectors(instructions: Instructions, model: &Model<f32>, lanes: usize) -> O
     }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
+        // Sixteen lanes fill a register of AVX-512 alone. In two halves they took SSE2 and AVX2 as long as by a step of their own.
         if let Some(simd) = level.as_avx512() {
-            return Some(boxed(simd, model, lanes));
+            return Some(if lanes == LANES[0] {
+                boxed::<f32x8<_>>(simd, model, lanes)
+            } else {
+                boxed::<f32x16<_>>(simd, model, lanes)
+            });
         }
         if let Some(simd) = level.as_avx2() {
-            return Some(boxed(simd, model, lanes));
+            return Some(boxed::<f32x8<_>>(simd, model, lanes));
         }
         if let Some(simd) = level.as_sse2() {
-            return Some(boxed(simd, model, lanes));
+            return Some(boxed::<f32x8<_>>(simd, model, lanes));
         }
+        None
     }
-    Some(farsa_num::fearless_simd::dispatch!(level, simd => boxed(simd, model, lanes)))
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    Some(farsa_num::fearless_simd::dispatch!(level, simd => boxed::<f32x8<_>>(simd, model, lanes)))
 }
 
 /// WebAssembly for machines without vectors has none.
