@@ -14,7 +14,5 @@ fuzz_target!(init: drop(ComposedExperiment::from_text("warm.toml", "", farsa_lab
     if let Ok(imported) = found {
         let remarks = imported.left.iter().chain(&imported.idle).map(ToString::to_string);
         assert!(remarks.into_iter().all(|remark| !remark.contains('\n')));
-        let made = ComposedExperiment::from_text("original.toml", &imported.text, farsa_lab::strategies());
-        made.expect("what was imported is an experiment");
     }
 });
