@@ -7,6 +7,7 @@ mod channels;
 #[path = "../common/mod.rs"]
 mod common;
 mod conformance;
+mod contacts;
 mod energy;
 mod floating;
 mod forces;

@@ -1,0 +1,78 @@
+//! Where and when contacts are: the point of a pair, and pairs in groups that close fast.
+
+use farsa_body::{
+    Arrange as _, BodyId, Collider, Contacts as _, Joint, Kinematics as _, MassProperties, Pose, Robot, Segment, Shape,
+    Surface, Twist, World as _,
+};
+use farsa_physics::articulated::{Model, Options, World};
+
+const SURFACE: Surface = Surface { friction: 0.5, rolling_friction: 0.0, stiffness: 2e4, damping: 60.0 };
+
+fn world(robot: &Robot, options: Options) -> World<f32> {
+    World::new(Model::new(robot, &options).unwrap())
+}
+
+/// A box whose mass lies beside its middle presses most where the mass is: the mean over its corners, weighted by their forces, is
+/// below the centre of mass, or the box would turn.
+#[test]
+fn a_box_presses_below_its_centre_of_mass() {
+    let centre = [0.03, -0.02, 0.0];
+    let at = [0.7, -0.4, 0.04];
+    let mut robot = Robot::new("box");
+    let half = [0.1, 0.06, 0.04];
+    let mass = MassProperties { mass: 0.8, centre, inertia: [0.002, 0.003, 0.004, 0.0, 0.0, 0.0] };
+    let body = robot.add_segment(Segment::new("box", None, Joint::floating(Pose::at(at)), mass));
+    let sides = Collider::new("box", Some(body), Shape::Box { half }, Pose::identity());
+    let ground = Collider::new("ground", None, Shape::Plane, Pose::identity());
+    let colliders = [sides, ground].map(|collider| robot.add_collider(collider));
+    let pair = robot.add_pair(colliders, SURFACE);
+    let mut world = world(&robot, Options::default());
+    for _ in 0..200 {
+        world.step();
+    }
+    let contact = world.pair_contact(pair);
+    assert!(contact.points >= 4 && (contact.normal_force - 0.8 * 9.81).abs() < 0.01, "{contact:?}");
+    let expected = [at[0] + centre[0], at[1] + centre[1], 0.0];
+    for (x, y) in contact.point.into_iter().zip(expected) {
+        assert!((f64::from(x) - y).abs() < 1e-3, "{contact:?}, not {expected:?}");
+    }
+}
+
+/// Of two balls that wait, one is hit by a third that crosses more than the watched margin in a dynamics step, 30 mm.
+fn thrown(grouped: bool, distance: f64) -> Vec<u32> {
+    const RADIUS: f64 = 0.02;
+    let mut robot = Robot::new("balls");
+    let places = [("thrown", [0.0, 0.0, 0.0]), ("hit", [distance, 0.0, 0.0]), ("missed", [distance, 0.06, 0.0])];
+    let balls = places.map(|(name, place)| {
+        let ball = Collider::new(name, None, Shape::Sphere { radius: RADIUS }, Pose::identity());
+        let joint = Joint::floating(Pose::at(place));
+        let body = robot.add_segment(Segment::new(name, None, joint, ball.mass_properties(0.05)));
+        robot.add_collider(Collider { body: Some(body), ..ball })
+    });
+    let pairs = [[balls[0], balls[1]], [balls[0], balls[2]]];
+    if grouped {
+        robot.add_pair_group(pairs, SURFACE);
+    } else {
+        for pair in pairs {
+            robot.add_pair(pair, SURFACE);
+        }
+    }
+    let mut world = world(&robot, Options { gravity: [0.0; 3], ..Options::default() });
+    world.place_body(BodyId(0), Pose::identity(), Twist { linear: [12.0, 0.0, 0.0], angular: [0.0; 3] });
+    world.finish_placement();
+    let mut motion = Vec::new();
+    for _ in 0..10 {
+        world.step();
+        motion.extend((0..3).flat_map(|body| world.velocity(BodyId(body)).linear).map(f32::to_bits));
+    }
+    assert!(world.velocity(BodyId(1)).linear[0] > 6.0, "{distance} m away it is not hit");
+    motion
+}
+
+#[test]
+fn what_is_thrown_at_a_group_meets_it_as_alone() {
+    for millimetres in (500..530).step_by(3) {
+        let distance = f64::from(millimetres) / 1000.0;
+        assert_eq!(thrown(true, distance), thrown(false, distance), "{distance} m away");
+    }
+}
