@@ -12,7 +12,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use farsa_num::fearless_simd::{f32x8, f32x16};
+use farsa_num::fearless_simd::f32x8;
 use farsa_num::{Instructions, Mask as _, Scalar};
 
 use crate::articulated::external::Wrenches;
@@ -199,6 +199,8 @@ fn in_vectors(instructions: Instructions, model: &Model<f32>, lanes: usize) -> O
     }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
+        use farsa_num::fearless_simd::f32x16;
+
         // Sixteen lanes fill a register of AVX-512 alone. In two halves they took SSE2 and AVX2 as long as by a step of their own.
         if let Some(simd) = level.as_avx512() {
             return Some(if lanes == LANES[0] {
