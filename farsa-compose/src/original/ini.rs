@@ -7,7 +7,7 @@ use farsa_lab::Error;
 /// The most bytes of a text.
 const MOST_BYTES: usize = 1_000_000;
 /// The most bytes of the name of a group with those that it is in: remarks repeat it.
-const MOST_OF_A_PATH: usize = 400;
+const MOST_OF_A_PATH: usize = 200;
 
 /// Groups of keys with values.
 ///

@@ -33,7 +33,7 @@ const FLAGS: [(&str, &str); 5] = [
 impl Network {
     /// Reads the group of a network, `Evonet`.
     pub(super) fn from_group(group: &Group, remarks: &mut Remarks) -> Self {
-        let before = remarks.left.len();
+        let before = remarks.count_left();
         if let Some((name, entry)) = group.kind(remarks).filter(|(name, _)| name != "Evonet") {
             remarks.lost(group, entry, &format!("`{name}` is no `Evonet`; what it shares with that is read"));
         }
@@ -66,7 +66,7 @@ impl Network {
         group.idle(&["gainRange"], "no neuron of a network that is made of these keys has a gain", remarks);
         group.idle(&["showTeachingInput"], "is about a window", remarks);
         group.idle(&["inputsList", "outputsList"], "all sensors and motors of the robot are the network's", remarks);
-        let same_genes = remarks.left.len() == before;
+        let same_genes = remarks.count_left() == before;
         Self { hidden, hidden_neurons, range, largest_bias, flags, same_genes }
     }
 

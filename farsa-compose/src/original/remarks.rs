@@ -1,13 +1,15 @@
 //! What cannot be carried over, and why.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 
 use farsa_lab::{Error, LeftOut};
 
 use crate::original::ini::{Entry, Group, Ini};
 
-/// Unknown keys beyond so many are named without the nearest one that is known.
-const MOST_OFFERS: usize = 1000;
+/// The most remarks of each sort; what is beyond them is counted. Each repeats the name of its group, which may be a hundred times as
+/// long as a line.
+const MOST_REMARKS: usize = 400;
 
 /// Remarks on lines, collected while a configuration is read.
 #[derive(Debug, Default)]
@@ -16,6 +18,8 @@ pub(super) struct Remarks {
     pub(super) left: Vec<LeftOut>,
     /// What changes nothing that comes out.
     pub(super) idle: Vec<LeftOut>,
+    /// How many more there are of both.
+    more: [usize; 2],
     /// Lines of which something has become, if only a remark.
     taken: BTreeSet<usize>,
     /// The keys that were asked for in each group, by the line where it begins.
@@ -44,19 +48,28 @@ impl Remarks {
     /// A line whose meaning is lost, or whose nearest meaning here is another.
     pub(super) fn lost(&mut self, group: &Group, entry: &Entry, why: &str) {
         self.take(entry);
-        self.left.push(remark(group, entry, why));
+        self.leave(|| remark(group, entry, why));
     }
 
     /// A line that changes nothing here.
     pub(super) fn idle(&mut self, group: &Group, entry: &Entry, why: &str) {
         self.take(entry);
-        self.idle.push(remark(group, entry, why));
+        add(&mut self.idle, &mut self.more[1], || remark(group, entry, why));
+    }
+
+    /// How many lines and defaults have another meaning here, or none.
+    pub(super) fn count_left(&self) -> usize {
+        self.left.len() + self.more[0]
+    }
+
+    fn leave(&mut self, remark: impl FnOnce() -> LeftOut) {
+        add(&mut self.left, &mut self.more[0], remark);
     }
 
     /// What a group does not say, and what the original takes for it, which cannot be carried over either.
     pub(super) fn unsaid(&mut self, group: &Group, key: &str, value: &str, why: &str) {
         let key = format!("{}/{key}", group.path);
-        self.left.push(LeftOut { line: None, key, value: value.into(), why: why.into() });
+        self.leave(|| LeftOut { line: None, key, value: value.into(), why: why.into() });
     }
 
     /// A line whose meaning is lost, or the default that is taken where there is none.
@@ -69,44 +82,55 @@ impl Remarks {
 
     /// Remarks on every line that nobody has asked for; all in the order of lines.
     pub(super) fn finish(&mut self, ini: &Ini) {
-        let mut offers = MOST_OFFERS;
         for group in ini.groups() {
             let (known, asked) =
                 (self.asked.contains_key(&group.line), self.asked.remove(&group.line).unwrap_or_default());
-            let group_key = format!("[{}]", group.path);
             if !known {
                 let why = "is a part that no kinematic experiment here has";
-                self.left.push(LeftOut {
-                    line: Some(group.line),
-                    key: group_key,
-                    value: String::new(),
-                    why: why.into(),
-                });
+                self.leave(|| of_line(group.line, format!("[{}]", group.path), why));
             }
             for entry in &group.entries {
-                if self.taken.contains(&entry.line) {
-                    continue;
+                if !self.taken.contains(&entry.line) {
+                    self.leave(|| remark(group, entry, &unread(entry, known, &asked)));
                 }
-                let near = if offers > 0 && known { nearest(&entry.key, &asked) } else { None };
-                offers = offers.saturating_sub(1);
-                let why = match (known, near) {
-                    (false, _) => "its group is not carried over".into(),
-                    (true, Some(near)) => {
-                        format!("is no key of this part that is known here; the nearest that is known is `{near}`")
-                    }
-                    (true, None) => "is no key of this part that is known here".into(),
-                };
-                self.lost(group, entry, &why);
             }
         }
         for stray in &ini.stray {
-            let (key, why) = (stray.text.clone(), stray.why.into());
-            self.left.push(LeftOut { line: Some(stray.line), key, value: String::new(), why });
+            self.leave(|| of_line(stray.line, stray.text.clone(), stray.why));
         }
-        for list in [&mut self.left, &mut self.idle] {
+        for (list, more) in [&mut self.left, &mut self.idle].into_iter().zip(self.more) {
             list.sort_by_key(|left| left.line.unwrap_or(usize::MAX));
+            if let Some(last) = list.last_mut().filter(|_| more > 0) {
+                // Writing into a string cannot fail.
+                let _ = write!(last.why, "; {more} more remarks of this sort are left out");
+            }
         }
     }
+}
+
+/// Takes up a remark where there is room.
+fn add(list: &mut Vec<LeftOut>, more: &mut usize, remark: impl FnOnce() -> LeftOut) {
+    if list.len() < MOST_REMARKS {
+        list.push(remark());
+    } else {
+        *more += 1;
+    }
+}
+
+/// Why nothing comes of a line that nobody has asked for.
+fn unread(entry: &Entry, known: bool, asked: &[&'static str]) -> String {
+    match known.then(|| nearest(&entry.key, asked)) {
+        None => "its group is not carried over".into(),
+        Some(None) => "is no key of this part that is known here".into(),
+        Some(Some(near)) => {
+            format!("is no key of this part that is known here; the nearest that is known is `{near}`")
+        }
+    }
+}
+
+/// A remark on a whole line.
+fn of_line(line: usize, key: String, why: &str) -> LeftOut {
+    LeftOut { line: Some(line), key, value: String::new(), why: why.into() }
 }
 
 fn remark(group: &Group, entry: &Entry, why: &str) -> LeftOut {

@@ -215,15 +215,27 @@ fn large_texts_are_bounded() {
     let mut parts = groups.clone();
     let mut keys = groups.clone();
     let mut noisy = groups.clone();
+    // Each remark repeats the name of the group.
+    let mut named = format!("{groups}[{}]\n", "a".repeat(200));
     for n in 0..20_000 {
+        let _ = writeln!(named, "b=1");
         let _ = writeln!(groups, "[{n}]");
         let _ = writeln!(parts, "[Component/GA/Experiment/Sensor:{n}]\ntype = EpuckGroundIRSensor");
         let _ = writeln!(keys, "noisRange{n} = 1");
         let _ = writeln!(noisy, "[Component/GA/Experiment/Sensor:{n}]\ntype = NoisyInput");
     }
     let made = imported(&groups);
-    assert!(made.left.len() > 20_000 && made.text.len() < 100_000, "{}", made.text.len());
-    assert!(imported(&keys).left.len() > 20_000);
+    assert!(made.text.len() < 100_000, "{}", made.text.len());
+    for text in [groups, keys, named] {
+        let left = imported(&text).left;
+        let last = &left.last().expect("remarks").why;
+        let (_, more) = last.rsplit_once("; ").expect("the last says how many are not told");
+        let (more, sort) = more.split_once(' ').expect("a number of remarks");
+        assert_eq!((left.len(), sort), (400, "more remarks of this sort are left out"));
+        let more: usize = more.parse().expect("a number");
+        assert!((19_600..19_700).contains(&more), "{more}");
+        assert!(left.iter().map(|left| left.key.len()).sum::<usize>() < 100_000);
+    }
     for text in [parts, noisy] {
         let said = error(&text);
         assert!(said.contains("sensors, where 100 are the most") || said.contains("bytes where"), "{said}");
