@@ -6,6 +6,8 @@ use farsa_lab::Error;
 
 /// The most bytes of a text.
 const MOST_BYTES: usize = 1_000_000;
+/// The most lines of a text: each takes more memory than its few letters.
+const MOST_LINES: usize = 5000;
 /// The most bytes of the name of a group with those that it is in: remarks repeat it.
 const MOST_OF_A_PATH: usize = 200;
 
@@ -55,7 +57,7 @@ impl Ini {
     /// Reads a text.
     ///
     /// # Errors
-    /// [`Error::Usage`] for more than a megabyte, and for a text without groups.
+    /// [`Error::Usage`] for more than a megabyte, 5000 lines or a long name, and for a text without groups.
     pub(super) fn from_text(file: &str, text: &str) -> Result<Self, Error> {
         if text.len() > MOST_BYTES {
             return Err(Error::Usage(format!("{file}: {} bytes where {MOST_BYTES} are the most", text.len())));
@@ -65,6 +67,9 @@ impl Ini {
         // An editor of another system may have left a mark of its encoding.
         for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
             let (line, text) = (index + 1, line.trim());
+            if line > MOST_LINES {
+                return Err(Error::Usage(format!("{file}: more than {MOST_LINES} lines, which are the most")));
+            }
             if text.is_empty() || text.starts_with(['#', ';']) {
                 continue;
             }
