@@ -51,7 +51,8 @@ const MOST_REPEATED: usize = 200;
 /// ```
 ///
 /// # Errors
-/// [`Error::Usage`] for a text that is no configuration, has no wheeled robot, or no sensor or motor that can be carried over;
+/// [`Error::Usage`] for a text that is no configuration, is longer than a megabyte or 5000 lines, has a group with a name of more than
+/// 200 bytes, no wheeled robot, or no sensor or motor that can be carried over;
 /// [`Error::Unknown`] for a robot that is none of the original's wheeled ones; and what is wrong with parts that do not go
 /// together.
 pub fn from_original(file: &str, name: &str, text: &str) -> Result<ImportedFile, Error> {
@@ -93,11 +94,11 @@ pub fn from_original(file: &str, name: &str, text: &str) -> Result<ImportedFile,
     // Last: what it does not ask for is the plugin's.
     let experiment = Experiment::from_groups(group, world, arena, &mut remarks);
     remarks.finish(&ini);
-    let Remarks { left, idle, .. } = remarks;
+    let Remarks { left, idle, more, .. } = remarks;
 
     let mut out = Written::default();
     let same_genes = robot == RobotKind::Khepera && network.same_genes && parts.same_channels;
-    write_head(&mut out, [file, name], &search, same_genes, [&left, &idle]);
+    write_head(&mut out, [file, name], &search, same_genes, [(&left, more[0]), (&idle, more[1])]);
     out.word("summary", if summary.is_empty() { "a configuration of the original FARSA" } else { &summary });
     experiment.write_world(&mut out);
     robot.write(experiment.agents, &mut out);
@@ -107,7 +108,7 @@ pub fn from_original(file: &str, name: &str, text: &str) -> Result<ImportedFile,
     search.write(&mut out);
     let text = out.into_text();
     check(name, &text).map_err(|error| Error::Usage(format!("{file}: what comes out of it cannot be: {error}")))?;
-    Ok(ImportedFile { text, left, idle })
+    Ok(ImportedFile { text, left, idle, more_left: more[0], more_idle: more[1] })
 }
 
 /// Whether an experiment can be made of a text.
@@ -198,7 +199,7 @@ fn write_head(
     [file, name]: [&str; 2],
     search: &Evolution,
     same_genes: bool,
-    [left, idle]: [&[LeftOut]; 2],
+    [left, idle]: [(&[LeftOut], usize); 2],
 ) {
     // Not where they were on the machine of the import.
     let [file, name] =
@@ -212,7 +213,7 @@ fn write_head(
     } else {
         "Genotypes of the original (.gen) have other genes, or in another order: they mean other networks here."
     });
-    for (list, what) in [(left, "Not carried over as it is:"), (idle, "Without effect here:")] {
+    for ((list, more), what) in [(left, "Not carried over as it is:"), (idle, "Without effect here:")] {
         if list.is_empty() {
             continue;
         }
@@ -221,8 +222,9 @@ fn write_head(
         for remark in list.iter().take(MOST_REPEATED) {
             out.comment(&format!("- {remark}"));
         }
-        if list.len() > MOST_REPEATED {
-            out.comment(&format!("- and {} more", list.len() - MOST_REPEATED));
+        let repeated = list.len().min(MOST_REPEATED);
+        if list.len() + more > repeated {
+            out.comment(&format!("- and {} more", list.len() + more - repeated));
         }
     }
     out.space();

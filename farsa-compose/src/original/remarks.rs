@@ -1,7 +1,6 @@
 //! What cannot be carried over, and why.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 
 use farsa_lab::{Error, LeftOut};
 
@@ -19,7 +18,7 @@ pub(super) struct Remarks {
     /// What changes nothing that comes out.
     pub(super) idle: Vec<LeftOut>,
     /// How many more there are of both.
-    more: [usize; 2],
+    pub(super) more: [usize; 2],
     /// Lines of which something has become, if only a remark.
     taken: BTreeSet<usize>,
     /// The keys that were asked for in each group, by the line where it begins.
@@ -98,12 +97,8 @@ impl Remarks {
         for stray in &ini.stray {
             self.leave(|| of_line(stray.line, stray.text.clone(), stray.why));
         }
-        for (list, more) in [&mut self.left, &mut self.idle].into_iter().zip(self.more) {
+        for list in [&mut self.left, &mut self.idle] {
             list.sort_by_key(|left| left.line.unwrap_or(usize::MAX));
-            if let Some(last) = list.last_mut().filter(|_| more > 0) {
-                // Writing into a string cannot fail.
-                let _ = write!(last.why, "; {more} more remarks of this sort are left out");
-            }
         }
     }
 }

@@ -31,6 +31,9 @@ struct Summary<'i> {
     left: &'i [LeftOut],
     /// What changes nothing that comes out.
     without_effect: &'i [LeftOut],
+    /// How many more there are of both.
+    more_left: usize,
+    more_without_effect: usize,
 }
 
 impl Invocation<'_, '_> {
@@ -75,10 +78,11 @@ impl Invocation<'_, '_> {
             return Err(Error::Usage(format!("--out {name}: a file that describes an experiment ends with {FILE}")));
         }
         let found = (self.laboratory.files()?.import)(&path.display().to_string(), &name, &text)?;
-        let ImportedFile { text, left, idle } = &found;
-        tell_left(left);
+        let ImportedFile { text, left, idle, more_left, more_idle } = &found;
+        let lost = left.len() + more_left;
+        tell_left(left, lost);
         if args.strict && !left.is_empty() {
-            let why = format!("{} of its lines and defaults cannot be carried over; nothing is written", left.len());
+            let why = format!("{lost} of its lines and defaults cannot be carried over; nothing is written");
             return Err(Error::Other(format!("{}: {why}", path.display())));
         }
         create_results(&[(out, text)])?;
@@ -88,23 +92,30 @@ impl Invocation<'_, '_> {
         let _ = writeln!(
             said,
             "{} not carried over as it is, {} without effect; the file begins with them",
-            left.len(),
-            idle.len()
+            lost,
+            idle.len() + more_idle
         );
         let _ = writeln!(said, "{} check {}", self.program, OneLine(&name));
-        let summary = Summary { file: name.clone(), left, without_effect: idle };
+        let summary = Summary {
+            file: name.clone(),
+            left,
+            without_effect: idle,
+            more_left: *more_left,
+            more_without_effect: *more_idle,
+        };
         self.summary(args.json, &said, &|| pretty(&summary))
     }
 }
 
 /// Says on standard error what is lost; that nobody reads it is no reason to fail.
-fn tell_left(left: &[LeftOut]) {
+fn tell_left(left: &[LeftOut], lost: usize) {
     let mut errors = io::stderr().lock();
     for remark in left.iter().take(MOST_TOLD) {
         let _ = writeln!(errors, "{remark}");
     }
-    if left.len() > MOST_TOLD {
-        let _ = writeln!(errors, "and {} more", left.len() - MOST_TOLD);
+    let told = left.len().min(MOST_TOLD);
+    if lost > told {
+        let _ = writeln!(errors, "and {} more", lost - told);
     }
 }
 

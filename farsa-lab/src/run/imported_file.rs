@@ -15,6 +15,10 @@ pub struct ImportedFile {
     pub left: Vec<LeftOut>,
     /// What was passed over because it changes nothing that comes out.
     pub idle: Vec<LeftOut>,
+    /// How many more lines than stand in `left` are lost; an importer bounds what it tells.
+    pub more_left: usize,
+    /// The same of `idle`.
+    pub more_idle: usize,
 }
 
 /// A line that is not carried over as it is.
