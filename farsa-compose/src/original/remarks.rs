@@ -135,14 +135,23 @@ fn remark(group: &Group, entry: &Entry, why: &str) -> LeftOut {
 
 /// The key that looks most like one that is not known, if it begins and ends much like it.
 fn nearest(key: &str, known: &[&'static str]) -> Option<String> {
-    let Error::Unknown { nearest: Some(near), .. } = Error::unknown("", "key", key, known.iter().copied()) else {
+    // Most keys are like none, and need not be compared letter by letter.
+    if !known.iter().any(|known| is_like(key, known)) {
         return None;
-    };
-    let [a, b] = [key, &*near].map(|key| key.to_lowercase().chars().collect::<Vec<char>>());
-    let alike = |(a, b): &(&char, &char)| a == b;
-    let same =
-        a.iter().zip(&b).take_while(alike).count() + a.iter().rev().zip(b.iter().rev()).take_while(alike).count();
-    (4 * same >= 3 * a.len().max(b.len())).then_some(near)
+    }
+    match Error::unknown("", "key", key, known.iter().copied()) {
+        Error::Unknown { nearest: Some(near), .. } if is_like(key, &near) => Some(near),
+        _ => None,
+    }
+}
+
+/// Whether two keys begin and end alike: with three quarters of the longer one.
+fn is_like(key: &str, known: &str) -> bool {
+    let letters = |text| str::chars(text).flat_map(char::to_lowercase);
+    let alike = |(a, b): &(char, char)| a == b;
+    let same = letters(key).zip(letters(known)).take_while(alike).count()
+        + letters(key).rev().zip(letters(known).rev()).take_while(alike).count();
+    4 * same >= 3 * letters(key).count().max(letters(known).count())
 }
 
 #[cfg(test)]
