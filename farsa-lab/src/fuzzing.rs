@@ -12,6 +12,7 @@ use farsa_evo::{EvoError, Judgements};
 use crate::command::{cli, manual};
 use crate::error::Error;
 use crate::evaluation::genotypes::{Shape, written, written_reals};
+use crate::evaluation::lines::{Request, Wanted};
 use crate::evaluation::protocols::files::ProtocolRecord;
 use crate::evaluation::protocols::found::FoundCase;
 use crate::evaluation::protocols::states::States;
@@ -20,6 +21,7 @@ use crate::evaluation::test::Record as TestRecord;
 use crate::evaluation::test_table::Table;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::genotype::Genotype;
+use crate::experiment::parameter::Parameter;
 use crate::run::config_file::ConfigFile;
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
@@ -144,6 +146,46 @@ pub fn read_genotypes(text: &str) -> Result<String, Error> {
         Genome::Reals(genes) => written_reals(genes),
     });
     Ok(texts.collect())
+}
+
+/// What the lines of an optimiser are read by: two parameters of each individual, of one population or of two.
+pub struct RequestReader([Wanted; 2]);
+
+impl Default for RequestReader {
+    fn default() -> Self {
+        let parameters = vec![Parameter::new("gain", [-5.0, 5.0]), Parameter::new("bias", [1.0, 0.0])];
+        let of = |names: &[&str], size| Wanted {
+            experiment: "tune",
+            populations: names.iter().map(|&name| name.into()).collect(),
+            parameters: parameters.clone(),
+            genotype: Genotype::new(&parameters, 16),
+            size,
+            seed: 1,
+        };
+        Self([of(&["only"], 0), of(&["prey", "hunter"], 100)])
+    }
+}
+
+impl RequestReader {
+    /// Reads a line, of one population or of several, and writes one that asks for the same.
+    ///
+    /// # Errors
+    /// What the answer says.
+    pub fn read(&self, several: bool, line: &[u8]) -> Result<String, String> {
+        let wanted = &self.0[usize::from(several)];
+        let Request { id, seed, generation, individual, parameters, evaluated } = Request::from_line(line, wanted)?;
+        let names = || wanted.populations.iter();
+        let mut all = serde_json::json!({ "seed": seed, "generation": generation, "individual": individual });
+        all["evaluate"] = names().zip(evaluated).filter_map(|(name, evaluated)| evaluated.then_some(&**name)).collect();
+        all["parameters"] = match parameters.as_slice() {
+            [only] => serde_json::json!(only),
+            several => names().cloned().zip(several.iter().map(|rows| serde_json::json!(rows))).collect(),
+        };
+        if let Some(id) = id {
+            all["id"] = id;
+        }
+        Ok(all.to_string())
+    }
 }
 
 /// What the files of one run are read by.

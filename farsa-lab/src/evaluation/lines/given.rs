@@ -3,15 +3,42 @@
 use std::fmt;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+
+use crate::escaped::Quoted;
+
+/// The most populations that an object names; no experiment has as many.
+const MOST_NAMES: usize = 1000;
 
 /// Vectors of numbers: `[..]` is one, `[[..], [..]]` are several, and an object has those of populations by their names.
 #[derive(Debug, PartialEq)]
 pub(super) enum Given {
     /// Of the only population.
-    Unnamed(Vec<Vec<f64>>),
+    Unnamed(Vectors),
     /// Of each population that is named, in the order of the line.
-    Named(Vec<(String, Vec<Vec<f64>>)>),
+    Named(Vec<(String, Vectors)>),
+}
+
+/// Vectors one behind the other: each in a list of its own would take twenty times as much as a text of short ones.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Vectors {
+    numbers: Vec<f64>,
+    /// Where each ends.
+    ends: Vec<usize>,
+}
+
+impl Vectors {
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Each, in the order of the line.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[f64]> {
+        let mut rest = self.numbers.as_slice();
+        let lengths = self.ends.iter().scan(0, |start, &end| Some(end - std::mem::replace(start, end)));
+        lengths.map(move |length| rest.split_off(..length).unwrap_or_default())
+    }
 }
 
 impl<'de> Deserialize<'de> for Given {
@@ -23,15 +50,19 @@ impl<'de> Deserialize<'de> for Given {
                 f.write_str("a list of numbers, a list of such lists, or an object of them by population")
             }
             fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Given, A::Error> {
-                rows(seq).map(Given::Unnamed)
+                vectors(seq).map(Given::Unnamed)
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Given, A::Error> {
-                let mut all: Vec<(String, Vec<Vec<f64>>)> = Vec::new();
-                while let Some((name, Rows(rows))) = map.next_entry::<String, Rows>()? {
+                let mut all: Vec<(String, Vectors)> = Vec::new();
+                while let Some((name, vectors)) = map.next_entry::<String, Vectors>()? {
                     if all.iter().any(|(other, _)| *other == name) {
-                        return Err(A::Error::custom(format_args!("the population {name:?} stands twice")));
+                        let name = Quoted(&name);
+                        return Err(A::Error::custom(format_args!("the population {name} stands twice")));
                     }
-                    all.push((name, rows));
+                    if all.len() == MOST_NAMES {
+                        return Err(A::Error::custom(format_args!("more than {MOST_NAMES} populations")));
+                    }
+                    all.push((name, vectors));
                 }
                 Ok(Given::Named(all))
             }
@@ -40,86 +71,93 @@ impl<'de> Deserialize<'de> for Given {
     }
 }
 
-/// The vectors of a population.
-struct Rows(Vec<Vec<f64>>);
-
-impl<'de> Deserialize<'de> for Rows {
+impl<'de> Deserialize<'de> for Vectors {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Whole;
         impl<'de> Visitor<'de> for Whole {
-            type Value = Rows;
+            type Value = Vectors;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a list of numbers or a list of such lists")
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Rows, A::Error> {
-                rows(seq).map(Rows)
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Vectors, A::Error> {
+                vectors(seq)
             }
         }
         deserializer.deserialize_seq(Whole)
     }
 }
 
-/// What stands in a list.
-enum Item {
-    Number(f64),
-    Row(Vec<f64>),
-}
-
-impl<'de> Deserialize<'de> for Item {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Whole;
-        impl<'de> Visitor<'de> for Whole {
-            type Value = Item;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number or a list of numbers")
-            }
-            fn visit_f64<E>(self, x: f64) -> Result<Item, E> {
-                Ok(Item::Number(x))
-            }
-            fn visit_u64<E>(self, x: u64) -> Result<Item, E> {
-                Ok(Item::Number(x as f64))
-            }
-            fn visit_i64<E>(self, x: i64) -> Result<Item, E> {
-                Ok(Item::Number(x as f64))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Item, A::Error> {
-                let mut row = Vec::new();
-                while let Some(x) = seq.next_element()? {
-                    row.push(x);
-                }
-                Ok(Item::Row(row))
-            }
-        }
-        deserializer.deserialize_any(Whole)
-    }
-}
-
 /// A list of numbers as one vector, or a list of vectors.
-fn rows<'de, A: SeqAccess<'de>>(mut seq: A) -> Result<Vec<Vec<f64>>, A::Error> {
-    let (mut numbers, mut rows) = (Vec::new(), Vec::new());
-    while let Some(item) = seq.next_element()? {
-        match item {
-            Item::Number(x) => numbers.push(x),
-            Item::Row(row) => rows.push(row),
-        }
-        if !numbers.is_empty() && !rows.is_empty() {
+fn vectors<'de, A: SeqAccess<'de>>(mut seq: A) -> Result<Vectors, A::Error> {
+    let (mut found, mut loose) = (Vectors::default(), false);
+    while let Some(is_number) = seq.next_element_seed(Item(&mut found))? {
+        loose |= is_number;
+        if loose && found.len() > 0 {
             return Err(A::Error::custom("numbers and lists of numbers side by side"));
         }
     }
-    Ok(if numbers.is_empty() { rows } else { vec![numbers] })
+    if loose {
+        found.ends.push(found.numbers.len());
+    }
+    Ok(found)
+}
+
+/// What stands in a list, a vector or a number of one, whose numbers join others; whether it is a number.
+struct Item<'v>(&'v mut Vectors);
+
+impl Item<'_> {
+    fn number(self, x: f64) -> bool {
+        self.0.numbers.push(x);
+        true
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Item<'_> {
+    type Value = bool;
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<bool, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Item<'_> {
+    type Value = bool;
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or a list of numbers")
+    }
+    fn visit_f64<E>(self, x: f64) -> Result<bool, E> {
+        Ok(self.number(x))
+    }
+    fn visit_u64<E>(self, x: u64) -> Result<bool, E> {
+        Ok(self.number(x as f64))
+    }
+    fn visit_i64<E>(self, x: i64) -> Result<bool, E> {
+        Ok(self.number(x as f64))
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<bool, A::Error> {
+        while let Some(x) = seq.next_element()? {
+            self.0.numbers.push(x);
+        }
+        self.0.ends.push(self.0.numbers.len());
+        Ok(false)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn vectors(all: &[&[f64]]) -> Vectors {
+        let ends = (1..=all.len()).map(|count| all[..count].iter().map(|one| one.len()).sum()).collect();
+        Vectors { numbers: all.concat(), ends }
+    }
+
     #[test]
     fn one_or_several_vectors() {
         let read = |text: &str| serde_json::from_str::<Given>(text).map_err(|error| error.to_string());
-        assert_eq!(read("[1, -2, 0.5]").unwrap(), Given::Unnamed(vec![vec![1.0, -2.0, 0.5]]));
-        assert_eq!(read("[[1], [2e3]]").unwrap(), Given::Unnamed(vec![vec![1.0], vec![2000.0]]));
-        assert_eq!(read("[]").unwrap(), Given::Unnamed(vec![]));
-        let named = vec![("b".into(), vec![vec![1.0]]), ("a".into(), vec![vec![2.0], vec![3.0]])];
+        assert_eq!(read("[1, -2, 0.5]").unwrap(), Given::Unnamed(vectors(&[&[1.0, -2.0, 0.5]])));
+        assert_eq!(read("[[1], [2e3]]").unwrap(), Given::Unnamed(vectors(&[&[1.0], &[2000.0]])));
+        assert_eq!(read("[]").unwrap(), Given::Unnamed(vectors(&[])));
+        let named = vec![("b".into(), vectors(&[&[1.0]])), ("a".into(), vectors(&[&[2.0], &[3.0]]))];
         assert_eq!(read(r#"{"b": [1], "a": [[2], [3]]}"#).unwrap(), Given::Named(named));
         for (text, why) in [
             ("3", "expected a list of numbers, a list of such lists, or an object"),
@@ -130,11 +168,27 @@ mod tests {
             ("[[null]]", "null, expected f64"),
             ("[1, \"2\"]", "string \"2\", expected a number"),
             ("[1e999]", "number out of range"),
-            (r#"{"a": [1], "a": [2]}"#, "the population \"a\" stands twice"),
+            (r#"{"a": [1], "a": [2]}"#, "the population `a` stands twice"),
             (r#"{"a": {"b": [1]}}"#, "map, expected a list of numbers or"),
         ] {
             let found = read(text).unwrap_err();
             assert!(found.contains(why), "{text}: {found}");
         }
+    }
+    #[test]
+    fn as_many_vectors_as_the_line_has() {
+        let all = vectors(&[&[1.0, 2.0], &[], &[3.0]]);
+        assert_eq!(all.iter().collect::<Vec<_>>(), [&[1.0, 2.0][..], &[], &[3.0]]);
+        assert_eq!((all.len(), vectors(&[]).iter().count()), (3, 0));
+    }
+
+    #[test]
+    fn more_names_than_populations_can_be_are_not_compared() {
+        let named = |count: usize| {
+            let names: Vec<String> = (0..count).map(|name| format!("\"{name}\": []")).collect();
+            serde_json::from_str::<Given>(&format!("{{{}}}", names.join(",")))
+        };
+        assert!(matches!(named(MOST_NAMES), Ok(Given::Named(all)) if all.len() == MOST_NAMES));
+        assert!(named(MOST_NAMES + 1).unwrap_err().to_string().starts_with("more than 1000 populations"));
     }
 }

@@ -12,4 +12,6 @@ mod given;
 mod request;
 mod serve;
 
+#[cfg(feature = "fuzzing")]
+pub(crate) use request::{Request, Wanted};
 pub(crate) use serve::serve;

@@ -1,10 +1,11 @@
 //! What a line asks for.
 
 use serde::Deserialize;
+use serde_json::value::RawValue;
 
 use crate::error::Error;
-use crate::escaped::Quoted;
-use crate::evaluation::lines::given::Given;
+use crate::escaped::{Quoted, shortened};
+use crate::evaluation::lines::given::{Given, Vectors};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::parameter::Parameter;
 use crate::run::plan::LARGEST_SEED;
@@ -13,25 +14,28 @@ use crate::run::plan::LARGEST_SEED;
 const MOST_VECTORS: usize = 65_536;
 /// The largest number of an individual.
 const LARGEST_INDIVIDUAL: u32 = 1_000_000_000;
+/// The most bytes of what an answer repeats.
+const LONGEST_ID: usize = 4096;
 
 /// What an experiment takes.
-pub(super) struct Wanted {
-    pub(super) experiment: &'static str,
+pub(crate) struct Wanted {
+    pub(crate) experiment: &'static str,
     /// The names of the populations, in their order.
-    pub(super) populations: Vec<String>,
-    pub(super) parameters: Vec<Parameter>,
-    pub(super) genotype: Genotype,
+    pub(crate) populations: Vec<String>,
+    pub(crate) parameters: Vec<Parameter>,
+    pub(crate) genotype: Genotype,
     /// Individuals of each of several populations; 0 for a single one, of which there may be any number.
-    pub(super) size: usize,
+    pub(crate) size: usize,
     /// Of lines that name none.
-    pub(super) seed: u64,
+    pub(crate) seed: u64,
 }
 
 /// A line as it stands.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Line {
-    id: Option<serde_json::Value>,
+struct Line<'l> {
+    #[serde(borrow)]
+    id: Option<&'l RawValue>,
     seed: Option<u64>,
     generation: Option<u32>,
     individual: Option<u32>,
@@ -42,17 +46,17 @@ struct Line {
 
 /// What a line asks for.
 #[derive(Debug, PartialEq)]
-pub(super) struct Request {
+pub(crate) struct Request {
     /// What the answer repeats.
-    pub(super) id: Option<serde_json::Value>,
-    pub(super) seed: u64,
-    pub(super) generation: u32,
+    pub(crate) id: Option<serde_json::Value>,
+    pub(crate) seed: u64,
+    pub(crate) generation: u32,
     /// The number of the first individual of each population.
-    pub(super) individual: u32,
+    pub(crate) individual: u32,
     /// The parameters of every individual of each population.
-    pub(super) parameters: Vec<Vec<Vec<f32>>>,
+    pub(crate) parameters: Vec<Vec<Vec<f32>>>,
     /// Whether each population is evaluated; what is not is met by the others.
-    pub(super) evaluated: Vec<bool>,
+    pub(crate) evaluated: Vec<bool>,
 }
 
 impl Request {
@@ -60,7 +64,7 @@ impl Request {
     ///
     /// # Errors
     /// What is wrong with them, in words.
-    pub(super) fn from_line(bytes: &[u8], wanted: &Wanted) -> Result<Self, String> {
+    pub(crate) fn from_line(bytes: &[u8], wanted: &Wanted) -> Result<Self, String> {
         let text = std::str::from_utf8(bytes).map_err(|error| format!("byte {}: is no UTF-8", error.valid_up_to()))?;
         if text.trim().is_empty() {
             return Err("is empty".into());
@@ -77,6 +81,7 @@ impl Request {
             (None, None) => return Err("lacks `parameters` or `genes`".into()),
             (Some(_), Some(_)) => return Err("has `parameters` and `genes`: give one of them".into()),
         };
+        let id = id.map(read_id).transpose()?;
         let seed = seed.unwrap_or(wanted.seed);
         if seed > LARGEST_SEED {
             return Err(format!("seed: {seed} is above {LARGEST_SEED}"));
@@ -87,24 +92,33 @@ impl Request {
         }
         let evaluated = wanted.evaluated(evaluate.as_deref())?;
         let mut all = Vec::new();
-        for (name, rows) in wanted.populations.iter().zip(wanted.divided(what, given)?) {
+        for (name, vectors) in wanted.populations.iter().zip(wanted.divided(what, given)?) {
             let of = if wanted.populations.len() > 1 { format!("{what} of {}", Quoted(name)) } else { what.into() };
-            wanted.counted(rows.len(), individual).map_err(|why| format!("{of}: {why}"))?;
-            let decode = |(number, row): (usize, &Vec<f64>)| {
+            wanted.counted(vectors.len(), individual).map_err(|why| format!("{of}: {why}"))?;
+            let decode = |(number, row): (usize, &[f64])| {
                 let decoded = if what == "genes" { wanted.read_genes(row) } else { wanted.read_parameters(row) };
                 decoded.map_err(|why| format!("{of}: vector {number}: {why}"))
             };
-            all.push(rows.iter().enumerate().map(decode).collect::<Result<_, _>>()?);
+            all.push(vectors.iter().enumerate().map(decode).collect::<Result<_, _>>()?);
         }
         Ok(Self { id, seed, generation: generation.unwrap_or(0), individual, parameters: all, evaluated })
     }
+}
+
+/// What the answer is to repeat.
+fn read_id(text: &RawValue) -> Result<serde_json::Value, String> {
+    let text = text.get();
+    if text.len() > LONGEST_ID {
+        return Err(format!("id: has {} bytes, more than {LONGEST_ID}", text.len()));
+    }
+    serde_json::from_str(text).map_err(|error| format!("id: {error}"))
 }
 
 /// Why a text is no such line, with its column.
 fn unreadable(text: &str, error: &serde_json::Error) -> String {
     let place = format!(" at line {} column {}", error.line(), error.column());
     let message = error.to_string();
-    let why = message.strip_suffix(&place).unwrap_or(&message);
+    let why = shortened(message.strip_suffix(&place).unwrap_or(&message));
     let number = error.is_syntax() && (text.contains("NaN") || text.contains("Infinity"));
     let hint = if number { "; NaN and Infinity are no numbers" } else { "" };
     format!("column {}: {why}{hint}", error.column())
@@ -128,10 +142,10 @@ impl Wanted {
     }
 
     /// The vectors of each population, in their order.
-    fn divided(&self, what: &str, given: Given) -> Result<Vec<Vec<Vec<f64>>>, String> {
+    fn divided(&self, what: &str, given: Given) -> Result<Vec<Vectors>, String> {
         let names = &self.populations;
         match given {
-            Given::Unnamed(rows) if names.len() == 1 => Ok(vec![rows]),
+            Given::Unnamed(vectors) if names.len() == 1 => Ok(vec![vectors]),
             Given::Unnamed(_) => {
                 let example = names.iter().map(|name| format!("{name:?}: [..]")).collect::<Vec<_>>().join(", ");
                 Err(format!("{what}: {} has {} populations: {{{example}}}", self.experiment, names.len()))
@@ -265,6 +279,8 @@ mod tests {
     fn what_is_wrong_is_said() {
         let one = wanted(&["0"], 0);
         let many = format!(r#"{{"genes": [{}[0]]}}"#, "[0],".repeat(MOST_VECTORS));
+        let [deep, long] = [["[", "]"].map(|end| end.repeat(200)).concat(), format!("{:?}", "x".repeat(LONGEST_ID))]
+            .map(|id| format!(r#"{{"id": {id}, "genes": [0, 0]}}"#));
         for (line, why) in [
             ("", "is empty"),
             ("  ", "is empty"),
@@ -291,10 +307,15 @@ mod tests {
             (r#"{"genes": [0, 0], "seed": 9223372036854775808}"#, "seed: 9223372036854775808 is above"),
             (r#"{"genes": [0, 0], "individual": 4000000000}"#, "individual: 4000000000 is above"),
             (many.as_str(), "genes: 65537 vectors, more than 65536 in a line"),
+            (r#"{"id": nul, "genes": [0, 0]}"#, "column 11: expected"),
+            (deep.as_str(), "id: recursion limit exceeded"),
+            (long.as_str(), "id: has 4098 bytes, more than 4096"),
         ] {
             let found = read(line, &one).unwrap_err();
             assert!(found.starts_with(why), "{line:.200}: {found}");
         }
+        let strange = read(&format!(r#"{{"{}": 1}}"#, "x".repeat(9999)), &one).unwrap_err();
+        assert!(strange.starts_with("column 10002: unknown field `xxx") && strange.len() < 250, "{strange}");
         assert_eq!(Request::from_line(b"{\xff}", &one), Err("byte 1: is no UTF-8".into()));
     }
 }
