@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 
 use crate::error::Error;
-use crate::escaped::{Quoted, shortened};
+use crate::escaped::{OneLine, Quoted, shortened};
 use crate::evaluation::lines::given::{Given, Vectors};
 use crate::experiment::genotype::Genotype;
 use crate::experiment::parameter::Parameter;
@@ -118,7 +118,7 @@ fn read_id(text: &RawValue) -> Result<serde_json::Value, String> {
 fn unreadable(text: &str, error: &serde_json::Error) -> String {
     let place = format!(" at line {} column {}", error.line(), error.column());
     let message = error.to_string();
-    let why = shortened(message.strip_suffix(&place).unwrap_or(&message));
+    let why = OneLine(shortened(message.strip_suffix(&place).unwrap_or(&message)));
     let number = error.is_syntax() && (text.contains("NaN") || text.contains("Infinity"));
     let hint = if number { "; NaN and Infinity are no numbers" } else { "" };
     format!("column {}: {why}{hint}", error.column())
@@ -314,6 +314,8 @@ mod tests {
             let found = read(line, &one).unwrap_err();
             assert!(found.starts_with(why), "{line:.200}: {found}");
         }
+        let strange = read(r#"{"a\nb": 1}"#, &one).unwrap_err();
+        assert!(strange.starts_with(r"column 7: unknown field `a\nb`, expected one of"), "{strange}");
         let strange = read(&format!(r#"{{"{}": 1}}"#, "x".repeat(9999)), &one).unwrap_err();
         assert!(strange.starts_with("column 10002: unknown field `xxx") && strange.len() < 250, "{strange}");
         assert_eq!(Request::from_line(b"{\xff}", &one), Err("byte 1: is no UTF-8".into()));
