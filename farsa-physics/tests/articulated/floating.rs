@@ -5,7 +5,7 @@ use farsa_body::{
     Arrange, BodyId, Collider, Joint, MassProperties, Pose, Robot, Segment, Shape, Surface, Twist, World as _,
 };
 use farsa_num::sin_cos;
-use farsa_physics::articulated::World;
+use farsa_physics::articulated::{Model, Options, Scratch, World, inverse_dynamics, kinetic_energy, mass_matrix};
 
 const GRAVITY: f64 = 9.81;
 /// The dynamics step [s].
@@ -79,6 +79,53 @@ fn the_origin_of_a_spinning_body_circles_its_centre_of_mass() {
     println!("off the circle by {worst:.1e} m");
     // A step turns by 2 atan(h w / 2): 43 urad less than w t after a second, 8 um at this radius.
     assert!(worst < 1e-5);
+}
+
+/// The columns of the inertia of a free body with two joints are the efforts of unit accelerations, less those of none.
+#[test]
+fn the_inertia_of_a_free_body_with_joints_is_what_inverse_dynamics_says() {
+    let mut robot = Robot::new("crane");
+    let start = Joint::floating(Pose::identity());
+    let mut trunk = Segment::new("trunk", None, start, MassProperties::sphere(0.4, 0.1));
+    trunk.centre = [0.03, -0.02, 0.05];
+    let trunk = robot.add_segment(trunk);
+    let arm =
+        Joint::revolute("elbow", [0.6, 0.0, 0.8], Pose { position: [0.1, 0.2, -0.1], rotation: [0.5; 4] }, [-2.0, 2.0]);
+    let mut arm = Segment::new("arm", Some(trunk), arm, MassProperties::sphere(0.2, 0.05));
+    arm.centre = [0.0, 0.15, 0.02];
+    let arm = robot.add_segment(arm);
+    let slide = Joint::prismatic("slide", [0.0, 0.8, 0.6], Pose::at([0.0, 0.3, 0.0]), [-1.0, 1.0]);
+    robot.add_segment(Segment::new("hand", Some(arm), slide, MassProperties::sphere(0.1, 0.03)));
+    let model = Model::<f64>::new(&robot, &Options::default()).unwrap();
+    let n = model.dofs();
+    assert_eq!(n, 8);
+    let places = [0.4, -0.3, 1.1, 0.1, -0.7, 0.5, 0.5, 0.9, -0.2];
+    let velocities = [0.3, -1.2, 0.8, 2.0, -0.4, 0.1, 3.0, -0.6];
+    let mut scratch = Scratch::new((), &model);
+    scratch.forward_kinematics((), &model, &[&places[..], &velocities].concat());
+    let mut efforts = |accelerations: &[f64]| {
+        let mut tau = vec![0.0; n];
+        inverse_dynamics((), model.links(), model.gravity(), accelerations, scratch.links(), &mut tau);
+        tau
+    };
+    let at_rest = efforts(&vec![0.0; n]);
+    let column = |k: usize| {
+        let unit: Vec<f64> = (0..n).map(|row| f64::from(u8::from(row == k))).collect();
+        efforts(&unit).into_iter().zip(&at_rest).map(|(all, rest)| all - rest).collect::<Vec<_>>()
+    };
+    let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
+    let mut matrix = vec![0.0; n * n];
+    mass_matrix((), model.links(), scratch.links(), &mut matrix);
+    let mut energy = 0.0;
+    for row in 0..n {
+        for (k, column) in columns.iter().enumerate() {
+            let found = matrix[row * n + k];
+            assert!((found - column[row]).abs() < 1e-12, "{row}, {k}: {found} and {}", column[row]);
+            energy += 0.5 * velocities[row] * found * velocities[k];
+        }
+    }
+    let expected = kinetic_energy((), model.links(), &velocities, scratch.links());
+    assert!((energy - expected).abs() < 1e-12, "{energy} and {expected} J");
 }
 
 /// Two free balls strike each other beside the line between them, with friction: what one loses the other has.

@@ -266,6 +266,41 @@ fn the_kit_finds_the_world_in_order() {
 }
 
 #[test]
+fn a_lying_capsule_is_cut_in_a_stadium() {
+    let (radius, half_length) = (0.05, 0.2);
+    let mut stream = Stream::new(12, Domain::General, 0, 0, 0);
+    let (mut met, mut missed) = (0, 0);
+    for _ in 0..200 {
+        let heading = stream.range_f64(-3.1, 3.1);
+        let rise = stream.range_f64(-2.0, 2.0) * radius;
+        let mut at = Pose::planar([stream.range_f64(-0.5, 0.5), stream.range_f64(-0.5, 0.5)], heading);
+        at.position[2] = HEIGHT + rise;
+        // The capsule's axis, its z, lies along the heading.
+        let lying = std::f64::consts::FRAC_1_SQRT_2;
+        let collider = at.compose(&Pose { position: [0.0; 3], rotation: [0.0, lying, 0.0, lying] });
+        let mut robot = Robot::new("log");
+        let eye = Joint::floating(Pose::identity());
+        robot.add_segment(Segment::new("eye", None, eye, MassProperties::sphere(0.1, 0.02)));
+        let shape = Shape::Capsule { radius, half_length };
+        robot.add_collider(Collider::new("log", None, shape, collider).with_color(COLORS[0]));
+        let from = [stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
+        let mut found = Vec::new();
+        world(&robot).query_near(from.map(|x| x as f32), 3.0, &mut |near| found.push(f64::from(near.distance)));
+        if rise.abs() > radius + 1e-4 {
+            assert!(found.is_empty(), "{found:?}, {rise} above the plane");
+            missed += 1;
+        } else if rise.abs() < radius - 1e-4 {
+            let [x, y, _] = at.transform_back([from[0], from[1], at.position[2]]);
+            let beside = (x - x.clamp(-half_length, half_length)).hypot(y);
+            let expected = (beside - (radius * radius - rise * rise).sqrt()).max(0.0);
+            assert!(found.len() == 1 && (found[0] - expected).abs() < 2e-4, "{found:?}, {expected}");
+            met += 1;
+        }
+    }
+    assert!(met > 50 && missed > 50, "{met}, {missed}");
+}
+
+#[test]
 fn the_nearest_point_of_a_plane_lies_on_it_along_its_normal() {
     let mut stream = Stream::new(11, Domain::General, 0, 0, 0);
     let mut checked = 0;
