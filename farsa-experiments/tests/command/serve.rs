@@ -131,11 +131,18 @@ fn only_pages_of_this_address_are_answered() {
     let host = server.host();
     let own = format!("Origin: http://127.0.0.1:{}\r\n", server.port);
     let named = format!("Host: localhost:{}\r\n", server.port);
+    // What a browser says of the page that asks, and what for.
+    let site = |of: &str, what: &str| format!("Sec-Fetch-Site: {of}\r\nSec-Fetch-Dest: {what}\r\n");
     for (first, lines, expected) in [
         ("GET /", vec![host.clone(), own], 200),
         ("GET /?a=b", vec![named.clone()], 200),
         ("GET /", vec![host.clone(), "Origin: https://example.org\r\n".into()], 403),
         ("GET /events?from=0", vec![host.clone(), "Origin: null\r\n".into()], 403),
+        ("GET /", vec![host.clone(), site("none", "document")], 200),
+        ("GET /", vec![host.clone(), site("same-origin", "empty")], 200),
+        ("GET /", vec![host.clone(), site("cross-site", "document")], 200),
+        ("GET /", vec![host.clone(), site("cross-site", "image")], 403),
+        ("GET /events?from=0", vec![host.clone(), site("same-site", "script")], 403),
         ("GET /", vec!["Host: example.org\r\n".into()], 403),
         ("GET /", vec!["Host: 127.0.0.1\r\n".into()], 403),
         ("GET /", vec![], 403),

@@ -47,7 +47,7 @@ impl Known {
         // The last line may be written at this moment.
         let whole = text.rfind('\n').map_or("", |end| &text[..end]);
         let known = self.generations;
-        let rows = whole.lines().enumerate().skip(1 + known).map(|(number, line)| {
+        let rows = whole.lines().enumerate().skip(known.saturating_add(1)).map(|(number, line)| {
             let mut cells = line.split(',').skip(1).map_while(|cell| cell.parse().ok());
             let row = [(); 3].map(|()| cells.next());
             let damaged = || Error::damaged(&path, format!("line {}: {line}", number + 1));
@@ -100,5 +100,6 @@ mod tests {
         assert_eq!(known.rows(&directory).unwrap(), [Row::new(2, [3.0, 2.0, 1.0])]);
         write("0,1.5,1.0,0.0,4,0\n1,2.0,-inf,-inf,4,1\n2,3.0,2.0,1.0,4,0\nmine\n");
         assert!(known.rows(&directory).unwrap_err().to_string().contains("line 5: mine"));
+        assert_eq!(Known::first(usize::MAX).rows(&directory).unwrap(), []);
     }
 }

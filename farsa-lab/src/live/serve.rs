@@ -56,15 +56,23 @@ pub(crate) fn serve(served: Served<'_>, port: u16, begun: impl FnOnce(&str) -> R
                 continue;
             }
             // Who does not read its answer keeps nobody else waiting.
-            let begun = thread::Builder::new().spawn_scoped(scope, move || {
+            let begun = Begun(running);
+            // A thread that cannot be started is one that ends.
+            let _ = thread::Builder::new().spawn_scoped(scope, move || {
+                let _begun = begun;
                 served.answer(request, address);
-                running.fetch_sub(1, Ordering::Relaxed);
             });
-            if begun.is_err() {
-                running.fetch_sub(1, Ordering::Relaxed);
-            }
         }
     })
+}
+
+/// A request that is being answered, counted until its thread ends, however it does.
+struct Begun<'c>(&'c AtomicUsize);
+
+impl Drop for Begun<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
 }
 
 impl Served<'_> {
@@ -139,7 +147,8 @@ fn event(to: &mut impl Write, name: &str, number: Option<usize>, data: &impl Ser
     to.flush()
 }
 
-/// Whether a request is for this address by its own name, and from its own page or from none.
+/// Whether a request is for this address by its own name, and from its own page or from none. A page from elsewhere that asks for a
+/// picture has no origin; browsers tell its site. It may link to us.
 fn is_own(request: &Request, address: SocketAddr) -> bool {
     let port = address.port();
     // A browser leaves out the port that is usual.
@@ -151,7 +160,9 @@ fn is_own(request: &Request, address: SocketAddr) -> bool {
     };
     let host = header("Host").unwrap_or_default();
     let from_here = |origin: &str| origin.strip_prefix("http://") == Some(host);
-    own.any(|name| name == host) && header("Origin").is_none_or(from_here)
+    let is_ours = |site| site == "same-origin" || site == "none";
+    let is_asked = header("Sec-Fetch-Site").is_none_or(is_ours) || header("Sec-Fetch-Dest") == Some("document");
+    own.any(|name| name == host) && header("Origin").is_none_or(from_here) && is_asked
 }
 
 /// How many generations a listener knows: since it lost the connection, or as its page says.
