@@ -210,6 +210,28 @@ fn a_library_that_evaluates_or_draws_has_no_command_line() {
     }
 }
 
+#[test]
+fn every_fuzz_target_has_seeds_a_row_and_a_result() {
+    let (manifest, table, results) =
+        (read("fuzz/Cargo.toml"), read("CONTRIBUTING.md"), read("docs/results/campaign.md"));
+    let rows: String = table.lines().filter(|line| line.starts_with("| `")).collect();
+    let mut targets = vec!["page".to_owned()];
+    for entry in fs::read_dir(root().join("fuzz/fuzz_targets")).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        assert!(manifest.contains(&format!("path = \"fuzz_targets/{name}.rs\"")), "{name} is not built");
+        targets.push(name);
+    }
+    assert!(targets.len() > 15, "{targets:?}");
+    for name in targets {
+        let seeds = fs::read_dir(root().join("fuzz/corpus").join(&name)).map(Iterator::count);
+        assert!(seeds.is_ok_and(|seeds| seeds > 0), "{name} has no seeds");
+        let quoted = format!("`{name}`");
+        assert!(rows.contains(&quoted), "CONTRIBUTING.md does not say what {name} reads");
+        assert!(results.contains(&quoted), "docs/results/campaign.md does not say how often {name} was run");
+    }
+}
+
 /// The name of the function that begins in a line of Rust or JavaScript; a method of a class has no word before its name.
 fn function_of(line: &str) -> Option<&str> {
     let head = line.trim_start();
