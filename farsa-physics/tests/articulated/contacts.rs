@@ -1,8 +1,8 @@
 //! Where and when contacts are: the point of a pair, and pairs in groups that close fast.
 
 use farsa_body::{
-    Arrange as _, BodyId, Collider, Contacts as _, Joint, Kinematics as _, MassProperties, Pose, Robot, Segment, Shape,
-    Surface, Twist, World as _,
+    Arrange as _, BodyId, Collider, Contacts as _, Joint, JointId, Kinematics as _, MassProperties, Pose, Robot,
+    Segment, Shape, Surface, Twist, World as _,
 };
 use farsa_physics::articulated::{Model, Options, World};
 
@@ -74,5 +74,49 @@ fn what_is_thrown_at_a_group_meets_it_as_alone() {
     for millimetres in (500..530).step_by(3) {
         let distance = f64::from(millimetres) / 1000.0;
         assert_eq!(thrown(true, distance), thrown(false, distance), "{distance} m away");
+    }
+}
+
+/// A ball drives a hand that slides, from just before the end of its way, past it within a step: the stop answers in that step by its
+/// spring, k = I f^2, at the place to which the hand comes.
+#[test]
+fn a_stop_answers_a_contact_in_the_same_step() {
+    let (base_mass, hand_mass, ball_mass) = (1.5, 0.2, 0.5);
+    for (floating, upwards) in [(false, true), (false, false), (true, true), (true, false)] {
+        let side = if upwards { 1.0 } else { -1.0 };
+        let mut robot = Robot::new("press");
+        let start = Joint::floating(Pose::identity());
+        let base = Segment::new("base", None, start, MassProperties::sphere(base_mass, 0.1));
+        let base = floating.then(|| robot.add_segment(base));
+        // A way that begins at 0 on one side, and ends there on the other.
+        let range = if upwards { [-0.5, 0.0] } else { [0.0, 0.5] };
+        let slide = Joint::prismatic("slide", [0.0, 0.0, 1.0], Pose::at([0.0, 0.0, 0.3]), range);
+        let hand = robot.add_segment(Segment::new("hand", base, slide, MassProperties::sphere(hand_mass, 0.05)));
+        let joint = JointId(hand.0);
+        let ball = Joint::floating(Pose::at([0.0, 0.0, 0.3 - side * 0.0996]));
+        let ball = robot.add_segment(Segment::new("ball", None, ball, MassProperties::sphere(ball_mass, 0.05)));
+        let pair = [("hand", hand), ("ball", ball)].map(|(name, body)| {
+            robot.add_collider(Collider::new(name, Some(body), Shape::Sphere { radius: 0.05 }, Pose::identity()))
+        });
+        robot.add_pair(pair, Surface { friction: 0.0, ..SURFACE });
+        let options = Options { gravity: [0.0; 3], time_step: 1e-3, substeps: 1, sweeps: 200, ..Options::default() };
+        let model = Model::<f64>::new(&robot, &options).unwrap();
+        let (place, _) = model.joint_index(joint).unwrap();
+        let mut world = World::new(model);
+        world.state_mut()[place] = -side * 2e-4;
+        let pose = Pose::at([0.0, 0.0, (0.3 - side * 0.0996) as f32]);
+        world.place_body(ball, pose, Twist { linear: [0.0, 0.0, side as f32 * 3.0], angular: [0.0; 3] });
+        world.finish_placement();
+        world.step();
+        let speed = |body| world.velocity_of(body).linear[2];
+        let (lost, gained) = (ball_mass * (side * 3.0 - speed(ball)), hand_mass * speed(hand));
+        let impulse = lost - gained;
+        let past = world.positions()[place];
+        let frequency = options.limit_frequency;
+        let expected = options.time_step * hand_mass * frequency * frequency * past;
+        assert!(side * past > 1e-5 && side * lost > 0.1, "{past} m past the stop, {lost} N s from the ball");
+        assert!((impulse - expected).abs() < 1e-6 * expected.abs(), "{impulse} and {expected} N s");
+        let base = base.map_or(impulse, |base| base_mass * speed(base));
+        assert!((base - impulse).abs() < 1e-9, "{base} and {impulse} N s");
     }
 }
