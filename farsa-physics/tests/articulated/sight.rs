@@ -316,6 +316,26 @@ fn capsules_lying_and_tilted_are_as_far_as_their_cut() {
 }
 
 #[test]
+fn a_box_whose_top_lies_in_the_plane_of_sight_is_as_far_as_its_top() {
+    let half = [0.15, 0.05, HEIGHT];
+    let mut stream = Stream::new(13, Domain::General, 0, 0, 0);
+    for _ in 0..200 {
+        let place = [stream.range_f64(0.2, 0.6), stream.range_f64(0.2, 0.6)];
+        let at = Pose::planar(place, stream.range_f64(-3.1, 3.1));
+        let mut robot = Robot::new("block");
+        let eye = Joint::floating(Pose::identity());
+        robot.add_segment(Segment::new("eye", None, eye, MassProperties::sphere(0.1, 0.02)));
+        robot.add_collider(Collider::new("block", None, Shape::Box { half }, at).with_color(COLORS[0]));
+        let from = [stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
+        let mut found = Vec::new();
+        world(&robot).query_near(from.map(|x| x as f32), 3.0, &mut |near| found.push(f64::from(near.distance)));
+        let [x, y, _] = at.transform_back([from[0], from[1], 0.0]);
+        let expected = (x.abs() - half[0]).max(0.0).hypot((y.abs() - half[1]).max(0.0));
+        assert!(found.len() == 1 && (found[0] - expected).abs() < 1e-5, "{found:?}, {expected}: {at:?}");
+    }
+}
+
+#[test]
 fn the_nearest_point_of_a_plane_lies_on_it_along_its_normal() {
     let mut stream = Stream::new(11, Domain::General, 0, 0, 0);
     let mut checked = 0;
