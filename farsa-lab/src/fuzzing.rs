@@ -1,4 +1,5 @@
-//! The readers of a run's files, of configurations and of command lines, one call each: for the fuzz targets in `fuzz/`.
+//! The readers of a run's files, configurations, command lines and lines of an optimiser, one call each: for the fuzz targets
+//! in `fuzz/`.
 //!
 //! Why they are here: the one public way to them is [`Laboratory::main`], which takes the arguments of the process, starts threads,
 //! writes the files of a run and waits for the disk. A target calls a reader ten million times. This is no part of the

@@ -1,4 +1,4 @@
-//! Where and when contacts are: the point of a pair, and pairs in groups that close fast.
+//! Where and when contacts are: the point of a pair, pairs in groups that close fast, and stops that they drive joints into.
 
 use farsa_body::{
     Arrange as _, BodyId, Collider, Contacts as _, Joint, JointId, Kinematics as _, MassProperties, Pose, Robot,
@@ -93,7 +93,8 @@ fn a_stop_answers_a_contact_in_the_same_step() {
         let slide = Joint::prismatic("slide", [0.0, 0.0, 1.0], Pose::at([0.0, 0.0, 0.3]), range);
         let hand = robot.add_segment(Segment::new("hand", base, slide, MassProperties::sphere(hand_mass, 0.05)));
         let joint = JointId(hand.0);
-        let ball = Joint::floating(Pose::at([0.0, 0.0, 0.3 - side * 0.0996]));
+        let behind = 0.3 - side * 0.0996;
+        let ball = Joint::floating(Pose::at([0.0, 0.0, behind]));
         let ball = robot.add_segment(Segment::new("ball", None, ball, MassProperties::sphere(ball_mass, 0.05)));
         let pair = [("hand", hand), ("ball", ball)].map(|(name, body)| {
             robot.add_collider(Collider::new(name, Some(body), Shape::Sphere { radius: 0.05 }, Pose::identity()))
@@ -104,7 +105,7 @@ fn a_stop_answers_a_contact_in_the_same_step() {
         let (place, _) = model.joint_index(joint).unwrap();
         let mut world = World::new(model);
         world.state_mut()[place] = -side * 2e-4;
-        let pose = Pose::at([0.0, 0.0, (0.3 - side * 0.0996) as f32]);
+        let pose = Pose::at([0.0, 0.0, behind as f32]);
         world.place_body(ball, pose, Twist { linear: [0.0, 0.0, side as f32 * 3.0], angular: [0.0; 3] });
         world.finish_placement();
         world.step();

@@ -1,4 +1,4 @@
-//! Free bodies whose origin is away from their centre of mass, against closed forms.
+//! Free bodies whose origin is away from their centre of mass, against closed forms, and their inertia with joints.
 
 use crate::common::world;
 use farsa_body::{

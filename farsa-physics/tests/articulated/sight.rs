@@ -140,6 +140,15 @@ fn world(robot: &Robot) -> World<f32> {
     World::new(Model::new(robot, &Options { sight_height: HEIGHT, ..Options::default() }).unwrap())
 }
 
+/// One coloured shape that stays where it is, and a body to see it.
+fn beside_an_eye(shape: Shape, at: Pose<f64>) -> World<f32> {
+    let mut robot = Robot::new("one shape");
+    let eye = Joint::floating(Pose::identity());
+    robot.add_segment(Segment::new("eye", None, eye, MassProperties::sphere(0.1, 0.02)));
+    robot.add_collider(Collider::new("shape", None, shape, at).with_color(COLORS[2]));
+    world(&robot)
+}
+
 fn bands() -> Vec<ColorBand> {
     COLORS.map(|color| ColorBand::around(color.map(|x| x as f32), 0.2)).to_vec()
 }
@@ -295,14 +304,11 @@ fn capsules_lying_and_tilted_are_as_far_as_their_cut() {
         let rotation = if lies { heading.compose(&flat).rotation } else { turned(&mut stream) };
         let height = HEIGHT + stream.range_f64(-2.0, 2.0) * if lies { radius } else { half_length };
         let at = Pose { position: [stream.range_f64(-0.5, 0.5), stream.range_f64(-0.5, 0.5), height], rotation };
-        let mut robot = Robot::new("log");
-        let eye = Joint::floating(Pose::identity());
-        robot.add_segment(Segment::new("eye", None, eye, MassProperties::sphere(0.1, 0.02)));
         let shape = Shape::Capsule { radius, half_length };
-        robot.add_collider(Collider::new("log", None, shape, at).with_color(COLORS[0]));
+        let world = beside_an_eye(shape, at);
         let from = [stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
         let mut found = Vec::new();
-        world(&robot).query_near(from.map(|x| x as f32), 3.0, &mut |near| found.push(f64::from(near.distance)));
+        world.query_near(from.map(|x| x as f32), 3.0, &mut |near| found.push(f64::from(near.distance)));
         let (expected, reach) = cut_of_capsule(&at, radius, half_length, from);
         if reach < -1e-4 {
             assert!(found.is_empty(), "{found:?}, {reach} from the plane: {at:?}");
@@ -322,13 +328,10 @@ fn a_box_whose_top_lies_in_the_plane_of_sight_is_as_far_as_its_top() {
     for _ in 0..200 {
         let place = [stream.range_f64(0.2, 0.6), stream.range_f64(0.2, 0.6)];
         let at = Pose::planar(place, stream.range_f64(-3.1, 3.1));
-        let mut robot = Robot::new("block");
-        let eye = Joint::floating(Pose::identity());
-        robot.add_segment(Segment::new("eye", None, eye, MassProperties::sphere(0.1, 0.02)));
-        robot.add_collider(Collider::new("block", None, Shape::Box { half }, at).with_color(COLORS[0]));
+        let world = beside_an_eye(Shape::Box { half }, at);
         let from = [stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
         let mut found = Vec::new();
-        world(&robot).query_near(from.map(|x| x as f32), 3.0, &mut |near| found.push(f64::from(near.distance)));
+        world.query_near(from.map(|x| x as f32), 3.0, &mut |near| found.push(f64::from(near.distance)));
         let [x, y, _] = at.transform_back([from[0], from[1], 0.0]);
         let expected = (x.abs() - half[0]).max(0.0).hypot((y.abs() - half[1]).max(0.0));
         assert!(found.len() == 1 && (found[0] - expected).abs() < 1e-5, "{found:?}, {expected}: {at:?}");
@@ -342,15 +345,7 @@ fn the_nearest_point_of_a_plane_lies_on_it_along_its_normal() {
     for _ in 0..500 {
         let position = [stream.range_f64(-0.5, 0.5), stream.range_f64(-0.5, 0.5), stream.range_f64(-0.2, 0.4)];
         let at = Pose { position, rotation: turned(&mut stream) };
-        let mut robot = Robot::new("plane");
-        robot.add_segment(Segment::new(
-            "eye",
-            None,
-            Joint::floating(Pose::identity()),
-            MassProperties::sphere(0.1, 0.02),
-        ));
-        robot.add_collider(Collider::new("plane", None, Shape::Plane, at).with_color(COLORS[2]));
-        let world = world(&robot);
+        let world = beside_an_eye(Shape::Plane, at);
         let from = [stream.range_f64(-1.0, 1.0), stream.range_f64(-1.0, 1.0)];
         let normal = at.rotate([0.0, 0.0, 1.0]);
         let steep = normal[0].hypot(normal[1]);
