@@ -18,9 +18,10 @@ use crate::strategy::{Recorded, Strategy};
 /// Checks that the strategy that `fresh` makes, always with the same configuration and seed, keeps to what [`Strategy`] says,
 /// over so many generations.
 ///
-/// Asked twice it answers the same. A fresh one that is told the same does the same, through a [`Record`] and through saved
-/// states. It refuses another number of values and is unchanged by that. It counts generations, and names a champion of each
-/// population. Where it says that only the order counts ([`Recorded::Order`]), other values of the same order change nothing.
+/// Asked twice it answers the same. A fresh one that is told the same does the same and says the same of it
+/// ([`diagnostics`](Strategy::diagnostics), as many each time), through a [`Record`] and, interrupted after every generation, through
+/// saved states, which are the same bytes then. It refuses another number of values and is unchanged by that. It counts generations,
+/// and names a champion of each population. Where it says that only the order counts ([`Recorded::Order`]), other values of the same order change nothing.
 /// Failed evaluations, all of them at once too, end nothing. Judgements of another shape than it wants are refused. What it keeps,
 /// if it has a [`Collection`](crate::Collection), are individuals that it was told of, with the numbers that it was told. Where it says
 /// whom individuals meet ([`Meetings`](crate::Meetings)), everyone meets as many, one of each other population.
@@ -46,6 +47,7 @@ where
     let mut writer = RecordWriter::new(&mut again).map_err(|error| format!("no record elsewhere: {error}"))?;
     let mut asked: Vec<u64> = Vec::new();
     let mut history: Vec<Judgements> = Vec::new();
+    let mut numbers = None;
     for generation in 0..generations {
         let wrong = |what: &str| format!("generation {generation}: {what}");
         if strategy.generation() != generation {
@@ -85,7 +87,14 @@ where
         if writer.entry() != record.entry(generation) {
             return Err(wrong("is recorded otherwise the second time"));
         }
-        saved(&mut strategy, made()?).map_err(|what| wrong(&what))?;
+        let (said, said_again) = (strategy.diagnostics(), again.diagnostics());
+        if !said.iter().map(|x| x.to_bits()).eq(said_again.iter().map(|x| x.to_bits())) {
+            return Err(wrong("says other numbers of itself the second time"));
+        }
+        if *numbers.get_or_insert(said.len()) != said.len() {
+            return Err(wrong("says another count of numbers of itself than before"));
+        }
+        again = restored(again, made()?).map_err(|what| wrong(&what))?;
         history.push(judgements);
         if let Some(collection) = strategy.collection() {
             kept(&collection.members(), &history).map_err(|what| wrong(&what))?;
@@ -139,19 +148,19 @@ fn kept(members: &[Member<'_>], history: &[Judgements]) -> Result<(), String> {
     if origins.windows(2).any(|pair| pair[0] == pair[1]) { Err("keeps an individual twice".into()) } else { Ok(()) }
 }
 
-/// Whether a fresh strategy that takes the state of another is that other, and none that takes a part of it is.
-fn saved<G: Gene, S: Strategy<G>>(strategy: &mut S, mut other: S) -> Result<(), String> {
-    let Some(state) = strategy.snapshot().map(|snapshot| snapshot.save()) else { return Ok(()) };
-    let mut restore = |state: &[u8]| other.snapshot().map(|snapshot| snapshot.restore(state));
-    if let Some(Err(error)) = restore(&state) {
-        return Err(format!("cannot be restored: {error}"));
-    }
-    let short = restore(&state[..state.len().saturating_sub(1)]);
-    if short.is_some_and(|result| result.is_ok()) {
+/// A fresh strategy with the state of another, which is that other and takes no part of a state; the other itself if it saves none.
+fn restored<G: Gene, S: Strategy<G>>(mut strategy: S, mut fresh: S) -> Result<S, String> {
+    let Some(state) = strategy.snapshot().map(|snapshot| snapshot.save()) else { return Ok(strategy) };
+    let Some(snapshot) = fresh.snapshot() else { return Err("saves states, and when it is fresh none".into()) };
+    snapshot.restore(&state).map_err(|error| format!("cannot be restored: {error}"))?;
+    if snapshot.restore(&state[..state.len().saturating_sub(1)]).is_ok() {
         return Err("takes a state that is too short".into());
     }
-    let same = other.generation() == strategy.generation() && other.ask().digest() == strategy.ask().digest();
-    if same { Ok(()) } else { Err("is another after its state was restored".into()) }
+    if snapshot.save() != state {
+        return Err("saves another state than the one that it was restored from".into());
+    }
+    let same = fresh.generation() == strategy.generation() && fresh.ask().digest() == strategy.ask().digest();
+    if same { Ok(fresh) } else { Err("is another after its state was restored".into()) }
 }
 
 /// Whether a strategy refuses too few judgements, those of another shape, and fitness if it wants more, and is unchanged by

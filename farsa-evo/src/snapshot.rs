@@ -11,7 +11,8 @@ pub trait Snapshot {
     /// All that changes from generation to generation, as bytes; configuration and seed are not part of it.
     fn save(&self) -> Vec<u8>;
 
-    /// Takes the state that a strategy of the same configuration and seed has saved.
+    /// Takes the state that a strategy of the same configuration and seed has saved; [`save`](Self::save) gives the same bytes
+    /// then.
     ///
     /// # Errors
     /// [`EvoError::StateLength`], [`EvoError::StateContent`]; the strategy is then unchanged.
@@ -106,4 +107,17 @@ pub(crate) fn push_reals(state: &mut Vec<u8>, row: &[f64]) {
 /// The largest gene of so many bits, 1 to 16.
 pub(crate) fn largest(gene_bits: u32) -> u16 {
     u16::MAX >> u16::BITS.saturating_sub(gene_bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn states_are_as_far_apart_as_a_second_of_telling() {
+        for (individuals, genes, generations) in [(1, 1, 20_000_000), (100, 200, 1000), (5000, 5000, 1)] {
+            let population = Population::new(individuals, genes).unwrap();
+            assert_eq!(between_states(&population), generations, "{individuals} x {genes}");
+        }
+    }
 }

@@ -120,7 +120,8 @@ pub trait Strategy<G: Gene = u16> {
         self.collection().is_some()
     }
 
-    /// Numbers of its own about the latest generation that it was told, such as a step size; empty if there are none.
+    /// Numbers of its own about the latest generation that it was told, such as a step size: as many each time, empty if there
+    /// are none.
     fn diagnostics(&self) -> Vec<f64> {
         Vec::new()
     }

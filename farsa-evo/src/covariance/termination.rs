@@ -139,6 +139,12 @@ mod tests {
         let mut one = distribution(1.0, 1.0);
         one.mean[2] = 1e30;
         assert_eq!(progress(rising()).ends(&one, 1.0), Some(Termination::NoEffectCoord));
+        // An axis of the first gene alone: the turn of the others comes after it.
+        let mut one = distribution(1.0, 1.0);
+        one.mean[0] = 1e30;
+        assert_eq!(progress(rising()).ends(&one, 1.0), Some(Termination::NoEffectAxis));
+        let next = progress((0..61).map(f64::from));
+        assert_eq!(next.ends(&one, 1.0), Some(Termination::NoEffectCoord));
         // The same with small steps, which large ones would hide.
         assert_eq!(progress(rising()).ends(&distribution(1.0, 1e-18), 1e-18), Some(Termination::NoEffectAxis));
         let mut one = distribution(0.0, 1e-10);

@@ -57,6 +57,55 @@ fn what_has_to_be_recorded_is_said() {
     assert_eq!(Ars::new(ArsConfig::new(mean(2), 1), 0).unwrap().recorded(), Recorded::Values);
 }
 
+fn length(x: impl Iterator<Item = f64>) -> f64 {
+    x.map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Tells a strategy a few generations; how far its point moved last, and that point.
+fn moved<S: Strategy<f64>>(strategy: &mut S, mean: impl Fn(&S) -> Vec<f64>) -> (f64, Vec<f64>) {
+    let mut before = Vec::new();
+    for _ in 0..5 {
+        before = mean(strategy);
+        let told: Vec<f64> =
+            strategy.ask().iter().map(|x| -x.iter().map(|x| (x - 3.0) * (x - 3.0)).sum::<f64>()).collect();
+        strategy.tell_values(&told).unwrap();
+    }
+    let after = mean(strategy);
+    (length(after.iter().zip(&before).map(|(a, b)| a - b)), after)
+}
+
+#[track_caller]
+fn says(strategy: &impl Strategy<f64>, wanted: &[f64]) {
+    let said = strategy.diagnostics();
+    assert_eq!(said.len(), wanted.len());
+    assert!(said.iter().zip(wanted).all(|(a, b)| *b > 0.0 && (a - b).abs() <= 1e-9 * b), "{said:?} {wanted:?}");
+}
+
+#[test]
+fn what_they_say_of_themselves_is_what_they_did() {
+    let ends =
+        |all: &[f64]| [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max)];
+    let mut ars = Ars::new(ArsConfig::new(mean(4), 6), 3).unwrap();
+    let (step, point) = moved(&mut ars, |ars| ars.mean().to_vec());
+    says(&ars, &[step, length(point.into_iter())]);
+    let mut es = OpenAiEs::new(OpenAiEsConfig::new(mean(4), 6), 3).unwrap();
+    let (step, point) = moved(&mut es, |es| es.mean().to_vec());
+    says(&es, &[step, length(point.into_iter())]);
+    let mut pgpe = Pgpe::new(PgpeConfig::new(mean(4), 0.3, 6), 3).unwrap();
+    let (speed, _) = moved(&mut pgpe, |pgpe| pgpe.mean().to_vec());
+    let [low, high] = ends(pgpe.sigmas());
+    assert!(low < high);
+    says(&pgpe, &[speed, low, high]);
+    let mut snes = Snes::new(SnesConfig::new(mean(4), 0.5), 3).unwrap();
+    moved(&mut snes, |snes| snes.mean().to_vec());
+    let [low, high] = ends(snes.sigmas());
+    assert!(low < high);
+    says(&snes, &[low, high]);
+    let mut xnes = Xnes::new(XnesConfig::new(mean(4), 0.5), 3).unwrap();
+    moved(&mut xnes, |xnes| xnes.mean().to_vec());
+    says(&xnes, &[xnes.sigma()]);
+}
+
 /// Tells a strategy the worst that there is, and looks whether all stays finite and can be saved.
 fn survives<S>(mut strategy: S, mut other: S, values: &[f64])
 where

@@ -1,6 +1,7 @@
 //! Strategies, their records and what they are judged by.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod conformance;
 mod cosyne;
 mod covariance;
 mod evolution;

@@ -89,6 +89,9 @@ fn generations_are_those_of_a_transcription() {
             search.tell_judgements(&told).unwrap();
             let archive = search.archive();
             assert!(archive.elites().map(|elite| elite.cell).eq(order.iter().copied()));
+            let [count, sum] = search.diagnostics()[..] else { panic!("says two numbers") };
+            let total: f64 = elites.values().map(|elite| elite.1).sum();
+            assert!(count == elites.len() as f64 && (sum - total).abs() <= 1e-12 * total.abs(), "{sum} {total}");
             for (cell, (genes, objective, [born, individual])) in &elites {
                 let elite = archive.elite(*cell).unwrap();
                 assert_eq!((elite.genes, elite.objective), (&genes[..], *objective));

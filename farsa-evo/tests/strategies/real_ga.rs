@@ -4,7 +4,7 @@
 #![allow(clippy::disallowed_methods)]
 
 use farsa_evo::{
-    Crossover, EvoError, Fitness, RealGa, RealGaConfig, RealMutation, Selection, Strategy, check_strategy,
+    Crossover, EvoError, Fitness, RealGa, RealGaConfig, RealMutation, Selection, Snapshot, Strategy, check_strategy,
 };
 use farsa_num::{Domain, Stream};
 use proptest::prelude::*;
@@ -237,7 +237,7 @@ fn impossible_configurations_are_refused() {
 #[test]
 fn a_damaged_state_is_refused() {
     let [_, config, ..] = configs();
-    let mut search = RealGa::new(config, 3).unwrap();
+    let mut search = RealGa::new(config.clone(), 3).unwrap();
     search.tell_values(&[0.0; 24]).unwrap();
     let before = search.clone();
     let state = search.snapshot().unwrap().save();
@@ -248,6 +248,13 @@ fn a_damaged_state_is_refused() {
         damaged[at..at + 4].fill(0xff);
         assert!(search.snapshot().unwrap().restore(&damaged).is_err(), "{at}");
         assert_eq!(search, before);
+    }
+    // A step size below the smallest.
+    let RealMutation::SelfAdaptive { smallest, .. } = config.mutation else { panic!("adapts no step sizes") };
+    for (step, possible) in [(smallest, true), (smallest.next_down(), false), (-smallest, false)] {
+        let mut state = state.clone();
+        state[4 + 8 * 24..][..8].copy_from_slice(&step.to_le_bytes());
+        assert_eq!(before.clone().restore(&state).is_ok(), possible, "{step}");
     }
 }
 

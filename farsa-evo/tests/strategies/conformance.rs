@@ -1,0 +1,120 @@
+//! What the check of strategies finds in one that is wrong.
+
+use farsa_evo::{EvoError, Fitness, Population, Record, RecordEntry, Recorded, Snapshot, Strategy, check_strategy};
+
+#[derive(Clone, Copy, PartialEq)]
+enum Flaw {
+    None,
+    /// A number that later generations depend on is not in its state.
+    Forgets,
+    /// A number that it says of itself is not.
+    SaysLess,
+    /// Its state tells that it was restored.
+    SavesMore,
+    /// It says more numbers in each generation.
+    SaysMore,
+    /// When it is fresh it saves nothing.
+    SavesLate,
+}
+
+/// Genes that are the sum of all that it was told, as far as that is a number.
+struct Total {
+    flaw: Flaw,
+    generation: u32,
+    total: f64,
+    population: Population<f64>,
+    restored: bool,
+}
+
+impl Total {
+    fn new(flaw: Flaw) -> Result<Self, EvoError> {
+        Ok(Self { flaw, generation: 0, total: 1.0, population: Population::new(3, 2)?, restored: false })
+    }
+}
+
+impl Strategy<f64> for Total {
+    fn generation(&self) -> u32 {
+        self.generation
+    }
+    fn ask(&self) -> &Population<f64> {
+        &self.population
+    }
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        if fitness.len() != 3 {
+            return Err(EvoError::FitnessCount { expected: 3, found: fitness.len() });
+        }
+        self.generation += 1;
+        self.total += fitness.iter().map(|fitness| fitness.get()).filter(|value| value.is_finite()).sum::<f64>();
+        let shown = if self.flaw == Flaw::SaysLess { 0.0 } else { self.total };
+        self.population.iter_mut().flatten().for_each(|gene| *gene = shown);
+        Ok(())
+    }
+    fn recorded(&self) -> Recorded {
+        Recorded::Genomes
+    }
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        (self.flaw != Flaw::SavesLate || self.generation > 0).then_some(self)
+    }
+    fn diagnostics(&self) -> Vec<f64> {
+        match self.flaw {
+            Flaw::Forgets => vec![],
+            Flaw::SaysMore => vec![0.5; self.generation as usize],
+            _ => vec![self.total],
+        }
+    }
+}
+
+impl Snapshot for Total {
+    fn save(&self) -> Vec<u8> {
+        let mut state = self.generation.to_le_bytes().to_vec();
+        state.extend(self.population.as_slice()[0].to_le_bytes());
+        if !matches!(self.flaw, Flaw::Forgets | Flaw::SaysLess) {
+            state.extend(self.total.to_le_bytes());
+        }
+        state.push(u8::from(self.flaw == Flaw::SavesMore && self.restored));
+        state
+    }
+    fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
+        let (expected, found) = (self.save().len(), state.len());
+        if expected != found {
+            return Err(EvoError::StateLength { expected, found });
+        }
+        let real = |at: usize| f64::from_le_bytes(*state[at..].first_chunk().unwrap());
+        self.generation = u32::from_le_bytes(*state.first_chunk().unwrap());
+        self.population.iter_mut().flatten().for_each(|gene| *gene = real(4));
+        if found > 13 {
+            self.total = real(12);
+        }
+        self.restored = true;
+        Ok(())
+    }
+}
+
+#[test]
+fn what_is_wrong_is_found() {
+    check_strategy(|| Total::new(Flaw::None), 8).unwrap();
+    for (flaw, expected) in [
+        (Flaw::Forgets, "generation 2: other genomes where the same are asked for"),
+        (Flaw::SaysLess, "generation 1: says other numbers of itself the second time"),
+        (Flaw::SavesMore, "generation 0: saves another state than the one that it was restored from"),
+        (Flaw::SaysMore, "generation 1: says another count of numbers of itself than before"),
+    ] {
+        assert_eq!(check_strategy(|| Total::new(flaw), 8).unwrap_err(), expected);
+    }
+    let late = check_strategy(|| Total::new(Flaw::SavesLate), 8).unwrap_err();
+    assert!(late.starts_with("no record: "), "{late}");
+}
+
+#[test]
+fn a_recorded_gene_that_is_no_number_is_named() {
+    let mut strategy = Total::new(Flaw::None).unwrap();
+    let mut record = Record::new(&mut strategy).unwrap();
+    record.tell(&mut strategy, &[Fitness::WORST; 3]).unwrap();
+    let mut frame = record.entry(0).unwrap().frame.to_vec();
+    // Behind the number of the champion.
+    frame[1..9].copy_from_slice(&0x7ff8_0001_0203_0405_u64.to_le_bytes());
+    record.push(RecordEntry { frame: &frame, state: None }).unwrap();
+    let mut genomes = |generation| record.genomes(&mut strategy, generation);
+    assert_eq!(genomes(0).unwrap().as_slice(), [0.0; 6]);
+    assert_eq!(genomes(1), Err(EvoError::StateContent { what: "a gene", found: 0x7ff8_0001_0203_0405 }));
+}
