@@ -13,7 +13,7 @@ use crate::arena::term::Term;
 use crate::check::places::Places;
 use crate::document::{Document, Ending, MotorKind, SensorKind};
 use crate::parts::agents::Agents;
-use crate::parts::bounded::bounded_parts;
+use crate::parts::bounded::{Room, bounded_parts};
 use crate::parts::files::Files;
 use crate::parts::ledger::Ledger;
 use crate::parts::wiring::Wiring;
@@ -81,15 +81,15 @@ impl Composition {
         let scene = Scene::new(&document, places)?;
         let infrared = scene.robots.iter().map(|robot| robot.infrared.angles.len() * robot.infrared.rays).sum();
         bounded_parts(&document, scene.robots.len(), infrared, places)?;
-        let mut files = Files::new(&document.files);
+        let (mut files, mut room) = (Files::new(&document.files), Room::new());
         let mut members = Vec::new();
         for robot in 0..scene.robots.len() {
             let (mut sensors, mut motors) = (Vec::new(), Vec::new());
             for (index, own) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-                sensors.push(sensor(own, &scene, robot, &format!("/sensors/{index}"), &mut files, places)?);
+                sensors.push(sensor(own, &scene, robot, &format!("/sensors/{index}"), &mut files, &mut room, places)?);
             }
             for (index, own) in document.motors.iter().enumerate().filter(|(_, motor)| motor.enabled) {
-                motors.push(motor(own, &scene, robot, &format!("/motors/{index}"), places)?);
+                motors.push(motor(own, &scene, robot, &format!("/motors/{index}"), &mut room, places)?);
             }
             let drawn = drawn(&document, &scene.robots[robot], &sensors);
             members.push(Member { parts: scene.parts(robot), sensors, motors, drawn });
@@ -100,6 +100,7 @@ impl Composition {
             members[0].motors.iter().map(Channels::channels).collect(),
         ];
         let wiring = Wiring::new(&document, channels, places)?;
+        room.take(wiring.kept().saturating_mul(members.len()), "/network", places)?;
         let term = |(number, reward)| Term::new(reward, number, &wiring.sensors, &scene, places);
         let terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();

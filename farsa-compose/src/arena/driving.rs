@@ -9,6 +9,7 @@ use farsa_lab::{Error, PlanarWorld};
 use crate::arena::scene::Scene;
 use crate::check::places::Places;
 use crate::document::{self, Led, MotorKind};
+use crate::parts::bounded::Room;
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A motor of a robot in a plane.
@@ -121,6 +122,7 @@ pub(crate) fn motor(
     scene: &Scene,
     robot: usize,
     path: &str,
+    room: &mut Room,
     places: &Places,
 ) -> Result<Driving, Error> {
     let wrong = |why: String| places.wrong(path, why);
@@ -128,8 +130,8 @@ pub(crate) fn motor(
         bare(&motor.kind, &scene.robots[robot], &scene.parts(robot)).map_err(|error| wrong(error.to_string()))?;
     let mut made = made.map_err(|what| wrong(format!("needs {what}; the {} has none", scene.robots[robot].name)))?;
     for (index, wrapper) in motor.wrappers.iter().enumerate() {
-        let wrapped = Wrapped::new(made, wrapper);
-        made = Driving::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
+        let path = format!("{path}/wrappers/{index}");
+        made = Driving::Wrapped(Wrapped::new(made, wrapper, room, &path, places)?);
     }
     Ok(made)
 }

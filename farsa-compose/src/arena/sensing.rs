@@ -15,6 +15,7 @@ use crate::arena::field::Forager;
 use crate::arena::scene::Scene;
 use crate::check::places::Places;
 use crate::document::{self, AxesName, InfraredModel, SensorKind};
+use crate::parts::bounded::Room;
 use crate::parts::eye::{Eye, eye};
 use crate::parts::files::{Files, measured};
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
@@ -138,6 +139,7 @@ pub(crate) fn sensor(
     robot: usize,
     path: &str,
     files: &mut Files<'_>,
+    room: &mut Room,
     places: &Places,
 ) -> Result<Sensing, Error> {
     let target = match &sensor.kind {
@@ -176,8 +178,8 @@ pub(crate) fn sensor(
     let made = bare(&sensor.kind, &scene.robots[robot], &parts, target, tables, wheels);
     let mut made = made.map_err(|error| places.wrong(path, error))?;
     for (index, wrapper) in sensor.wrappers.iter().enumerate() {
-        let wrapped = Wrapped::new(made, wrapper);
-        made = Sensing::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
+        let path = format!("{path}/wrappers/{index}");
+        made = Sensing::Wrapped(Wrapped::new(made, wrapper, room, &path, places)?);
     }
     Ok(made)
 }

@@ -19,6 +19,7 @@ pub struct Sensor {
     pub enabled: bool,
     /// What happens to its values on their way, the first one first.
     #[serde(default)]
+    #[schemars(length(max = 32))]
     pub wrappers: Vec<Wrapper>,
     /// What it is.
     #[serde(flatten)]

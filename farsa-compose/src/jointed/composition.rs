@@ -13,7 +13,7 @@ use crate::jointed::sensing::{Sensing, sensor};
 use crate::jointed::starting::Starting;
 use crate::jointed::term::Term;
 use crate::parts::agents::Agents;
-use crate::parts::bounded::bounded_parts;
+use crate::parts::bounded::{Room, bounded_parts};
 use crate::parts::groups::Groups;
 use crate::parts::ledger::Ledger;
 use crate::parts::wiring::Wiring;
@@ -43,16 +43,17 @@ impl Composition {
     pub(crate) fn new(document: Document, places: &Places) -> Result<(Self, Agents), Error> {
         refuse(&document, places)?;
         let mut scene = Scene::new(&document, places)?;
-        let (mut sensors, mut motors) = (Vec::new(), Vec::new());
+        let (mut sensors, mut motors, mut room) = (Vec::new(), Vec::new(), Room::new());
         for (index, own) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-            sensors.push(sensor(own, &scene, &format!("/sensors/{index}"), places)?);
+            sensors.push(sensor(own, &scene, &format!("/sensors/{index}"), &mut room, places)?);
         }
         for (index, own) in document.motors.iter().enumerate().filter(|(_, motor)| motor.enabled) {
-            motors.push(motor(own, &mut scene, &format!("/motors/{index}"), places)?);
+            motors.push(motor(own, &mut scene, &format!("/motors/{index}"), &mut room, places)?);
         }
         let channels =
             [sensors.iter().map(Sensing::channels).collect(), motors.iter().map(Driving::channels).collect()];
         let wiring = Wiring::new(&document, channels, places)?;
+        room.take(wiring.kept(), "/network", places)?;
         let term = |(number, reward): (usize, &crate::document::Reward)| {
             Term::new(&reward.kind, &format!("/reward/{number}"), &wiring.sensors, &scene, places)
         };

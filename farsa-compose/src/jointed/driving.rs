@@ -10,6 +10,7 @@ use crate::document::{self, MotorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::actuation::{self, is_muscles, is_servo, is_torque, is_velocity};
 use crate::jointed::scene::Scene;
+use crate::parts::bounded::Room;
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
 /// A motor of a robot with joints.
@@ -63,11 +64,17 @@ impl Reseed for Driving {
 ///
 /// # Errors
 /// [`Error::Setting`] for what the robot does not have or cannot be wrapped so, [`Error::Unknown`] for a joint that there is not.
-pub(crate) fn motor(motor: &document::Motor, scene: &mut Scene, path: &str, places: &Places) -> Result<Driving, Error> {
+pub(crate) fn motor(
+    motor: &document::Motor,
+    scene: &mut Scene,
+    path: &str,
+    room: &mut Room,
+    places: &Places,
+) -> Result<Driving, Error> {
     let mut made = bare(&motor.kind, scene, path, places)?;
     for (index, wrapper) in motor.wrappers.iter().enumerate() {
-        let wrapped = Wrapped::new(made, wrapper);
-        made = Driving::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
+        let path = format!("{path}/wrappers/{index}");
+        made = Driving::Wrapped(Wrapped::new(made, wrapper, room, &path, places)?);
     }
     Ok(made)
 }

@@ -13,6 +13,7 @@ use crate::jointed::eyes::{blobs, image, offset};
 use crate::jointed::marker_position::MarkerPosition;
 use crate::jointed::scene::Scene;
 use crate::jointed::spot::Spot;
+use crate::parts::bounded::Room;
 use crate::parts::eye::{Eye, eye};
 use crate::parts::wrapping::{NoiseStreams, Reseed, Wrapped, around};
 
@@ -128,11 +129,17 @@ impl Sensing {
 ///
 /// # Errors
 /// [`Error::Setting`] for what cannot be sensed or wrapped so, [`Error::Unknown`] for a body, joint or thing that there is not.
-pub(crate) fn sensor(sensor: &document::Sensor, scene: &Scene, path: &str, places: &Places) -> Result<Sensing, Error> {
+pub(crate) fn sensor(
+    sensor: &document::Sensor,
+    scene: &Scene,
+    path: &str,
+    room: &mut Room,
+    places: &Places,
+) -> Result<Sensing, Error> {
     let mut made = bare(&sensor.kind, scene, path, places)?;
     for (index, wrapper) in sensor.wrappers.iter().enumerate() {
-        let wrapped = Wrapped::new(made, wrapper);
-        made = Sensing::Wrapped(wrapped.map_err(|error| places.wrong(&format!("{path}/wrappers/{index}"), error))?);
+        let path = format!("{path}/wrappers/{index}");
+        made = Sensing::Wrapped(Wrapped::new(made, wrapper, room, &path, places)?);
     }
     Ok(made)
 }

@@ -1,4 +1,4 @@
-//! The sizes of networks, and how many parts robots have.
+//! The sizes of networks, how many parts robots have, and what all of them keep together.
 //!
 //! The limits are lower where readers are fuzzed, whose memory is to be bounded by the length of a text: a few letters ask for a
 //! large network, or for many robots.
@@ -15,6 +15,33 @@ const MOST_VALUES: usize = if cfg!(fuzzing) { 2000 } else { 1_000_000 };
 const MOST_PARTS: usize = if cfg!(fuzzing) { 500 } else { 100_000 };
 /// The most rays that they send out in a step.
 const MOST_RAYS: usize = if cfg!(fuzzing) { 4000 } else { 200_000 };
+
+/// The most values that the wrappers and networks of all robots keep together.
+const MOST_KEPT: usize = 10 * MOST_VALUES;
+
+/// What is left of the values that the wrappers and networks of all robots may keep.
+pub(crate) struct Room {
+    left: usize,
+}
+
+impl Room {
+    /// All of it.
+    pub(crate) fn new() -> Self {
+        Self { left: MOST_KEPT }
+    }
+
+    /// Takes so many values for the part that stands at a path.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] with the number of values that it and what took of the room before it keep.
+    pub(crate) fn take(&mut self, values: usize, path: &str, places: &Places) -> Result<(), Error> {
+        self.left = self.left.checked_sub(values).ok_or_else(|| {
+            let all = (MOST_KEPT - self.left).saturating_add(values);
+            places.wrong(path, format!("and what is before it keep {all} values; at most {MOST_KEPT} in all robots"))
+        })?;
+        Ok(())
+    }
+}
 
 /// Refuses networks that would fill the memory.
 ///

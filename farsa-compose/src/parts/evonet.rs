@@ -1,6 +1,7 @@
 //! The network of the original, with genes in its order.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use farsa_lab::Error;
 use farsa_nn::{Activation, Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter, EvonetRanges, Leak};
@@ -16,9 +17,9 @@ pub(crate) struct EvonetNetwork {
     pub(crate) network: BlockNetwork<'static, Vec<f32>, Vec<f32>>,
     ranges: EvonetRanges,
     /// For each of the original's numbers the index of its parameter, and what that is.
-    order: Vec<(usize, BlockParameter)>,
+    order: Arc<[(usize, BlockParameter)]>,
     /// The numbers that a file gives, in the original's order.
-    given: Vec<Option<f32>>,
+    given: Arc<[Option<f32>]>,
 }
 
 /// The most neurons of a file, as many as the original has, and the most blocks.
@@ -91,7 +92,7 @@ impl EvonetNetwork {
         let given = if given.is_empty() { vec![None; count] } else { given };
         let (parameters, state) = (vec![0.0; count], vec![0.0; layout.state_len()]);
         let network = BlockNetwork::new(layout, Leak::Evonet, parameters, state)?;
-        Ok(Self { network, ranges, order, given })
+        Ok(Self { network, ranges, order: order.into(), given: given.into() })
     }
 
     /// What each of the searched parameters is, in the original's order; all have the range of the weights.

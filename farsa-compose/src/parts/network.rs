@@ -212,6 +212,17 @@ impl AnyNetwork {
         }
     }
 
+    /// How many values it keeps: its own parameters and its state.
+    pub(crate) fn kept(&self) -> usize {
+        let state = match self {
+            Self::Perceptron(..) | Self::Wired(_) => 0,
+            Self::Leaky(leaky) => leaky.layout().state_len(),
+            Self::Ctrnn(ctrnn) => ctrnn.layout().state_len(),
+            Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.layout().state_len(),
+        };
+        self.own_parameters().len() + state
+    }
+
     /// What its hidden neurons, or all its neurons, are at.
     pub(crate) fn activations(&self) -> &[f32] {
         match self {

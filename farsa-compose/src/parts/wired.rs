@@ -1,5 +1,7 @@
 //! A network that is wired by hand.
 
+use std::sync::Arc;
+
 use farsa_lab::{Error, Parameter};
 use farsa_nn::Controller;
 use farsa_num::{Scalar, logistic};
@@ -15,7 +17,7 @@ pub(crate) struct Wired {
     inputs: usize,
     outputs: usize,
     /// The inputs of each wire, and its output.
-    wires: Vec<(Vec<usize>, usize)>,
+    wires: Arc<[(Vec<usize>, usize)]>,
     activation: Activation,
     /// The weights of the wires, then the biases.
     parameters: Vec<f32>,
@@ -54,7 +56,7 @@ impl Wired {
         Ok(Self {
             inputs: inputs.len(),
             outputs: outputs.len(),
-            wires: wired,
+            wires: wired.into(),
             activation,
             parameters: parameters.map(|x| x as f32).collect(),
         })

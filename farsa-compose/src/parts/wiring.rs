@@ -67,6 +67,11 @@ impl Wiring {
         searched.check(&network, places)?;
         Ok(Self { about: about(document)?, sensors, motors, inputs, outputs, network, searched })
     }
+
+    /// How many values each robot keeps of it: what it senses and does, and its own network.
+    pub(crate) fn kept(&self) -> usize {
+        self.inputs.len() + self.outputs.len() + self.network.kept()
+    }
 }
 
 /// The names of sensors and motors that are switched off.

@@ -5,9 +5,12 @@ use std::ops::Bound;
 use farsa_body::{
     ChannelError, Channels, Delayed, Lesioned, Noise, Noisy, Saturated, Scaled, Stuck, StuckAt, Thresholded,
 };
+use farsa_lab::Error;
 use farsa_num::{Domain, Stream};
 
+use crate::check::places::Places;
 use crate::document::Wrapper;
+use crate::parts::bounded::Room;
 
 /// A sensor or motor within a wrapper.
 #[derive(Clone, Debug)]
@@ -21,15 +24,27 @@ pub(crate) enum Wrapped<T> {
     Stuck(Stuck<Box<T>, Vec<f32>>),
 }
 
-/// The most values that a delay keeps.
-const MOST_DELAYED: usize = 1_000_000;
+/// The values in whose place a wrapper itself lies.
+const ITSELF: usize = 32;
 
 impl<T: Channels> Wrapped<T> {
-    /// A part within a wrapper.
+    /// A part within the wrapper that stands at a path, which takes of the room.
     ///
     /// # Errors
-    /// [`ChannelError`] for channels that there are not, and for ends in the wrong order.
-    pub(crate) fn new(inner: T, wrapper: &Wrapper) -> Result<Self, ChannelError> {
+    /// [`Error::Setting`] for channels that there are not, for ends in the wrong order, and where there is no room.
+    pub(crate) fn new(
+        inner: T,
+        wrapper: &Wrapper,
+        room: &mut Room,
+        path: &str,
+        places: &Places,
+    ) -> Result<Self, Error> {
+        let steps = if let Wrapper::Delay { steps } = wrapper { *steps as usize } else { 0 };
+        room.take((1 + steps).saturating_mul(inner.channels()) + ITSELF, path, places)?;
+        Self::around(inner, wrapper).map_err(|error| places.wrong(path, error))
+    }
+
+    fn around(inner: T, wrapper: &Wrapper) -> Result<Self, ChannelError> {
         let inner = Box::new(inner);
         // Another stream is given to it before every episode.
         let stream = Stream::from_seed(0);
@@ -45,13 +60,7 @@ impl<T: Channels> Wrapped<T> {
             Wrapper::NormalNoise { deviation } => {
                 Self::Noisy(Noisy::new(inner, Noise::Normal(*deviation as f32), stream)?)
             }
-            Wrapper::Delay { steps } => {
-                let (steps, channels) = (*steps as usize, inner.channels());
-                if steps.saturating_mul(channels) > MOST_DELAYED {
-                    return Err(ChannelError::Memory { given: MOST_DELAYED, needed: steps.saturating_mul(channels) });
-                }
-                Self::Delayed(Delayed::new(inner, steps))
-            }
+            Wrapper::Delay { steps } => Self::Delayed(Delayed::new(inner, *steps as usize)),
             Wrapper::Scale { gain, offset } => Self::Scaled(Scaled::new(inner, *gain as f32, *offset as f32)?),
             Wrapper::Saturate { low, high } => Self::Saturated(Saturated::new(inner, *low as f32, *high as f32)?),
             Wrapper::Threshold { above } => Self::Thresholded(Thresholded::new(inner, *above as f32)?),

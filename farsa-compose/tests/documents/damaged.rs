@@ -2,6 +2,7 @@
 
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{Experiment as _, Settings};
+use farsa_nn::LeakyLayout;
 
 /// A file that is right, a line each key.
 const RIGHT: &str = r#"summary = "an e-puck looks for a lamp"
@@ -254,6 +255,35 @@ fn robots_are_limited_with_all_that_they_carry() {
         .concat();
     let found = plain(&error(&RIGHT.replace("[robot]\nkind = \"e-puck\"\n", &groups)));
     assert!(found.ends_with("robots.501: and those before it are 1002 robots; at most 1000 in all"), "{found}");
+}
+
+#[test]
+fn what_robots_keep_is_limited_for_all_of_them() {
+    let robots = |hidden: usize, wrappers: &str| {
+        let wide = RIGHT.replace("[1.0, 1.0]", "[100.0, 100.0]");
+        let many = wide.replace("kind = \"e-puck\"", "kind = \"e-puck\"\ncount = 1000");
+        let network = many.replace("hidden = 2", &format!("hidden = {hidden}"));
+        network.replace("amplitude = 0.05 }]", &format!("amplitude = 0.05 }}{wrappers}]"))
+    };
+    // Eight lights, two wheels, and the noise of the lights, which lies in the place of 32 values itself.
+    let kept = |hidden| {
+        let layout = LeakyLayout::new(8, hidden, 2);
+        1000 * (8 + 8 + 32 + 2 + layout.parameter_count() + layout.state_len())
+    };
+    let hidden = (1..200).take_while(|hidden| kept(*hidden) <= 10_000_000).last().unwrap();
+    assert_eq!(error(&robots(hidden, "")), "nothing is wrong");
+    let found = plain(&error(&robots(hidden + 1, "")));
+    let wanted =
+        format!("network: and what is before it keep {} values; at most 10000000 in all robots", kept(hidden + 1));
+    assert!(found.starts_with("look.toml line 17") && found.ends_with(&wanted), "{found}");
+    // With delays the 125th robot of 8 * (1 + 1 + 10 000) + 2 * 32 values is one too many.
+    let found = plain(&error(&robots(2, ", { kind = \"delay\", steps = 10000 }")));
+    let wanted = "sensors.1.wrappers.2: and what is before it keep 10010000 values; at most 10000000 in all robots";
+    assert!(found.starts_with("look.toml line 14") && found.ends_with(wanted), "{found}");
+    let many = ", { kind = \"scale\", gain = 1.0 }";
+    assert_eq!(error(&robots(2, &many.repeat(31))), "nothing is wrong");
+    let found = plain(&error(&robots(2, &many.repeat(32))));
+    assert!(found.starts_with("look.toml line 14: sensors.1.wrappers") && found.contains("32"), "{found}");
 }
 
 /// Every file with a byte changed, a line left out or cut off is a file or is refused; none panics.
