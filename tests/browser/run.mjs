@@ -14,6 +14,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { pathToFileURL } from "node:url";
+import { elsewhere } from "./elsewhere.mjs";
 import { armTrial, arenaTrial, CELLS, compose, csvOf, encode, eyePixel, foragingTrial, lean, pageOf, SCRIPTS, viewer } from "./mock.mjs";
 import { coloursIn, decode } from "./png.mjs";
 import { isFirefox, KEY, startDriver } from "./webdriver.mjs";
@@ -1295,6 +1296,7 @@ try {
     if (livePage) await part("live", () => lives(browser));
     if (evolvingPage) await part("evolution", () => evolves(browser));
     if (servedPage) await part("served", () => serves(browser));
+    if (servedPage) await part("elsewhere", () => elsewhere(browser, servedPage, check));
     if (armPage) await part("moves", () => moves(browser));
     await part("flat arm", () => flat(browser, "arm", pageOf([armTrial(0)])));
     await part("flat arena", () => flat(browser, "arena", pageOf([arenaTrial(0)], "top")));

@@ -141,6 +141,8 @@ fn only_pages_of_this_address_are_answered() {
         ("GET /", vec![host.clone(), site("none", "document")], 200),
         ("GET /", vec![host.clone(), site("same-origin", "empty")], 200),
         ("GET /", vec![host.clone(), site("cross-site", "document")], 200),
+        ("GET /?from=0", vec![host.clone(), site("cross-site", "document")], 200),
+        ("GET /events?from=0", vec![host.clone(), site("cross-site", "document")], 403),
         ("GET /", vec![host.clone(), site("cross-site", "image")], 403),
         ("GET /events?from=0", vec![host.clone(), site("same-site", "script")], 403),
         ("GET /", vec!["Host: example.org\r\n".into()], 403),

@@ -82,7 +82,7 @@ impl Served<'_> {
         let path = url.split('?').next().unwrap_or_default();
         let refused = |request: Request, code: u16, why: &str| respond(request, code, "text/plain", why);
         let _ = match (request.method(), path) {
-            _ if !is_own(&request, address) => refused(request, 403, "only for pages of this address"),
+            _ if !is_own(&request, path, address) => refused(request, 403, "only for pages of this address"),
             (Method::Get, "/") => match self.page() {
                 Ok(html) => respond(request, 200, "text/html", &html),
                 Err((code, why)) => respond(request, code, "text/html", &waiting(&why)),
@@ -148,8 +148,8 @@ fn event(to: &mut impl Write, name: &str, number: Option<usize>, data: &impl Ser
 }
 
 /// Whether a request is for this address by its own name, and from its own page or from none. A page from elsewhere that asks for a
-/// picture has no origin; browsers tell its site. It may link to us.
-fn is_own(request: &Request, address: SocketAddr) -> bool {
+/// picture has no origin; browsers tell its site. It may link to the page, and not to the events, which last as long as its window.
+fn is_own(request: &Request, path: &str, address: SocketAddr) -> bool {
     let port = address.port();
     // A browser leaves out the port that is usual.
     let usual = |name: &str| (port == 80).then(|| name.to_owned());
@@ -161,7 +161,8 @@ fn is_own(request: &Request, address: SocketAddr) -> bool {
     let host = header("Host").unwrap_or_default();
     let from_here = |origin: &str| origin.strip_prefix("http://") == Some(host);
     let is_ours = |site| site == "same-origin" || site == "none";
-    let is_asked = header("Sec-Fetch-Site").is_none_or(is_ours) || header("Sec-Fetch-Dest") == Some("document");
+    let is_linked = path == "/" && header("Sec-Fetch-Dest") == Some("document");
+    let is_asked = is_linked || header("Sec-Fetch-Site").is_none_or(is_ours);
     own.any(|name| name == host) && header("Origin").is_none_or(from_here) && is_asked
 }
 
