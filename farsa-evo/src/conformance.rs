@@ -151,6 +151,9 @@ fn kept(members: &[Member<'_>], history: &[Judgements]) -> Result<(), String> {
 /// A fresh strategy with the state of another, which is that other and takes no part of a state; the other itself if it saves none.
 fn restored<G: Gene, S: Strategy<G>>(mut strategy: S, mut fresh: S) -> Result<S, String> {
     let Some(state) = strategy.snapshot().map(|snapshot| snapshot.save()) else { return Ok(strategy) };
+    if strategy.snapshot().is_some_and(|snapshot| snapshot.generations_between_states() == 0) {
+        return Err("wants 0 generations between its states, where 1 is the least".into());
+    }
     let Some(snapshot) = fresh.snapshot() else { return Err("saves states, and when it is fresh none".into()) };
     snapshot.restore(&state).map_err(|error| format!("cannot be restored: {error}"))?;
     if snapshot.restore(&state[..state.len().saturating_sub(1)]).is_ok() {

@@ -70,3 +70,18 @@ impl Covariance for DiagonalCovariance {
         bounded(reader, &mut self.variances, VARIANCES)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::covariance::cma_es::CmaEsConfig;
+
+    #[test]
+    fn scaling_multiplies_variances() {
+        let coefficients = CmaEsConfig::new(vec![0.0; 3], 1.0).coefficients_of(8);
+        let mut covariance = DiagonalCovariance::identity(3, &coefficients);
+        covariance.variances = vec![0.5, 2.0, 8.0];
+        covariance.scale(0.25);
+        assert_eq!((&covariance.variances[..], covariance.extremes()), (&[0.125, 0.5, 2.0][..], [0.125, 2.0]));
+    }
+}

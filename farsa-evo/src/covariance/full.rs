@@ -153,3 +153,38 @@ impl Covariance for FullCovariance {
         bounded(reader, &mut self.axes, [-1.001, 1.001])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::covariance::cma_es::CmaEsConfig;
+
+    fn adapted() -> FullCovariance {
+        let coefficients = CmaEsConfig::new(vec![0.0; 3], 1.0).coefficients_of(8);
+        let mut covariance = FullCovariance::identity(3, &coefficients);
+        add_squares(&mut covariance.matrix, 3, 1.0, &[0.5, 2.0], &[1.0, 2.0, 0.0, 0.0, 1.0, -1.0]);
+        covariance.decompose();
+        covariance
+    }
+
+    #[test]
+    fn scaling_multiplies_variances_and_their_roots() {
+        let (before, mut after) = (adapted(), adapted());
+        after.scale(0.25);
+        assert!(after.matrix().iter().zip(before.matrix()).all(|(a, b)| *a == 0.25 * b));
+        let [low, high] = before.extremes();
+        assert!(low < high && after.extremes() == [0.25 * low, 0.25 * high]);
+    }
+
+    #[test]
+    fn a_matrix_without_positive_eigenvalues_leaves_the_axes() {
+        let mut covariance = adapted();
+        let before = covariance.extremes();
+        for wrong in [0.0, -1.0] {
+            covariance.matrix.fill(0.0);
+            covariance.matrix.iter_mut().step_by(4).for_each(|x| *x = wrong);
+            covariance.decompose();
+            assert_eq!(covariance.extremes(), before);
+        }
+    }
+}

@@ -183,6 +183,19 @@ mod tests {
     }
 
     #[test]
+    fn stagnation_compares_medians_of_three_tenths_of_a_window() {
+        // Of 20 generations the first six and the last six; the upper one of the two in the middle counts.
+        let history = |first: [f64; 6]| -> Vec<Fitness> {
+            let values = first.into_iter().chain([7.0; 8]).chain([5.0; 6]);
+            values.map(Fitness::nan_as_failed).collect()
+        };
+        for (first, expected) in [([0.0, 0.0, 0.0, 9.0, 9.0, 9.0], true), ([0.0, 0.0, 0.0, 0.0, 9.0, 9.0], false)] {
+            assert_eq!(stagnates(&history(first), 20), expected, "{first:?}");
+            assert!(!stagnates(&history(first), 21), "a window that is not full");
+        }
+    }
+
+    #[test]
     fn failed_generations_count_but_are_not_compared() {
         let failures = progress(core::iter::repeat_n(f64::NAN, 400));
         assert_eq!((failures.iterations, failures.best.len()), (400, 0));

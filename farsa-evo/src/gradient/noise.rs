@@ -141,3 +141,31 @@ impl Noise {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// More genes than are scaled at once.
+    #[test]
+    fn each_gene_has_its_own_deviation() {
+        let genes = 2 * BLOCK + 7;
+        let center: Vec<f64> = (0..genes).map(|gene| gene as f64).collect();
+        let sigmas: Vec<f64> = (0..genes).map(|gene| 1.0 + 0.01 * gene as f64).collect();
+        let noise = Noise { seed: 5, generation: 2 };
+        let made = |spread: Spread<'_>| {
+            let mut population = Population::new(4, genes).unwrap();
+            Directions::new(2, genes).mirror(noise, &mut population, &center, spread);
+            population
+        };
+        let (same, each) = (made(Spread::Same(1.0)), made(Spread::Each(&sigmas)));
+        for individual in 0..4 {
+            let (same, each) = (same.get(individual).unwrap(), each.get(individual).unwrap());
+            for gene in 0..genes {
+                let [unit, scaled] = [same, each].map(|genome| genome[gene] - center[gene]);
+                assert!((scaled - sigmas[gene] * unit).abs() < 1e-9, "{individual} {gene}: {scaled} {unit}");
+            }
+        }
+        assert_ne!(same.get(0), same.get(2));
+    }
+}

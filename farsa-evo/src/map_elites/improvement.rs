@@ -90,3 +90,23 @@ impl Improvement {
         self.distribution.restore(reader)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use super::*;
+
+    #[test]
+    fn a_distribution_that_has_collapsed_starts_again() {
+        let tell = |emitter: &mut Improvement| emitter.tell(&[1.0; 4], &[Addition::New; 4]);
+        let mut emitter = Improvement::new(vec![0.5; 3], 0.2, 4);
+        let mut points = vec![0.0; 12];
+        emitter.sample(|row| Stream::from_seed(row as u64), &mut points, &[[-9.0, 9.0]; 3]);
+        let mut other = emitter.clone();
+        assert!(!tell(&mut emitter));
+        other.distribution.sigma *= 1e-11;
+        assert!(tell(&mut other), "sigma is {}", other.distribution.sigma);
+        assert!(emitter.tell(&[1.0; 4], &[Addition::None; 4]), "nothing was added");
+    }
+}

@@ -106,6 +106,15 @@ fn what_they_say_of_themselves_is_what_they_did() {
     says(&xnes, &[xnes.sigma()]);
 }
 
+#[test]
+fn all_can_save_their_state() {
+    assert!(Ars::new(ArsConfig::new(mean(2), 1), 0).unwrap().snapshot().is_some());
+    assert!(OpenAiEs::new(OpenAiEsConfig::new(mean(2), 1), 0).unwrap().snapshot().is_some());
+    assert!(Pgpe::new(PgpeConfig::new(mean(2), 0.3, 1), 0).unwrap().snapshot().is_some());
+    assert!(Snes::new(SnesConfig::new(mean(2), 0.3), 0).unwrap().snapshot().is_some());
+    assert!(Xnes::new(XnesConfig::new(mean(2), 0.3), 0).unwrap().snapshot().is_some());
+}
+
 /// Tells a strategy the worst that there is, and looks whether all stays finite and can be saved.
 fn survives<S>(mut strategy: S, mut other: S, values: &[f64])
 where

@@ -1,6 +1,11 @@
 //! What the check of strategies finds in one that is wrong.
 
-use farsa_evo::{EvoError, Fitness, Population, Record, RecordEntry, Recorded, Snapshot, Strategy, check_strategy};
+use farsa_evo::{
+    CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, EvoError, EvolutionStrategy,
+    EvolutionStrategyConfig, Fitness, GaConfig, Nsga2, Nsga2Config, Population, RealGa, RealGaConfig, Record,
+    RecordEntry, Recorded, RestartSchedule, SeparableCmaEs, SeparableCmaEsConfig, SideBySide, Snapshot, SteadyState,
+    SteadyStateConfig, Strategy, TruncationGa, check_strategy,
+};
 
 #[derive(Clone, Copy, PartialEq)]
 enum Flaw {
@@ -15,6 +20,8 @@ enum Flaw {
     SaysMore,
     /// When it is fresh it saves nothing.
     SavesLate,
+    /// It wants states more often than there are generations.
+    SavesTooOften,
 }
 
 /// Genes that are the sum of all that it was told, as far as that is a number.
@@ -65,6 +72,9 @@ impl Strategy<f64> for Total {
 }
 
 impl Snapshot for Total {
+    fn generations_between_states(&self) -> u32 {
+        u32::from(self.flaw != Flaw::SavesTooOften)
+    }
     fn save(&self) -> Vec<u8> {
         let mut state = self.generation.to_le_bytes().to_vec();
         state.extend(self.population.as_slice()[0].to_le_bytes());
@@ -97,6 +107,7 @@ fn what_is_wrong_is_found() {
         (Flaw::Forgets, "generation 2: other genomes where the same are asked for"),
         (Flaw::SaysLess, "generation 1: says other numbers of itself the second time"),
         (Flaw::SavesMore, "generation 0: saves another state than the one that it was restored from"),
+        (Flaw::SavesTooOften, "generation 0: wants 0 generations between its states, where 1 is the least"),
         (Flaw::SaysMore, "generation 1: says another count of numbers of itself than before"),
     ] {
         assert_eq!(check_strategy(|| Total::new(flaw), 8).unwrap_err(), expected);
@@ -117,4 +128,36 @@ fn a_recorded_gene_that_is_no_number_is_named() {
     let mut genomes = |generation| record.genomes(&mut strategy, generation);
     assert_eq!(genomes(0).unwrap().as_slice(), [0.0; 6]);
     assert_eq!(genomes(1), Err(EvoError::StateContent { what: "a gene", found: 0x7ff8_0001_0203_0405 }));
+}
+
+/// As often as telling again takes a second or some: of genes that are drawn in all, or of their cube.
+#[test]
+fn states_are_kept_as_often_as_telling_takes_time() {
+    let bounds = || vec![[-1.0, 1.0]; 250];
+    let between = |mut strategy: Box<dyn Strategy<f64>>| strategy.snapshot().unwrap().generations_between_states();
+    let real_ga = |seed| RealGa::new(RealGaConfig { population: 40, ..RealGaConfig::new(bounds()) }, seed);
+    assert_eq!(between(Box::new(real_ga(0).unwrap())), 2000);
+    assert_eq!(between(Box::new(SideBySide::new(3, 0, real_ga).unwrap())), 2000);
+    let config = SteadyStateConfig { population: 80, ..SteadyStateConfig::new(bounds()) };
+    assert_eq!(between(Box::new(SteadyState::new(config, 0).unwrap())), 1000);
+    let config = Nsga2Config { population: 20, ..Nsga2Config::new(bounds(), 2) };
+    assert_eq!(between(Box::new(Nsga2::new(config, 0).unwrap())), 4000);
+    let config = EvolutionStrategyConfig::new(vec![0.0; 250], 0.1);
+    let strategy = EvolutionStrategy::new(config, 0).unwrap();
+    let individuals = strategy.ask().len() as u32;
+    assert_eq!(between(Box::new(strategy)), 80_000 / individuals);
+    let config = || CmaEsConfig::new(vec![0.0; 100], 0.5);
+    assert_eq!(between(Box::new(CmaEs::new(config(), 0).unwrap())), 20_000);
+    assert_eq!(between(Box::new(CholeskyCmaEs::new(config(), 0).unwrap())), 100_000);
+    assert_eq!(
+        between(Box::new(SeparableCmaEs::new(SeparableCmaEsConfig::new(vec![0.0; 100], 0.5), 0).unwrap())),
+        u32::MAX
+    );
+    let restarts = CmaEsRestartsConfig::new(config(), RestartSchedule::Ipop);
+    assert_eq!(between(Box::new(CmaEsRestarts::new(restarts, 0).unwrap())), 20_000);
+}
+
+#[test]
+fn a_strategy_that_says_nothing_of_itself_has_no_numbers() {
+    assert_eq!(TruncationGa::new(GaConfig::new(3), 0).unwrap().diagnostics(), []);
 }

@@ -311,6 +311,11 @@ fn impossible_configurations_are_refused() {
     assert_eq!(refused(|c| c.rank_one_rate = Some(1.5)), "rank_one_rate is 1.5, where 0 to 1 is possible");
     let both = |c: &mut CmaEsConfig| (c.rank_one_rate, c.rank_mu_rate) = (Some(0.75), Some(0.5));
     assert_eq!(refused(both), "rank_mu_rate is 0.5, where 0 to 1 - rank_one_rate is possible");
+    // Beside the usual rate of rank one, which is about 2 / (4 + 1.3)^2.
+    assert_eq!(
+        refused(|c| c.rank_mu_rate = Some(0.95)),
+        "rank_mu_rate is 0.95, where 0 to 1 - rank_one_rate is possible"
+    );
     assert_eq!(refused(|c| c.damping = Some(0.0)), "damping is 0, where 0.001 to 1000 is possible");
     // More elements of the matrix than genes of a population may be.
     let large = refused(|c| c.mean = vec![0.0; 20_000]);

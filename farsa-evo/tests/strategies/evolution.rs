@@ -256,7 +256,10 @@ fn onemax_converges_and_random_search_does_not() {
 #[test]
 fn one_plus_one_climbs_and_keeps_its_genes_narrow() {
     let mut search = OnePlusOne::new(OnePlusOneConfig::new(14), 1).unwrap();
+    let parents = |search: &OnePlusOne| [0, 1, 2].map(|individual| search.parents_of(individual).len());
+    assert_eq!(parents(&search), [0, 0, 0]);
     let (evaluated, _) = evolve(&mut search, 500, ones);
+    assert_eq!(parents(&search), [1, 1, 0]);
     assert!(evaluated.iter().all(|pair| pair.as_slice().iter().all(|&gene| gene < 256)));
     let (fitness, evaluations) = search.parent_fitness().unwrap();
     assert!(fitness.get() > 100.0 && evaluations > 1, "{fitness:?} of 112 in {evaluations}");

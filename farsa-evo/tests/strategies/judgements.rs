@@ -170,6 +170,12 @@ fn other_shapes_are_refused_everywhere() {
 }
 
 #[test]
+fn zeros_have_the_same_bits_whatever_their_sign() {
+    let told = Judgements::new(SHAPE, vec![-0.0; 3]).unwrap();
+    assert!(told.values().iter().all(|x| x.to_bits() == 0), "{told:?}");
+}
+
+#[test]
 fn judgements_are_counted_by_rows() {
     for individuals in [0, 1, 5] {
         let told = Judgements::new(SHAPE, vec![0.0; 3 * individuals]).unwrap();

@@ -28,6 +28,19 @@ fn normal() -> Result<CmaEs, EvoError> {
 }
 
 #[test]
+fn what_it_says_is_its_archive_and_what_the_other_says() {
+    let mut search = NoveltySearch::new(config(ArchiveRule::Random { rate: 1.0 }), normal().unwrap(), 7).unwrap();
+    for _ in 0..3 {
+        let values: Vec<f64> = search.ask().iter().flat_map(|genes| [0.0, genes[0], genes[1]]).collect();
+        search.tell_judgements(&Judgements::new(search.judged_by(), values).unwrap()).unwrap();
+    }
+    let [archived, largest, sigma, ratio] = search.diagnostics()[..] else { panic!("says four numbers") };
+    assert_eq!(archived, 36.0, "twelve individuals of each generation");
+    assert_eq!(Some(largest), search.novelty().iter().map(|novelty| novelty.get()).reduce(f64::max));
+    assert_eq!([sigma, ratio], [search.inner().sigma(), search.inner().axis_ratio()]);
+}
+
+#[test]
 fn it_keeps_to_what_a_strategy_is() {
     for rule in [ArchiveRule::Random { rate: 0.3 }, THRESHOLD] {
         check_strategy(|| NoveltySearch::new(config(rule), words()?, 7), 40).unwrap();
