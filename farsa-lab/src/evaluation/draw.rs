@@ -6,6 +6,7 @@ use farsa_view::{Camera, Picture, Recording};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::evaluation::kept::Kept;
 use crate::evaluation::replay::{ReplaySummary, Replayable, Which};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
@@ -86,8 +87,13 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path:
     }
     let mut replayable = Replayable::find(plan, directory, wish.which)?;
     let trial = replayable.trials.start;
-    let mut recording = Recording::new(replayable.schema());
+    let mut kept = Kept::new();
+    let mut recording = kept.recording(replayable.schema());
     let outcome = replayable.run(trial, &mut recording)?;
+    // Of a trial that does not fit there are moments before its end.
+    if wish.time.is_none() || wish.frames.is_some() {
+        kept.add(&recording)?;
+    }
     let camera = camera.unwrap_or(Camera::for_view(recording.schema().view));
     let ticks = match wish.frames {
         None => vec![tick_at(&recording, wish.time)?],
@@ -141,7 +147,7 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     let mut replayable = Replayable::find(plan, directory, Which::default())?;
     let mut best: Option<(f64, u32, Recording)> = None;
     for trial in replayable.trials.clone() {
-        let mut recording = Recording::new(replayable.schema());
+        let mut recording = Kept::new().recording(replayable.schema());
         let outcome = replayable.run(trial, &mut recording)?;
         let fitness = replayable.fitness(core::slice::from_ref(&outcome));
         if best.as_ref().is_none_or(|(other, ..)| fitness > *other) {

@@ -4,6 +4,7 @@
 //! - `evaluate`: `farsa evaluate`: a genotype from any source on random trials
 //! - `genotypes`: Genotypes from elsewhere: the original's `.gen` files, and plain lists of genes
 //! - `import`: `farsa import`: genotypes of the original FARSA as a directory that can be tested, replayed and drawn
+//! - `kept`: how much of the memory recordings take
 //! - `lines`: `farsa evaluate --stdin`: JSON lines, parameters in and outcomes out, for optimisers in any language
 //! - `populations`: For which of several populations something on the command line is
 //! - `protocols`: `farsa test --protocol`: the champion in every case of a table
@@ -21,6 +22,8 @@ pub(crate) mod evaluate;
 pub(crate) mod genotypes;
 #[cfg(feature = "command")]
 pub(crate) mod import;
+#[cfg(feature = "command")]
+mod kept;
 #[cfg(feature = "command")]
 pub(crate) mod lines;
 #[cfg(feature = "command")]

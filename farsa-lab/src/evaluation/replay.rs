@@ -11,6 +11,7 @@ use farsa_view::{Page, Recording, Schema, Table};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::evaluation::kept::Kept;
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::trials::{came_to, facts, fitness};
 use crate::experiment::Anatomy;
@@ -406,14 +407,15 @@ pub(crate) fn page(
     replayed::page((plan, directory), compare, "", path, |page, plan, directory| {
         let mut replayable = Replayable::find(plan, directory, which)?;
         let run = run_in_words(plan);
-        let (mut films, outcomes) = films(&mut replayable, &run)?;
+        let mut kept = Kept::new();
+        let (mut films, outcomes) = films(&mut replayable, &run, &mut kept)?;
         films.sort_by(|one, other| other.fitness.total_cmp(&one.fitness));
         let order: Vec<u32> = films.iter().map(|film| film.trial).collect();
         add(page, films);
         let mut summary = replayable.summary(plan, directory, &outcomes);
         if let Some(list) = lesion {
             replayable.change(plan, list)?;
-            let (mut changed, outcomes) = self::films(&mut replayable, &format!("with {list}; {run}"))?;
+            let (mut changed, outcomes) = self::films(&mut replayable, &format!("with {list}; {run}"), &mut kept)?;
             // As they stand intact.
             changed.sort_by_key(|film| order.iter().position(|trial| *trial == film.trial));
             page.open_beside(page.episodes());
@@ -434,11 +436,12 @@ struct FilmedTrial {
 }
 
 /// Runs the trials that were asked for and records them; `whose` ends their names.
-fn films(replayable: &mut Replayable, whose: &str) -> Result<(Vec<FilmedTrial>, Vec<Outcome>), Error> {
+fn films(replayable: &mut Replayable, whose: &str, kept: &mut Kept) -> Result<(Vec<FilmedTrial>, Vec<Outcome>), Error> {
     let (mut outcomes, mut films) = (Vec::new(), Vec::new());
     for trial in replayable.trials.clone() {
-        let mut recording = Recording::new(replayable.schema());
+        let mut recording = kept.recording(replayable.schema());
         let outcome = replayable.run(trial, &mut recording)?;
+        kept.add(&recording)?;
         let Replayable { generation, individual, .. } = *replayable;
         // What distinguishes trials comes first: a narrow screen cuts the rest.
         let came = came_to(replayable.evaluator.as_ref(), &outcome);

@@ -82,6 +82,9 @@ pub struct Recording {
     ray_ends: Vec<usize>,
     images: Images,
     grounds: GroundImages,
+    /// The bytes from which on no tick is kept, if there are such.
+    room: Option<usize>,
+    cut: bool,
 }
 
 impl Recording {
@@ -98,6 +101,35 @@ impl Recording {
         recording.scalars.reserve(TICKS * recording.schema.scalars.len());
         recording.open();
         recording
+    }
+
+    /// Keeps no further tick once those before it take so many bytes.
+    ///
+    /// ```
+    /// use farsa_body::Recorder;
+    /// use farsa_view::{Recording, Schema};
+    ///
+    /// let mut recording = Recording::new(Schema::from_scalars(["energy"])).with_room(10_000);
+    /// (0..1000).for_each(|tick| recording.tick(0.01 * f64::from(tick)));
+    /// assert!(recording.is_cut() && recording.times().len() < 1000);
+    /// ```
+    #[must_use]
+    pub fn with_room(self, bytes: usize) -> Self {
+        Self { room: Some(bytes), ..self }
+    }
+
+    /// Whether there was no room for ticks that came ([`with_room`](Self::with_room)).
+    pub fn is_cut(&self) -> bool {
+        self.cut
+    }
+
+    /// The bytes that all ticks take, but for images.
+    pub fn bytes(&self) -> usize {
+        let singles = self.poses.len() + self.points.len() + self.values.len();
+        let doubles = self.scalars.len() + self.times.len();
+        let ends = size_of::<usize>() * (self.contact_ends.len() + self.ray_ends.len());
+        let seen = size_of::<Touching>() * self.contacts.len() + size_of::<CastRay>() * self.rays.len();
+        4 * singles + 8 * doubles + ends + seen
     }
 
     /// Room for the tick to come, all of it unknown.
@@ -273,6 +305,12 @@ impl Recorder for Recording {
     }
 
     fn tick(&mut self, time: f64) {
+        if self.room.is_some_and(|room| self.bytes() > room) {
+            self.cut = true;
+            self.contacts.truncate(self.contact_ends.last().copied().unwrap_or(0));
+            self.rays.truncate(self.ray_ends.last().copied().unwrap_or(0));
+            return;
+        }
         self.times.push(time);
         self.contact_ends.push(self.contacts.len());
         self.ray_ends.push(self.rays.len());
@@ -287,6 +325,35 @@ mod tests {
     use super::*;
     use crate::recording::schema::Channel;
     use farsa_body::ArmAndHand;
+
+    #[test]
+    fn no_tick_is_kept_beyond_the_room() {
+        let schema = || Schema::from_robot(&ArmAndHand::default().robot().unwrap()).with_sensors(["a"]);
+        let each = 4 * (POSE * schema().body_count() + 1) + 8 + 2 * size_of::<usize>();
+        let fill = |recording: &mut Recording, ticks: u32| {
+            for tick in 1..=ticks {
+                recording.sensors(&[tick as f32]);
+                for pair in 0..tick as u16 {
+                    recording.contact(PairId(pair), &PairContact::default());
+                }
+                recording.tick(f64::from(tick));
+            }
+        };
+        let mut whole = Recording::new(schema());
+        fill(&mut whole, 9);
+        let of_contacts = |ticks: usize| size_of::<Touching>() * ticks * (ticks + 1) / 2;
+        let open = 4 * (POSE * schema().body_count() + 1);
+        assert_eq!((whole.bytes(), whole.is_cut()), (9 * each + open + of_contacts(9), false));
+        // The tick that is under way counts, with its contacts.
+        let mut cut = Recording::new(schema()).with_room(5 * each + open + of_contacts(6));
+        fill(&mut cut, 9);
+        assert!(cut.is_cut());
+        assert_eq!((cut.times(), cut.contacts_at(5).len()), (&whole.times()[..6], 6));
+        assert_eq!(cut.bytes(), 6 * each + open + of_contacts(6));
+        assert!(
+            (0..6).all(|tick| cut.row(tick).eq(whole.row(tick)) && cut.contacts_at(tick) == whole.contacts_at(tick))
+        );
+    }
 
     #[test]
     fn what_was_told_is_there_and_the_rest_is_unknown() {

@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-use farsa_view::{Recording, Table};
+use farsa_view::Table;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::evaluation::kept::Kept;
 use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::test::Subject;
@@ -136,10 +137,11 @@ pub(crate) fn page(
     let what = format!(", {}", choice.protocol);
     replayed::page((plan, directory), compare, &what, path, |page, plan, directory| {
         let mut trials = CaseTrials::find(plan, directory, choice)?;
-        let mut outcomes = Vec::new();
+        let (mut outcomes, mut kept) = (Vec::new(), Kept::new());
         for case in trials.cases.clone() {
-            let mut recording = Recording::new(trials.schema());
+            let mut recording = kept.recording(trials.schema());
             let outcome = trials.run(case, &mut recording)?;
+            kept.add(&recording)?;
             let (case, came) = (trials.case(case).name(), came_to(trials.evaluator(), &outcome));
             let name = format!("{case}: {came}; {}, {}", run_in_words(plan), trials.caption());
             page.add(&name, facts(trials.evaluator(), &outcome), recording);

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use farsa_view::{Camera, Picture, Recording};
+use farsa_view::{Camera, Picture};
 use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::evaluation::kept::Kept;
 use crate::evaluation::protocols::chosen::{CaseTrials, Choice};
 use crate::evaluation::test::Subject;
 use crate::experiment::protocol::{Case, Protocol};
@@ -105,8 +106,10 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path
 fn pictures(plan: &Plan<'_>, trials: &mut CaseTrials) -> Result<Vec<DrawnCase>, Error> {
     let mut cases = Vec::new();
     for number in trials.cases.clone() {
-        let mut recording = Recording::new(trials.schema());
+        let mut kept = Kept::new();
+        let mut recording = kept.recording(trials.schema());
         let outcome = trials.run(number, &mut recording)?;
+        kept.add(&recording)?;
         let last = recording.times().len().checked_sub(1);
         let picture = last
             .and_then(|tick| recording.picture(tick))

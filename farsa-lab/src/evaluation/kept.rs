@@ -1,0 +1,75 @@
+//! How much of the memory the recordings of a page or a picture take.
+
+use farsa_view::{Recording, Schema};
+
+use crate::error::Error;
+
+/// The most bytes of all of them, of which a page has nearly as many: no browser reads one of 512 MB.
+const MOST_BYTES: usize = 1 << 28;
+
+/// Room for recordings.
+pub(crate) struct Kept {
+    left: usize,
+    recordings: usize,
+}
+
+impl Kept {
+    /// All of it.
+    pub(crate) const fn new() -> Self {
+        Self { left: MOST_BYTES, recordings: 0 }
+    }
+
+    /// A recording of nothing yet, which ends where no room is left.
+    pub(crate) fn recording(&self, schema: Schema) -> Recording {
+        Recording::new(schema).with_room(self.left)
+    }
+
+    /// Takes a recording's room once its trial is over.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the trial did not fit.
+    pub(crate) fn add(&mut self, recording: &Recording) -> Result<(), Error> {
+        if recording.is_cut() {
+            let (steps, most) = (recording.times().len(), MOST_BYTES >> 20);
+            let which = match self.recordings {
+                0 => "the trial".into(),
+                before => format!("trial number {} of these", before + 1),
+            };
+            return Err(Error::Usage(format!(
+                "{which} has more steps than fit into {most} MiB, of which {steps} are full: take one trial (--trial), a moment \
+                 of it (`farsa draw --time`), or its steps as a table (`farsa replay --out`)"
+            )));
+        }
+        self.left = self.left.saturating_sub(recording.bytes());
+        self.recordings += 1;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use farsa_body::Recorder as _;
+
+    #[test]
+    fn all_recordings_share_the_room() {
+        let mut kept = Kept { left: 10_000, recordings: 0 };
+        let record = |kept: &Kept, ticks: u32| {
+            let mut recording = kept.recording(Schema::from_scalars(["x", "y"]));
+            for tick in 0..ticks {
+                recording.scalars(&[1.0, 2.0]);
+                recording.tick(f64::from(tick));
+            }
+            recording
+        };
+        let first = record(&kept, 100);
+        kept.add(&first).unwrap();
+        assert_eq!(kept.left, 10_000 - first.bytes());
+        let said = kept.add(&record(&kept, 10_000)).unwrap_err().to_string();
+        assert!(said.starts_with("trial number 2 of these has more steps than fit into 256 MiB"), "{said}");
+        let said = Kept { left: 10_000, recordings: 0 }.add(&record(&kept, 10_000)).unwrap_err().to_string();
+        assert!(said.starts_with("the trial has more steps"), "{said}");
+        // What did not fit has taken nothing.
+        assert_eq!(kept.left, 10_000 - first.bytes());
+    }
+}
