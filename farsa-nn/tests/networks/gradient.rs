@@ -174,6 +174,22 @@ fn a_memory_is_learned_by_every_reading_and_both_optimizers() {
     }
 }
 
+/// What the next step of learning costs, and of demonstrations of several lengths the mean over all ticks.
+#[test]
+fn a_cost_is_told_without_learning() {
+    let flags = flags();
+    let mut learner = learner(Leak::Filter, Adam::new(0.03));
+    learn(&mut learner, 20);
+    let before = learner.parameters().to_vec();
+    let costs: Vec<f64> =
+        flags.iter().map(|(x, wanted)| learner.cost([Demonstration { x, wanted }]).expect("whole ticks")).collect();
+    let all = learner.cost(flags.iter().map(|(x, wanted)| Demonstration { x, wanted })).expect("whole ticks");
+    let mean = (12.0 * (costs[0] + costs[1]) + 7.0 * (costs[2] + costs[3])) / 38.0;
+    assert!(costs.iter().all(|cost| *cost > 0.0) && (all - mean).abs() < 1e-12, "{costs:?} {all}");
+    assert_eq!((learner.cost([]), learner.parameters()), (Ok(0.0), &before[..]));
+    assert!((learn(&mut learner, 1) - all).abs() < 1e-12);
+}
+
 #[test]
 fn weights_and_biases_reach_their_limit_and_stay_within() {
     let largest = |learner: &Learner<f64, Adam>| {
