@@ -270,7 +270,7 @@ fn what_robots_keep_is_limited_for_all_of_them() {
         let layout = LeakyLayout::new(8, hidden, 2);
         1000 * (8 + 8 + 32 + 2 + layout.parameter_count() + layout.state_len())
     };
-    let hidden = (1..200).take_while(|hidden| kept(*hidden) <= 10_000_000).last().unwrap();
+    let hidden = (1..200).take_while(|hidden| kept(*hidden) <= 10_000_000).last().expect("a network");
     assert_eq!(error(&robots(hidden, "")), "nothing is wrong");
     let found = plain(&error(&robots(hidden + 1, "")));
     let wanted =

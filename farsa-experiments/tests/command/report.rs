@@ -178,6 +178,9 @@ fn a_robot_is_drawn_and_a_cart_is_not() {
     ok(own(), &here, "run cart --generations 1 --out cart --quiet");
     for (program, arguments, words) in [
         (farsa(), "draw arm --out end.png", "end.png: there is one already"),
+        // Before a trial is looked for, which may take long.
+        (farsa(), "draw arm --trial 99 --out end.png", "end.png: there is one already"),
+        (farsa(), "draw arm --protocol labls --out cases.svg", "there is one already"),
         (farsa(), "draw arm --out end.gif", "ends in .svg or .png"),
         (farsa(), "draw arm --protocol labls --out new.svg", "the nearest is `labels`"),
         (farsa(), "draw arm --protocol labels --out new.png", "ends in .svg"),

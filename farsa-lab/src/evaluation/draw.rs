@@ -10,7 +10,7 @@ use crate::evaluation::kept::Kept;
 use crate::evaluation::replay::{ReplaySummary, Replayable, Which};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::create_results;
+use crate::store::replace::{create_results, refuse_existing};
 
 /// Width and height of a picture where none are asked for.
 const SIZE: (u32, u32) = (1200, 800);
@@ -85,6 +85,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path:
     if wish.frames.is_some() && matches!(format, Format::Svg) {
         return Err(Error::Usage(format!("{}: with --frames its name ends in .png", path.display())));
     }
+    refuse_existing(path)?;
     let mut replayable = Replayable::find(plan, directory, wish.which)?;
     let trial = replayable.trials.start;
     let mut kept = Kept::new();

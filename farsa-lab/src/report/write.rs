@@ -14,7 +14,7 @@ use crate::report::section::section;
 use crate::report::settings::shell;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::create_results;
+use crate::store::replace::{create_results, refuse_existing};
 
 /// What a successful run is unless it is said.
 const HALF: Success = Success::Share(0.5);
@@ -66,6 +66,7 @@ pub(crate) fn report(
             return Err(Error::Usage(format!("{}: is named twice", directory.path().display())));
         }
     }
+    html.into_iter().chain(md).try_for_each(refuse_existing)?;
     let runs = runs.into_iter().map(|(directory, plan)| Run::read(directory, plan)).collect::<Result<Vec<_>, _>>()?;
     let page = page(&runs, html, md, success, program)?;
     let mut files: Vec<(PathBuf, String)> = Vec::new();

@@ -39,6 +39,18 @@ pub(crate) fn sync_directory(path: &Path) -> Result<(), Error> {
     Ok(())
 }
 
+/// Refuses a name for a result under which there is a file, before what goes into it takes time; it is looked at again when the
+/// result is written.
+///
+/// # Errors
+/// [`Error::Usage`].
+pub(crate) fn refuse_existing(path: &Path) -> Result<(), Error> {
+    if fs::metadata(path).is_ok_and(|metadata| metadata.is_file() || metadata.is_dir()) {
+        return Err(Error::Usage(format!("{}: there is one already", path.display())));
+    }
+    Ok(())
+}
+
 /// Opens a file to write a result to: a new file, or a pipe or device that is there.
 ///
 /// # Errors
@@ -46,9 +58,7 @@ pub(crate) fn sync_directory(path: &Path) -> Result<(), Error> {
 pub(crate) fn create_result(path: &Path) -> Result<File, Error> {
     match OpenOptions::new().write(true).create_new(true).open(path) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-            if fs::metadata(path).is_ok_and(|metadata| metadata.is_file() || metadata.is_dir()) {
-                return Err(Error::Usage(format!("{}: there is one already", path.display())));
-            }
+            refuse_existing(path)?;
             OpenOptions::new().write(true).open(path).map_err(Error::io("write", path))
         }
         opened => opened.map_err(Error::io("write", path)),
@@ -150,6 +160,7 @@ mod tests {
         assert_eq!(fs::read_dir(root).unwrap().count(), 2);
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert!(create_result(&path).is_err() && create_result(root).is_err());
+        assert!(refuse_existing(&path).is_err() && refuse_existing(&root.join("other")).is_ok());
         let results = ["first", "file", "last"].map(|name| (root.join(name), name.to_owned()));
         assert!(create_results(&results).is_err());
         assert!(!root.join("first").exists() && !root.join("last").exists());

@@ -15,7 +15,7 @@ use crate::figures::heat_map::OUTLINE;
 use crate::figures::plot::{FONT, INK, MARGIN, PAPER};
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::create_results;
+use crate::store::replace::{create_results, refuse_existing};
 
 /// Width and height of each picture where none are asked for, and the largest.
 const SIZE: (u32, u32) = (320, 260);
@@ -77,6 +77,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: &Wish<'_>, path
     if !(16..=LARGEST).contains(&width) || !(16..=LARGEST).contains(&height) {
         return Err(Error::Usage(format!("pictures of {width}x{height}: each side is 16 to {LARGEST} pixels")));
     }
+    refuse_existing(path)?;
     let mut trials = CaseTrials::find(plan, directory, wish.choice)?;
     let cases = pictures(plan, &mut trials)?;
     let camera = camera.unwrap_or(Camera::for_view(trials.schema().view));
