@@ -25,7 +25,7 @@ enum Flaw {
 }
 
 /// Genes that are the sum of all that it was told, as far as that is a number.
-struct Total {
+struct Summing {
     flaw: Flaw,
     generation: u32,
     total: f64,
@@ -33,13 +33,13 @@ struct Total {
     restored: bool,
 }
 
-impl Total {
+impl Summing {
     fn new(flaw: Flaw) -> Result<Self, EvoError> {
         Ok(Self { flaw, generation: 0, total: 1.0, population: Population::new(3, 2)?, restored: false })
     }
 }
 
-impl Strategy<f64> for Total {
+impl Strategy<f64> for Summing {
     fn generation(&self) -> u32 {
         self.generation
     }
@@ -71,7 +71,7 @@ impl Strategy<f64> for Total {
     }
 }
 
-impl Snapshot for Total {
+impl Snapshot for Summing {
     fn generations_between_states(&self) -> u32 {
         u32::from(self.flaw != Flaw::SavesTooOften)
     }
@@ -102,7 +102,7 @@ impl Snapshot for Total {
 
 #[test]
 fn what_is_wrong_is_found() {
-    check_strategy(|| Total::new(Flaw::None), 8).unwrap();
+    check_strategy(|| Summing::new(Flaw::None), 8).unwrap();
     for (flaw, expected) in [
         (Flaw::Forgets, "generation 2: other genomes where the same are asked for"),
         (Flaw::SaysLess, "generation 1: says other numbers of itself the second time"),
@@ -110,15 +110,15 @@ fn what_is_wrong_is_found() {
         (Flaw::SavesTooOften, "generation 0: wants 0 generations between its states, where 1 is the least"),
         (Flaw::SaysMore, "generation 1: says another count of numbers of itself than before"),
     ] {
-        assert_eq!(check_strategy(|| Total::new(flaw), 8).unwrap_err(), expected);
+        assert_eq!(check_strategy(|| Summing::new(flaw), 8).unwrap_err(), expected);
     }
-    let late = check_strategy(|| Total::new(Flaw::SavesLate), 8).unwrap_err();
+    let late = check_strategy(|| Summing::new(Flaw::SavesLate), 8).unwrap_err();
     assert!(late.starts_with("no record: "), "{late}");
 }
 
 #[test]
 fn a_recorded_gene_that_is_no_number_is_named() {
-    let mut strategy = Total::new(Flaw::None).unwrap();
+    let mut strategy = Summing::new(Flaw::None).unwrap();
     let mut record = Record::new(&mut strategy).unwrap();
     record.tell(&mut strategy, &[Fitness::WORST; 3]).unwrap();
     let mut frame = record.entry(0).unwrap().frame.to_vec();
