@@ -26,7 +26,7 @@ export async function elsewhere(browser, served, check) {
   const from = `http://localhost:${server.address().port}/`;
   try {
     await browser.go(from);
-    // A browser asks six at a time, and the seventh when one of them has ended.
+    // A browser asks few at a time, and the next when one of them has ended.
     await browser.until(() => answered === 80).catch(() => {});
     const count = await browser.run(() => answered);
     check("what a page from elsewhere asks for ends at once", count === 80, count);

@@ -1,4 +1,4 @@
-//! What the check of strategies finds in one that is wrong.
+//! What the check of strategies finds in one that is wrong; how often ours want their states kept.
 
 use farsa_evo::{
     CholeskyCmaEs, CmaEs, CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, EvoError, EvolutionStrategy,
