@@ -1,8 +1,10 @@
 //! A fixed amount of work for counting instructions: `./ci callgrind` runs each case and counts within `measured`.
 //!
-//! `cargo run --release --example count_control_steps free|grasp|free8|grasp8|aba7|aba27|network|muscles|trial|recorded`
+//! `cargo run --release --example count_control_steps CASE`: free, grasp, free8, grasp8, aba7, aba27, network, muscles, trial,
+//! recorded; adapter and direct, or rapier, which times both.
 
-#[path = "../benches/scene/mod.rs"]
+mod adapter;
+#[path = "../../benches/scene/mod.rs"]
 mod scene;
 
 use std::error::Error;
@@ -82,6 +84,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 black_box(pair.effort(black_box(0.3_f32), black_box(-0.2), black_box([0.4, 0.1])));
             });
         }
+        "adapter" | "direct" | "rapier" => return adapter::compare(&case),
         other => return Err(format!("no case {other}").into()),
     }
     println!("{case}: {TIMES} times");

@@ -1,13 +1,11 @@
 //! What the adapter costs over calling rapier directly, on the same bodies with the same motion to the last bit.
-//!
-//! `rapier_overhead adapter` and `rapier_overhead direct` do the work in a function `measured` for callgrind:
-//! `valgrind --tool=callgrind --collect-atstart=no --toggle-collect='*measured*'`. Without an argument both are timed.
 
+use std::error::Error;
 use std::time::{Duration, Instant};
 
-use farsa_body::{Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, JointId, Pose, Tabletop, Twist, World as _};
-use farsa_num::{Domain, Stream};
-use farsa_physics::rapier::{Options, World};
+use farsa::body::{Actuated, ActuatorId, ArmAndHand, Arrange, BodyId, JointId, Pose, Tabletop, Twist, World as _};
+use farsa::num::{Domain, Stream};
+use farsa::physics::rapier::{Options, World};
 use rapier3d::geometry::SolverFlags;
 use rapier3d::math::Vector;
 use rapier3d::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks, PhysicsWorld};
@@ -123,7 +121,8 @@ fn timed(work: impl FnOnce()) -> Duration {
     start.elapsed()
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// Steps through the adapter (`adapter`), directly (`direct`), or both, which are then timed (`rapier`).
+pub(crate) fn compare(which: &str) -> Result<(), Box<dyn Error>> {
     let robot = Tabletop::default().scene(&ArmAndHand::default())?;
     let options = Options { time_step: 0.0025, substeps: 1, ..Options::default() };
     let mut start = World::new(&robot, &options)?;
@@ -153,8 +152,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let hooks = Listed { colliders, friction };
 
-    let which = std::env::args().nth(1).unwrap_or_default();
-    let runs = if which.is_empty() { 5 } else { 1 };
+    let is_timed = which == "rapier";
+    let runs = if is_timed { 5 } else { 1 };
     let (mut adapter, mut direct) = (Duration::MAX, Duration::MAX);
     for _ in 0..runs {
         let (mut with, mut without) = (start.clone(), start.clone());
@@ -168,7 +167,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             assert_eq!(at(&without), at(&recorded), "the same motion");
         }
     }
-    if which.is_empty() {
+    if is_timed {
         let each = |whole: Duration| whole / STEPS as u32;
         println!("a step of rapier: {:?} through the adapter, {:?} directly", each(adapter), each(direct));
     }
