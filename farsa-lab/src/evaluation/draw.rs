@@ -92,7 +92,7 @@ pub(crate) fn draw(plan: &Plan<'_>, directory: &Directory, wish: Wish<'_>, path:
     let mut recording = kept.recording(replayable.schema());
     let outcome = replayable.run(trial, &mut recording)?;
     // Of a trial that does not fit there are moments before its end.
-    if wish.time.is_none() || wish.frames.is_some() {
+    if wish.frames.is_some() || !has_moment(&recording, wish.time) {
         kept.add(&recording)?;
     }
     let camera = camera.unwrap_or(Camera::for_view(recording.schema().view));
@@ -141,10 +141,18 @@ fn ticks_of(last: usize, count: usize) -> Vec<usize> {
     (0..count).map(|frame| frame * last / (count - 1).max(1)).collect()
 }
 
+/// A champion's picture for a page.
+pub(crate) struct Portrait {
+    /// An SVG.
+    pub(crate) picture: String,
+    /// The time of its last step that was kept \[s\], of a trial that does not fit.
+    pub(crate) cut: Option<f64>,
+}
+
 /// The end of the best trial of a run's champion, as an SVG to stand in a page; `None` if it has no bodies.
 ///
 /// `prefix` begins every id in it, so that several can stand in one page.
-pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> Result<Option<String>, Error> {
+pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> Result<Option<Portrait>, Error> {
     let mut replayable = Replayable::find(plan, directory, Which::default())?;
     let mut best: Option<(f64, u32, Recording)> = None;
     for trial in replayable.trials.clone() {
@@ -158,8 +166,15 @@ pub(crate) fn champion(plan: &Plan<'_>, directory: &Directory, prefix: &str) -> 
     let Some((_, trial, recording)) = best else { return Ok(None) };
     let Some(last) = recording.times().len().checked_sub(1) else { return Ok(None) };
     let Some(mut picture) = recording.picture(last) else { return Ok(None) };
-    picture.caption = Some(format!("{}: champion, trial {trial}, {:.2} s", plan.name(), recording.times()[last]));
-    Ok(Some(picture.svg(Camera::for_view(recording.schema().view), REPORT_SIZE, prefix)))
+    let time = recording.times()[last];
+    picture.caption = Some(format!("{}: champion, trial {trial}, {time:.2} s", plan.name()));
+    let picture = picture.svg(Camera::for_view(recording.schema().view), REPORT_SIZE, prefix);
+    Ok(Some(Portrait { picture, cut: recording.is_cut().then_some(time) }))
+}
+
+/// Whether what was recorded of a trial reaches a time; its end may not have been.
+fn has_moment(recording: &Recording, time: Option<f64>) -> bool {
+    time.is_some_and(|time| recording.times().last().is_some_and(|last| time <= *last))
 }
 
 /// The tick that is nearest to a time; the last if none is named.
@@ -183,6 +198,21 @@ mod tests {
     use super::*;
     use farsa_body::{ArmAndHand, Pose, Recorder};
     use farsa_view::Schema;
+
+    #[test]
+    fn of_a_trial_that_does_not_fit_only_what_was_kept_is_drawn() {
+        let mut recording = Recording::new(Schema::from_scalars(["x"])).with_room(1000);
+        for tick in 1..=100 {
+            recording.scalars(&[0.0]);
+            recording.tick(f64::from(tick));
+        }
+        let kept = recording.times().len();
+        assert!(recording.is_cut() && (2..100).contains(&kept));
+        assert!(has_moment(&recording, Some(1.0)) && has_moment(&recording, Some(kept as f64)));
+        for time in [Some(kept as f64 + 0.5), Some(100.0), Some(f64::NAN), None] {
+            assert!(!has_moment(&recording, time), "{time:?}");
+        }
+    }
 
     fn recording(ticks: u32) -> Recording {
         let robot = ArmAndHand::default().robot().unwrap();

@@ -3,7 +3,7 @@
 use std::time::{Duration, UNIX_EPOCH};
 
 use crate::error::Error;
-use crate::evaluation::draw;
+use crate::evaluation::draw::{self, Portrait};
 use crate::evaluation::test_table::Finding;
 use crate::figures::statistics::median;
 use crate::report::curves::figures;
@@ -301,7 +301,12 @@ fn sessions(runs: &[&Run<'_>]) -> Table {
 /// A champion's picture with its caption; `place` distinguishes it from the others on the page.
 fn champion(run: &Run<'_>, place: usize) -> Result<Option<Figure>, Error> {
     let prefix = format!("{}-{place}", run.plan.experiment.name());
-    let picture = draw::champion(&run.plan, &run.directory, &prefix)?;
-    let caption = format!("{}: how its champion's best trial ends.", run.name());
-    Ok(picture.map(|picture| Figure { kind: "champion", picture, caption }))
+    let portrait = draw::champion(&run.plan, &run.directory, &prefix)?;
+    Ok(portrait.map(|Portrait { picture, cut }| {
+        let moment = match cut {
+            None => "how its champion's best trial ends".into(),
+            Some(time) => format!("its champion's best trial after {time:.2} s; the rest does not fit into memory"),
+        };
+        Figure { kind: "champion", picture, caption: format!("{}: {moment}.", run.name()) }
+    }))
 }
