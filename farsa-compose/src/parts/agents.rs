@@ -1,5 +1,7 @@
 //! Robots as they are controlled: channels, copies of one network, and what they have earned.
 
+use std::sync::Arc;
+
 use farsa_evo::ObservationStatistics;
 use farsa_lab::{Anatomy, ChannelGroup, Description, Evaluation, Interventions, NormalisedController, Outcome};
 use farsa_view::{Channel, Links, NodeParameters, Schema};
@@ -11,15 +13,15 @@ use crate::parts::ledger::Ledger;
 use crate::parts::network::AnyNetwork;
 use crate::parts::wiring::Wiring;
 
-/// What robots of a document have in any world.
+/// What robots of a document have in any world. Copies share what no trial changes.
 #[derive(Clone, Debug)]
 pub(crate) struct Agents {
-    pub(crate) document: Document,
+    pub(crate) document: Arc<Document>,
     pub(crate) wiring: Wiring,
     pub(crate) ledger: Ledger,
     pub(crate) groups: Groups,
     /// The test protocols.
-    pub(crate) interventions: Interventions,
+    pub(crate) interventions: Arc<Interventions>,
     /// The individuals of each population, where there are several.
     pub(crate) size: usize,
     /// The robots that evolve in this trial, from the first to before the last.
@@ -36,7 +38,8 @@ impl Agents {
         let robots = groups.robots();
         let networks = vec![NormalisedController::new(wiring.network.clone()); robots];
         let (x, y) = (vec![0.0; robots * wiring.inputs.len()], vec![0.0; robots * wiring.outputs.len()]);
-        let interventions = interventions(&document.network, &wiring);
+        let interventions = Arc::new(interventions(&document.network, &wiring));
+        let document = Arc::new(document);
         Self { document, wiring, ledger, interventions, evolving: [0, robots], groups, size: 1, networks, x, y }
     }
 
