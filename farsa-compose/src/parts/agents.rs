@@ -13,7 +13,7 @@ use crate::parts::ledger::Ledger;
 use crate::parts::network::AnyNetwork;
 use crate::parts::wiring::Wiring;
 
-/// What robots of a document have in any world. Copies share what no trial changes.
+/// What robots of a document have in any world. Copies share the document and the test protocols.
 #[derive(Clone, Debug)]
 pub(crate) struct Agents {
     pub(crate) document: Arc<Document>,
