@@ -15,6 +15,10 @@ use crate::strategy::Strategy;
 /// The bytes of a generation, and the state to be saved after it, if one is due.
 pub(crate) type Taken = (Vec<u8>, Option<Vec<u8>>);
 
+/// Bytes of saved states after which they are saved half as often, and again after as many more: so a record of many generations of
+/// many genes stays a few times this.
+const ROOM: u64 = 1 << 28;
+
 /// How far a record has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Progress {
@@ -24,6 +28,8 @@ pub(crate) struct Progress {
     pub(crate) saved: u32,
     /// The bytes of that state.
     pub(crate) state: usize,
+    /// The bytes of all saved states.
+    pub(crate) states: u64,
 }
 
 impl Progress {
@@ -40,7 +46,7 @@ impl Progress {
         if shape.recorded == Kept::Genomes && strategy.snapshot().is_none() {
             return Err(EvoError::NoSnapshot);
         }
-        Ok(Self { shape, generations: 0, saved: 0, state: 0 })
+        Ok(Self { shape, generations: 0, saved: 0, state: 0, states: 0 })
     }
 
     /// Counts a generation, and the state that was saved after it.
@@ -48,6 +54,7 @@ impl Progress {
         self.generations += 1;
         if let Some(state) = state {
             (self.saved, self.state) = (self.generations, state);
+            self.states += state as u64;
         }
     }
 
@@ -113,14 +120,20 @@ impl Progress {
         next(strategy, told)?;
         let due = self.due();
         let since = generations + 1 - self.saved;
-        let due = |strategy: &&mut dyn Snapshot| due || since >= strategy.generations_between_states();
+        let asked = |strategy: &&mut dyn Snapshot| self.spacing(strategy.generations_between_states());
+        let due = |strategy: &&mut dyn Snapshot| due || u64::from(since) >= asked(strategy);
         let kept = shape.recorded != Kept::Genomes;
         Ok((frame, strategy.snapshot().filter(|strategy| kept && due(strategy)).map(|strategy| strategy.save())))
     }
 
+    /// After how many generations a state is kept where a strategy asks for one after so many.
+    fn spacing(self, asked: u32) -> u64 {
+        u64::from(asked) << (self.states / ROOM).min(31)
+    }
+
     /// Whether as many bytes of frames have been added since the last state, with the next, as a state is likely to take.
     fn due(self) -> bool {
-        let Self { shape, generations, saved, state } = self;
+        let Self { shape, generations, saved, state, .. } = self;
         let since = (generations - saved) as usize + 1;
         since.saturating_mul(shape.frame()) >= (shape.gene_bytes * shape.individuals * shape.genes).max(state)
     }
@@ -142,4 +155,39 @@ pub(crate) fn order(fitness: &[Fitness]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..fitness.len()).collect();
     order.sort_by_key(|&individual| Reverse(fitness.get(individual)));
     order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::GaConfig;
+    use crate::recording::record::Record;
+    use crate::recording::writer::RecordWriter;
+    use crate::truncation::TruncationGa;
+
+    #[test]
+    fn a_record_and_its_writer_have_kept_as_many_bytes_of_states() {
+        let search = || TruncationGa::new(GaConfig { population: 4, parents: 2, ..GaConfig::new(20) }, 1).unwrap();
+        let (mut one, mut other) = (search(), search());
+        let (mut record, mut writer) = (Record::new(&mut one).unwrap(), RecordWriter::new(&mut other).unwrap());
+        for _ in 0..200 {
+            record.tell(&mut one, &[Fitness::WORST; 4]).unwrap();
+            writer.tell(&mut other, &[Fitness::WORST; 4]).unwrap();
+        }
+        let progress = writer.progress;
+        assert_eq!(record.progress(), progress);
+        assert_eq!(progress.states, 5 * progress.state as u64, "{progress:?}");
+        record.truncate(100);
+        assert_eq!(record.progress().states, 2 * progress.state as u64);
+    }
+
+    #[test]
+    fn states_that_have_taken_much_are_kept_half_as_often() {
+        let mut search = TruncationGa::new(GaConfig::new(1), 1).unwrap();
+        let progress = Progress::new(&mut search).unwrap();
+        let spacing = |states, asked| Progress { states, ..progress }.spacing(asked);
+        let most = [0, ROOM - 1, ROOM, 2 * ROOM - 1, 2 * ROOM, 15 * ROOM, u64::MAX];
+        assert_eq!(most.map(|states| spacing(states, 3)), [3, 3, 6, 6, 12, 3 << 15, 3 << 31]);
+        assert_eq!(spacing(u64::MAX, u32::MAX), u64::from(u32::MAX) << 31);
+    }
 }

@@ -23,7 +23,7 @@ use crate::strategy::Strategy;
 ///
 /// So that a long search is rebuilt quickly, the record also keeps the state of a strategy that can save it
 /// ([`Snapshot`](crate::Snapshot)), as often as that at most doubles the size of the record, or as the strategy asks for because
-/// it takes long to be told again.
+/// it takes long to be told again: half as often once such states take 256 MiB, and again for each 256 MiB more.
 ///
 /// ```
 /// use farsa_evo::{Fitness, GaConfig, Record, Strategy, TruncationGa};
@@ -80,10 +80,11 @@ impl Record {
     }
 
     /// How far it has come.
-    fn progress(&self) -> Progress {
+    pub(super) fn progress(&self) -> Progress {
         let state = self.keyframes.len().checked_sub(1).and_then(|last| self.state(last)).map_or(0, <[u8]>::len);
         let saved = self.keyframes.last().map_or(0, |keyframe| keyframe.generation);
-        Progress { shape: self.shape, generations: self.generations(), saved, state }
+        let states = self.states.len() as u64;
+        Progress { shape: self.shape, generations: self.generations(), saved, state, states }
     }
 
     /// Records the same search from here on, for a record that goes on elsewhere.

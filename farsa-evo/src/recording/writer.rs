@@ -30,7 +30,7 @@ use crate::strategy::Strategy;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordWriter {
-    progress: Progress,
+    pub(super) progress: Progress,
     last: Option<Taken>,
 }
 

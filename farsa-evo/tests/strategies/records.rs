@@ -1,6 +1,6 @@
 //! Records that keep states, whole, cut, read entry by entry, and written elsewhere.
 
-use farsa_evo::{EvoError, Fitness, GaConfig, Population, Record, Snapshot, Strategy, TruncationGa};
+use farsa_evo::{EvoError, Fitness, GaConfig, Population, Record, RecordWriter, Snapshot, Strategy, TruncationGa};
 
 /// A search that asks for its state to be kept every three generations.
 struct Asking(TruncationGa);
@@ -34,6 +34,36 @@ impl Snapshot for Asking {
 
 fn fresh() -> Asking {
     Asking(TruncationGa::new(GaConfig { population: 10, parents: 5, ..GaConfig::new(500) }, 2).unwrap())
+}
+
+/// The same with a state of 64 MiB.
+struct Large(Asking);
+
+impl Strategy for Large {
+    fn generation(&self) -> u32 {
+        self.0.generation()
+    }
+    fn ask(&self) -> &Population {
+        self.0.ask()
+    }
+    fn tell(&mut self, fitness: &[Fitness]) -> Result<(), EvoError> {
+        self.0.tell(fitness)
+    }
+    fn snapshot(&mut self) -> Option<&mut dyn Snapshot> {
+        Some(self)
+    }
+}
+
+impl Snapshot for Large {
+    fn save(&self) -> Vec<u8> {
+        vec![0; 1 << 26]
+    }
+    fn restore(&mut self, _: &[u8]) -> Result<(), EvoError> {
+        Err(EvoError::NoSnapshot)
+    }
+    fn generations_between_states(&self) -> u32 {
+        self.0.generations_between_states()
+    }
 }
 
 /// What a generation is told.
@@ -73,6 +103,17 @@ fn states_are_kept_as_often_as_a_slow_strategy_asks() {
         record.rebuild(&mut rebuilt, generation).unwrap();
         assert_eq!(rebuilt.ask().digest(), record.genomes(&mut fresh(), generation).unwrap().digest());
     }
+}
+
+#[test]
+fn states_are_kept_half_as_often_for_each_256_mib_of_them() {
+    let mut large = Large(fresh());
+    let mut writer = RecordWriter::new(&mut large).unwrap();
+    let kept = (0..60).filter(|&generation| {
+        writer.tell(&mut large, &values(generation)).unwrap();
+        writer.entry().unwrap().state.is_some()
+    });
+    assert_eq!(kept.collect::<Vec<u32>>(), [2, 5, 8, 11, 17, 23, 29, 35, 47, 59]);
 }
 
 #[test]
