@@ -23,7 +23,8 @@
 //! - `controller_export`: a controller, its body's channels and its starts as plain data, for `farsa export`
 //! - `network_export`: a network of any kind as plain data, and as bytes
 //! - `rescored`: an experiment that there is, under another fitness
-//! - `settings`: the configuration of an experiment: flat `section.key` settings with types, limits, units and sources
+//! - `setting`: a setting of an experiment: its key, its default, and which values it takes
+//! - `settings`: the configuration of a run: the settings of an experiment and their values
 //! - `value`: values of settings
 
 mod anatomy;
@@ -49,6 +50,7 @@ pub(crate) mod outcome;
 pub(crate) mod parameter;
 pub(crate) mod protocol;
 mod rescored;
+mod setting;
 pub(crate) mod settings;
 mod value;
 

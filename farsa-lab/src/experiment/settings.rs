@@ -1,235 +1,12 @@
-//! The configuration of an experiment: flat `section.key` settings with types, limits, units and sources.
+//! The configuration of a run: the settings of an experiment and their values.
 
 use std::collections::BTreeMap;
-use std::fmt;
-use std::ops::RangeInclusive;
-
-use serde::Serialize;
 
 use crate::error::Error;
-use crate::escaped::shortened;
 
+pub use crate::experiment::setting::{Setting, Source};
 pub(crate) use crate::experiment::value::Paragraph;
 pub use crate::experiment::value::Value;
-
-/// Where a default comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Source {
-    /// Stated by the experiment's source.
-    Given,
-    /// Follows from what the source states.
-    Derived,
-    /// Ours: the source does not say.
-    #[default]
-    Chosen,
-}
-
-impl Source {
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Given => "given",
-            Self::Derived => "derived",
-            Self::Chosen => "chosen",
-        }
-    }
-}
-
-/// The values a setting may have.
-#[derive(Debug, Clone, PartialEq)]
-enum Allowed {
-    Flag,
-    Whole(RangeInclusive<i64>),
-    Number(RangeInclusive<f64>),
-    Word(Vec<String>),
-    Text,
-    /// As many numbers as in the default, each in the range.
-    Numbers(RangeInclusive<f64>),
-}
-
-/// One thing that can be set, with its default and where that comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setting {
-    key: String,
-    default: Value,
-    allowed: Allowed,
-    unit: String,
-    source: Source,
-    doc: String,
-}
-
-impl Setting {
-    fn new(key: &str, default: Value, allowed: Allowed) -> Self {
-        Self { key: key.into(), default, allowed, unit: String::new(), source: Source::default(), doc: String::new() }
-    }
-
-    /// A number within limits, both included. Keys are `section.name`, lower-case with underscores or hyphens.
-    pub fn number(key: &str, default: f64, range: RangeInclusive<f64>) -> Self {
-        Self::new(key, Value::Number(default), Allowed::Number(range))
-    }
-
-    /// A whole number within limits, both included.
-    pub fn whole(key: &str, default: i64, range: RangeInclusive<i64>) -> Self {
-        Self::new(key, Value::Whole(default), Allowed::Whole(range))
-    }
-
-    /// Yes or no.
-    pub fn flag(key: &str, default: bool) -> Self {
-        Self::new(key, Value::Flag(default), Allowed::Flag)
-    }
-
-    /// One of a few words.
-    pub fn word(key: &str, default: &str, choices: &[&str]) -> Self {
-        let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
-        Self::new(key, Value::Word(default.into()), Allowed::Word(choices))
-    }
-
-    /// Any text, such as the path of a file.
-    pub fn text(key: &str, default: &str) -> Self {
-        Self::new(key, Value::Word(default.into()), Allowed::Text)
-    }
-
-    /// A list of as many numbers as the default has, each within limits, both included.
-    pub fn numbers(key: &str, default: &[f64], range: RangeInclusive<f64>) -> Self {
-        Self::new(key, Value::Numbers(default.to_vec()), Allowed::Numbers(range))
-    }
-
-    /// Adds the unit, in the way it is written after a number: `cm`, `rad/s`.
-    pub fn unit(mut self, unit: &str) -> Self {
-        self.unit = unit.into();
-        self
-    }
-
-    /// Says that the default is stated by the experiment's source.
-    pub fn given(mut self) -> Self {
-        self.source = Source::Given;
-        self
-    }
-
-    /// Says that the default follows from what the source states.
-    pub fn derived(mut self) -> Self {
-        self.source = Source::Derived;
-        self
-    }
-
-    /// Adds one sentence that says what it is and, for a chosen default, why that.
-    pub fn doc(mut self, doc: &str) -> Self {
-        self.doc = doc.into();
-        self
-    }
-
-    /// The same with another default, for an experiment that gives a strategy's setting one of its own.
-    ///
-    /// # Errors
-    /// What is wrong with a value that it cannot have.
-    pub fn with_default(&self, value: Value) -> Result<Self, String> {
-        Ok(Self { default: self.check(value)?, ..self.clone() })
-    }
-
-    /// The key.
-    pub fn key(&self) -> &str {
-        &self.key
-    }
-
-    /// The default.
-    pub fn default_value(&self) -> &Value {
-        &self.default
-    }
-
-    /// The unit; empty if there is none.
-    pub fn unit_name(&self) -> &str {
-        &self.unit
-    }
-
-    /// Where the default comes from.
-    pub fn source(&self) -> Source {
-        self.source
-    }
-
-    /// What it is.
-    pub fn doc_text(&self) -> &str {
-        &self.doc
-    }
-
-    /// The allowed values in words: `0.0 to 1.0`, `filter, two-tap or evonet`.
-    pub fn allowed(&self) -> String {
-        match &self.allowed {
-            Allowed::Flag => "true or false".into(),
-            Allowed::Text => "any text".into(),
-            Allowed::Whole(range) => format!("{} to {}", range.start(), range.end()),
-            Allowed::Number(range) => format!("{:?} to {:?}", range.start(), range.end()),
-            Allowed::Word(choices) => match choices.split_last() {
-                Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-                _ => choices.concat(),
-            },
-            Allowed::Numbers(range) => {
-                format!("{} numbers, each {:?} to {:?}", self.length(), range.start(), range.end())
-            }
-        }
-    }
-
-    fn length(&self) -> usize {
-        match &self.default {
-            Value::Numbers(list) => list.len(),
-            _ => 1,
-        }
-    }
-
-    /// Checks a value; a whole number is taken where a number is wanted.
-    fn check(&self, value: Value) -> Result<Value, String> {
-        let outside = |x: &dyn fmt::Display| Err(format!("{x} is outside {}", self.allowed()));
-        let shown = |value: &Value| shortened(&value.to_string()).into_owned();
-        match (&self.allowed, value) {
-            (Allowed::Flag, value @ Value::Flag(_)) | (Allowed::Text, value @ Value::Word(_)) => Ok(value),
-            // What was written is no longer known: 1.50 and 1.5 are one number, but not one name of a file.
-            (Allowed::Text, value) => Err(format!("{0} is not a text; write it in quotes: \"{0}\"", shown(&value))),
-            (Allowed::Whole(range), Value::Whole(n)) if range.contains(&n) => Ok(Value::Whole(n)),
-            (Allowed::Whole(_), Value::Whole(n)) => outside(&n),
-            (Allowed::Number(_), Value::Whole(n)) => self.check(Value::Number(n as f64)),
-            (Allowed::Number(range), Value::Number(x)) if range.contains(&x) => Ok(Value::Number(x)),
-            (Allowed::Number(_) | Allowed::Whole(_), Value::Number(x)) if x.is_nan() => {
-                Err("NaN is not a number".into())
-            }
-            (Allowed::Number(_), Value::Number(x)) => outside(&x),
-            (Allowed::Word(choices), Value::Word(word)) => {
-                if choices.contains(&word) {
-                    Ok(Value::Word(word))
-                } else {
-                    let error = Error::unknown("", "choice", &word, choices.iter().map(String::as_str));
-                    Err(format!("{error} ({})", self.allowed()))
-                }
-            }
-            // TOML has them as numbers, and the command line has TOML.
-            (Allowed::Word(choices), Value::Number(x)) if !x.is_finite() => {
-                let word = choices.iter().find(|choice| choice.eq_ignore_ascii_case(&x.to_string())).cloned();
-                word.map(Value::Word).ok_or_else(|| format!("{x} is not {}", self.wanted()))
-            }
-            (Allowed::Numbers(range), Value::Numbers(list)) => {
-                if list.len() != self.length() {
-                    return Err(format!("{} numbers where {} are wanted", list.len(), self.length()));
-                }
-                match list.iter().find(|x| !range.contains(x)) {
-                    None => Ok(Value::Numbers(list)),
-                    Some(x) if x.is_nan() => Err("NaN is not a number".into()),
-                    Some(x) => outside(x),
-                }
-            }
-            (_, value) => Err(format!("{} is not {}", shown(&value), self.wanted())),
-        }
-    }
-
-    fn wanted(&self) -> String {
-        match &self.allowed {
-            Allowed::Flag => "true or false".into(),
-            Allowed::Text => "a text".into(),
-            Allowed::Whole(_) => "a whole number".into(),
-            Allowed::Number(_) => "a number".into(),
-            Allowed::Word(_) => format!("one of {}", self.allowed()),
-            Allowed::Numbers(_) => format!("a list of {} numbers", self.length()),
-        }
-    }
-}
 
 /// The complete configuration of a run: a checked value for every setting of the experiment's table.
 #[derive(Debug, Clone, PartialEq)]
@@ -247,12 +24,13 @@ impl Settings {
     pub fn new(table: Vec<Setting>) -> Result<Self, Error> {
         let mut values = BTreeMap::new();
         for setting in &table {
-            if !is_key(&setting.key) {
-                return Err(Error::setting(&setting.key, "is not of the form `section.name` in a-z, 0-9, - and _"));
+            if !is_key(setting.key()) {
+                return Err(Error::setting(setting.key(), "is not of the form `section.name` in a-z, 0-9, - and _"));
             }
-            let value = setting.check(setting.default.clone()).map_err(|why| Error::setting(&setting.key, why))?;
-            if values.insert(setting.key.clone(), value).is_some() {
-                return Err(Error::setting(&setting.key, "stands twice in the experiment's table"));
+            let value =
+                setting.check(setting.default_value().clone()).map_err(|why| Error::setting(setting.key(), why))?;
+            if values.insert(setting.key().to_owned(), value).is_some() {
+                return Err(Error::setting(setting.key(), "stands twice in the experiment's table"));
             }
         }
         Ok(Self { table, values })
@@ -269,8 +47,11 @@ impl Settings {
     /// [`Error::Unknown`] with the nearest key, or [`Error::Setting`] when the value is not allowed; nothing is then
     /// changed.
     pub fn set(&mut self, place: &str, key: &str, value: Value) -> Result<(), Error> {
-        let Some(setting) = self.table.iter().find(|setting| setting.key == key) else {
-            return Err(Error::unknown(place, "key", key, self.table.iter().map(Setting::key)));
+        let Some(setting) = self.table.iter().find(|setting| setting.key() == key) else {
+            return Err(match elsewhere(key) {
+                Some(why) => Error::Setting { place: place.into(), key: key.into(), why: why.into() },
+                None => Error::unknown(place, "key", key, self.table.iter().map(Setting::key)),
+            });
         };
         let value = setting.check(value).map_err(|why| Error::Setting { place: place.into(), key: key.into(), why })?;
         self.values.insert(key.into(), value);
@@ -282,7 +63,7 @@ impl Settings {
     /// # Errors
     /// [`Error::Unknown`] with the nearest section.
     pub(crate) fn section(&self, place: &str, name: &str) -> Result<(), Error> {
-        let sections = || self.table.iter().filter_map(|setting| Some(setting.key.rsplit_once('.')?.0));
+        let sections = || self.table.iter().filter_map(|setting| Some(setting.key().rsplit_once('.')?.0));
         let within =
             |section: &str| section.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
         if sections().any(within) { Ok(()) } else { Err(Error::unknown(place, "section", name, sections())) }
@@ -395,6 +176,21 @@ fn is_key(key: &str) -> bool {
     key.contains('.') && key.split('.').all(|part| !part.is_empty() && part.chars().all(bare))
 }
 
+/// How a run is told what is no setting of it, by the last part of a key that asks for it.
+fn elsewhere(key: &str) -> Option<&'static str> {
+    match key.rsplit('.').next()? {
+        "strategy" | "algorithm" => {
+            Some("is no setting; another strategy is `--strategy`, or `strategy.name` in a file")
+        }
+        "name" if key == "strategy.name" => Some("is no setting of this run; another strategy is `--strategy`"),
+        "seed" => Some("is no setting; the seed is `--seed`, or `seed` before the sections of a file"),
+        "condition" => {
+            Some("is no setting; the condition is `--condition`, or `condition` before the sections of a file")
+        }
+        _ => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -466,7 +262,16 @@ mod tests {
         let long = wrong("noise.on", Value::Word("a".repeat(1 << 20)));
         assert_eq!(long, format!("--set: `noise.on`: \"{}... is not true or false", "a".repeat(199)));
         assert_eq!(wrong("noise.no", Value::Flag(true)), "--set: unknown key `noise.no`; the nearest is `noise.on`");
+        // What is asked for elsewhere; a setting that has such a name is one.
+        for (key, option) in
+            [("evolution.strategy", "`--strategy`"), ("strategy.name", "`--strategy`"), ("seed", "`--seed`")]
+        {
+            let said = wrong(key, Value::Whole(1));
+            assert!(said.starts_with(&format!("--set: `{key}`: is no setting")) && said.contains(option), "{said}");
+        }
         assert_eq!(s, settings());
+        let mut own = Settings::new(vec![Setting::whole("world.seed", 1, 1..=9)]).unwrap();
+        own.set("--set", "world.seed", Value::Whole(2)).unwrap();
     }
 
     #[test]

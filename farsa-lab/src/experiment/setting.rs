@@ -1,0 +1,229 @@
+//! A setting of an experiment: its key, its default, and which values it takes.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::escaped::shortened;
+use crate::experiment::value::Value;
+
+/// Where a default comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Source {
+    /// Stated by the experiment's source.
+    Given,
+    /// Follows from what the source states.
+    Derived,
+    /// Ours: the source does not say.
+    #[default]
+    Chosen,
+}
+
+impl Source {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::Derived => "derived",
+            Self::Chosen => "chosen",
+        }
+    }
+}
+
+/// The values a setting may have.
+#[derive(Debug, Clone, PartialEq)]
+enum Allowed {
+    Flag,
+    Whole(RangeInclusive<i64>),
+    Number(RangeInclusive<f64>),
+    Word(Vec<String>),
+    Text,
+    /// As many numbers as in the default, each in the range.
+    Numbers(RangeInclusive<f64>),
+}
+
+/// One thing that can be set, with its default and where that comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setting {
+    key: String,
+    default: Value,
+    allowed: Allowed,
+    unit: String,
+    source: Source,
+    doc: String,
+}
+
+impl Setting {
+    fn new(key: &str, default: Value, allowed: Allowed) -> Self {
+        Self { key: key.into(), default, allowed, unit: String::new(), source: Source::default(), doc: String::new() }
+    }
+
+    /// A number within limits, both included. Keys are `section.name`, lower-case with underscores or hyphens.
+    pub fn number(key: &str, default: f64, range: RangeInclusive<f64>) -> Self {
+        Self::new(key, Value::Number(default), Allowed::Number(range))
+    }
+
+    /// A whole number within limits, both included.
+    pub fn whole(key: &str, default: i64, range: RangeInclusive<i64>) -> Self {
+        Self::new(key, Value::Whole(default), Allowed::Whole(range))
+    }
+
+    /// Yes or no.
+    pub fn flag(key: &str, default: bool) -> Self {
+        Self::new(key, Value::Flag(default), Allowed::Flag)
+    }
+
+    /// One of a few words.
+    pub fn word(key: &str, default: &str, choices: &[&str]) -> Self {
+        let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
+        Self::new(key, Value::Word(default.into()), Allowed::Word(choices))
+    }
+
+    /// Any text, such as the path of a file.
+    pub fn text(key: &str, default: &str) -> Self {
+        Self::new(key, Value::Word(default.into()), Allowed::Text)
+    }
+
+    /// A list of as many numbers as the default has, each within limits, both included.
+    pub fn numbers(key: &str, default: &[f64], range: RangeInclusive<f64>) -> Self {
+        Self::new(key, Value::Numbers(default.to_vec()), Allowed::Numbers(range))
+    }
+
+    /// Adds the unit, in the way it is written after a number: `cm`, `rad/s`.
+    pub fn unit(mut self, unit: &str) -> Self {
+        self.unit = unit.into();
+        self
+    }
+
+    /// Says that the default is stated by the experiment's source.
+    pub fn given(mut self) -> Self {
+        self.source = Source::Given;
+        self
+    }
+
+    /// Says that the default follows from what the source states.
+    pub fn derived(mut self) -> Self {
+        self.source = Source::Derived;
+        self
+    }
+
+    /// Adds one sentence that says what it is and, for a chosen default, why that.
+    pub fn doc(mut self, doc: &str) -> Self {
+        self.doc = doc.into();
+        self
+    }
+
+    /// The same with another default, for an experiment that gives a strategy's setting one of its own.
+    ///
+    /// # Errors
+    /// What is wrong with a value that it cannot have.
+    pub fn with_default(&self, value: Value) -> Result<Self, String> {
+        Ok(Self { default: self.check(value)?, ..self.clone() })
+    }
+
+    /// The key.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// The default.
+    pub fn default_value(&self) -> &Value {
+        &self.default
+    }
+
+    /// The unit; empty if there is none.
+    pub fn unit_name(&self) -> &str {
+        &self.unit
+    }
+
+    /// Where the default comes from.
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    /// What it is.
+    pub fn doc_text(&self) -> &str {
+        &self.doc
+    }
+
+    /// The allowed values in words: `0.0 to 1.0`, `filter, two-tap or evonet`.
+    pub fn allowed(&self) -> String {
+        match &self.allowed {
+            Allowed::Flag => "true or false".into(),
+            Allowed::Text => "any text".into(),
+            Allowed::Whole(range) => format!("{} to {}", range.start(), range.end()),
+            Allowed::Number(range) => format!("{:?} to {:?}", range.start(), range.end()),
+            Allowed::Word(choices) => match choices.split_last() {
+                Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+                _ => choices.concat(),
+            },
+            Allowed::Numbers(range) => {
+                format!("{} numbers, each {:?} to {:?}", self.length(), range.start(), range.end())
+            }
+        }
+    }
+
+    fn length(&self) -> usize {
+        match &self.default {
+            Value::Numbers(list) => list.len(),
+            _ => 1,
+        }
+    }
+
+    /// Checks a value; a whole number is taken where a number is wanted.
+    pub(super) fn check(&self, value: Value) -> Result<Value, String> {
+        let outside = |x: &dyn fmt::Display| Err(format!("{x} is outside {}", self.allowed()));
+        let shown = |value: &Value| shortened(&value.to_string()).into_owned();
+        match (&self.allowed, value) {
+            (Allowed::Flag, value @ Value::Flag(_)) | (Allowed::Text, value @ Value::Word(_)) => Ok(value),
+            // What was written is no longer known: 1.50 and 1.5 are one number, but not one name of a file.
+            (Allowed::Text, value) => Err(format!("{0} is not a text; write it in quotes: \"{0}\"", shown(&value))),
+            (Allowed::Whole(range), Value::Whole(n)) if range.contains(&n) => Ok(Value::Whole(n)),
+            (Allowed::Whole(_), Value::Whole(n)) => outside(&n),
+            (Allowed::Number(_), Value::Whole(n)) => self.check(Value::Number(n as f64)),
+            (Allowed::Number(range), Value::Number(x)) if range.contains(&x) => Ok(Value::Number(x)),
+            (Allowed::Number(_) | Allowed::Whole(_), Value::Number(x)) if x.is_nan() => {
+                Err("NaN is not a number".into())
+            }
+            (Allowed::Number(_), Value::Number(x)) => outside(&x),
+            (Allowed::Word(choices), Value::Word(word)) => {
+                if choices.contains(&word) {
+                    Ok(Value::Word(word))
+                } else {
+                    let error = Error::unknown("", "choice", &word, choices.iter().map(String::as_str));
+                    Err(format!("{error} ({})", self.allowed()))
+                }
+            }
+            // TOML has them as numbers, and the command line has TOML.
+            (Allowed::Word(choices), Value::Number(x)) if !x.is_finite() => {
+                let word = choices.iter().find(|choice| choice.eq_ignore_ascii_case(&x.to_string())).cloned();
+                word.map(Value::Word).ok_or_else(|| format!("{x} is not {}", self.wanted()))
+            }
+            (Allowed::Numbers(range), Value::Numbers(list)) => {
+                if list.len() != self.length() {
+                    return Err(format!("{} numbers where {} are wanted", list.len(), self.length()));
+                }
+                match list.iter().find(|x| !range.contains(x)) {
+                    None => Ok(Value::Numbers(list)),
+                    Some(x) if x.is_nan() => Err("NaN is not a number".into()),
+                    Some(x) => outside(x),
+                }
+            }
+            (_, value) => Err(format!("{} is not {}", shown(&value), self.wanted())),
+        }
+    }
+
+    fn wanted(&self) -> String {
+        match &self.allowed {
+            Allowed::Flag => "true or false".into(),
+            Allowed::Text => "a text".into(),
+            Allowed::Whole(_) => "a whole number".into(),
+            Allowed::Number(_) => "a number".into(),
+            Allowed::Word(_) => format!("one of {}", self.allowed()),
+            Allowed::Numbers(_) => format!("a list of {} numbers", self.length()),
+        }
+    }
+}
