@@ -31,13 +31,14 @@ impl Kept {
     pub(crate) fn add(&mut self, recording: &Recording) -> Result<(), Error> {
         if recording.is_cut() {
             let (steps, most) = (recording.times().len(), MOST_BYTES >> 20);
+            let until = recording.times().last().copied().unwrap_or(0.0);
             let which = match self.recordings {
                 0 => "the trial".into(),
                 before => format!("trial number {} of these", before + 1),
             };
             return Err(Error::Usage(format!(
-                "{which} has more steps than fit into {most} MiB, of which {steps} are full: take one trial (--trial), a moment \
-                 of it (`farsa draw --time`), or its steps as a table (`farsa replay --out`)"
+                "{which} has more steps than fit into {most} MiB; {steps} do, until {until:.2} s: take one trial (--trial), a \
+                 moment until then (`farsa draw --time`), or all steps as a table (`farsa replay --out`)"
             )));
         }
         self.left = self.left.saturating_sub(recording.bytes());
@@ -67,8 +68,11 @@ mod tests {
         assert_eq!(kept.left, 10_000 - first.bytes());
         let said = kept.add(&record(&kept, 10_000)).unwrap_err().to_string();
         assert!(said.starts_with("trial number 2 of these has more steps than fit into 256 MiB"), "{said}");
-        let said = Kept { left: 10_000, recordings: 0 }.add(&record(&kept, 10_000)).unwrap_err().to_string();
+        let long = record(&kept, 10_000);
+        let said = Kept { left: 10_000, recordings: 0 }.add(&long).unwrap_err().to_string();
+        let steps = long.times().len();
         assert!(said.starts_with("the trial has more steps"), "{said}");
+        assert!(said.contains(&format!("; {steps} do, until {}.00 s: ", steps - 1)), "{said}");
         // What did not fit has taken nothing.
         assert_eq!(kept.left, 10_000 - first.bytes());
     }
