@@ -181,6 +181,11 @@ impl Error {
         move |source| Self::Io { doing, path: path.into(), source }
     }
 
+    /// A file that would be larger than any that is read in its place, and is not written.
+    pub(crate) fn too_large(path: &Path, bytes: u64, most: u64) -> Self {
+        Self::Other(format!("{}: would have {bytes} bytes, more than the {most} that are read of it", path.display()))
+    }
+
     /// A file that cannot be what it should be.
     pub(crate) fn damaged(path: &Path, why: impl fmt::Display) -> Self {
         Self::Damaged { path: path.into(), why: why.to_string() }

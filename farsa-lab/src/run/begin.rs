@@ -18,7 +18,8 @@ use crate::store::manifest::Manifest;
 use crate::store::replace::replace;
 use crate::strategy::history::History;
 use crate::strategy::opponents::Hall;
-use crate::strategy::search::Search;
+use crate::strategy::search::{LARGEST_STATE, Search};
+use crate::strategy::settings::POPULATION;
 
 /// Makes the directory of a new run, ready for its first generation.
 pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
@@ -27,6 +28,18 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     strategy.record().map_err(refused)?;
     let (text, identity, populations) = (plan.to_toml()?, plan.identity()?, strategy.populations());
     let state = strategy.snapshot().map(|strategy| strategy.save());
+    let bytes = state.as_ref().map_or(0, Vec::len);
+    if bytes as u64 > LARGEST_STATE {
+        return Err(Error::setting(
+            POPULATION,
+            format!(
+                "{} individuals of {} genes: a state of `{}` has {bytes} bytes; a checkpoint keeps at most {LARGEST_STATE}",
+                strategy.individuals(),
+                strategy.genes(),
+                plan.definition().name(),
+            ),
+        ));
+    }
     Directory::create(path, |directory| {
         replace(&directory.config(), text.as_bytes())?;
         Manifest::new(&identity).write(&directory.manifest())?;

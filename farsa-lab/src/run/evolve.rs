@@ -190,6 +190,10 @@ impl<'d> Run<'d> {
         let mut ended = Ok(());
         while self.progression.search.generation() < last {
             let generation = self.progression.search.generation();
+            ended = self.told.room();
+            if ended.is_err() {
+                break;
+            }
             // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
             let result = contained(|| meet(pool, stop).and_then(|()| self.generation(pool, stop, progress)));
             match result.map_err(|why| Error::Panicked { generation, why })? {

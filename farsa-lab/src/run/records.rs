@@ -13,7 +13,7 @@ use crate::store::growing::Mark;
 use crate::store::identity::Identity;
 use crate::store::sealed;
 use crate::store::sealed::Sealed;
-use crate::strategy::search::Genome;
+use crate::strategy::search::{Genome, LARGEST_STATE};
 
 /// `checkpoint.bin`: where to go on; it does not grow.
 #[derive(Debug, Serialize, Deserialize)]
@@ -142,7 +142,7 @@ macro_rules! sealed {
 }
 
 sealed! {
-    Checkpoint: b"farsackp", "checkpoint", 256 << 20;
+    Checkpoint: b"farsackp", "checkpoint", LARGEST_STATE + (1 << 20);
     RecordHead: b"farsatld", "record of what a strategy was told", 1 << 20;
     ChampionOfOne: b"farsachm", "champion", 64 << 20;
     ChampionsOfSeveral: b"farsacmc", "set of champions", 64 << 20;

@@ -20,8 +20,8 @@ use crate::store::sealed;
 use crate::strategy::history::History;
 use crate::strategy::search::Search;
 
-/// Bytes of the largest record that is read.
-const LARGEST: u64 = 1 << 32;
+/// Bytes of the largest record that is read. Tests have one that is soon full.
+const LARGEST: u64 = if cfg!(test) { 1 << 19 } else { 1 << 32 };
 
 /// A generation.
 #[derive(Serialize, Deserialize)]
@@ -50,6 +50,8 @@ pub(crate) struct Told {
     pub(crate) observed: Vec<ObservationStatistics>,
     /// What the strategy said of each, where it says something.
     pub(crate) diagnostics: Vec<Vec<f64>>,
+    /// Bytes of the longest entry.
+    longest: usize,
     /// The part of the file that this was read from.
     content: Vec<u8>,
 }
@@ -90,8 +92,9 @@ impl Told {
         let each = if record.populations() > 1 { record.populations() } else { 0 };
         let (mut lines, mut diagnostics, mut observed) = (Vec::new(), Vec::new(), Vec::new());
         let none = plan.no_observations()?;
+        let mut longest = 0;
         while !rest.is_empty() {
-            let generation = record.generations();
+            let (generation, whole) = (record.generations(), rest.len());
             let (entry, more) = postcard::take_from_bytes::<Entry<'_>>(rest)
                 .map_err(|error| damaged(format!("holds no generation {generation}: {error}")))?;
             let Entry { frame, state, line, diagnostics: said } = entry;
@@ -117,13 +120,14 @@ impl Told {
                 observed.push(statistics);
                 rest = more;
             }
+            longest = longest.max(whole - rest.len());
         }
         let (found, expected) = (record.generations(), checkpoint.generation);
         if found != expected {
             return Err(damaged(format!("{found} generations where checkpoint.bin speaks of {expected}")));
         }
         let keeps_champion = search.keeps_champion();
-        Ok(Self { identity, record, lines, keeps_champion, observed, diagnostics, content })
+        Ok(Self { identity, record, lines, keeps_champion, observed, diagnostics, longest, content })
     }
 
     /// The generation whose best is the run's champion, once one is finished; of equals the first.
@@ -149,7 +153,8 @@ impl Told {
     /// Opens the file for a run that goes on, and forgets what came after the checkpoint.
     pub(crate) fn file(&mut self, directory: &Directory) -> Result<ToldFile, Error> {
         let content = std::mem::take(&mut self.content);
-        Growing::new(&directory.record(), &content).map(ToldFile)
+        let file = Growing::new(&directory.record(), &content)?;
+        Ok(ToldFile { file: file.with_most(LARGEST), longest: self.longest })
     }
 }
 
@@ -176,7 +181,11 @@ pub(crate) fn history<'p>(
 }
 
 /// The record of a run in progress.
-pub(crate) struct ToldFile(Growing);
+pub(crate) struct ToldFile {
+    file: Growing,
+    /// Bytes of the longest entry.
+    longest: usize,
+}
 
 impl ToldFile {
     /// Makes the file of a run without a generation, and says how far it has come.
@@ -200,7 +209,16 @@ impl ToldFile {
         if let Some(statistics) = observed {
             bytes = postcard::to_extend(statistics.save().as_slice(), bytes).map_err(failed)?;
         }
-        self.0.append(&bytes)
+        self.longest = self.longest.max(bytes.len());
+        self.file.append(&bytes)
+    }
+
+    /// Whether there is room for a generation as long as any before; else what is finished is to be kept, and the run to end.
+    ///
+    /// # Errors
+    /// [`Error::Other`].
+    pub(crate) fn room(&self) -> Result<(), Error> {
+        self.file.room_for(self.longest)
     }
 
     /// Brings everything to the disk and says how far it has come.
@@ -208,7 +226,7 @@ impl ToldFile {
     /// # Errors
     /// [`Error::Io`], and [`Error::Damaged`] when somebody has removed, replaced or changed the file.
     pub(crate) fn sync(&mut self) -> Result<Mark, Error> {
-        self.0.check()?;
-        self.0.sync()
+        self.file.check()?;
+        self.file.sync()
     }
 }

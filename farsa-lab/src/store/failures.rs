@@ -43,6 +43,11 @@ impl FailedEvaluation {
     }
 }
 
+/// The file, with so much in it, which stays one that is read.
+fn growing(path: &Path, content: &[u8]) -> Result<Growing, Error> {
+    Growing::new(path, content).map(|file| file.with_most(LARGEST))
+}
+
 /// The failures of a run in progress; there is no file before the first.
 pub(crate) struct Failures {
     path: PathBuf,
@@ -60,9 +65,9 @@ impl Failures {
                 Growing::remove(path)?;
                 None
             }
-            Some(kept) if !kept.is_empty() => Some(Growing::new(path, kept)?),
-            _ if content.is_empty() => Some(Growing::new(path, HEADER.as_bytes())?),
-            _ => Some(Growing::new(path, &content)?),
+            Some(kept) if !kept.is_empty() => Some(growing(path, kept)?),
+            _ if content.is_empty() => Some(growing(path, HEADER.as_bytes())?),
+            _ => Some(growing(path, &content)?),
         };
         Ok(Self { path: path.into(), file })
     }
@@ -76,7 +81,7 @@ impl Failures {
         if let Some(file) = &mut self.file {
             return file.append(lines.as_bytes());
         }
-        self.file = Some(Growing::new(&self.path, format!("{HEADER}{lines}").as_bytes())?);
+        self.file = Some(growing(&self.path, format!("{HEADER}{lines}").as_bytes())?);
         Ok(())
     }
 

@@ -58,6 +58,7 @@ pub(crate) struct Growing {
     path: PathBuf,
     file: File,
     bytes: u64,
+    most: u64,
     crc: Crc32,
 }
 
@@ -65,11 +66,30 @@ impl Growing {
     /// Puts a file with this content in the place of what is there, which is never written to: it may be a link.
     pub(crate) fn new(path: &Path, content: &[u8]) -> Result<Self, Error> {
         let file = replace_and_keep(path, content)?;
-        Ok(Self { path: path.into(), file, bytes: content.len() as u64, crc: Crc32::new().with(content) })
+        let (bytes, crc) = (content.len() as u64, Crc32::new().with(content));
+        Ok(Self { path: path.into(), file, bytes, most: u64::MAX, crc })
+    }
+
+    /// The same with so many bytes at most, of a file that is read whole.
+    pub(crate) fn with_most(self, most: u64) -> Self {
+        Self { most, ..self }
+    }
+
+    /// Whether there is room for so many bytes more.
+    ///
+    /// # Errors
+    /// [`Error::Other`].
+    pub(crate) fn room_for(&self, more: usize) -> Result<(), Error> {
+        let bytes = self.bytes.saturating_add(more as u64);
+        if bytes > self.most { Err(Error::too_large(&self.path, bytes, self.most)) } else { Ok(()) }
     }
 
     /// Adds to the end.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and [`Error::Other`] beyond the most bytes; nothing is added then.
     pub(crate) fn append(&mut self, content: &[u8]) -> Result<(), Error> {
+        self.room_for(content.len())?;
         self.file.write_all(content).map_err(Error::io("write", &self.path))?;
         self.bytes += content.len() as u64;
         self.crc = self.crc.with(content);
@@ -133,6 +153,20 @@ mod tests {
         assert!(read(&path, mark, 100).unwrap_err().to_string().contains("altered"));
         fs::write(&path, "head").unwrap();
         assert!(read(&path, mark, 100).unwrap_err().to_string().contains("truncated: 4 bytes of 9"));
+    }
+
+    #[test]
+    fn a_file_grows_to_what_is_read_of_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log");
+        let mut log = Growing::new(&path, b"head\n").unwrap().with_most(9);
+        log.append(b"one\n").unwrap();
+        let mark = log.sync().unwrap();
+        assert!(log.room_for(0).is_ok() && log.room_for(1).is_err() && log.room_for(usize::MAX).is_err());
+        let said = log.append(b"2").unwrap_err().to_string();
+        assert_eq!(said, format!("{}: would have 10 bytes, more than the 9 that are read of it", path.display()));
+        assert_eq!(log.sync().unwrap(), mark);
+        assert_eq!(read(&path, mark, 9).unwrap(), b"head\none\n");
     }
 
     #[test]

@@ -31,8 +31,16 @@ pub(crate) trait Sealed: Serialize + DeserializeOwned {
 }
 
 /// Writes a sealed file in place of what was there; see [`replace`].
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Other`] for one that is too large to be read; nothing is replaced then.
 pub(crate) fn write<T: Sealed>(path: &Path, content: &T) -> Result<(), Error> {
-    replace(path, &to_bytes(path, content)?)
+    let bytes = to_bytes(path, content)?;
+    let size = bytes.len() as u64;
+    if size > T::LARGEST {
+        return Err(Error::too_large(path, size, T::LARGEST));
+    }
+    replace(path, &bytes)
 }
 
 /// The bytes of a sealed file, which is to be written to `path`.
@@ -155,6 +163,20 @@ mod tests {
             std::env::temp_dir().join(format!("farsa-sealed-{}-{:?}", std::process::id(), std::thread::current().id()));
         fs::create_dir_all(&directory).unwrap();
         directory
+    }
+
+    #[test]
+    fn what_would_not_be_read_replaces_nothing() {
+        let directory = tempfile();
+        let path = directory.join("thing.bin");
+        // Of postcard a length has two bytes here, and each of these numbers three.
+        let largest = |count: usize| Thing(vec![u16::MAX; count]);
+        let most = (Thing::LARGEST as usize - HEAD - CHECKSUM - 2) / 3;
+        write(&path, &largest(most)).unwrap();
+        let said = write(&path, &largest(most + 1)).unwrap_err().to_string();
+        assert!(said.ends_with("bytes, more than the 1000 that are read of it"), "{said}");
+        assert_eq!(read::<Thing>(&path).unwrap(), largest(most));
+        fs::remove_dir_all(directory).unwrap();
     }
 
     #[test]

@@ -9,6 +9,9 @@ use farsa_evo::{
 
 use crate::experiment::genotype::Genotype;
 
+/// Bytes of the largest state of a search that a checkpoint keeps. Tests have one that is soon full.
+pub(crate) const LARGEST_STATE: u64 = if cfg!(test) { 1 << 18 } else { 256 << 20 };
+
 /// A strategy over words or over reals, as [`StrategyDefinition::start`](crate::StrategyDefinition::start) makes it.
 ///
 /// A word stands for a value of its parameter's range as [`Genotype`] says. A real stands for the range from -1 to 1: -1 is

@@ -8,12 +8,14 @@
 //! - `normalised`: normalised observations
 //! - `files`: what is refused, and what is mended
 //! - `protocols`: tests of champions by protocols
+//! - `large`: searches and records that are too large to be read
 //! - `faults`: evaluations that panic, that are no number and that do not end
 
 mod every_strategy;
 mod faults;
 mod files;
 mod generalist;
+mod large;
 mod normalised;
 mod own_strategy;
 mod pool;

@@ -6,7 +6,7 @@ use super::{SIGMA, bounds, sizes};
 use crate::error::Error;
 use crate::experiment::settings::Setting;
 use crate::strategy::definition::{Diagnostics, DiagnosticsChart, StrategyStart};
-use crate::strategy::search::Search;
+use crate::strategy::search::{LARGEST_STATE, Search};
 use crate::strategy::settings::POPULATION;
 use crate::strategy::simple::SimpleStrategy;
 
@@ -110,6 +110,17 @@ fn over<C: Cells + Clone + 'static>(
     config: &MapElitesConfig,
     cells: &C,
 ) -> Result<Search, Error> {
+    // A run is not to find out when most cells have an elite.
+    let each = (start.genes + cells.descriptors()).saturating_mul(8 * start.populations);
+    let full = cells.cells().saturating_mul(each) as u64;
+    if full > LARGEST_STATE {
+        let why = format!(
+            "{} cells of {} genes: a full archive has {full} bytes; a checkpoint keeps at most {LARGEST_STATE}",
+            cells.cells(),
+            start.genes
+        );
+        return Err(Error::setting(CELLS, why));
+    }
     start.reals(|seed| MapElites::new(config.clone(), cells.clone(), seed))
 }
 
