@@ -167,6 +167,10 @@ fn foreign_bytes_are_refused_by_what_is_wrong_with_them() {
     assert_eq!(refused(&described(first(4) + 2, 4)), BytesError::Parameters(beyond));
     let beyond = Error::Block { index: 5, first: 6, count: 1, neurons: 6 };
     assert_eq!(refused(&described(first(5) + 3, 6)), BytesError::Parameters(beyond));
+    // What they are is the source of the error; others have none.
+    let source = |error: BytesError| core::error::Error::source(&error).map(ToString::to_string);
+    assert_eq!(source(BytesError::Parameters(beyond)), Some(beyond.to_string()));
+    assert_eq!(source(BytesError::BigEndian), None);
     // A layout of other parameters than there are.
     assert_eq!(refused(&described(8, 0)), BytesError::Length { expected: LEN - 4, found: LEN });
     assert!(matches!(refused(&described(0, u32::MAX - 1)), BytesError::Length { found: LEN, .. }));

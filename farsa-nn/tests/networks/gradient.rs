@@ -174,6 +174,29 @@ fn a_memory_is_learned_by_every_reading_and_both_optimizers() {
     }
 }
 
+/// The divergence of what is wanted from what is done, nothing where both are the same.
+#[test]
+fn cross_entropy_costs_the_divergence_from_what_is_wanted() {
+    let layout = LeakyLayout::new(0, 0, 1).with_slope(1.0);
+    let mut gradient = Gradient::<f64>::new(layout, Leak::Filter, Loss::CrossEntropy).expect("valid");
+    for bias in [-1.5_f32, 0.0, 0.7] {
+        let parameters = vec![bias; layout.parameter_count()];
+        let mut network =
+            LeakyNetwork::new(layout, Leak::Filter, &parameters[..], vec![0.0; layout.state_len()]).expect("valid");
+        let mut y = [0.0];
+        network.step(&[], &mut y);
+        let motor = f64::from(y[0]);
+        for wanted in [0.0, 0.25, y[0], 1.0] {
+            let parameters: Vec<f64> = parameters.iter().map(|p| f64::from(*p)).collect();
+            let cost = gradient.cost(&parameters, Demonstration { x: &[], wanted: &[wanted] }).expect("a tick");
+            let part = |p: f64, q: f64| if p > 0.0 { p * farsa_num::ln(p / q) } else { 0.0 };
+            let p = f64::from(wanted);
+            let expected = part(p, motor) + part(1.0 - p, 1.0 - motor);
+            assert!((cost - expected).abs() < 1e-6, "{bias} {wanted}: {cost} is not {expected}");
+        }
+    }
+}
+
 /// What the next step of learning costs, and of demonstrations of several lengths the mean over all ticks.
 #[test]
 fn a_cost_is_told_without_learning() {
