@@ -45,16 +45,14 @@ pub(crate) fn write<T: Sealed>(path: &Path, content: &T) -> Result<(), Error> {
 
 /// The bytes of a sealed file, which is to be written to `path`.
 pub(crate) fn to_bytes<T: Sealed>(path: &Path, content: &T) -> Result<Vec<u8>, Error> {
-    let content = postcard::to_stdvec(content).map_err(|error| Error::Io {
+    let head = [&T::MAGIC[..], &FORMAT.to_le_bytes(), &[0; 8]].concat();
+    let mut bytes = postcard::to_extend(content, head).map_err(|error| Error::Io {
         doing: "write",
         path: path.into(),
         source: io::Error::other(error),
     })?;
-    let mut bytes = Vec::with_capacity(HEAD + content.len() + CHECKSUM);
-    bytes.extend(T::MAGIC);
-    bytes.extend(FORMAT.to_le_bytes());
-    bytes.extend((content.len() as u64).to_le_bytes());
-    bytes.extend(content);
+    let length = (bytes.len() - HEAD) as u64;
+    bytes[HEAD - 8..HEAD].copy_from_slice(&length.to_le_bytes());
     let checksum = crc32(&bytes);
     bytes.extend(checksum.to_le_bytes());
     Ok(bytes)
