@@ -62,7 +62,7 @@ fn on(size: usize, numbers: &Numbers, generations: i64, directory: &Path) -> Vec
 }
 
 /// What a run holds, but for the manifest, which has the times of its sessions.
-fn content(run: &Path) -> BTreeMap<String, Vec<u8>> {
+pub(super) fn content(run: &Path) -> BTreeMap<String, Vec<u8>> {
     let names = fs::read_dir(run).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let names = names.filter(|name| name != "manifest.json");
     names.map(|name| (name.clone(), fs::read(run.join(name)).unwrap())).collect()
