@@ -128,7 +128,7 @@ impl Progress {
 
     /// After how many generations a state is kept where a strategy asks for one after so many.
     fn spacing(self, asked: u32) -> u64 {
-        u64::from(asked) << (self.states / ROOM).min(31)
+        u64::from(asked.max(1)) << (self.states / ROOM).min(31)
     }
 
     /// Whether as many bytes of frames have been added since the last state, with the next, as a state is likely to take.
@@ -188,6 +188,6 @@ mod tests {
         let spacing = |states, asked| Progress { states, ..progress }.spacing(asked);
         let most = [0, ROOM - 1, ROOM, 2 * ROOM - 1, 2 * ROOM, 15 * ROOM, u64::MAX];
         assert_eq!(most.map(|states| spacing(states, 3)), [3, 3, 6, 6, 12, 3 << 15, 3 << 31]);
-        assert_eq!(spacing(u64::MAX, u32::MAX), u64::from(u32::MAX) << 31);
+        assert_eq!((spacing(u64::MAX, u32::MAX), spacing(ROOM, 0)), (u64::from(u32::MAX) << 31, 2));
     }
 }
