@@ -243,6 +243,16 @@ mod tests {
     }
 
     #[test]
+    fn scaling_multiplies_variances_and_their_roots() {
+        let whole = || of(vec![4.0, 2.0, 2.0, 5.0], 2);
+        let (before, mut after) = (whole(), whole());
+        after.scale(0.25);
+        assert!(after.matrix().iter().zip(before.matrix()).all(|(a, b)| *a == 0.25 * b));
+        assert!(after.factor.iter().zip(&before.factor).all(|(a, b)| *a == 0.5 * b));
+        assert_eq!(after.extremes(), [1.0, 1.0]);
+    }
+
+    #[test]
     fn what_has_no_factor_gets_the_nearest_or_leaves_all_as_it_is() {
         // Of rank one: what is left of the second variance is rounding.
         let covariance = of(vec![1.0, 1.0, 1.0, 1.0], 2);

@@ -293,6 +293,11 @@ fn the_axis_ratio_finds_that_of_the_function() {
     // The root of the condition, 10^3.
     assert!((400.0..2500.0).contains(&search.axis_ratio()), "{}", search.axis_ratio());
     assert_eq!(search.diagnostics(), [search.sigma(), search.axis_ratio()]);
+    // Of a factor the ratio on its diagonal, whose squares lie between the eigenvalues.
+    let mut search = CholeskyCmaEs::new(cma(1.0, 6, 0.5), 2).unwrap();
+    evaluations(&mut search, 20_000, ellipsoid);
+    assert!((100.0..2500.0).contains(&search.axis_ratio()), "{}", search.axis_ratio());
+    assert_eq!(search.diagnostics(), [search.sigma(), search.axis_ratio()]);
 }
 
 #[test]

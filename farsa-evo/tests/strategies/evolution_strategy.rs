@@ -68,6 +68,13 @@ fn it_keeps_to_what_a_strategy_is() {
     check_strategy(|| EvolutionStrategy::new(one.clone(), 7), 20).unwrap();
 }
 
+#[test]
+fn learning_rates_fall_with_the_number_of_genes() {
+    assert_eq!(StepSizes::one(16), StepSizes::One { tau: 0.25 });
+    let StepSizes::PerGene { tau_0, tau } = StepSizes::per_gene(16) else { panic!("one step size") };
+    assert!((tau_0 - 1.0 / 32.0_f64.sqrt()).abs() < 1e-15 && (tau - 1.0 / 8.0_f64.sqrt()).abs() < 1e-15);
+}
+
 #[derive(Clone)]
 struct Naive {
     genes: Vec<f64>,

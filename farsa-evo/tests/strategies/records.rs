@@ -61,6 +61,7 @@ fn recorded() -> Record {
 #[test]
 fn states_are_kept_as_often_as_a_slow_strategy_asks() {
     let record = recorded();
+    assert_eq!((record.size(), record.populations(), record.generations()), (10, 1, 10));
     let kept: Vec<u32> = (0..10).filter(|generation| record.entry(*generation).unwrap().state.is_some()).collect();
     assert_eq!(kept, [2, 5, 8]);
     // A record that was cut and went on is the same, and so is one that is read entry by entry.

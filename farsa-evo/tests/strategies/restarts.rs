@@ -40,6 +40,16 @@ fn restarts_find_what_one_run_misses() {
     }
 }
 
+#[test]
+fn a_step_size_begins_as_given_and_falls_towards_an_optimum() {
+    let mut search = CmaEsRestarts::new(config(3.0, 4, 0.7, RestartSchedule::Ipop), 1).unwrap();
+    assert_eq!(search.sigma(), 0.7);
+    for _ in 0..100 {
+        tell(&mut search, |x| x.iter().map(|x| x * x).sum());
+    }
+    assert!(search.run() == 0 && search.sigma() < 1e-3, "{}", search.sigma());
+}
+
 /// The individuals of each run and the blocks that it evaluated.
 fn runs(schedule: RestartSchedule, generations: u32) -> Vec<(usize, u32)> {
     let mut search = CmaEsRestarts::new(config(3.0, 4, 1.0, schedule), 1).unwrap();

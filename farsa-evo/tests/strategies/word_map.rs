@@ -57,6 +57,7 @@ fn neighbouring_values_of_a_gray_code_differ_by_a_bit() {
 fn frozen_parameters_take_no_word() {
     let gene = word(8, 0.0, 255.0, WordCode::Plain);
     let map = WordMap::new(vec![WordGene::Frozen(-3.0), gene, WordGene::Frozen(9.5), gene]).unwrap();
+    assert_eq!(map.genes(), [WordGene::Frozen(-3.0), gene, WordGene::Frozen(9.5), gene]);
     assert_eq!(decoded(&map, &[7, 9]), [-3.0, 7.0, 9.5, 9.0]);
     assert_eq!(encoded(&map, &[f32::NAN, 7.4, 0.0, 1e9]), [7, 255]);
     assert_eq!(encoded(&map, &[0.0, 7.5, 0.0, f32::NEG_INFINITY]), [7, 0]);
