@@ -51,8 +51,8 @@ fn a_step_size_begins_as_given_and_falls_towards_an_optimum() {
 }
 
 /// The individuals of each run and the blocks that it evaluated.
-fn runs(schedule: RestartSchedule, generations: u32) -> Vec<(usize, u32)> {
-    let mut search = CmaEsRestarts::new(config(3.0, 4, 1.0, schedule), 1).unwrap();
+fn runs(schedule: RestartSchedule, seed: u64, generations: u32) -> Vec<(usize, u32)> {
+    let mut search = CmaEsRestarts::new(config(3.0, 4, 1.0, schedule), seed).unwrap();
     let mut runs = vec![];
     for _ in 0..generations {
         if runs.len() <= search.run() as usize {
@@ -66,24 +66,26 @@ fn runs(schedule: RestartSchedule, generations: u32) -> Vec<(usize, u32)> {
 
 #[test]
 fn runs_have_the_sizes_of_their_schedule() {
-    let sizes: Vec<usize> = runs(RestartSchedule::Ipop, 4000).into_iter().map(|(size, _)| size).collect();
+    let sizes: Vec<usize> = runs(RestartSchedule::Ipop, 1, 4000).into_iter().map(|(size, _)| size).collect();
     assert_eq!(sizes[..4], [8, 16, 32, 64]);
-    let runs = runs(RestartSchedule::Bipop, 8000);
-    let (mut large, mut spent, mut latest) = (8, [0, 0], runs[0].1);
-    for (size, blocks) in &runs[1..runs.len() - 1] {
-        let small = spent[1] < spent[0];
-        if small {
-            assert!((8..=(large / 2).max(8)).contains(size), "{runs:?}");
-            // A run ends with the generation in which it has spent half of what the latest large run had.
-            assert!(*blocks < latest / 2 + *size as u32 / 8, "{runs:?}");
-        } else {
-            large *= 2;
-            assert_eq!(*size, large, "{runs:?}");
-            latest = *blocks;
+    for seed in 1..5 {
+        let runs = runs(RestartSchedule::Bipop, seed, 8000);
+        let (mut large, mut spent, mut latest) = (8, [0, 0], runs[0].1);
+        for (size, blocks) in &runs[1..runs.len() - 1] {
+            let small = spent[1] < spent[0];
+            if small {
+                assert!((8..=(large / 2).max(8)).contains(size), "{runs:?}");
+                // A run ends with the generation in which it has spent half of what the latest large run had.
+                assert!(*blocks < latest / 2 + *size as u32 / 8, "{runs:?}");
+            } else {
+                large *= 2;
+                assert_eq!(*size, large, "{runs:?}");
+                latest = *blocks;
+            }
+            spent[usize::from(small)] += blocks;
         }
-        spent[usize::from(small)] += blocks;
+        assert!(large >= 32 && runs.len() > 8, "{runs:?}");
     }
-    assert!(large >= 32 && runs.len() > 8, "{runs:?}");
 }
 
 #[test]
