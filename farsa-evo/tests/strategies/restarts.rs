@@ -50,6 +50,29 @@ fn a_step_size_begins_as_given_and_falls_towards_an_optimum() {
     assert!(search.run() == 0 && search.sigma() < 1e-3, "{}", search.sigma());
 }
 
+/// Small runs begin with a step size between a hundredth of the first and that, evenly drawn by its logarithm [Hansen2009].
+#[test]
+fn small_runs_begin_with_small_step_sizes() {
+    let mut small = vec![];
+    for seed in 1..5 {
+        let mut search = CmaEsRestarts::new(config(3.0, 4, 1.0, RestartSchedule::Bipop), seed).unwrap();
+        let mut run = 0;
+        for _ in 0..8000 {
+            tell(&mut search, rastrigin);
+            if search.run() != run {
+                run = search.run();
+                small.push(search.sigma());
+            }
+        }
+    }
+    small.retain(|sigma| *sigma != 1.0);
+    let magnitude = small.iter().map(|sigma| farsa_num::ln(*sigma)).sum::<f64>() / small.len() as f64;
+    println!("{} small runs begin with e^{magnitude} in the geometric mean", small.len());
+    assert!(small.len() > 20 && small.iter().all(|sigma| (0.01..1.0).contains(sigma)), "{small:?}");
+    // The logarithm of a tenth, by which a mean of so many is not 0.8 off.
+    assert!((magnitude + std::f64::consts::LN_10).abs() < 0.8, "{magnitude}");
+}
+
 /// The individuals of each run and the blocks that it evaluated.
 fn runs(schedule: RestartSchedule, seed: u64, generations: u32) -> Vec<(usize, u32)> {
     let mut search = CmaEsRestarts::new(config(3.0, 4, 1.0, schedule), seed).unwrap();
