@@ -190,8 +190,9 @@ impl<'d> Run<'d> {
         let mut ended = Ok(());
         while self.progression.search.generation() < last {
             let generation = self.progression.search.generation();
-            ended = self.told.room();
-            if ended.is_err() {
+            if let Err(full) = self.told.room() {
+                let why = format!("{full}; the run ends after {generation} generations, which are kept");
+                ended = Err(Error::Other(why));
                 break;
             }
             // A trial that panics is contained by itself; here it is the strategy. What it was doing is not worth keeping.
