@@ -302,14 +302,12 @@ fn given(value: &Value) -> Option<Given> {
 
 /// The strategy's settings that the document gives other defaults.
 fn searched(document: &Document, strategy: &dyn StrategyDefinition, places: &Places) -> Result<Vec<Setting>, Error> {
-    let known = strategy.settings();
+    let known = Settings::new(strategy.settings())?;
     let mut found = Vec::new();
     for (section, values) in [("evolution", &document.evolution), ("strategy", &document.strategy)] {
         for (name, value) in values.iter().filter(|(name, _)| section != "strategy" || *name != "name") {
             let (path, key) = (format!("/{section}/{name}"), format!("{section}.{name}"));
-            let setting = known.iter().find(|setting| setting.key() == key);
-            let keys = known.iter().map(Setting::key);
-            let setting = setting.ok_or_else(|| Error::unknown(&places.of(&path), "key", &key, keys))?;
+            let setting = known.find(&places.of(&path), &key)?;
             let value =
                 given(value).ok_or_else(|| places.wrong(&path, "is no flag, number, word or list of numbers"))?;
             let default = setting.with_default(value).map_err(|why| places.wrong(&path, why))?;

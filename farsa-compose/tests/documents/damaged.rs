@@ -105,6 +105,11 @@ fn what_is_wrong_is_named_with_file_line_and_key() {
             "look.toml line 36: unknown key `evolution.parent`; the nearest is `evolution.parents`",
         ),
         ("parents = 2", "parents = -2", "look.toml line 36: evolution.parents: -2 is outside"),
+        (
+            "parents = 2",
+            "strategy = \"cma-es\"",
+            "look.toml line 36: `evolution.strategy`: is no setting; another strategy is `--strategy`, or `strategy.name` in a file",
+        ),
         ("[robot]", "[robotz]", "look.toml line 9: unknown key `robotz`; the nearest is `robot`"),
         ("summary = \"an e-puck looks for a lamp\"", "summary = \"a\nb\"", "look.toml line 2"),
         (

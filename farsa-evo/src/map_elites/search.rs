@@ -95,6 +95,18 @@ impl<C: Cells + Clone> MapElites<C> {
         &self.archive
     }
 
+    /// Bytes of the largest state that it [saves](Snapshot::save), with an elite in every cell.
+    pub fn largest_state(&self) -> usize {
+        self.state_length(self.archive.cells().cells())
+    }
+
+    /// Bytes of a state with so many elites.
+    fn state_length(&self, elites: usize) -> usize {
+        let distributions = self.improvements.iter().flatten().count();
+        let own = 4 + distributions * Improvement::state_length(self.config.bounds.len());
+        self.archive.state_length(elites).saturating_add(own)
+    }
+
     /// Makes the individuals of this generation.
     fn make(&mut self) {
         let (seed, generation, genes) = (self.seed, self.generation, self.config.bounds.len());
@@ -248,7 +260,7 @@ impl<C: Cells + Clone> Snapshot for MapElites<C> {
     }
 
     fn save(&self) -> Vec<u8> {
-        let mut state = Vec::with_capacity(4 + self.archive.state_length(self.archive.len()));
+        let mut state = Vec::with_capacity(self.state_length(self.archive.len()));
         state.extend(self.generation.to_le_bytes());
         self.archive.save(&mut state);
         self.improvements.iter().flatten().for_each(|improvement| improvement.save(&mut state));
@@ -258,10 +270,7 @@ impl<C: Cells + Clone> Snapshot for MapElites<C> {
     fn restore(&mut self, state: &[u8]) -> Result<(), EvoError> {
         let mut header = StateReader::new(state, state.len())?;
         let (_, elites) = (header.u32()?, header.u32()? as usize);
-        let distribution = Improvement::state_length(self.config.bounds.len());
-        let own = self.improvements.iter().flatten().count() * distribution;
-        let expected = self.archive.state_length(elites).saturating_add(4 + own);
-        let mut reader = StateReader::new(state, expected)?;
+        let mut reader = StateReader::new(state, self.state_length(elites))?;
         let generation = reader.u32()?;
         let archive = self.archive.read(&mut reader, &self.config.bounds)?;
         let mut improvements = self.improvements.clone();

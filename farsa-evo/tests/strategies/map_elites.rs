@@ -281,6 +281,9 @@ fn a_damaged_state_is_refused() {
     let (before, state) = (search.clone(), search.save());
     let elites = search.archive().len();
     let first = 8;
+    // An elite more in every other cell.
+    let empty = search.archive().cells().cells() - elites;
+    assert_eq!(search.largest_state(), state.len() + empty * (12 + 8 * 6));
     let last = first + (elites - 1) * (12 + 8 * 6);
     // The number of elites, a cell that is not that of its descriptor, an objective that failed, a gene out of its
     // bounds, a step size of zero.

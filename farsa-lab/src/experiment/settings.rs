@@ -44,18 +44,26 @@ impl Settings {
     /// Sets a value; `place` says where it stands, for the error (`my.toml line 3`, `--set`).
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the nearest key, or [`Error::Setting`] when the value is not allowed; nothing is then
-    /// changed.
+    /// Those of [`find`](Self::find), and [`Error::Setting`] when the value is not allowed; nothing is then changed.
     pub fn set(&mut self, place: &str, key: &str, value: Value) -> Result<(), Error> {
-        let Some(setting) = self.table.iter().find(|setting| setting.key() == key) else {
-            return Err(match elsewhere(key) {
-                Some(why) => Error::Setting { place: place.into(), key: key.into(), why: why.into() },
-                None => Error::unknown(place, "key", key, self.table.iter().map(Setting::key)),
-            });
-        };
-        let value = setting.check(value).map_err(|why| Error::Setting { place: place.into(), key: key.into(), why })?;
+        let value = self.find(place, key)?.check(value).map_err(|why| Error::Setting {
+            place: place.into(),
+            key: key.into(),
+            why,
+        })?;
         self.values.insert(key.into(), value);
         Ok(())
+    }
+
+    /// The setting of a key; `place` says where that stands, for the error.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] with the nearest key, or [`Error::Setting`] for what is chosen elsewhere, such as a strategy.
+    pub fn find(&self, place: &str, key: &str) -> Result<&Setting, Error> {
+        self.table.iter().find(|setting| setting.key() == key).ok_or_else(|| match elsewhere(key) {
+            Some(why) => Error::Setting { place: place.into(), key: key.into(), why: why.into() },
+            None => Error::unknown(place, "key", key, self.table.iter().map(Setting::key)),
+        })
     }
 
     /// Whether there is a section of this name, or some within it.
@@ -263,9 +271,13 @@ mod tests {
         assert_eq!(long, format!("--set: `noise.on`: \"{}... is not true or false", "a".repeat(199)));
         assert_eq!(wrong("noise.no", Value::Flag(true)), "--set: unknown key `noise.no`; the nearest is `noise.on`");
         // What is asked for elsewhere; a setting that has such a name is one.
-        for (key, option) in
-            [("evolution.strategy", "`--strategy`"), ("strategy.name", "`--strategy`"), ("seed", "`--seed`")]
-        {
+        for (key, option) in [
+            ("evolution.strategy", "`--strategy`"),
+            ("search.algorithm", "`--strategy`"),
+            ("strategy.name", "`--strategy`"),
+            ("evolution.seed", "`--seed`"),
+            ("condition", "`--condition`"),
+        ] {
             let said = wrong(key, Value::Whole(1));
             assert!(said.starts_with(&format!("--set: `{key}`: is no setting")) && said.contains(option), "{said}");
         }

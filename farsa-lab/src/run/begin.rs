@@ -19,7 +19,6 @@ use crate::store::replace::replace;
 use crate::strategy::history::History;
 use crate::strategy::opponents::Hall;
 use crate::strategy::search::{LARGEST_STATE, Search};
-use crate::strategy::settings::POPULATION;
 
 /// Makes the directory of a new run, ready for its first generation.
 pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
@@ -30,15 +29,11 @@ pub(crate) fn create(plan: &Plan<'_>, path: &Path) -> Result<Directory, Error> {
     let state = strategy.snapshot().map(|strategy| strategy.save());
     let bytes = state.as_ref().map_or(0, Vec::len);
     if bytes as u64 > LARGEST_STATE {
-        return Err(Error::setting(
-            POPULATION,
-            format!(
-                "{} individuals of {} genes: a state of `{}` has {bytes} bytes; a checkpoint keeps at most {LARGEST_STATE}",
-                strategy.individuals(),
-                strategy.genes(),
-                plan.definition().name(),
-            ),
-        ));
+        let (name, individuals, genes) = (plan.definition().name(), strategy.individuals(), strategy.genes());
+        return Err(Error::Usage(format!(
+            "`{name}`: a state of {individuals} individuals of {genes} genes has {bytes} bytes; a checkpoint keeps at most \
+             {LARGEST_STATE}"
+        )));
     }
     Directory::create(path, |directory| {
         replace(&directory.config(), text.as_bytes())?;

@@ -111,15 +111,16 @@ fn over<C: Cells + Clone + 'static>(
     cells: &C,
 ) -> Result<Search, Error> {
     // A run is not to find out when most cells have an elite.
-    let each = (start.genes + cells.descriptors()).saturating_mul(8 * start.populations);
-    let full = cells.cells().saturating_mul(each) as u64;
-    if full > LARGEST_STATE {
-        let why = format!(
-            "{} cells of {} genes: a full archive has {full} bytes; a checkpoint keeps at most {LARGEST_STATE}",
-            cells.cells(),
-            start.genes
-        );
-        return Err(Error::setting(CELLS, why));
+    let one = MapElites::new(config.clone(), cells.clone(), start.seed);
+    let full = one.map_or(0, |search| search.largest_state()).saturating_mul(start.populations);
+    if full as u64 > LARGEST_STATE {
+        let (cells, genes) = (cells.cells(), start.genes);
+        return Err(Error::setting(
+            CELLS,
+            format!(
+                "{cells} cells of {genes} genes, when full, are {full} bytes; a checkpoint keeps at most {LARGEST_STATE}"
+            ),
+        ));
     }
     start.reals(|seed| MapElites::new(config.clone(), cells.clone(), seed))
 }
